@@ -1,0 +1,16 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace stg {
+
+/// Bad input from a user (scenario file, policy file, command line, bag).
+/// The message names file, line and key where they are known. Programs print
+/// it and exit with status 2; nothing is half-applied.
+class UserError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace stg

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "auv_dynamics/simd.hpp"
+
+/// Plain data that crosses package and process boundaries. Every field survives
+/// a ROS message unchanged (doubles and integer nanoseconds only).
+namespace stg {
+
+/// Simulated time in integer nanoseconds, as ros::Time carries it.
+using TimeNs = std::int64_t;
+inline double Seconds(TimeNs t) { return static_cast<double>(t) * 1e-9; }
+
+/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU).
+struct NavState {
+  TimeNs stamp = 0;
+  Vec3<double> p_WB;                        ///< position [m]
+  double q_WB[4] = {1.0, 0.0, 0.0, 0.0};    ///< orientation, w x y z, unit norm
+  Vec3<double> v_WB_B;                      ///< velocity over ground in body axes [m/s]
+  Vec3<double> w_WB_B;                      ///< body rates p, q, r [rad/s]
+};
+
+/// One detection of a target by one vehicle's own sensor.
+struct Detection {
+  TimeNs stamp = 0;
+  int target = 0;
+  Vec3<double> p_WT;       ///< measured target position in the world [m]
+  double std_m = 0.0;      ///< standard deviation of each component [m]
+};
+
+/// Where a search starts: a datum of stated uncertainty.
+struct Cue {
+  int target = 0;
+  Vec3<double> p_WT;       ///< stated target position in the world [m]
+  double std_m = 0.0;      ///< standard deviation of each component [m]
+};
+
+/// Generalised force tau = [X Y Z K M N] at the body origin, body axes [N, N m].
+template <class T>
+struct Wrench {
+  Vec3<T> force;
+  Vec3<T> moment;
+};
+
+}  // namespace stg
