@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Configures the workspace when needed and builds the given targets (default: all).
+set -euo pipefail
+
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
+base=${STG_BUILD_ROOT:-$root}
+build=$base/build
+
+# Catkin and ROS belong to Debian's Python, whatever else comes first on the PATH.
+export PATH="/usr/bin:$PATH"
+
+options=(
+  -G Ninja
+  "-DCATKIN_DEVEL_PREFIX=$base/devel"
+  "-DCMAKE_INSTALL_PREFIX=$base/install"
+  -DCMAKE_BUILD_TYPE=Release
+  -DCATKIN_ENABLE_TESTING=ON
+  -DPYTHON_EXECUTABLE=/usr/bin/python3
+  -DPython3_EXECUTABLE=/usr/bin/python3
+)
+if command -v ccache >/dev/null; then
+  options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache)
+fi
+if [[ -n "${STG_MARCH:-}" ]]; then
+  options+=("-DSTG_MARCH=$STG_MARCH")
+fi
+
+# Ninja configures again by itself when a CMake file changes, but not when a package appears.
+wanted=$(printf '%s\n' "${options[@]}" "$root"/src/*/package.xml)
+stamp=$build/stg_configured
+if [[ ! -f "$build/build.ninja" || ! -f "$stamp" || "$(<"$stamp")" != "$wanted" ]]; then
+  mkdir -p "$build"
+  rm -f "$stamp"
+  log=$build/configure.log
+  echo "build: configuring (log: $log)"
+  if ! cmake -S "$root/src" -B "$build" "${options[@]}" >"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    echo "build: configuring failed" >&2
+    exit 1
+  fi
+  printf '%s\n' "$wanted" >"$stamp"
+fi
+
+# One job a core, but no more than one for 2 GiB of memory: a Torch source needs that much.
+memory_kib=$(awk '/^MemTotal:/ { print $2 }' /proc/meminfo)
+jobs=$(nproc)
+by_memory=$((memory_kib / (2 * 1024 * 1024)))
+if ((by_memory < jobs)); then
+  jobs=$((by_memory > 1 ? by_memory : 1))
+fi
+exec ninja -C "$build" -j "$jobs" "$@"

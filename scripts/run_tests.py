@@ -1,0 +1,144 @@
+#!/usr/bin/python3
+"""Runs every test of a built catkin workspace, one after the other, and counts the results.
+
+The tests are those that catkin registered with CTest: GoogleTests, Python tests and rostests. Each
+writes a JUnit file, and each case in it counts. A test that leaves no readable file, runs no case,
+or exits with an error without reporting one, counts as one failure: a crash is never silent. The
+last line of the output is "N passed, M failed"; the exit status is 0 only if something ran and
+nothing failed.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+
+TIMEOUT_S = float(os.environ.get("STG_TEST_TIMEOUT_S", "900"))
+SHOWN_LINES = 80
+
+
+def registered_tests(build_dir):
+    """Returns [(name, command, result_file)] of the tests that CTest knows in `build_dir`."""
+    listing = subprocess.run(
+        ["ctest", "--show-only=json-v1"], cwd=build_dir, check=True, stdout=subprocess.PIPE
+    ).stdout
+    tests = []
+    for test in json.loads(listing)["tests"]:
+        command = test.get("command", [])
+        results = [a for a in command if a.endswith(".xml") and "test_results" in a]
+        name = test["name"].replace("_ctest_", "", 1)
+        tests.append((name, command, results[0] if results else None))
+    return tests
+
+
+def session_members(session):
+    """Returns the ids of the processes in `session`, which is how nodes of a rostest are found."""
+    members = []
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            try:
+                with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as stat:
+                    fields = stat.read().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if int(fields[3]) == session and fields[0] != "Z":
+                members.append(int(entry))
+    return members
+
+
+def end_session(session):
+    """Interrupts what is left of a test, and kills what does not leave within ten seconds."""
+    for number, patience_s in ((signal.SIGINT, 10.0), (signal.SIGKILL, 2.0)):
+        deadline = time.monotonic() + patience_s
+        for process in session_members(session):
+            try:
+                os.kill(process, number)
+            except ProcessLookupError:
+                pass
+        while session_members(session) and time.monotonic() < deadline:
+            time.sleep(0.1)
+
+
+def execute(command, log_path):
+    """Runs `command` in a session of its own; returns its exit status, or None past the limit."""
+    with open(log_path, "wb") as log:
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True
+        )
+        try:
+            return process.wait(TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            end_session(process.pid)
+            process.wait()
+
+
+def count_cases(path):
+    """Returns (passed, failures) of a JUnit file, `failures` naming each failed case."""
+    passed, failures = 0, []
+    for case in ElementTree.parse(path).getroot().iter("testcase"):
+        name = f"{case.get('classname', '')}.{case.get('name', '')}"
+        if case.find("failure") is not None or case.find("error") is not None:
+            failures.append(name)
+        elif case.find("skipped") is None and case.get("status", "run") == "run":
+            passed += 1
+    return passed, failures
+
+
+def judge(status, result_file):
+    """Returns (passed, failures) of one finished test."""
+    try:
+        passed, failures = count_cases(result_file)
+    except (OSError, TypeError, ElementTree.ParseError):
+        passed, failures = 0, ["no readable result file"]
+    if status is None:
+        failures.append(f"still running after {TIMEOUT_S:.0f} s")
+    elif status != 0 and not failures:
+        failures.append(f"exit status {status}")
+    elif passed == 0 and not failures:
+        failures.append("ran no case")
+    return passed, failures
+
+
+def show_log(log_path):
+    """Prints the end of a failed test's output."""
+    with open(log_path, encoding="utf-8", errors="replace") as log:
+        for line in log.read().splitlines()[-SHOWN_LINES:]:
+            print(f"    | {line}")
+
+
+def main(build_dir, pattern):
+    """Runs the tests of `build_dir` whose name contains `pattern`; returns the exit status."""
+    log_dir = os.path.join(build_dir, "test_logs")
+    os.makedirs(log_dir, exist_ok=True)
+    os.environ.setdefault("ROS_HOME", os.path.join(build_dir, "ros_home"))
+    total_passed, total_failed = 0, 0
+    for name, command, result_file in registered_tests(build_dir):
+        if pattern not in name:
+            continue
+        if result_file and os.path.exists(result_file):
+            os.remove(result_file)
+        log_path = os.path.join(log_dir, f"{name}.log")
+        start = time.monotonic()
+        status = execute(command, log_path)
+        passed, failures = judge(status, result_file)
+        seconds = time.monotonic() - start
+        word = "FAIL" if failures else "ok"
+        print(f"{word:4} {name}: {passed} passed, {len(failures)} failed, {seconds:.1f} s")
+        if failures:
+            for failure in failures:
+                print(f"    failed: {failure}")
+            show_log(log_path)
+        sys.stdout.flush()
+        total_passed += passed
+        total_failed += len(failures)
+    print(f"{total_passed} passed, {total_failed} failed")
+    return 0 if total_passed > 0 and total_failed == 0 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(os.path.abspath(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""))
