@@ -81,15 +81,13 @@ template <class T>
 inline T Clip(const T& a, const T& lo, const T& hi) {
   return Min(Max(a, lo), hi);
 }
-template <class T>
-inline T Clip(const T& a, double lo, double hi) {
-  return Min(Max(a, T(lo)), T(hi));
-}
+inline Pack Clip(const Pack& a, double lo, double hi) { return Clip(a, Pack(lo), Pack(hi)); }
 
 /// Three components of one quantity, in the frame its name says.
 template <class T>
 struct Vec3 {
-  T x{0.0}, y{0.0}, z{0.0};
+  // Not x{0.0}: a Pack would take that as a list of lanes.
+  T x = T(0.0), y = T(0.0), z = T(0.0);
 
   Vec3 operator+(const Vec3& o) const { return {x + o.x, y + o.y, z + o.z}; }
   Vec3 operator-(const Vec3& o) const { return {x - o.x, y - o.y, z - o.z}; }
