@@ -1,0 +1,71 @@
+#pragma once
+
+#include <string>
+
+#include "auv_dynamics/scenario.hpp"
+#include "auv_dynamics/simd.hpp"
+
+/// Built-in controllers: what a policy has to beat.
+namespace stg {
+
+enum class BuiltinKind { kIdle, kPursuit, kPursuitSeparated };
+
+/// Constants of the pursuit law; the defaults are those of `pursuit`.
+struct PursuitOptions {
+  double gain_per_s = 4.66;
+  double standoff_m = 0.009;
+  double cap = 0.75;                  ///< of the maximum speed, each axis
+  double repulsion_gain_per_s = 0.0;  ///< 0: neighbours are ignored
+  double repulsion_range_m = 0.03;    ///< neighbours closer than this repel
+  double tangential_range_m = 0.05;   ///< closer to the target repulsion only turns aside
+};
+
+/// The tuned constants of a controller.
+PursuitOptions BuiltinOptions(BuiltinKind kind);
+
+/// "idle", "pursuit", "pursuit_separated"; false for any other name.
+bool ParseBuiltin(const std::string& name, BuiltinKind* kind);
+const char* ToString(BuiltinKind kind);
+
+/// Pursuit: v = gain (d - standoff) los + v_T, plus, from each neighbour closer than the
+/// repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
+/// the part of the repulsion along the line of sight is left out: AUVs then spread over the
+/// sphere around the target and keep their distance to it. Capped per axis at the end.
+/// Writes the action v / v_max (Eq. 23 inverted), three numbers in [-cap, cap].
+///
+/// @param r_BT_W target position minus own [m], world axes
+/// @param v_WT   target velocity [m/s], world axes
+/// @param r_BN_W [count] neighbour positions minus own [m]; a zero offset repels nothing
+template <class T>
+inline void PursuitAction(const PursuitOptions& o, const VehicleConfig& vehicle,
+                          const Vec3<T>& r_BT_W, const Vec3<T>& v_WT, const Vec3<T>* r_BN_W,
+                          int count, T* action) {
+  const T zero(0.0), tiny(1e-9);
+  const T d = Norm(r_BT_W);
+  const Vec3<T> los = r_BT_W * (T(1.0) / Max(d, tiny));
+  Vec3<T> v = los * (T(o.gain_per_s) * (d - T(o.standoff_m))) + v_WT;
+  if (o.repulsion_gain_per_s > 0.0) {
+    Vec3<T> push;
+    for (int j = 0; j < count; ++j) {
+      const T s = Norm(r_BN_W[j]);
+      const T strength = T(o.repulsion_gain_per_s) * Max(T(o.repulsion_range_m) - s, zero);
+      push += r_BN_W[j] * (-strength / Max(s, tiny));
+    }
+    const Vec3<T> tangential = push - los * Dot(push, los);
+    v += Select<T>(d < T(o.tangential_range_m), tangential, push);
+  }
+  const auto& vmax = vehicle.max_velocity_mps;
+  action[0] = Clip(v.x * T(1.0 / vmax[0]), T(-o.cap), T(o.cap));
+  action[1] = Clip(v.y * T(1.0 / vmax[1]), T(-o.cap), T(o.cap));
+  action[2] = Clip(v.z * T(1.0 / vmax[2]), T(-o.cap), T(o.cap));
+}
+
+class Agent;
+
+/// The action of a built-in controller from what an agent knows after Observe: its target
+/// estimate and the neighbours it has heard of. For tau6 the velocity goes through the
+/// velocity controller. Writes action_size() numbers; allocates nothing.
+void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent& agent,
+                   float* action);
+
+}  // namespace stg
