@@ -18,7 +18,7 @@ struct Transmission {
   std::uint32_t sequence = 0;  ///< counted per sender from the start of the episode
   TimeNs stamp = 0;            ///< time of the step it is handed over in
   Packet data{};
-  TimeNs generation = 0;       ///< time at which the payload was true, not after `stamp`
+  TimeNs generation = 0;  ///< time at which the payload was true, not after `stamp`
 };
 
 /// A packet as one receiver's modem gives it. Every number is finite.

@@ -46,7 +46,7 @@ struct LinkStatistics {
   std::uint64_t delivered = 0;    ///< packets handed to the receiver
   std::uint64_t dropped = 0;
   DropReason last_drop = DropReason::kNone;
-  DropCounts drops{};             ///< by reason
+  DropCounts drops{};  ///< by reason
 };
 
 /// Packets of the whole swarm; one packet counts once per receiver.
@@ -76,13 +76,13 @@ class LinkTable {
 
  private:
   struct Entry {
-    TimeNs freshest;          ///< generation time the age counts from
-    TimeNs last_event;        ///< the integral covers the time up to here
-    double integral_s2;       ///< of age over time
+    TimeNs freshest;     ///< generation time the age counts from
+    TimeNs last_event;   ///< the integral covers the time up to here
+    double integral_s2;  ///< of age over time
     double delay_sum_s;
     double peak_sum_s;
     double max_peak_s;
-    std::uint64_t resets;     ///< deliveries that reset the age
+    std::uint64_t resets;  ///< deliveries that reset the age
     std::uint64_t delivered;
     DropReason last_drop;
   };

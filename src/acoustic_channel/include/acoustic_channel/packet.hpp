@@ -15,21 +15,21 @@ using Packet = std::array<std::uint8_t, kPacketBytes>;
 
 /// State of one AUV and its target estimate, as its neighbours learn it. World axes (ENU).
 struct NeighbourState {
-  int source = 0;                 ///< index of the AUV, 0-based
-  TimeNs generation = 0;          ///< time at which this state was true
-  Vec3<double> p_W;               ///< position [m]
-  Vec3<double> v_W;               ///< velocity over ground [m/s]
-  double confidence = 0.0;        ///< observation confidence c (Eq. 13), [0, 1]
-  double tracking_error = 0.0;    ///< tracking error e (Eq. 12) [m]
-  int phase = 0;                  ///< 0 search, 1 approach, 2 stable, 3 lost
-  double link_quality = 0.0;      ///< mean quality of the links it receives on, [0, 1]
-  bool has_target = false;        ///< false: the fields below mean nothing and travel as zeros
-  int target = 0;                 ///< index of the target
-  TimeNs target_stamp = 0;        ///< time of the target estimate, not after `generation`
-  Vec3<double> p_WT;              ///< estimated target position [m]
-  Vec3<double> v_WT;              ///< estimated target velocity [m/s]
-  double target_std = 0.0;        ///< standard deviation of the estimate, each component [m]
-  bool saturated = false;         ///< set by Encode when a value did not fit and was clipped
+  int source = 0;               ///< index of the AUV, 0-based
+  TimeNs generation = 0;        ///< time at which this state was true
+  Vec3<double> p_W;             ///< position [m]
+  Vec3<double> v_W;             ///< velocity over ground [m/s]
+  double confidence = 0.0;      ///< observation confidence c (Eq. 13), [0, 1]
+  double tracking_error = 0.0;  ///< tracking error e (Eq. 12) [m]
+  int phase = 0;                ///< 0 search, 1 approach, 2 stable, 3 lost
+  double link_quality = 0.0;    ///< mean quality of the links it receives on, [0, 1]
+  bool has_target = false;      ///< false: the fields below mean nothing and travel as zeros
+  int target = 0;               ///< index of the target
+  TimeNs target_stamp = 0;      ///< time of the target estimate, not after `generation`
+  Vec3<double> p_WT;            ///< estimated target position [m]
+  Vec3<double> v_WT;            ///< estimated target velocity [m/s]
+  double target_std = 0.0;      ///< standard deviation of the estimate, each component [m]
+  bool saturated = false;       ///< set by Encode when a value did not fit and was clipped
 };
 
 /// A quantity sent as an integer code: values lo + code * resolution, code in [0, steps].
@@ -76,7 +76,8 @@ class PacketCodec {
  private:
   /// Linear quantiser of one field.
   struct Quantiser {
-    double lo = 0.0, resolution = 1.0, inverse = 1.0;
+    double lo = 0.0, hi = 1.0, middle = 0.5;
+    double resolution = 1.0, inverse = 1.0;
     double steps = 1.0;  ///< largest code
   };
   static Quantiser Signed(double limit, int bits);
