@@ -2,77 +2,15 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 
 #include "auv_dynamics/error.hpp"
 #include "scenario_schema.hpp"
-#include "yaml_tree.hpp"
+#include "scenario_value.hpp"
 
 namespace stg {
 namespace {
-
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overload(F...) -> Overload<F...>;
-
-/// Shortest text that reads back as the same double, always with a point so
-/// that every YAML reader takes it for a real number.
-std::string FormatNumber(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  std::string text(buffer, result.ptr);
-  if (text.find_first_of(".n") == std::string::npos) {
-    const auto exponent = text.find('e');
-    text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
-  }
-  return text;
-}
-
-/// Bounds are written as a person would.
-std::string FormatBound(double value) {
-  char buffer[32];
-  const auto result =
-      std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::general);
-  return {buffer, result.ptr};
-}
-
-std::string FormatNumbers(const double* values, int size) {
-  std::string text = "[";
-  for (int i = 0; i < size; ++i) text += (i > 0 ? ", " : "") + FormatNumber(values[i]);
-  return text + "]";
-}
-
-/// Quotes the words that some YAML readers take for something else.
-std::string FormatWord(const std::string& word) {
-  for (const char* special : {"on", "off", "yes", "no", "true", "false", "null", "y", "n"}) {
-    if (word == special) return "\"" + word + "\"";
-  }
-  return word;
-}
-
-bool IsName(const std::string& text) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  if (text.empty() || text.size() > 64 || !letter(text[0])) return false;
-  for (const char c : text) {
-    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-') return false;
-  }
-  return true;
-}
-
-std::optional<std::string> CheckNumbers(const ScenarioField& field, const double* values,
-                                        int size) {
-  for (int i = 0; i < size; ++i) {
-    if (!std::isfinite(values[i])) return "must be finite";
-    if (!field.limits.Contain(values[i])) {
-      return FormatNumber(values[i]) + " is out of range " + FormatRange(field);
-    }
-  }
-  return {};
-}
 
 bool IsWhole(double value) { return std::abs(value - std::round(value)) < 1e-6; }
 
@@ -92,16 +30,17 @@ bool MassMatrixIsPositive(const VehicleConfig& v) {
   return m.llt().info() == Eigen::Success;
 }
 
-/// Can AUVs be drawn one after the other with this separation around their
-/// target? The share of the shell's volume that balls of half the separation
-/// may fill stays below what random placement reaches (about 0.38).
-bool StartsFit(const ResetConfig& reset, const ResetStageConfig& stage, double auvs_per_target) {
+/// Can all AUVs be drawn one after the other with this separation around one
+/// point (targets may start together)? The share of the shell's volume that
+/// balls of half the separation may fill stays below what random placement
+/// reaches (about 0.38).
+bool StartsFit(const ResetConfig& reset, const ResetStageConfig& stage, int agents) {
   constexpr double kShare = 0.25;
   const double half = 0.5 * reset.min_separation_m;
   const double outer = stage.auv_distance_m.hi + half;
   const double inner = std::max(0.0, stage.auv_distance_m.lo - half);
-  return auvs_per_target <= 1.0 || auvs_per_target * half * half * half <=
-                                       kShare * (outer * outer * outer - inner * inner * inner);
+  return agents == 1 ||
+         agents * half * half * half <= kShare * (outer * outer * outer - inner * inner * inner);
 }
 
 std::optional<Violation> CheckStage(const Scenario& s, int index) {
@@ -121,8 +60,7 @@ std::optional<Violation> CheckStage(const Scenario& s, int index) {
                      "AUVs cannot start this far from a target within the start region"};
   }
   const bool used = s.reset.curriculum || static_cast<int>(s.reset.stage) == index;
-  const double crowd = std::ceil(static_cast<double>(s.agents) / s.target.count);
-  if (used && !StartsFit(s.reset, stage, crowd)) {
+  if (used && !StartsFit(s.reset, stage, s.agents)) {
     return Violation{{"agents", path + "auv_distance_m", "reset.min_separation_m"},
                      "so many AUVs do not fit around a target with this separation"};
   }
@@ -180,72 +118,6 @@ std::optional<Violation> CheckRules(const Scenario& s) {
 }
 
 }  // namespace
-
-std::string FormatValue(const ValueRef& value) {
-  return std::visit(Overload{[](double* v) { return FormatNumber(*v); },
-                             [](int* v) { return std::to_string(*v); },
-                             [](std::uint64_t* v) { return std::to_string(*v); },
-                             [](bool* v) { return std::string(*v ? "true" : "false"); },
-                             [](std::string* v) { return FormatWord(*v); },
-                             [](const EnumRef& v) {
-                               const auto index = static_cast<std::size_t>(v.get());
-                               return index < v.names.size() ? FormatWord(v.names[index])
-                                                             : std::string("?");
-                             },
-                             [](const NumbersRef& v) { return FormatNumbers(v.data, v.size); },
-                             [](Interval* v) {
-                               const double ends[] = {v->lo, v->hi};
-                               return FormatNumbers(ends, 2);
-                             }},
-                    value);
-}
-
-std::string FormatRange(const ScenarioField& field) {
-  const std::string range = std::string(field.limits.lo_excluded ? "(" : "[") +
-                            FormatBound(field.limits.lo) + ", " + FormatBound(field.limits.hi) +
-                            "]";
-  return std::visit(
-      Overload{[&](double*) { return range; }, [&](int*) { return range; },
-               [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },
-               [](bool*) { return std::string("true | false"); },
-               [](std::string*) { return std::string("a letter, then letters, digits, _ or -"); },
-               [](const EnumRef& v) {
-                 std::string names;
-                 for (const auto& name : v.names) names += (names.empty() ? "" : " | ") + name;
-                 return names;
-               },
-               [&](const NumbersRef&) { return range; },
-               [&](Interval*) { return range + ", low <= high"; }},
-      field.value);
-}
-
-std::optional<std::string> CheckValue(const ScenarioField& field) {
-  using Result = std::optional<std::string>;
-  return std::visit(
-      Overload{[&](double* v) { return CheckNumbers(field, v, 1); },
-               [&](int* v) -> Result {
-                 if (field.limits.Contain(*v)) return {};
-                 return std::to_string(*v) + " is out of range " + FormatRange(field);
-               },
-               [](std::uint64_t*) -> Result { return {}; }, [](bool*) -> Result { return {}; },
-               [&](std::string* v) -> Result {
-                 if (IsName(*v)) return {};
-                 return Quoted(*v) + " is no name (" + FormatRange(field) + ", 64 at most)";
-               },
-               [&](const EnumRef& v) -> Result {
-                 if (v.get() >= 0 && static_cast<std::size_t>(v.get()) < v.names.size()) return {};
-                 return "must be one of " + FormatRange(field);
-               },
-               [&](const NumbersRef& v) { return CheckNumbers(field, v.data, v.size); },
-               [&](Interval* v) -> Result {
-                 const double ends[] = {v->lo, v->hi};
-                 if (auto message = CheckNumbers(field, ends, 2)) return message;
-                 if (v->lo > v->hi)
-                   return "low " + FormatNumber(v->lo) + " is above high " + FormatNumber(v->hi);
-                 return {};
-               }},
-      field.value);
-}
 
 std::optional<Violation> FindViolation(const Scenario& scenario) {
   Scenario copy = scenario;

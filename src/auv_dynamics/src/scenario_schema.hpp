@@ -54,15 +54,6 @@ struct ScenarioField {
 /// valid as long as *scenario stays where it is.
 std::vector<ScenarioField> ScenarioFields(Scenario* scenario);
 
-/// The value as a YAML scalar or flow sequence; numbers round-trip exactly.
-std::string FormatValue(const ValueRef& value);
-
-/// Allowed values in words: "(0, 10]", "truth | acoustic", "true | false".
-std::string FormatRange(const ScenarioField& field);
-
-/// Message when the value itself is not allowed, else nothing.
-std::optional<std::string> CheckValue(const ScenarioField& field);
-
 /// Why a scenario as a whole is refused: the key to blame first, then the keys
 /// that it contradicts.
 struct Violation {

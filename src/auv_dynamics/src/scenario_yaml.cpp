@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
 
 #include "auv_dynamics/error.hpp"
 #include "scenario_schema.hpp"
+#include "scenario_value.hpp"
 #include "yaml_tree.hpp"
 
 namespace stg {
@@ -17,113 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxBases = 8;
-
-std::string KindName(const YamlTree& node) {
-  switch (node.kind) {
-    case YamlTree::Kind::kNull:
-      return "nothing";
-    case YamlTree::Kind::kScalar:
-      return Quoted(node.scalar);
-    case YamlTree::Kind::kSequence:
-      return "a sequence";
-    case YamlTree::Kind::kMap:
-      return "a map";
-  }
-  return "?";
-}
-
-/// Message of a refused value; the caller adds file, line and key.
-struct Refusal {
-  std::string message;
-};
-
-double ToDouble(const YamlTree& node) {
-  const std::string& s = node.scalar;
-  if (node.kind != YamlTree::Kind::kScalar || node.quoted) {
-    throw Refusal{"expected a number, found " + KindName(node)};
-  }
-  double value = 0.0;
-  const auto result = std::from_chars(s.data(), s.data() + s.size(), value);
-  const bool special = s.find("inf") != std::string::npos || s.find("nan") != std::string::npos ||
-                       s.find("Inf") != std::string::npos || s.find("NaN") != std::string::npos ||
-                       s.find("INF") != std::string::npos || s.find("NAN") != std::string::npos;
-  if (special && s.size() <= 5) throw Refusal{"must be a finite number, found " + KindName(node)};
-  if (result.ec == std::errc::result_out_of_range) {
-    throw Refusal{"no representable number: " + KindName(node)};
-  }
-  if (result.ec != std::errc() || result.ptr != s.data() + s.size() || !std::isfinite(value)) {
-    throw Refusal{"expected a number, found " + KindName(node)};
-  }
-  return value;
-}
-
-template <class Int>
-Int ToInteger(const YamlTree& node) {
-  const std::string& s = node.scalar;
-  if (node.kind != YamlTree::Kind::kScalar || node.quoted) {
-    throw Refusal{"expected an integer, found " + KindName(node)};
-  }
-  Int value = 0;
-  const auto result = std::from_chars(s.data(), s.data() + s.size(), value);
-  const bool digits = !s.empty() &&
-                      s.find_first_not_of("0123456789", s[0] == '-' ? 1 : 0) == std::string::npos &&
-                      s != "-";
-  if (digits && (result.ec != std::errc() || result.ptr != s.data() + s.size())) {
-    throw Refusal{KindName(node) + " is out of range"};
-  }
-  if (!digits) throw Refusal{"expected an integer, found " + KindName(node)};
-  return value;
-}
-
-std::vector<double> ToDoubles(const YamlTree& node, int size) {
-  if (node.kind != YamlTree::Kind::kSequence || static_cast<int>(node.items.size()) != size) {
-    throw Refusal{"expected a sequence of " + std::to_string(size) + " numbers, found " +
-                  (node.kind == YamlTree::Kind::kSequence
-                       ? std::to_string(node.items.size()) + " items"
-                       : KindName(node))};
-  }
-  std::vector<double> values;
-  for (const YamlTree& item : node.items) values.push_back(ToDouble(item));
-  return values;
-}
-
-/// Reads the node into the member that the field points to.
-struct Assign {
-  const YamlTree& node;
-  const ScenarioField& field;
-
-  void operator()(double* v) const { *v = ToDouble(node); }
-  void operator()(int* v) const { *v = ToInteger<int>(node); }
-  void operator()(std::uint64_t* v) const { *v = ToInteger<std::uint64_t>(node); }
-  void operator()(bool* v) const {
-    if (node.kind != YamlTree::Kind::kScalar || node.quoted ||
-        (node.scalar != "true" && node.scalar != "false")) {
-      throw Refusal{"expected true or false, found " + KindName(node)};
-    }
-    *v = node.scalar == "true";
-  }
-  void operator()(std::string* v) const {
-    if (node.kind != YamlTree::Kind::kScalar) {
-      throw Refusal{"expected a name, found " + KindName(node)};
-    }
-    *v = node.scalar;
-  }
-  void operator()(const EnumRef& v) const {
-    const auto found = std::find(v.names.begin(), v.names.end(), node.scalar);
-    if (node.kind != YamlTree::Kind::kScalar || found == v.names.end()) {
-      throw Refusal{"expected one of " + FormatRange(field) + ", found " + KindName(node)};
-    }
-    v.set(static_cast<int>(found - v.names.begin()));
-  }
-  void operator()(const NumbersRef& v) const {
-    const auto values = ToDoubles(node, v.size);
-    std::copy(values.begin(), values.end(), v.data);
-  }
-  void operator()(Interval* v) const {
-    const auto values = ToDoubles(node, 2);
-    *v = {values[0], values[1]};
-  }
-};
 
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -264,12 +157,7 @@ class Loader {
   }
 
   void Set(const ScenarioField& field, const YamlTree& value, const std::string& where) {
-    try {
-      std::visit(Assign{value, field}, field.value);
-    } catch (const Refusal& refusal) {
-      throw UserError(where + field.path + ": " + refusal.message);
-    }
-    if (const auto message = CheckValue(field)) {
+    if (const auto message = ParseValue(field, value)) {
       throw UserError(where + field.path + ": " + *message);
     }
     origin_[field.path] = where;
