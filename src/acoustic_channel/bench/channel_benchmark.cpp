@@ -1,0 +1,101 @@
+#include <benchmark/benchmark.h>
+
+#include "acoustic_channel/channel.hpp"
+
+/// Cost of the channel as the vectorised environment uses it: N agents in the medium workspace,
+/// dt 0.1 s, one packet per agent every 0.5 s (staggered), all receptions fetched every step.
+namespace stg {
+namespace {
+
+constexpr TimeNs kDt = 100'000'000;
+
+NeighbourState State(int source, TimeNs t, const Vec3<double>& p) {
+  NeighbourState s;
+  s.source = source;
+  s.generation = t;
+  s.p_W = p;
+  s.has_target = true;
+  s.target_stamp = t;
+  s.target_std = 0.01;
+  return s;
+}
+
+void Step(benchmark::State& bench, ChannelModel model) {
+  const int agents = static_cast<int>(bench.range(0));
+  Scenario s;
+  s.agents = agents;
+  s.channel.model = model;
+  const auto channel = MakeChannel(s);
+  channel->Reset(1, 0);
+  std::vector<Vec3<double>> p_W;
+  for (int i = 0; i < agents; ++i) {
+    p_W.push_back({0.02 * (i % 7), 0.02 * (i / 7), 0.01 * (i % 3)});
+  }
+  const PacketCodec codec(s);
+  std::vector<std::vector<Transmission>> sent(5);
+  for (int i = 0; i < agents; ++i) {
+    Transmission packet;
+    packet.source = i;
+    packet.data = codec.Encode(State(i, 0, p_W[static_cast<std::size_t>(i)]));
+    sent[static_cast<std::size_t>(i % 5)].push_back(packet);
+  }
+  std::vector<Reception> got;
+  std::uint32_t k = 0;
+  for (auto _ : bench) {
+    const TimeNs t = k * kDt;
+    auto& now = sent[k % 5];
+    for (Transmission& packet : now) packet.stamp = packet.generation = t;
+    channel->Step(t, k, p_W, now);
+    for (int j = 0; j < agents; ++j) {
+      got.clear();
+      channel->Deliver(j, t + kDt, &got);
+      benchmark::DoNotOptimize(got.data());
+    }
+    ++k;
+  }
+  bench.counters["receptions/step"] =
+      static_cast<double>(channel->totals().delivered) / static_cast<double>(k);
+}
+void RangeStep(benchmark::State& bench) { Step(bench, ChannelModel::kRange); }
+void ExtendedStep(benchmark::State& bench) { Step(bench, ChannelModel::kExtended); }
+BENCHMARK(RangeStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
+BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
+
+void Encode(benchmark::State& bench) {
+  const PacketCodec codec{Scenario{}};
+  NeighbourState state = State(1, 12'300'000'000, {0.1, 0.2, 0.3});
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(state);
+    Packet packet = codec.Encode(state);
+    benchmark::DoNotOptimize(packet);
+  }
+}
+BENCHMARK(Encode);
+
+void Decode(benchmark::State& bench) {
+  const PacketCodec codec{Scenario{}};
+  Packet packet = codec.Encode(State(1, 12'300'000'000, {0.1, 0.2, 0.3}));
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(packet);
+    NeighbourState state = codec.Decode(packet.data(), packet.size(), 12'400'000'000);
+    benchmark::DoNotOptimize(state);
+  }
+}
+BENCHMARK(Decode);
+
+void Link(benchmark::State& bench) {
+  const auto channel = MakeChannel(Scenario{});
+  channel->Reset(1, 0);
+  channel->Step(0, 0, std::vector<Vec3<double>>(4), {});
+  TimeNs now = 0;
+  for (auto _ : bench) {
+    LinkStatistics link = channel->Link(0, 1, ++now);
+    benchmark::DoNotOptimize(link);
+  }
+}
+BENCHMARK(Link);
+
+}  // namespace
+}  // namespace stg
+
+BENCHMARK_MAIN();
