@@ -87,7 +87,7 @@ class Agent {
   int id() const { return id_; }
   const Scenario& scenario() const { return constants_->scenario; }
   std::uint32_t episode() const { return episode_; }
-  /// Decision that the last Observe belongs to, or the next one before it.
+  /// Decision k of the last Observe, counted from 0 in each episode.
   std::uint32_t step() const { return step_; }
 
   /// State of knowledge of the last Observe.
@@ -130,7 +130,7 @@ class Agent {
   Detection detection_;
   bool cue_pending_ = false, detection_pending_ = false;
   TimeNs now_ = 0;
-  std::uint32_t episode_ = 0, step_ = 0;
+  std::uint32_t episode_ = 0, step_ = 0, decisions_ = 0;
   std::uint64_t refused_packets_ = 0;
 };
 

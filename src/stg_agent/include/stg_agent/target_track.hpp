@@ -58,6 +58,8 @@ class TargetTrack {
   /// Starts the track from a datum: velocity zero with initial_speed_std_mps.
   void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp);
   bool started() const { return started_; }
+  /// An observation has entered, own or a neighbour's: the track is more than its datum.
+  bool observed() const { return observed_; }
 
   /// Carries the estimate to time t; earlier times change nothing.
   void Predict(TimeNs t);
@@ -83,7 +85,7 @@ class TargetTrack {
 
  private:
   void Grow(double dt_s, TargetEstimate* e) const;
-  void Remember(TimeNs information);
+  void Remember(TimeNs information, bool observation);
   void Restart(const Detection& newest, double std_m);
 
   double intensity_;  // S [m^2/s^3]
@@ -91,7 +93,7 @@ class TargetTrack {
   double speed_std_mps_;
   double gate2_;
   double half_extent_m_;
-  bool started_ = false;
+  bool started_ = false, observed_ = false;
   TargetEstimate now_;
   SharedEstimate shared_;
   Detection previous_rejected_;

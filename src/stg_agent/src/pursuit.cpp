@@ -1,0 +1,68 @@
+#include "stg_agent/pursuit.hpp"
+
+#include "auv_dynamics/control.hpp"
+#include "stg_agent/agent.hpp"
+
+namespace stg {
+namespace {
+
+/// Repulsion reaches centimetres; more neighbours than this cannot be that close.
+constexpr int kMaxRepelling = 16;
+
+}  // namespace
+
+PursuitOptions BuiltinOptions(BuiltinKind kind) {
+  PursuitOptions o;
+  if (kind == BuiltinKind::kPursuitSeparated) {
+    o.gain_per_s = 3.0;
+    o.standoff_m = 0.0142;
+    o.repulsion_gain_per_s = 2.0;
+  }
+  return o;
+}
+
+const char* ToString(BuiltinKind kind) {
+  switch (kind) {
+    case BuiltinKind::kIdle:
+      return "idle";
+    case BuiltinKind::kPursuit:
+      return "pursuit";
+    case BuiltinKind::kPursuitSeparated:
+      return "pursuit_separated";
+  }
+  return "";
+}
+
+bool ParseBuiltin(const std::string& name, BuiltinKind* kind) {
+  for (const auto k : {BuiltinKind::kIdle, BuiltinKind::kPursuit, BuiltinKind::kPursuitSeparated}) {
+    if (name == ToString(k)) {
+      *kind = k;
+      return true;
+    }
+  }
+  return false;
+}
+
+void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent& agent,
+                   float* action) {
+  const Scenario& s = agent.scenario();
+  const Knowledge<double>& k = agent.knowledge();
+  double a[6] = {};
+  if (kind != BuiltinKind::kIdle) {
+    Vec3<double> offsets[kMaxRepelling];
+    int count = 0;
+    if (options.repulsion_gain_per_s > 0.0) {
+      int ids[kMaxRepelling];
+      count = agent.neighbours().Nearest(kMaxRepelling, ids);
+      for (int j = 0; j < count; ++j) offsets[j] = agent.neighbours().at(ids[j]).r_BN_W;
+    }
+    PursuitAction(options, s.vehicle, k.r_BT_W, k.v_WT, offsets, count, a);
+  }
+  if (s.control.interface == ActionInterface::kTau6 && kind != BuiltinKind::kIdle) {
+    const Vec3<double> v_des_W = DesiredVelocity(s.vehicle, a);
+    VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B, a);
+  }
+  for (int n = 0; n < s.action_size(); ++n) action[n] = static_cast<float>(a[n]);
+}
+
+}  // namespace stg
