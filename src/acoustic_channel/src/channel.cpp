@@ -102,15 +102,19 @@ class IndependentLinks : public Channel {
     for (std::size_t i = 0; i < queue.size(); ++i) {
       if (queue[i].arrival <= until) ripe_.push_back({queue[i].arrival, queue[i].source, i});
     }
-    std::sort(ripe_.begin(), ripe_.end());
+    if (ripe_.size() > 1) std::sort(ripe_.begin(), ripe_.end());
     for (const Ripe& ripe : ripe_) {
       const Reception& r = queue[ripe.index];
       table_.Deliver(r.source, destination, r.generation, r.transmit, r.arrival);
       out->push_back(r);
     }
-    queue.erase(std::remove_if(queue.begin(), queue.end(),
-                               [until](const Reception& r) { return r.arrival <= until; }),
-                queue.end());
+    if (ripe_.size() == queue.size()) {
+      queue.clear();
+    } else {
+      queue.erase(std::remove_if(queue.begin(), queue.end(),
+                                 [until](const Reception& r) { return r.arrival <= until; }),
+                  queue.end());
+    }
   }
 
   LinkStatistics Link(int source, int destination, TimeNs now) const override {
@@ -176,7 +180,7 @@ class IndependentLinks : public Channel {
           continue;
         }
       }
-      Reception r;
+      Reception& r = pending_[j].emplace_back();
       r.source = packet.source;
       r.destination = destination;
       r.sequence = packet.sequence;
@@ -188,7 +192,6 @@ class IndependentLinks : public Channel {
       r.loss_probability = loss_[j];
       r.link_quality = quality_[j];
       r.data = packet.data;
-      pending_[j].push_back(r);
     }
   }
 
