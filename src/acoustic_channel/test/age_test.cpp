@@ -42,7 +42,7 @@ TEST(Age, ARepeatedPacketCountsAsDeliveredButNotAsFresh) {
   table.Reset(0);
   table.Deliver(0, 1, kSecond, kSecond, 2 * kSecond);
   const LinkStatistics before = table.At(0, 1, 4 * kSecond);
-  table.Deliver(0, 1, kSecond, kSecond, 3 * kSecond);
+  table.Deliver(0, 1, kSecond, kSecond, 7 * kSecond / 2);
   const LinkStatistics after = table.At(0, 1, 4 * kSecond);
   EXPECT_EQ(after.delivered, 2u);
   EXPECT_EQ(after.age_s, before.age_s);
