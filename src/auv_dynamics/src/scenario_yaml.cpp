@@ -52,8 +52,8 @@ class Loader {
   Loader& operator=(const Loader&) = delete;
 
   void ApplyScenario(const std::string& path) {
-    const std::string canonical = fs::weakly_canonical(path).string();
-    open_.push_back(canonical);
+    std::error_code error;  // a path that cannot be resolved fails in ReadMap
+    open_.push_back(fs::weakly_canonical(path, error).string());
     const YamlTree root = ReadMap(path);
     std::set<std::string> given;
     const auto base = std::find_if(root.entries.begin(), root.entries.end(),
@@ -144,7 +144,8 @@ class Loader {
         Set(*found->second, entry.value, where);
         given->insert(path);
       } else if (sections_.count(path) != 0) {
-        if (entry.value.kind != YamlTree::Kind::kMap) {
+        const bool empty = entry.value.kind == YamlTree::Kind::kNull;
+        if (entry.value.kind != YamlTree::Kind::kMap && !empty) {
           throw UserError(where + path + ": expected a map of keys, found " +
                           KindName(entry.value));
         }
