@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 class HostileFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    char name[] = "/tmp/scenario_test_XXXXXX";
-    ASSERT_NE(mkdtemp(name), nullptr);
+    std::string name = (fs::temp_directory_path() / "scenario_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -82,9 +82,9 @@ TEST_F(HostileFile, UnreadableFileIsRefused) {
   ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);
   // Root reads every file, so it reads as somebody else for a moment.
   const bool root = geteuid() == 0;
-  if (root) ASSERT_EQ(seteuid(65534), 0);
+  ASSERT_EQ(root ? seteuid(65534) : 0, 0);
   ExpectRefused(file, ": ", "cannot be read: Permission denied");
-  if (root) ASSERT_EQ(seteuid(0), 0);
+  ASSERT_EQ(root ? seteuid(0) : 0, 0);
 }
 
 TEST_F(HostileFile, HugeFileIsRefusedBeforeReading) {
