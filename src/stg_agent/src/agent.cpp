@@ -225,7 +225,7 @@ TaskView Agent::task() const {
   TaskView view;
   double z[8], phase[4], quality[4], graph[6];
   TrackingVector(c, k, &z);
-  PhaseOneHot(c, k.lost, k.distance, Progress(c, k.previous_distance, k.distance), &phase);
+  PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);
   QualityOneHot(c, k.confidence, &quality);
   GraphSummary(c, k, &graph);
   std::copy(z, z + 8, view.z_track.begin());
@@ -269,8 +269,8 @@ AgentOutput Agent::Act(const float* action) {
 Packet Agent::MakePacket() const {
   const Knowledge<double>& k = knowledge_;
   double phase[4];
-  PhaseOneHot(constants_->scenario.observation, k.lost, k.distance,
-              Progress(constants_->scenario.observation, k.previous_distance, k.distance), &phase);
+  const ObservationConfig& c = constants_->scenario.observation;
+  PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);
   NeighbourState state;
   state.source = id_;
   state.generation = now_;

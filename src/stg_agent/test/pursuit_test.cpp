@@ -1,0 +1,97 @@
+#include "stg_agent/pursuit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace stg {
+namespace {
+
+using V = Vec3<double>;
+
+TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
+  const VehicleConfig vehicle;
+  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  double a[3];
+  PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m, 0.0}, V{0.01, 0.0, -0.02}, nullptr, 0, a);
+  EXPECT_NEAR(a[0] * vehicle.max_velocity_mps[0], 0.01, 1e-15);
+  EXPECT_NEAR(a[1], 0.0, 1e-15);
+  EXPECT_NEAR(a[2] * vehicle.max_velocity_mps[2], -0.02, 1e-15);
+}
+
+TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
+  const VehicleConfig vehicle;
+  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  double a[3];
+  PursuitAction<double>(o, vehicle, V{0.03, 0.0, 0.04}, V{}, nullptr, 0, a);
+  EXPECT_NEAR(a[0] * 1.5, 4.66 * (0.05 - 0.009) * 0.6, 1e-15);
+  EXPECT_NEAR(a[2] * 0.5, 4.66 * (0.05 - 0.009) * 0.8, 1e-15);
+  PursuitAction<double>(o, vehicle, V{-9.0, 9.0, 0.0}, V{}, nullptr, 0, a);
+  EXPECT_DOUBLE_EQ(a[0], -0.75);
+  EXPECT_DOUBLE_EQ(a[1], 0.75);
+}
+
+TEST(Pursuit, NeighboursRepelWithinTheirRangeOnly) {
+  const VehicleConfig vehicle;
+  PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  double a[3], b[3];
+  const V target{0.5, 0.0, 0.0};
+  const V far[] = {{0.0, 0.030001, 0.0}};
+  PursuitAction<double>(o, vehicle, target, V{}, nullptr, 0, a);
+  PursuitAction<double>(o, vehicle, target, V{}, far, 1, b);
+  EXPECT_EQ(a[1], b[1]);
+  const V near[] = {{0.0, 0.01, 0.0}};
+  PursuitAction<double>(o, vehicle, target, V{}, near, 1, b);
+  EXPECT_NEAR((b[1] - a[1]) * 0.5, -2.0 * (0.03 - 0.01), 1e-15);
+  EXPECT_EQ(a[0], b[0]);
+}
+
+TEST(Pursuit, CloseToTheTargetRepulsionLeavesTheDistanceAlone) {
+  const VehicleConfig vehicle;
+  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  const V target{o.standoff_m, 0.0, 0.0};
+  const V neighbours[] = {{0.01, 0.01, 0.0}, {-0.005, 0.0, 0.012}};
+  double a[3];
+  PursuitAction<double>(o, vehicle, target, V{}, neighbours, 2, a);
+  EXPECT_NEAR(a[0], 0.0, 1e-15);
+  EXPECT_LT(a[1], -1e-3);
+  EXPECT_LT(a[2], -1e-3);
+}
+
+TEST(Pursuit, ZeroOffsetsAreFiniteAndRepelNothing) {
+  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  const V zero[1];
+  double a[3];
+  PursuitAction<double>(o, VehicleConfig(), V{}, V{}, zero, 1, a);
+  for (const double x : a) EXPECT_EQ(x, 0.0);
+}
+
+TEST(Pursuit, PacksAndScalarsAgreeBitForBit) {
+  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  for (int n = 0; n < 200; ++n) {
+    const double t = 0.01 * n;
+    const V r{0.1 * std::sin(7 * t), 0.2 * t - 0.1, 0.03}, v{0.01, -t * 0.01, 0.0};
+    const V near[] = {{0.01 * t, 0.005, -0.01}, {0.02, 0.0, 0.01 * t}};
+    const Vec3<Pack> near_pack[] = {Broadcast(near[0]), Broadcast(near[1])};
+    double a[3];
+    Pack b[3];
+    PursuitAction<double>(o, VehicleConfig(), r, v, near, 2, a);
+    PursuitAction<Pack>(o, VehicleConfig(), Broadcast(r), Broadcast(v), near_pack, 2, b);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(a[k], Lane(b[k], kLanes - 1));
+  }
+}
+
+TEST(Pursuit, NamesParseToTheirKindAndNothingElseDoes) {
+  for (const auto k : {BuiltinKind::kIdle, BuiltinKind::kPursuit, BuiltinKind::kPursuitSeparated}) {
+    BuiltinKind parsed;
+    ASSERT_TRUE(ParseBuiltin(ToString(k), &parsed));
+    EXPECT_EQ(parsed, k);
+  }
+  BuiltinKind kind;
+  for (const char* name : {"", "Pursuit", "pursuit ", "pursuit.onnx"}) {
+    EXPECT_FALSE(ParseBuiltin(name, &kind)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace stg
