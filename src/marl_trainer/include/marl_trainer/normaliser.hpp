@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace stg {
+
+/// Running mean and variance of vectors, mergeable in any grouping (Chan et
+/// al. 1979): count, mean and sum of squared deviations per component.
+class RunningMoments {
+ public:
+  explicit RunningMoments(int size = 0);
+
+  /// Adds `rows` vectors x [rows, size].
+  void Add(const float* x, int rows);
+  void Merge(const RunningMoments& other);
+  /// Forgets the past smoothly: the count is never more than `limit`.
+  void LimitCount(double limit);
+  void Clear();
+
+  int size() const { return static_cast<int>(mean_.size()); }
+  double count() const { return count_; }
+  double mean(int i) const { return mean_[static_cast<std::size_t>(i)]; }
+  /// Population variance; 1 before anything was added.
+  double variance(int i) const;
+
+  /// Plain data for checkpoints: count, means, squared deviations.
+  std::vector<double> Save() const;
+  void Load(const std::vector<double>& data);
+
+ private:
+  double count_ = 0.0;
+  std::vector<double> mean_, squares_;
+  std::vector<double> scratch_;
+};
+
+/// A fixed affine map: y = clip((x - mean) / std, +-clip).
+struct Normaliser {
+  std::vector<float> mean, std;
+  float clip = 10.0F;
+
+  /// std = max(sqrt(variance), floor): a component that never moved yet must
+  /// not be blown up when it first does.
+  static Normaliser From(const RunningMoments& moments, float floor, float clip);
+  /// y [rows, size] from x [rows, size]; x == y is allowed.
+  void Apply(const float* x, int rows, float* y) const;
+};
+
+}  // namespace stg

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/checkpoint.hpp"
+#include "marl_trainer/train_log.hpp"
+#include "marl_trainer/validation.hpp"
+
+namespace stg {
+
+/// MAPPO (Eqs. 37-44): collect, update, validate, save; one instance per run.
+///
+/// Weights depend on scenario, configuration and seed only, not on the number
+/// of workers. A run and one that was stopped and resumed are the same bit for
+/// bit: checkpoints are taken at boundaries where every environment starts an
+/// episode. With `stagger`, or a horizon that does not divide the episode, the
+/// running episodes are cut there, in every run, stopped or not.
+class Trainer {
+ public:
+  struct Options {
+    std::string out;      ///< folder, created
+    bool resume = false;  ///< go on from the newest good checkpoint of `out`
+    int workers = 1;
+    std::ostream* log = nullptr;
+    /// Set non-zero (by a signal) to save at the next boundary and return.
+    const std::atomic<int>* stop = nullptr;
+    std::int64_t halt_after = 0;  ///< > 0: as if `stop` were set after so many steps
+  };
+
+  /// Throws UserError for a bad configuration, a folder that holds another run
+  /// or, with `resume`, none.
+  Trainer(const Scenario& scenario, const TrainConfig& config, const Options& options);
+  ~Trainer();
+
+  /// True when all steps were made, false when stopped before.
+  bool Run();
+
+  const TrainState& state() const { return state_; }
+  const ActorCritic& networks() const { return networks_; }
+  Policy MakePolicy() const;
+
+ private:
+  void OpenFolder();
+  void Restore();
+  void Iterate(TrainRecord* record);
+  void Validate(TrainRecord* record);
+  /// Restarts what is not at the start of an episode; true at a boundary, or
+  /// anywhere with `force` (the end of a run).
+  bool AtBoundary(bool force);
+  void UpdateValueScale(TrainRecord* record);
+  void UpdateInputScales();
+  void RescaleCritic(double mean, double std);
+  void Save();
+  void SavePolicy(const std::string& name) const;
+  double Elapsed() const;
+
+  const Scenario scenario_, train_scenario_, validation_scenario_;
+  const TrainConfig config_;
+  const Options options_;
+  WorkerPool pool_;
+  ActorCritic networks_;
+  std::vector<std::unique_ptr<RolloutUnit>> units_;
+  PpoUpdate update_;
+  Validation validation_;
+  std::unique_ptr<TrainLog> log_;
+  TrainState state_;
+  RunningMoments observation_moments_, state_moments_, value_moments_;
+  Scales scales_;
+  MetricSummary last_validation_;
+  double start_ = 0.0;
+  std::int64_t next_validation_ = 0, next_checkpoint_ = 0;
+};
+
+}  // namespace stg

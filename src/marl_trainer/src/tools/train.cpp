@@ -1,0 +1,91 @@
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <iostream>
+#include <thread>
+
+#include "auv_dynamics/error.hpp"
+#include "auv_dynamics/scenario_yaml.hpp"
+#include "marl_trainer/trainer.hpp"
+
+namespace {
+
+std::atomic<int> stop_signal{0};
+
+/// The first signal asks for a clean end, the second one kills.
+extern "C" void OnSignal(int signal) {
+  stop_signal = signal;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+/// Value of --preset before the other options are declared with its defaults.
+std::string PresetArgument(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--preset") == 0 && i + 1 < argc) return argv[i + 1];
+    if (std::strncmp(argv[i], "--preset=", 9) == 0) return argv[i] + 9;
+  }
+  return "fast";
+}
+
+int Train(int argc, char** argv) {
+  stg::TrainConfig config = stg::Preset(PresetArgument(argc, argv));
+  std::string scenario_name = "medium", condition = "nominal", out;
+  std::vector<std::string> overrides;
+  bool resume = false;
+  int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+
+  CLI::App app("Trains a policy with MAPPO and writes it as ONNX.");
+  app.add_option("--scenario", scenario_name, "shipped name or file")->capture_default_str();
+  app.add_option("--condition", condition, "stress condition of a shipped scenario")
+      ->capture_default_str();
+  app.add_option("--preset", config.preset,
+                 "fast (ours) or paper (Table S2); the defaults of the options below")
+      ->capture_default_str();
+  app.add_option("--variant", config.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
+      ->capture_default_str();
+  app.add_option("--out", out, "folder for checkpoints, policies and logs")->required();
+  app.add_flag("--resume", resume, "go on from the folder's newest good checkpoint");
+  app.add_option("--workers", workers, "threads; results do not depend on them")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--set", overrides, "scenario override key.path=value, repeatable")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  stg::VisitTrainConfig(config, [&](const char* name, auto& field, const char* text) {
+    CLI::Option* option = app.add_option(std::string("--") + name, field, text);
+    if constexpr (std::is_same_v<std::decay_t<decltype(field)>, std::vector<int>>) {
+      option->delimiter(',');
+    }
+    option->capture_default_str();
+  });
+  CLI11_PARSE(app, argc, argv);
+
+  const stg::Scenario scenario =
+      stg::LoadNamedScenario(stg::ScenarioFolder(), scenario_name, condition, overrides);
+  stg::Trainer::Options options;
+  options.out = out;
+  options.resume = resume;
+  options.workers = workers;
+  options.log = &std::cout;
+  options.stop = &stop_signal;
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  stg::Trainer trainer(scenario, config, options);
+  if (trainer.Run()) return 0;
+  std::cout << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
+            << std::endl;
+  return 130;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Train(argc, argv);
+  } catch (const stg::UserError& error) {
+    std::cerr << "train: " << error.what() << std::endl;
+    return 2;
+  }
+}

@@ -1,0 +1,325 @@
+#include "marl_trainer/trainer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "auv_dynamics/error.hpp"
+#include "auv_dynamics/scenario_yaml.hpp"
+#include "marl_trainer/blas.hpp"
+
+namespace stg {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Value targets that the value normaliser remembers [environment steps].
+constexpr double kValueMemory = 100000.0;
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int StateSize(const Scenario& scenario) { return EnvGroup(scenario, EnvOptions()).state_size(); }
+
+Scenario Valid(const Scenario& scenario, const TrainConfig& config) {
+  config.ValidateOrThrow();
+  scenario.ValidateOrThrow();
+  return scenario;
+}
+
+double Metric(const MetricSummary& summary, const std::string& name) {
+  for (std::size_t i = 0; i < summary.names.size(); ++i) {
+    if (summary.names[i] == name) return summary.mean[i];
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+Trainer::Trainer(const Scenario& scenario, const TrainConfig& config, const Options& options)
+    : scenario_(Valid(scenario, config)),
+      train_scenario_(VariantScenario(scenario, config.variant)),
+      validation_scenario_(ValidationScenario(scenario, config.variant)),
+      config_(config),
+      options_(options),
+      pool_(options.workers),
+      networks_(train_scenario_, StateSize(train_scenario_), config),
+      update_(networks_, config_, scenario.agents, &pool_),
+      validation_(validation_scenario_, networks_, config.validation_episodes, &pool_),
+      observation_moments_(networks_.actor.inputs()),
+      state_moments_(networks_.critic.inputs()),
+      value_moments_(1) {
+  UseOneBlasThread();
+  start_ = Now();
+  for (int first = 0; first < config.envs; first += RolloutUnit::kEnvs) {
+    units_.push_back(
+        std::make_unique<RolloutUnit>(train_scenario_, networks_, config_, first,
+                                      std::min(RolloutUnit::kEnvs, config.envs - first)));
+  }
+  state_.parameters = networks_.Initialise(config.seed, config.initial_log_std);
+  state_.adam.first.assign(networks_.parameters(), 0.0F);
+  state_.adam.second.assign(networks_.parameters(), 0.0F);
+  state_.config = ToJson(config_).dump();
+  state_.scenario = ToYaml(train_scenario_);
+  UpdateInputScales();
+  OpenFolder();
+}
+
+Trainer::~Trainer() = default;
+
+double Trainer::Elapsed() const { return state_.wall_seconds + (Now() - start_); }
+
+void Trainer::OpenFolder() {
+  std::error_code error;
+  fs::create_directories(options_.out, error);
+  if (!fs::is_directory(options_.out)) throw UserError(options_.out + ": cannot create the folder");
+  if (options_.resume) {
+    Restore();
+  } else if (fs::exists(fs::path(options_.out) / "config.json")) {
+    throw UserError(options_.out + ": holds another run; use --resume or another folder");
+  }
+  std::ofstream(fs::path(options_.out) / "config.json") << ToJson(config_).dump(2) << "\n";
+  std::ofstream(fs::path(options_.out) / "scenario.yaml") << ToYaml(scenario_);
+  log_ = std::make_unique<TrainLog>(options_.out, options_.resume ? state_.env_steps : -1,
+                                    config_.steps, options_.log);
+  if (options_.resume && !state_.log.empty()) log_->Load(state_.log);
+}
+
+void Trainer::Restore() {
+  const std::optional<TrainState> loaded = LoadNewestCheckpoint(options_.out, options_.log);
+  if (!loaded) throw UserError(options_.out + ": no checkpoint to resume from");
+  auto theirs = nlohmann::ordered_json::parse(loaded->config, nullptr, false);
+  auto ours = ToJson(config_);
+  for (const auto& [key, value] : ours.items()) {
+    // More steps than planned are welcome; nothing else may change on the way.
+    if (key != "steps" && (!theirs.is_object() || !theirs.contains(key) || theirs[key] != value)) {
+      throw UserError(options_.out + ": cannot resume: --" + key + " is " + value.dump() +
+                      ", the checkpoint was made with " +
+                      (theirs.contains(key) ? theirs[key].dump() : "no such option"));
+    }
+  }
+  if (loaded->scenario != state_.scenario) {
+    throw UserError(options_.out + ": cannot resume: the scenario is not the checkpoint's");
+  }
+  const auto moments = [](const RunningMoments& m) { return m.Save().size(); };
+  if (loaded->parameters.size() != networks_.parameters() ||
+      loaded->adam.first.size() != networks_.parameters() ||
+      loaded->adam.second.size() != networks_.parameters() ||
+      loaded->observation_moments.size() != moments(observation_moments_) ||
+      loaded->state_moments.size() != moments(state_moments_) ||
+      loaded->value_moments.size() != moments(value_moments_)) {
+    throw UserError(options_.out + ": cannot resume: the checkpoint has other network sizes");
+  }
+  state_ = *loaded;
+  state_.config = ours.dump();
+  observation_moments_.Load(state_.observation_moments);
+  state_moments_.Load(state_.state_moments);
+  value_moments_.Load(state_.value_moments);
+  UpdateInputScales();
+  scales_.value_mean = static_cast<float>(value_moments_.mean(0));
+  scales_.value_std = static_cast<float>(std::sqrt(value_moments_.variance(0)) + 1e-4);
+  for (auto& unit : units_) unit->RestartAt(state_.round);
+  next_validation_ =
+      (state_.env_steps / config_.validation_interval + 1) * config_.validation_interval;
+  next_checkpoint_ =
+      (state_.env_steps / config_.checkpoint_interval + 1) * config_.checkpoint_interval;
+}
+
+bool Trainer::Run() {
+  if (next_validation_ == 0) next_validation_ = config_.validation_interval;
+  if (next_checkpoint_ == 0) next_checkpoint_ = config_.checkpoint_interval;
+  bool finished = state_.env_steps >= config_.steps;
+  bool stopped = false;
+  while (!finished && !stopped) {
+    TrainRecord record;
+    Iterate(&record);
+    finished = state_.env_steps >= config_.steps;
+    if (finished || state_.env_steps >= next_validation_) Validate(&record);
+    record.wall_seconds = Elapsed();
+    log_->Add(record);
+    if (!AtBoundary(finished)) continue;
+    stopped = (options_.stop != nullptr && *options_.stop != 0) ||
+              (options_.halt_after > 0 && state_.env_steps >= options_.halt_after);
+    if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
+  }
+  double peak = 0.0;
+  std::vector<double> rates(static_cast<std::size_t>(pool_.workers()));
+  pool_.Run(pool_.workers(),
+            [&](int w, int) { rates[static_cast<std::size_t>(w)] = MeasurePeakFlops(); });
+  for (const double rate : rates) peak += rate;
+  log_->WriteSummary(pool_.workers(), peak, finished ? "finished" : "signal");
+  return finished;
+}
+
+void Trainer::Iterate(TrainRecord* record) {
+  const double begin = Now();
+  const auto collection = static_cast<std::uint32_t>(state_.collections);
+  pool_.Run(static_cast<int>(units_.size()), [&](int u, int) {
+    units_[static_cast<std::size_t>(u)]->Collect(state_.parameters.data(), scales_, collection);
+  });
+  const double collected = Now();
+  UpdateValueScale(record);
+  const double progress =
+      static_cast<double>(state_.env_steps) / static_cast<double>(config_.steps);
+  const double scale = 1.0 - (1.0 - config_.lr_final) * std::min(progress, 1.0);
+  const UpdateReport report =
+      update_.Run(units_, scales_, collection, scale, &state_.parameters, &state_.adam);
+  for (const auto& unit : units_) {
+    observation_moments_.Merge(unit->observation_moments());
+    state_moments_.Merge(unit->state_moments());
+  }
+  UpdateInputScales();
+  const double updated = Now();
+  ++state_.collections;
+  state_.env_steps += static_cast<std::int64_t>(config_.envs) * config_.horizon;
+
+  double env = 0.0, inference = 0.0;
+  std::vector<EpisodeMetrics> episodes;
+  for (const auto& unit : units_) {
+    env += unit->env_seconds();
+    inference += unit->inference_seconds();
+    episodes.insert(episodes.end(), unit->finished().begin(), unit->finished().end());
+  }
+  record->env_steps = state_.env_steps;
+  record->collections = state_.collections;
+  record->learning_rate = config_.lr * scale;
+  record->env_seconds = (collected - begin) * env / (env + inference);
+  record->inference_seconds = (collected - begin) * inference / (env + inference);
+  record->update_seconds = updated - collected;
+  record->update_flops = report.flops;
+  record->kl = report.sums.kl / report.sums.rows;
+  record->clip_fraction = report.sums.clipped / report.sums.rows;
+  record->actor_loss = report.sums.actor_loss / report.sums.rows;
+  record->value_loss = report.sums.value_loss / report.sums.samples;
+  record->actor_norm = report.actor_norm;
+  record->critic_norm = report.critic_norm;
+  for (int a = 0; a < networks_.action_size(); ++a) {
+    const double log_std = static_cast<double>(
+        state_.parameters[networks_.log_std_offset() + static_cast<std::size_t>(a)]);
+    record->sigma += std::exp(log_std) / networks_.action_size();
+    record->entropy += log_std + 1.4189385332046727;  // (1 + log 2 pi) / 2
+  }
+  record->episodes = static_cast<int>(episodes.size());
+  if (!episodes.empty()) {
+    const MetricSummary summary = Summarise(episodes);
+    record->train_return = Metric(summary, "return");
+    record->train_tail_distance = Metric(summary, "tail_distance");
+    record->train_lost_rate = Metric(summary, "lost_rate");
+  }
+}
+
+void Trainer::UpdateValueScale(TrainRecord* record) {
+  RunningMoments targets(1), errors(1), rewards(1);
+  for (const auto& unit : units_) {
+    const RolloutBuffer& b = unit->buffer();
+    std::vector<float> target(b.advantages.size());
+    for (std::size_t i = 0; i < target.size(); ++i) target[i] = b.advantages[i] + b.values[i];
+    targets.Add(target.data(), static_cast<int>(target.size()));
+    errors.Add(b.advantages.data(), static_cast<int>(target.size()));
+    rewards.Add(b.rewards.data(), static_cast<int>(target.size()));
+  }
+  record->reward = rewards.mean(0);
+  record->explained_variance = 1.0 - errors.variance(0) / std::max(targets.variance(0), 1e-12);
+  value_moments_.Merge(targets);
+  value_moments_.LimitCount(kValueMemory);
+  RescaleCritic(value_moments_.mean(0), std::sqrt(value_moments_.variance(0)) + 1e-4);
+}
+
+/// Changes the value normaliser and, with it, the critic's last layer, so that
+/// no prediction changes (PopArt, van Hasselt et al. 2016).
+void Trainer::RescaleCritic(double mean, double std) {
+  const Mlp& critic = networks_.critic;
+  const int last = critic.layers() - 1;
+  float* p = state_.parameters.data() + networks_.critic_offset();
+  const double ratio = static_cast<double>(scales_.value_std) / std;
+  for (int i = 0; i < critic.layer_inputs(last); ++i) {
+    float& w = p[critic.weight_offset(last) + static_cast<std::size_t>(i)];
+    w = static_cast<float>(static_cast<double>(w) * ratio);
+  }
+  float& bias = p[critic.bias_offset(last)];
+  bias = static_cast<float>(static_cast<double>(bias) * ratio +
+                            (static_cast<double>(scales_.value_mean) - mean) / std);
+  scales_.value_mean = static_cast<float>(mean);
+  scales_.value_std = static_cast<float>(std);
+}
+
+void Trainer::UpdateInputScales() {
+  const auto floor = static_cast<float>(config_.std_floor);
+  const auto clip = static_cast<float>(config_.observation_clip);
+  scales_.observations = Normaliser::From(observation_moments_, floor, clip);
+  scales_.states = Normaliser::From(state_moments_, floor, clip);
+}
+
+void Trainer::Validate(TrainRecord* record) {
+  const double begin = Now();
+  last_validation_ = Summarise(validation_.Run(state_.parameters.data(), scales_.observations));
+  record->validated = true;
+  record->validation = last_validation_;
+  if (Metric(last_validation_, "return") > state_.best_return) {
+    state_.best_return = Metric(last_validation_, "return");
+    SavePolicy("policy_best.onnx");
+  }
+  next_validation_ =
+      (state_.env_steps / config_.validation_interval + 1) * config_.validation_interval;
+  record->validation_seconds = Now() - begin;
+}
+
+bool Trainer::AtBoundary(bool force) {
+  const int episode = std::max(1, scenario_.time.episode_steps / config_.horizon);
+  // Cutting staggered episodes at every boundary would undo the staggering.
+  const int every = config_.stagger ? 10 * episode : episode;
+  if (state_.collections % every != 0 && !force) return false;
+  bool at_start = true;
+  for (const auto& unit : units_) at_start = at_start && unit->at_episode_start();
+  std::uint64_t round = 0;
+  for (const auto& unit : units_) round = std::max(round, unit->round());
+  if (!at_start || config_.stagger) {
+    ++round;
+    for (auto& unit : units_) unit->RestartAt(round);
+  }
+  state_.round = round;
+  return true;
+}
+
+void Trainer::Save() {
+  TrainState saved = state_;
+  saved.observation_moments = observation_moments_.Save();
+  saved.state_moments = state_moments_.Save();
+  saved.value_moments = value_moments_.Save();
+  saved.wall_seconds = Elapsed();
+  saved.log = log_->Save();
+  SaveCheckpoint(saved, CheckpointPath(options_.out, state_.env_steps));
+  PruneCheckpoints(options_.out, config_.keep_checkpoints);
+  SavePolicy("policy_last.onnx");
+  next_checkpoint_ =
+      (state_.env_steps / config_.checkpoint_interval + 1) * config_.checkpoint_interval;
+}
+
+Policy Trainer::MakePolicy() const {
+  PolicyMetadata m;
+  m.id = scenario_.name + "-" + config_.variant + "-" + config_.preset + "-seed" +
+         std::to_string(config_.seed) + "-" + std::to_string(state_.env_steps);
+  m.observation_layout = ObservationLayout(train_scenario_);
+  m.action_interface = ActionInterfaceName(train_scenario_.control.interface);
+  m.scenario_hash = ScenarioHash(train_scenario_);
+  m.training_step = state_.env_steps;
+  m.seed = config_.seed;
+  for (const char* name :
+       {"return", "tail_distance", "tracking_error", "lost_rate", "tail_colliding_pairs"}) {
+    if (last_validation_.names.empty()) break;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", Metric(last_validation_, name));
+    m.metrics[std::string("validation_") + name] = text;
+  }
+  return networks_.ToPolicy(state_.parameters.data(), scales_.observations, std::move(m));
+}
+
+void Trainer::SavePolicy(const std::string& name) const {
+  MakePolicy().SaveOnnx((fs::path(options_.out) / name).string());
+}
+
+}  // namespace stg
