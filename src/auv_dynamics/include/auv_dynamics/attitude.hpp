@@ -45,10 +45,10 @@ inline Mat3<T> RotationOf(const EulerTrig<T>& t) {
   return R;
 }
 
-/// Rotation of a unit quaternion.
+/// Rotation of a quaternion q != 0 of any norm, given two = 2 / |q|^2.
 template <class T>
-inline Mat3<T> RotationOf(const T (&q)[4]) {
-  const T two(2.0), one(1.0);
+inline Mat3<T> RotationOf(const T (&q)[4], const T& two) {
+  const T one(1.0);
   const T &w = q[0], &x = q[1], &y = q[2], &z = q[3];
   Mat3<T> R;
   R.m[0][0] = one - two * (y * y + z * z);
@@ -61,6 +61,12 @@ inline Mat3<T> RotationOf(const T (&q)[4]) {
   R.m[2][1] = two * (y * z + w * x);
   R.m[2][2] = one - two * (x * x + y * y);
   return R;
+}
+
+/// Rotation of a unit quaternion.
+template <class T>
+inline Mat3<T> RotationOf(const T (&q)[4]) {
+  return RotationOf(q, T(2.0));
 }
 
 /// Roll, pitch and yaw trigonometry of a rotation matrix without evaluating an

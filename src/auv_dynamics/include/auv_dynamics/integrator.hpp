@@ -38,7 +38,10 @@ void StepRk4(const VehicleModel& model, const Wrench<T>& tau, const Vec3<T>& v_W
   };
   const auto derive = [&](const T(&q)[4], const BodyVelocity<T>& nu) {
     Derivative d;
-    const Mat3<T> R = RotationOf(q);
+    // A stage's quaternion is off unit norm by O(dt^2); its rotation must still be
+    // a rotation, or the step would depend on the heading.
+    const T norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    const Mat3<T> R = RotationOf(q, T(2.0) / norm2);
     d.p = R * nu.v;
     const T half(0.5);
     const Vec3<T>& w = nu.w;

@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "auv_dynamics/random.hpp"
+#include "physics.hpp"
+
+namespace stg {
+namespace {
+
+Scenario TargetScenario(TargetMotion motion) {
+  Scenario s = QuietScenario(1);
+  s.target.motion = motion;
+  s.vehicle = ReleaseVehicle();
+  return s;
+}
+
+double AngleBetween(const Vec3<double>& a, const Vec3<double>& b) {
+  return std::atan2(Norm(Cross(a, b)), Dot(a, b));
+}
+
+TEST(TargetMotion, ConstantVelocityMovesByVelocityTimesTime) {
+  World world(TargetScenario(TargetMotion::kConstantVelocity));
+  world.Place(0, {{0.0, 0.0, 0.0}}, {{0.1, -0.2, 0.3}}, {{0.01, 0.004, -0.006}});
+  for (int k = 0; k < 200; ++k) world.Step(NoForce(1));
+  const Vec3<double> p = Lane(world.target(0).p_WT, 0);
+  EXPECT_NEAR(p.x, 0.3, 1e-13);
+  EXPECT_NEAR(p.y, -0.12, 1e-13);
+  EXPECT_NEAR(p.z, 0.18, 1e-13);
+}
+
+TEST(TargetMotion, ReflectionClampsAndFlipsThatComponentOnly) {
+  World world(TargetScenario(TargetMotion::kConstantVelocity));
+  world.Place(0, {{0.0, 0.0, 0.0}}, {{0.9995, -0.5, -0.9999}}, {{0.01, 0.02, -0.005}});
+  world.Step(NoForce(1));
+  const Vec3<double> p = Lane(world.target(0).p_WT, 0), v = Lane(world.target(0).v_WT, 0);
+  EXPECT_EQ(p.x, 1.0);
+  EXPECT_NEAR(p.y, -0.498, 1e-15);
+  EXPECT_EQ(p.z, -1.0);
+  EXPECT_EQ(v.x, -0.01);
+  EXPECT_EQ(v.y, 0.02);
+  EXPECT_EQ(v.z, 0.005);
+  world.Step(NoForce(1));
+  EXPECT_NEAR(Lane(world.target(0).p_WT, 0).x, 0.999, 1e-15);
+  EXPECT_EQ(Lane(world.target(0).v_WT, 0).x, -0.01);
+}
+
+/// Steps `world` and checks every lane's target against its limits.
+void CheckLimits(const Scenario& scenario, World* world, int steps) {
+  const double most = scenario.target.max_turn_rate_radps * scenario.time.dt_s;
+  const double dt = scenario.time.dt_s;
+  std::array<Vec3<double>, static_cast<size_t>(kLanes)> p, v;
+  const auto read = [&] {
+    for (int l = 0; l < kLanes; ++l) {
+      p[static_cast<size_t>(l)] = Lane(world->target(0).p_WT, l);
+      v[static_cast<size_t>(l)] = Lane(world->target(0).v_WT, l);
+    }
+  };
+  read();
+  for (int k = 0; k < steps; ++k) {
+    const auto p0 = p, v0 = v;
+    world->Step(NoForce(world->agents()));
+    read();
+    for (size_t l = 0; l < static_cast<size_t>(kLanes); ++l) {
+      ASSERT_NEAR(Norm(v[l]), Norm(v0[l]), 1e-12) << "step " << k;  // no motion changes the speed
+      ASSERT_LE(Norm(v[l]), scenario.target.max_speed_mps * (1.0 + 1e-9));
+      ASSERT_LE(AngleBetween(v[l], v0[l]), most * (1.0 + 1e-9) + 1e-12) << "step " << k;
+      ASSERT_LE(Norm(p[l] - p0[l]), Norm(v[l]) * dt * (1.0 + 1e-9));
+      const double e = scenario.workspace.half_extent_m;
+      ASSERT_TRUE(std::abs(p[l].x) <= e && std::abs(p[l].y) <= e && std::abs(p[l].z) <= e);
+    }
+  }
+}
+
+TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
+  for (const TargetMotion motion :
+       {TargetMotion::kCoordinatedTurn, TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
+    Scenario scenario = TargetScenario(motion);
+    // As fast as the reset stage may start it: fast enough to meet every wall.
+    scenario.reset.stages[2].target_speed_mps = {0.01, 0.05};
+    scenario.target.evasion_range_m = 1.0;
+    World world(scenario);
+    for (int n = 0; n < 6; ++n) {
+      for (int l = 0; l < kLanes; ++l) {
+        world.Reset(l, static_cast<std::uint64_t>(100 * n + l), 0, ResetStage::kHard);
+      }
+      CheckLimits(scenario, &world, 10000);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
+  Scenario scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
+  scenario.target.turn_period_s = 1.0;
+  scenario.workspace.half_extent_m = 100.0;  // no wall interferes
+  World world(scenario);
+  world.Reset(0, 3, 0, ResetStage::kMedium);
+  double turned = 0.0;
+  constexpr int kSteps = 40000;
+  for (int k = 0; k < kSteps; ++k) {
+    const Vec3<double> before = Lane(world.target(0).v_WT, 0);
+    world.Step(NoForce(1));
+    turned += AngleBetween(before, Lane(world.target(0).v_WT, 0));
+  }
+  // Rates are uniform in [0, 0.2] rad/s, 4000 of them; five deviations.
+  EXPECT_NEAR(turned / (0.1 * kSteps), 0.1, 5.0 * 0.2 / std::sqrt(12.0 * 4000.0));
+}
+
+TEST(TargetMotion, EvasiveTargetTurnsAwayFromAnAuvInRange) {
+  for (const Vec3<double>& auv : {Vec3<double>{0.06, 0.0, 0.0}, Vec3<double>{-0.03, 0.05, 0.0},
+                                  Vec3<double>{0.01, -0.02, -0.06}}) {
+    Scenario scenario = TargetScenario(TargetMotion::kEvasive);
+    World world(scenario);
+    const Vec3<double> towards = auv * (0.01 / Norm(auv));
+    world.Place(0, {auv}, {{0.0, 0.0, 0.0}}, {towards + Vec3<double>{0.0, 0.001, 0.001}});
+    for (int k = 0; k < 100; ++k) world.Step(NoForce(1));
+    const Vec3<double> p = Lane(world.target(0).p_WT, 0), v = Lane(world.target(0).v_WT, 0);
+    const Vec3<double> away = p - Lane(world.vehicle(0).p_WB, 0);
+    EXPECT_LT(AngleBetween(v, away), 0.01);
+    for (int k = 0; k < 100; ++k) world.Step(NoForce(1));
+    EXPECT_GT(Norm(Lane(world.target(0).p_WT, 0) - Lane(world.vehicle(0).p_WB, 0)), Norm(away));
+  }
+}
+
+TEST(TargetMotion, EvasiveTargetEscapesEvenWhenHeadedStraightAtTheAuv) {
+  World world(TargetScenario(TargetMotion::kEvasive));
+  world.Place(0, {{0.08, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.01, 0.0, 0.0}});
+  for (int k = 0; k < 300; ++k) world.Step(NoForce(1));
+  const Vec3<double> away = Lane(world.target(0).p_WT, 0) - Vec3<double>{0.08, 0.0, 0.0};
+  EXPECT_GT(Norm(away), 0.1);
+  EXPECT_LT(AngleBetween(Lane(world.target(0).v_WT, 0), away), 0.5);
+}
+
+TEST(TargetMotion, EvasiveTargetOutOfRangeKeepsItsCourse) {
+  World world(TargetScenario(TargetMotion::kEvasive));
+  world.Place(0, {{0.0, 0.5, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.01, 0.002, 0.0}});
+  for (int k = 0; k < 100; ++k) world.Step(NoForce(1));
+  EXPECT_EQ(Norm(Lane(world.target(0).v_WT, 0) - Vec3<double>{0.01, 0.002, 0.0}), 0.0);
+}
+
+/// Steps between visits of the waypoints that the target's stream draws, in order.
+int VisitWaypoints(const Scenario& scenario, std::uint64_t seed, int visits, int patience) {
+  World world(scenario);
+  world.Reset(0, seed, 0, ResetStage::kHard);
+  int longest = 0;
+  for (std::uint32_t n = 0; n < static_cast<std::uint32_t>(visits); ++n) {
+    Random random(seed, Stream::kTarget, 0, n, 0);
+    const double x = random.Uniform(-0.8, 0.8), y = random.Uniform(-0.8, 0.8);
+    const Vec3<double> waypoint{x, y, random.Uniform(-0.8, 0.8)};
+    int steps = 0;
+    while (Norm(Lane(world.target(0).p_WT, 0) - waypoint) >= scenario.target.waypoint_radius_m) {
+      if (++steps > patience) return steps;
+      world.Step(NoForce(1));
+    }
+    longest = std::max(longest, steps);
+  }
+  return longest;
+}
+
+TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrder) {
+  Scenario scenario = TargetScenario(TargetMotion::kRandomWaypoint);
+  for (const double speed : {0.02, 0.05}) {
+    scenario.reset.stages[2].target_speed_mps = {speed, speed};
+    // The longest way is the diagonal of the waypoint cube; half as much again for turns.
+    const int patience = static_cast<int>(1.5 * 1.6 * std::sqrt(3.0) / speed / 0.1) + 300;
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      EXPECT_LE(VisitWaypoints(scenario, seed, 40, patience), patience)
+          << "seed " << seed << " speed " << speed;
+    }
+  }
+}
+
+TEST(TargetMotion, SeveralTargetsMoveIndependently) {
+  Scenario scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
+  scenario.agents = 2;
+  scenario.target.count = 2;
+  World world(scenario);
+  const Vec3<double> v{0.01, 0.0, 0.0};
+  world.Place(0, {{0.0, 0.3, 0.0}, {0.0, -0.3, 0.0}}, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {v, v});
+  for (int k = 0; k < 50; ++k) world.Step(NoForce(2));
+  EXPECT_GT(Norm(Lane(world.target(0).v_WT, 0) - Lane(world.target(1).v_WT, 0)), 1e-5);
+}
+
+}  // namespace
+}  // namespace stg
