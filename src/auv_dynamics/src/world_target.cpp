@@ -23,6 +23,17 @@ Vec3<double> TurnTowards(const Vec3<double>& v, const Vec3<double>& direction, d
   return (a * std::cos(angle) + normal * (std::sin(angle) / n)) * speed;
 }
 
+/// Whether `to`, relative to a target of velocity v, lies inside the circle of
+/// its tightest turn: turning towards it would orbit it forever.
+bool InsideTurningCircle(const Vec3<double>& v, const Vec3<double>& to, double max_turn_rate) {
+  const double speed = Norm(v);
+  if (speed < 1e-12) return false;
+  const double radius = speed / max_turn_rate;
+  const double along = Dot(v, to) * (1.0 / speed);
+  const double aside = Norm(to - v * (along / speed)) - radius;
+  return along * along + aside * aside < radius * radius;
+}
+
 }  // namespace
 
 void World::MoveTargets() {
@@ -61,7 +72,8 @@ void World::SteerTarget(int lane, int k) {
     const double time = dt * step_[lane];
     Random random(seed_[lane], Stream::kTarget, episode_[lane],
                   static_cast<std::uint32_t>(time / c.turn_period_s), uk);
-    const double rate = Clip(2.0 * random.Uniform() * c.turn_rate_radps, 0.0, c.max_turn_rate_radps);
+    const double rate =
+        Clip(2.0 * random.Uniform() * c.turn_rate_radps, 0.0, c.max_turn_rate_radps);
     const Vec3<double> axis{random.Normal(), random.Normal(), random.Normal()};
     v = TurnTowards(v, Cross(axis, v), rate * dt);
   } else if (c.motion == TargetMotion::kRandomWaypoint) {
@@ -71,7 +83,11 @@ void World::SteerTarget(int lane, int k) {
       const double e = 0.8 * scenario_.workspace.half_extent_m;
       return Vec3<double>{random.Uniform(-e, e), random.Uniform(-e, e), random.Uniform(-e, e)};
     };
-    if (Norm(waypoint() - p) < c.waypoint_radius_m) ++index;
+    const Vec3<double> to = waypoint() - p;
+    // A point that cannot be reached by turning is given up for the next one.
+    if (Norm(to) < c.waypoint_radius_m || InsideTurningCircle(v, to, c.max_turn_rate_radps)) {
+      ++index;
+    }
     v = TurnTowards(v, waypoint() - p, most);
   } else {  // evasive: away from every vehicle in range, the closer the stronger
     Vec3<double> away;
