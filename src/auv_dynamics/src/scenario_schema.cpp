@@ -254,6 +254,9 @@ void AddObservation(Table* t, ObservationConfig* c) {
   t->Add("graph", &c->graph, kNone, "-", "include the 6 task-graph numbers of Eq. 18");
   t->Add("order", Enum(&c->order, {"nearest", "index"}), kNone, "-",
          "which three neighbours are shown: the nearest, or the first by index");
+  t->Add("release_bookkeeping", &c->release_bookkeeping, kNone, "-",
+         "truth mode, as the release: shown progress and first P are 0, mean error counts the current "
+         "one twice, lost steps read one too many");
   t->Add("distance_scale_m", &c->distance_scale_m, Positive(1e5), "m",
          "target distance that reads 1");
   t->Add("error_scale_m", &c->error_scale_m, Positive(1e5), "m", "tracking error that reads 1");

@@ -59,15 +59,9 @@ void World::Step(const std::vector<Wrench<Pack>>& tau) {
     VehicleState<Pack>& s = vehicles_[i];
     Wrench<Pack> total = tau[i];
     if (scenario_.vehicle.float32_tau) {
-      const auto round = [](Pack* x) {
-        alignas(64) double buffer[kLanes];
-        x->store_aligned(buffer);
-        for (double& b : buffer) b = static_cast<float>(b);
-        *x = Pack::load_aligned(buffer);
-      };
       for (Pack* x : {&total.force.x, &total.force.y, &total.force.z, &total.moment.x,
                       &total.moment.y, &total.moment.z}) {
-        round(x);
+        *x = RoundToFloat(*x);
       }
     }
     // The release adds contact to the command before the actuator limits; w of

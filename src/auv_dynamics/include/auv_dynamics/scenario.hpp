@@ -168,6 +168,10 @@ struct ObservationConfig {
   bool semantic = true;              ///< Eqs. 15-16, 9 numbers
   bool graph = true;                 ///< Eq. 18, 6 numbers
   NeighbourOrder order = NeighbourOrder::kNearest;
+  /// Truth mode only. As the release: the progress shown is always 0 (d(t-1) is
+  /// overwritten first), so is the first P of an episode; mean_k(e) counts the
+  /// current error twice; lost steps read one too many.
+  bool release_bookkeeping = false;
   double distance_scale_m = 1.2;
   double error_scale_m = 0.8;
   double progress_scale_m = 0.04;

@@ -65,6 +65,15 @@ inline void SinCos(double a, double* s, double* c) {
   *c = sc.second.get(0);
 }
 
+/// Nearest number with float32's 24-bit significand, by Veltkamp's splitting.
+/// Not a pair of casts: GCC 12 at -O3 drops a vectorised double-float-double
+/// round trip. Exact for float32's normal range, which is all it is used for.
+template <class T>
+inline T RoundToFloat(const T& a) {
+  const T c = a * T(536870913.0);  // 2^29 + 1
+  return c - (c - a);
+}
+
 /// Value of one lane; a double has the same value in every lane.
 inline double Lane(double a, int) { return a; }
 inline double Lane(const Pack& a, int lane) { return a.get(static_cast<std::size_t>(lane)); }

@@ -66,6 +66,12 @@ inline T Closing(const ObservationConfig& c, const T& closing_speed) {
   return Clip(closing_speed * T(1.0 / c.closing_scale_mps), T(-1.0), T(1.0));
 }
 
+/// Progress as the observation shows it.
+template <class T>
+inline T ShownProgress(const ObservationConfig& c, const Knowledge<T>& k) {
+  return c.release_bookkeeping ? T(0.0) : Progress(c, k.previous_distance, k.distance);
+}
+
 /// One-hot phase (Eq. 15): lost, else stable within the near range, else
 /// approach when the distance fell, else search.
 template <class T>
@@ -106,7 +112,7 @@ inline void GraphSummary(const ObservationConfig& c, const Knowledge<T>& k, T (*
   (*graph)[1] = k.mean_quality;
   (*graph)[2] = k.best_quality;
   (*graph)[3] = neighbour_error;
-  (*graph)[4] = Clip(neighbour_error - k.error * scale, -one, one);
+  (*graph)[4] = neighbour_error - Clip(k.error * scale, zero, one);  // in [-1, 1]
   (*graph)[5] = Select((*graph)[4] > zero,
                        Select(k.confidence >= T(c.role_confidence), one, zero), zero);
 }
@@ -117,9 +123,9 @@ inline void TrackingVector(const ObservationConfig& c, const Knowledge<T>& k, T 
   const T zero(0.0), one(1.0), two(2.0);
   (*z)[0] = Clip(k.distance * T(1.0 / c.distance_scale_m), zero, two);
   (*z)[1] = Clip(k.error * T(1.0 / c.error_scale_m), zero, two);
-  (*z)[2] = Progress(c, k.previous_distance, k.distance);
+  (*z)[2] = ShownProgress(c, k);
   (*z)[3] = Closing(c, k.closing);
-  (*z)[4] = k.mean_error * T(1.0 / c.error_scale_m);
+  (*z)[4] = Clip(k.mean_error * T(1.0 / c.error_scale_m), zero, two);
   (*z)[5] = k.confidence;
   (*z)[6] = k.lost;
   (*z)[7] = Clip(k.lost_steps * T(1.0 / c.lost_scale_steps), zero, one);
@@ -151,7 +157,7 @@ inline void BuildObservation(const Scenario& scenario, const Knowledge<T>& k, Pu
   put3(Scale(k.v_WB_B, inv_v));
   put3(Scale(k.w_WB_B, inv_w));
   put3(Clip(k.r_BT_W * inv_extent, -2.0, 2.0));
-  for (const auto& r : k.neighbour) put3(r * inv_extent);
+  for (const auto& r : k.neighbour) put3(Clip(r * inv_extent, -2.0, 2.0));
   put3(Clip(Vec3<T>{one - Abs(p.x), one - Abs(p.y), one - Abs(p.z)}, -1.0, 1.0));
   put3(Scale(k.v_WT, inv_v));
   put3(Clip(Scale(u, inv_v), -2.0, 2.0));
@@ -167,7 +173,7 @@ inline void BuildObservation(const Scenario& scenario, const Knowledge<T>& k, Pu
   }
   if (c.semantic) {
     T phase[4], quality[4];
-    PhaseOneHot(c, k.lost, k.distance, Progress(c, k.previous_distance, k.distance), &phase);
+    PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);
     QualityOneHot(c, k.confidence, &quality);
     for (const T& value : phase) put(n++, value);
     for (const T& value : quality) put(n++, value);

@@ -1,0 +1,118 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "auv_dynamics/error.hpp"
+#include "auv_dynamics/random.hpp"
+#include "auv_dynamics/scenario_yaml.hpp"
+#include "marl_trainer/env.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Environment steps per second of `groups` on one thread for about `seconds`.
+double Run(std::vector<stg::EnvGroup>* groups, double seconds) {
+  const stg::EnvGroup& first = groups->front();
+  const size_t size =
+      static_cast<size_t>(stg::kLanes * first.agents() * first.action_size());
+  // Random actions, drawn beforehand: the bench is of the environment.
+  std::vector<std::vector<float>> actions(64, std::vector<float>(size));
+  stg::Random random(1, stg::Stream::kPolicy, 0, 0, 0);
+  for (auto& a : actions) {
+    for (float& v : a) v = static_cast<float>(random.Uniform(-1.0, 1.0));
+  }
+  for (auto& g : *groups) g.Reset();
+  const auto start = Clock::now();
+  double elapsed = 0.0;
+  long steps = 0;
+  for (size_t k = 0; elapsed < seconds; ++k) {
+    for (auto& g : *groups) g.Step(actions[k % actions.size()].data());
+    steps += static_cast<long>(groups->size()) * stg::kLanes;
+    if (k % 16 == 15) elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  return static_cast<double>(steps) / elapsed;
+}
+
+double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
+  std::vector<double> rates(static_cast<size_t>(workers));
+  std::vector<std::thread> threads;
+  for (int w = 0; w < workers; ++w) {
+    threads.emplace_back([&, w] {
+      std::vector<stg::EnvGroup> groups;
+      const int count = std::max(1, envs / stg::kLanes / workers);
+      for (int g = 0; g < count; ++g) {
+        stg::EnvOptions o;
+        o.first_env = (w * count + g) * stg::kLanes;
+        o.total_envs = count * workers * stg::kLanes;
+        groups.emplace_back(s, o);
+      }
+      rates[static_cast<size_t>(w)] = Run(&groups, seconds);
+    });
+  }
+  for (auto& t : threads) t.join();
+  double total = 0.0;
+  for (const double r : rates) total += r;
+  return total;
+}
+
+}  // namespace
+
+/// Environment steps per second, observations and rewards included; one JSON
+/// object on the last line.
+int main(int argc, char** argv) {
+  CLI::App app("Measures how fast the vectorised environment steps");
+  std::string scenario = "medium", condition = "nominal";
+  std::vector<std::string> overrides;
+  double seconds = 3.0;
+  int workers = 1, envs = 64;
+  bool scaling = false;
+  app.add_option("--scenario", scenario, "name or file")->capture_default_str();
+  app.add_option("--condition", condition, "stress condition")->capture_default_str();
+  app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
+  app.add_option("--seconds", seconds, "time to measure for")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256))->capture_default_str();
+  app.add_option("--envs", envs, "parallel environments")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_flag("--scaling", scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const auto load = [&](std::vector<std::string> extra) {
+      extra.insert(extra.begin(), overrides.begin(), overrides.end());
+      return stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, extra);
+    };
+    const stg::Scenario s = load({});
+    const double rate = Bench(s, envs, workers, seconds);
+    nlohmann::json json = {{"scenario", scenario},
+                           {"agents", s.agents},
+                           {"workers", workers},
+                           {"environments", envs},
+                           {"env_steps_per_second", rate},
+                           {"agent_steps_per_second", rate * s.agents}};
+    std::cout << scenario << ": " << static_cast<long>(rate) << " environment steps/s of "
+              << s.agents << " AUVs on " << workers << " worker(s)\n";
+    if (scaling) {
+      nlohmann::json rows = nlohmann::json::array();
+      for (const int n : {4, 8, 20, 50, 100}) {
+        const stg::Scenario sn = load({"agents=" + std::to_string(n),
+                                       "reset.min_separation_m=0.03"});
+        const double r = Bench(sn, envs, workers, seconds);
+        const double ns = 1e9 * workers / (r * n);
+        std::cout << "  " << n << " AUVs: " << static_cast<long>(r) << " environment steps/s, "
+                  << static_cast<long>(ns) << " ns per agent-step\n";
+        rows.push_back({{"agents", n}, {"env_steps_per_second", r}, {"ns_per_agent_step", ns}});
+      }
+      json["scaling"] = rows;
+    }
+    std::cout << json.dump() << std::endl;
+    return 0;
+  } catch (const stg::UserError& e) {
+    std::cerr << "bench_env: " << e.what() << "\n";
+    return 2;
+  }
+}

@@ -1,0 +1,57 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "auv_dynamics/error.hpp"
+#include "auv_dynamics/scenario_yaml.hpp"
+#include "marl_trainer/trace.hpp"
+
+/// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
+/// on unusable input.
+int main(int argc, char** argv) {
+  CLI::App app("Replays a trace of the release's simulator in ours and compares every column");
+  std::vector<std::string> folders;
+  std::string scenario = "medium_release";
+  double tolerance = 1e-5;
+  app.add_option("folder", folders, "folder with config.yaml and steps.csv")->required();
+  app.add_option("--scenario", scenario, "settings that the trace's config does not state")
+      ->capture_default_str();
+  app.add_option("--tolerance", tolerance, "largest absolute error allowed")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const stg::Scenario base = stg::LoadNamedScenario(stg::ScenarioFolder(), scenario);
+    double worst = 0.0;
+    nlohmann::json traces = nlohmann::json::array();
+    for (const auto& folder : folders) {
+      const stg::TraceError e = stg::ReplayTrace(stg::LoadTrace(folder, base), tolerance);
+      worst = std::max(worst, e.max_abs_error);
+      traces.push_back({{"trace", folder},
+                        {"max_abs_error", e.max_abs_error},
+                        {"by_group", e.by_group},
+                        {"steps", e.steps},
+                        {"worst", {{"column", e.worst_column},
+                                   {"step", e.worst_step},
+                                   {"agent", e.worst_agent}}}});
+      for (const auto& [column, error] : e.by_column) {
+        if (!(error <= tolerance)) std::cout << "  " << column << ": " << error << "\n";
+      }
+      if (e.first_bad_step >= 0) {
+        std::cout << "  first past " << tolerance << ": " << e.first_bad_column << ", step "
+                  << e.first_bad_step << "\n";
+      }
+      std::cout << folder << ": " << e.steps << " steps, largest error " << e.max_abs_error << " ("
+                << e.worst_column << ", step " << e.worst_step << ", agent " << e.worst_agent
+                << ")\n";
+    }
+    std::cout << nlohmann::json{{"max_abs_error", worst},
+                                {"tolerance", tolerance},
+                                {"pass", worst <= tolerance},
+                                {"traces", traces}}
+                     .dump()
+              << std::endl;
+    return worst <= tolerance ? 0 : 1;
+  } catch (const stg::UserError& e) {
+    std::cerr << "check_trace: " << e.what() << "\n";
+    return 2;
+  }
+}
