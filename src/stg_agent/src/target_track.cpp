@@ -38,6 +38,7 @@ TargetTrack::TargetTrack(const Scenario& scenario)
                  scenario.decision_dt_s()),
       floor_std_m_(scenario.track.measurement_std_m),
       speed_std_mps_(scenario.track.initial_speed_std_mps),
+      max_speed_mps_(scenario.target.max_speed_mps),
       gate2_(scenario.track.gate_sigma * scenario.track.gate_sigma),
       half_extent_m_(scenario.workspace.half_extent_m) {}
 
@@ -113,7 +114,9 @@ void TargetTrack::Restart(const Detection& newest, double std_m) {
   Start(newest.p_WT, std_m, newest.stamp);
   observed_ = true;
   if (t <= 0.0) return;
-  now_.v_WT = (newest.p_WT - previous_rejected_.p_WT) * (1.0 / t);
+  const Vec3<double> v = (newest.p_WT - previous_rejected_.p_WT) * (1.0 / t);
+  if (Norm(v) > 2.0 * max_speed_mps_) return;  // twice: room for noise
+  now_.v_WT = v;
   const double other = Max(previous_rejected_.std_m, floor_std_m_);
   now_.pv = now_.pp / t;
   now_.vv = (now_.pp + other * other) / (t * t) + intensity_ * t;

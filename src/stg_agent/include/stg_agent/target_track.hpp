@@ -45,7 +45,8 @@ struct SharedEstimate {
 /// initial_speed_std_mps.
 ///
 /// Gate: a detection farther than gate_sigma from its prediction is set aside; after
-/// kRestartAfter of them in a row the last two start the track afresh. A shared
+/// kRestartAfter of them in a row the last two start the track afresh (the last one alone if
+/// no target is fast enough to have made both). A shared
 /// estimate outside the gate replaces the track when it is both newer than the track's
 /// information and more certain than the track, else it is ignored.
 class TargetTrack {
@@ -91,6 +92,7 @@ class TargetTrack {
   double intensity_;  // S [m^2/s^3]
   double floor_std_m_;
   double speed_std_mps_;
+  double max_speed_mps_;
   double gate2_;
   double half_extent_m_;
   bool started_ = false, observed_ = false;
