@@ -173,7 +173,9 @@ TEST(TargetTrack, ExchangingOneEstimateBackAndForthAddsNoCertainty) {
   a.Detect({kStep, 0, {0.1, 0.0, 0.0}, 0.01});
   const double before = a.estimate().pp;
   b.Predict(kStep);
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 1; k < 20; ++k) {
+    a.Predict(k * kStep);
+    b.Predict(k * kStep);
     b.Fuse(a.shareable());
     a.Fuse(b.shareable());
   }
