@@ -13,7 +13,10 @@ EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
     channels.push_back(MakeChannel(s));
   }
   sequence.assign(n * kLanes, 0);
+  fraction.assign(n * 6 * kLanes, 0.0);
+  action = fraction;
   sent.reserve(n);
+  received.reserve(8 * n);
   positions.resize(n);
 }
 
@@ -91,8 +94,10 @@ void EnvGroup::AcousticActions() {
       }
       const AgentOutput out = a.agents[index].Act(action);
       for (int k = 0; k < 6; ++k) {
-        SetLane(&tau_[ui][static_cast<size_t>(k)], lane, out.fraction[k]);
-        SetLane(&action_[ui][static_cast<size_t>(k)], lane, k < size ? out.action[k] : 0.0);
+        a.fraction[(ui * 6 + static_cast<size_t>(k)) * kLanes + static_cast<size_t>(lane)] =
+            out.fraction[k];
+        a.action[(ui * 6 + static_cast<size_t>(k)) * kLanes + static_cast<size_t>(lane)] =
+            k < size ? out.action[k] : 0.0;
       }
       if (out.transmit) {
         a.sent.push_back({i, a.sequence[index]++, now, out.packet, out.generation});
@@ -101,6 +106,10 @@ void EnvGroup::AcousticActions() {
     }
     a.channels[static_cast<size_t>(lane)]->Step(now, static_cast<std::uint32_t>(step_),
                                                 a.positions, a.sent);
+  }
+  for (size_t k = 0; k < static_cast<size_t>(n) * 6; ++k) {
+    tau_[k / 6][k % 6] = Pack::load_unaligned(&a.fraction[k * kLanes]);
+    action_[k / 6][k % 6] = Pack::load_unaligned(&a.action[k * kLanes]);
   }
 }
 

@@ -38,6 +38,7 @@ struct EnvGroup::Acoustic {
   std::vector<Transmission> sent;
   std::vector<Reception> received;
   std::vector<Vec3<double>> positions;
+  std::vector<double> fraction, action;  // [agent, component, lane]
   Scenario scenario;
 };
 

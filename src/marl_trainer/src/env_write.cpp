@@ -1,3 +1,7 @@
+#if defined(__AVX__) && !defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
 #include "env_internal.hpp"
 
 namespace stg {
@@ -5,8 +9,24 @@ namespace {
 
 /// Turns columns of packs into one float row per lane.
 void Scatter(const Pack* columns, int size, float* rows, size_t stride) {
+  int c = 0;
+#if defined(__AVX__) && !defined(__AVX512F__)
+  // Four columns of four lanes at a time: a quarter of the time of single stores.
+  static_assert(kLanes == 4, "AVX holds four doubles");
+  for (; c + 4 <= size; c += 4) {
+    __m128 r0 = _mm256_cvtpd_ps(columns[c]);
+    __m128 r1 = _mm256_cvtpd_ps(columns[c + 1]);
+    __m128 r2 = _mm256_cvtpd_ps(columns[c + 2]);
+    __m128 r3 = _mm256_cvtpd_ps(columns[c + 3]);
+    _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+    _mm_storeu_ps(rows + c, r0);
+    _mm_storeu_ps(rows + stride + c, r1);
+    _mm_storeu_ps(rows + 2 * stride + c, r2);
+    _mm_storeu_ps(rows + 3 * stride + c, r3);
+  }
+#endif
   alignas(64) double buffer[kLanes];
-  for (int c = 0; c < size; ++c) {
+  for (; c < size; ++c) {
     columns[c].store_aligned(buffer);
     for (int lane = 0; lane < kLanes; ++lane) {
       rows[static_cast<size_t>(lane) * stride + static_cast<size_t>(c)] =
