@@ -1,0 +1,252 @@
+#include "channel_node.hpp"
+
+#include <std_msgs/Header.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "acoustic_channel_nodes/conversions.hpp"
+#include "acoustic_channel_nodes/topics.hpp"
+#include "auv_dynamics_nodes/node_main.hpp"
+#include "auv_dynamics_nodes/parameters.hpp"
+#include "auv_dynamics_nodes/topics.hpp"
+
+namespace stg {
+namespace {
+
+constexpr std::uint32_t kQueue = 50;
+
+}  // namespace
+
+ChannelNode::ChannelNode()
+    : scenario_(LoadScenarioParameters()),
+      channel_(MakeChannel(scenario_)),
+      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
+              scenario_.time.decision_steps),
+      timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
+      display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
+      auvs_(static_cast<std::size_t>(scenario_.agents)),
+      positions_(auvs_.size()),
+      health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
+  ros::NodeHandle node;
+  done_ = node.advertise<std_msgs::Header>(topics::kChannelDone, kQueue, true);
+  links_ = node.advertise<auv_msgs::LinkStates>(topics::kLinks, kQueue, true);
+  for (int i = 0; i < scenario_.agents; ++i) {
+    Auv& auv = auvs_[static_cast<std::size_t>(i)];
+    auv.reception = node.advertise<auv_msgs::AcousticReception>(
+        topics::AuvTopic(i, topics::kAcousticRx), kQueue, true);
+    const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> on_odometry =
+        [this, i](const auto& message) { OnOdometry(i, message); };
+    const boost::function<void(const auv_msgs::AcousticPacket::ConstPtr&)> on_transmission =
+        [this, i](const auto& message) { OnTransmission(i, message); };
+    auv.subscribers.push_back(node.subscribe<nav_msgs::Odometry>(
+        topics::AuvTopic(i, topics::kOdom), kQueue, on_odometry, ros::VoidConstPtr(), NoDelay()));
+    auv.subscribers.push_back(
+        node.subscribe<auv_msgs::AcousticPacket>(topics::AuvTopic(i, topics::kAcousticTx), kQueue,
+                                                 on_transmission, ros::VoidConstPtr(), NoDelay()));
+  }
+  sync_ = node.subscribe(topics::AuvTopic(0, topics::kSensorSync), kQueue, &ChannelNode::OnSync,
+                         this, NoDelay());
+}
+
+void ChannelNode::Spin() {
+  while (ros::ok()) {
+    HandleMessages(open_ && started_ ? std::min(0.2, timeout_s_) : 0.2);
+    CloseIfDue();
+    health_.Tick();
+  }
+}
+
+void ChannelNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
+  const TimeNs stamp = NsOf(message->header.stamp);
+  if (open_ && stamp > stamp_) {
+    Close();
+    ++incomplete_steps_;
+  }
+  const TimeNs start = stamp - static_cast<TimeNs>(message->step) * period_;
+  if (start != start_ || message->episode != episode_) channel_->Reset(message->seed, 0);
+  start_ = start;
+  stamp_ = stamp;
+  episode_ = message->episode;
+  step_ = message->step;
+  open_ = true;
+  opened_ = ros::WallTime::now();
+  CloseIfDue();
+}
+
+void ChannelNode::OnOdometry(int i, const nav_msgs::Odometry::ConstPtr& message) {
+  if (message->header.frame_id != frames::kWorld) {
+    refused_odometry_.Add(Refusals::kFrame);
+  } else if (!FiniteVector(message->pose.pose.position)) {
+    refused_odometry_.Add(Refusals::kNotFinite);
+  } else {
+    const TimeNs stamp = NsOf(message->header.stamp);
+    if (open_ && stamp > stamp_) {
+      // The world has gone on without this channel.
+      Close();
+      ++incomplete_steps_;
+    }
+    Auv& auv = auvs_[static_cast<std::size_t>(i)];
+    auv.position_stamp = stamp;
+    positions_[static_cast<std::size_t>(i)] = VectorOf(message->pose.pose.position);
+    CloseIfDue();
+  }
+}
+
+void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message) {
+  if (!Usable(i, *message)) return;
+  Auv& auv = auvs_[static_cast<std::size_t>(i)];
+  auv.present = true;
+  auv.transmission = message;
+  CloseIfDue();
+}
+
+bool ChannelNode::Usable(int i, const auv_msgs::AcousticPacket& message) {
+  const bool silent = message.data.empty();
+  if (message.header.frame_id != frames::Body(i)) {
+    refused_transmissions_.Add(Refusals::kFrame);
+  } else if (message.source != static_cast<std::uint32_t>(i) ||
+             (!silent && (message.data.size() != static_cast<std::size_t>(kPacketBytes) ||
+                          message.generation > message.header.stamp))) {
+    refused_transmissions_.Add(Refusals::kMalformed);
+  } else if (NsOf(message.header.stamp) < stamp_ ||
+             (!open_ && NsOf(message.header.stamp) == stamp_)) {
+    refused_transmissions_.Add(Refusals::kStale);
+    auvs_[static_cast<std::size_t>(i)].present = true;  // late, but alive
+  } else {
+    return true;
+  }
+  return false;
+}
+
+bool ChannelNode::Complete(bool wait_for_all) const {
+  for (const Auv& auv : auvs_) {
+    if (auv.position_stamp != stamp_) return false;
+    const bool sent = auv.transmission && NsOf(auv.transmission->header.stamp) == stamp_;
+    if (!sent && (auv.present || wait_for_all)) return false;
+  }
+  return true;
+}
+
+void ChannelNode::CloseIfDue() {
+  if (!open_) return;
+  if (Complete(!started_)) {
+    started_ = true;
+    Close();
+  } else if (started_ && (ros::WallTime::now() - opened_).toSec() > timeout_s_) {
+    for (Auv& auv : auvs_) {
+      auv.present = auv.transmission && NsOf(auv.transmission->header.stamp) == stamp_;
+    }
+    ++incomplete_steps_;
+    Close();
+  }
+}
+
+void ChannelNode::Close() {
+  open_ = false;
+  const TimeNs now = stamp_ - start_;
+  sent_.clear();
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    const auto& m = auvs_[i].transmission;
+    if (!m || NsOf(m->header.stamp) != stamp_ || m->data.empty()) continue;
+    Transmission t;
+    t.source = static_cast<int>(i);
+    t.sequence = m->sequence;
+    t.stamp = now;
+    t.generation = NsOf(m->generation) - start_;
+    std::copy(m->data.begin(), m->data.end(), t.data.begin());
+    sent_.push_back(t);
+  }
+  channel_->Step(now, step_, positions_, sent_);
+  for (int i = 0; i < scenario_.agents; ++i) PublishReceptions(i, now + period_);
+  std_msgs::Header done;
+  done.stamp = TimeOf(stamp_);
+  done.frame_id = frames::kWorld;
+  done_.publish(done);
+  steps_.Add();
+  PublishLinks(now);
+}
+
+void ChannelNode::PublishReceptions(int i, TimeNs until) {
+  received_.clear();
+  channel_->Deliver(i, until, &received_);
+  auv_msgs::AcousticReception& m = reception_message_;
+  m.header.stamp = TimeOf(start_ + until);
+  m.header.frame_id = frames::Body(i);
+  m.packets.resize(received_.size());
+  for (std::size_t k = 0; k < received_.size(); ++k) {
+    SetReceivedPacket(received_[k], start_, &m.packets[k]);
+  }
+  auvs_[static_cast<std::size_t>(i)].reception.publish(m);
+}
+
+void ChannelNode::PublishLinks(TimeNs now) {
+  const ros::WallTime wall = ros::WallTime::now();
+  if ((wall - links_sent_).toSec() < display_period_s_) return;
+  links_sent_ = wall;
+  auto& m = links_message_;
+  m.header.stamp = TimeOf(stamp_);
+  m.header.frame_id = frames::kWorld;
+  m.links.clear();
+  for (int i = 0; i < scenario_.agents; ++i) {
+    for (int j = 0; j < scenario_.agents; ++j) {
+      if (i == j) continue;
+      const LinkStatistics s = channel_->Link(i, j, now);
+      auv_msgs::LinkState link;
+      link.source = static_cast<std::uint32_t>(i);
+      link.destination = static_cast<std::uint32_t>(j);
+      link.distance = s.distance_m;
+      link.quality = s.quality;
+      link.loss_probability = s.loss_probability;
+      link.delay = s.delay_s;
+      link.age = s.age_s;
+      link.average_age = s.average_age_s;
+      link.peak_age = s.max_age_s;
+      link.delivered = static_cast<std::uint32_t>(s.delivered);
+      link.dropped = static_cast<std::uint32_t>(s.dropped);
+      link.last_drop_reason = static_cast<std::uint8_t>(s.last_drop);
+      m.links.push_back(link);
+    }
+  }
+  links_.publish(m);
+}
+
+void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+  const double rate = static_cast<double>(steps_.TakeRecent()) / health_.period_s();
+  status.add("steps per second", rate);
+  status.add("steps closed without an AUV", incomplete_steps_);
+  refused_odometry_.Report(topics::kOdom, &status);
+  refused_transmissions_.Report(topics::kAcousticTx, &status);
+  if (steps_.total() == 0) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no step closed yet");
+    return;
+  }
+  const ChannelTotals& totals = channel_->totals();
+  status.add("packets delivered in this episode", totals.delivered);
+  for (std::size_t k = 1; k < totals.drops.size(); ++k) {
+    status.add(std::string("packets dropped: ") + ToString(static_cast<DropReason>(k)),
+               totals.drops[k]);
+  }
+  double largest = 0.0, sum = 0.0;
+  int links = 0;
+  for (int i = 0; i < scenario_.agents; ++i) {
+    for (int j = 0; j < scenario_.agents; ++j) {
+      if (i == j) continue;
+      const double age = channel_->Link(i, j, std::max<TimeNs>(0, stamp_ - start_)).age_s;
+      largest = std::max(largest, age);
+      sum += age;
+      ++links;
+    }
+  }
+  status.add("age of information, mean [s]", links > 0 ? sum / links : 0.0);
+  status.add("age of information, largest [s]", largest);
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    if (!auvs_[i].present) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                          "AUV " + std::to_string(i) + " does not transmit");
+    }
+  }
+}
+
+}  // namespace stg

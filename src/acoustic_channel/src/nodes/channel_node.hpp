@@ -1,0 +1,76 @@
+#pragma once
+
+#include <auv_msgs/AcousticPacket.h>
+#include <auv_msgs/AcousticReception.h>
+#include <auv_msgs/LinkStates.h>
+#include <auv_msgs/SensorSync.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/node_handle.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acoustic_channel/channel.hpp"
+#include "auv_dynamics/scenario.hpp"
+#include "auv_dynamics_nodes/health.hpp"
+
+namespace stg {
+
+/// The acoustic channel of the whole swarm.
+///
+/// Step k closes when the position and the transmission of every AUV at t_k are in; then each AUV
+/// gets its reception window (t_k, t_{k+1}], and the world its acknowledgement. An AUV that is
+/// silent for `timeout` seconds, or whose step the world has left behind, is gone for the channel
+/// and not waited for again before it transmits again. Step, episode and seed come with the
+/// sensor_sync of AUV 0.
+class ChannelNode {
+ public:
+  /// Throws UserError.
+  ChannelNode();
+  void Spin();
+
+ private:
+  struct Auv {
+    TimeNs position_stamp = -1;                       ///< clock time; -1: none yet
+    bool present = true;                              ///< its transmissions are waited for
+    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< newest one
+    ros::Publisher reception;
+    std::vector<ros::Subscriber> subscribers;
+  };
+
+  void OnSync(const auv_msgs::SensorSync::ConstPtr& message);
+  void OnOdometry(int i, const nav_msgs::Odometry::ConstPtr& message);
+  void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
+  bool Usable(int i, const auv_msgs::AcousticPacket& message);
+  bool Complete(bool wait_for_all) const;
+  void CloseIfDue();
+  void Close();
+  void PublishReceptions(int i, TimeNs until);
+  void PublishLinks(TimeNs now);
+  void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  Scenario scenario_;
+  std::unique_ptr<Channel> channel_;
+  TimeNs period_;  ///< of decisions [ns]
+  double timeout_s_, display_period_s_;
+  bool open_ = false, started_ = false;
+  TimeNs stamp_ = -1;  ///< clock time of the open or last step [ns]
+  TimeNs start_ = -1;  ///< clock time of the episode's step 0 [ns]
+  std::uint32_t episode_ = 0, step_ = 0;
+  ros::WallTime opened_, links_sent_;
+  std::vector<Auv> auvs_;
+  std::vector<Vec3<double>> positions_;
+  std::vector<Transmission> sent_;
+  std::vector<Reception> received_;
+  auv_msgs::AcousticReception reception_message_;
+  auv_msgs::LinkStates links_message_;
+  EventRate steps_;
+  std::uint64_t incomplete_steps_ = 0;
+  Refusals refused_odometry_, refused_transmissions_;
+  ros::Publisher done_, links_;
+  ros::Subscriber sync_;
+  Health health_;
+};
+
+}  // namespace stg

@@ -1,0 +1,6 @@
+#include "auv_dynamics_nodes/node_main.hpp"
+#include "controller_node.hpp"
+
+int main(int argc, char** argv) {
+  return stg::RunNode<stg::ControllerNode>(argc, argv, "controller");
+}

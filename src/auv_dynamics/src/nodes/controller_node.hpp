@@ -1,0 +1,43 @@
+#pragma once
+
+#include <geometry_msgs/TwistStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/node_handle.h>
+
+#include "auv_dynamics/scenario.hpp"
+#include "auv_dynamics/types.hpp"
+#include "auv_dynamics_nodes/health.hpp"
+
+namespace stg {
+
+/// Velocity controller of one AUV (Eqs. 24-26): answers each desired velocity with the wrench for
+/// the odometry of the same stamp. Holds no state between steps.
+class ControllerNode {
+ public:
+  /// Throws UserError.
+  ControllerNode();
+  void Spin();
+
+ private:
+  void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
+  void OnCommand(const geometry_msgs::TwistStamped::ConstPtr& message);
+  void Answer();
+  void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  Scenario scenario_;
+  int id_;
+  std::string body_frame_;
+  TimeNs period_;  ///< of decisions
+  NavState nav_;   ///< newest odometry, with its absolute stamp
+  bool has_nav_ = false;
+  geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry
+  geometry_msgs::WrenchStamped wrench_;
+  EventRate answers_;
+  Refusals refused_odometry_, refused_commands_;
+  ros::Publisher publisher_;
+  ros::Subscriber odometry_, commands_;
+  Health health_;
+};
+
+}  // namespace stg

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <geometry_msgs/Point.h>
+#include <geometry_msgs/Vector3.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/time.h>
+
+#include <cmath>
+
+#include "auv_dynamics/types.hpp"
+
+/// Between the core's plain data and messages. Doubles and integer nanoseconds pass unchanged, so
+/// that a graph of nodes computes the same bits as one process.
+namespace stg {
+
+inline TimeNs NsOf(const ros::Time& t) { return static_cast<TimeNs>(t.toNSec()); }
+inline ros::Time TimeOf(TimeNs t) { return ros::Time().fromNSec(static_cast<std::uint64_t>(t)); }
+
+template <class Message>
+inline Vec3<double> VectorOf(const Message& m) {
+  return {m.x, m.y, m.z};
+}
+template <class Message>
+inline void SetVector(const Vec3<double>& v, Message* m) {
+  m->x = v.x;
+  m->y = v.y;
+  m->z = v.z;
+}
+
+inline bool Finite(double x) { return std::isfinite(x); }
+template <class Message>
+inline bool FiniteVector(const Message& m) {
+  return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.z);
+}
+
+/// Pose in `world`, twist in body axes (REP 103); the message's stamp is nav.stamp + start.
+inline void SetOdometry(const NavState& nav, TimeNs start, nav_msgs::Odometry* m) {
+  m->header.stamp = TimeOf(start + nav.stamp);
+  SetVector(nav.p_WB, &m->pose.pose.position);
+  m->pose.pose.orientation.w = nav.q_WB[0];
+  m->pose.pose.orientation.x = nav.q_WB[1];
+  m->pose.pose.orientation.y = nav.q_WB[2];
+  m->pose.pose.orientation.z = nav.q_WB[3];
+  SetVector(nav.v_WB_B, &m->twist.twist.linear);
+  SetVector(nav.w_WB_B, &m->twist.twist.angular);
+}
+
+/// The inverse of SetOdometry.
+inline NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
+  NavState nav;
+  nav.stamp = NsOf(m.header.stamp) - start;
+  nav.p_WB = VectorOf(m.pose.pose.position);
+  nav.q_WB[0] = m.pose.pose.orientation.w;
+  nav.q_WB[1] = m.pose.pose.orientation.x;
+  nav.q_WB[2] = m.pose.pose.orientation.y;
+  nav.q_WB[3] = m.pose.pose.orientation.z;
+  nav.v_WB_B = VectorOf(m.twist.twist.linear);
+  nav.w_WB_B = VectorOf(m.twist.twist.angular);
+  return nav;
+}
+
+inline bool FiniteOdometry(const nav_msgs::Odometry& m) {
+  const auto& q = m.pose.pose.orientation;
+  return FiniteVector(m.pose.pose.position) && FiniteVector(q) && Finite(q.w) &&
+         FiniteVector(m.twist.twist.linear) && FiniteVector(m.twist.twist.angular);
+}
+
+}  // namespace stg

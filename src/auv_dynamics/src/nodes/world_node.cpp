@@ -1,0 +1,276 @@
+#include "world_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "auv_dynamics_nodes/conversions.hpp"
+#include "auv_dynamics_nodes/node_main.hpp"
+#include "auv_dynamics_nodes/parameters.hpp"
+#include "auv_dynamics_nodes/topics.hpp"
+
+namespace stg {
+namespace {
+
+constexpr std::uint32_t kQueue = 20;
+/// The clock starts here: ROS takes time zero for "not known yet".
+constexpr TimeNs kFirstStamp = 1'000'000'000;
+constexpr TimeNs kRecent = 10'000'000'000;
+
+}  // namespace
+
+WorldNode::WorldNode()
+    : scenario_(LoadScenarioParameters()),
+      world_(scenario_),
+      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
+              scenario_.time.decision_steps),
+      real_time_factor_(NumberParameter("real_time_factor", 1.0, 0.0, 1000.0)),
+      deadline_s_(NumberParameter("deadline", 0.5, 0.001, 3600.0)),
+      start_timeout_s_(NumberParameter("start_timeout", 30.0, 0.0, 3600.0)),
+      summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
+      episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
+      recorder_(TextParameter("recorder", "")),
+      seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
+      start_(kFirstStamp - period_),
+      auvs_(static_cast<std::size_t>(scenario_.agents)),
+      commands_(auvs_.size()),
+      health_("world", "simulation", [this](auto& status) { Report(status); }) {
+  ros::NodeHandle node;
+  publisher_ =
+      std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.0, 1e6));
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const boost::function<void(const geometry_msgs::WrenchStamped::ConstPtr&)> callback =
+        [this, i](const auto& message) { OnWrench(i, message); };
+    auvs_[static_cast<std::size_t>(i)].subscriber = node.subscribe<geometry_msgs::WrenchStamped>(
+        topics::AuvTopic(i, topics::kWrench), kQueue, callback, ros::VoidConstPtr(), NoDelay());
+  }
+  subscribers_.push_back(
+      node.subscribe(topics::kChannelDone, kQueue, &WorldNode::OnChannelDone, this, NoDelay()));
+  subscribers_.push_back(
+      node.subscribe(topics::kEpisodeSummary, kQueue, &WorldNode::OnSummary, this, NoDelay()));
+  services_.push_back(node.advertiseService(topics::kReset, &WorldNode::OnReset, this));
+  services_.push_back(node.advertiseService(topics::kPause, &WorldNode::OnPause, this));
+  StartEpisode(0);
+}
+
+void WorldNode::Spin() {
+  while (ros::ok() && !done_) {
+    HandleMessages(WaitTime());
+    health_.Tick();
+    if (finishing_) {
+      if (ros::WallTime::now() > deadline_) done_ = true;
+    } else if (!paused_) {
+      Advance();
+    }
+  }
+}
+
+/// Seconds until something is to be done without a message.
+double WorldNode::WaitTime() const {
+  if (paused_ || finishing_ || !running_) return 0.05;
+  const ros::WallTime next = Complete() ? due_ : deadline_;
+  return std::clamp((next - ros::WallTime::now()).toSec(), 0.0, 0.2);
+}
+
+void WorldNode::Advance() {
+  const ros::WallTime now = ros::WallTime::now();
+  if (Complete()) {
+    if (!running_ && !RecorderReady()) return;
+    if (running_ && now < due_) return;
+  } else {
+    if (now < deadline_) return;
+    CountMisses();
+  }
+  if (!running_) {
+    running_ = true;
+    due_ = began_ = now;
+    ROS_INFO("world: running '%s' with %d AUVs, seed %llu", scenario_.name.c_str(),
+             scenario_.agents, static_cast<unsigned long long>(seed_));
+  }
+  if (!AtEnd()) {
+    StepWorld();
+  } else if (episodes_ > 0 && episode_ + 1 >= static_cast<std::uint32_t>(episodes_)) {
+    Finish();
+  } else {
+    StartEpisode(episode_ + 1);
+  }
+}
+
+/// A recorder that joins while step 0 stands misses nothing, as every topic is latched.
+bool WorldNode::RecorderReady() {
+  if (recorder_.empty()) return true;
+  const ros::WallTime now = ros::WallTime::now();
+  if (now > deadline_) return true;
+  if (recorder_seen_.isZero()) {
+    ros::V_string nodes;
+    if (!ros::master::getNodes(nodes)) return false;
+    if (std::find(nodes.begin(), nodes.end(), recorder_) == nodes.end()) return false;
+    recorder_seen_ = now;
+  }
+  return (now - recorder_seen_).toSec() > 1.5;
+}
+
+bool WorldNode::Complete() const {
+  for (const Auv& auv : auvs_) {
+    if (auv.present && !auv.answered) return false;
+  }
+  return !channel_present_ || channel_answered_;
+}
+
+void WorldNode::CountMisses() {
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    Auv& auv = auvs_[i];
+    if (auv.answered || !auv.present) continue;
+    auv.present = false;
+    ROS_WARN("world: no wrench of AUV %zu for step %u, holding its last command", i, step_);
+  }
+  if (channel_present_ && !channel_answered_) {
+    channel_present_ = false;
+    ++channel_misses_;
+    ROS_WARN("world: acoustic channel did not close step %u, going on without it", step_);
+  }
+}
+
+void WorldNode::StepWorld() {
+  bool missed = false;
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    Auv& auv = auvs_[i];
+    if (!auv.answered) {
+      ++auv.misses;
+      missed = true;
+    }
+    const Wrench<double>& c = auv.command;
+    commands_[i] = {{Pack(c.force.x), Pack(c.force.y), Pack(c.force.z)},
+                    {Pack(c.moment.x), Pack(c.moment.y), Pack(c.moment.z)}};
+  }
+  if (missed) ++missed_steps_;
+  for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(commands_);
+  ++step_;
+  steps_.Add();
+  OpenStep();
+}
+
+void WorldNode::StartEpisode(std::uint32_t episode) {
+  start_ = Now() + period_;
+  episode_ = episode;
+  step_ = 0;
+  // The other lanes run the same world; only lane 0 is looked at.
+  for (int lane = 0; lane < kLanes; ++lane) {
+    world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.reset.stage);
+  }
+  for (Auv& auv : auvs_) auv.command = Wrench<double>();
+  OpenStep();
+}
+
+void WorldNode::OpenStep() {
+  for (Auv& auv : auvs_) auv.answered = false;
+  channel_answered_ = false;
+  publisher_->Publish(world_, start_, episode_, step_);
+  const ros::WallTime now = ros::WallTime::now();
+  if (!running_) {
+    deadline_ = now + ros::WallDuration(start_timeout_s_);
+  } else if (real_time_factor_ == 0.0) {
+    due_ = now;
+    deadline_ = now + ros::WallDuration(deadline_s_);
+  } else {
+    // From the last due time, so that delays do not add up; far behind, catch up no more.
+    const double period_s = Seconds(period_) / real_time_factor_;
+    due_ += ros::WallDuration(period_s);
+    if ((now - due_).toSec() > 5.0 * period_s) due_ = now;
+    deadline_ = due_;
+  }
+}
+
+void WorldNode::Finish() {
+  finishing_ = true;
+  const double wall_s = (ros::WallTime::now() - began_).toSec();
+  const double simulated_s = Seconds(period_) * static_cast<double>(steps_.total());
+  ROS_INFO("world: %llu steps in %.3f s, %.1f x real time, %llu with a deadline miss",
+           static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
+           static_cast<unsigned long long>(missed_steps_));
+  deadline_ = ros::WallTime::now() + ros::WallDuration(summary_timeout_s_);
+  if (subscribers_.back().getNumPublishers() == 0) done_ = true;
+}
+
+void WorldNode::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message) {
+  Auv& auv = auvs_[static_cast<std::size_t>(i)];
+  if (message->header.frame_id != frames::Body(i)) {
+    auv.refused.Add(Refusals::kFrame);
+    return;
+  }
+  if (!FiniteVector(message->wrench.force) || !FiniteVector(message->wrench.torque)) {
+    auv.refused.Add(Refusals::kNotFinite);
+    return;
+  }
+  const TimeNs age = Now() - NsOf(message->header.stamp);
+  if (age >= 0 && age < kRecent) auv.present = true;  // whoever speaks is waited for again
+  if (age != 0) {
+    auv.refused.Add(Refusals::kStale);
+    return;
+  }
+  if (auv.answered) return;  // the first answer counts
+  auv.answered = true;
+  auv.command.force = VectorOf(message->wrench.force);
+  auv.command.moment = VectorOf(message->wrench.torque);
+}
+
+void WorldNode::OnChannelDone(const std_msgs::Header::ConstPtr& message) {
+  channel_present_ = true;
+  if (NsOf(message->stamp) == Now()) channel_answered_ = true;
+}
+
+void WorldNode::OnSummary(const auv_msgs::EpisodeSummary::ConstPtr& message) {
+  if (finishing_ && message->episode == episode_) done_ = true;
+}
+
+bool WorldNode::OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Response& response) {
+  if (finishing_) {
+    response.success = false;
+    response.message = "the run is over";
+    return true;
+  }
+  if (request.use_seed) {
+    seed_ = request.seed;
+    seed_episode_ = episode_ + 1;
+  }
+  StartEpisode(episode_ + 1);
+  response.success = true;
+  response.episode = episode_;
+  return true;
+}
+
+bool WorldNode::OnPause(auv_msgs::Pause::Request& request, auv_msgs::Pause::Response& response) {
+  const ros::WallTime now = ros::WallTime::now();
+  if (paused_ && !request.pause) {
+    due_ = now;
+    deadline_ = now + ros::WallDuration(running_ ? deadline_s_ : start_timeout_s_);
+  }
+  paused_ = request.pause;
+  response.success = true;
+  return true;
+}
+
+void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const char* state = paused_ ? "paused" : running_ ? "running" : "waiting for the first answers";
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, state);
+  const double rate = static_cast<double>(steps_.TakeRecent()) / health_.period_s();
+  status.add("episode", episode_);
+  status.add("step", step_);
+  status.add("steps per second", rate);
+  status.add("real time factor", rate * Seconds(period_));
+  status.add("steps with a deadline miss", missed_steps_);
+  status.add("deadline misses of the channel", channel_misses_);
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    Auv& auv = auvs_[i];
+    const std::string name = topics::AuvTopic(static_cast<int>(i), topics::kWrench);
+    status.add("deadline misses " + name, auv.misses);
+    auv.refused.Report(name, &status);
+    if (!auv.answered && !auv.present) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no " + name);
+    }
+  }
+  if (!channel_present_) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no acoustic channel");
+  }
+}
+
+}  // namespace stg

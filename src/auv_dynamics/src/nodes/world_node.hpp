@@ -1,0 +1,92 @@
+#pragma once
+
+#include <auv_msgs/EpisodeSummary.h>
+#include <auv_msgs/Pause.h>
+#include <auv_msgs/Reset.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/node_handle.h>
+#include <std_msgs/Header.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "auv_dynamics/scenario.hpp"
+#include "auv_dynamics/world.hpp"
+#include "auv_dynamics_nodes/health.hpp"
+#include "world_publisher.hpp"
+
+namespace stg {
+
+/// Steps the world and paces the whole graph.
+///
+/// Every decision k at t_k: publish what the sensors give, wait for the wrench of every AUV and for
+/// the channel, step. In real time a step also waits for the wall clock and never past it; in
+/// lockstep (real_time_factor 0) it waits for the answers alone, at most `deadline` seconds. What
+/// is missing then is a deadline miss: the AUV's last command is held, and the AUV (or channel) is
+/// not waited for again before it has spoken again. All topics are latched, so a node that comes
+/// late or comes back gets the present step and answers it.
+///
+/// After the last decision of an episode the final state is published as step T and answered like
+/// any other; its wrenches are not used. The next episode starts one decision later.
+class WorldNode {
+ public:
+  /// Throws UserError.
+  WorldNode();
+  /// Returns after the last episode, when its summary is out.
+  void Spin();
+
+ private:
+  struct Auv {
+    Wrench<double> command;  ///< for the present step if answered, else the last one
+    bool answered = false;   ///< the command is for the present step
+    bool present = true;     ///< waited for
+    std::uint64_t misses = 0;
+    Refusals refused;
+    ros::Subscriber subscriber;
+  };
+
+  void OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message);
+  void OnChannelDone(const std_msgs::Header::ConstPtr& message);
+  void OnSummary(const auv_msgs::EpisodeSummary::ConstPtr& message);
+  bool OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Response& response);
+  bool OnPause(auv_msgs::Pause::Request& request, auv_msgs::Pause::Response& response);
+
+  double WaitTime() const;
+  void Advance();
+  bool RecorderReady();
+  bool Complete() const;
+  void CountMisses();
+  void StepWorld();
+  void StartEpisode(std::uint32_t episode);
+  void OpenStep();
+  void Finish();
+  void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  TimeNs Now() const { return start_ + world_.time(0); }
+  bool AtEnd() const { return step_ >= static_cast<std::uint32_t>(scenario_.time.episode_steps); }
+
+  Scenario scenario_;
+  World world_;
+  TimeNs period_;  ///< of decisions [ns]
+  double real_time_factor_, deadline_s_, start_timeout_s_, summary_timeout_s_;
+  int episodes_;          ///< to run; 0: until stopped
+  std::string recorder_;  ///< node that must be up before the run starts, or empty
+  std::uint64_t seed_;    ///< episode e is drawn from seed_ + e - seed_episode_
+  std::uint32_t seed_episode_ = 0;
+  std::uint32_t episode_ = 0, step_ = 0;
+  TimeNs start_;          ///< clock time of the present episode's step 0
+  bool running_ = false;  ///< everybody has answered the very first step, or is given up
+  bool paused_ = false, finishing_ = false, done_ = false;
+  bool channel_answered_ = false, channel_present_ = true;
+  std::uint64_t channel_misses_ = 0, missed_steps_ = 0;
+  EventRate steps_;
+  ros::WallTime began_, due_, deadline_, recorder_seen_;
+  std::vector<Auv> auvs_;
+  std::vector<Wrench<Pack>> commands_;
+  std::unique_ptr<WorldPublisher> publisher_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::vector<ros::ServiceServer> services_;
+  Health health_;
+};
+
+}  // namespace stg

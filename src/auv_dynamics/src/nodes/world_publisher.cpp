@@ -1,0 +1,135 @@
+#include "world_publisher.hpp"
+
+#include <rosgraph_msgs/Clock.h>
+
+#include <cmath>
+
+#include "auv_dynamics_nodes/conversions.hpp"
+#include "auv_dynamics_nodes/topics.hpp"
+
+namespace stg {
+namespace {
+
+constexpr std::uint32_t kQueue = 100;
+
+geometry_msgs::TransformStamped TransformOf(const nav_msgs::Odometry& m) {
+  geometry_msgs::TransformStamped t;
+  t.header = m.header;
+  t.child_frame_id = m.child_frame_id;
+  t.transform.translation.x = m.pose.pose.position.x;
+  t.transform.translation.y = m.pose.pose.position.y;
+  t.transform.translation.z = m.pose.pose.position.z;
+  t.transform.rotation = m.pose.pose.orientation;
+  return t;
+}
+
+}  // namespace
+
+WorldPublisher::WorldPublisher(const Scenario& scenario, double frame_rate_hz)
+    : scenario_(scenario), frame_period_s_(frame_rate_hz > 0.0 ? 1.0 / frame_rate_hz : 0.0) {
+  ros::NodeHandle node;
+  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kQueue, true);
+  for (int i = 0; i < scenario_.agents; ++i) {
+    AuvTopics auv;
+    auv.odometry =
+        node.advertise<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), kQueue, true);
+    auv.detection = node.advertise<auv_msgs::TargetDetection>(
+        topics::AuvTopic(i, topics::kTargetDetection), kQueue, true);
+    auv.sync = node.advertise<auv_msgs::SensorSync>(topics::AuvTopic(i, topics::kSensorSync),
+                                                    kQueue, true);
+    auv.odometry_message.header.frame_id = frames::kWorld;
+    auv.odometry_message.child_frame_id = frames::Body(i);
+    auv.sync_message.header.frame_id = frames::Body(i);
+    auvs_.push_back(auv);
+  }
+  for (int k = 0; k < scenario_.target.count; ++k) {
+    targets_.push_back(node.advertise<nav_msgs::Odometry>(topics::TargetOdom(k), kQueue, true));
+    nav_msgs::Odometry m;
+    m.header.frame_id = frames::kWorld;
+    m.child_frame_id = frames::Target(k);
+    m.pose.pose.orientation.w = 1.0;
+    target_messages_.push_back(m);
+  }
+  detection_message_.header.frame_id = frames::kWorld;
+  SendWorldNed();
+}
+
+void WorldPublisher::SendWorldNed() {
+  // North is y of ENU, east is x, down is -z: half a turn about the axis between x and y.
+  geometry_msgs::TransformStamped ned;
+  ned.header.frame_id = frames::kWorld;
+  ned.child_frame_id = frames::kWorldNed;
+  ned.transform.rotation.x = ned.transform.rotation.y = std::sqrt(0.5);
+  static_frames_.sendTransform(ned);
+}
+
+void WorldPublisher::PublishClock(TimeNs now) {
+  rosgraph_msgs::Clock clock;
+  clock.clock = TimeOf(now);
+  clock_.publish(clock);
+}
+
+void WorldPublisher::Publish(const World& world, TimeNs start, std::uint32_t episode,
+                             std::uint32_t step) {
+  const TimeNs now = start + world.time(0);
+  PublishClock(now);
+  for (int k = 0; k < world.targets(); ++k) {
+    nav_msgs::Odometry& m = target_messages_[static_cast<std::size_t>(k)];
+    m.header.stamp = TimeOf(now);
+    SetVector(Lane(world.target(k).p_WT, 0), &m.pose.pose.position);
+    SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
+    targets_[static_cast<std::size_t>(k)].publish(m);
+  }
+  for (int i = 0; i < world.agents(); ++i) {
+    AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
+    auv_msgs::SensorSync& sync = auv.sync_message;
+    sync.detections = static_cast<std::uint32_t>(PublishDetections(world, now, i));
+    SetOdometry(world.Nav(0, i), start, &auv.odometry_message);
+    auv.odometry.publish(auv.odometry_message);
+    sync.header.stamp = TimeOf(now);
+    sync.episode = episode;
+    sync.step = step;
+    sync.seed = world.seed(0);
+    sync.cue_valid = step == 0;
+    if (step == 0) {
+      const Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
+      SetVector(cue.p_WT, &sync.cue_position);
+      sync.cue_std = cue.std_m;
+    }
+    auv.sync.publish(sync);
+  }
+  PublishFrames(now);
+}
+
+int WorldPublisher::PublishDetections(const World& world, TimeNs now, int i) {
+  int count = 0;
+  for (int k = 0; k < world.targets(); ++k) {
+    Detection detection;
+    if (!world.Sense(0, i, k, &detection)) continue;
+    auv_msgs::TargetDetection& m = detection_message_;
+    const Vec3<double> r = detection.p_WT - Lane(world.vehicle(i).p_WB, 0);
+    const double variance = detection.std_m * detection.std_m;
+    m.header.stamp = TimeOf(now);
+    m.target = static_cast<std::uint32_t>(k);
+    SetVector(r, &m.relative_position);
+    SetVector(detection.p_WT, &m.position);
+    SetVector({variance, variance, variance}, &m.variance);
+    m.range = Norm(r);
+    auvs_[static_cast<std::size_t>(i)].detection.publish(m);
+    ++count;
+  }
+  return count;
+}
+
+void WorldPublisher::PublishFrames(TimeNs now) {
+  const ros::WallTime wall = ros::WallTime::now();
+  if ((wall - frames_sent_).toSec() < frame_period_s_) return;
+  frames_sent_ = wall;
+  transforms_.clear();
+  for (const AuvTopics& auv : auvs_) transforms_.push_back(TransformOf(auv.odometry_message));
+  for (const auto& target : target_messages_) transforms_.push_back(TransformOf(target));
+  for (auto& t : transforms_) t.header.stamp = TimeOf(now);
+  frames_.sendTransform(transforms_);
+}
+
+}  // namespace stg

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <auv_msgs/SensorSync.h>
+#include <auv_msgs/TargetDetection.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/node_handle.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <vector>
+
+#include "auv_dynamics/scenario.hpp"
+#include "auv_dynamics/world.hpp"
+
+namespace stg {
+
+/// Puts the state of lane 0 of a world on topics.
+class WorldPublisher {
+ public:
+  /// @param frame_rate_hz at most this many transforms of one frame per second of wall time; 0: no
+  ///                      limit
+  WorldPublisher(const Scenario& scenario, double frame_rate_hz);
+
+  /// Everything of decision `step` of `episode`, whose step 0 was at clock time `start` [ns].
+  void Publish(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+  /// The clock alone, as /clock repeats while time stands still.
+  void PublishClock(TimeNs now);
+
+ private:
+  struct AuvTopics {
+    ros::Publisher odometry, detection, sync;
+    nav_msgs::Odometry odometry_message;
+    auv_msgs::SensorSync sync_message;
+  };
+  int PublishDetections(const World& world, TimeNs now, int i);
+  void PublishFrames(TimeNs now);
+  void SendWorldNed();
+
+  Scenario scenario_;
+  double frame_period_s_;
+  ros::WallTime frames_sent_;
+  std::vector<AuvTopics> auvs_;
+  std::vector<ros::Publisher> targets_;
+  std::vector<nav_msgs::Odometry> target_messages_;
+  auv_msgs::TargetDetection detection_message_;
+  ros::Publisher clock_;
+  tf2_ros::TransformBroadcaster frames_;
+  tf2_ros::StaticTransformBroadcaster static_frames_;
+  std::vector<geometry_msgs::TransformStamped> transforms_;
+};
+
+}  // namespace stg

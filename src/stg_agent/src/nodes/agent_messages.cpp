@@ -1,0 +1,35 @@
+#include "agent_messages.hpp"
+
+#include <algorithm>
+
+#include "auv_dynamics_nodes/conversions.hpp"
+
+namespace stg {
+
+void SetTaskState(const Agent& agent, const AgentOutput& output, auv_msgs::TaskState* m) {
+  const TaskView task = agent.task();
+  const Knowledge<double>& k = agent.knowledge();
+  const TargetEstimate& target = agent.track().estimate();
+  std::copy(task.z_track.begin(), task.z_track.end(), m->z_track.begin());
+  std::copy(task.graph.begin(), task.graph.end(), m->graph_summary.begin());
+  m->phase = static_cast<std::uint8_t>(task.phase);
+  m->quality = static_cast<std::uint8_t>(task.quality);
+  m->role = task.role;
+  m->action.assign(output.action, output.action + agent.scenario().action_size());
+  m->target_known = agent.track().started();
+  SetVector(target.p_WT, &m->target_position);
+  SetVector(target.v_WT, &m->target_velocity);
+  m->target_std = target.position_std_m();
+  m->target_distance = k.distance;
+  m->tracking_error = k.error;
+  m->confidence = k.confidence;
+  m->neighbours.clear();
+  m->neighbour_age = 0.0;
+  for (const int id : agent.neighbours().known()) {
+    const double age = agent.neighbours().at(id).age_s;
+    m->neighbour_age = m->neighbours.empty() ? age : std::min(m->neighbour_age, age);
+    m->neighbours.push_back(static_cast<std::uint32_t>(id));
+  }
+}
+
+}  // namespace stg

@@ -1,0 +1,291 @@
+#include "agent_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acoustic_channel_nodes/conversions.hpp"
+#include "acoustic_channel_nodes/topics.hpp"
+#include "agent_messages.hpp"
+#include "auv_dynamics/control.hpp"
+#include "auv_dynamics_nodes/node_main.hpp"
+#include "auv_dynamics_nodes/parameters.hpp"
+#include "auv_dynamics_nodes/topics.hpp"
+#include "stg_agent_nodes/topics.hpp"
+
+namespace stg {
+namespace {
+
+constexpr std::uint32_t kQueue = 50;
+constexpr std::size_t kMaxPending = 100;     // messages kept for a step that may never come
+constexpr std::uint32_t kLayoutVersion = 1;  // "stg-1"
+
+}  // namespace
+
+AgentNode::AgentNode()
+    : scenario_(LoadScenarioParameters()),
+      id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
+      body_frame_(frames::Body(id_)),
+      agent_(scenario_, id_),
+      decider_(
+          std::make_unique<const Decider>(TextParameter("policy", "pursuit_separated"), scenario_)),
+      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
+              scenario_.time.decision_steps),
+      patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
+      explore_(FlagParameter("explore", false)),
+      observation_(static_cast<std::size_t>(scenario_.observation_size())),
+      health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
+  ros::NodeHandle node;
+  const auto own = [this](const char* name) { return topics::AuvTopic(id_, name); };
+  if (scenario_.control.interface == ActionInterface::kVelocity3) {
+    command_ = node.advertise<geometry_msgs::TwistStamped>(own(topics::kCmdVel), kQueue, true);
+  } else {
+    command_ = node.advertise<geometry_msgs::WrenchStamped>(own(topics::kWrench), kQueue, true);
+  }
+  packet_ = node.advertise<auv_msgs::AcousticPacket>(own(topics::kAcousticTx), kQueue, true);
+  task_ = node.advertise<auv_msgs::TaskState>(own(topics::kTaskState), kQueue, true);
+  step_ = node.advertise<auv_msgs::AgentStep>(own(topics::kAgentStep), kQueue, true);
+  command_message_.header.frame_id = task_message_.header.frame_id = frames::kWorld;
+  wrench_message_.header.frame_id = packet_message_.header.frame_id =
+      step_message_.header.frame_id = body_frame_;
+  packet_message_.source = step_message_.agent = static_cast<std::uint32_t>(id_);
+  step_message_.observation_layout = kLayoutVersion;
+
+  subscribers_.push_back(
+      node.subscribe(own(topics::kOdom), kQueue, &AgentNode::OnOdometry, this, NoDelay()));
+  subscribers_.push_back(node.subscribe(own(topics::kTargetDetection), kQueue,
+                                        &AgentNode::OnDetection, this, NoDelay()));
+  subscribers_.push_back(
+      node.subscribe(own(topics::kAcousticRx), kQueue, &AgentNode::OnReception, this, NoDelay()));
+  subscribers_.push_back(
+      node.subscribe(own(topics::kSensorSync), kQueue, &AgentNode::OnSync, this, NoDelay()));
+  load_policy_ =
+      ros::NodeHandle("~").advertiseService(topics::kLoadPolicy, &AgentNode::OnLoadPolicy, this);
+}
+
+void AgentNode::Spin() {
+  while (ros::ok()) {
+    HandleMessages(sync_ ? std::clamp(patience_s_, 0.001, 0.2) : 0.2);
+    DecideIfDue();
+    health_.Tick();
+  }
+}
+
+void AgentNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
+  if (message->header.frame_id != frames::kWorld || message->child_frame_id != body_frame_) {
+    refused_odometry_.Add(Refusals::kFrame);
+  } else if (!FiniteOdometry(*message)) {
+    refused_odometry_.Add(Refusals::kNotFinite);
+  } else {
+    odometry_ = message;
+    DecideIfDue();
+  }
+}
+
+void AgentNode::OnDetection(const auv_msgs::TargetDetection::ConstPtr& message) {
+  if (message->header.frame_id != frames::kWorld) {
+    refused_detections_.Add(Refusals::kFrame);
+  } else if (!FiniteVector(message->position) || !FiniteVector(message->variance) ||
+             message->variance.x < 0.0) {
+    refused_detections_.Add(Refusals::kNotFinite);
+  } else if (message->target >= static_cast<std::uint32_t>(scenario_.target.count) ||
+             detections_.size() >= kMaxPending) {
+    refused_detections_.Add(Refusals::kMalformed);
+  } else {
+    detections_.push_back(message);
+    DecideIfDue();
+  }
+}
+
+void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message) {
+  if (message->header.frame_id != body_frame_) {
+    refused_receptions_.Add(Refusals::kFrame);
+  } else if (receptions_.size() >= kMaxPending) {
+    refused_receptions_.Add(Refusals::kMalformed);
+  } else {
+    window_ = NsOf(message->header.stamp);
+    modem_present_ = true;
+    if (!message->packets.empty()) receptions_.push_back(message);
+    DecideIfDue();
+  }
+}
+
+void AgentNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
+  if (message->header.frame_id != body_frame_) return;
+  if (sync_) ++skipped_steps_;
+  sync_ = message;
+  sync_received_ = ros::WallTime::now();
+  DecideIfDue();
+}
+
+bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
+                             auv_msgs::LoadPolicy::Response& response) {
+  try {
+    decider_ = std::make_unique<const Decider>(request.path, scenario_);
+    response.success = true;
+    ROS_INFO("agent %d: policy is now '%s'", id_, decider_->id().c_str());
+  } catch (const std::exception& error) {
+    response.success = false;
+    response.message = error.what();
+    ROS_ERROR("agent %d: keeps its policy: %s", id_, error.what());
+  }
+  response.policy_id = decider_->id();
+  return true;
+}
+
+void AgentNode::DecideIfDue() {
+  if (!sync_ || !odometry_ || odometry_->header.stamp != sync_->header.stamp) return;
+  const auto detected =
+      std::count_if(detections_.begin(), detections_.end(),
+                    [this](const auto& d) { return d->header.stamp == sync_->header.stamp; });
+  const bool sensed = detected >= static_cast<std::ptrdiff_t>(sync_->detections);
+  const bool heard = sync_->step == 0 || !modem_present_ || window_ == NsOf(sync_->header.stamp);
+  if (!sensed || !heard) {
+    if ((ros::WallTime::now() - sync_received_).toSec() < patience_s_) return;
+    if (!sensed) ++missing_detections_;
+    if (!heard) {
+      ++missing_windows_;
+      modem_present_ = false;
+    }
+  }
+  Decide();
+}
+
+void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
+  Cue cue;
+  cue.target = -1;  // none: this node came in the middle of an episode
+  if (sync.cue_valid && FiniteVector(sync.cue_position) && sync.cue_std >= 0.0) {
+    cue.target = agent_.target();
+    cue.p_WT = VectorOf(sync.cue_position);
+    cue.std_m = sync.cue_std;
+  }
+  agent_.Reset(sync.episode, cue);
+  episode_ = sync.episode;
+  sequence_ = 0;
+  in_episode_ = true;
+}
+
+void AgentNode::TakeDetections(TimeNs stamp) {
+  for (const auto& m : detections_) {
+    const TimeNs t = NsOf(m->header.stamp);
+    if (t < start_ || t > stamp) continue;
+    Detection detection;
+    detection.stamp = t - start_;
+    detection.target = static_cast<int>(m->target);
+    detection.p_WT = VectorOf(m->position);
+    detection.std_m = std::sqrt(m->variance.x);
+    agent_.Detect(detection);
+  }
+  detections_.erase(
+      std::remove_if(detections_.begin(), detections_.end(),
+                     [stamp](const auto& m) { return NsOf(m->header.stamp) <= stamp; }),
+      detections_.end());
+}
+
+void AgentNode::TakeReceptions(TimeNs stamp) {
+  for (const auto& m : receptions_) {
+    const TimeNs end = NsOf(m->header.stamp);
+    if (end <= start_ || end > stamp) continue;
+    for (const auto& packet : m->packets) {
+      Reception reception;
+      if (!ReceptionOf(packet, id_, start_, &reception)) {
+        refused_receptions_.Add(Refusals::kMalformed);
+      } else if (reception.arrival < 0 || reception.arrival > stamp - start_) {
+        refused_receptions_.Add(Refusals::kStale);
+      } else {
+        agent_.Receive(reception);
+      }
+    }
+  }
+  receptions_.erase(
+      std::remove_if(receptions_.begin(), receptions_.end(),
+                     [stamp](const auto& m) { return NsOf(m->header.stamp) <= stamp; }),
+      receptions_.end());
+}
+
+void AgentNode::Decide() {
+  const TimeNs stamp = NsOf(sync_->header.stamp);
+  const TimeNs start = stamp - static_cast<TimeNs>(sync_->step) * period_;
+  if (!in_episode_ || start != start_ || sync_->episode != episode_) {
+    start_ = start;
+    StartEpisode(*sync_);
+  }
+  TakeReceptions(stamp);
+  TakeDetections(stamp);
+  agent_.Observe(NavOf(*odometry_, start_), observation_.data());
+  decider_->Mean(agent_, observation_.data(), action_);
+  float log_probability = 0.0F;
+  if (explore_) {
+    log_probability = decider_->Explore(sync_->seed, sync_->episode, sync_->step, id_, action_);
+  }
+  Publish(agent_.Act(action_), log_probability);
+  decisions_.Add();
+  sync_.reset();
+}
+
+void AgentNode::Publish(const AgentOutput& output, float log_probability) {
+  const ros::Time stamp = sync_->header.stamp;
+  if (scenario_.control.interface == ActionInterface::kVelocity3) {
+    command_message_.header.stamp = stamp;
+    SetVector(output.cmd_vel_W, &command_message_.twist.linear);
+    command_.publish(command_message_);
+  } else {
+    const Wrench<double> wrench = ScaleWrench(scenario_.vehicle, output.fraction);
+    wrench_message_.header.stamp = stamp;
+    SetVector(wrench.force, &wrench_message_.wrench.force);
+    SetVector(wrench.moment, &wrench_message_.wrench.torque);
+    command_.publish(wrench_message_);
+  }
+  packet_message_.header.stamp = stamp;
+  packet_message_.sequence = sequence_;
+  packet_message_.data.clear();
+  packet_message_.generation = ros::Time();
+  if (output.transmit) {
+    packet_message_.data.assign(output.packet.begin(), output.packet.end());
+    packet_message_.generation = TimeOf(start_ + output.generation);
+    ++sequence_;
+  }
+  packet_.publish(packet_message_);
+  task_message_.header.stamp = stamp;
+  task_message_.episode = sync_->episode;
+  task_message_.step = sync_->step;
+  task_message_.policy_id = decider_->id();
+  SetTaskState(agent_, output, &task_message_);
+  task_.publish(task_message_);
+  step_message_.header.stamp = stamp;
+  step_message_.episode = sync_->episode;
+  step_message_.step = sync_->step;
+  step_message_.observation = observation_;
+  step_message_.action.assign(action_, action_ + scenario_.action_size());
+  step_message_.log_probability = log_probability;
+  step_message_.policy_id = decider_->id();
+  step_.publish(step_message_);
+}
+
+void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+  const double rate = static_cast<double>(decisions_.TakeRecent()) / health_.period_s();
+  status.add("policy", decider_->id());
+  status.add("decisions", decisions_.total());
+  status.add("decisions per second", rate);
+  status.add("steps skipped", skipped_steps_);
+  status.add("reception windows missing", missing_windows_);
+  status.add("detections missing", missing_detections_);
+  status.add("packets that did not decode", agent_.refused_packets());
+  double age = 0.0;
+  for (const int id : agent_.neighbours().known()) {
+    age = std::max(age, agent_.neighbours().at(id).age_s);
+  }
+  status.add("neighbours known", agent_.neighbours().known().size());
+  status.add("age of information, largest [s]", age);
+  refused_odometry_.Report(topics::kOdom, &status);
+  refused_detections_.Report(topics::kTargetDetection, &status);
+  refused_receptions_.Report(topics::kAcousticRx, &status);
+  if (decisions_.total() == 0) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no decision yet");
+  }
+  if (!modem_present_) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the modem is silent");
+  }
+}
+
+}  // namespace stg

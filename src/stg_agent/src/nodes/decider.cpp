@@ -1,0 +1,61 @@
+#include "decider.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "auv_dynamics/error.hpp"
+#include "auv_dynamics/random.hpp"
+#include "auv_dynamics/scenario_yaml.hpp"
+
+namespace stg {
+
+namespace {
+
+std::string Resolve(const std::string& name, const Scenario& scenario) {
+  if (name != "auto") return name;
+  const std::string shipped = ScenarioFolder() + "/../policies/" + scenario.name + ".onnx";
+  return std::ifstream(shipped).good() ? shipped : ToString(BuiltinKind::kPursuitSeparated);
+}
+
+}  // namespace
+
+Decider::Decider(const std::string& wanted, const Scenario& scenario) {
+  const std::string name = Resolve(wanted, scenario);
+  if (ParseBuiltin(name, &builtin_)) {
+    options_ = BuiltinOptions(builtin_);
+    id_ = name;
+    return;
+  }
+  if (name.size() < 5 || name.substr(name.size() - 5) != ".onnx") {
+    throw UserError("policy '" + name +
+                    "': neither idle, pursuit, pursuit_separated nor an .onnx file");
+  }
+  policy_ = std::make_unique<const Policy>(Policy::LoadOnnx(name));
+  policy_->RequireFits(scenario);
+  id_ = policy_->metadata().id;
+}
+
+void Decider::Mean(const Agent& agent, const float* observation, float* action) const {
+  if (policy_) {
+    policy_->Mean(observation, action);
+  } else {
+    BuiltinAction(builtin_, options_, agent, action);
+  }
+}
+
+float Decider::Explore(std::uint64_t seed, std::uint32_t episode, std::uint32_t step, int agent,
+                       float* action) const {
+  if (!policy_) return 0.0F;
+  constexpr float kHalfLogTwoPi = 0.918938533F;
+  const Eigen::VectorXf& log_std = policy_->parameters().log_std;
+  Random random(seed, Stream::kPolicy, episode, step, static_cast<std::uint32_t>(agent));
+  float log_density = 0.0F;
+  for (Eigen::Index k = 0; k < log_std.size(); ++k) {
+    const float z = static_cast<float>(random.Normal());
+    action[k] += std::exp(log_std[k]) * z;
+    log_density -= 0.5F * z * z + log_std[k] + kHalfLogTwoPi;
+  }
+  return log_density;
+}
+
+}  // namespace stg

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stg_agent/agent.hpp"
+#include "stg_agent/policy.hpp"
+#include "stg_agent/pursuit.hpp"
+
+namespace stg {
+
+/// What turns an observation into an action: a policy file or a built-in controller.
+class Decider {
+ public:
+  /// @param name "idle", "pursuit", "pursuit_separated", an ONNX file, or "auto": the policy
+  /// shipped
+  ///             for the scenario's name where there is one, else pursuit_separated
+  /// Throws UserError when the file is not a policy for this scenario.
+  Decider(const std::string& name, const Scenario& scenario);
+
+  /// The policy's mean action, or the built-in controller's.
+  void Mean(const Agent& agent, const float* observation, float* action) const;
+
+  /// Replaces the mean by a sample of the policy's Gaussian, a function of (seed, episode, step,
+  /// agent) only; returns its natural log density. A built-in controller has no spread: returns 0
+  /// and leaves the mean.
+  float Explore(std::uint64_t seed, std::uint32_t episode, std::uint32_t step, int agent,
+                float* action) const;
+
+  const std::string& id() const { return id_; }
+
+ private:
+  std::string id_;
+  std::unique_ptr<const Policy> policy_;  // null: built-in
+  BuiltinKind builtin_ = BuiltinKind::kIdle;
+  PursuitOptions options_;
+};
+
+}  // namespace stg
