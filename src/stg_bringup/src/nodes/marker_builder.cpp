@@ -1,0 +1,396 @@
+#include "marker_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "marker_palette.hpp"
+
+namespace stg {
+namespace {
+
+using geometry_msgs::Point;
+using std_msgs::ColorRGBA;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr int kManyVehicles = 8;  // beyond this, labels are numbers only
+constexpr double kPi = 3.14159265358979323846;
+
+class Builder {
+ public:
+  Builder(const SwarmView& view, const MarkerStyle& style)
+      : view_(view),
+        style_(style),
+        unit_(view.scene.radius_m * style.vehicle_scale),
+        text_(style.whole_workspace ? 0.045 * view.scene.half_extent_m : 0.36 * unit_) {}
+
+  MarkerArray Build() {
+    if (style_.whole_workspace) Workspace();
+    Targets();
+    for (size_t i = 0; i < view_.vehicles.size(); ++i) Vehicle(static_cast<int>(i));
+    Links();
+    Packets();
+    Summary();
+    return std::move(array_);
+  }
+
+ private:
+  Marker New(const char* name, int id, int type, const ColorRGBA& color) const {
+    Marker m;
+    m.header.frame_id = "world";  // stamp zero: always drawn, whatever the clock does
+    m.ns = name;
+    m.id = id;
+    m.type = type;
+    m.action = Marker::ADD;
+    m.pose.orientation.w = 1.0;
+    m.color = color;
+    return m;
+  }
+  Marker Lines(const char* name, int id, int type, double width, const ColorRGBA& color) const {
+    Marker m = New(name, id, type, color);
+    m.scale.x = width;
+    return m;
+  }
+  /// rviz warns about lists without points and texts without letters: those are deleted.
+  void Add(Marker m) {
+    const bool list = m.type == Marker::LINE_LIST || m.type == Marker::LINE_STRIP ||
+                      m.type == Marker::SPHERE_LIST;
+    const size_t needed = m.type == Marker::SPHERE_LIST ? 1 : 2;
+    if (list && m.points.size() < needed) m.action = Marker::DELETE;
+    array_.markers.push_back(std::move(m));
+  }
+  void Delete(const char* name, int id, int type) {
+    Marker m = New(name, id, type, Color(0, 0, 0));
+    m.action = Marker::DELETE;
+    array_.markers.push_back(std::move(m));
+  }
+  void Sphere(const char* name, int id, const Point& p, double diameter, const ColorRGBA& color) {
+    Marker m = New(name, id, Marker::SPHERE, color);
+    m.pose.position = p;
+    m.scale.x = m.scale.y = m.scale.z = diameter;
+    Add(std::move(m));
+  }
+  void Text(const char* name, int id, const Point& p, double height, const std::string& text,
+            const ColorRGBA& color) {
+    Marker m = New(name, id, Marker::TEXT_VIEW_FACING, color);
+    m.pose.position = p;
+    m.scale.z = height;
+    m.text = text;
+    Add(std::move(m));
+  }
+  void Mesh(const char* name, int id, const geometry_msgs::Pose& pose, double length,
+            const char* file, const ColorRGBA& color) {
+    Marker m = New(name, id, Marker::MESH_RESOURCE, color);
+    m.pose = pose;
+    m.scale.x = m.scale.y = m.scale.z = length;
+    m.mesh_resource = std::string("package://stg_bringup/meshes/") + file;
+    Add(std::move(m));
+  }
+
+  void Workspace() {
+    const double h = view_.scene.half_extent_m;
+    Marker walls =
+        Lines("workspace", 0, Marker::LINE_LIST, 0.004 * h, Color(0.55, 0.62, 0.72, 0.8));
+    for (const double a : {-h, h}) {
+      for (const double b : {-h, h}) {
+        walls.points.insert(walls.points.end(), {At(-h, a, b), At(h, a, b), At(a, -h, b),
+                                                 At(a, h, b), At(a, b, -h), At(a, b, h)});
+      }
+    }
+    Add(std::move(walls));
+    Marker floor =
+        Lines("workspace", 1, Marker::LINE_LIST, 0.002 * h, Color(0.45, 0.52, 0.62, 0.35));
+    for (int k = -3; k <= 3; ++k) {
+      const double s = 0.25 * h * k;
+      floor.points.insert(floor.points.end(),
+                          {At(s, -h, -h), At(s, h, -h), At(-h, s, -h), At(h, s, -h)});
+    }
+    Add(std::move(floor));
+    // Beneath each AUV and target a thread to the floor: depth is hard to see otherwise.
+    Marker threads =
+        Lines("workspace", 2, Marker::LINE_LIST, 0.002 * h, Color(0.7, 0.75, 0.8, 0.35));
+    const auto thread = [&](const Point& p) {
+      threads.points.push_back(p);
+      threads.points.push_back(At(p.x, p.y, -h));
+    };
+    for (const VehicleView& v : view_.vehicles) {
+      if (v.seen) thread(v.pose.position);
+    }
+    for (const MovingTarget& t : view_.targets) {
+      if (t.seen) thread(t.position);
+    }
+    Add(std::move(threads));
+  }
+
+  void Targets() {
+    for (size_t k = 0; k < view_.targets.size(); ++k) {
+      const MovingTarget& t = view_.targets[k];
+      if (!t.seen) continue;
+      const int id = static_cast<int>(k);
+      const Point& p = t.position;
+      Sphere("target", id, p, style_.whole_workspace ? 0.5 * unit_ : view_.scene.band_lo_m,
+             Color(1, 0.15, 0.45));
+      Marker arrow = New("target_velocity", id, Marker::ARROW, Color(1, 0.15, 0.45, 0.9));
+      const double s = style_.prediction_s;
+      arrow.points = {p, Sum(p, At(s * t.velocity.x, s * t.velocity.y, s * t.velocity.z))};
+      arrow.scale.x = 0.06 * unit_;
+      arrow.scale.y = 0.2 * unit_;
+      arrow.scale.z = 0.3 * unit_;
+      Add(std::move(arrow));
+      Sphere("tracking_band", 2 * id, p, 2.0 * view_.scene.band_hi_m, Color(0.2, 0.9, 0.4, 0.15));
+      Sphere("tracking_band", 2 * id + 1, p, 2.0 * view_.scene.band_lo_m,
+             Color(0.9, 0.9, 0.2, 0.15));
+      Circle("tracking_ring", id, p, view_.scene.band_hi_m, 0.03 * unit_,
+             Color(0.2, 0.9, 0.4, 0.8));
+      if (style_.whole_workspace) {
+        const double r = view_.scene.sensing_range_m;
+        Sphere("sensing_range", id, p, 2.0 * r, Color(0.35, 0.55, 1.0, 0.07));
+        Circle("sensing_ring", id, p, r, 0.05 * unit_, Color(0.45, 0.65, 1.0, 0.6));
+      }
+      Trail("target_trail", id, t.trail, Color(1, 0.15, 0.45), false);
+    }
+  }
+
+  void Circle(const char* name, int id, const Point& centre, double radius, double width,
+              const ColorRGBA& color) {
+    Marker m = Lines(name, id, Marker::LINE_STRIP, width, color);
+    for (int k = 0; k <= 64; ++k) {
+      const double angle = 2.0 * kPi * k / 64.0;
+      m.points.push_back(Sum(centre, At(radius * std::cos(angle), radius * std::sin(angle), 0.0)));
+    }
+    Add(std::move(m));
+  }
+
+  /// A line through the past, fading with age.
+  void Trail(const char* name, int id, const std::deque<TrailPoint>& trail, ColorRGBA color,
+             bool by_phase) {
+    Marker m = Lines(name, id, Marker::LINE_STRIP, 0.07 * unit_, Color(1, 1, 1));
+    const double count = static_cast<double>(std::max<size_t>(trail.size(), 1));
+    for (size_t k = 0; k < trail.size(); ++k) {
+      const double alpha = 0.15 + 0.75 * static_cast<double>(k + 1) / count;
+      m.points.push_back(trail[k].position);
+      if (by_phase) color = PhaseColor(trail[k].phase);
+      color.a = static_cast<float>(alpha);
+      m.colors.push_back(color);
+    }
+    Add(std::move(m));
+  }
+
+  /// Distance to the nearest other AUV [m].
+  double Nearest(size_t i) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (size_t j = 0; j < view_.vehicles.size(); ++j) {
+      const VehicleView& other = view_.vehicles[j];
+      if (j == i || !other.seen) continue;
+      nearest = std::min(nearest, Distance(other.pose.position, view_.vehicles[i].pose.position));
+    }
+    return nearest;
+  }
+
+  void Vehicle(int id) {
+    const VehicleView& v = view_.vehicles[static_cast<size_t>(id)];
+    if (!v.seen) return;
+    const Point& p = v.pose.position;
+    // Enlarged hulls shrink where AUVs come close, down to their true size at most.
+    const double nearest = Nearest(static_cast<size_t>(id));
+    const double full = 2.0 * unit_;
+    const double least = std::max(0.4 * full, std::min(full, 2.0 * view_.scene.radius_m));
+    const double length = std::clamp(1.6 * nearest, least, full);
+    Mesh("hull", id, v.pose, length, "auv_hull.stl", PhaseColor(v.phase));
+    Mesh("fittings", id, v.pose, length, "auv_fittings.stl", Color(0.80, 0.83, 0.88));
+    Trail("trail", id, v.trail, Color(1, 1, 1), true);
+    if (!style_.whole_workspace) {
+      Sphere("collision_sphere", id, p, 2.0 * view_.scene.radius_m,
+             nearest < 2.0 * view_.scene.radius_m ? Color(1.0, 0.2, 0.2, 0.16)
+                                                  : Color(0.8, 0.85, 0.9, 0.07));
+    }
+    if (v.target_known) {
+      Sphere("estimate", id, v.estimate, 0.3 * unit_, PhaseColor(v.phase, 0.9));
+      Sphere("estimate_std", id, v.estimate, std::max(2.0 * v.estimate_std, 0.3 * unit_),
+             PhaseColor(v.phase, 0.12));
+    } else {
+      Delete("estimate", id, Marker::SPHERE);
+      Delete("estimate_std", id, Marker::SPHERE);
+    }
+    Label(id, v);
+  }
+
+  /// Labels fan out around the swarm, each on a stem: they stay apart where the AUVs do not.
+  void Label(int id, const VehicleView& v) {
+    const int count = static_cast<int>(view_.vehicles.size());
+    const bool many = count > kManyVehicles;
+    const double angle = 2.0 * kPi * (id + 0.5) / count;
+    const double arm = (many ? 1.4 : 2.4) * unit_;
+    const Point& p = v.pose.position;
+    const Point end =
+        Sum(p, At(arm * std::cos(angle), arm * std::sin(angle), arm * (0.7 + 0.4 * (id % 4))));
+    Marker stem =
+        Lines("label_stem", id, Marker::LINE_LIST, 0.025 * unit_, PhaseColor(v.phase, 0.6));
+    stem.points = {p, end};
+    Add(std::move(stem));
+    std::string text = "AUV " + std::to_string(id);
+    if (many) {
+      text = std::to_string(id) + (v.leader ? "*" : "");
+    } else {
+      text += std::string(" ") + PhaseName(v.phase) + (v.leader ? ", leads" : "");
+      if (v.distance >= 0.0) {
+        char number[32];
+        std::snprintf(number, sizeof(number), "  %.3f m", v.distance);
+        text += number;
+      }
+    }
+    Text("label", id, Sum(end, At(0, 0, 0.6 * text_)), text_, text, Color(1, 1, 1, 0.95));
+  }
+
+  bool Seen(int i) const {
+    return i >= 0 && i < static_cast<int>(view_.vehicles.size()) &&
+           view_.vehicles[static_cast<size_t>(i)].seen;
+  }
+  const Point& PositionOf(int i) const {
+    return view_.vehicles[static_cast<size_t>(i)].pose.position;
+  }
+
+  /// One line per directed link: its half that ends at the receiver, in the link's colour.
+  void Links() {
+    Marker m = Lines("link", 0, Marker::LINE_LIST, 0.05 * unit_, Color(1, 1, 1));
+    for (const auto& [pair, link] : view_.links) {
+      if (!Seen(pair.first) || !Seen(pair.second)) continue;
+      const Point& to = PositionOf(pair.second);
+      m.points.push_back(Between(PositionOf(pair.first), to, 0.5));
+      m.points.push_back(to);
+      m.colors.insert(m.colors.end(), 2, QualityColor(link.quality));
+    }
+    Add(std::move(m));
+  }
+
+  /// Packets travel as dots; a lost one ends in a red cross on the way, with a broken line to it.
+  void Packets() {
+    Marker dots = New("packet", 0, Marker::SPHERE_LIST, Color(1, 1, 1));
+    dots.scale.x = dots.scale.y = dots.scale.z = 0.18 * unit_;
+    Marker crosses = Lines("lost_packet", 0, Marker::LINE_LIST, 0.07 * unit_, Color(1, 0.1, 0.1));
+    Marker dashes =
+        Lines("lost_packet", 1, Marker::LINE_LIST, 0.05 * unit_, Color(1, 0.1, 0.1, 0.8));
+    std::map<std::pair<int, int>, std::uint8_t> shown;
+    for (const PacketEvent& e : view_.packets) {
+      if (!Seen(e.source) || !Seen(e.destination)) continue;
+      const double age = view_.now - e.time;
+      const Point &from = PositionOf(e.source), &to = PositionOf(e.destination);
+      const double travelled = std::clamp(age / style_.packet_s, 0.0, 1.0);
+      if (!e.lost) {
+        if (travelled < 1.0) dots.points.push_back(Between(from, to, travelled));
+      } else if (age < style_.lost_packet_s) {
+        shown[{e.source, e.destination}] = e.reason;
+      }
+    }
+    for (const auto& [pair, reason] : shown) {
+      const Point &from = PositionOf(pair.first), &to = PositionOf(pair.second);
+      const Point end = Between(from, to, 0.62);
+      const double s = 0.15 * unit_;
+      for (const double sign : {-1.0, 1.0}) {
+        crosses.points.insert(crosses.points.end(),
+                              {Sum(end, At(-s, -sign * s, -s)), Sum(end, At(s, sign * s, s)),
+                               Sum(end, At(-s, sign * s, s)), Sum(end, At(s, -sign * s, -s))});
+      }
+      constexpr int kDashes = 8;
+      for (int k = 0; k < kDashes; ++k) {
+        dashes.points.push_back(Between(from, end, (k + 0.2) / kDashes));
+        dashes.points.push_back(Between(from, end, (k + 0.7) / kDashes));
+      }
+    }
+    Add(std::move(dots));
+    Add(std::move(crosses));
+    Add(std::move(dashes));
+    LostReasons(shown);
+  }
+
+  /// Says at each cross why; only in swarms small enough to read it.
+  void LostReasons(const std::map<std::pair<int, int>, std::uint8_t>& shown) {
+    const int count = static_cast<int>(view_.vehicles.size());
+    if (count > kManyVehicles) return;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        const auto found = shown.find({i, j});
+        if (found == shown.end()) {
+          if (i != j) Delete("lost_reason", i * count + j, Marker::TEXT_VIEW_FACING);
+          continue;
+        }
+        const Point end = Between(PositionOf(i), PositionOf(j), 0.62);
+        Text("lost_reason", i * count + j, Sum(end, At(0, 0, 0.2 * unit_ + 0.5 * text_)),
+             0.7 * text_, DropReasonName(found->second), Color(1, 0.45, 0.4));
+      }
+    }
+  }
+
+  /// What the whole swarm does, above the workspace or above target 0.
+  void Summary() {
+    double distance = 0.0, quality = 0.0, age = 0.0;
+    std::uint64_t delivered = 0, dropped = 0;
+    int vehicles = 0;
+    for (size_t i = 0; i < view_.vehicles.size(); ++i) {
+      if (view_.targets.empty() || !view_.vehicles[i].seen) continue;
+      const MovingTarget& t = view_.targets[i % view_.targets.size()];
+      if (!t.seen) continue;
+      distance += Distance(view_.vehicles[i].pose.position, t.position);
+      ++vehicles;
+    }
+    for (const auto& [pair, link] : view_.links) {
+      quality += link.quality;
+      age += link.age;
+      delivered += link.delivered;
+      dropped += link.dropped;
+    }
+    const double links = static_cast<double>(std::max<size_t>(view_.links.size(), 1));
+    const double packets = static_cast<double>(std::max<std::uint64_t>(delivered + dropped, 1));
+    char lines[2][160];
+    std::snprintf(lines[0], sizeof(lines[0]), "%s  episode %u  step %u  t %.1f s",
+                  view_.scene.name.c_str(), view_.episode, view_.step, view_.now);
+    std::snprintf(lines[1], sizeof(lines[1]),
+                  "distance %.4f m  link quality %.2f  age %.2f s  packets lost %.0f %%",
+                  distance / std::max(vehicles, 1), quality / links, age / links,
+                  100.0 * static_cast<double>(dropped) / packets);
+    const double h = view_.scene.half_extent_m;
+    Point top = At(0, 0, 1.25 * h);
+    double height = 1.4 * text_;
+    if (!style_.whole_workspace) {
+      if (view_.targets.empty() || !view_.targets[0].seen) return;
+      top = Sum(view_.targets[0].position, At(0, 0, 5.5 * unit_));
+      height = text_;
+    }
+    for (int k = 0; k < 2; ++k) {
+      Text("summary", k, Sum(top, At(0, 0, -1.4 * height * k)), height, lines[k],
+           Color(0.95, 0.97, 1));
+    }
+    if (style_.whole_workspace) Legend();
+  }
+
+  void Legend() {
+    const double h = view_.scene.half_extent_m;
+    for (int k = 0; k < 4; ++k) {
+      const auto phase = static_cast<ShownPhase>(k);
+      Text("legend", k, At(1.1 * h, -1.1 * h, 0.9 * h - 2.0 * text_ * k), 1.3 * text_,
+           PhaseName(phase), PhaseColor(phase));
+    }
+  }
+
+  const SwarmView& view_;
+  const MarkerStyle& style_;
+  const double unit_;  // [m] radius of a vehicle as drawn; every size that scales is a multiple
+  const double text_;  // [m] height of letters
+  MarkerArray array_;
+};
+
+}  // namespace
+
+const char* DropReasonName(std::uint8_t reason) {
+  static const char* const kNames[] = {"none",   "range", "loss",  "collision",   "half duplex",
+                                       "fading", "burst", "queue", "not acquired"};
+  return reason < sizeof(kNames) / sizeof(kNames[0]) ? kNames[reason] : "unknown";
+}
+
+MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style) {
+  return Builder(view, style).Build();
+}
+
+}  // namespace stg
