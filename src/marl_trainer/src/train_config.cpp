@@ -67,6 +67,7 @@ TrainConfig Preset(const std::string& name) {
   c.preset = name;
   c.steps = 2000000;
   c.epochs = 10;
+  c.gamma = 0.95;
   c.minibatch = 800;
   c.actor_hidden = {256, 256, 256};
   c.critic_hidden = {256, 256, 256};

@@ -271,7 +271,7 @@ void Trainer::Validate(TrainRecord* record) {
 bool Trainer::AtBoundary(bool force) {
   const int episode = std::max(1, scenario_.time.episode_steps / config_.horizon);
   // Cutting staggered episodes at every boundary would undo the staggering.
-  const int every = config_.stagger ? 10 * episode : episode;
+  const int every = config_.stagger ? 2 * episode : episode;
   if (state_.collections % every != 0 && !force) return false;
   bool at_start = true;
   for (const auto& unit : units_) at_start = at_start && unit->at_episode_start();

@@ -15,36 +15,36 @@ struct TrainConfig {
   std::string preset = "fast";
   std::string variant = "stg";
   std::uint64_t seed = 0;
-  std::int64_t steps = 1000000;
+  std::int64_t steps = 500000;
 
   int envs = 64;
   int horizon = 100;
-  int epochs = 5;
+  int epochs = 3;
   int minibatch = 1600;
   std::vector<int> actor_hidden{64, 64};
   std::vector<int> critic_hidden{64, 64};
   std::string activation = "tanh";
-  double lr = 1e-3;
-  double critic_lr = 1e-3;
+  double lr = 3e-3;
+  double critic_lr = 3e-3;
   double lr_final = 0.1;
   double adam_eps = 1e-5;
-  double gamma = 0.95;
+  double gamma = 0.9;
   double lambda = 0.95;
   double clip = 0.2;
   double entropy = 0.0;
   double value_weight = 0.5;
   double grad_clip = 5.0;
   double target_kl = 0.0;
-  double initial_log_std = -1.5;
+  double initial_log_std = -1.0;
   double min_log_std = -4.0;
   double max_log_std = 0.0;
   double observation_clip = 10.0;
   double std_floor = 0.01;
-  bool stagger = false;
+  bool stagger = true;
 
-  std::int64_t validation_interval = 64000;
+  std::int64_t validation_interval = 32000;
   int validation_episodes = 32;
-  std::int64_t checkpoint_interval = 320000;
+  std::int64_t checkpoint_interval = 128000;
   int keep_checkpoints = 3;
 
   /// Throws UserError naming the option.
