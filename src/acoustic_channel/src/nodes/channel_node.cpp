@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acoustic_channel_nodes/conversions.hpp"
-#include "acoustic_channel_nodes/topics.hpp"
-#include "auv_dynamics_nodes/node_main.hpp"
-#include "auv_dynamics_nodes/parameters.hpp"
-#include "auv_dynamics_nodes/topics.hpp"
+#include "acoustic_channel/nodes/conversions.hpp"
+#include "acoustic_channel/nodes/topics.hpp"
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
 namespace {

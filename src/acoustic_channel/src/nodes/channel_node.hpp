@@ -13,7 +13,7 @@
 
 #include "acoustic_channel/channel.hpp"
 #include "auv_dynamics/scenario.hpp"
-#include "auv_dynamics_nodes/health.hpp"
+#include "auv_dynamics/nodes/health.hpp"
 
 namespace stg {
 

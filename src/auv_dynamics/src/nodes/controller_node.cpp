@@ -4,10 +4,10 @@
 
 #include "auv_dynamics/control.hpp"
 #include "auv_dynamics/error.hpp"
-#include "auv_dynamics_nodes/conversions.hpp"
-#include "auv_dynamics_nodes/node_main.hpp"
-#include "auv_dynamics_nodes/parameters.hpp"
-#include "auv_dynamics_nodes/topics.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/types.hpp"
-#include "auv_dynamics_nodes/health.hpp"
+#include "auv_dynamics/nodes/health.hpp"
 
 namespace stg {
 

@@ -1,4 +1,4 @@
-#include "auv_dynamics_nodes/health.hpp"
+#include "auv_dynamics/nodes/health.hpp"
 
 #include <numeric>
 

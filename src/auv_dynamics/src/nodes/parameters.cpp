@@ -1,4 +1,4 @@
-#include "auv_dynamics_nodes/parameters.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
 
 #include <ros/param.h>
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "auv_dynamics_nodes/conversions.hpp"
-#include "auv_dynamics_nodes/node_main.hpp"
-#include "auv_dynamics_nodes/parameters.hpp"
-#include "auv_dynamics_nodes/topics.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
 namespace {

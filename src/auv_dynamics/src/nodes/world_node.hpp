@@ -13,7 +13,7 @@
 
 #include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/world.hpp"
-#include "auv_dynamics_nodes/health.hpp"
+#include "auv_dynamics/nodes/health.hpp"
 #include "world_publisher.hpp"
 
 namespace stg {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "auv_dynamics_nodes/conversions.hpp"
-#include "auv_dynamics_nodes/topics.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "auv_dynamics_nodes/conversions.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 
 namespace stg {
 

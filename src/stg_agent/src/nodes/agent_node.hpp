@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics_nodes/health.hpp"
+#include "auv_dynamics/nodes/health.hpp"
 #include "decider.hpp"
 #include "stg_agent/agent.hpp"
 

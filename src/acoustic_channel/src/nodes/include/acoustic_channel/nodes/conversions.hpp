@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "acoustic_channel/channel.hpp"
-#include "auv_dynamics_nodes/conversions.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 
 namespace stg {
 
