@@ -72,13 +72,13 @@ def plate(corners, thickness, roll):
 def fittings():
     """Returns four tail fins, a three-bladed propeller on its hub, and a mast."""
     triangles = []
-    fin = [(-0.42, 0.03), (-0.28, 0.07), (-0.33, 0.20), (-0.42, 0.20)]
+    fin = [(-0.42, 0.03), (-0.28, 0.07), (-0.33, 0.19), (-0.42, 0.19)]
     for k in range(4):
         triangles += plate(fin, 0.018, 0.5 * math.pi * k)
-    blade = [(-0.485, 0.0), (-0.465, 0.0), (-0.475, 0.10), (-0.495, 0.10)]
+    blade = [(-0.485, 0.0), (-0.465, 0.0), (-0.475, 0.06), (-0.49, 0.06)]
     for k in range(3):
         triangles += plate(blade, 0.05, math.pi / 6 + 2 * math.pi * k / 3)
-    triangles += lathe([(-0.5, 0.006), (-0.49, 0.02), (-0.46, 0.02)])
+    triangles += lathe([(-0.498, 0.006), (-0.49, 0.02), (-0.46, 0.02)])
     triangles += plate([(0.02, 0.09), (0.10, 0.09), (0.07, 0.17), (0.03, 0.17)], 0.02, 0.0)
     return triangles
 

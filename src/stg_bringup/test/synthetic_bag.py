@@ -132,7 +132,7 @@ def write(path, seconds=20.0):
         start = rospy.Time(1, 0)
         bag.write("/scenario", std_msgs.msg.String(SCENARIO), start)
         for k in range(steps):
-            stamp, t = start + rospy.Duration.from_sec(k * STEP_S), k * STEP_S
+            stamp, t = start + rospy.Duration(nsecs=100_000_000 * k), k * STEP_S
             target = odometry("target_0", stamp, target_at(t), (1.0, 0.0))
             target.twist.twist.linear = geometry_msgs.msg.Vector3(0.005, 0.002, 0.0)
             bag.write("/target_0/odom", target, stamp)
@@ -145,7 +145,7 @@ def write(path, seconds=20.0):
                 frames.append(transform(odom))
             bag.write("/tf", tf2_msgs.msg.TFMessage(frames), stamp)
             bag.write("/acoustic_channel/links", link_states(stamp, k), stamp)
-            end = stamp + rospy.Duration.from_sec(STEP_S)
+            end = stamp + rospy.Duration(nsecs=100_000_000)
             bag.write("/step_report", step_report(end, k, steps), end)
         summary = auv_msgs.msg.EpisodeSummary(scenario="synthetic", steps=steps, complete=True)
         summary.header.stamp = end

@@ -1,0 +1,191 @@
+"""Checks the bag report on bags whose contents follow from closed forms, whole and damaged."""
+
+import contextlib
+import csv
+import io
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+SCRIPTS = HERE.parent / "scripts"
+sys.path[:0] = [str(HERE), str(SCRIPTS)]
+
+import bag_report  # noqa: E402  (lies in the scripts folder)
+import make_meshes  # noqa: E402
+import synthetic_bag  # noqa: E402  (lies beside this file)
+
+
+def run_report(*arguments):
+    """Runs the tool in this process; returns (exit status, standard output, standard error)."""
+    output, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+        try:
+            status = bag_report.main([str(argument) for argument in arguments])
+        except SystemExit as leave:
+            status = leave.code
+    return status, output.getvalue(), errors.getvalue()
+
+
+def read_table(folder, name):
+    """Returns the rows of a CSV file as dictionaries."""
+    with open(folder / f"{name}.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+class WithFolder(unittest.TestCase):
+    """A test with a folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.bag = self.folder / "run.bag"
+        self.out = self.folder / "out"
+
+
+class WholeBag(WithFolder):
+    """A bag that was closed properly."""
+
+    def test_tables_hold_what_was_recorded(self):
+        synthetic_bag.write(str(self.bag), 5.0)
+        status, _, errors = run_report(self.bag, "-o", self.out, "--no-figures")
+        self.assertEqual((status, errors), (0, ""))
+        poses = read_table(self.out, "poses")
+        self.assertEqual(len(poses), 50 * synthetic_bag.AGENTS)
+        for row in poses:
+            t = float(row["t"]) - 1.0
+            expected = synthetic_bag.auv_at(int(row["auv"]), t)
+            for name, value in zip("xyz", expected):
+                self.assertAlmostEqual(float(row[name]), value, delta=1e-12)
+            self.assertAlmostEqual(
+                float(row["distance"]), synthetic_bag.distance_at(t), delta=1e-12
+            )
+        tasks = read_table(self.out, "tasks")
+        self.assertEqual({row["phase"] for row in tasks}, {"search", "approach"})
+        self.assertEqual({row["auv"] for row in tasks if row["role"] == "1"}, {"0"})
+        links = read_table(self.out, "links")
+        pairs = synthetic_bag.AGENTS * (synthetic_bag.AGENTS - 1)
+        self.assertEqual(len(links), 50 * pairs)
+        self.assertIn("loss", {row["last_drop_reason"] for row in links})
+        self.assertEqual(len(read_table(self.out, "steps")), 50)
+        (episode,) = read_table(self.out, "episodes")
+        self.assertEqual(float(episode["episode_return"]), 100.0)
+
+    def test_figure_is_written_in_both_formats(self):
+        synthetic_bag.write(str(self.bag), 3.0)
+        status, _, errors = run_report(self.bag, "-o", self.out)
+        self.assertEqual((status, errors), (0, ""))
+        png = (self.out / "report_episode_0.png").read_bytes()
+        self.assertTrue(png.startswith(b"\x89PNG"))
+        self.assertGreater(len(png), 20000)
+        self.assertIn("<svg", (self.out / "report_episode_0.svg").read_text())
+
+    def test_an_episode_that_is_not_there_is_refused(self):
+        synthetic_bag.write(str(self.bag), 1.0)
+        status, _, errors = run_report(self.bag, "-o", self.out, "--episode", 7)
+        self.assertEqual(status, 2)
+        self.assertIn("no episode 7", errors)
+        self.assertFalse(self.out.exists())
+
+
+class DamagedBag(WithFolder):
+    """Files that are no whole bags give one clear line and nothing else."""
+
+    def refused(self, *options):
+        """Runs the tool on the bag; checks that it is refused in one line that names it."""
+        status, output, errors = run_report(self.bag, "-o", self.out, *options)
+        self.assertEqual(status, 2)
+        self.assertEqual(output, "")
+        self.assertEqual(len(errors.splitlines()), 1, errors)
+        self.assertIn(str(self.bag), errors)
+        self.assertFalse(self.out.exists(), "something was written all the same")
+        return errors
+
+    def truncate(self, share):
+        """Writes a bag and cuts it to `share` of its length."""
+        synthetic_bag.write(str(self.bag), 4.0)
+        content = self.bag.read_bytes()
+        self.bag.write_bytes(content[: int(share * len(content))])
+
+    def test_truncated_bag_is_reported_wherever_it_was_cut(self):
+        for share in (0.0001, 0.1, 0.5, 0.9, 0.999):
+            with self.subTest(share):
+                self.truncate(share)
+                self.refused()
+
+    def test_truncated_bag_tells_about_salvage_and_salvage_reads_its_start(self):
+        self.truncate(0.6)
+        before = self.bag.read_bytes()
+        self.assertIn("--salvage", self.refused())
+        status, _, _ = run_report(self.bag, "-o", self.out, "--no-figures", "--salvage")
+        self.assertEqual(status, 0)
+        self.assertEqual(self.bag.read_bytes(), before, "the bag itself was changed")
+        poses = read_table(self.out, "poses")
+        self.assertGreater(len(poses), 40)
+        self.assertLess(len(poses), 40 * synthetic_bag.AGENTS)
+        for row in poses:
+            expected = synthetic_bag.auv_at(int(row["auv"]), float(row["t"]) - 1.0)
+            self.assertAlmostEqual(float(row["x"]), expected[0], delta=1e-12)
+
+    def test_overwritten_middle_is_reported(self):
+        synthetic_bag.write(str(self.bag), 4.0)
+        content = bytearray(self.bag.read_bytes())
+        middle = len(content) // 2
+        content[middle : middle + 4000] = b"\xff" * 4000
+        self.bag.write_bytes(bytes(content))
+        self.refused()
+
+    def test_other_files_are_reported(self):
+        self.refused()  # not there
+        self.bag.write_bytes(b"")
+        self.refused()
+        self.bag.write_text("episode,t\n0,1\n")
+        self.refused()
+        self.refused("--salvage")
+        self.bag.unlink()
+        self.bag.mkdir()
+        self.refused()
+
+    def test_bag_without_a_run_is_reported(self):
+        import rosbag
+        import std_msgs.msg
+
+        with rosbag.Bag(str(self.bag), "w") as bag:
+            bag.write("/chatter", std_msgs.msg.String("hello"))
+        status, _, errors = run_report(self.bag, "-o", self.out)
+        self.assertEqual(status, 1)
+        self.assertIn("not a recorded run", errors)
+        self.assertFalse(self.out.exists())
+
+
+class CommandLine(unittest.TestCase):
+    """The tool tells how it is used."""
+
+    def test_help_names_every_option_and_a_missing_bag_is_wrong_usage(self):
+        command = ["/usr/bin/python3", str(SCRIPTS / "bag_report.py"), "--help"]
+        output = subprocess.run(
+            command, stdout=subprocess.PIPE, universal_newlines=True, check=True
+        ).stdout
+        for option in ("--out", "--episode", "--salvage", "--no-figures", "--max-figures"):
+            self.assertIn(option, output)
+        self.assertEqual(run_report()[0], 2)
+
+
+class Meshes(unittest.TestCase):
+    """The vehicle's meshes are those their script makes, and fit the collision sphere."""
+
+    def test_committed_meshes_are_what_the_script_writes(self):
+        for name, content in make_meshes.meshes().items():
+            self.assertEqual((HERE.parent / "meshes" / name).read_bytes(), content, name)
+
+    def test_the_vehicle_fits_its_collision_sphere(self):
+        for triangle in make_meshes.lathe(make_meshes.profile()) + make_meshes.fittings():
+            for x, y, z in triangle:
+                self.assertLessEqual(x * x + y * y + z * z, 0.25)
+
+
+if __name__ == "__main__":
+    unittest.main()

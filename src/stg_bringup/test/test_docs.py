@@ -1,0 +1,84 @@
+"""Checks what the documentation says about the code: equations, links, topics."""
+
+import pathlib
+import re
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+SOURCES = ROOT / "src"
+DOCS = ROOT / "docs"
+PACKAGES = ("acoustic_channel", "auv_dynamics", "marl_trainer", "stg_agent", "stg_bringup")
+
+
+def equation_rows():
+    """Returns [(equation, file, name)] of the table in docs/equations.md."""
+    rows = []
+    for line in (DOCS / "equations.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if re.fullmatch(r"\(\d+\)|Algorithm S\d", cells[0]):
+            rows.append((cells[0], cells[2].strip("`"), cells[3].strip("`")))
+    return rows
+
+
+class Equations(unittest.TestCase):
+    """The map from the paper's equations to the code is complete and true."""
+
+    def test_every_equation_of_the_paper_has_a_row(self):
+        named = {equation for equation, _, _ in equation_rows()}
+        wanted = {f"({n})" for n in range(1, 45)} | {"Algorithm S1", "Algorithm S2"}
+        self.assertEqual(named, wanted)
+
+    def test_every_file_exists_and_contains_the_name(self):
+        for equation, path, name in equation_rows():
+            with self.subTest(equation):
+                text = (SOURCES / path).read_text()
+                code = re.sub(r"//.*", "", text)
+                self.assertRegex(code, rf"\b{re.escape(name)}\b", path)
+
+
+class Links(unittest.TestCase):
+    """Links between pages and to pictures lead somewhere."""
+
+    def test_every_relative_link_exists(self):
+        pages = [*ROOT.glob("*.md"), *DOCS.rglob("*.md")]
+        self.assertGreater(len(pages), 10)
+        for page in pages:
+            for target in re.findall(r"\]\(([^)#\s]+)", page.read_text()):
+                if not re.match(r"[a-z]+:", target):
+                    self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
+
+
+class PackagePages(unittest.TestCase):
+    """Each package has a page, and the page tells what its nodes use."""
+
+    def constants(self, package):
+        """Returns the topic and service names of a package, from the header that names them."""
+        header = SOURCES / package / "src/nodes/include" / package / "nodes/topics.hpp"
+        if not header.exists():
+            return set()
+        topics = header.read_text().split("namespace stg::frames")[0]
+        return set(re.findall(r'constexpr char k\w+\[\] = "([\w/]+)"', topics))
+
+    def test_every_package_has_a_page_with_its_topics_and_services(self):
+        for package in PACKAGES:
+            with self.subTest(package):
+                text = (DOCS / "packages" / f"{package}.md").read_text()
+                for name in self.constants(package):
+                    self.assertTrue(name in text, f"{name} is not on the page")
+
+    def test_every_private_parameter_of_a_node_is_on_its_page(self):
+        pattern = re.compile(
+            r'(?:Text|Flag|Number|Integer)Parameter\(\s*"(\w+)"|private_nh_\.param\("([\w/]+)"'
+        )
+        for package in PACKAGES:
+            text = (DOCS / "packages" / f"{package}.md").read_text()
+            for source in sorted((SOURCES / package / "src" / "nodes").glob("*.cpp")):
+                for match in pattern.finditer(source.read_text()):
+                    name = match.group(1) or match.group(2)
+                    self.assertTrue(
+                        f"`{name}`" in text, f"{source.name}: {name} is not on the page"
+                    )
+
+
+if __name__ == "__main__":
+    unittest.main()

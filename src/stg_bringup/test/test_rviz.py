@@ -1,0 +1,137 @@
+"""Checks the shipped rviz files: they parse, and show only what is published."""
+
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import rospkg
+import yaml
+
+PACKAGE = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
+SOURCES = PACKAGE.parent
+PLUGINS = "/usr/share/rviz/plugin_description.xml"
+
+
+def rviz_files():
+    """Returns {file name: content} of the shipped views."""
+    return {path.name: yaml.safe_load(path.read_text()) for path in (PACKAGE / "rviz").glob("*.rviz")}
+
+
+def displays(node):
+    """Yields every display of a view, those in groups too."""
+    for display in node.get("Displays") or []:
+        yield display
+        yield from displays(display)
+
+
+def published_markers():
+    """Returns the marker topics: `markers` is the node's name in view.launch, and its private
+    topics are those it advertises."""
+    (node,) = [
+        node
+        for node in ElementTree.parse(PACKAGE / "launch" / "view.launch").getroot().iter("node")
+        if node.get("type") == "marker_node"
+    ]
+    source = (PACKAGE / "src" / "nodes" / "marker_node.cpp").read_text()
+    names = re.findall(r'private_nh_\.advertise<visualization_msgs::MarkerArray>\("(\w+)"', source)
+    return {f"/{node.get('name')}/{name}" for name in names}
+
+
+def marker_namespaces():
+    """Returns the namespaces that the markers are built with."""
+    source = (PACKAGE / "src" / "nodes" / "marker_builder.cpp").read_text()
+    return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail)\("(\w+)"', source))
+
+
+def published_frames():
+    """Returns patterns of the frames that the world publishes, from the header that names them."""
+    header = SOURCES / "auv_dynamics/src/nodes/include/auv_dynamics/nodes/topics.hpp"
+    text = header.read_text()
+    frames = set(re.findall(r'inline constexpr char kWorld\w*\[\] = "(\w+)"', text))
+    return frames | {r"target_\d+"} if '"target_" + std::to_string' in text else frames
+
+
+class RvizFiles(unittest.TestCase):
+    """The views open without errors."""
+
+    def test_there_is_an_overview_and_a_close_up(self):
+        self.assertEqual(set(rviz_files()), {"overview.rviz", "follow.rviz"})
+
+    def test_every_display_and_view_is_a_class_that_rviz_has(self):
+        known = {
+            entry.get("name") for entry in ElementTree.parse(PLUGINS).getroot().iter("class")
+        }
+        self.assertIn("rviz/MarkerArray", known)
+        for name, view in rviz_files().items():
+            manager = view["Visualization Manager"]
+            classes = [d["Class"] for d in displays(manager)]
+            classes.append(manager["Views"]["Current"]["Class"])
+            for shown in classes:
+                self.assertIn(shown, known, name)
+
+    def test_every_topic_shown_is_published(self):
+        published = published_markers()
+        self.assertEqual(len(published), 2)
+        shown = set()
+        for view in rviz_files().values():
+            for display in displays(view["Visualization Manager"]):
+                topics = [v for k, v in display.items() if k.endswith("Topic") and v]
+                for topic in topics:
+                    self.assertIn(topic, published)
+                shown.update(topics)
+        self.assertEqual(shown, published)
+
+    def test_every_namespace_shown_is_published(self):
+        known = marker_namespaces()
+        for name, view in rviz_files().items():
+            for display in displays(view["Visualization Manager"]):
+                for namespace in display.get("Namespaces") or {}:
+                    self.assertIn(namespace, known, name)
+
+    def test_every_frame_is_published(self):
+        known = published_frames()
+        for name, view in rviz_files().items():
+            manager = view["Visualization Manager"]
+            frames = [manager["Global Options"]["Fixed Frame"]]
+            frames.append(manager["Views"]["Current"]["Target Frame"])
+            for frame in frames:
+                matches = [p for p in known if re.fullmatch(p, frame)]
+                self.assertTrue(matches or frame == "<Fixed Frame>", f"{name}: {frame}")
+
+    def test_launch_names_the_files_that_exist(self):
+        for view in ("overview", "follow"):
+            self.assertTrue((PACKAGE / "rviz" / f"{view}.rviz").is_file())
+        text = (PACKAGE / "launch" / "view.launch").read_text()
+        self.assertIn("rviz/$(arg view).rviz", text)
+
+
+class Replay(unittest.TestCase):
+    """replay.launch finds a bag however it is named."""
+
+    def arguments_of_player(self, bag, folder):
+        """Returns the player's command line as roslaunch resolves it in `folder`."""
+        done = subprocess.run(
+            ["roslaunch", "--args", "player", str(PACKAGE / "launch" / "replay.launch")]
+            + [f"bag:={bag}"],
+            cwd=folder,
+            env={**os.environ, "PWD": folder},
+            stdout=subprocess.PIPE,
+            universal_newlines=True,
+            check=True,
+        )
+        return done.stdout.split()
+
+    def test_a_relative_bag_is_taken_from_the_users_folder(self):
+        self.assertIn("/usr/share/run.bag", self.arguments_of_player("run.bag", "/usr/share"))
+
+    def test_an_absolute_bag_stays_and_the_bag_drives_the_clock(self):
+        words = self.arguments_of_player("/data/run.bag", "/usr/share")
+        self.assertIn("/data/run.bag", words)
+        self.assertIn("--clock", words)
+
+
+if __name__ == "__main__":
+    unittest.main()
