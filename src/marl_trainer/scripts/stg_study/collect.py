@@ -1,0 +1,83 @@
+"""Gathers what the jobs of a study left into the CSV files that the report is made of."""
+
+import csv
+import os
+
+from stg_study.jobs import read_json, write_atomically
+
+FILES = {
+    "results": "results.csv",  # scenario, condition, method, seed, metric: mean and std
+    "episodes": "episodes.csv",  # every evaluation episode, all metrics
+    "curves": "curves.csv",  # every validation of every training, all metrics
+    "runs": "runs.csv",  # every training: steps, times, speed
+}
+THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
+
+
+def _csv_text(header, rows):
+    lines = [",".join(header)]
+    lines += [",".join(str(value) for value in row) for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def _short(text):
+    """A number of a program's CSV with six digits: enough for tables, kind to repositories."""
+    return f"{float(text):.6g}"
+
+
+def _read_rows(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def collect(study, trainings, evaluations, out):
+    """Writes the four CSV files into `out` from the complete jobs; returns how many are not."""
+    results, episodes, curves, runs = [], [], [], []
+    metrics, curve_metrics = [], []
+    missing = 0
+    for job in evaluations:
+        if not job.complete():
+            missing += 1
+            continue
+        key = (job.scenario, job.condition, job.method, job.seed)
+        rows = _read_rows(job.csv)
+        metrics = metrics or [name for name in rows[0] if name not in ("episode", "seed")]
+        for row in rows:
+            episodes.append((*key, row["episode"], *(_short(row[name]) for name in metrics)))
+        summary = read_json(job.json)["summary"]
+        for name in metrics:
+            mean, std = _short(summary[name]), _short(summary[name + "_std"])
+            results.append((*key, job.episodes, name, mean, std))
+    for job in trainings:
+        if not job.complete():
+            missing += 1
+            continue
+        key = (job.scenario, job.method, job.seed)
+        for row in _read_rows(os.path.join(job.folder, "progress.csv")):
+            names = [n for n in row if n and n.startswith("validation_")]
+            names.remove("validation_seconds")
+            curve_metrics = curve_metrics or names
+            if row[curve_metrics[0]]:
+                values = (_short(row[name]) for name in curve_metrics)
+                curves.append((*key, row["env_steps"], _short(row["wall_seconds"]), *values))
+        summary = read_json(os.path.join(job.folder, "summary.json"))
+        times = summary.get("time_to_threshold", {})
+        reached = [_short(times[t]["seconds"]) if times.get(t) else "" for t in THRESHOLDS]
+        speed = [_short(summary[name]) for name in ("wall_seconds", "env_steps_per_second")]
+        runs.append((*key, study.preset, summary["env_steps"], *speed, *reached))
+
+    os.makedirs(out, exist_ok=True)
+
+    def write(name, header, rows):
+        write_atomically(os.path.join(out, FILES[name]), _csv_text(header, rows))
+
+    key = ["scenario", "condition", "method", "seed"]
+    write("results", key + ["episodes", "metric", "mean", "std"], results)
+    write("episodes", key + ["episode"] + metrics, episodes)
+    names = [name[len("validation_") :] for name in curve_metrics]
+    run_key = ["scenario", "method", "seed"]
+    write("curves", run_key + ["env_steps", "wall_seconds"] + names, curves)
+    seconds = [f"seconds_to_{name}" for name in THRESHOLDS]
+    header = ["preset", "env_steps", "wall_seconds", "env_steps_per_second"] + seconds
+    write("runs", run_key + header, runs)
+    return missing

@@ -1,0 +1,114 @@
+"""The results of a study and the paper's figures, read back from their CSV files."""
+
+import csv
+import os
+
+import numpy as np
+
+from stg_study.collect import FILES
+from stg_study.statistics import final_stage, mean_std
+from stg_study.study import StudyError
+
+PAPER_FILE = os.path.join(
+    os.path.dirname(os.path.realpath(__file__)), os.pardir, "data", "paper_tables.csv"
+)
+
+
+def read_csv(path):
+    """The rows of a CSV file as dictionaries."""
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+    except OSError as error:
+        raise StudyError(f"{path}: {error.strerror}") from error
+
+
+class Paper:
+    """The paper's Tables 1, 2 and S3-S9: (mean, std) of a table's row and metric."""
+
+    def __init__(self, path=PAPER_FILE):
+        self._values = {}
+        self._algorithms = {}
+        for row in read_csv(path):
+            key = (row["table"], row["algorithm"], row["condition"], row["seed"], row["metric"])
+            if key in self._values:
+                raise StudyError(f"{path}: {key} stands there twice")
+            std = float(row["std"]) if row["std"] else None
+            self._values[key] = (float(row["mean"]), std)
+            names = self._algorithms.setdefault(row["table"], [])
+            if row["algorithm"] not in names:
+                names.append(row["algorithm"])
+
+    def get(self, table, algorithm, metric, condition="nominal", seed=""):
+        """(mean, std) or None; std is None where the paper gives none."""
+        return self._values.get((table, algorithm, condition, str(seed), metric))
+
+    def algorithms(self, table):
+        """Algorithms of a table in the paper's order."""
+        return self._algorithms.get(table, [])
+
+    def seeds(self, table, algorithm):
+        """Seeds of a per-seed table."""
+        return sorted({k[3] for k in self._values if k[0] == table and k[1] == algorithm})
+
+
+class Results:
+    """Everything the report says, from the CSV files of one study."""
+
+    def __init__(self, folder):
+        self._scores = {}  # (scenario, condition, method, seed) -> {metric: values by episode}
+        self._curves = {}  # (scenario, method, seed) -> {column: values by validation}
+        self.runs = read_csv(os.path.join(folder, FILES["runs"]))
+        for row in read_csv(os.path.join(folder, FILES["episodes"])):
+            key = (row.pop("scenario"), row.pop("condition"), row.pop("method"), row.pop("seed"))
+            self._append(self._scores, (*key[:3], int(key[3])), row)
+        for row in read_csv(os.path.join(folder, FILES["curves"])):
+            key = (row.pop("scenario"), row.pop("method"), int(row.pop("seed")))
+            self._append(self._curves, key, row)
+
+    @staticmethod
+    def _append(table, key, row):
+        columns = table.setdefault(key, {name: [] for name in row})
+        for name, value in row.items():
+            columns[name].append(float(value))
+
+    def scores(self, scenario, condition, method, metric):
+        """[seeds, episodes] of an evaluation, or None where there is none."""
+        rows = [
+            columns[metric]
+            for key, columns in sorted(self._scores.items())
+            if key[:3] == (scenario, condition, method)
+        ]
+        if not rows:
+            return None
+        episodes = min(len(row) for row in rows)
+        return np.array([row[:episodes] for row in rows])
+
+    def over_episodes(self, scenario, condition, method, metric):
+        """(mean, std) over all episodes of all seeds, as Tables S7 and S8; or None."""
+        scores = self.scores(scenario, condition, method, metric)
+        return None if scores is None else mean_std(scores.ravel())
+
+    def over_seeds(self, scenario, condition, method, metric):
+        """(mean, std) of the seeds' means, as the distances of Tables 1 and 2; or None."""
+        scores = self.scores(scenario, condition, method, metric)
+        return None if scores is None else mean_std(scores.mean(axis=1))
+
+    def seeds(self, scenario, method):
+        """Seeds with a training curve."""
+        return sorted(key[2] for key in self._curves if key[:2] == (scenario, method))
+
+    def curve(self, scenario, method, seed, column):
+        """Values of a validation column, one per validation."""
+        return self._curves[(scenario, method, seed)][column]
+
+    def final_points(self, scenario, method, seed, column):
+        """The last fifth of the validations."""
+        return final_stage(self.curve(scenario, method, seed, column))
+
+    def final_over_seeds(self, scenario, method, column):
+        """(mean, std) over seeds of the final-stage means, as Tables S3, S5, S9; or None."""
+        seeds = self.seeds(scenario, method)
+        if not seeds:
+            return None
+        return mean_std([np.mean(self.final_points(scenario, method, s, column)) for s in seeds])

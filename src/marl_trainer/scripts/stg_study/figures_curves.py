@@ -1,0 +1,162 @@
+"""Figures over the training: convergence, seeds one by one, reward components."""
+
+import numpy as np
+from matplotlib.ticker import EngFormatter
+
+from stg_study.figure_style import UNIT, colours, legend_below, logarithmic, plt, save
+
+# Title, axis label, metric, logarithmic.
+PANELS = [
+    ("Return", "sum over an episode, mean over AUVs", "return", False),
+    ("Tracking error", "|d − d*|, whole episode", "mean_error", True),
+    ("Tail distance", "d, last 100 decisions", "tail_distance", True),
+    ("Target lost", "share of decisions", "whole_lost_rate", False),
+]
+COMPONENTS = [
+    ("tracking", "reward_track"),
+    ("observation", "reward_observation"),
+    ("coordination", "reward_coordination"),
+    ("communication", "reward_communication"),
+    ("semantic", "reward_semantic"),
+]
+FLOOR = 1e-4  # of logarithmic axes
+
+
+def curve_band(results, scenario, method, metric, scale=1.0):
+    """Steps, mean and std over seeds at the validations that all seeds have; None without any."""
+    seeds = results.seeds(scenario, method)
+    if not seeds:
+        return None
+    curves = [
+        dict(
+            zip(
+                results.curve(scenario, method, seed, "env_steps"),
+                results.curve(scenario, method, seed, metric),
+            )
+        )
+        for seed in seeds
+    ]
+    steps = sorted(set.intersection(*(set(c) for c in curves)))
+    values = scale * np.array([[curve[s] for s in steps] for curve in curves])
+    std = values.std(axis=0, ddof=1) if len(seeds) > 1 else np.zeros(len(steps))
+    return np.array(steps), values.mean(axis=0), std
+
+
+def _step_axis(axis):
+    axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+    axis.set_xlabel("environment steps")
+    axis.set_xlim(left=0)
+
+
+def _scale(study, metric):
+    return 1.0 / study.agents if metric == "return" else 1.0
+
+
+def _focus_returns(axis, bands):
+    """Keeps one early collapse from squeezing all curves: the axis starts near the 2 % quantile."""
+    values = np.concatenate([mean - std for _, mean, std in bands])
+    top = max(float((mean + std).max()) for _, mean, std in bands)
+    low = float(np.quantile(values, 0.02))
+    axis.set_ylim(low - 0.05 * (top - low), top + 0.06 * (top - low))
+
+
+def convergence(study, results, scenario, folder):
+    """Return, error, tail distance and loss against steps: mean and std over seeds."""
+    colour, labels = colours(study), study.labels()
+    figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.6))
+    handles = {}
+    for axis, (title, label, metric, is_logarithmic) in zip(axes.flat, PANELS):
+        bands = []
+        for method in study.methods:
+            band = curve_band(results, scenario, method.name, metric, _scale(study, metric))
+            if band is None:
+                continue
+            steps, mean, std = band
+            bands.append(band)
+            floor = FLOOR if is_logarithmic else 0.0 if metric == "whole_lost_rate" else -np.inf
+            lower = np.maximum(mean - std, floor)
+            axis.fill_between(steps, lower, mean + std, color=colour[method.name], alpha=0.18, lw=0)
+            mean = np.maximum(mean, floor)
+            (line,) = axis.plot(steps, mean, color=colour[method.name], lw=1.6)
+            handles[labels[method.name]] = line
+        for controller in study.controllers:
+            value = results.over_seeds(scenario, "nominal", controller.name, metric)
+            if controller.name == "idle" or value is None:
+                continue
+            style = {"pursuit": "--", "pursuit_separated": "-."}.get(controller.name, ":")
+            line = axis.axhline(
+                value[0] * _scale(study, metric), color=colour[controller.name], lw=1.2, ls=style
+            )
+            handles[labels[controller.name]] = line
+        axis.set_title(title)
+        axis.set_ylabel(label)
+        if is_logarithmic:
+            logarithmic(axis)
+        elif metric == "whole_lost_rate":
+            axis.set_ylim(bottom=-0.01)
+        elif bands:
+            _focus_returns(axis, bands)
+        _step_axis(axis)
+    figure.suptitle(f"{scenario}: validations during training, mean ± std over seeds. {UNIT}")
+    legend_below(figure, list(handles.values()), list(handles))
+    figure.tight_layout(rect=(0, 0.09, 1, 0.99))
+    return save(figure, folder, f"convergence_{scenario}")
+
+
+def per_seed(study, results, scenario, folder):
+    """Return and tail distance of every training of STG-MAPPO and of the paper's MAPPO."""
+    methods = [m for m in study.methods if m.paper] or study.methods[:2]
+    colour = colours(study)
+    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8))
+    handles = {}
+    styles = ["-", "--", ":", "-."]
+    for axis, (title, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
+        for method in methods:
+            for i, seed in enumerate(results.seeds(scenario, method.name)):
+                values = np.array(results.curve(scenario, method.name, seed, metric))
+                (line,) = axis.plot(
+                    results.curve(scenario, method.name, seed, "env_steps"),
+                    values * _scale(study, metric),
+                    color=colour[method.name],
+                    ls=styles[i % len(styles)],
+                    lw=1.3,
+                )
+                handles[f"{method.label}, seed {seed}"] = line
+        axis.set_title(title)
+        axis.set_ylabel(label)
+        if is_logarithmic:
+            logarithmic(axis)
+        _step_axis(axis)
+    figure.suptitle(f"{scenario}: every training. {UNIT}")
+    legend_below(figure, list(handles.values()), list(handles), columns=3)
+    figure.tight_layout(rect=(0, 0.13, 1, 0.99))
+    return save(figure, folder, f"per_seed_{scenario}")
+
+
+def reward_components(study, results, scenario, folder):
+    """The reward's terms before weighting, and what the controls cost, for the first method."""
+    method = study.methods[0]
+    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8), gridspec_kw={"width_ratios": [3, 2]})
+    palette = ["#0072B2", "#56B4E9", "#009E73", "#E69F00", "#CC79A7"]
+    diagnostics = [("control cost", "control_cost"), ("saturated actions", "saturation_rate")]
+    for axis, entries, shades in (
+        (axes[0], COMPONENTS, palette),
+        (axes[1], diagnostics, ["#D55E00", "#222222"]),
+    ):
+        for (label, metric), shade in zip(entries, shades):
+            band = curve_band(results, scenario, method.name, metric)
+            if band is None:
+                continue
+            steps, mean, std = band
+            axis.fill_between(steps, mean - std, mean + std, color=shade, alpha=0.18, lw=0)
+            axis.plot(steps, mean, color=shade, lw=1.6, label=label)
+        _step_axis(axis)
+        axis.legend()
+    axes[0].set_title("Reward terms before weighting")
+    axes[0].set_ylabel("mean over decisions and AUVs")
+    axes[1].set_title("Control diagnostics")
+    axes[1].set_ylabel("mean over decisions and AUVs")
+    axes[1].set_ylim(bottom=-0.002)
+    figure.suptitle(f"{scenario}: {method.label}, mean ± std over seeds")
+    figure.tight_layout()
+    return save(figure, folder, f"reward_components_{scenario}")

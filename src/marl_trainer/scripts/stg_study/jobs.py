@@ -1,0 +1,206 @@
+"""The trainings and evaluations of a study: their command lines and when they are complete."""
+
+import csv
+import glob
+import hashlib
+import json
+import os
+import shutil
+
+
+def write_atomically(path, text):
+    """Writes a file that exists either whole or not at all."""
+    temporary = f"{path}.{os.getpid()}.part"
+    with open(temporary, "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(temporary, path)
+
+
+def read_json(path):
+    """The content of a JSON file, or None where it is missing or cut off."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except (OSError, ValueError):
+        return None
+
+
+def file_hash(path):
+    """SHA-256 of a file, or None where there is none."""
+    try:
+        with open(path, "rb") as file:
+            return hashlib.sha256(file.read()).hexdigest()
+    except OSError:
+        return None
+
+
+def _options(mapping):
+    return [text for key, value in mapping.items() for text in ("--" + key, str(value))]
+
+
+def _overrides(values):
+    return [text for value in values for text in ("--set", value)]
+
+
+class Training:
+    """One training run: a scenario, a method and a seed; its folder holds all it writes."""
+
+    kind = "training"
+    RECORD = "study_job.json"  # the options the folder's run was started with
+
+    def __init__(self, study, scenario, method, seed, work, bin_dir):
+        self.name = f"train {scenario.name} {method.name} seed {seed}"
+        self.scenario, self.method, self.seed = scenario.name, method.name, seed
+        self.folder = os.path.join(work, "runs", scenario.name, method.name, f"seed{seed}")
+        self.policy = os.path.join(self.folder, "policy_best.onnx")
+        self.log = self.folder + ".log"
+        self.steps = study.steps
+        self.arguments = [
+            *("--scenario", scenario.name, "--preset", study.preset, "--variant", method.variant),
+            *("--seed", str(seed), "--steps", str(study.steps)),
+            *_options({**study.train, **method.train}),
+            *_overrides(method.set + method.train_set),
+        ]
+        self._program = os.path.join(bin_dir, "train")
+
+    def conflict(self):
+        """Why the folder cannot be used, or None: it holds a run made with other options."""
+        record = read_json(os.path.join(self.folder, self.RECORD))
+        if record is not None and record.get("arguments") != self.arguments:
+            return (
+                f"{self.folder} was trained with other options ({' '.join(record['arguments'])}); "
+                "use another --out, or delete that folder"
+            )
+        return None
+
+    def complete(self):
+        """Whether the run reached its last step and left its policy."""
+        summary = read_json(os.path.join(self.folder, "summary.json"))
+        record = read_json(os.path.join(self.folder, self.RECORD))
+        return (
+            summary is not None
+            and summary.get("stopped") == "finished"
+            and summary.get("env_steps", 0) >= self.steps
+            and record is not None
+            and record.get("arguments") == self.arguments
+            and os.path.isfile(self.policy)
+        )
+
+    def prepare(self):
+        """Command to start or continue the run. A run without a checkpoint starts afresh."""
+        resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.pt")))
+        if not resume and os.path.isdir(self.folder):
+            shutil.rmtree(self.folder)
+        os.makedirs(self.folder, exist_ok=True)
+        write_atomically(
+            os.path.join(self.folder, self.RECORD), json.dumps({"arguments": self.arguments})
+        )
+        command = [self._program, *self.arguments, "--out", self.folder, "--workers", "1"]
+        return command + (["--resume"] if resume else [])
+
+    def finish(self, output):
+        """Training leaves nothing to be done."""
+
+    def fraction_done(self):
+        """Share of the steps that the progress file tells of."""
+        try:
+            with open(os.path.join(self.folder, "progress.csv"), "rb") as file:
+                file.seek(0, os.SEEK_END)
+                file.seek(max(0, file.tell() - 4096))
+                lines = file.read().decode(errors="replace").splitlines()
+            return min(1.0, float(lines[-1].split(",")[0]) / self.steps)
+        except (OSError, ValueError, IndexError):
+            return 0.0
+
+
+class Evaluation:
+    """One policy or controller on one condition and one block of evaluation seeds."""
+
+    kind = "evaluation"
+
+    def __init__(self, study, scenario, condition, entry, seed, work, bin_dir, training=None):
+        self.name = f"evaluate {scenario.name} {condition} {entry.name} seed {seed}"
+        self.scenario, self.condition = scenario.name, condition
+        self.method, self.seed = entry.name, seed
+        self.training = training
+        base = os.path.join(
+            work, "evaluations", scenario.name, condition, f"{entry.name}_seed{seed}"
+        )
+        self.csv, self.json, self.log = base + ".csv", base + ".json", base + ".log"
+        self.episodes = study.episodes
+        self.policy = training.policy if training else entry.policy
+        self.arguments = [
+            *("--scenario", scenario.name, "--condition", condition),
+            *("--episodes", str(study.episodes)),
+            *("--seed", str(study.evaluation_seed_of(seed))),
+        ]
+        if training is None:
+            self.arguments += entry.arguments
+        else:
+            if entry.variant != "stg":
+                self.arguments += ["--variant", entry.variant]
+            self.arguments += _overrides(entry.set + entry.evaluate_set)
+        self._program = os.path.join(bin_dir, "evaluate")
+
+    def _identity(self):
+        """What the result depends on: the options and the policy's content."""
+        return {
+            "arguments": self.arguments,
+            "policy": file_hash(self.policy) if self.training else self.policy,
+        }
+
+    def conflict(self):
+        """An evaluation of other options is simply repeated."""
+        return None
+
+    def complete(self):
+        """Whether the result is there, whole, and of this policy and these options."""
+        result = read_json(self.json)
+        if result is None or result.get("identity") != self._identity():
+            return False
+        try:
+            with open(self.csv, encoding="utf-8", newline="") as file:
+                return sum(1 for _ in csv.DictReader(file)) == self.episodes
+        except OSError:
+            return False
+
+    def prepare(self):
+        """Command that evaluates into a temporary file."""
+        os.makedirs(os.path.dirname(self.csv), exist_ok=True)
+        command = [self._program, "--policy", self.policy, *self.arguments]
+        return command + ["--csv", self.csv + ".part", "--workers", "1"]
+
+    def finish(self, output):
+        """Keeps the result: `output` ends with the JSON object of the evaluate command."""
+        summary = json.loads(output.strip().splitlines()[-1])
+        os.replace(self.csv + ".part", self.csv)
+        result = {"identity": self._identity(), "summary": summary}
+        write_atomically(self.json, json.dumps(result, indent=1))
+
+    def fraction_done(self):
+        """Evaluations are short."""
+        return 0.0
+
+
+def plan(study, work, bin_dir):
+    """All trainings and all evaluations of a study, each list in the order to be done."""
+    trainings, evaluations = [], []
+    for scenario in study.scenarios:
+        for controller in study.controllers:
+            for seed in study.seeds:
+                for condition in study.conditions:
+                    evaluations.append(
+                        Evaluation(study, scenario, condition, controller, seed, work, bin_dir)
+                    )
+    for seed in study.seeds:
+        for scenario in study.scenarios:
+            for method in study.methods:
+                training = Training(study, scenario, method, seed, work, bin_dir)
+                trainings.append(training)
+                for condition in study.conditions:
+                    evaluations.append(
+                        Evaluation(
+                            study, scenario, condition, method, seed, work, bin_dir, training
+                        )
+                    )
+    return trainings, evaluations

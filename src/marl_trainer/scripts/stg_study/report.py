@@ -1,0 +1,138 @@
+"""Writes the report of a study: one page for each scenario, an overview, and the figures."""
+
+import os
+
+from stg_study import figures_bars, figures_curves, tables
+from stg_study.data import Paper, Results
+from stg_study.jobs import write_atomically
+
+# The paper's tables: main, final stage, per seed, stress.
+PAPER_TABLES = {"medium": ("1", "S3", "S4", "S7"), "hard": ("2", "S5", "S6", "S8")}
+
+CONVENTIONS = """\
+- Distances are in workspace units, which this simulator reads as metres and the paper labels km.
+- The return is the scenario's own reward for every method, whatever it was trained with.
+  Evaluations (Tables 1, 2, S7, S8, comparison, interquartile means) **sum** it over the AUVs,
+  training curves and final stages (Tables S3-S6, S9, curves, bars) **average** it over them, as the
+  paper does; the two differ by the number of AUVs, {agents}.
+- Tail: the last 100 decisions. Tables S3-S6: tracking error and lost rate are of the whole episode;
+  Tables 1, 2, S7, S8: of the tail.
+- Final stage: the last 20 % of the validations of a training, which fly the deterministic policy
+  on held-out episodes. Best checkpoint: the validation with the highest return; the evaluations
+  reload it.
+- Evaluation: {episodes} episodes from seed {first} + {stride} x training seed, shared with no
+  training and no validation. The controllers fly the same episodes as the policies.
+- mean ± std: over seeds in Tables 1, 2 (distances, lost), S3, S5, S9; over episodes of all seeds in
+  Tables S7 and S8. The average return of Tables 1 and 2 is over all conditions, its std over the
+  means of every seed and condition.
+- Interquartile means with 95 % bootstrap intervals: seeds, then episodes within each seed and
+  condition, are drawn again 2000 times. With three seeds the intervals are rough.
+- Colliding pairs: pairs of AUVs in contact per decision, over the whole episode and over the tail.
+  The paper tells neither.
+- Rows marked (paper) are the paper's own figures.
+"""
+
+
+def _heading(table, ours):
+    return f"Table {table}: {ours}" if table else ours[0].upper() + ours[1:]
+
+
+def _figure(name, text):
+    return f"![{text}](figures/{name}.png)\n"
+
+
+def scenario_page(study, results, paper, scenario, folder):
+    """Markdown of one scenario, its figures written to `folder`/figures."""
+    name, figures = scenario.name, os.path.join(folder, "figures")
+    main, final, seeds, stress = PAPER_TABLES.get(scenario.paper, ("", "", "", ""))
+    medium = scenario.paper == "medium"
+    page = [f"# {study.title}: {name}\n"]
+
+    def section(title, *parts):
+        page.append("## " + title + "\n")
+        page.extend(parts)
+
+    section(
+        _heading(main, "nominal and combined stress, best checkpoints"),
+        tables.main_table(study, results, paper, name, main),
+    )
+    section(
+        _heading(final, "final stage, last 20 % of the validations"),
+        tables.final_table(study, results, paper, name, final),
+    )
+    section(
+        _heading(seeds, "final stage of every seed"),
+        tables.seed_table(study, results, paper, name, seeds),
+    )
+    section(
+        _heading(stress, "best checkpoints under every condition"),
+        tables.stress_table(study, results, paper, name, stress),
+    )
+    section(
+        _heading("S9" if medium else "", "ablation, final stage"),
+        tables.ablation_table(study, results, paper, name, medium),
+    )
+    section(
+        "Interquartile means and 95 % bootstrap intervals",
+        tables.iqm_table(study, results, name),
+    )
+    if any(results.seeds(name, method.name) for method in study.methods):
+        section(
+            "Figures of the training",
+            _figure(figures_curves.convergence(study, results, name, figures), "Convergence"),
+            _figure(
+                figures_bars.final_stage(study, results, paper, name, final, figures),
+                "Final stage",
+            ),
+            _figure(figures_bars.final_boxes(study, results, name, figures), "Final stage, boxes"),
+            _figure(
+                figures_bars.ablation(study, results, paper, name, figures, medium), "Ablation"
+            ),
+            _figure(
+                figures_curves.reward_components(study, results, name, figures), "Reward terms"
+            ),
+            _figure(figures_curves.per_seed(study, results, name, figures), "Every training"),
+        )
+    section(
+        "Figure of the stress conditions",
+        _figure(
+            figures_bars.stress_boxes(study, results, paper, name, stress, figures), "Conditions"
+        ),
+    )
+    return "\n".join(page)
+
+
+def write_report(study, folder):
+    """Writes report.md, a page for each scenario and the figures from the CSVs in `folder`."""
+    results, paper = Results(folder), Paper()
+    overview = [f"# {study.title}\n"]
+    if study.notes:
+        overview.append(study.notes.strip() + "\n")
+    command = f"rosrun marl_trainer reproduce --study {study.name} --out FOLDER"
+    overview.append(
+        f"Made by `{command}`; `--report-only` makes the pages and figures anew from the CSV "
+        "files. The study itself stands in [study.yaml](study.yaml).\n"
+    )
+    for scenario in study.scenarios:
+        page = scenario_page(study, results, paper, scenario, folder)
+        write_atomically(os.path.join(folder, scenario.name + ".md"), page)
+        stress = PAPER_TABLES.get(scenario.paper, ("",) * 4)[3]
+        overview.append(f"## {scenario.name}\n")
+        overview.append(f"All tables and figures: [{scenario.name}.md]({scenario.name}.md)\n")
+        overview.append(tables.comparison_table(study, results, paper, scenario.name, stress))
+    overview.append("## Trainings\n")
+    overview.append(
+        "Wall time of one worker, several trainings side by side; the times to a return, without a "
+        "loss, are those of the validation that first reached it.\n"
+    )
+    overview.append(tables.runs_table(study, results))
+    overview.append("## How to read the tables\n")
+    overview.append(
+        CONVENTIONS.format(
+            agents=study.agents,
+            episodes=study.episodes,
+            first=study.evaluation_seed,
+            stride=study.evaluation_seed_stride,
+        )
+    )
+    write_atomically(os.path.join(folder, "report.md"), "\n".join(overview))

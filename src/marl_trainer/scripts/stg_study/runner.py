@@ -1,0 +1,230 @@
+"""Runs the jobs of a study in parallel processes, can be interrupted, and says how it goes."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+POLL_S = 0.05
+SHOWN_LOG_LINES = 15
+PATIENCE_S = 120.0  # for a training to save after the first Ctrl-C
+
+
+def duration(seconds):
+    """A duration for people: 42 s, 3 min 20 s, 1 h 05 min."""
+    seconds = int(round(seconds))
+    if seconds < 60:
+        return f"{seconds} s"
+    if seconds < 3600:
+        return f"{seconds // 60} min {seconds % 60:02d} s"
+    return f"{seconds // 3600} h {seconds % 3600 // 60:02d} min"
+
+
+class _Running:
+    """A job whose process runs. It leads its own session, so that Ctrl-C reaches only us."""
+
+    def __init__(self, job, environment):
+        self.job = job
+        self.start = time.monotonic()
+        self.start_fraction = job.fraction_done()
+        command = job.prepare()
+        os.makedirs(os.path.dirname(job.log), exist_ok=True)
+        with open(job.log, "wb") as log:
+            self.process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                env=environment,
+                start_new_session=True,
+            )
+
+    def seconds(self):
+        return time.monotonic() - self.start
+
+
+class Estimate:
+    """Time left, from how long finished jobs took and how far the running ones are."""
+
+    DEFAULT_S = {"training": None, "evaluation": 1.0}
+
+    def __init__(self):
+        self._seconds = {"training": [], "evaluation": []}
+
+    def add(self, kind, seconds):
+        """Notes a finished job."""
+        self._seconds[kind].append(seconds)
+
+    def mean(self, kind, running):
+        """Mean seconds of a job of `kind`, or None where nothing is known yet."""
+        known = self._seconds[kind]
+        if known:
+            return sum(known) / len(known)
+        rates = [
+            (r.job.fraction_done() - r.start_fraction) / r.seconds()
+            for r in running
+            if r.job.kind == kind and r.job.fraction_done() > r.start_fraction
+        ]
+        return len(rates) / sum(rates) if rates else self.DEFAULT_S[kind]
+
+    def left(self, waiting, running, parallel):
+        """Seconds until all is done, or None."""
+        total = 0.0
+        for kind in self._seconds:
+            mine = [r for r in running if r.job.kind == kind]
+            count = sum(1 for job in waiting if job.kind == kind)
+            if not mine and count == 0:
+                continue
+            mean = self.mean(kind, running)
+            if mean is None:
+                return None
+            total += mean * (count + sum(1.0 - r.job.fraction_done() for r in mine))
+        return total / parallel
+
+
+class Runner:
+    """Does what is missing of a study. A training's evaluations follow as soon as it is done."""
+
+    def __init__(self, trainings, evaluations, parallel, stream=sys.stdout):
+        self._trainings, self._evaluations = trainings, evaluations
+        self._parallel = parallel
+        self._stream = stream
+        self._live = stream.isatty()
+        self._last_line = 0.0
+        self._stops = 0
+        self._estimate = Estimate()
+        self._total = self._done = 0
+        self.failed = []
+        self._environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
+
+    def run(self):
+        """Returns True when everything ran, False when interrupted; see also `failed`."""
+        conflicts = [text for text in (job.conflict() for job in self._trainings) if text]
+        if conflicts:
+            raise RuntimeError(conflicts[0])
+        finished = {id(job): job.complete() for job in self._trainings}
+        waiting = [job for job in self._trainings if not finished[id(job)]]
+        evaluations = []
+        for job in self._evaluations:
+            if job.training is not None and not finished[id(job.training)]:
+                evaluations.append(job)
+            elif not job.complete():
+                evaluations.append(job)
+        self._total = len(self._trainings) + len(self._evaluations)
+        self._done = self._total - len(waiting) - len(evaluations)
+        self._say(
+            f"{self._total} jobs, {self._done} already done, {len(waiting)} trainings and "
+            f"{len(evaluations)} evaluations to do, {self._parallel} at a time"
+        )
+        handlers = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            return self._loop(waiting, evaluations, finished)
+        finally:
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
+
+    def _loop(self, trainings, evaluations, finished):
+        running = []
+        while (trainings or evaluations or running) and not self._stops:
+            while len(running) < self._parallel:
+                job = self._next(trainings, evaluations, finished)
+                if job is None:
+                    break
+                running.append(_Running(job, self._environment))
+            if not running:
+                break  # what is left waits for trainings that failed
+            self._progress(trainings + evaluations, running)
+            time.sleep(POLL_S)
+            for item in [r for r in running if r.process.poll() is not None]:
+                running.remove(item)
+                self._conclude(item, finished)
+        if self._stops:
+            self._end(running)
+            self._say("stopped; the same command goes on from here")
+            return False
+        for job in evaluations:
+            self.failed.append(f"{job.name}: not done, its training failed")
+        return True
+
+    def _next(self, trainings, evaluations, finished):
+        """Takes the next job that can start: evaluations first, they are short."""
+        for job in evaluations:
+            if job.training is None or finished[id(job.training)]:
+                evaluations.remove(job)
+                return job
+        return trainings.pop(0) if trainings else None
+
+    def _conclude(self, item, finished):
+        job, status = item.job, item.process.returncode
+        problem = f"exit status {status}" if status != 0 else None
+        if problem is None:
+            try:
+                with open(job.log, encoding="utf-8", errors="replace") as log:
+                    job.finish(log.read())
+                problem = None if job.complete() else "its output is incomplete"
+            except (OSError, ValueError, IndexError) as error:
+                problem = f"its output cannot be read: {error}"
+        if problem is None:
+            finished[id(job)] = True
+            self._done += 1
+            self._estimate.add(job.kind, item.seconds())
+            if job.kind == "training":
+                self._say(f"done: {job.name} in {duration(item.seconds())}")
+            return
+        self.failed.append(f"{job.name}: {problem} (log: {job.log})")
+        self._say(f"FAILED: {self.failed[-1]}")
+        with open(job.log, encoding="utf-8", errors="replace") as log:
+            for line in log.read().splitlines()[-SHOWN_LOG_LINES:]:
+                self._say(f"    | {line}")
+
+    def _on_signal(self, number, frame):
+        self._stops += 1
+
+    def _end(self, running):
+        """Interrupts the processes, which lets trainings save; a second Ctrl-C kills them."""
+        if running:
+            self._say(f"stopping {len(running)} jobs, trainings save first (again: kill)")
+        for item in running:
+            self._signal(item, signal.SIGINT)
+        deadline = time.monotonic() + PATIENCE_S
+        while any(item.process.poll() is None for item in running):
+            if self._stops > 1 or time.monotonic() > deadline:
+                for item in running:
+                    self._signal(item, signal.SIGKILL)
+            time.sleep(POLL_S)
+
+    @staticmethod
+    def _signal(item, number):
+        if item.process.poll() is None:
+            try:
+                os.killpg(item.process.pid, number)
+            except ProcessLookupError:
+                pass
+
+    def _progress(self, waiting, running):
+        """One line, rewritten in place on a terminal and every half minute elsewhere."""
+        now = time.monotonic()
+        if now - self._last_line < (0.5 if self._live else 30.0):
+            return
+        self._last_line = now
+        left = self._estimate.left(waiting, running, self._parallel)
+        parts = [
+            f"{r.job.method}/{r.job.seed} {100 * r.job.fraction_done():.0f}%"
+            for r in running
+            if r.job.kind == "training"
+        ]
+        text = f"{self._done}/{self._total} jobs, {len(self.failed)} failed, ETA "
+        text += "?" if left is None else duration(left)
+        if parts:
+            text += " | " + ", ".join(parts)
+        if self._live:
+            width = os.get_terminal_size(self._stream.fileno()).columns - 1
+            self._stream.write("\r\x1b[K" + text[: max(width, 20)])
+        else:
+            self._stream.write(text + "\n")
+        self._stream.flush()
+
+    def _say(self, text):
+        self._stream.write(("\r\x1b[K" if self._live else "") + text + "\n")
+        self._stream.flush()

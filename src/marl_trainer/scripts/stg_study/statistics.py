@@ -1,0 +1,55 @@
+"""Means, deviations, interquartile means and their bootstrap intervals."""
+
+import numpy as np
+
+TRIM = 0.25  # share cut off at each end by the interquartile mean
+RESAMPLES = 2000
+
+
+def mean_std(values):
+    """Mean and sample standard deviation; None for that of a single value."""
+    values = np.asarray(values, dtype=float)
+    return float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else None
+
+
+def interquartile_mean(values, axis=-1):
+    """Mean of the middle half: a quarter, rounded down, is cut off at each end."""
+    values = np.sort(np.asarray(values, dtype=float), axis=axis)
+    cut = int(TRIM * values.shape[axis])
+    middle = np.arange(cut, values.shape[axis] - cut)
+    return np.take(values, middle, axis=axis).mean(axis=axis)
+
+
+def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
+    """Interquartile mean of all scores and its stratified bootstrap interval.
+
+    The strata are the conditions: scores[condition] is [seeds, episodes], the same seeds in each.
+    A resample draws seeds, the same in every condition because they are one training run, and then
+    episodes of each seed in each condition. With one seed only episodes are drawn, and the interval
+    says nothing about other trainings.
+
+    Returns (interquartile mean, lower end, upper end), percentiles of the resamples.
+    """
+    strata = [np.asarray(stratum, dtype=float) for stratum in scores]
+    seeds = strata[0].shape[0]
+    if any(stratum.ndim != 2 or stratum.shape[0] != seeds for stratum in strata):
+        raise ValueError("every condition needs scores of the same seeds, [seeds, episodes]")
+    random = np.random.default_rng(seed)
+    drawn_seeds = random.integers(seeds, size=(resamples, seeds))
+    parts = []
+    for stratum in strata:
+        episodes = stratum.shape[1]
+        drawn = random.integers(episodes, size=(resamples, seeds, episodes))
+        parts.append(stratum[drawn_seeds[:, :, None], drawn].reshape(resamples, -1))
+    values = interquartile_mean(np.concatenate(parts, axis=1))
+    tail = 100.0 * (1.0 - confidence) / 2.0
+    low, high = np.percentile(values, [tail, 100.0 - tail])
+    point = interquartile_mean(np.concatenate([stratum.ravel() for stratum in strata]))
+    return float(point), float(low), float(high)
+
+
+def final_stage(points, share=0.2):
+    """The last `share` of a list of evaluation points, at least one of them."""
+    if not points:
+        raise ValueError("a curve needs at least one point")
+    return points[-max(1, int(round(share * len(points)))) :]
