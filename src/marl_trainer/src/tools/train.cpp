@@ -32,7 +32,7 @@ std::string PresetArgument(int argc, char** argv) {
 int Train(int argc, char** argv) {
   stg::TrainConfig config = stg::Preset(PresetArgument(argc, argv));
   std::string scenario_name = "medium", condition = "nominal", out;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, mix;
   bool resume = false;
   int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 
@@ -40,6 +40,10 @@ int Train(int argc, char** argv) {
   app.add_option("--scenario", scenario_name, "shipped name or file")->capture_default_str();
   app.add_option("--condition", condition, "stress condition of a shipped scenario")
       ->capture_default_str();
+  app.add_option("--train-on", mix,
+                 "conditions that the training environments cycle through, e.g. "
+                 "nominal,combined_stress; default: --condition alone")
+      ->delimiter(',');
   app.add_option("--preset", config.preset,
                  "fast (ours) or paper (Table S2); the defaults of the options below")
       ->capture_default_str();
@@ -60,7 +64,11 @@ int Train(int argc, char** argv) {
     }
     option->capture_default_str();
   });
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
 
   const stg::Scenario scenario =
       stg::LoadNamedScenario(stg::ScenarioFolder(), scenario_name, condition, overrides);
@@ -69,6 +77,10 @@ int Train(int argc, char** argv) {
   options.resume = resume;
   options.workers = workers;
   options.log = &std::cout;
+  for (const std::string& name : mix) {
+    options.mix.push_back(
+        stg::LoadNamedScenario(stg::ScenarioFolder(), scenario_name, name, overrides));
+  }
   options.stop = &stop_signal;
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
