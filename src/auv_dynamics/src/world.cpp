@@ -86,11 +86,14 @@ void World::AddContacts() {
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) {
       const Pack& d = distance(i, j);
-      // Beyond 40 softness lengths the softplus is below 1e-17 of a length.
-      if (!Any(d < Pack(reach + 40.0 * k))) continue;
+      // Beyond 40 softness lengths the softplus is below 1e-17 of a length; cut there lane by
+      // lane, so that no lane's result depends on the others.
+      const auto near = d < Pack(reach + 40.0 * k);
+      if (!Any(near)) continue;
       const Pack x = (Pack(reach) - d) * Pack(1.0 / k);
       const Pack softplus = Max(x, Pack(0.0)) + Log1p(Exp(-Abs(x)));
-      const Pack force = Pack(scenario_.contact.stiffness * k) * softplus;
+      const Pack force =
+          Select(near, Pack(scenario_.contact.stiffness * k) * softplus, Pack(0.0));
       const Vec3<Pack> away =
           (vehicle(i).p_WB - vehicle(j).p_WB) * (force / Max(d, Pack(1e-9)));
       contact_[static_cast<size_t>(i)] += away;
