@@ -140,12 +140,14 @@ void EnvGroup::TruthActions() {
       a[k] = Pack::load_aligned(buffer);
     }
     auto& executed = action_[static_cast<size_t>(i)];
-    SmoothAction(scenario_.control, size, a, executed.data());
     auto& tau = tau_[static_cast<size_t>(i)];
     if (scenario_.control.interface == ActionInterface::kTau6) {
+      // Rate limit and smoothing belong to the velocity interface.
+      for (int k = 0; k < 6; ++k) executed[static_cast<size_t>(k)] = Clip(a[k], -1.0, 1.0);
       tau = executed;
       continue;
     }
+    SmoothAction(scenario_.control, size, a, executed.data());
     const VehicleState<Pack>& s = world_.vehicle(i);
     Vec3<Pack> rpy = s.rpy;
     if (scenario_.vehicle.integrator == Integrator::kRk4) rpy = RpyOf(s.trig);
@@ -274,6 +276,8 @@ void EnvGroup::ComputeRewards() {
     communication = ReleaseCommunication(deviation, scenario_.sensing.range_m);
   } else if (acoustic_) {
     communication = acoustic_->MeanLinkQuality();
+  } else if (followed_quality_) {
+    communication = *followed_quality_;
   } else {
     // Eq. 33: mean of q (Eq. 5) over the edges that exist.
     Pack edges = zero;
