@@ -24,20 +24,20 @@ std::size_t Size(int a, int b = 1, int c = 1, int d = 1) {
 
 }  // namespace
 
-RolloutUnit::RolloutUnit(const Scenario& scenario, const ActorCritic& networks,
+RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCritic& networks,
                          const TrainConfig& config, int first_env, int envs)
     : networks_(networks),
       seed_(TrainingSeed(config.seed)),
       first_env_(first_env),
       envs_(envs),
       horizon_(config.horizon),
-      agents_(scenario.agents),
-      episode_steps_(scenario.time.episode_steps),
+      agents_(scenarios.front().agents),
+      episode_steps_(scenarios.front().time.episode_steps),
       total_envs_(config.envs),
       stagger_(config.stagger),
       gamma_(static_cast<float>(config.gamma)),
       lambda_(static_cast<float>(config.lambda)),
-      actor_(networks.actor, envs * scenario.agents),
+      actor_(networks.actor, envs * scenarios.front().agents),
       critic_(networks.critic, kValueRows),
       observation_moments_(networks.actor.inputs()),
       state_moments_(networks.critic.inputs()) {
@@ -45,9 +45,11 @@ RolloutUnit::RolloutUnit(const Scenario& scenario, const ActorCritic& networks,
   EnvOptions options;
   options.seed = seed_;
   options.total_envs = config.envs;
-  options.curriculum = scenario.reset.curriculum;
   for (int env = 0; env < envs; env += kLanes) {
     options.first_env = first_env + env;
+    const Scenario& scenario =
+        scenarios[static_cast<std::size_t>(options.first_env / kLanes) % scenarios.size()];
+    options.curriculum = scenario.reset.curriculum;
     groups_.emplace_back(scenario, options);
   }
   const int features = networks.actor.inputs(), state = networks.critic.inputs();

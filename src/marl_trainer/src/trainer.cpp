@@ -38,12 +38,31 @@ double Metric(const MetricSummary& summary, const std::string& name) {
   return 0.0;
 }
 
+/// The scenarios to train in, all with the observation and episode of the first.
+std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>& mix,
+                          const TrainConfig& config) {
+  std::vector<Scenario> all;
+  for (const Scenario& s : mix) all.push_back(VariantScenario(Valid(s, config), config.variant));
+  if (all.empty()) all.push_back(VariantScenario(scenario, config.variant));
+  const Scenario base = VariantScenario(scenario, config.variant);
+  for (const Scenario& s : all) {
+    if (s.agents != base.agents || s.target.count != base.target.count ||
+        s.time.episode_steps != base.time.episode_steps ||
+        s.control.interface != base.control.interface ||
+        ObservationLayout(s) != ObservationLayout(base)) {
+      throw UserError("the scenarios to train in differ in swarm, episode or observation");
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 Trainer::Trainer(const Scenario& scenario, const TrainConfig& config, const Options& options)
     : scenario_(Valid(scenario, config)),
       train_scenario_(VariantScenario(scenario, config.variant)),
       validation_scenario_(ValidationScenario(scenario, config.variant)),
+      mix_(Mix(scenario, options.mix, config)),
       config_(config),
       options_(options),
       pool_(options.workers),
@@ -57,14 +76,14 @@ Trainer::Trainer(const Scenario& scenario, const TrainConfig& config, const Opti
   start_ = Now();
   for (int first = 0; first < config.envs; first += RolloutUnit::kEnvs) {
     units_.push_back(
-        std::make_unique<RolloutUnit>(train_scenario_, networks_, config_, first,
+        std::make_unique<RolloutUnit>(mix_, networks_, config_, first,
                                       std::min(RolloutUnit::kEnvs, config.envs - first)));
   }
   state_.parameters = networks_.Initialise(config.seed, config.initial_log_std);
   state_.adam.first.assign(networks_.parameters(), 0.0F);
   state_.adam.second.assign(networks_.parameters(), 0.0F);
   state_.config = ToJson(config_).dump();
-  state_.scenario = ToYaml(train_scenario_);
+  for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
   UpdateInputScales();
   OpenFolder();
 }

@@ -38,7 +38,7 @@ class RolloutUnit {
   static constexpr int kEnvs = 16;  ///< of a full unit; the last one may be smaller
 
   /// @param first_env index of the unit's first environment.
-  RolloutUnit(const Scenario& scenario, const ActorCritic& networks, const TrainConfig& config,
+  RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCritic& networks, const TrainConfig& config,
               int first_env, int envs);
 
   /// Steps every environment `horizon` times with exploration, then values and

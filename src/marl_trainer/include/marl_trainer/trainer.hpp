@@ -29,6 +29,9 @@ class Trainer {
     std::ostream* log = nullptr;
     /// Set non-zero (by a signal) to save at the next boundary and return.
     const std::atomic<int>* stop = nullptr;
+    /// Scenarios that the training environments cycle through (kLanes at a time), e.g.
+    /// stress conditions; empty: the scenario alone. Validation is on the scenario.
+    std::vector<Scenario> mix;
     std::int64_t halt_after = 0;  ///< > 0: as if `stop` were set after so many steps
   };
 
@@ -60,6 +63,7 @@ class Trainer {
   double Elapsed() const;
 
   const Scenario scenario_, train_scenario_, validation_scenario_;
+  const std::vector<Scenario> mix_;  // never empty; the scenarios trained in
   const TrainConfig config_;
   const Options options_;
   WorkerPool pool_;

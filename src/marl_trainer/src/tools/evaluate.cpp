@@ -8,6 +8,7 @@
 #include "auv_dynamics/error.hpp"
 #include "auv_dynamics/scenario_yaml.hpp"
 #include "marl_trainer/evaluation.hpp"
+#include "marl_trainer/train_config.hpp"
 
 namespace {
 
@@ -31,7 +32,7 @@ void WriteCsv(const std::string& file, const std::vector<stg::EpisodeMetrics>& e
 /// JSON object on the last line.
 int main(int argc, char** argv) {
   CLI::App app("Evaluates a policy or built-in controller on held-out episodes");
-  std::string policy, scenario = "medium", condition = "nominal", csv;
+  std::string policy, scenario = "medium", condition = "nominal", variant = "stg", csv;
   std::vector<std::string> overrides;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 3000;
@@ -41,6 +42,10 @@ int main(int argc, char** argv) {
   app.add_option("--condition", condition,
                  "nominal, fast_target, far_initialization, limited_sensing, "
                  "degraded_communication, combined_stress")
+      ->capture_default_str();
+  app.add_option("--variant", variant,
+                 "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of "
+                 "the policy; the reward stays the scenario's")
       ->capture_default_str();
   app.add_option("--episodes", episodes, "number of episodes")
       ->check(CLI::Range(1, 1000000))
@@ -60,8 +65,8 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {
-    const stg::Scenario s =
-        stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, overrides);
+    const stg::Scenario s = stg::ValidationScenario(
+        stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, overrides), variant);
     stg::Controller controller = stg::MakeController(policy, s);
     const auto given = [](double option, double* value) {
       if (option >= 0.0) *value = option;
