@@ -50,6 +50,10 @@ class World {
   void Place(int lane, const std::vector<Vec3<double>>& p_WB,
              const std::vector<Vec3<double>>& p_WT, const std::vector<Vec3<double>>& v_WT);
 
+  /// Takes the present state of a swarm that moves elsewhere, in every lane; clocks stand still.
+  void Follow(const std::vector<NavState>& vehicles,
+              const std::vector<TargetState<double>>& targets);
+
   /// One physics step of dt under the commanded wrench of each vehicle (body
   /// axes). Adds contact forces, clips to the actuator limits, integrates,
   /// applies walls, moves targets. A non-finite wrench is a bug of the caller.

@@ -29,6 +29,7 @@ WorldNode::WorldNode()
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
       episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       recorder_(TextParameter("recorder", "")),
+      wait_for_metrics_(FlagParameter("wait_for_metrics", false)),
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
@@ -74,7 +75,7 @@ double WorldNode::WaitTime() const {
 void WorldNode::Advance() {
   const ros::WallTime now = ros::WallTime::now();
   if (Complete()) {
-    if (!running_ && !RecorderReady()) return;
+    if (!running_ && !ListenersReady()) return;
     if (running_ && now < due_) return;
   } else {
     if (now < deadline_) return;
@@ -95,11 +96,13 @@ void WorldNode::Advance() {
   }
 }
 
-/// A recorder that joins while step 0 stands misses nothing, as every topic is latched.
-bool WorldNode::RecorderReady() {
-  if (recorder_.empty()) return true;
+/// Who joins while step 0 stands misses nothing, as every topic is latched.
+bool WorldNode::ListenersReady() {
   const ros::WallTime now = ros::WallTime::now();
   if (now > deadline_) return true;
+  // The metrics node announces summaries once it has seen all of step 0.
+  if (wait_for_metrics_ && subscribers_.back().getNumPublishers() == 0) return false;
+  if (recorder_.empty()) return true;
   if (recorder_seen_.isZero()) {
     ros::V_string nodes;
     if (!ros::master::getNodes(nodes)) return false;

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "auv_dynamics/nodes/health.hpp"
 #include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/world.hpp"
-#include "auv_dynamics/nodes/health.hpp"
 #include "world_publisher.hpp"
 
 namespace stg {
@@ -54,7 +54,7 @@ class WorldNode {
 
   double WaitTime() const;
   void Advance();
-  bool RecorderReady();
+  bool ListenersReady();
   bool Complete() const;
   void CountMisses();
   void StepWorld();
@@ -71,7 +71,8 @@ class WorldNode {
   double real_time_factor_, deadline_s_, start_timeout_s_, summary_timeout_s_;
   int episodes_;          ///< to run; 0: until stopped
   std::string recorder_;  ///< node that must be up before the run starts, or empty
-  std::uint64_t seed_;    ///< episode e is drawn from seed_ + e - seed_episode_
+  bool wait_for_metrics_;
+  std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
   std::uint32_t seed_episode_ = 0;
   std::uint32_t episode_ = 0, step_ = 0;
   TimeNs start_;          ///< clock time of the present episode's step 0

@@ -1,11 +1,13 @@
 #include "world_publisher.hpp"
 
 #include <rosgraph_msgs/Clock.h>
+#include <std_msgs/String.h>
 
 #include <cmath>
 
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
+#include "auv_dynamics/scenario_yaml.hpp"
 
 namespace stg {
 namespace {
@@ -52,6 +54,10 @@ WorldPublisher::WorldPublisher(const Scenario& scenario, double frame_rate_hz)
   }
   detection_message_.header.frame_id = frames::kWorld;
   SendWorldNed();
+  std_msgs::String resolved;
+  resolved.data = ToYaml(scenario_);
+  scenario_topic_ = node.advertise<std_msgs::String>(topics::kScenario, 1, true);
+  scenario_topic_.publish(resolved);
 }
 
 void WorldPublisher::SendWorldNed() {

@@ -43,7 +43,7 @@ class WorldPublisher {
   std::vector<ros::Publisher> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;
   auv_msgs::TargetDetection detection_message_;
-  ros::Publisher clock_;
+  ros::Publisher clock_, scenario_topic_;
   tf2_ros::TransformBroadcaster frames_;
   tf2_ros::StaticTransformBroadcaster static_frames_;
   std::vector<geometry_msgs::TransformStamped> transforms_;

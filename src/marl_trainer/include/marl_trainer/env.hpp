@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "auv_dynamics/world.hpp"
@@ -23,6 +24,15 @@ struct EnvOptions {
   int total_envs = kLanes;
   bool curriculum = false;  ///< easy, medium, hard by r (scenario.reset); else the scenario's stage
   int first_episode_steps = 0;  ///< > 0: the first episode is this short, to spread episode ends
+};
+
+/// True state of a swarm that moves elsewhere, and what led to it.
+struct FollowedSwarm {
+  std::vector<NavState> vehicles;             ///< [agents]
+  std::vector<TargetState<double>> targets;   ///< [targets]
+  /// [agents]: tau / tau_max and executed action of the decision that led here.
+  std::vector<std::array<double, 6>> fractions, actions;
+  double link_quality = 0.0;  ///< mean over AUVs of the mean link quality each one knows, now
 };
 
 /// kLanes environments in lockstep, one per SIMD lane: world, sensing, channel
@@ -78,6 +88,15 @@ class EnvGroup {
   void Place(const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
              const std::vector<Vec3<double>>& v_WT);
 
+  /// For a swarm that moves elsewhere, such as a graph of nodes: judges its true states as if they
+  /// were this object's own. All lanes are alike. Build the object in truth mode: it has no agents
+  /// to run. Rewards, states, terms, truncated and metrics are then as after Step, except that a
+  /// finished episode does not restart.
+  void FollowStart(const FollowedSwarm& swarm);
+  void FollowStep(const FollowedSwarm& swarm);
+  /// Metrics of the present episode up to now.
+  EpisodeMetrics MetricsSoFar(int lane) const;
+
  private:
   struct Totals;
   struct Acoustic;
@@ -104,6 +123,7 @@ class EnvGroup {
   int episode_steps_;
   std::uint64_t round_ = 0;
   bool truncated_ = false;
+  std::optional<Pack> followed_quality_;
 
   std::vector<Knowledge<Pack>> truth_;          // what the truth mode lets each AUV know
   std::vector<std::vector<Pack>> error_window_;  // [agent][k]

@@ -19,6 +19,7 @@ inline constexpr char kWrench[] = "wrench";
 // Of the whole run.
 inline std::string TargetOdom(int k) { return "/target_" + std::to_string(k) + "/odom"; }
 inline constexpr char kClock[] = "/clock";
+inline constexpr char kScenario[] = "/scenario";
 inline constexpr char kReset[] = "/reset";
 inline constexpr char kPause[] = "/pause";
 inline constexpr char kChannelDone[] = "/acoustic_channel/done";

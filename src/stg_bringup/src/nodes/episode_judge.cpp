@@ -1,0 +1,165 @@
+#include "episode_judge.hpp"
+
+#include <algorithm>
+
+#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
+
+namespace stg {
+namespace {
+
+/// The environment in the mode without agents: they run elsewhere.
+Scenario WithoutAgents(Scenario scenario) {
+  scenario.mode = InformationMode::kTruth;
+  return scenario;
+}
+
+}  // namespace
+
+EpisodeJudge::EpisodeJudge(const Scenario& scenario)
+    : scenario_(WithoutAgents(scenario)), env_(scenario_, EnvOptions()) {
+  const auto n = static_cast<std::size_t>(scenario_.agents);
+  swarm_.vehicles.resize(n);
+  swarm_.targets.resize(static_cast<std::size_t>(scenario_.target.count));
+  swarm_.fractions.assign(n, {});
+  swarm_.actions.assign(n, {});
+}
+
+EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
+  Verdict verdict;
+  const bool truth = frame.HasTruth();
+  const bool follows =
+      truth && started_ && frame.sync->episode == episode_ && frame.sync->step > step_;
+  if (started_ && !follows && (truth || frame.sync)) {
+    // Cut short by a reset: what there is still counts as an incomplete episode.
+    complete_ = false;
+    started_ = false;
+    if (env_.step() > 0) FillSummary(frame.sync->header.stamp, env_.MetricsSoFar(0), &verdict);
+  }
+  if (!truth) {
+    complete_ = false;
+    return verdict;
+  }
+  SetTruth(frame);
+  if (!follows) {
+    if (frame.sync->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps)) {
+      return verdict;  // the end of an episode that was not watched
+    }
+    for (auto* v : {&swarm_.fractions, &swarm_.actions})
+      std::fill(v->begin(), v->end(), std::array<double, 6>{});
+    deadline_misses_ = 0;
+    started_ = true;
+    complete_ = frame.sync->step == 0;
+    env_.FollowStart(swarm_);
+  } else {
+    complete_ = complete_ && frame.sync->step == step_ + 1;
+    const std::vector<float> state(env_.states(), env_.states() + env_.state_size());
+    env_.FollowStep(swarm_);
+    FillReport(frame, state, &verdict);
+    const bool last = frame.sync->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
+    if (last) {
+      started_ = false;
+      complete_ = complete_ && env_.truncated();
+      FillSummary(frame.sync->header.stamp, env_.MetricsSoFar(0), &verdict);
+    }
+  }
+  episode_ = frame.sync->episode;
+  step_ = frame.sync->step;
+  seed_ = frame.sync->seed;
+  if (started_) TakeAnswers(frame);
+  return verdict;
+}
+
+void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
+  for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
+    swarm_.vehicles[i] = NavOf(*frame.vehicles[i], 0);
+  }
+  for (std::size_t k = 0; k < swarm_.targets.size(); ++k) {
+    swarm_.targets[k].p_WT = VectorOf(frame.targets[k]->pose.pose.position);
+    swarm_.targets[k].v_WT = VectorOf(frame.targets[k]->twist.twist.linear);
+  }
+  double sum = 0.0;
+  for (const auto& task : frame.tasks) {
+    if (task) sum += task->graph_summary[1];
+  }
+  swarm_.link_quality = sum / static_cast<double>(frame.tasks.size());
+}
+
+/// What the decision at this frame commands; it is judged with the next frame.
+void EpisodeJudge::TakeAnswers(const SwarmFrame& frame) {
+  bool missed = false;
+  for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
+    if (!frame.wrenches[i]) {
+      missed = true;  // the world holds the last one, and so does this
+    } else {
+      const auto& w = frame.wrenches[i]->wrench;
+      const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
+      for (std::size_t k = 0; k < 6; ++k) {
+        swarm_.fractions[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
+      }
+    }
+    const auto& task = frame.tasks[i];
+    if (!task) continue;
+    std::copy_n(task->action.begin(), std::min<std::size_t>(6, task->action.size()),
+                swarm_.actions[i].begin());
+    policy_id_ = task->policy_id;
+  }
+  if (missed) ++deadline_misses_;
+}
+
+void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>& state,
+                              Verdict* verdict) const {
+  verdict->has_report = true;
+  auv_msgs::StepReport& m = verdict->report;
+  m.header.stamp = frame.sync->header.stamp;
+  m.header.frame_id = frames::kWorld;
+  m.episode = episode_;
+  m.step = frame.sync->step - 1;
+  m.global_state = state;
+  m.truncated = env_.truncated();
+  if (m.truncated) m.final_state.assign(env_.states(), env_.states() + env_.state_size());
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const RewardTerms<Pack>& r = env_.terms(i);
+    m.agent_rewards.push_back(Lane(r.total, 0));
+    m.r_track.push_back(Lane(r.track, 0));
+    m.r_obs.push_back(Lane(r.observation, 0));
+    m.r_coord.push_back(Lane(r.coordination, 0));
+    m.r_comm.push_back(Lane(r.communication, 0));
+    m.r_sem.push_back(Lane(r.semantic, 0));
+    m.r_sep.push_back(Lane(r.separation, 0));
+    m.cost.push_back(Lane(r.cost, 0));
+    m.distances.push_back(Lane(env_.truth(i).distance, 0));
+    m.reward += m.agent_rewards.back() / scenario_.agents;
+  }
+  m.colliding_pairs = static_cast<std::uint32_t>(Lane(env_.world().colliding_pairs(), 0));
+  m.smallest_separation = scenario_.agents > 1 ? Lane(env_.world().smallest_separation(), 0) : 0.0;
+}
+
+void EpisodeJudge::FillSummary(const ros::Time& stamp, const EpisodeMetrics& e,
+                               Verdict* verdict) const {
+  verdict->has_summary = true;
+  verdict->metrics = e;
+  auv_msgs::EpisodeSummary& m = verdict->summary;
+  m.header.stamp = stamp;
+  m.header.frame_id = frames::kWorld;
+  m.episode = episode_;
+  m.seed = seed_;
+  m.scenario = scenario_.name;
+  m.policy_id = policy_id_;
+  m.steps = static_cast<std::uint32_t>(e.steps);
+  m.complete = complete_;
+  m.episode_return = e.episode_return;
+  m.tail_distance = e.tail_distance;
+  m.tracking_error = e.tracking_error;
+  m.lost_rate = e.lost_rate;
+  m.action_norm = e.action_norm;
+  m.saturation_rate = e.saturation_rate;
+  m.control_cost = e.control_cost;
+  m.communication_quality = e.communication_quality;
+  m.colliding_pairs = e.colliding_pairs;
+  m.min_separation = e.min_separation;
+  m.time_to_band = e.time_to_band;
+  m.deadline_misses = deadline_misses_;
+}
+
+}  // namespace stg

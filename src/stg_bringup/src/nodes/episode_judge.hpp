@@ -1,0 +1,52 @@
+#pragma once
+
+#include <auv_msgs/EpisodeSummary.h>
+#include <auv_msgs/StepReport.h>
+
+#include <string>
+#include <vector>
+
+#include "marl_trainer/env.hpp"
+#include "swarm_frames.hpp"
+
+namespace stg {
+
+/// Judges the run frame by frame with the environment's own reward and metrics.
+class EpisodeJudge {
+ public:
+  explicit EpisodeJudge(const Scenario& scenario);
+
+  /// What one frame led to. A report answers the step that ended at this frame.
+  struct Verdict {
+    bool has_report = false, has_summary = false;
+    auv_msgs::StepReport report;
+    auv_msgs::EpisodeSummary summary;
+    EpisodeMetrics metrics;  ///< of the summary
+  };
+  /// Frames come in order of time. A frame without truth ends the episode it belongs to.
+  Verdict Judge(const SwarmFrame& frame);
+
+  /// Present truth, for display.
+  const EnvGroup& env() const { return env_; }
+  std::uint32_t episode() const { return episode_; }
+  std::uint32_t step() const { return step_; }
+  bool started() const { return started_; }
+  const std::string& policy_id() const { return policy_id_; }
+
+ private:
+  void SetTruth(const SwarmFrame& frame);
+  void TakeAnswers(const SwarmFrame& frame);
+  void FillReport(const SwarmFrame& frame, const std::vector<float>& state, Verdict* verdict) const;
+  void FillSummary(const ros::Time& stamp, const EpisodeMetrics& metrics, Verdict* verdict) const;
+
+  Scenario scenario_;
+  EnvGroup env_;
+  FollowedSwarm swarm_;
+  bool started_ = false;  ///< an episode is being judged
+  bool complete_ = true;  ///< no step of it is missing
+  std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0;
+  std::uint64_t seed_ = 0;
+  std::string policy_id_;
+};
+
+}  // namespace stg

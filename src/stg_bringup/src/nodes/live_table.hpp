@@ -1,0 +1,46 @@
+#pragma once
+
+#include <auv_msgs/LinkStates.h>
+
+#include <string>
+#include <vector>
+
+#include "episode_judge.hpp"
+
+namespace stg {
+
+/// The run in the terminal: redrawn in place where standard output is a terminal, else one line per
+/// second.
+class LiveTable {
+ public:
+  LiveTable(const Scenario& scenario, int episodes);
+
+  /// What the agents and the channel say; kept for the next drawing.
+  void SetPhase(int agent, int phase) { phases_[static_cast<std::size_t>(agent)] = phase; }
+  void SetLinks(const auv_msgs::LinkStates& links);
+
+  /// Draws when it is time to. @param now simulated time since the episode's step 0 [s]
+  void Tick(const EpisodeJudge& judge, double now_s);
+
+  /// Leaves the table as it is and prints an episode's metrics below it.
+  void PrintEpisode(const auv_msgs::EpisodeSummary& summary, const EpisodeMetrics& metrics);
+  /// Mean and deviation over all episodes so far.
+  void PrintRun(const std::vector<EpisodeMetrics>& episodes) const;
+
+ private:
+  std::string Table(const EpisodeJudge& judge, double now_s) const;
+  std::string Line(const EpisodeJudge& judge, double now_s) const;
+
+  Scenario scenario_;
+  int episodes_;
+  bool terminal_;
+  int drawn_lines_ = 0;
+  ros::WallTime drawn_;
+  double drawn_s_ = 0.0, speed_ = 0.0;
+  std::uint32_t drawn_episode_ = 0;
+  std::vector<int> phases_;            ///< [agents], -1: not heard yet
+  std::vector<double> age_, quality_;  ///< [agents], mean over incoming links
+  std::vector<int> live_links_;        ///< [agents], incoming links with usable quality
+};
+
+}  // namespace stg

@@ -1,0 +1,4 @@
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "metrics_node.hpp"
+
+int main(int argc, char** argv) { return stg::RunNode<stg::MetricsNode>(argc, argv, "metrics"); }

@@ -1,0 +1,182 @@
+#include "metrics_node.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "acoustic_channel/nodes/topics.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
+#include "stg_agent/nodes/topics.hpp"
+
+namespace stg {
+namespace {
+
+/// Without limit: in lockstep nobody waits for this node, and a lost message spoils an episode.
+constexpr std::uint32_t kUnlimited = 0;
+
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+}  // namespace
+
+MetricsNode::MetricsNode()
+    : scenario_(LoadScenarioParameters()),
+      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
+              scenario_.time.decision_steps),
+      patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
+      show_table_(FlagParameter("table", true)),
+      frames_(scenario_.agents, scenario_.target.count),
+      judge_(scenario_),
+      table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
+      file_name_(TextParameter("summary_file", "")),
+      health_("metrics", "simulation", [this](auto& status) { Report(status); }) {
+  if (!file_name_.empty()) {
+    file_.open(file_name_, std::ios::trunc);
+    if (!file_) throw UserError("summary_file: cannot write '" + file_name_ + "'");
+  }
+  step_report_ = ros::NodeHandle().advertise<auv_msgs::StepReport>(topics::kStepReport, 1000, true);
+  Subscribe();
+}
+
+MetricsNode::~MetricsNode() {
+  if (show_table_) table_.PrintRun(episodes_);
+}
+
+void MetricsNode::Subscribe() {
+  ros::NodeHandle node;
+  // Puts each message of one topic into its slot of the frame with its stamp.
+  const auto into_frames = [&](const std::string& topic, auto slot, auto usable) {
+    using Slot = std::remove_reference_t<decltype(slot(std::declval<SwarmFrame&>()))>;
+    using Message = std::remove_const_t<typename Slot::element_type>;
+    const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
+        [this, slot, usable](const boost::shared_ptr<const Message>& m) {
+          if (!usable(*m)) {
+            ++bad_messages_;
+          } else if (SwarmFrame* frame = frames_.At(m->header.stamp)) {
+            Slot& place = slot(*frame);
+            if (!place) place = m;
+          }
+        };
+    subscribers_.push_back(
+        node.subscribe<Message>(topic, kUnlimited, callback, ros::VoidConstPtr(), NoDelay()));
+  };
+  const auto any = [](const auto&) { return true; };
+  into_frames(
+      topics::AuvTopic(0, topics::kSensorSync), [](SwarmFrame & f) -> auto& { return f.sync; },
+      any);
+  for (int k = 0; k < scenario_.target.count; ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    into_frames(
+        topics::TargetOdom(k), [u](SwarmFrame & f) -> auto& { return f.targets[u]; },
+        [](const auto& m) { return FiniteOdometry(m); });
+  }
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    into_frames(
+        topics::AuvTopic(i, topics::kOdom), [u](SwarmFrame & f) -> auto& { return f.vehicles[u]; },
+        [](const auto& m) { return FiniteOdometry(m); });
+    into_frames(
+        topics::AuvTopic(i, topics::kTaskState),
+        [u](SwarmFrame & f) -> auto& { return f.tasks[u]; },
+        [](const auto& m) { return Finite(m.graph_summary[1]); });
+    into_frames(
+        topics::AuvTopic(i, topics::kWrench),
+        [u](SwarmFrame & f) -> auto& { return f.wrenches[u]; },
+        [i](const auto& m) {
+          return m.header.frame_id == frames::Body(i) && FiniteVector(m.wrench.force) &&
+                 FiniteVector(m.wrench.torque);
+        });
+  }
+  subscribers_.push_back(
+      node.subscribe(topics::kLinks, 10, &MetricsNode::OnLinks, this, NoDelay()));
+}
+
+void MetricsNode::Spin() {
+  while (ros::ok()) {
+    HandleMessages(0.1);
+    JudgeFrames();
+    if (show_table_) table_.Tick(judge_, now_s_);
+    health_.Tick();
+  }
+}
+
+void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
+  table_.SetLinks(*message);
+}
+
+void MetricsNode::JudgeFrames() {
+  SwarmFrame frame;
+  while (frames_.Take(patience_s_, &frame)) {
+    if (!frame.Complete()) {
+      ++incomplete_frames_;
+    } else if (!summary_) {
+      // Tells the world, too, that nothing of this run will be missed.
+      summary_ =
+          ros::NodeHandle().advertise<auv_msgs::EpisodeSummary>(topics::kEpisodeSummary, 10, true);
+    }
+    for (int i = 0; i < scenario_.agents; ++i) {
+      const auto& task = frame.tasks[static_cast<std::size_t>(i)];
+      if (task) table_.SetPhase(i, task->phase);
+    }
+    if (frame.sync) now_s_ = Seconds(period_) * frame.sync->step;
+    Publish(judge_.Judge(frame));
+  }
+}
+
+void MetricsNode::Publish(const EpisodeJudge::Verdict& verdict) {
+  if (verdict.has_report) {
+    step_report_.publish(verdict.report);
+    reports_.Add();
+  }
+  if (!verdict.has_summary) return;
+  if (verdict.summary.complete) episodes_.push_back(verdict.metrics);
+  if (show_table_) table_.PrintEpisode(verdict.summary, verdict.metrics);
+  if (file_.is_open()) WriteSummary(verdict);
+  if (summary_) summary_.publish(verdict.summary);
+}
+
+/// One line per episode: CSV with a header, or for any other file name a JSON object.
+void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
+  const auto& s = verdict.summary;
+  const auto items = verdict.metrics.Items();
+  file_.precision(17);
+  if (EndsWith(file_name_, ".csv")) {
+    if (file_.tellp() == 0) {
+      file_ << "episode,seed,scenario,policy,steps,complete,deadline_misses";
+      for (const auto& item : items) file_ << "," << item.first;
+      file_ << "\n";
+    }
+    file_ << s.episode << "," << s.seed << "," << s.scenario << "," << s.policy_id << "," << s.steps
+          << "," << (s.complete ? 1 : 0) << "," << s.deadline_misses;
+    for (const auto& item : items) file_ << "," << item.second;
+    file_ << std::endl;
+    return;
+  }
+  nlohmann::ordered_json line{{"episode", s.episode},
+                              {"seed", s.seed},
+                              {"scenario", s.scenario},
+                              {"policy", s.policy_id},
+                              {"steps", s.steps},
+                              {"complete", bool(s.complete)},
+                              {"deadline_misses", s.deadline_misses}};
+  for (const auto& item : items) line[item.first] = item.second;
+  file_ << line.dump() << std::endl;
+}
+
+void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+  const double rate = static_cast<double>(reports_.TakeRecent()) / health_.period_s();
+  status.add("steps judged", reports_.total());
+  status.add("steps per second", rate);
+  status.add("steps with a message missing", incomplete_frames_);
+  status.add("messages refused", bad_messages_);
+  status.add("episodes complete", episodes_.size());
+  if (reports_.total() == 0) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing to judge yet");
+  }
+}
+
+}  // namespace stg

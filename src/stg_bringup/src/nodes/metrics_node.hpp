@@ -1,0 +1,51 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "auv_dynamics/nodes/health.hpp"
+#include "live_table.hpp"
+#include "swarm_frames.hpp"
+
+namespace stg {
+
+/// Watches the whole swarm, truth included: rewards of every step, metrics of every episode, and a
+/// live table in the terminal. Nothing listens to it but the world, which waits for the last
+/// episode's summary before it ends the run.
+class MetricsNode {
+ public:
+  /// Throws UserError.
+  MetricsNode();
+  ~MetricsNode();
+  void Spin();
+
+ private:
+  void Subscribe();
+  void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
+  void JudgeFrames();
+  void Publish(const EpisodeJudge::Verdict& verdict);
+  void WriteSummary(const EpisodeJudge::Verdict& verdict);
+  void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  Scenario scenario_;
+  TimeNs period_;  ///< of decisions [ns]
+  double patience_s_;
+  bool show_table_;
+  SwarmFrames frames_;
+  EpisodeJudge judge_;
+  LiveTable table_;
+  double now_s_ = 0.0;
+  std::vector<EpisodeMetrics> episodes_;  ///< complete ones
+  std::string file_name_;
+  std::ofstream file_;
+  EventRate reports_;
+  std::uint64_t incomplete_frames_ = 0, bad_messages_ = 0;
+  ros::Publisher step_report_, summary_;
+  std::vector<ros::Subscriber> subscribers_;
+  Health health_;
+};
+
+}  // namespace stg

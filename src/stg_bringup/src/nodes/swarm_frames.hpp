@@ -1,0 +1,51 @@
+#pragma once
+
+#include <auv_msgs/SensorSync.h>
+#include <auv_msgs/TaskState.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/time.h>
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "auv_dynamics/scenario.hpp"
+#include "auv_dynamics/types.hpp"
+
+namespace stg {
+
+/// All messages of the swarm with one stamp. A null pointer: not here (yet).
+struct SwarmFrame {
+  auv_msgs::SensorSync::ConstPtr sync;
+  std::vector<nav_msgs::Odometry::ConstPtr> vehicles;            ///< [agents]
+  std::vector<nav_msgs::Odometry::ConstPtr> targets;             ///< [targets]
+  std::vector<auv_msgs::TaskState::ConstPtr> tasks;              ///< [agents]
+  std::vector<geometry_msgs::WrenchStamped::ConstPtr> wrenches;  ///< [agents]
+  ros::WallTime opened;
+
+  /// The truth is here: what no step can be judged without.
+  bool HasTruth() const;
+  /// Everything is here.
+  bool Complete() const;
+};
+
+/// Sorts messages of many topics by stamp and gives frames in order of time.
+class SwarmFrames {
+ public:
+  SwarmFrames(int agents, int targets);
+
+  /// The frame of a stamp, or null when it is older than one already taken.
+  SwarmFrame* At(const ros::Time& stamp);
+
+  /// The oldest frame when it is complete, or when it is `patience_s` old on the wall clock and a
+  /// later one is there; false: wait.
+  bool Take(double patience_s, SwarmFrame* frame);
+
+ private:
+  std::size_t agents_, targets_;
+  ros::Time taken_;
+  std::map<ros::Time, SwarmFrame> frames_;
+};
+
+}  // namespace stg
