@@ -7,9 +7,11 @@ namespace stg {
 
 EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   const auto n = static_cast<size_t>(s.agents);
-  const std::vector<Agent> swarm = MakeAgents(s);
+  const Agent first(s, 0);
+  agents.reserve(n * kLanes);
   for (int lane = 0; lane < kLanes; ++lane) {
-    agents.insert(agents.end(), swarm.begin(), swarm.end());
+    // Not plain copies: those would lose the memory that an agent reserves.
+    for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
     channels.push_back(MakeChannel(s));
   }
   sequence.assign(n * kLanes, 0);
