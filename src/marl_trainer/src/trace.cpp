@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <set>
 #include <sstream>
 
 #include "auv_dynamics/error.hpp"
@@ -16,22 +17,50 @@ namespace stg {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uintmax_t kLargestConfig = 1U << 20;
+constexpr std::uintmax_t kLargestSteps = 1U << 28;
+
+const std::set<std::string> kConfigKeys = {"agents",
+                                           "dt",
+                                           "action_interface",
+                                           "action_smoothing",
+                                           "action_max_delta",
+                                           "velocity_gain",
+                                           "rate_gain",
+                                           "attitude_gain",
+                                           "reward",
+                                           "reward_weights",
+                                           "initial_positions",
+                                           "target_position",
+                                           "target_velocity"};
 
 [[noreturn]] void Fail(const std::string& file, int line, const std::string& what) {
   throw UserError(file + ":" + std::to_string(line) + ": " + what);
+}
+
+void RequireFile(const std::string& file, std::uintmax_t largest) {
+  if (!std::filesystem::is_regular_file(file)) throw UserError(file + ": no such file");
+  if (std::filesystem::file_size(file) > largest) {
+    throw UserError(file + ": larger than " + std::to_string(largest) + " bytes");
+  }
 }
 
 /// One key of config.yaml, checked.
 class Config {
  public:
   explicit Config(const std::string& file) : file_(file) {
-    if (!std::filesystem::is_regular_file(file)) throw UserError(file + ": no such file");
+    RequireFile(file, kLargestConfig);
     try {
       root_ = YAML::LoadFile(file);
     } catch (const YAML::Exception& e) {
       Fail(file, e.mark.line + 1, e.msg);
     }
     if (!root_.IsMap()) Fail(file, 1, "expected a map of keys");
+    for (const auto& entry : root_) {
+      const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+      if (!kConfigKeys.count(key))
+        Fail(file, entry.first.Mark().line + 1, "unknown key '" + key + "'");
+    }
   }
   YAML::Node Get(const std::string& key) {
     const YAML::Node node = root_[key];
@@ -46,6 +75,13 @@ class Config {
     } catch (const YAML::Exception&) {
     }
     Fail(file_, node.Mark().line + 1, "key '" + key + "': expected a finite number");
+  }
+  int Whole(const std::string& key, int lo, int hi) {
+    const double value = Number(key);
+    if (value >= lo && value <= hi && value == std::floor(value)) return static_cast<int>(value);
+    Fail(file_, Get(key).Mark().line + 1,
+         "key '" + key + "': expected a whole number from " + std::to_string(lo) + " to " +
+             std::to_string(hi));
   }
   std::string Word(const std::string& key) {
     const YAML::Node node = Get(key);
@@ -81,6 +117,7 @@ std::vector<std::string> Split(const std::string& line) {
 }
 
 void ReadSteps(const std::string& file, Trace* trace) {
+  RequireFile(file, kLargestSteps);
   std::ifstream in(file);
   if (!in) throw UserError(file + ": cannot be read");
   std::string line;
@@ -94,18 +131,20 @@ void ReadSteps(const std::string& file, Trace* trace) {
       continue;
     }
     if (cells.size() != trace->columns.size()) {
-      Fail(file, number, "expected " + std::to_string(trace->columns.size()) + " cells, found " +
-                             std::to_string(cells.size()));
+      Fail(file, number,
+           "expected " + std::to_string(trace->columns.size()) + " cells, found " +
+               std::to_string(cells.size()));
     }
     std::vector<double> row;
     for (size_t c = 0; c < cells.size(); ++c) {
-      if (cells[c].empty()) {
+      const bool is_action = trace->columns[c].size() == 2 && trace->columns[c][0] == 'a';
+      if (cells[c].empty() && !is_action) {
         row.push_back(kNone);
         continue;
       }
       char* end = nullptr;
       row.push_back(std::strtod(cells[c].c_str(), &end));
-      if (*end != '\0' || !std::isfinite(row.back())) {
+      if (cells[c].empty() || *end != '\0' || !std::isfinite(row.back())) {
         Fail(file, number, "column '" + trace->columns[c] + "': '" + cells[c] + "' is no number");
       }
     }
@@ -123,7 +162,9 @@ using Columns = std::map<std::string, std::pair<std::string, std::function<doubl
 Columns OurColumns(const EnvGroup& env, const Scenario& s) {
   Columns c;
   const auto add = [&](const std::string& group, const std::string& name,
-                       std::function<double(int)> f) { c[name] = {group, std::move(f)}; };
+                       std::function<double(int)> f) {
+    c[name] = {group, std::move(f)};
+  };
   const auto vec = [&](const std::string& group, const std::vector<std::string>& names,
                        std::function<Vec3<double>(int)> f) {
     add(group, names[0], [f](int i) { return f(i).x; });
@@ -173,7 +214,7 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
   Scenario& s = t.scenario;
   const std::string file = folder + "/config.yaml";
   Config c(file);
-  s.agents = static_cast<int>(c.Number("agents"));
+  s.agents = c.Whole("agents", 1, 255);
   s.time.dt_s = c.Number("dt");
   c.Choice("action_interface",
            {{"velocity3", [&] { s.control.interface = ActionInterface::kVelocity3; }},
@@ -193,8 +234,13 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
       Fail(file, weights.Mark().line + 1, std::string("missing key 'reward_weights.") + key + "'");
     }
   }
-  s.reward.weights = {weight("tracking"), weight("observation"), weight("coordination"),
-                      weight("communication"), weight("semantic"), weight("control_cost"), 0.0};
+  s.reward.weights = {weight("tracking"),
+                      weight("observation"),
+                      weight("coordination"),
+                      weight("communication"),
+                      weight("semantic"),
+                      weight("control_cost"),
+                      0.0};
   const YAML::Node positions = c.Get("initial_positions");
   if (!positions.IsSequence() || static_cast<int>(positions.size()) != s.agents) {
     Fail(file, positions.Mark().line + 1,
@@ -203,7 +249,11 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
   for (const auto& p : positions) t.p_WB.push_back(c.Vector(p, "initial_positions"));
   t.p_WT.push_back(c.Vector(c.Get("target_position"), "target_position"));
   t.v_WT.push_back(c.Vector(c.Get("target_velocity"), "target_velocity"));
-  s.ValidateOrThrow();
+  try {
+    s.ValidateOrThrow();
+  } catch (const UserError& e) {
+    throw UserError(file + ": " + e.what());
+  }
   ReadSteps(folder + "/steps.csv", &t);
   s.time.episode_steps = static_cast<int>(t.rows.size()) / s.agents + 1;
   s.time.tail_steps = 1;
@@ -259,12 +309,18 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
           result.first_bad_column = name;
         }
         if (error > result.max_abs_error || std::isnan(error)) {
-          result.max_abs_error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+          result.max_abs_error =
+              std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
           result.worst_step = step;
           result.worst_agent = i;
           result.worst_column = name;
         }
       }
+    }
+  }
+  for (const char* group : {"state", "observation", "reward"}) {
+    if (!result.by_group.count(group)) {
+      throw UserError(trace.folder + "/steps.csv:1: no column of the " + group + " to compare");
     }
   }
   return result;
