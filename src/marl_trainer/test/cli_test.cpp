@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace stg {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int code = -1;
+  std::string out, err;
+  /// The object on the last line of stdout.
+  nlohmann::json Json() const {
+    std::istringstream in(out);
+    std::string line, last;
+    while (std::getline(in, line)) last = line;
+    return nlohmann::json::parse(last, nullptr, false);
+  }
+};
+
+class CommandLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "cli_" + std::to_string(::getpid()) + "_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::create_directories(folder_);
+    ::setenv("STG_SCENARIOS", STG_SCENARIO_FOLDER, 1);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Result Run(const std::string& program, const std::string& arguments) const {
+    const std::string out = folder_ + "/stdout", err = folder_ + "/stderr";
+    const int status = std::system(
+        ("'" + program + "' " + arguments + " > '" + out + "' 2> '" + err + "'").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, Read(out), Read(err)};
+  }
+  static std::string Read(const std::string& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+  std::string Scenario(const std::string& text) const {
+    std::ofstream(folder_ + "/bad.yaml") << "base: " STG_SCENARIO_FOLDER "/medium.yaml\n" << text;
+    return folder_ + "/bad.yaml";
+  }
+
+  std::string folder_;
+};
+
+struct Program {
+  const char *path, *arguments;
+};
+const Program kPrograms[] = {{STG_EVALUATE, "--policy idle --episodes 1"},
+                             {STG_BENCH_ENV, "--seconds 0.05"},
+                             {STG_CHECK_TRACE, STG_TEST_DATA "/golden/velocity_medium"}};
+
+TEST_F(CommandLine, HelpNamesTheOptionsAndSucceeds) {
+  const std::vector<std::vector<const char*>> options = {
+      {"--policy", "--scenario", "--condition", "--episodes", "--seed", "--gain", "--standoff",
+       "--cap", "--csv"},
+      {"--scenario", "--seconds", "--workers"},
+      {"--tolerance"}};
+  for (size_t p = 0; p < 3; ++p) {
+    const Result r = Run(kPrograms[p].path, "--help");
+    EXPECT_EQ(r.code, 0);
+    for (const char* option : options[p])
+      EXPECT_NE(r.out.find(option), std::string::npos) << option;
+  }
+}
+
+TEST_F(CommandLine, UnknownOptionsFailAndAreNamed) {
+  for (const Program& p : kPrograms) {
+    const Result r = Run(p.path, std::string(p.arguments) + " --no-such-option");
+    EXPECT_NE(r.code, 0) << p.path;
+    EXPECT_NE(r.err.find("--no-such-option"), std::string::npos) << r.err;
+    EXPECT_EQ(r.out.find('{'), std::string::npos);
+  }
+}
+
+TEST_F(CommandLine, ABadScenarioExitsWithTwoAndNamesFileLineAndKey) {
+  for (const Program& p : kPrograms) {
+    Result r = Run(p.path, std::string(p.arguments) + " --scenario " + Scenario("agents: 0\n"));
+    EXPECT_EQ(r.code, 2) << p.path;
+    EXPECT_NE(r.err.find("bad.yaml:2"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("agents"), std::string::npos) << r.err;
+    EXPECT_EQ(r.out.find('{'), std::string::npos);
+    r = Run(p.path,
+            std::string(p.arguments) + " --scenario " + Scenario("sensing:\n  rnage_m: 0.3\n"));
+    EXPECT_EQ(r.code, 2) << p.path;
+    EXPECT_NE(r.err.find("bad.yaml:3"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("rnage_m"), std::string::npos) << r.err;
+    r = Run(p.path, std::string(p.arguments) + " --scenario no_such_scenario");
+    EXPECT_EQ(r.code, 2) << p.path;
+    EXPECT_NE(r.err.find("no_such_scenario"), std::string::npos) << r.err;
+  }
+}
+
+TEST_F(CommandLine, EvaluateRefusesBadValues) {
+  for (const char* bad : {"--episodes 0", "--episodes many", "--condition no_such", "--cap 2",
+                          "--gain -1", "--set agents=x", "--set no.such=1", "--policy /dev/null",
+                          "--workers 0", "--csv /no/such/folder/x.csv"}) {
+    std::string arguments = bad;
+    if (arguments.find("--policy") == std::string::npos) arguments += " --policy idle";
+    if (arguments.find("--episodes") == std::string::npos) arguments += " --episodes 1";
+    const Result r = Run(STG_EVALUATE, arguments);
+    EXPECT_NE(r.code, 0) << bad;
+    EXPECT_FALSE(r.err.empty()) << bad;
+  }
+  EXPECT_NE(Run(STG_EVALUATE, "").code, 0);
+}
+
+TEST_F(CommandLine, EvaluateEndsWithTheMetricsOfTheContract) {
+  const std::string csv = folder_ + "/episodes.csv";
+  const Result r = Run(STG_EVALUATE,
+                       "--policy pursuit --scenario medium_release --episodes 5 --seed 3000 "
+                       "--set time.episode_steps=120 --csv " +
+                           csv);
+  ASSERT_EQ(r.code, 0) << r.err;
+  const nlohmann::json json = r.Json();
+  ASSERT_TRUE(json.is_object()) << r.out;
+  for (const char* key : {"return", "tail_distance", "tracking_error", "lost_rate", "action_norm",
+                          "saturation_rate", "control_cost", "communication_quality",
+                          "colliding_pairs", "min_separation", "time_to_band"}) {
+    ASSERT_TRUE(json.contains(key)) << key;
+    ASSERT_TRUE(json.contains(std::string(key) + "_std")) << key;
+    EXPECT_TRUE(std::isfinite(json[key].get<double>())) << key;
+    EXPECT_GE(json[std::string(key) + "_std"].get<double>(), 0.0) << key;
+  }
+  EXPECT_EQ(json["episodes"], 5);
+  EXPECT_EQ(json["seed"], 3000);
+  EXPECT_GT(json["return_std"], 0.0);
+  // One row per episode, whose mean is the JSON's.
+  std::ifstream in(csv);
+  std::string line;
+  ASSERT_TRUE(std::getline(in, line));
+  EXPECT_EQ(line.rfind("episode,seed,return,", 0), 0u) << line;
+  double sum = 0.0;
+  int rows = 0;
+  for (; std::getline(in, line); ++rows) {
+    int episode = 0, seed = 0;
+    double value = 0.0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%lf", &episode, &seed, &value), 3);
+    EXPECT_EQ(episode, rows);
+    EXPECT_EQ(seed, 3000 + rows);
+    sum += value;
+  }
+  ASSERT_EQ(rows, 5);
+  EXPECT_NEAR(sum / 5.0, json["return"].get<double>(), 0.01);
+}
+
+TEST_F(CommandLine, EvaluateTakesTheConstantsOfPursuit) {
+  const std::string base =
+      "--policy pursuit --scenario medium_release --episodes 4 --set time.episode_steps=150 ";
+  const Result standard = Run(STG_EVALUATE, base);
+  const Result simple = Run(STG_EVALUATE, base + "--gain 4.66 --standoff 0.009 --cap 0.75");
+  const Result other = Run(STG_EVALUATE, base + "--standoff 0.05");
+  EXPECT_EQ(standard.Json(), simple.Json());
+  EXPECT_GT(other.Json()["tail_distance"], standard.Json()["tail_distance"]);
+}
+
+TEST_F(CommandLine, BenchEnvEndsWithItsRate) {
+  const Result r = Run(STG_BENCH_ENV, "--scenario medium_release --seconds 0.1 --envs 8");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const nlohmann::json json = r.Json();
+  ASSERT_TRUE(json.is_object()) << r.out;
+  EXPECT_GT(json["env_steps_per_second"], 1000.0);
+}
+
+TEST_F(CommandLine, CheckTraceSucceedsWithinAndFailsPastTheTolerance) {
+  Result r = Run(STG_CHECK_TRACE,
+                 STG_TEST_DATA "/golden/velocity_medium " STG_TEST_DATA "/golden/force_medium");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  EXPECT_LE(r.Json()["max_abs_error"], 1e-5);
+  EXPECT_EQ(r.Json()["traces"].size(), 2u);
+  // One number of one row changed.
+  const std::string bad = folder_ + "/trace";
+  fs::create_directory(bad);
+  fs::copy_file(STG_TEST_DATA "/golden/velocity_medium/config.yaml", bad + "/config.yaml");
+  std::ifstream in(STG_TEST_DATA "/golden/velocity_medium/steps.csv");
+  std::ofstream out(bad + "/steps.csv");
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    // The last cells of a row are the distance and the lost flag.
+    if (number == 100) line.back() = line[line.size() - 1] == '1' ? '0' : '1';
+    out << line << '\n';
+  }
+  out.close();
+  r = Run(STG_CHECK_TRACE, bad);
+  EXPECT_EQ(r.code, 1) << r.out << r.err;
+  EXPECT_GT(r.Json()["max_abs_error"], 1e-5);
+  EXPECT_EQ(r.Json()["pass"], false);
+  r = Run(STG_CHECK_TRACE, STG_TEST_DATA "/golden/velocity_medium --tolerance 1e-15");
+  EXPECT_EQ(r.code, 1);
+}
+
+TEST_F(CommandLine, CheckTraceExitsWithTwoForWhatIsNoTrace) {
+  for (const std::string& what : {folder_, folder_ + "/none"}) {
+    const Result r = Run(STG_CHECK_TRACE, what);
+    EXPECT_EQ(r.code, 2);
+    EXPECT_NE(r.err.find("config.yaml"), std::string::npos) << r.err;
+  }
+  EXPECT_NE(Run(STG_CHECK_TRACE, "").code, 0);
+}
+
+}  // namespace
+}  // namespace stg
