@@ -2,4 +2,5 @@
 # Runs the benchmarks of a built and sourced workspace; called by `./stg bench`.
 set -euo pipefail
 
-rosrun marl_trainer bench_env --scenario medium_release --seconds 3 "$@"
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+exec /usr/bin/python3 "$here/bench.py" "$@"

@@ -20,9 +20,9 @@ def _csv_text(header, rows):
     return "\n".join(lines) + "\n"
 
 
-def _short(text):
-    """A number of a program's CSV with six digits: enough for tables, kind to repositories."""
-    return f"{float(text):.6g}"
+def _short(value, digits=6):
+    """A number with as many digits as the tables can use: results stand in repositories."""
+    return f"{float(value):.{digits}g}"
 
 
 def _read_rows(path):
@@ -43,7 +43,7 @@ def collect(study, trainings, evaluations, out):
         rows = _read_rows(job.csv)
         metrics = metrics or [name for name in rows[0] if name not in ("episode", "seed")]
         for row in rows:
-            episodes.append((*key, row["episode"], *(_short(row[name]) for name in metrics)))
+            episodes.append((*key, row["episode"], *(_short(row[name], 5) for name in metrics)))
         summary = read_json(job.json)["summary"]
         for name in metrics:
             mean, std = _short(summary[name]), _short(summary[name + "_std"])

@@ -45,6 +45,11 @@ def logarithmic(axis):
     axis.yaxis.set_minor_formatter(NullFormatter())
 
 
+def title(figure, text):
+    """The figure's title, with the unit of all its distances below."""
+    figure.suptitle(f"{text}\n{UNIT}", fontsize=10)
+
+
 def save(figure, folder, name):
     """Writes the figure as PNG and SVG, the same bytes for the same content; returns its name."""
     os.makedirs(folder, exist_ok=True)

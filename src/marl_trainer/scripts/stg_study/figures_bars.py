@@ -1,8 +1,10 @@
 """Figures of the final stage and of the stress conditions: bars and box plots."""
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
-from stg_study.figure_style import PAPER_COLOUR, UNIT, colours, legend_below, logarithmic, plt, save
+from stg_study import figure_style as style
+from stg_study.figure_style import PAPER_COLOUR, colours, plt, save, title
 from stg_study.tables import PAPER_NAME, condition_label
 
 FINAL = [
@@ -45,6 +47,7 @@ def _bars(axis, rows, number):
     axis.grid(axis="y", visible=False)
     low = min(0.0, min(mean - (std or 0.0) for mean, std in values))
     axis.set_xlim(1.05 * low, 1.25 * reach)
+    axis.xaxis.set_major_locator(MaxNLocator(4))
 
 
 def final_stage(study, results, paper, scenario, table, folder):
@@ -52,7 +55,7 @@ def final_stage(study, results, paper, scenario, table, folder):
     colour, labels = colours(study), study.labels()
     count = len(study.method_names()) + len(paper.algorithms(table))
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 1.6 + 0.27 * count), sharey=True)
-    for axis, (title, metric, number) in zip(axes, FINAL):
+    for axis, (name, metric, number) in zip(axes, FINAL):
         rows = [
             (labels[n], _value(study, results, scenario, n, metric), colour[n], None)
             for n in study.method_names()
@@ -61,9 +64,9 @@ def final_stage(study, results, paper, scenario, table, folder):
             value = paper.get(table, algorithm, PAPER_NAME.get(metric, metric))
             rows.append((f"{algorithm} (paper)", value, PAPER_COLOUR, "///"))
         _bars(axis, rows, number)
-        axis.set_title(title)
+        axis.set_title(name)
     _share_rows(axes, count)
-    figure.suptitle(f"{scenario}: last 20 % of validations, mean ± std over seeds. {UNIT}")
+    title(figure, f"{scenario}: last 20 % of validations, mean ± std over seeds")
     figure.tight_layout()
     return save(figure, folder, f"final_stage_{scenario}")
 
@@ -77,7 +80,7 @@ def ablation(study, results, paper, scenario, folder, with_paper):
     """Bars of Table S9: every variant, the paper's figure of it below."""
     colour = colours(study)
     rows_of = {}
-    for title, metric, _ in ABLATION:
+    for name, metric, _ in ABLATION:
         rows = []
         for method in study.methods:
             value = _value(study, results, scenario, method.name, metric)
@@ -85,14 +88,14 @@ def ablation(study, results, paper, scenario, folder, with_paper):
             if with_paper and method.ablation:
                 theirs = paper.get("S9", method.ablation, PAPER_NAME.get(metric, metric))
                 rows.append(("(paper)", theirs, PAPER_COLOUR, "///"))
-        rows_of[title] = rows
+        rows_of[name] = rows
     count = len(rows_of[ABLATION[0][0]])
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 1.6 + 0.3 * count), sharey=True)
-    for axis, (title, _, number) in zip(axes, ABLATION):
-        _bars(axis, rows_of[title], number)
-        axis.set_title(title)
+    for axis, (name, _, number) in zip(axes, ABLATION):
+        _bars(axis, rows_of[name], number)
+        axis.set_title(name)
     _share_rows(axes, count)
-    figure.suptitle(f"{scenario}: ablation, last 20 % of validations, mean ± std over seeds. {UNIT}")
+    title(figure, f"{scenario}: ablation, last 20 % of validations, mean ± std over seeds")
     figure.tight_layout()
     return save(figure, folder, f"ablation_{scenario}")
 
@@ -115,7 +118,7 @@ def final_boxes(study, results, scenario, folder):
     """Box plots of the validations of the last fifth, all seeds together (as Figure S1)."""
     colour = colours(study)
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 3.9))
-    for axis, (title, metric, _) in zip(axes, FINAL):
+    for axis, (name, metric, _) in zip(axes, FINAL):
         scale = 1.0 / study.agents if metric == "return" else 1.0
         for place, method in enumerate(study.methods):
             points = [
@@ -124,10 +127,12 @@ def final_boxes(study, results, scenario, folder):
             ]
             if points:
                 _box(axis, place, scale * np.concatenate(points), colour[method.name])
+        if metric == "whole_lost_rate":
+            axis.set_ylim(-0.002, max(0.02, axis.get_ylim()[1]))
         axis.set_xticks(range(len(study.methods)))
         axis.set_xticklabels([m.label for m in study.methods], rotation=28, ha="right", fontsize=8)
-        axis.set_title(title)
-    figure.suptitle(f"{scenario}: validations of the last 20 %, all seeds. {UNIT}")
+        axis.set_title(name)
+    title(figure, f"{scenario}: validations of the last 20 %, all seeds")
     figure.tight_layout()
     return save(figure, folder, f"final_boxes_{scenario}")
 
@@ -136,15 +141,16 @@ def stress_boxes(study, results, paper, scenario, table, folder):
     """Box plots over all episodes of every condition, the paper's STG-MAPPO as mean ± std."""
     colour, labels = colours(study), study.labels()
     names = [n for n in study.method_names() if n != "idle"]
+    pairs = study.agents * (study.agents - 1) // 2
     panels = [
         ("Return, sum over AUVs", "return"),
         ("Tail distance", "tail_distance"),
-        ("Colliding pairs per decision, tail (of 6)", "tail_colliding_pairs"),
+        (f"Colliding pairs per decision, tail (of {pairs})", "tail_colliding_pairs"),
     ]
     figure, axes = plt.subplots(3, 1, figsize=(11.0, 9.6), sharex=True)
     width = 0.84 / (len(names) + 1)
     handles = {}
-    for axis, (title, metric) in zip(axes, panels):
+    for axis, (panel, metric) in zip(axes, panels):
         centres = []
         for group, condition in enumerate(study.conditions):
             for place, name in enumerate(names):
@@ -162,14 +168,14 @@ def stress_boxes(study, results, paper, scenario, table, folder):
                     x, theirs[0], yerr=theirs[1], fmt="D", ms=4, color="#B22222", capsize=2, lw=1
                 )
         if metric == "tail_distance":
-            logarithmic(axis)
+            style.logarithmic(axis)
         if metric == "return" and centres:
             axis.set_ylim(bottom=max(axis.get_ylim()[0], min(centres) - 150.0))
-        axis.set_title(title)
+        axis.set_title(panel)
     axes[-1].set_xticks(range(len(study.conditions)))
     axes[-1].set_xticklabels([condition_label(c) for c in study.conditions])
     axes[-1].set_xlim(-0.5, len(study.conditions) - 0.5)
-    figure.suptitle(f"{scenario}: best checkpoints, episodes of all seeds. {UNIT}")
-    legend_below(figure, list(handles.values()), list(handles), columns=5)
+    title(figure, f"{scenario}: best checkpoints, episodes of all seeds")
+    style.legend_below(figure, list(handles.values()), list(handles), columns=5)
     figure.tight_layout(rect=(0, 0.06, 1, 0.99))
     return save(figure, folder, f"stress_{scenario}")

@@ -3,11 +3,12 @@
 import numpy as np
 from matplotlib.ticker import EngFormatter
 
-from stg_study.figure_style import UNIT, colours, legend_below, logarithmic, plt, save
+from stg_study.figure_style import colours, legend_below, logarithmic, plt, save, title
+from stg_study.tables import PAPER_NAME
 
 # Title, axis label, metric, logarithmic.
 PANELS = [
-    ("Return", "sum over an episode, mean over AUVs", "return", False),
+    ("Return", "per episode, mean over AUVs", "return", False),
     ("Tracking error", "|d − d*|, whole episode", "mean_error", True),
     ("Tail distance", "d, last 100 decisions", "tail_distance", True),
     ("Target lost", "share of decisions", "whole_lost_rate", False),
@@ -60,12 +61,13 @@ def _focus_returns(axis, bands):
     axis.set_ylim(low - 0.05 * (top - low), top + 0.06 * (top - low))
 
 
-def convergence(study, results, scenario, folder):
-    """Return, error, tail distance and loss against steps: mean and std over seeds."""
+def convergence(study, results, paper, scenario, table, folder):
+    """Return, error, tail distance and loss against steps: mean and std over seeds; as lines the
+    controllers and the final stage of the paper's STG-MAPPO."""
     colour, labels = colours(study), study.labels()
     figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.6))
     handles = {}
-    for axis, (title, label, metric, is_logarithmic) in zip(axes.flat, PANELS):
+    for axis, (name, label, metric, is_logarithmic) in zip(axes.flat, PANELS):
         bands = []
         for method in study.methods:
             band = curve_band(results, scenario, method.name, metric, _scale(study, metric))
@@ -88,7 +90,11 @@ def convergence(study, results, scenario, folder):
                 value[0] * _scale(study, metric), color=colour[controller.name], lw=1.2, ls=style
             )
             handles[labels[controller.name]] = line
-        axis.set_title(title)
+        theirs = paper.get(table, "STG-MAPPO", PAPER_NAME.get(metric, metric))
+        if theirs is not None:
+            line = axis.axhline(theirs[0], color="#B22222", lw=1.0, ls=(0, (6, 2, 1, 2, 1, 2)))
+            handles["STG-MAPPO (paper), final stage"] = line
+        axis.set_title(name)
         axis.set_ylabel(label)
         if is_logarithmic:
             logarithmic(axis)
@@ -97,9 +103,9 @@ def convergence(study, results, scenario, folder):
         elif bands:
             _focus_returns(axis, bands)
         _step_axis(axis)
-    figure.suptitle(f"{scenario}: validations during training, mean ± std over seeds. {UNIT}")
+    title(figure, f"{scenario}: validations during training, mean ± std over seeds")
     legend_below(figure, list(handles.values()), list(handles))
-    figure.tight_layout(rect=(0, 0.09, 1, 0.99))
+    figure.tight_layout(rect=(0, 0.08, 1, 1))
     return save(figure, folder, f"convergence_{scenario}")
 
 
@@ -107,10 +113,10 @@ def per_seed(study, results, scenario, folder):
     """Return and tail distance of every training of STG-MAPPO and of the paper's MAPPO."""
     methods = [m for m in study.methods if m.paper] or study.methods[:2]
     colour = colours(study)
-    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8))
+    figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.2))
     handles = {}
     styles = ["-", "--", ":", "-."]
-    for axis, (title, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
+    for axis, (name, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
         for method in methods:
             for i, seed in enumerate(results.seeds(scenario, method.name)):
                 values = np.array(results.curve(scenario, method.name, seed, metric))
@@ -122,14 +128,14 @@ def per_seed(study, results, scenario, folder):
                     lw=1.3,
                 )
                 handles[f"{method.label}, seed {seed}"] = line
-        axis.set_title(title)
+        axis.set_title(name)
         axis.set_ylabel(label)
         if is_logarithmic:
             logarithmic(axis)
         _step_axis(axis)
-    figure.suptitle(f"{scenario}: every training. {UNIT}")
+    title(figure, f"{scenario}: every training")
     legend_below(figure, list(handles.values()), list(handles), columns=3)
-    figure.tight_layout(rect=(0, 0.13, 1, 0.99))
+    figure.tight_layout(rect=(0, 0.12, 1, 1))
     return save(figure, folder, f"per_seed_{scenario}")
 
 
@@ -151,12 +157,12 @@ def reward_components(study, results, scenario, folder):
             axis.fill_between(steps, mean - std, mean + std, color=shade, alpha=0.18, lw=0)
             axis.plot(steps, mean, color=shade, lw=1.6, label=label)
         _step_axis(axis)
-        axis.legend()
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=3)
     axes[0].set_title("Reward terms before weighting")
     axes[0].set_ylabel("mean over decisions and AUVs")
     axes[1].set_title("Control diagnostics")
     axes[1].set_ylabel("mean over decisions and AUVs")
-    axes[1].set_ylim(bottom=-0.002)
+    axes[1].set_ylim(bottom=-0.03 * axes[1].get_ylim()[1])
     figure.suptitle(f"{scenario}: {method.label}, mean ± std over seeds")
     figure.tight_layout()
     return save(figure, folder, f"reward_components_{scenario}")

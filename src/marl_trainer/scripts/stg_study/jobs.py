@@ -64,8 +64,10 @@ class Training:
         self._program = os.path.join(bin_dir, "train")
 
     def conflict(self):
-        """Why the folder cannot be used, or None: it holds a run made with other options."""
+        """Why the folder cannot be used, or None: what it holds was made otherwise."""
         record = read_json(os.path.join(self.folder, self.RECORD))
+        if record is None and os.path.isdir(self.folder) and os.listdir(self.folder):
+            return f"{self.folder} is not empty and not a run of a study"
         if record is not None and record.get("arguments") != self.arguments:
             return (
                 f"{self.folder} was trained with other options ({' '.join(record['arguments'])}); "

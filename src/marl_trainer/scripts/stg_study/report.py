@@ -79,7 +79,10 @@ def scenario_page(study, results, paper, scenario, folder):
     if any(results.seeds(name, method.name) for method in study.methods):
         section(
             "Figures of the training",
-            _figure(figures_curves.convergence(study, results, name, figures), "Convergence"),
+            _figure(
+                figures_curves.convergence(study, results, paper, name, final, figures),
+                "Convergence",
+            ),
             _figure(
                 figures_bars.final_stage(study, results, paper, name, final, figures),
                 "Final stage",

@@ -37,6 +37,7 @@ CONDITION_LABELS = {
     "combined_stress": "Combined stress",
 }
 NOTHING = "–"
+TEXT_COLUMNS = {"Algorithm", "Condition", "Method", "Scenario", "Seed IDs", "Variant", "Who"}
 
 
 def condition_label(condition):
@@ -56,8 +57,9 @@ def cell(value, digits, scale=1.0):
 
 
 def markdown(header, rows):
-    """A Markdown table; the first column is text, the others are numbers."""
-    lines = ["| " + " | ".join(header) + " |", "|---" + "|---:" * (len(header) - 1) + "|"]
+    """A Markdown table with its numbers aligned to the right."""
+    rules = ["---" if name in TEXT_COLUMNS else "---:" for name in header]
+    lines = ["| " + " | ".join(header) + " |", "|" + "|".join(rules) + "|"]
     for row in rows:
         if len(row) != len(header):
             raise ValueError(f"{len(row)} cells in a table of {len(header)} columns: {row}")

@@ -1,0 +1,184 @@
+"""Tests of a study's parts: statistics, table cells, the paper's figures, the reader of studies."""
+
+import os
+import sys
+import unittest
+
+import numpy as np
+import yaml
+
+PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
+sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
+
+from stg_study import statistics, study, tables  # noqa: E402
+from stg_study.data import Paper  # noqa: E402
+
+
+class Statistics(unittest.TestCase):
+    def test_std_is_that_of_a_sample_and_unknown_for_one_value(self):
+        mean, std = statistics.mean_std([1.0, 2.0, 3.0, 6.0])
+        self.assertEqual(mean, 3.0)
+        self.assertAlmostEqual(std, np.sqrt(14.0 / 3.0))
+        self.assertEqual(statistics.mean_std([2.5]), (2.5, None))
+
+    def test_interquartile_mean_leaves_a_quarter_out_at_each_end(self):
+        self.assertEqual(statistics.interquartile_mean([100.0, 1.0, 2.0, -50.0]), 1.5)
+        # Of five values one is cut off at each end: int(1.25) = 1.
+        self.assertEqual(statistics.interquartile_mean([9.0, 0.0, 1.0, 2.0, 3.0]), 2.0)
+        self.assertEqual(statistics.interquartile_mean([7.0]), 7.0)
+
+    def test_interval_of_equal_scores_is_a_point(self):
+        self.assertEqual(statistics.iqm_interval([np.full((3, 30), 4.0)]), (4.0, 4.0, 4.0))
+
+    def test_interval_of_one_seed_matches_the_normal_approximation(self):
+        scores = np.random.default_rng(1).uniform(0.0, 1.0, (1, 4000))
+        point, low, high = statistics.iqm_interval([scores], resamples=1000)
+        # The trimmed mean of n values has variance 4 Var(clip(U, 1/4, 3/4)) / n, U uniform here.
+        std = np.sqrt(4.0 * (0.25**2 * 0.5 + 0.5**3 / 12.0) / 4000.0)
+        self.assertAlmostEqual(point, 0.5, delta=4.0 * std)
+        self.assertAlmostEqual((high - low) / (2.0 * 1.96 * std), 1.0, delta=0.12)
+
+    def test_interval_knows_that_trainings_differ(self):
+        """Three seeds far apart: the interval must span seeds, not only episodes."""
+        scores = np.arange(3.0)[:, None] + np.zeros((3, 30))
+        _, low, high = statistics.iqm_interval([scores])
+        self.assertEqual((low, high), (0.0, 2.0))
+
+    def test_seeds_are_drawn_together_in_all_conditions(self):
+        """Of two conditions that mirror each other every resample has the same mean."""
+        scores = np.array([[0.0] * 4, [1.0] * 4])
+        _, low, high = statistics.iqm_interval([scores, 1.0 - scores])
+        self.assertEqual((low, high), (0.5, 0.5))
+
+    def test_conditions_with_other_seeds_are_refused(self):
+        with self.assertRaises(ValueError):
+            statistics.iqm_interval([np.zeros((3, 5)), np.zeros((2, 5))])
+
+    def test_final_stage_is_the_last_fifth_and_never_empty(self):
+        self.assertEqual(statistics.final_stage(list(range(10))), [8, 9])
+        self.assertEqual(statistics.final_stage([5]), [5])
+        with self.assertRaises(ValueError):
+            statistics.final_stage([])
+
+
+class Cells(unittest.TestCase):
+    def test_cells_read_as_in_the_paper(self):
+        self.assertEqual(tables.cell((254.806, 11.66), 2), "254.81 ± 11.66")
+        self.assertEqual(tables.cell((0.0131, None), 3), "0.013")
+        self.assertEqual(tables.cell(None, 3), "–")
+        self.assertEqual(tables.cell((-0.0001, 0.0), 3), "0.000 ± 0.000")
+        self.assertEqual(tables.cell((1019.2, 46.6), 2, scale=0.25), "254.80 ± 11.65")
+
+    def test_tables_are_complete_rows_of_markdown(self):
+        text = tables.markdown(["Algorithm", "Return"], [["A", 1.5]])
+        self.assertEqual(text, "| Algorithm | Return |\n|---|---:|\n| A | 1.5 |\n")
+        with self.assertRaises(ValueError):
+            tables.markdown(["Algorithm", "Return"], [["A"]])
+
+
+class PaperFigures(unittest.TestCase):
+    """The transcription of the paper's tables, against the paper and against itself."""
+
+    def setUp(self):
+        self.paper = Paper()
+
+    def test_figures_stand_as_printed(self):
+        get = self.paper.get
+        stg = "STG-MAPPO"
+        self.assertEqual(get("1", stg, "return", "all"), (1018.84, 15.93))
+        self.assertEqual(get("2", "MAPPO", "tail_distance", "combined_stress"), (0.095, 0.040))
+        self.assertEqual(get("S3", stg, "return"), (254.81, 11.66))
+        self.assertEqual(get("S5", stg, "tracking_error"), (0.022, 0.004))
+        self.assertEqual(get("S6", "MASAC", "tail_distance", seed=2), (1.304, None))
+        self.assertEqual(get("S7", stg, "return", "combined_stress"), (1002.0, 44.1))
+        self.assertEqual(get("S7", "MASAC", "tail_distance", "far_initialization"), (1.205, 0.152))
+        self.assertEqual(get("S8", stg, "return", "fast_target"), (979.9, 78.0))
+        self.assertEqual(get("S8", "HAPPO", "communication_quality"), (0.128, 0.202))
+        self.assertEqual(get("S9", "MAPPO-semantic-state", "control_cost"), (0.039, 0.003))
+        self.assertIsNone(get("S7", stg, "colliding_pairs"))
+
+    def test_every_algorithm_and_condition_is_there(self):
+        for table in ("1", "2", "S3", "S4", "S5", "S6", "S7", "S8"):
+            self.assertEqual(len(self.paper.algorithms(table)), 7, table)
+        for table in ("S7", "S8"):
+            for algorithm in self.paper.algorithms(table):
+                for condition in tables.CONDITION_LABELS:
+                    for _, metric, _ in tables.STRESS:
+                        self.assertIsNotNone(self.paper.get(table, algorithm, metric, condition))
+        for table in ("S4", "S6"):
+            for algorithm in self.paper.algorithms(table):
+                self.assertEqual(self.paper.seeds(table, algorithm), ["0", "1", "2"])
+
+    def test_average_returns_are_the_mean_of_the_stress_tables(self):
+        """Tables 1 and 2 average Tables S7 and S8, which pins the transcription of 84 returns."""
+        for main, stress in (("1", "S7"), ("2", "S8")):
+            for algorithm in self.paper.algorithms(main):
+                returns = [
+                    self.paper.get(stress, algorithm, "return", c)[0]
+                    for c in tables.CONDITION_LABELS
+                ]
+                average = self.paper.get(main, algorithm, "return", "all")[0]
+                self.assertAlmostEqual(np.mean(returns), average, delta=0.06, msg=algorithm)
+
+    def test_final_stages_are_the_mean_of_the_seeds(self):
+        for final, seeds in (("S3", "S4"), ("S5", "S6")):
+            for algorithm in self.paper.algorithms(final):
+                for _, metric, digits in tables.FINAL:
+                    name = tables.PAPER_NAME.get(metric, metric)
+                    mean, std = self.paper.get(final, algorithm, name)
+                    values = [self.paper.get(seeds, algorithm, name, seed=s)[0] for s in range(3)]
+                    unit = 0.01 if metric == "return" else 0.001
+                    where = f"{final} {algorithm} {name}"
+                    self.assertAlmostEqual(np.mean(values), mean, delta=1.01 * unit, msg=where)
+                    self.assertAlmostEqual(np.std(values, ddof=1), std, delta=1.6 * unit, msg=where)
+
+
+class Studies(unittest.TestCase):
+    def test_shipped_studies_load_and_survive_a_round_trip(self):
+        folder = study.shipped_studies()
+        names = sorted(name for name in os.listdir(folder) if name.endswith(".yaml"))
+        self.assertEqual(names, ["acoustic.yaml", "paper.yaml"])
+        for name in names:
+            loaded = study.load_study(os.path.join(folder, name))
+            self.assertEqual(loaded.name, name[:-5])
+            self.assertEqual(loaded.seeds, [0, 1, 2])
+            self.assertEqual(loaded.evaluation_seed_of(2), 23000)
+            again = study.study_from(
+                yaml.safe_load(yaml.safe_dump(study.dataclasses.asdict(loaded))), "again"
+            )
+            self.assertEqual(again, loaded)
+
+    def test_shipped_studies_name_shipped_scenarios_and_variants(self):
+        scenarios = os.path.join(PACKAGE, "..", "stg_bringup", "scenarios")
+        for name in ("paper", "acoustic"):
+            loaded = study.load_study(study.find_study(name))
+            for scenario in loaded.scenarios:
+                path = os.path.join(scenarios, scenario.name + ".yaml")
+                self.assertTrue(os.path.isfile(path), path)
+            variants = {method.variant for method in loaded.methods}
+            self.assertEqual(variants, {"stg", "semantic", "velocity3", "tau6"})
+
+    def refused(self, expected, **changes):
+        with open(study.find_study("paper"), encoding="utf-8") as file:
+            data = yaml.safe_load(file)
+        data.update(changes)
+        with self.assertRaises(study.StudyError) as caught:
+            study.study_from(data, "file.yaml")
+        self.assertIn("file.yaml", str(caught.exception))
+        self.assertIn(expected, str(caught.exception))
+
+    def test_mistakes_are_refused_by_name(self):
+        self.refused("sedes", sedes=[1])
+        self.refused("seeds", seeds=[1, 1])
+        self.refused("steps", steps="many")
+        self.refused("steps", steps=True)
+        self.refused("evaluation_seed_stride", evaluation_seed_stride=20)
+        self.refused("scenarios[0].paper", scenarios=[{"name": "a", "paper": 3}])
+        self.refused("methods[0].label", methods=[{"name": "a"}])
+        self.refused("letters", methods=[{"name": "../a", "label": "A"}])
+        with self.assertRaises(study.StudyError):
+            study.find_study("no_such_study")
+
+
+if __name__ == "__main__":
+    unittest.main()
