@@ -28,7 +28,7 @@ WorldNode::WorldNode()
       start_timeout_s_(NumberParameter("start_timeout", 30.0, 0.0, 3600.0)),
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
       episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
-      recorder_(TextParameter("recorder", "")),
+      awaited_(TextParameter("wait_for_node", "")),
       wait_for_metrics_(FlagParameter("wait_for_metrics", false)),
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
@@ -102,14 +102,14 @@ bool WorldNode::ListenersReady() {
   if (now > deadline_) return true;
   // The metrics node announces summaries once it has seen all of step 0.
   if (wait_for_metrics_ && subscribers_.back().getNumPublishers() == 0) return false;
-  if (recorder_.empty()) return true;
-  if (recorder_seen_.isZero()) {
+  if (awaited_.empty()) return true;
+  if (awaited_seen_.isZero()) {
     ros::V_string nodes;
     if (!ros::master::getNodes(nodes)) return false;
-    if (std::find(nodes.begin(), nodes.end(), recorder_) == nodes.end()) return false;
-    recorder_seen_ = now;
+    if (std::find(nodes.begin(), nodes.end(), awaited_) == nodes.end()) return false;
+    awaited_seen_ = now;
   }
-  return (now - recorder_seen_).toSec() > 1.5;
+  return (now - awaited_seen_).toSec() > 1.5;
 }
 
 bool WorldNode::Complete() const {

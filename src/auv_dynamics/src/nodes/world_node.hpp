@@ -70,7 +70,7 @@ class WorldNode {
   TimeNs period_;  ///< of decisions [ns]
   double real_time_factor_, deadline_s_, start_timeout_s_, summary_timeout_s_;
   int episodes_;          ///< to run; 0: until stopped
-  std::string recorder_;  ///< node that must be up before the run starts, or empty
+  std::string awaited_;  ///< node that must be up before the run starts, or empty
   bool wait_for_metrics_;
   std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
   std::uint32_t seed_episode_ = 0;
@@ -81,7 +81,7 @@ class WorldNode {
   bool channel_answered_ = false, channel_present_ = true;
   std::uint64_t channel_misses_ = 0, missed_steps_ = 0;
   EventRate steps_;
-  ros::WallTime began_, due_, deadline_, recorder_seen_;
+  ros::WallTime began_, due_, deadline_, awaited_seen_;
   std::vector<Auv> auvs_;
   std::vector<Wrench<Pack>> commands_;
   std::unique_ptr<WorldPublisher> publisher_;

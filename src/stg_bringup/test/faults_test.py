@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""What goes wrong at sea: bad messages, dead nodes, a silent modem, resets in the middle."""
+
+import os
+import signal
+import time
+import unittest
+
+import rospy
+import rostest
+from auv_msgs.msg import AcousticReception, EpisodeSummary, SensorSync, TaskState
+from auv_msgs.srv import LoadPolicy, Pause, Reset
+from geometry_msgs.msg import TwistStamped, WrenchStamped
+from graph_listener import Diagnostics, Latest, kill, rosnode_pid, wait_for, wait_for_restart
+from nav_msgs.msg import Odometry
+
+NAN = float("nan")
+
+
+class Faults(unittest.TestCase):
+    """One long episode; each test leaves the graph running as it found it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.diagnostics = Diagnostics()
+        cls.sync = Latest("/auv_0/sensor_sync", SensorSync)
+        cls.odom = Latest("/auv_0/odom", Odometry)
+        cls.task = Latest("/auv_0/task_state", TaskState)
+        cls.wrench = Latest("/auv_0/wrench", WrenchStamped)
+        cls.reception = Latest("/auv_0/acoustic/rx", AcousticReception)
+        cls.summary = Latest("/episode_summary", EpisodeSummary)
+        cls.wrench.wait(30.0)
+
+    def setUp(self):
+        self.task.wait_for_more(5)
+
+    def refused(self, node, topic, reason):
+        """Returns how many messages of `topic` the node says it refused."""
+        return self.diagnostics.value(node, f"refused {topic}: {reason}")
+
+    def check_refusals(self, node, topic, message_type, spoil, good):
+        """Sends one spoilt message of each kind; each must be refused, counted and shown."""
+        publisher = rospy.Publisher(topic, message_type, queue_size=10)
+        key = topic if node == "world" else topic.rsplit("/", 1)[1]
+        wait_for(lambda: self.refused(node, key, "stale") is not None, 20.0, "diagnostics")
+        wait_for(lambda: publisher.get_num_connections() > 0, 20.0, topic)
+        for reason in ("not finite", "wrong frame", "stale"):
+            before = self.refused(node, key, reason)
+            message = good()
+            spoil(message, reason)
+            publisher.publish(message)
+            wait_for(lambda r=reason, b=before: self.refused(node, key, r) > b, 10.0,
+                     f"{node} refuses {topic}: {reason}")
+            level, text, _ = self.diagnostics.nodes[node]
+            self.assertGreaterEqual(level, 1)
+            self.assertIn("refused", text)
+        publisher.unregister()
+
+    def test_bad_wrenches_are_refused_and_shown(self):
+        def good():
+            message = WrenchStamped()
+            message.header.stamp = self.odom.message.header.stamp
+            message.header.frame_id = "auv_0/base_link"
+            return message
+
+        def spoil(message, reason):
+            if reason == "not finite":
+                message.wrench.torque.y = NAN
+            elif reason == "wrong frame":
+                message.header.frame_id = "world"
+            else:
+                message.header.stamp -= rospy.Duration(1.0)
+
+        self.check_refusals("world", "/auv_0/wrench", WrenchStamped, spoil, good)
+        position = self.odom.message.pose.pose.position
+        self.assertTrue(all(abs(x) <= 1.0 for x in (position.x, position.y, position.z)))
+
+    def test_bad_velocity_commands_are_refused_and_shown(self):
+        def good():
+            message = TwistStamped()
+            message.header.stamp = self.odom.message.header.stamp
+            message.header.frame_id = "world"
+            return message
+
+        def spoil(message, reason):
+            if reason == "not finite":
+                message.twist.linear.z = NAN
+            elif reason == "wrong frame":
+                message.header.frame_id = "auv_0/base_link"
+            else:
+                message.header.stamp -= rospy.Duration(1.0)
+
+        self.check_refusals("auv_0/controller", "/auv_0/cmd_vel", TwistStamped, spoil, good)
+
+    def test_every_node_but_the_world_comes_back_after_its_death(self):
+        for node in ("/auv_0/agent", "/auv_0/controller", "/acoustic_channel", "/metrics"):
+            with self.subTest(node):
+                pid = kill(node)
+                wait_for_restart(node, pid)
+                self.wrench.wait_for_more(10)
+                fresh = self.wrench.message.header.stamp
+                now = self.odom.message.header.stamp
+                self.assertLess(abs((now - fresh).to_sec()), 0.5, "wrenches of the present")
+                self.task.wait_for_more(5)
+                self.reception.wait_for_more(5)
+
+    def test_agents_go_on_while_the_channel_hangs_and_hear_again_after(self):
+        wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours known")
+        pid = rosnode_pid("/acoustic_channel")
+        os.kill(pid, signal.SIGSTOP)
+        try:
+            time.sleep(0.5)
+            heard, step = self.reception.count, self.task.message.step
+            # Ten seconds of silence, and neighbours are forgotten.
+            wait_for(lambda: not self.task.message.neighbours, 20.0, "neighbours forgotten")
+            self.assertLessEqual(self.reception.count, heard + 1)
+            self.assertGreater(self.task.message.step, step + 20)
+        finally:
+            os.kill(pid, signal.SIGCONT)
+        wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours known again")
+
+    def test_reset_starts_the_asked_episode_and_its_seed(self):
+        before = self.sync.message
+        reset = rospy.ServiceProxy("/reset", Reset)
+        response = reset(seed=4242, use_seed=True)
+        self.assertTrue(response.success)
+        self.assertEqual(response.episode, before.episode + 1)
+        wait_for(lambda: self.sync.message.episode == response.episode, 10.0, "the new episode")
+        self.assertEqual(self.sync.message.seed, 4242)
+        self.assertGreater(self.sync.message.header.stamp, before.header.stamp)
+        wait_for(lambda: self.summary.message and self.summary.message.episode == before.episode,
+                 10.0, "a summary of the episode cut short")
+        self.assertFalse(self.summary.message.complete)
+        self.task.wait_for_more(5)
+        self.assertEqual(self.task.message.episode, response.episode)
+        self.assertEqual(reset(use_seed=False).episode, response.episode + 1)
+        wait_for(lambda: self.sync.message.episode == response.episode + 1, 10.0, "the next one")
+        self.assertEqual(self.sync.message.seed, 4243)
+
+    def test_pause_stops_time_and_resume_goes_on(self):
+        pause = rospy.ServiceProxy("/pause", Pause)
+        self.assertTrue(pause(pause=True).success)
+        time.sleep(0.3)
+        stopped = self.sync.message
+        time.sleep(1.0)
+        self.assertEqual(self.sync.message.header.stamp, stopped.header.stamp)
+        self.assertTrue(pause(pause=False).success)
+        wait_for(lambda: self.sync.message.step >= stopped.step + 3, 10.0, "steps after the pause")
+
+    def test_policy_is_replaced_while_running_and_a_bad_one_refused(self):
+        load = rospy.ServiceProxy("/auv_0/agent/load_policy", LoadPolicy)
+        bad = load(path="/nonexistent/policy.onnx")
+        self.assertFalse(bad.success)
+        self.assertIn("/nonexistent/policy.onnx", bad.message)
+        self.assertEqual(bad.policy_id, "pursuit_separated")
+        self.assertTrue(load(path="idle").success)
+        wait_for(lambda: self.task.message.policy_id == "idle", 10.0, "the idle policy")
+        self.assertTrue(load(path="pursuit_separated").success)
+        wait_for(lambda: self.task.message.policy_id == "pursuit_separated", 10.0, "the old policy")
+
+
+if __name__ == "__main__":
+    rospy.init_node("faults_test")
+    rostest.rosrun("stg_bringup", "faults", Faults)

@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""The medium scenario from end to end: metrics, decentralisation, diagnostics."""
+
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from auv_msgs.msg import EpisodeSummary
+from graph_listener import Diagnostics, Latest, wait_for
+
+AGENTS = 4
+
+
+def foreign_subscriptions(subscribers):
+    """Returns the (node, topic) pairs with which an agent hears more than its own sensors.
+
+    `subscribers` is the master's list of [topic, [nodes]].
+    """
+    foreign = []
+    for topic, nodes in subscribers:
+        for node in nodes:
+            if not node.endswith("/agent"):
+                continue
+            own = node[: -len("agent")]
+            allowed = {own + name for name in
+                       ("odom", "target_detection", "sensor_sync", "acoustic/rx")}
+            if topic not in allowed | {"/clock"}:
+                foreign.append((node, topic))
+    return foreign
+
+
+class Medium(unittest.TestCase):
+    """One graph in lockstep, watched from outside."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.diagnostics = Diagnostics()
+        cls.summary = Latest("/episode_summary", EpisodeSummary)
+
+    def test_swarm_holds_the_target_and_no_deadline_is_missed(self):
+        summary = self.summary.wait(50.0)
+        self.assertTrue(summary.complete)
+        self.assertEqual(summary.steps, 500)
+        self.assertEqual(summary.deadline_misses, 0)
+        self.assertEqual(summary.lost_rate, 0.0)
+        self.assertGreater(summary.tail_distance, 0.010)
+        self.assertLess(summary.tail_distance, 0.016)
+        self.assertLess(summary.tracking_error, 0.002)
+        self.assertLess(summary.time_to_band, 20.0)
+        self.assertGreater(summary.communication_quality, 0.5)
+
+    def test_agents_hear_their_own_sensors_and_modem_only(self):
+        self.summary.wait(50.0)
+        _, subscribers, _ = rosgraph.Master("/stg_test").getSystemState()
+        agents = {node for _, nodes in subscribers for node in nodes if node.endswith("/agent")}
+        self.assertEqual(len(agents), AGENTS)
+        self.assertEqual(foreign_subscriptions(subscribers), [])
+
+    def test_check_of_subscriptions_finds_ground_truth_and_neighbours(self):
+        truth = [["/target_0/odom", ["/auv_1/agent"]]]
+        neighbour = [["/auv_0/odom", ["/auv_0/agent", "/auv_1/agent"]]]
+        self.assertEqual(foreign_subscriptions(truth), [("/auv_1/agent", "/target_0/odom")])
+        self.assertEqual(foreign_subscriptions(neighbour), [("/auv_1/agent", "/auv_0/odom")])
+
+    def test_every_node_reports_its_health(self):
+        nodes = {"world", "acoustic_channel", "metrics"}
+        nodes |= {f"auv_{i}/{name}" for i in range(AGENTS) for name in ("agent", "controller")}
+        wait_for(lambda: nodes <= set(self.diagnostics.nodes), 20.0, f"diagnostics of {nodes}")
+        wait_for(lambda: (self.diagnostics.value("world", "steps per second") or 0.0) > 0.0, 20.0,
+                 "a rate of the world")
+        for key in ("age of information, mean [s]", "packets dropped: loss"):
+            self.assertIsNotNone(self.diagnostics.value("acoustic_channel", key), key)
+
+
+if __name__ == "__main__":
+    rospy.init_node("medium_test")
+    rostest.rosrun("stg_bringup", "medium", Medium)

@@ -1,0 +1,148 @@
+// The graph of nodes in lockstep flies the very same episodes as the environment in one process.
+
+#include <auv_msgs/EpisodeSummary.h>
+#include <auv_msgs/StepReport.h>
+#include <gtest/gtest.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/ros.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
+#include "marl_trainer/env.hpp"
+#include "stg_agent/agent.hpp"
+#include "stg_agent/pursuit.hpp"
+
+namespace stg {
+namespace {
+
+constexpr TimeNs kFirstStamp = 1'000'000'000;
+constexpr double kTolerance = 1e-9;
+constexpr int kEpisodes = 2;
+
+/// What the graph published, by index of the stamp (steps 0 to T of each episode in a row).
+struct Flight {
+  std::map<int, std::vector<NavState>> states;
+  std::map<int, auv_msgs::StepReport> reports;
+  std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries;
+};
+
+/// Listens until the summaries of kEpisodes are in, or a minute has passed.
+Flight Listen(const Scenario& s) {
+  Flight flight;
+  const double period = s.decision_dt_s() * 1e9;
+  const auto index_of = [period](const ros::Time& t) {
+    return static_cast<int>(std::llround(static_cast<double>(NsOf(t) - kFirstStamp) / period));
+  };
+  ros::NodeHandle node;
+  std::vector<ros::Subscriber> subscribers;
+  for (int i = 0; i < s.agents; ++i) {
+    const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> callback =
+        [&, i](const nav_msgs::Odometry::ConstPtr& m) {
+          auto& states = flight.states[index_of(m->header.stamp)];
+          states.resize(static_cast<std::size_t>(s.agents));
+          states[static_cast<std::size_t>(i)] = NavOf(*m, 0);
+        };
+    subscribers.push_back(
+        node.subscribe<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), 0, callback));
+  }
+  const boost::function<void(const auv_msgs::StepReport::ConstPtr&)> on_report =
+      [&](const auv_msgs::StepReport::ConstPtr& m) {
+        flight.reports[index_of(m->header.stamp)] = *m;
+      };
+  subscribers.push_back(node.subscribe<auv_msgs::StepReport>(topics::kStepReport, 0, on_report));
+  const boost::function<void(const auv_msgs::EpisodeSummary::ConstPtr&)> on_summary =
+      [&](const auv_msgs::EpisodeSummary::ConstPtr& m) { flight.summaries[m->episode] = *m; };
+  subscribers.push_back(
+      node.subscribe<auv_msgs::EpisodeSummary>(topics::kEpisodeSummary, 0, on_summary));
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(50.0);
+  const auto reports = static_cast<std::size_t>(kEpisodes * s.time.episode_steps);
+  while (ros::ok() && ros::WallTime::now() < end &&
+         (flight.summaries.size() < kEpisodes || flight.reports.size() < reports)) {
+    HandleMessages(0.1);
+  }
+  return flight;
+}
+
+double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
+
+TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
+  const Scenario s = LoadScenarioParameters();
+  const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
+  BuiltinKind kind;
+  ASSERT_TRUE(ParseBuiltin(TextParameter("policy", ""), &kind));
+  const PursuitOptions options = BuiltinOptions(kind);
+  const Flight flight = Listen(s);
+  ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));
+
+  const int steps = s.time.episode_steps;
+  for (int e = 0; e < kEpisodes; ++e) {
+    EnvOptions env_options;
+    env_options.seed = seed + static_cast<std::uint64_t>(e);
+    EnvGroup env(s, env_options);
+    env.Reset();
+    const int size = env.action_size();
+    std::vector<float> actions(static_cast<std::size_t>(kLanes * s.agents * size));
+    double worst = 0.0;
+    for (int k = 0; k < steps; ++k) {
+      const int index = e * (steps + 1) + k;
+      const auto found = flight.states.find(index);
+      ASSERT_NE(found, flight.states.end()) << "episode " << e << ", step " << k;
+      for (int i = 0; i < s.agents; ++i) {
+        const NavState truth = env.world().Nav(0, i);
+        const NavState& flown = found->second[static_cast<std::size_t>(i)];
+        worst = std::max(worst, Distance(truth.p_WB, flown.p_WB));
+        worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));
+        ASSERT_LE(worst, kTolerance) << "episode " << e << ", step " << k << ", AUV " << i;
+      }
+      for (int lane = 0; lane < kLanes; ++lane) {
+        for (int i = 0; i < s.agents; ++i) {
+          BuiltinAction(kind, options, env.agent(lane, i),
+                        actions.data() + (lane * s.agents + i) * size);
+        }
+      }
+      const std::vector<float> state(env.states(), env.states() + env.state_size());
+      env.Step(actions.data());
+      const auto report = flight.reports.find(index + 1);
+      ASSERT_NE(report, flight.reports.end()) << "episode " << e << ", step " << k;
+      EXPECT_NEAR(report->second.reward, env.rewards()[0], 1e-6);
+      ASSERT_EQ(report->second.global_state.size(), state.size());
+      for (std::size_t f = 0; f < state.size(); ++f) {
+        ASSERT_NEAR(report->second.global_state[f], state[f], 1e-5) << "feature " << f;
+      }
+    }
+    ASSERT_TRUE(env.truncated());
+    const EpisodeMetrics& m = env.metrics(0);
+    const auv_msgs::EpisodeSummary& summary = flight.summaries.at(static_cast<std::uint32_t>(e));
+    EXPECT_TRUE(summary.complete);
+    EXPECT_EQ(summary.deadline_misses, 0U);
+    EXPECT_EQ(summary.seed, env_options.seed);
+    EXPECT_NEAR(summary.episode_return, m.episode_return, 1e-6);
+    EXPECT_NEAR(summary.tail_distance, m.tail_distance, kTolerance);
+    EXPECT_NEAR(summary.tracking_error, m.tracking_error, kTolerance);
+    EXPECT_NEAR(summary.lost_rate, m.lost_rate, kTolerance);
+    EXPECT_NEAR(summary.action_norm, m.action_norm, kTolerance);
+    EXPECT_NEAR(summary.saturation_rate, m.saturation_rate, kTolerance);
+    EXPECT_NEAR(summary.control_cost, m.control_cost, kTolerance);
+    EXPECT_NEAR(summary.communication_quality, m.communication_quality, kTolerance);
+    EXPECT_NEAR(summary.min_separation, m.min_separation, kTolerance);
+    RecordProperty("worst_difference_" + std::to_string(e), std::to_string(worst));
+    std::printf("episode %d: largest difference %.3g\n", e, worst);
+  }
+}
+
+}  // namespace
+}  // namespace stg
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "parity");
+  ros::NodeHandle node;
+  return RUN_ALL_TESTS();
+}
