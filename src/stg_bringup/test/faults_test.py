@@ -39,18 +39,21 @@ class Faults(unittest.TestCase):
         return self.diagnostics.value(node, f"refused {topic}: {reason}")
 
     def check_refusals(self, node, topic, message_type, spoil, good):
-        """Sends one spoilt message of each kind; each must be refused, counted and shown."""
+        """Sends spoilt messages of each kind; each kind must be refused, counted and shown."""
         publisher = rospy.Publisher(topic, message_type, queue_size=10)
         key = topic if node == "world" else topic.rsplit("/", 1)[1]
         wait_for(lambda: self.refused(node, key, "stale") is not None, 20.0, "diagnostics")
         wait_for(lambda: publisher.get_num_connections() > 0, 20.0, topic)
         for reason in ("not finite", "wrong frame", "stale"):
             before = self.refused(node, key, reason)
-            message = good()
-            spoil(message, reason)
-            publisher.publish(message)
-            wait_for(lambda r=reason, b=before: self.refused(node, key, r) > b, 10.0,
-                     f"{node} refuses {topic}: {reason}")
+
+            def sent_and_refused(reason=reason, before=before):
+                message = good()
+                spoil(message, reason)
+                publisher.publish(message)
+                return self.refused(node, key, reason) > before
+
+            wait_for(sent_and_refused, 10.0, f"{node} refuses {topic}: {reason}")
             level, text, _ = self.diagnostics.nodes[node]
             self.assertGreaterEqual(level, 1)
             self.assertIn("refused", text)

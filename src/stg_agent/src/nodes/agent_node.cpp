@@ -111,9 +111,12 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
 
 void AgentNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
   if (message->header.frame_id != body_frame_) return;
-  if (sync_) ++skipped_steps_;
+  if (sync_) {
+    ++skipped_steps_;
+  } else {
+    waiting_since_ = ros::WallTime::now();
+  }
   sync_ = message;
-  sync_received_ = ros::WallTime::now();
   DecideIfDue();
 }
 
@@ -140,7 +143,7 @@ void AgentNode::DecideIfDue() {
   const bool sensed = detected >= static_cast<std::ptrdiff_t>(sync_->detections);
   const bool heard = sync_->step == 0 || !modem_present_ || window_ == NsOf(sync_->header.stamp);
   if (!sensed || !heard) {
-    if ((ros::WallTime::now() - sync_received_).toSec() < patience_s_) return;
+    if ((ros::WallTime::now() - waiting_since_).toSec() < patience_s_) return;
     if (!sensed) ++missing_detections_;
     if (!heard) {
       ++missing_windows_;

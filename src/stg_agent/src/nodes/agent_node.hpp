@@ -62,7 +62,7 @@ class AgentNode {
 
   nav_msgs::Odometry::ConstPtr odometry_;  ///< newest
   auv_msgs::SensorSync::ConstPtr sync_;    ///< of the open step; null: none is open
-  ros::WallTime sync_received_;
+  ros::WallTime waiting_since_;            ///< of the oldest step that is open or was skipped
   std::vector<auv_msgs::TargetDetection::ConstPtr> detections_;    ///< not taken yet
   std::vector<auv_msgs::AcousticReception::ConstPtr> receptions_;  ///< not taken yet
   TimeNs window_ = -1;  ///< clock time at which the newest reception window ended [ns]
