@@ -1,4 +1,4 @@
-"""Stand-ins for the programs train and evaluate that write the same files, at once."""
+"""Stand-ins for the programs train, evaluate and bench_env that write the same files, at once."""
 
 import os
 import stat
@@ -38,8 +38,8 @@ LEVEL = {{"stg": 0.99, "semantic": 0.85, "velocity3": 0.8, "tau6": 0.9}}
 TRAIN = (
     COMMON
     + """
-out, steps, seed = option("--out"), int(option("--steps")), int(option("--seed"))
-level = LEVEL[option("--variant")]
+out, steps, seed = option("--out"), int(option("--steps", 1000)), int(option("--seed"))
+level = LEVEL[option("--variant", "stg")]
 config = os.path.join(out, "config.json")
 if "--resume" not in sys.argv and os.path.exists(config):
     sys.exit("holds another run")
@@ -73,7 +73,11 @@ with open(os.path.join(out, "progress.csv"), "w") as csv:
 open(os.path.join(out, "policy_best.onnx"), "w").write(f"{level} {seed}")
 summary = {"stopped": "finished", "env_steps": steps, "wall_seconds": 12.5,
            "env_steps_per_second": steps / 12.5,
-           "time_to_threshold": {"no_loss": {"seconds": 3.0, "env_steps": 9}, "1000": None}}
+           "time_to_threshold": {"no_loss": {"seconds": 3.0, "env_steps": 9}, "1000": None,
+                                 "1030": {"seconds": 50.0 + 20.0 * seed, "env_steps": 9}},
+           "best_validation": {"return": 1041.5}, "update_gflops": 20.0,
+           "peak_sgemm_gflops": 80.0,
+           "phase_seconds": {"environment": 2.5, "inference": 2.5, "update": 7.5}}
 open(os.path.join(out, "summary.json"), "w").write(json.dumps(summary))
 """
 )
@@ -105,10 +109,22 @@ print(json.dumps(summary))
 """
 )
 
+BENCH_ENV = (
+    COMMON
+    + """
+result = {"env_steps_per_second": 1000.0 * int(option("--workers")),
+          "agent_steps_per_second": 4000.0 * int(option("--workers"))}
+if "--scaling" in sys.argv:
+    result["scaling"] = [{"agents": 100, "env_steps_per_second": 7.0, "ns_per_agent_step": 1e9}]
+print("some text before the object")
+print(json.dumps(result))
+"""
+)
+
 
 def write_stubs(folder):
-    """Puts the two programs into `folder`."""
-    for name, text in (("train", TRAIN), ("evaluate", EVALUATE)):
+    """Puts the programs into `folder`."""
+    for name, text in (("train", TRAIN), ("evaluate", EVALUATE), ("bench_env", BENCH_ENV)):
         path = os.path.join(folder, name)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)

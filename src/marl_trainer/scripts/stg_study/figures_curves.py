@@ -1,6 +1,7 @@
 """Figures over the training: convergence, seeds one by one, reward components."""
 
 import numpy as np
+from matplotlib.lines import Line2D
 from matplotlib.ticker import EngFormatter
 
 from stg_study.figure_style import colours, legend_below, logarithmic, plt, save, title
@@ -53,10 +54,10 @@ def _scale(study, metric):
     return 1.0 / study.agents if metric == "return" else 1.0
 
 
-def _focus_returns(axis, bands):
+def _focus_returns(axis, bands, references):
     """Keeps one early collapse from squeezing all curves: the axis starts near the 2 % quantile."""
     values = np.concatenate([mean - std for _, mean, std in bands])
-    top = max(float((mean + std).max()) for _, mean, std in bands)
+    top = max([float((mean + std).max()) for _, mean, std in bands] + references)
     low = float(np.quantile(values, 0.02))
     axis.set_ylim(low - 0.05 * (top - low), top + 0.06 * (top - low))
 
@@ -68,7 +69,7 @@ def convergence(study, results, paper, scenario, table, folder):
     figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.6))
     handles = {}
     for axis, (name, label, metric, is_logarithmic) in zip(axes.flat, PANELS):
-        bands = []
+        bands, references = [], []
         for method in study.methods:
             band = curve_band(results, scenario, method.name, metric, _scale(study, metric))
             if band is None:
@@ -85,13 +86,13 @@ def convergence(study, results, paper, scenario, table, folder):
             value = results.over_seeds(scenario, "nominal", controller.name, metric)
             if controller.name == "idle" or value is None:
                 continue
+            references.append(value[0] * _scale(study, metric))
             style = {"pursuit": "--", "pursuit_separated": "-."}.get(controller.name, ":")
-            line = axis.axhline(
-                value[0] * _scale(study, metric), color=colour[controller.name], lw=1.2, ls=style
-            )
+            line = axis.axhline(references[-1], color=colour[controller.name], lw=1.2, ls=style)
             handles[labels[controller.name]] = line
         theirs = paper.get(table, "STG-MAPPO", PAPER_NAME.get(metric, metric))
         if theirs is not None:
+            references.append(theirs[0])
             line = axis.axhline(theirs[0], color="#B22222", lw=1.0, ls=(0, (6, 2, 1, 2, 1, 2)))
             handles["STG-MAPPO (paper), final stage"] = line
         axis.set_title(name)
@@ -99,9 +100,10 @@ def convergence(study, results, paper, scenario, table, folder):
         if is_logarithmic:
             logarithmic(axis)
         elif metric == "whole_lost_rate":
-            axis.set_ylim(bottom=-0.01)
+            top = max(0.02, axis.get_ylim()[1])
+            axis.set_ylim(-0.03 * top, top)
         elif bands:
-            _focus_returns(axis, bands)
+            _focus_returns(axis, bands, references)
         _step_axis(axis)
     title(figure, f"{scenario}: validations during training, mean ± std over seeds")
     legend_below(figure, list(handles.values()), list(handles))
@@ -110,8 +112,9 @@ def convergence(study, results, paper, scenario, table, folder):
 
 
 def per_seed(study, results, scenario, folder):
-    """Return and tail distance of every training of STG-MAPPO and of the paper's MAPPO."""
-    methods = [m for m in study.methods if m.paper] or study.methods[:2]
+    """Return and tail distance of every training of STG-MAPPO and of the paper's MAPPO: a colour
+    for each method, a line style for each seed."""
+    methods = [m for m in study.methods if m.paper or m.variant == "stg"] or study.methods[:2]
     colour = colours(study)
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.2))
     handles = {}
@@ -120,22 +123,24 @@ def per_seed(study, results, scenario, folder):
         for method in methods:
             for i, seed in enumerate(results.seeds(scenario, method.name)):
                 values = np.array(results.curve(scenario, method.name, seed, metric))
-                (line,) = axis.plot(
+                axis.plot(
                     results.curve(scenario, method.name, seed, "env_steps"),
                     values * _scale(study, metric),
                     color=colour[method.name],
                     ls=styles[i % len(styles)],
                     lw=1.3,
                 )
-                handles[f"{method.label}, seed {seed}"] = line
+                handles[method.label] = Line2D([], [], color=colour[method.name], lw=3.0)
         axis.set_title(name)
         axis.set_ylabel(label)
         if is_logarithmic:
             logarithmic(axis)
         _step_axis(axis)
+    for i, seed in enumerate(study.seeds):
+        handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=styles[i % 4])
     title(figure, f"{scenario}: every training")
-    legend_below(figure, list(handles.values()), list(handles), columns=3)
-    figure.tight_layout(rect=(0, 0.12, 1, 1))
+    legend_below(figure, list(handles.values()), list(handles))
+    figure.tight_layout(rect=(0, 0.04 + 0.05 * ((len(handles) + 3) // 4), 1, 1))
     return save(figure, folder, f"per_seed_{scenario}")
 
 

@@ -1,0 +1,67 @@
+"""Tests of the benchmark script with stand-ins for the programs it runs."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path.insert(0, HERE)
+BENCH = os.path.join(HERE, "..", "..", "..", "scripts", "bench.sh")
+
+import stub_programs  # noqa: E402
+
+
+class Bench(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.out = os.path.join(self.folder, "results", "bench.json")
+        stub_programs.write_stubs(self.folder)
+
+    def bench(self, *arguments):
+        done = subprocess.run(
+            [BENCH, "--bin", self.folder, "--out", self.out, "--no-ros", *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            universal_newlines=True,
+            check=False,
+        )
+        return done.returncode, done.stdout
+
+    def test_report_and_file_hold_what_the_programs_measured(self):
+        status, output = self.bench("--seeds", "0,1", "--workers", "2", "--seconds", "0.5")
+        self.assertEqual(status, 0, output)
+        with open(self.out, encoding="utf-8") as file:
+            report = json.load(file)
+        self.assertEqual(report["environment"]["release_truth"]["env_steps_per_second"], 1000.0)
+        self.assertEqual(report["environment"]["acoustic_scaling"]["scaling"][0]["agents"], 100)
+        self.assertEqual(report["training"]["1"]["time_to_threshold"]["1030"]["seconds"], 70.0)
+        # Seed 0 takes 50 s, seed 1 takes 70 s; the stand-ins' update is 7.5 of 12.5 s.
+        self.assertIn("in under 60 s: 1 of 2 seeds", output)
+        self.assertIn("update 60 %", output)
+        self.assertIn("(25 %)", output)
+        train = [c for c in stub_programs.calls(self.folder) if c.startswith("train ")]
+        self.assertEqual(len(train), 2)
+        self.assertIn("--scenario medium_release --preset fast --seed 1 --workers 2", train[1])
+
+    def test_missing_program_is_named(self):
+        os.remove(os.path.join(self.folder, "bench_env"))
+        status, output = self.bench("--seeds", "")
+        self.assertEqual(status, 1)
+        self.assertIn("bench: bench_env is not built", output)
+        self.assertFalse(os.path.exists(self.out))
+
+    def test_failing_program_is_an_error(self):
+        with open(os.path.join(self.folder, "train"), "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\nexit 3\n")
+        status, output = self.bench("--seeds", "0")
+        self.assertEqual(status, 1)
+        self.assertIn("exit status 3", output)
+
+
+if __name__ == "__main__":
+    unittest.main()
