@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "marker_palette.hpp"
+#include "marker_list.hpp"
 
 namespace stg {
 namespace {
@@ -16,15 +16,14 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr int kManyVehicles = 8;  // beyond this, labels are numbers only
-constexpr double kPi = 3.14159265358979323846;
 
-class Builder {
+class Builder : private MarkerList {
  public:
   Builder(const SwarmView& view, const MarkerStyle& style)
       : view_(view),
         style_(style),
         unit_(view.scene.radius_m * style.vehicle_scale),
-        text_(style.whole_workspace ? 0.045 * view.scene.half_extent_m : 0.36 * unit_) {}
+        text_(style.whole_workspace ? 0.05 * view.scene.half_extent_m : 0.36 * unit_) {}
 
   MarkerArray Build() {
     if (style_.whole_workspace) Workspace();
@@ -37,58 +36,6 @@ class Builder {
   }
 
  private:
-  Marker New(const char* name, int id, int type, const ColorRGBA& color) const {
-    Marker m;
-    m.header.frame_id = "world";  // stamp zero: always drawn, whatever the clock does
-    m.ns = name;
-    m.id = id;
-    m.type = type;
-    m.action = Marker::ADD;
-    m.pose.orientation.w = 1.0;
-    m.color = color;
-    return m;
-  }
-  Marker Lines(const char* name, int id, int type, double width, const ColorRGBA& color) const {
-    Marker m = New(name, id, type, color);
-    m.scale.x = width;
-    return m;
-  }
-  /// rviz warns about lists without points and texts without letters: those are deleted.
-  void Add(Marker m) {
-    const bool list = m.type == Marker::LINE_LIST || m.type == Marker::LINE_STRIP ||
-                      m.type == Marker::SPHERE_LIST;
-    const size_t needed = m.type == Marker::SPHERE_LIST ? 1 : 2;
-    if (list && m.points.size() < needed) m.action = Marker::DELETE;
-    array_.markers.push_back(std::move(m));
-  }
-  void Delete(const char* name, int id, int type) {
-    Marker m = New(name, id, type, Color(0, 0, 0));
-    m.action = Marker::DELETE;
-    array_.markers.push_back(std::move(m));
-  }
-  void Sphere(const char* name, int id, const Point& p, double diameter, const ColorRGBA& color) {
-    Marker m = New(name, id, Marker::SPHERE, color);
-    m.pose.position = p;
-    m.scale.x = m.scale.y = m.scale.z = diameter;
-    Add(std::move(m));
-  }
-  void Text(const char* name, int id, const Point& p, double height, const std::string& text,
-            const ColorRGBA& color) {
-    Marker m = New(name, id, Marker::TEXT_VIEW_FACING, color);
-    m.pose.position = p;
-    m.scale.z = height;
-    m.text = text;
-    Add(std::move(m));
-  }
-  void Mesh(const char* name, int id, const geometry_msgs::Pose& pose, double length,
-            const char* file, const ColorRGBA& color) {
-    Marker m = New(name, id, Marker::MESH_RESOURCE, color);
-    m.pose = pose;
-    m.scale.x = m.scale.y = m.scale.z = length;
-    m.mesh_resource = std::string("package://stg_bringup/meshes/") + file;
-    Add(std::move(m));
-  }
-
   void Workspace() {
     const double h = view_.scene.half_extent_m;
     Marker walls =
@@ -110,7 +57,7 @@ class Builder {
     Add(std::move(floor));
     // Beneath each AUV and target a thread to the floor: depth is hard to see otherwise.
     Marker threads =
-        Lines("workspace", 2, Marker::LINE_LIST, 0.002 * h, Color(0.7, 0.75, 0.8, 0.35));
+        Lines("workspace", 2, Marker::LINE_LIST, 0.002 * h, Color(0.7, 0.75, 0.8, 0.25));
     const auto thread = [&](const Point& p) {
       threads.points.push_back(p);
       threads.points.push_back(At(p.x, p.y, -h));
@@ -153,22 +100,13 @@ class Builder {
     }
   }
 
-  void Circle(const char* name, int id, const Point& centre, double radius, double width,
-              const ColorRGBA& color) {
-    Marker m = Lines(name, id, Marker::LINE_STRIP, width, color);
-    for (int k = 0; k <= 64; ++k) {
-      const double angle = 2.0 * kPi * k / 64.0;
-      m.points.push_back(Sum(centre, At(radius * std::cos(angle), radius * std::sin(angle), 0.0)));
-    }
-    Add(std::move(m));
-  }
-
   /// A line through the past, fading with age.
   void Trail(const char* name, int id, const std::deque<TrailPoint>& trail, ColorRGBA color,
              bool by_phase) {
     Marker m = Lines(name, id, Marker::LINE_STRIP, 0.07 * unit_, Color(1, 1, 1));
     const double count = static_cast<double>(std::max<size_t>(trail.size(), 1));
     for (size_t k = 0; k < trail.size(); ++k) {
+      if (trail[k].time < view_.now - style_.trail_s) continue;
       const double alpha = 0.15 + 0.75 * static_cast<double>(k + 1) / count;
       m.points.push_back(trail[k].position);
       if (by_phase) color = PhaseColor(trail[k].phase);
@@ -217,15 +155,27 @@ class Builder {
     Label(id, v);
   }
 
-  /// Labels fan out around the swarm, each on a stem: they stay apart where the AUVs do not.
+  /// AUVs below this one: the rank of its label, so that labels of a crowd stack up.
+  int Below(int id) const {
+    const double z = PositionOf(id).z;
+    int below = 0;
+    for (int j = 0; j < static_cast<int>(view_.vehicles.size()); ++j) {
+      if (j == id || !Seen(j)) continue;
+      const double other = PositionOf(j).z;
+      if (other < z || (other == z && j < id)) ++below;
+    }
+    return below;
+  }
+
+  /// Labels stand on stems, fanned out and stacked: they stay apart where the AUVs do not.
   void Label(int id, const VehicleView& v) {
     const int count = static_cast<int>(view_.vehicles.size());
     const bool many = count > kManyVehicles;
     const double angle = 2.0 * kPi * (id + 0.5) / count;
-    const double arm = (many ? 1.4 : 2.4) * unit_;
+    const double arm = 1.4 * unit_;
     const Point& p = v.pose.position;
-    const Point end =
-        Sum(p, At(arm * std::cos(angle), arm * std::sin(angle), arm * (0.7 + 0.4 * (id % 4))));
+    const Point end = Sum(p, At(arm * std::cos(angle), arm * std::sin(angle),
+                                1.5 * arm + (many ? 0.0 : 1.5 * text_ * Below(id))));
     Marker stem =
         Lines("label_stem", id, Marker::LINE_LIST, 0.025 * unit_, PhaseColor(v.phase, 0.6));
     stem.points = {p, end};
@@ -355,7 +305,7 @@ class Builder {
     double height = 1.4 * text_;
     if (!style_.whole_workspace) {
       if (view_.targets.empty() || !view_.targets[0].seen) return;
-      top = Sum(view_.targets[0].position, At(0, 0, 5.5 * unit_));
+      top = Sum(view_.targets[0].position, At(0, 0, 7.5 * unit_));
       height = text_;
     }
     for (int k = 0; k < 2; ++k) {
@@ -369,7 +319,7 @@ class Builder {
     const double h = view_.scene.half_extent_m;
     for (int k = 0; k < 4; ++k) {
       const auto phase = static_cast<ShownPhase>(k);
-      Text("legend", k, At(1.1 * h, -1.1 * h, 0.9 * h - 2.0 * text_ * k), 1.3 * text_,
+      Text("legend", k, At(1.12 * h, -1.12 * h, 0.9 * h - 2.0 * text_ * k), 1.3 * text_,
            PhaseName(phase), PhaseColor(phase));
     }
   }
@@ -378,7 +328,6 @@ class Builder {
   const MarkerStyle& style_;
   const double unit_;  // [m] radius of a vehicle as drawn; every size that scales is a multiple
   const double text_;  // [m] height of letters
-  MarkerArray array_;
 };
 
 }  // namespace

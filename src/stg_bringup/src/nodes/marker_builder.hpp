@@ -12,6 +12,7 @@ struct MarkerStyle {
   double vehicle_scale = 1.0;  ///< 1: the hull fills its collision sphere
   bool whole_workspace =
       false;                   ///< walls, sensing range, legend; else the surroundings of target 0
+  double trail_s = 60.0;       ///< simulated time that trails reach back
   double packet_s = 0.35;      ///< simulated time that a packet is shown travelling
   double lost_packet_s = 1.0;  ///< simulated time that a lost packet stays visible
   double prediction_s = 20.0;  ///< length of the target's velocity arrow

@@ -10,6 +10,7 @@
 #include <visualization_msgs/MarkerArray.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -53,9 +54,10 @@ bool Finite(const geometry_msgs::Point& p) {
 class MarkerNode {
  public:
   MarkerNode() : private_nh_("~") {
-    private_nh_.param("trail_s", trail_s_, 60.0);
-    private_nh_.param("overview/vehicle_scale", overview_.vehicle_scale, 6.0);
+    private_nh_.param("overview/vehicle_scale", overview_.vehicle_scale, 8.0);
     private_nh_.param("close/vehicle_scale", close_.vehicle_scale, 1.0);
+    private_nh_.param("overview/trail_s", overview_.trail_s, 60.0);
+    private_nh_.param("close/trail_s", close_.trail_s, 8.0);
     overview_.whole_workspace = true;
     for (MarkerStyle* style : {&overview_, &close_}) {
       private_nh_.param("lost_packet_s", style->lost_packet_s, style->lost_packet_s);
@@ -150,6 +152,8 @@ class MarkerNode {
     view_.now = 0.0;
   }
 
+  double TrailSeconds() const { return std::max(overview_.trail_s, close_.trail_s); }
+
   void Extend(std::deque<TrailPoint>* trail, const geometry_msgs::Point& p, ShownPhase phase) {
     if (!trail->empty()) {
       const geometry_msgs::Point& q = trail->back().position;
@@ -157,7 +161,7 @@ class MarkerNode {
       if (std::hypot(p.x - q.x, p.y - q.y, p.z - q.z) < step) return;
     }
     trail->push_back({view_.now, p, phase});
-    while (trail->size() > kMaxTrailPoints || trail->front().time < view_.now - trail_s_) {
+    while (trail->size() > kMaxTrailPoints || trail->front().time < view_.now - TrailSeconds()) {
       trail->pop_front();
     }
   }
@@ -236,7 +240,6 @@ class MarkerNode {
   }
 
   ros::NodeHandle nh_, private_nh_;
-  double trail_s_ = 60.0;
   MarkerStyle overview_, close_;
   SwarmView view_;
   ros::Publisher overview_pub_, close_pub_;

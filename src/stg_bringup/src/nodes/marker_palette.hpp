@@ -11,6 +11,8 @@
 /// Points and colours of the markers.
 namespace stg {
 
+inline constexpr double kPi = 3.14159265358979323846;
+
 inline geometry_msgs::Point At(double x, double y, double z) {
   geometry_msgs::Point p;
   p.x = x;

@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Makes a picture of a recorded run in rviz without a display. Needs a built and sourced workspace.
+set -euo pipefail
+
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
+
+usage() {
+  cat <<'TEXT'
+usage: scripts/screenshot.sh [OPTIONS] OUT.png
+
+  --bag FILE        recorded run to show (default: a run of --scenario is recorded first)
+  --scenario NAME   scenario to record, launch/NAME.launch (default: medium)
+  --seed N          seed of that run (default: 3)
+  --view NAME       overview or follow (default: overview)
+  --at SECONDS      moment of the recording to show (default: 1.5)
+  --size WxH        size of the picture (default: 1280x800)
+TEXT
+}
+
+fail() {
+  echo "screenshot: $*" >&2
+  exit 2
+}
+
+bag='' scenario=medium seed=3 view=overview at=1.5 size=1280x800 out=''
+while (($# > 0)); do
+  case "$1" in
+    --bag | --scenario | --seed | --view | --at | --size)
+      (($# > 1)) || fail "$1 needs a value"
+      declare "${1#--}=$2"
+      shift 2
+      ;;
+    -h | --help)
+      usage
+      exit 0
+      ;;
+    -*) fail "unknown option $1" ;;
+    *)
+      [[ -z "$out" ]] || fail "more than one output file"
+      out=$1
+      shift
+      ;;
+  esac
+done
+[[ -n "$out" ]] || { usage >&2; exit 2; }
+[[ -f "$root/rviz/$view.rviz" ]] || fail "no view '$view'"
+[[ "$size" =~ ^[0-9]+x[0-9]+$ ]] || fail "--size: not of the form 1280x800"
+
+work=$(mktemp -d)
+pids=()
+cleanup() {
+  local pid
+  for pid in "${pids[@]}"; do kill -INT "$pid" 2>/dev/null || true; done
+  for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null || true; done
+  rm -rf "$work"
+}
+trap cleanup EXIT
+
+# A master of its own on the loopback: a run that is under way is not disturbed.
+port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 LIBGL_ALWAYS_SOFTWARE=1
+
+if [[ -z "$bag" ]]; then
+  bag=$work/run.bag
+  echo "screenshot: recording $scenario"
+  roslaunch -p "$port" stg_bringup "$scenario.launch" gui:=false episodes:=1 seed:="$seed" \
+    record:=true bag:="$bag" >"$work/run.log" 2>&1 || true
+fi
+[[ -f "$bag" ]] || { tail -n 20 "$work"/*.log >&2 || true; fail "no bag $bag"; }
+bag=$(readlink -f "$bag")
+
+# The picture shows the scene alone: no panels, and a margin for menu and tool bar that is cut off.
+width=${size%x*} height=${size#*x} margin=120
+sed -e '/^Panels:/,/^Preferences:/{/^Panels:/{s/.*/Panels: []/;b};/^Preferences:/b;d}' \
+  -e "s/^  Height: .*/  Height: $((height + margin))/" -e "s/^  Width: .*/  Width: $((width + 32))/" \
+  -e 's/^  X: .*/  X: 0/' -e 's/^  Y: .*/  Y: 0/' "$root/rviz/$view.rviz" >"$work/shot.rviz"
+
+# rviz needs a moment to start. The run is played from its beginning, for the sake of the trails, up
+# to the moment wanted, and then stands still.
+rate=$(/usr/bin/python3 -c "print(max(1.0, $at / 6.0))")
+roslaunch -p "$port" stg_bringup replay.launch gui:=false stay:=true bag:="$bag" \
+  duration:="$at" rate:="$rate" delay:=8 >"$work/replay.log" 2>&1 &
+pids+=($!)
+xvfb-run -a -s "-screen 0 $((width + 32))x$((height + margin))x24" bash -c "
+  rviz -d '$work/shot.rviz' >'$work/rviz.log' 2>&1 & viewer=\$!
+  sleep 18
+  import -window root '$work/shot.png'
+  kill \$viewer"
+convert "$work/shot.png" -crop "${size}+16+62" +repage "$out"
+echo "screenshot: $out"
