@@ -10,7 +10,7 @@ import yaml
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 
-from stg_study import statistics, study, tables  # noqa: E402
+from stg_study import runner, statistics, study, tables  # noqa: E402
 from stg_study.data import Paper  # noqa: E402
 
 
@@ -59,6 +59,47 @@ class Statistics(unittest.TestCase):
         self.assertEqual(statistics.final_stage([5]), [5])
         with self.assertRaises(ValueError):
             statistics.final_stage([])
+
+
+class Job:
+    """A job as the estimate sees it."""
+
+    def __init__(self, kind, fraction=0.0):
+        self.kind, self._fraction = kind, fraction
+
+    def fraction_done(self):
+        return self._fraction
+
+
+class Running:
+    """A job that runs, `seconds` ago begun at `start_fraction`."""
+
+    def __init__(self, job, seconds, start_fraction=0.0):
+        self.job, self.start_fraction, self._seconds = job, start_fraction, seconds
+
+    def seconds(self):
+        return self._seconds
+
+
+class TimeLeft(unittest.TestCase):
+    def test_finished_jobs_tell_how_long_the_rest_takes(self):
+        estimate = runner.Estimate()
+        estimate.add("training", 40.0)
+        estimate.add("evaluation", 2.0)
+        waiting = [Job("training"), Job("evaluation"), Job("evaluation")]
+        running = [Running(Job("training", 0.75), 30.0)]
+        self.assertEqual(estimate.left(waiting, running, 2), (1.25 * 40.0 + 2 * 2.0) / 2.0)
+
+    def test_running_training_tells_before_any_is_finished(self):
+        estimate = runner.Estimate()
+        self.assertIsNone(estimate.left([Job("training")], [], 1))
+        # A resumed training went from one half to three quarters in 10 s: 40 s for a whole one.
+        running = [Running(Job("training", 0.75), 10.0, 0.5)]
+        self.assertEqual(estimate.left([Job("training")], running, 1), 50.0)
+
+    def test_durations_are_for_people(self):
+        texts = [runner.duration(s) for s in (4.4, 200.0, 3900.0)]
+        self.assertEqual(texts, ["4 s", "3 min 20 s", "1 h 05 min"])
 
 
 class Cells(unittest.TestCase):

@@ -132,7 +132,7 @@ def seed_table(study, results, paper, scenario, table):
     rows = []
     for method in study.methods:
         for seed in results.seeds(scenario, method.name):
-            points = len(results.final_points(scenario, method.name, seed, "return"))
+            points = len(results.curve(scenario, method.name, seed, "return"))
             row = [method.label, seed, points]
             for _, metric, digits in columns:
                 values = results.final_points(scenario, method.name, seed, metric)
@@ -160,7 +160,7 @@ def seed_table(study, results, paper, scenario, table):
                 value = paper.get(table, algorithm, PAPER_NAME.get(metric, metric), seed=seed)
                 row.append(cell(value, min(digits, 3)))
             rows.append(row + [NOTHING] * len(CONTACT))
-    return markdown(["Algorithm", "Seed", "Final pts"] + [c[0] for c in columns], rows)
+    return markdown(["Algorithm", "Seed", "Eval pts"] + [c[0] for c in columns], rows)
 
 
 def stress_table(study, results, paper, scenario, table):
