@@ -1,0 +1,160 @@
+#!/usr/bin/python3
+"""Publishes a run of known content and checks what the marker node makes of it."""
+
+import math
+import pathlib
+import sys
+import threading
+import unittest
+
+import auv_msgs.msg
+import nav_msgs.msg
+import rospy
+import rostest
+import std_msgs.msg
+import visualization_msgs.msg
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import synthetic_bag  # noqa: E402  (lies beside this file)
+
+Marker = visualization_msgs.msg.Marker
+TASK = auv_msgs.msg.TaskState
+LISTS = (Marker.LINE_LIST, Marker.LINE_STRIP, Marker.SPHERE_LIST)
+
+
+class Run:
+    """Publishers of everything the marker node listens to."""
+
+    def __init__(self):
+        def latched(topic, kind):
+            return rospy.Publisher(topic, kind, queue_size=10, latch=True)
+
+        agents = range(synthetic_bag.AGENTS)
+        self.odom = [latched(f"/auv_{i}/odom", nav_msgs.msg.Odometry) for i in agents]
+        self.task = [latched(f"/auv_{i}/task_state", TASK) for i in agents]
+        self.target = latched("/target_0/odom", nav_msgs.msg.Odometry)
+        self.links = latched("/acoustic_channel/links", auv_msgs.msg.LinkStates)
+        self.scenario = latched("/scenario", std_msgs.msg.String)
+        self.scenario.publish(synthetic_bag.SCENARIO.replace("1.0}", "2.0}"))
+
+    def publish(self, k, dropped=0, position=None):
+        """Publishes step k; `dropped` packets lost on every link; AUV 0 at `position` if given."""
+        t = k * synthetic_bag.STEP_S
+        stamp = rospy.Time(1, 0) + rospy.Duration.from_sec(t)
+        target = synthetic_bag.odometry("target_0", stamp, synthetic_bag.target_at(t), (1, 0))
+        self.target.publish(target)
+        for i, (odom, task) in enumerate(zip(self.odom, self.task)):
+            place = position if i == 0 and position else synthetic_bag.auv_at(i, t)
+            frame = f"auv_{i}/base_link"
+            odom.publish(synthetic_bag.odometry(frame, stamp, place, (1, 0)))
+            state = synthetic_bag.task_state(stamp, k, i)
+            state.phase = i
+            task.publish(state)
+        links = synthetic_bag.link_states(stamp, k)
+        for link in links.links:
+            link.dropped, link.last_drop_reason = dropped, link.RANGE
+        self.links.publish(links)
+
+
+class Markers(unittest.TestCase):
+    """The view shows what was published."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.arrays = {"overview": None, "close": None}
+        cls.condition = threading.Condition()
+
+        def listen(view):
+            def on_array(message):
+                with cls.condition:
+                    cls.arrays[view] = message.markers
+                    cls.condition.notify_all()
+
+            kind = visualization_msgs.msg.MarkerArray
+            return rospy.Subscriber(f"/markers/{view}", kind, on_array)
+
+        cls.subscribers = [listen(view) for view in cls.arrays]
+        cls.run_under_test = Run()
+        cls.step = 0
+
+    def shown(self, view, namespace):
+        """Returns the markers on show in a namespace of the newest array."""
+        markers = self.arrays[view] or []
+        return [m for m in markers if m.ns == namespace and m.action == Marker.ADD]
+
+    def publish_until(self, predicate, what, **content):
+        """Publishes steps until `predicate` holds."""
+        deadline = rospy.get_time() + 15.0
+        while rospy.get_time() < deadline:
+            Markers.step += 1
+            self.run_under_test.publish(self.step, **content)
+            with self.condition:
+                if self.condition.wait_for(predicate, 0.2):
+                    return
+        self.fail(f"never seen: {what}")
+
+    def test_every_auv_has_a_hull_in_the_colour_of_its_phase(self):
+        count = synthetic_bag.AGENTS
+        self.publish_until(lambda: len(self.shown("overview", "hull")) == count, "hulls")
+        self.publish_until(
+            lambda: len({(m.color.r, m.color.g) for m in self.shown("close", "hull")}) == count,
+            "four colours for four phases",
+        )
+        labels = " ".join(m.text for m in self.shown("overview", "label"))
+        for word in ("search", "approach", "stable", "lost", "leads"):
+            self.assertIn(word, labels)
+
+    def test_lost_packets_appear_with_their_reason_and_go(self):
+        self.publish_until(lambda: self.shown("overview", "hull"), "a hull")
+        self.publish_until(lambda: self.shown("overview", "link"), "links")
+        self.publish_until(
+            lambda: self.shown("overview", "lost_packet"), "a lost packet", dropped=self.step + 1
+        )
+        lost = self.step
+        reasons = {m.text for m in self.shown("overview", "lost_reason")}
+        self.assertEqual(reasons, {"range"})
+        self.publish_until(
+            lambda: not self.shown("overview", "lost_packet"), "no lost packet", dropped=lost
+        )
+
+    def test_walls_follow_the_scenario(self):
+        def walls():
+            points = [p for m in self.shown("overview", "workspace") for p in m.points]
+            return points and abs(max(p.x for p in points) - 2.0) < 1e-9
+
+        self.publish_until(walls, "walls at 2 m")
+
+    def test_a_position_that_is_no_number_is_never_shown(self):
+        self.publish_until(lambda: self.shown("close", "hull"), "a hull")
+        for _ in range(10):
+            Markers.step += 1
+            self.run_under_test.publish(self.step, position=(math.nan, 0.0, 0.0))
+            rospy.sleep(0.05)
+        for view in self.arrays:
+            for marker in self.arrays[view]:
+                for p in [marker.pose.position, *marker.points]:
+                    self.assertTrue(math.isfinite(p.x + p.y + p.z), marker.ns)
+
+    def test_no_marker_is_one_that_rviz_complains_about(self):
+        self.publish_until(lambda: self.shown("close", "hull"), "a hull")
+        for view, markers in self.arrays.items():
+            self.assertEqual(len({(m.ns, m.id) for m in markers}), len(markers), view)
+            for m in markers:
+                if m.action != Marker.ADD:
+                    continue
+                self.assertEqual(m.header.frame_id, "world")
+                q = m.pose.orientation
+                self.assertAlmostEqual(q.x**2 + q.y**2 + q.z**2 + q.w**2, 1.0, delta=1e-3)
+                self.assertGreater(m.color.a if not m.colors else 1.0, 0.0, m.ns)
+                self.assertGreater(max(m.scale.x, m.scale.z), 0.0, m.ns)
+                if m.type in LISTS:
+                    self.assertGreaterEqual(len(m.points), 1 if m.type == Marker.SPHERE_LIST else 2)
+                    self.assertIn(len(m.colors), (0, len(m.points)), m.ns)
+                if m.type == Marker.TEXT_VIEW_FACING:
+                    self.assertTrue(m.text.strip(), m.ns)
+
+
+if __name__ == "__main__":
+    rospy.init_node("markers_test")
+    rostest.rosrun("stg_bringup", "markers_test", Markers)
