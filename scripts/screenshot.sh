@@ -63,7 +63,7 @@ export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 LIBGL_ALWAYS_SOFTW
 if [[ -z "$bag" ]]; then
   bag=$work/run.bag
   echo "screenshot: recording $scenario"
-  roslaunch -p "$port" stg_bringup "$scenario.launch" gui:=false episodes:=1 seed:="$seed" \
+  roslaunch -p "$port" stg_bringup "$scenario.launch" gui:=false episodes:=1 seed:="$seed" real_time_factor:=0 \
     record:=true bag:="$bag" >"$work/run.log" 2>&1 || true
 fi
 [[ -f "$bag" ]] || { tail -n 20 "$work"/*.log >&2 || true; fail "no bag $bag"; }
