@@ -6,8 +6,8 @@
 
 namespace stg {
 
-/// How a view is drawn. Vehicles, lines and letters scale together; bands, walls and collision
-/// spheres keep their true size.
+/// How a view is drawn. Vehicles and lines scale together; bands, walls and collision spheres keep
+/// their true size.
 struct MarkerStyle {
   double vehicle_scale = 1.0;  ///< 1: the hull fills its collision sphere
   bool whole_workspace =
