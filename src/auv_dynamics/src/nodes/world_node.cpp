@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint32_t kQueue = 20;
 /// The clock starts here: ROS takes time zero for "not known yet".
 constexpr TimeNs kFirstStamp = 1'000'000'000;
+constexpr std::size_t kMaxDelays = 10'000;
 constexpr TimeNs kRecent = 10'000'000'000;
 
 }  // namespace
@@ -37,7 +38,7 @@ WorldNode::WorldNode()
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
   publisher_ =
-      std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.0, 1e6));
+      std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
   for (int i = 0; i < scenario_.agents; ++i) {
     const boost::function<void(const geometry_msgs::WrenchStamped::ConstPtr&)> callback =
         [this, i](const auto& message) { OnWrench(i, message); };
@@ -167,6 +168,7 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
 void WorldNode::OpenStep() {
   for (Auv& auv : auvs_) auv.answered = false;
   channel_answered_ = false;
+  opened_ = ros::WallTime::now();
   publisher_->Publish(world_, start_, episode_, step_);
   const ros::WallTime now = ros::WallTime::now();
   if (!running_) {
@@ -187,9 +189,11 @@ void WorldNode::Finish() {
   finishing_ = true;
   const double wall_s = (ros::WallTime::now() - began_).toSec();
   const double simulated_s = Seconds(period_) * static_cast<double>(steps_.total());
-  ROS_INFO("world: %llu steps in %.3f s, %.1f x real time, %llu with a deadline miss",
-           static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
-           static_cast<unsigned long long>(missed_steps_));
+  ROS_INFO(
+      "world: %llu steps in %.3f s, %.1f x real time, %llu with a deadline miss, "
+      "from detection to wrench %.3f ms (median), %.3f ms (99 %%)",
+      static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
+      static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   deadline_ = ros::WallTime::now() + ros::WallDuration(summary_timeout_s_);
   if (subscribers_.back().getNumPublishers() == 0) done_ = true;
 }
@@ -212,8 +216,29 @@ void WorldNode::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& me
   }
   if (auv.answered) return;  // the first answer counts
   auv.answered = true;
+  KeepDelay();
   auv.command.force = VectorOf(message->wrench.force);
   auv.command.moment = VectorOf(message->wrench.torque);
+}
+
+void WorldNode::KeepDelay() {
+  if (!running_) return;  // the first answers wait for nodes to start
+  const auto delay = static_cast<float>((ros::WallTime::now() - opened_).toSec() * 1e3);
+  if (answer_ms_.size() < kMaxDelays) {
+    answer_ms_.push_back(delay);
+  } else {
+    answer_ms_[next_answer_++ % kMaxDelays] = delay;
+  }
+}
+
+/// Time from detection to wrench that `share` of the answers stayed within [ms].
+double WorldNode::DelayQuantile(double share) const {
+  if (answer_ms_.empty()) return 0.0;
+  std::vector<float> sorted = answer_ms_;
+  const auto index = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(index),
+                   sorted.end());
+  return sorted[index];
 }
 
 void WorldNode::OnChannelDone(const std_msgs::Header::ConstPtr& message) {
@@ -260,6 +285,8 @@ void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("step", step_);
   status.add("steps per second", rate);
   status.add("real time factor", rate * Seconds(period_));
+  status.add("from detection to wrench, median [ms]", DelayQuantile(0.5));
+  status.add("from detection to wrench, 99 % [ms]", DelayQuantile(0.99));
   status.add("steps with a deadline miss", missed_steps_);
   status.add("deadline misses of the channel", channel_misses_);
   for (std::size_t i = 0; i < auvs_.size(); ++i) {

@@ -61,6 +61,8 @@ class WorldNode {
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
   void Finish();
+  void KeepDelay();
+  double DelayQuantile(double share) const;
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
   TimeNs Now() const { return start_ + world_.time(0); }
   bool AtEnd() const { return step_ >= static_cast<std::uint32_t>(scenario_.time.episode_steps); }
@@ -69,7 +71,7 @@ class WorldNode {
   World world_;
   TimeNs period_;  ///< of decisions [ns]
   double real_time_factor_, deadline_s_, start_timeout_s_, summary_timeout_s_;
-  int episodes_;          ///< to run; 0: until stopped
+  int episodes_;         ///< to run; 0: until stopped
   std::string awaited_;  ///< node that must be up before the run starts, or empty
   bool wait_for_metrics_;
   std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
@@ -81,6 +83,9 @@ class WorldNode {
   bool channel_answered_ = false, channel_present_ = true;
   std::uint64_t channel_misses_ = 0, missed_steps_ = 0;
   EventRate steps_;
+  ros::WallTime opened_;          ///< the present step's sensor data began to go out
+  std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
+  std::size_t next_answer_ = 0;
   ros::WallTime began_, due_, deadline_, awaited_seen_;
   std::vector<Auv> auvs_;
   std::vector<Wrench<Pack>> commands_;

@@ -27,8 +27,8 @@ geometry_msgs::TransformStamped TransformOf(const nav_msgs::Odometry& m) {
 
 }  // namespace
 
-WorldPublisher::WorldPublisher(const Scenario& scenario, double frame_rate_hz)
-    : scenario_(scenario), frame_period_s_(frame_rate_hz > 0.0 ? 1.0 / frame_rate_hz : 0.0) {
+WorldPublisher::WorldPublisher(const Scenario& scenario, double display_rate_hz)
+    : scenario_(scenario), display_period_s_(1.0 / display_rate_hz) {
   ros::NodeHandle node;
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kQueue, true);
   for (int i = 0; i < scenario_.agents; ++i) {
@@ -70,6 +70,9 @@ void WorldPublisher::SendWorldNed() {
 }
 
 void WorldPublisher::PublishClock(TimeNs now) {
+  const ros::WallTime wall = ros::WallTime::now();
+  if ((wall - clock_sent_).toSec() < 0.1 * display_period_s_) return;
+  clock_sent_ = wall;
   rosgraph_msgs::Clock clock;
   clock.clock = TimeOf(now);
   clock_.publish(clock);
@@ -129,7 +132,7 @@ int WorldPublisher::PublishDetections(const World& world, TimeNs now, int i) {
 
 void WorldPublisher::PublishFrames(TimeNs now) {
   const ros::WallTime wall = ros::WallTime::now();
-  if ((wall - frames_sent_).toSec() < frame_period_s_) return;
+  if ((wall - frames_sent_).toSec() < display_period_s_) return;
   frames_sent_ = wall;
   transforms_.clear();
   for (const AuvTopics& auv : auvs_) transforms_.push_back(TransformOf(auv.odometry_message));

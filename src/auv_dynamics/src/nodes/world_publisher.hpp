@@ -17,14 +17,12 @@ namespace stg {
 /// Puts the state of lane 0 of a world on topics.
 class WorldPublisher {
  public:
-  /// @param frame_rate_hz at most this many transforms of one frame per second of wall time; 0: no
-  ///                      limit
-  WorldPublisher(const Scenario& scenario, double frame_rate_hz);
+  /// @param display_rate_hz largest rate of transforms per second of wall time, and a tenth of the
+  ///                        largest rate of /clock: no step waits for either
+  WorldPublisher(const Scenario& scenario, double display_rate_hz);
 
   /// Everything of decision `step` of `episode`, whose step 0 was at clock time `start` [ns].
   void Publish(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
-  /// The clock alone, as /clock repeats while time stands still.
-  void PublishClock(TimeNs now);
 
  private:
   struct AuvTopics {
@@ -33,12 +31,13 @@ class WorldPublisher {
     auv_msgs::SensorSync sync_message;
   };
   int PublishDetections(const World& world, TimeNs now, int i);
+  void PublishClock(TimeNs now);
   void PublishFrames(TimeNs now);
   void SendWorldNed();
 
   Scenario scenario_;
-  double frame_period_s_;
-  ros::WallTime frames_sent_;
+  double display_period_s_;
+  ros::WallTime clock_sent_, frames_sent_;
   std::vector<AuvTopics> auvs_;
   std::vector<ros::Publisher> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Measures the ROS graph of a built and sourced workspace and prints one line of JSON: lockstep speed
+# with 4 and 20 AUVs, time from detection to wrench in real time, resident memory of agent nodes.
+# Usage: bench_ros.sh [FILE]   also writes the JSON to FILE
+set -euo pipefail
+
+work=$(mktemp -d)
+export ROS_HOME=$work/ros_home
+# A free port: another run may be up.
+port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=${ROS_IP:-127.0.0.1}
+launch=
+finish() {
+  [[ -z "$launch" ]] || kill -INT "$launch" 2>/dev/null || true
+  wait
+  rm -rf "$work"
+}
+trap finish EXIT
+
+# run NAME SECONDS ARGUMENTS...: one run to its end; its output goes to NAME.log.
+run() {
+  local name=$1 limit=$2
+  shift 2
+  timeout -s INT "$limit" roslaunch -p "$port" stg_bringup "$@" table:=false policy:=pursuit_separated \
+    >"$work/$name.log" 2>&1 &
+  launch=$!
+}
+
+finished() {
+  wait "$launch" || true
+  launch=
+}
+
+# figure NAME PATTERN: the number that the world's closing line gives.
+figure() {
+  sed -n "s/.*world: [0-9]* steps in .*$2.*/\1/p" "$work/$1.log" | tail -n 1 | grep . || echo null
+}
+speed='s, \([0-9.]*\) x real time'
+median='to wrench \([0-9.]*\) ms (median)'
+tail99=', \([0-9.]*\) ms (99 %)'
+misses='time, \([0-9]*\) with a deadline miss'
+
+run four 120 medium.launch real_time_factor:=0 episodes:=6
+finished
+run twenty 180 swarm.launch agents:=20 real_time_factor:=0 episodes:=1 \
+  "overrides:=[time.episode_steps=300]"
+finished
+run live 90 medium.launch real_time_factor:=1 episodes:=1 "overrides:=[time.episode_steps=300]"
+sleep 20
+memory=0
+for process in /proc/[0-9]*; do
+  command=$(tr '\0' '\n' <"$process/cmdline" 2>/dev/null) || continue
+  if [[ "$command" == */stg_agent/agent* && "$command" == *"$ROS_HOME"* ]]; then
+    kib=$(awk '/^VmRSS:/ { print $2 }' "$process/status")
+    ((kib > memory)) && memory=$kib
+  fi
+done
+finished
+
+json=$(printf '{"lockstep_4_auvs_x_real_time": %s, "lockstep_20_auvs_x_real_time": %s, ' \
+  "$(figure four "$speed")" "$(figure twenty "$speed")")
+json+=$(printf '"detection_to_wrench_median_ms": %s, "detection_to_wrench_p99_ms": %s, ' \
+  "$(figure live "$median")" "$(figure live "$tail99")")
+json+=$(printf '"real_time_deadline_misses": %s, "largest_agent_memory_mib": %s, "cores": %s}' \
+  "$(figure live "$misses")" "$(awk "BEGIN { printf \"%.1f\", $memory / 1024 }")" "$(nproc)")
+echo "$json"
+[[ $# -eq 0 ]] || echo "$json" >"$1"
