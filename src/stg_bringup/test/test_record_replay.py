@@ -1,0 +1,131 @@
+"""A user's whole run: launch, record, clean exit, metrics file, replay of the bag."""
+
+import collections
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rosbag
+import rosgraph
+
+STEPS = 60
+AGENTS = 4
+OF_EVERY_STEP = ("odom", "sensor_sync", "cmd_vel", "wrench", "acoustic/tx", "acoustic/rx",
+                 "task_state", "agent_step")
+
+
+def free_port():
+    """Returns a port of the loopback that nobody listens on."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+def launch(folder, *arguments):
+    """Starts roslaunch with a master of its own; returns (process, environment)."""
+    port = free_port()
+    environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
+                       ROS_HOME=str(folder / "ros_home"), PWD=str(folder))
+    process = subprocess.Popen(
+        ["roslaunch", "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    return process, environment
+
+
+def stop(process):
+    """Ends a roslaunch as Ctrl-C does."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    try:
+        return process.communicate(timeout=20)[0]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.communicate()[0]
+
+
+class RecordReplay(unittest.TestCase):
+    """One short recorded run, made once for all tests."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        process, _ = launch(
+            cls.folder, "medium.launch", "episodes:=1", "real_time_factor:=0", "deadline:=20",
+            "policy:=pursuit_separated", "record:=true", "bag:=run.bag",
+            f"overrides:=[time.episode_steps={STEPS}, time.tail_steps=20]",
+            f"summary_file:={cls.folder}/summary.json")
+        try:
+            cls.output = process.communicate(timeout=60)[0]
+        except subprocess.TimeoutExpired:
+            cls.output = stop(process)
+        cls.status = process.returncode
+        cls.bag = cls.folder / "run.bag"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_run_ends_by_itself_with_status_0_and_shows_its_metrics(self):
+        self.assertEqual(self.status, 0, self.output)
+        self.assertIn("tail_distance", self.output)
+        self.assertIn("0 with a deadline miss", self.output)
+
+    def test_summary_file_holds_the_episode(self):
+        lines = (self.folder / "summary.json").read_text().splitlines()
+        self.assertEqual(len(lines), 1)
+        summary = json.loads(lines[0])
+        self.assertTrue(summary["complete"])
+        self.assertEqual(summary["steps"], STEPS)
+
+    def test_bag_holds_every_step_of_every_auv(self):
+        stamps = collections.defaultdict(set)
+        reports = []
+        with rosbag.Bag(str(self.bag)) as bag:
+            for topic, message, _ in bag.read_messages():
+                if hasattr(message, "header"):
+                    stamps[topic].add(message.header.stamp.to_nsec())
+                if topic == "/step_report":
+                    reports.append(message)
+        clock = sorted(stamps["/auv_0/odom"])
+        self.assertEqual(len(clock), STEPS + 1)
+        self.assertEqual({b - a for a, b in zip(clock, clock[1:])}, {100_000_000})
+        for i in range(AGENTS):
+            for name in OF_EVERY_STEP:
+                self.assertEqual(len(stamps[f"/auv_{i}/{name}"]), STEPS + 1, f"/auv_{i}/{name}")
+        self.assertEqual([r.step for r in reports], list(range(STEPS)))
+        self.assertTrue(reports[-1].truncated)
+        self.assertEqual(len(reports[-1].final_state), len(reports[-1].global_state))
+
+    def test_replay_publishes_what_was_recorded(self):
+        process, environment = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
+                                      "rate:=4")
+        try:
+            output = self.folder / "replayed.bag"
+            end = time.monotonic() + 20.0
+            while not rosgraph.is_master_online(environment["ROS_MASTER_URI"]):
+                self.assertLess(time.monotonic(), end, "no master")
+                time.sleep(0.1)
+            with subprocess.Popen(["rosbag", "record", "-q", "-O", str(output), "/auv_0/odom",
+                                   "/auv_3/task_state"], env=environment) as recorder:
+                process.wait(timeout=30)
+                recorder.send_signal(signal.SIGINT)
+                recorder.wait(timeout=10)
+        finally:
+            stop(process)
+        for topic in ("/auv_0/odom", "/auv_3/task_state"):
+            with rosbag.Bag(str(self.bag)) as bag, rosbag.Bag(str(output)) as replayed:
+                before = [m for _, m, _ in bag.read_messages(topics=[topic])]
+                after = [m for _, m, _ in replayed.read_messages(topics=[topic])]
+            self.assertGreater(len(after), STEPS // 2)
+            self.assertEqual(after, before[len(before) - len(after):])
+
+
+if __name__ == "__main__":
+    unittest.main()
