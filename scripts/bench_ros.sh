@@ -49,7 +49,8 @@ run live 90 medium.launch real_time_factor:=1 episodes:=1 "overrides:=[time.epis
 sleep 20
 memory=0
 for process in /proc/[0-9]*; do
-  command=$(tr '\0' '\n' <"$process/cmdline" 2>/dev/null) || continue
+  # A process may end while this looks at it.
+  command=$({ tr '\0' '\n' <"$process/cmdline"; } 2>/dev/null) || continue
   if [[ "$command" == */stg_agent/agent* && "$command" == *"$ROS_HOME"* ]]; then
     kib=$(awk '/^VmRSS:/ { print $2 }' "$process/status")
     ((kib > memory)) && memory=$kib
@@ -62,6 +63,6 @@ json=$(printf '{"lockstep_4_auvs_x_real_time": %s, "lockstep_20_auvs_x_real_time
 json+=$(printf '"detection_to_wrench_median_ms": %s, "detection_to_wrench_p99_ms": %s, ' \
   "$(figure live "$median")" "$(figure live "$tail99")")
 json+=$(printf '"real_time_deadline_misses": %s, "largest_agent_memory_mib": %s, "cores": %s}' \
-  "$(figure live "$misses")" "$(awk "BEGIN { printf \"%.1f\", $memory / 1024 }")" "$(nproc)")
+  "$(figure live "$misses")" "$(awk "BEGIN { printf \"%.1f\", $memory / 1024 }")" "$(env -u OMP_NUM_THREADS nproc)")
 echo "$json"
 [[ $# -eq 0 ]] || echo "$json" >"$1"
