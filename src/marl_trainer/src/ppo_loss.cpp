@@ -10,6 +10,7 @@ void PpoSums::Add(const PpoSums& other) {
   value_loss += other.value_loss;
   kl += other.kl;
   clipped += other.clipped;
+  imitation_error += other.imitation_error;
   rows += other.rows;
   samples += other.samples;
 }
@@ -52,6 +53,8 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
   }
   double d_sigma[kMaxActions] = {};
   const float* action = batch.actions;
+  const float* teacher = batch.imitation > 0.0F ? batch.teacher : nullptr;
+  const float share = 1.0F - batch.imitation;
   float* d = d_actor_.data();
   for (int r = 0; r < rows; ++r, action += size, mean += size, d += size) {
     float z[kMaxActions], log_prob = -sum_log_std;
@@ -69,12 +72,19 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
     sums->clipped += ratio == clipped ? 0.0 : 1.0;
     // Where the clipped branch is the smaller one, it is constant.
     const bool active = ratio * advantage <= clipped * advantage;
-    const float d_log_prob = active ? -weight * ratio * advantage : 0.0F;
+    const float d_log_prob = active ? -weight * share * ratio * advantage : 0.0F;
     for (int a = 0; a < size; ++a) {
       // d mean / d net = scale (1 - tanh^2) = scale - mean^2 / scale.
-      d[a] = d_log_prob * z[a] * inverse_std[a] * (scale - mean[a] * mean[a] / scale);
+      float d_mean = d_log_prob * z[a] * inverse_std[a];
+      if (teacher != nullptr) {
+        const float miss = mean[a] - teacher[a];
+        d_mean += batch.imitation * weight * miss * inverse_std[a] * inverse_std[a];
+        sums->imitation_error += static_cast<double>(miss) * miss;
+      }
+      d[a] = d_mean * (scale - mean[a] * mean[a] / scale);
       d_sigma[a] += d_log_prob * (z[a] * z[a] - 1.0F);
     }
+    if (teacher != nullptr) teacher += size;
   }
   for (int a = 0; a < size; ++a) {
     // The entropy's derivative by log sigma is 1 a row.

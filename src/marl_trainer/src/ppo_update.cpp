@@ -16,12 +16,13 @@ struct PpoUpdate::Scratch {
     observations.resize(rows * static_cast<std::size_t>(networks.actor.inputs()));
     actions.resize(rows * static_cast<std::size_t>(networks.action_size()));
     log_prob.resize(rows);
+    teacher.resize(actions.size());
     states.resize(static_cast<std::size_t>(kBlock * networks.critic.inputs()));
     advantages.resize(kBlock);
     targets.resize(kBlock);
   }
   PpoLoss loss;
-  std::vector<float> observations, actions, log_prob, states, advantages, targets;
+  std::vector<float> observations, actions, teacher, log_prob, states, advantages, targets;
 };
 
 PpoUpdate::PpoUpdate(const ActorCritic& networks, const TrainConfig& config, int agents,
@@ -39,20 +40,19 @@ PpoUpdate::PpoUpdate(const ActorCritic& networks, const TrainConfig& config, int
 
 PpoUpdate::~PpoUpdate() = default;
 
-void PpoUpdate::Prepare(const std::vector<std::unique_ptr<RolloutUnit>>& units,
-                        const Scales& scales) {
-  unit_of_.clear();
+void PpoUpdate::Prepare(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales) {
+  rollout_of_.clear();
   index_of_.clear();
   advantages_.clear();
   targets_.clear();
   double sum = 0.0, squares = 0.0;
-  for (std::size_t u = 0; u < units.size(); ++u) {
-    const RolloutBuffer& b = units[u]->buffer();
-    for (int i = 0; i < units[u]->samples(); ++i) {
-      const float advantage = b.advantages[static_cast<std::size_t>(i)];
-      const float target = advantage + b.values[static_cast<std::size_t>(i)];
-      unit_of_.push_back(static_cast<int>(u));
-      index_of_.push_back(i);
+  for (std::size_t u = 0; u < rollouts.size(); ++u) {
+    const RolloutBuffer& b = *rollouts[u];
+    for (std::size_t i = 0; i < b.advantages.size(); ++i) {
+      const float advantage = b.advantages[i];
+      const float target = advantage + b.values[i];
+      rollout_of_.push_back(static_cast<int>(u));
+      index_of_.push_back(static_cast<int>(i));
       advantages_.push_back(advantage);
       targets_.push_back((target - scales.value_mean) / scales.value_std);
       sum += static_cast<double>(advantage);
@@ -75,8 +75,8 @@ void PpoUpdate::Shuffle(std::uint32_t collection, int epoch) {
   }
 }
 
-void PpoUpdate::Slice(const std::vector<std::unique_ptr<RolloutUnit>>& units,
-                      const float* parameters, int first, int slice, int worker) {
+void PpoUpdate::Slice(const std::vector<const RolloutBuffer*>& rollouts, const float* parameters,
+                      int first, int slice, int worker) {
   Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
   std::vector<float>& gradient = gradients_[static_cast<std::size_t>(slice)];
   std::fill(gradient.begin(), gradient.end(), 0.0F);
@@ -94,11 +94,14 @@ void PpoUpdate::Slice(const std::vector<std::unique_ptr<RolloutUnit>>& units,
     const int to = begin + (end - begin) * (block + 1) / blocks;
     for (int k = from; k < to; ++k) {
       const auto sample = static_cast<std::size_t>(order_[static_cast<std::size_t>(k)]);
-      const RolloutBuffer& b = units[static_cast<std::size_t>(unit_of_[sample])]->buffer();
+      const RolloutBuffer& b = *rollouts[static_cast<std::size_t>(rollout_of_[sample])];
       const auto i = static_cast<std::size_t>(index_of_[sample]);
       const auto at = static_cast<std::size_t>(k - from);
       std::copy_n(b.observations.data() + i * row, row, s.observations.data() + at * row);
       std::copy_n(b.actions.data() + i * action, action, s.actions.data() + at * action);
+      if (imitation_ > 0.0F) {
+        std::copy_n(b.teacher.data() + i * action, action, s.teacher.data() + at * action);
+      }
       std::copy_n(b.log_prob.data() + i * agents, agents, s.log_prob.data() + at * agents);
       std::copy_n(b.states.data() + i * state, state, s.states.data() + at * state);
       s.advantages[at] = advantages_[sample];
@@ -113,6 +116,8 @@ void PpoUpdate::Slice(const std::vector<std::unique_ptr<RolloutUnit>>& units,
     batch.states = s.states.data();
     batch.advantages = s.advantages.data();
     batch.targets = s.targets.data();
+    batch.teacher = s.teacher.data();
+    batch.imitation = imitation_;
     sums.Add(s.loss.AddGradient(parameters, batch, config_.minibatch, gradient.data()));
   }
 }
@@ -185,11 +190,11 @@ void PpoUpdate::Step(double learning_rate_scale, std::vector<float>* parameters,
   }
 }
 
-UpdateReport PpoUpdate::Run(const std::vector<std::unique_ptr<RolloutUnit>>& units,
-                            const Scales& scales, std::uint32_t collection,
-                            double learning_rate_scale, std::vector<float>* parameters,
-                            AdamState* adam) {
-  Prepare(units, scales);
+UpdateReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
+                            std::uint32_t collection, double learning_rate_scale,
+                            std::vector<float>* parameters, AdamState* adam, double imitation) {
+  imitation_ = static_cast<float>(imitation);
+  Prepare(rollouts, scales);
   UpdateReport report;
   const int samples = static_cast<int>(advantages_.size());
   assert(samples % config_.minibatch == 0);
@@ -199,7 +204,7 @@ UpdateReport PpoUpdate::Run(const std::vector<std::unique_ptr<RolloutUnit>>& uni
     report.sums = PpoSums();
     for (int first = 0; first < samples; first += config_.minibatch) {
       pool_->Run(kSlices, [&](int slice, int worker) {
-        Slice(units, parameters->data(), first, slice, worker);
+        Slice(rollouts, parameters->data(), first, slice, worker);
       });
       for (const PpoSums& sums : sums_) report.sums.Add(sums);
       Step(learning_rate_scale, parameters, adam, &report);

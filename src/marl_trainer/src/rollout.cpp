@@ -24,6 +24,19 @@ std::size_t Size(int a, int b = 1, int c = 1, int d = 1) {
 
 }  // namespace
 
+void EstimateValues(const ActorCritic& networks, const float* parameters, const Scales& scales,
+                    const float* states, int rows, Mlp::Workspace* critic, float* values) {
+  for (int first = 0; first < rows; first += critic->rows()) {
+    const int count = std::min(critic->rows(), rows - first);
+    networks.critic.Forward(parameters + networks.critic_offset(),
+                            states + Size(first, networks.critic.inputs()), count, critic);
+    const float* out = critic->output();
+    for (int r = 0; r < count; ++r) {
+      values[first + r] = scales.value_mean + scales.value_std * out[r];
+    }
+  }
+}
+
 RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCritic& networks,
                          const TrainConfig& config, int first_env, int envs)
     : networks_(networks),
@@ -38,7 +51,7 @@ RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCrit
       gamma_(static_cast<float>(config.gamma)),
       lambda_(static_cast<float>(config.lambda)),
       actor_(networks.actor, envs * scenarios.front().agents),
-      critic_(networks.critic, kValueRows),
+      critic_(networks.critic, 256),
       observation_moments_(networks.actor.inputs()),
       state_moments_(networks.critic.inputs()) {
   assert(envs % kLanes == 0);
@@ -66,6 +79,9 @@ RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCrit
   raw_observations_.resize(Size(envs, agents_, features));
   raw_states_.resize(Size(envs, state));
   last_states_.resize(Size(envs, state));
+  if (!config.imitate.empty()) {
+    teachers_.push_back(MakeController(config.imitate, scenarios.front()));
+  }
   RestartAt(0);
 }
 
@@ -85,19 +101,22 @@ bool RolloutUnit::at_episode_start() const {
                      [](const EnvGroup& group) { return group.step() == 0; });
 }
 
-void RolloutUnit::Collect(const float* parameters, const Scales& scales, std::uint32_t collection) {
+void RolloutUnit::Collect(const float* parameters, const Scales& scales, std::uint32_t collection,
+                          bool teach) {
   observation_moments_.Clear();
   state_moments_.Clear();
   finished_.clear();
   final_states_.clear();
   final_samples_.clear();
   env_seconds_ = inference_seconds_ = 0.0;
+  if (!teach) buffer_.teacher.clear();
   std::fill(buffer_.done.begin(), buffer_.done.end(), std::uint8_t{0});
   const std::size_t per_group = Size(kLanes, agents_, networks_.action_size());
   for (int t = 0; t < horizon_; ++t) {
     Clock::time_point start = Clock::now();
     Observe(scales, t);
     ActRandomly(parameters, collection, t);
+    if (teach) AskTeacher(t);
     inference_seconds_ += SecondsSince(start);
     start = Clock::now();
     const float* actions =
@@ -153,6 +172,18 @@ void RolloutUnit::ActRandomly(const float* parameters, std::uint32_t collection,
   }
 }
 
+void RolloutUnit::AskTeacher(int t) {
+  const std::size_t per_group = Size(kLanes, agents_, networks_.action_size());
+  std::vector<double> actions(per_group);
+  buffer_.teacher.resize(buffer_.actions.size());
+  float* out = buffer_.teacher.data() + Size(t, envs_, agents_) *
+                                            static_cast<std::size_t>(networks_.action_size());
+  for (const EnvGroup& group : groups_) {
+    Decide(teachers_.front(), group, actions.data());
+    for (const double a : actions) *out++ = static_cast<float>(a);
+  }
+}
+
 void RolloutUnit::StoreStep(const Scales& scales, int t) {
   const int state = networks_.critic.inputs();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -172,30 +203,19 @@ void RolloutUnit::StoreStep(const Scales& scales, int t) {
   }
 }
 
-void RolloutUnit::Evaluate(const float* parameters, const Scales& scales, const float* states,
-                           int rows, float* values) {
-  for (int first = 0; first < rows; first += kValueRows) {
-    const int count = std::min(kValueRows, rows - first);
-    networks_.critic.Forward(parameters + networks_.critic_offset(),
-                             states + Size(first, networks_.critic.inputs()), count, &critic_);
-    const float* out = critic_.output();
-    for (int r = 0; r < count; ++r) {
-      values[first + r] = scales.value_mean + scales.value_std * out[r];
-    }
-  }
-}
-
 void RolloutUnit::ComputeValues(const float* parameters, const Scales& scales) {
   const int state = networks_.critic.inputs();
-  Evaluate(parameters, scales, buffer_.states.data(), samples(), buffer_.values.data());
+  const auto estimate = [&](const std::vector<float>& states, int rows, float* values) {
+    EstimateValues(networks_, parameters, scales, states.data(), rows, &critic_, values);
+  };
+  estimate(buffer_.states, samples(), buffer_.values.data());
   const std::size_t per_state = Size(kLanes, state);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     scales.states.Apply(groups_[g].states(), kLanes, last_states_.data() + g * per_state);
   }
-  Evaluate(parameters, scales, last_states_.data(), envs_, buffer_.bootstrap.data());
+  estimate(last_states_, envs_, buffer_.bootstrap.data());
   std::vector<float> finals(final_samples_.size());
-  Evaluate(parameters, scales, final_states_.data(), static_cast<int>(finals.size()),
-           finals.data());
+  estimate(final_states_, static_cast<int>(finals.size()), finals.data());
   for (std::size_t i = 0; i < finals.size(); ++i) {
     buffer_.final_values[static_cast<std::size_t>(final_samples_[i])] = finals[i];
   }

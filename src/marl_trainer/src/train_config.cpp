@@ -54,6 +54,10 @@ void TrainConfig::ValidateOrThrow() const {
   RequireRange("initial-log-std", initial_log_std, min_log_std, max_log_std);
   RequireRange("observation-clip", observation_clip, 0.1, 1e6);
   RequireRange("std-floor", std_floor, 1e-6, 1.0);
+  Require(imitate.empty() == (imitation_steps == 0), "imitation-steps",
+          "goes with --imitate, and the other way round");
+  RequireRange("imitation-steps", static_cast<double>(imitation_steps), 0, 1e12);
+  RequireRange("std-scale", std_scale, 1e-3, 1e3);
   RequireRange("validation-interval", static_cast<double>(validation_interval), 1, 1e12);
   RequireRange("validation-episodes", validation_episodes, 1, 10000);
   RequireRange("checkpoint-interval", static_cast<double>(checkpoint_interval), 1, 1e12);

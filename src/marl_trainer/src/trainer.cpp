@@ -16,14 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Value targets that the value normaliser remembers [environment steps].
-constexpr double kValueMemory = 100000.0;
-
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-int StateSize(const Scenario& scenario) { return EnvGroup(scenario, EnvOptions()).state_size(); }
 
 Scenario Valid(const Scenario& scenario, const TrainConfig& config) {
   config.ValidateOrThrow();
@@ -66,25 +61,17 @@ Trainer::Trainer(const Scenario& scenario, const TrainConfig& config, const Opti
       config_(config),
       options_(options),
       pool_(options.workers),
-      networks_(train_scenario_, StateSize(train_scenario_), config),
-      update_(networks_, config_, scenario.agents, &pool_),
-      validation_(validation_scenario_, networks_, config.validation_episodes, &pool_),
-      observation_moments_(networks_.actor.inputs()),
-      state_moments_(networks_.critic.inputs()),
-      value_moments_(1) {
+      learner_(train_scenario_, config, &pool_),
+      validation_(validation_scenario_, networks(), config.validation_episodes, &pool_) {
   UseOneBlasThread();
   start_ = Now();
   for (int first = 0; first < config.envs; first += RolloutUnit::kEnvs) {
-    units_.push_back(
-        std::make_unique<RolloutUnit>(mix_, networks_, config_, first,
-                                      std::min(RolloutUnit::kEnvs, config.envs - first)));
+    units_.push_back(std::make_unique<RolloutUnit>(
+        mix_, networks(), config_, first, std::min(RolloutUnit::kEnvs, config.envs - first)));
   }
-  state_.parameters = networks_.Initialise(config.seed, config.initial_log_std);
-  state_.adam.first.assign(networks_.parameters(), 0.0F);
-  state_.adam.second.assign(networks_.parameters(), 0.0F);
+  learner_.Initialise(&state_);
   state_.config = ToJson(config_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
-  UpdateInputScales();
   OpenFolder();
 }
 
@@ -124,23 +111,11 @@ void Trainer::Restore() {
   if (loaded->scenario != state_.scenario) {
     throw UserError(options_.out + ": cannot resume: the scenario is not the checkpoint's");
   }
-  const auto moments = [](const RunningMoments& m) { return m.Save().size(); };
-  if (loaded->parameters.size() != networks_.parameters() ||
-      loaded->adam.first.size() != networks_.parameters() ||
-      loaded->adam.second.size() != networks_.parameters() ||
-      loaded->observation_moments.size() != moments(observation_moments_) ||
-      loaded->state_moments.size() != moments(state_moments_) ||
-      loaded->value_moments.size() != moments(value_moments_)) {
+  if (!learner_.Restore(*loaded)) {
     throw UserError(options_.out + ": cannot resume: the checkpoint has other network sizes");
   }
   state_ = *loaded;
   state_.config = ours.dump();
-  observation_moments_.Load(state_.observation_moments);
-  state_moments_.Load(state_.state_moments);
-  value_moments_.Load(state_.value_moments);
-  UpdateInputScales();
-  scales_.value_mean = static_cast<float>(value_moments_.mean(0));
-  scales_.value_std = static_cast<float>(std::sqrt(value_moments_.variance(0)) + 1e-4);
   for (auto& unit : units_) unit->RestartAt(state_.round);
   next_validation_ =
       (state_.env_steps / config_.validation_interval + 1) * config_.validation_interval;
@@ -177,21 +152,27 @@ bool Trainer::Run() {
 void Trainer::Iterate(TrainRecord* record) {
   const double begin = Now();
   const auto collection = static_cast<std::uint32_t>(state_.collections);
+  // All of the loss for the first half of the imitation steps, then ever less.
+  const double left = 1.0 - static_cast<double>(state_.env_steps) /
+                                static_cast<double>(std::max<std::int64_t>(1, config_.imitation_steps));
+  const double imitation =
+      config_.imitate.empty() ? 0.0 : std::min(std::max(2.0 * left, 0.0), 1.0);
   pool_.Run(static_cast<int>(units_.size()), [&](int u, int) {
-    units_[static_cast<std::size_t>(u)]->Collect(state_.parameters.data(), scales_, collection);
+    units_[static_cast<std::size_t>(u)]->Collect(state_.parameters.data(), learner_.scales(),
+                                                 collection, imitation > 0.0);
   });
   const double collected = Now();
-  UpdateValueScale(record);
   const double progress =
       static_cast<double>(state_.env_steps) / static_cast<double>(config_.steps);
   const double scale = 1.0 - (1.0 - config_.lr_final) * std::min(progress, 1.0);
-  const UpdateReport report =
-      update_.Run(units_, scales_, collection, scale, &state_.parameters, &state_.adam);
+  std::vector<const RolloutBuffer*> rollouts;
+  for (const auto& unit : units_) rollouts.push_back(&unit->buffer());
+  const Learner::Report learned = learner_.Update(rollouts, collection, scale, &state_, imitation);
+  const UpdateReport& report = learned.update;
   for (const auto& unit : units_) {
-    observation_moments_.Merge(unit->observation_moments());
-    state_moments_.Merge(unit->state_moments());
+    learner_.AddMoments(unit->observation_moments(), unit->state_moments());
   }
-  UpdateInputScales();
+  learner_.UpdateInputScales();
   const double updated = Now();
   ++state_.collections;
   state_.env_steps += static_cast<std::int64_t>(config_.envs) * config_.horizon;
@@ -210,16 +191,18 @@ void Trainer::Iterate(TrainRecord* record) {
   record->inference_seconds = (collected - begin) * inference / (env + inference);
   record->update_seconds = updated - collected;
   record->update_flops = report.flops;
+  record->reward = learned.reward;
+  record->explained_variance = learned.explained_variance;
   record->kl = report.sums.kl / report.sums.rows;
   record->clip_fraction = report.sums.clipped / report.sums.rows;
   record->actor_loss = report.sums.actor_loss / report.sums.rows;
   record->value_loss = report.sums.value_loss / report.sums.samples;
   record->actor_norm = report.actor_norm;
   record->critic_norm = report.critic_norm;
-  for (int a = 0; a < networks_.action_size(); ++a) {
+  for (int a = 0; a < networks().action_size(); ++a) {
     const double log_std = static_cast<double>(
-        state_.parameters[networks_.log_std_offset() + static_cast<std::size_t>(a)]);
-    record->sigma += std::exp(log_std) / networks_.action_size();
+        state_.parameters[networks().log_std_offset() + static_cast<std::size_t>(a)]);
+    record->sigma += std::exp(log_std) / networks().action_size();
     record->entropy += log_std + 1.4189385332046727;  // (1 + log 2 pi) / 2
   }
   record->episodes = static_cast<int>(episodes.size());
@@ -231,51 +214,10 @@ void Trainer::Iterate(TrainRecord* record) {
   }
 }
 
-void Trainer::UpdateValueScale(TrainRecord* record) {
-  RunningMoments targets(1), errors(1), rewards(1);
-  for (const auto& unit : units_) {
-    const RolloutBuffer& b = unit->buffer();
-    std::vector<float> target(b.advantages.size());
-    for (std::size_t i = 0; i < target.size(); ++i) target[i] = b.advantages[i] + b.values[i];
-    targets.Add(target.data(), static_cast<int>(target.size()));
-    errors.Add(b.advantages.data(), static_cast<int>(target.size()));
-    rewards.Add(b.rewards.data(), static_cast<int>(target.size()));
-  }
-  record->reward = rewards.mean(0);
-  record->explained_variance = 1.0 - errors.variance(0) / std::max(targets.variance(0), 1e-12);
-  value_moments_.Merge(targets);
-  value_moments_.LimitCount(kValueMemory);
-  RescaleCritic(value_moments_.mean(0), std::sqrt(value_moments_.variance(0)) + 1e-4);
-}
-
-/// Changes the value normaliser and, with it, the critic's last layer, so that
-/// no prediction changes (PopArt, van Hasselt et al. 2016).
-void Trainer::RescaleCritic(double mean, double std) {
-  const Mlp& critic = networks_.critic;
-  const int last = critic.layers() - 1;
-  float* p = state_.parameters.data() + networks_.critic_offset();
-  const double ratio = static_cast<double>(scales_.value_std) / std;
-  for (int i = 0; i < critic.layer_inputs(last); ++i) {
-    float& w = p[critic.weight_offset(last) + static_cast<std::size_t>(i)];
-    w = static_cast<float>(static_cast<double>(w) * ratio);
-  }
-  float& bias = p[critic.bias_offset(last)];
-  bias = static_cast<float>(static_cast<double>(bias) * ratio +
-                            (static_cast<double>(scales_.value_mean) - mean) / std);
-  scales_.value_mean = static_cast<float>(mean);
-  scales_.value_std = static_cast<float>(std);
-}
-
-void Trainer::UpdateInputScales() {
-  const auto floor = static_cast<float>(config_.std_floor);
-  const auto clip = static_cast<float>(config_.observation_clip);
-  scales_.observations = Normaliser::From(observation_moments_, floor, clip);
-  scales_.states = Normaliser::From(state_moments_, floor, clip);
-}
-
 void Trainer::Validate(TrainRecord* record) {
   const double begin = Now();
-  last_validation_ = Summarise(validation_.Run(state_.parameters.data(), scales_.observations));
+  last_validation_ =
+      Summarise(validation_.Run(state_.parameters.data(), learner_.scales().observations));
   record->validated = true;
   record->validation = last_validation_;
   if (Metric(last_validation_, "return") > state_.best_return) {
@@ -306,9 +248,7 @@ bool Trainer::AtBoundary(bool force) {
 
 void Trainer::Save() {
   TrainState saved = state_;
-  saved.observation_moments = observation_moments_.Save();
-  saved.state_moments = state_moments_.Save();
-  saved.value_moments = value_moments_.Save();
+  learner_.Save(&saved);
   saved.wall_seconds = Elapsed();
   saved.log = log_->Save();
   SaveCheckpoint(saved, CheckpointPath(options_.out, state_.env_steps));
@@ -334,7 +274,8 @@ Policy Trainer::MakePolicy() const {
     std::snprintf(text, sizeof text, "%.6g", Metric(last_validation_, name));
     m.metrics[std::string("validation_") + name] = text;
   }
-  return networks_.ToPolicy(state_.parameters.data(), scales_.observations, std::move(m));
+  return networks().ToPolicy(state_.parameters.data(), learner_.scales().observations,
+                             std::move(m));
 }
 
 void Trainer::SavePolicy(const std::string& name) const {

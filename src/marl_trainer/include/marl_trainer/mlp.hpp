@@ -47,6 +47,7 @@ class Mlp {
    public:
     Workspace(const Mlp& mlp, int rows);
     float* output() { return values_.back().data(); }
+    int rows() const { return rows_; }
 
    private:
     friend class Mlp;

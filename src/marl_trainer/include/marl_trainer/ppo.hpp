@@ -15,6 +15,7 @@ namespace stg {
 /// Sums over rows of what an update reports.
 struct PpoSums {
   double actor_loss = 0.0, value_loss = 0.0, kl = 0.0, clipped = 0.0;
+  double imitation_error = 0.0;  ///< squared distance to the teacher's action
   double rows = 0.0, samples = 0.0;
   void Add(const PpoSums& other);
 };
@@ -25,9 +26,13 @@ struct PpoBatch {
   const float* observations = nullptr;  ///< [count, agents, F]
   const float* actions = nullptr;       ///< [count, agents, A]
   const float* log_prob = nullptr;      ///< [count, agents]
+  const float* teacher = nullptr;       ///< [count, agents, A]; read where imitation > 0
   const float* states = nullptr;        ///< [count, S]
   const float* advantages = nullptr;    ///< [count], normalised
   const float* targets = nullptr;       ///< [count], normalised value targets
+  /// In [0, 1]: share of the actor's loss that is -log pi(teacher's action) instead of
+  /// Eq. 41. The deviation sigma is not fitted to the teacher.
+  float imitation = 0.0F;
 };
 
 /// Loss of Eqs. 41-44 and its gradient, on one worker's scratch memory.
@@ -77,18 +82,18 @@ class PpoUpdate {
   ~PpoUpdate();
 
   /// @param learning_rate_scale multiplies both learning rates.
-  UpdateReport Run(const std::vector<std::unique_ptr<RolloutUnit>>& units, const Scales& scales,
+  UpdateReport Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
                    std::uint32_t collection, double learning_rate_scale,
-                   std::vector<float>* parameters, AdamState* adam);
+                   std::vector<float>* parameters, AdamState* adam, double imitation = 0.0);
 
  private:
   struct Scratch;                    // per worker
   static constexpr int kBlock = 64;  // environment steps per pass through the networks
 
-  void Prepare(const std::vector<std::unique_ptr<RolloutUnit>>& units, const Scales& scales);
+  void Prepare(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales);
   void Shuffle(std::uint32_t collection, int epoch);
-  void Slice(const std::vector<std::unique_ptr<RolloutUnit>>& units, const float* parameters,
-             int first, int slice, int worker);
+  void Slice(const std::vector<const RolloutBuffer*>& rollouts, const float* parameters, int first,
+             int slice, int worker);
   void ForRanges(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
   void Step(double learning_rate_scale, std::vector<float>* parameters, AdamState* adam,
             UpdateReport* report);
@@ -101,7 +106,8 @@ class PpoUpdate {
   std::vector<std::vector<float>> gradients_;  // [kSlices][parameters]
   std::array<PpoSums, kSlices> sums_;
   std::vector<float> gradient_;
-  std::vector<int> order_, unit_of_, index_of_;
+  std::vector<int> order_, rollout_of_, index_of_;
+  float imitation_ = 0.0F;
   std::vector<float> advantages_, targets_;  // normalised, by sample
 };
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "marl_trainer/actor_critic.hpp"
-#include "marl_trainer/env.hpp"
+#include "marl_trainer/evaluation.hpp"
 
 namespace stg {
 
@@ -14,6 +14,7 @@ struct RolloutBuffer {
   std::vector<float> observations;  ///< [T, E, N, F], normalised
   std::vector<float> actions;       ///< [T, E, N, A], before clipping
   std::vector<float> log_prob;      ///< [T, E, N], of those actions
+  std::vector<float> teacher;       ///< [T, E, N, A], what the controller to imitate does; or empty
   std::vector<float> states;        ///< [T, E, S], normalised
   std::vector<float> rewards;       ///< [T, E], mean over agents
   std::vector<std::uint8_t> done;   ///< [T, E]
@@ -30,6 +31,11 @@ struct Scales {
   float value_mean = 0.0F, value_std = 1.0F;
 };
 
+/// The critic's values [rows], in units of reward, of normalised states [rows, S].
+/// @param critic scratch memory for at least one row.
+void EstimateValues(const ActorCritic& networks, const float* parameters, const Scales& scales,
+                    const float* states, int rows, Mlp::Workspace* critic, float* values);
+
 /// A fixed number of environments that one worker steps through a whole
 /// collection on its own. The unit of work never depends on the number of
 /// workers, so neither do results.
@@ -38,12 +44,14 @@ class RolloutUnit {
   static constexpr int kEnvs = 16;  ///< of a full unit; the last one may be smaller
 
   /// @param first_env index of the unit's first environment.
-  RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCritic& networks, const TrainConfig& config,
-              int first_env, int envs);
+  RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCritic& networks,
+              const TrainConfig& config, int first_env, int envs);
 
   /// Steps every environment `horizon` times with exploration, then values and
   /// advantages. Exploration draws depend on (seed, collection, t, row).
-  void Collect(const float* parameters, const Scales& scales, std::uint32_t collection);
+  /// @param teach also ask the controller to imitate, at every state visited.
+  void Collect(const float* parameters, const Scales& scales, std::uint32_t collection,
+               bool teach = false);
 
   void RestartAt(std::uint64_t round);
   std::uint64_t round() const { return groups_.front().round(); }
@@ -63,13 +71,11 @@ class RolloutUnit {
 
  private:
   static constexpr int kMomentStride = 4;
-  static constexpr int kValueRows = 256;
 
   void Observe(const Scales& scales, int t);
   void ActRandomly(const float* parameters, std::uint32_t collection, int t);
+  void AskTeacher(int t);
   void StoreStep(const Scales& scales, int t);
-  void Evaluate(const float* parameters, const Scales& scales, const float* states, int rows,
-                float* values);
   void ComputeValues(const float* parameters, const Scales& scales);
   int stagger(std::size_t group) const;
 
@@ -79,6 +85,7 @@ class RolloutUnit {
   const bool stagger_;
   const float gamma_, lambda_;
   std::vector<EnvGroup> groups_;
+  std::vector<Controller> teachers_;  // one, or none
   RolloutBuffer buffer_;
   Mlp::Workspace actor_, critic_;
   std::vector<float> raw_observations_, raw_states_, final_states_, last_states_;

@@ -40,7 +40,11 @@ struct TrainConfig {
   double max_log_std = 0.0;
   double observation_clip = 10.0;
   double std_floor = 0.01;
+  double std_scale = 1.0;
   bool stagger = true;
+
+  std::string imitate;  ///< built-in controller to start from; empty: none
+  std::int64_t imitation_steps = 0;
 
   std::int64_t validation_interval = 32000;
   int validation_episodes = 32;
@@ -80,7 +84,13 @@ void VisitTrainConfig(Config& c, Visitor&& visit) {
   visit("max-log-std", c.max_log_std, "upper bound of log sigma");
   visit("observation-clip", c.observation_clip, "bound of normalised observations and states");
   visit("std-floor", c.std_floor, "smallest standard deviation of the normalisers");
+  visit("std-scale", c.std_scale,
+        "the actor's inputs are divided by this much of their standard deviation: below 1, the "
+        "neighbourhood of the target is seen larger and distant offsets are clipped");
   visit("stagger", c.stagger, "spread the ends of the first episodes");
+  visit("imitate", c.imitate, "built-in controller whose actions the policy first learns; empty: none");
+  visit("imitation-steps", c.imitation_steps,
+        "environment steps of imitation: alone for the first half, then fading into the return");
   visit("validation-interval", c.validation_interval, "environment steps between validations");
   visit("validation-episodes", c.validation_episodes, "held-out episodes per validation");
   visit("checkpoint-interval", c.checkpoint_interval, "environment steps between checkpoints");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/checkpoint.hpp"
+#include "marl_trainer/learner.hpp"
 #include "marl_trainer/train_log.hpp"
 #include "marl_trainer/validation.hpp"
 
@@ -44,7 +44,7 @@ class Trainer {
   bool Run();
 
   const TrainState& state() const { return state_; }
-  const ActorCritic& networks() const { return networks_; }
+  const ActorCritic& networks() const { return learner_.networks(); }
   Policy MakePolicy() const;
 
  private:
@@ -55,9 +55,6 @@ class Trainer {
   /// Restarts what is not at the start of an episode; true at a boundary, or
   /// anywhere with `force` (the end of a run).
   bool AtBoundary(bool force);
-  void UpdateValueScale(TrainRecord* record);
-  void UpdateInputScales();
-  void RescaleCritic(double mean, double std);
   void Save();
   void SavePolicy(const std::string& name) const;
   double Elapsed() const;
@@ -67,14 +64,11 @@ class Trainer {
   const TrainConfig config_;
   const Options options_;
   WorkerPool pool_;
-  ActorCritic networks_;
+  Learner learner_;
   std::vector<std::unique_ptr<RolloutUnit>> units_;
-  PpoUpdate update_;
   Validation validation_;
   std::unique_ptr<TrainLog> log_;
   TrainState state_;
-  RunningMoments observation_moments_, state_moments_, value_moments_;
-  Scales scales_;
   MetricSummary last_validation_;
   double start_ = 0.0;
   std::int64_t next_validation_ = 0, next_checkpoint_ = 0;

@@ -1,0 +1,40 @@
+#include "record_inlet.hpp"
+
+#include <cmath>
+
+#include "auv_dynamics/nodes/conversions.hpp"
+
+namespace stg {
+
+RecordInlet::RecordInlet(const Scenario& scenario, const std::string& source)
+    : period_(static_cast<TimeNs>(std::llround(scenario.time.dt_s * 1e9)) *
+              scenario.time.decision_steps),
+      agents_(scenario.agents),
+      episodes_(scenario, source) {}
+
+void RecordInlet::Add(int agent, const auv_msgs::AgentStep& m) {
+  if (agent < 0 || agent >= agents_ || m.agent != static_cast<std::uint32_t>(agent)) {
+    ++foreign_;
+    return;
+  }
+  AgentRecord record;
+  record.layout_version = m.observation_layout;
+  record.observation = m.observation;
+  record.action = m.action;
+  record.log_probability = m.log_probability;
+  record.policy_id = m.policy_id;
+  const TimeNs start = NsOf(m.header.stamp) - static_cast<TimeNs>(m.step) * period_;
+  episodes_.Add(m.episode, start, m.step, agent, std::move(record));
+}
+
+void RecordInlet::Add(const auv_msgs::StepReport& m) {
+  RewardRecord record;
+  record.state = m.global_state;
+  record.final_state = m.final_state;
+  record.reward = m.reward;
+  record.truncated = m.truncated;
+  const TimeNs start = NsOf(m.header.stamp) - (static_cast<TimeNs>(m.step) + 1) * period_;
+  episodes_.Add(m.episode, start, m.step, std::move(record));
+}
+
+}  // namespace stg

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <auv_msgs/AgentStep.h>
+#include <auv_msgs/StepReport.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/recorded.hpp"
+
+namespace stg {
+
+/// Turns messages of one source, live or from a bag, into episodes.
+class RecordInlet {
+ public:
+  RecordInlet(const Scenario& scenario, const std::string& source);
+
+  /// @param agent index of the AUV on whose topic the message came.
+  void Add(int agent, const auv_msgs::AgentStep& message);
+  void Add(const auv_msgs::StepReport& message);
+
+  EpisodeAssembler& episodes() { return episodes_; }
+  /// Messages that belong to no AUV of the scenario.
+  std::uint64_t foreign() const { return foreign_; }
+
+ private:
+  const TimeNs period_;  ///< of decisions [ns]
+  const int agents_;
+  EpisodeAssembler episodes_;
+  std::uint64_t foreign_ = 0;
+};
+
+}  // namespace stg

@@ -1,0 +1,268 @@
+#include "trainer_node.hpp"
+
+#include <auv_msgs/LoadPolicy.h>
+#include <auv_msgs/Pause.h>
+#include <auv_msgs/Reset.h>
+#include <ros/service.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <numeric>
+
+#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
+#include "bag_reader.hpp"
+#include "stg_agent/nodes/topics.hpp"
+#include "trainer_parameters.hpp"
+
+namespace stg {
+namespace {
+
+constexpr std::uint32_t kUnlimited = 0;     // queue: nothing may be lost during an update
+constexpr double kSummaryPatience_s = 1.0;  // after the last step of an episode
+constexpr double kLoadInterval_s = 0.5;     // between attempts to give agents their policy
+
+/// "3 s", for people.
+std::string Seconds(const ros::WallDuration& d) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f s", d.toSec());
+  return text;
+}
+
+}  // namespace
+
+TrainerNode::TrainerNode()
+    : scenario_(LoadScenarioParameters()),
+      bags_(LoadBagNames()),
+      episodes_per_update_(IntegerParameter("episodes_per_update", 8, 1, 10000)),
+      updates_(IntegerParameter("updates", 0, 0, 1000000)),
+      window_(IntegerParameter("window", 10, 1, 100000)),
+      target_lost_rate_(NumberParameter("target_lost_rate", -1.0, -1.0, 1.0)),
+      agent_policies_(static_cast<std::size_t>(scenario_.agents)),
+      began_(ros::WallTime::now()),
+      health_("trainer", "trainer", [this](auto& status) { Report(status); }) {
+  RecordedTrainer::Options options;
+  options.out = TextParameter("out", "");
+  if (options.out.empty()) throw UserError("parameter out: must name a folder");
+  options.policy = TextParameter("start_policy", "");
+  options.workers = IntegerParameter("workers", 2, 1, 1024);
+  options.log = &std::cout;
+  trainer_ = std::make_unique<RecordedTrainer>(
+      scenario_, LoadTrainParameters(RecordedConfig(scenario_)), options);
+}
+
+void TrainerNode::Spin() {
+  std::cout << "trainer: policy '" << trainer_->policy_id() << "' in " << trainer_->policy_path()
+            << std::endl;
+  if (bags_.empty()) {
+    TrainLive();
+  } else {
+    TrainOnBags();
+  }
+}
+
+void TrainerNode::Judge(RecordedEpisode episode) {
+  const Finding finding = trainer_->Check(episode);
+  if (finding.flaw == Flaw::kNone) {
+    ++recording_.used;
+    collection_.push_back(std::move(episode));
+    return;
+  }
+  ++recording_.dropped[static_cast<std::size_t>(finding.flaw)];
+  ROS_WARN("trainer: %s, episode %u dropped: %s (%s)", episode.source.c_str(), episode.number,
+           ToString(finding.flaw), finding.where.c_str());
+}
+
+void TrainerNode::TrainOnBags() {
+  for (const std::string& bag : FindBags(bags_)) {
+    BagContents contents = ReadBag(bag, scenario_);
+    if (!contents.error.empty()) {
+      ++recording_.unreadable_sources;
+      ROS_ERROR("trainer: %s: %s", bag.c_str(), contents.error.c_str());
+    }
+    recording_.foreign_messages += contents.foreign_messages;
+    for (RecordedEpisode& episode : contents.episodes) Judge(std::move(episode));
+    health_.Tick();
+  }
+  std::cout << "trainer: " << recording_.Text() << std::endl;
+  if (collection_.empty()) throw UserError("no episode to learn from");
+  Print(trainer_->Update(collection_));
+  std::cout << "trainer: policy is now '" << trainer_->policy_id() << "'" << std::endl;
+}
+
+void TrainerNode::Subscribe() {
+  ros::NodeHandle node;
+  inlet_ = std::make_unique<RecordInlet>(scenario_, "live");
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const boost::function<void(const auv_msgs::AgentStep::ConstPtr&)> callback =
+        [this, i](const auv_msgs::AgentStep::ConstPtr& m) { OnAgentStep(i, *m); };
+    subscribers_.push_back(
+        node.subscribe<auv_msgs::AgentStep>(topics::AuvTopic(i, topics::kAgentStep), kUnlimited,
+                                            callback, ros::VoidConstPtr(), NoDelay()));
+  }
+  const boost::function<void(const auv_msgs::StepReport::ConstPtr&)> report =
+      [this](const auv_msgs::StepReport::ConstPtr& m) { OnReport(*m); };
+  const boost::function<void(const auv_msgs::EpisodeSummary::ConstPtr&)> summary =
+      [this](const auv_msgs::EpisodeSummary::ConstPtr& m) { OnSummary(*m); };
+  subscribers_.push_back(node.subscribe<auv_msgs::StepReport>(
+      topics::kStepReport, kUnlimited, report, ros::VoidConstPtr(), NoDelay()));
+  subscribers_.push_back(node.subscribe<auv_msgs::EpisodeSummary>(
+      topics::kEpisodeSummary, kUnlimited, summary, ros::VoidConstPtr(), NoDelay()));
+}
+
+void TrainerNode::TrainLive() {
+  Subscribe();
+  bool finished = false;
+  while (ros::ok() && !finished) {
+    HandleMessages(0.05);
+    UpdateAgents();
+    for (RecordedEpisode& episode : inlet_->episodes().TakeDone()) {
+      Judge(std::move(episode));
+      collected_ = ros::WallTime::now();
+    }
+    if (collection_.size() >= static_cast<std::size_t>(episodes_per_update_) && SummariesIn()) {
+      Learn();
+      finished = (updates_ > 0 && updates_done_ >= updates_) || TargetReached();
+    }
+    health_.Tick();
+  }
+  std::cout << "trainer: " << (finished ? "finished" : "stopped") << " after " << updates_done_
+            << " updates, " << Seconds(ros::WallTime::now() - began_) << ": " << recording_.Text()
+            << "\ntrainer: policy '" << trainer_->policy_id() << "' in " << trainer_->policy_path()
+            << std::endl;
+}
+
+void TrainerNode::OnAgentStep(int agent, const auv_msgs::AgentStep& message) {
+  if (message.episode < first_episode_) return;
+  agent_policies_[static_cast<std::size_t>(agent)] = message.policy_id;
+  inlet_->Add(agent, message);
+}
+
+void TrainerNode::OnReport(const auv_msgs::StepReport& message) {
+  if (message.episode >= first_episode_) inlet_->Add(message);
+}
+
+void TrainerNode::OnSummary(const auv_msgs::EpisodeSummary& message) {
+  if (message.episode >= first_episode_ && message.complete) summaries_[message.episode] = message;
+}
+
+bool TrainerNode::SummariesIn() const {
+  if ((ros::WallTime::now() - collected_).toSec() > kSummaryPatience_s) return true;
+  return std::all_of(collection_.begin(), collection_.end(),
+                     [this](const auto& e) { return summaries_.count(e.number) > 0; });
+}
+
+void TrainerNode::UpdateAgents() {
+  const auto stale = [this](const std::string& id) {
+    return !id.empty() && id != trainer_->policy_id();
+  };
+  if (std::none_of(agent_policies_.begin(), agent_policies_.end(), stale)) return;
+  if ((ros::WallTime::now() - last_load_).toSec() < kLoadInterval_s) return;
+  bool all = true;
+  for (std::size_t i = 0; i < agent_policies_.size(); ++i) {
+    if (stale(agent_policies_[i])) all = LoadPolicy(static_cast<int>(i)) && all;
+  }
+  last_load_ = ros::WallTime::now();
+  if (all) StartEpisode();
+}
+
+bool TrainerNode::LoadPolicy(int agent) {
+  auv_msgs::LoadPolicy call;
+  call.request.path = trainer_->policy_path();
+  const std::string service = topics::Auv(agent) + "/agent/" + topics::kLoadPolicy;
+  if (!ros::service::call(service, call)) {
+    ROS_WARN("trainer: no answer of %s", service.c_str());
+    return false;
+  }
+  if (!call.response.success) {
+    ROS_ERROR("trainer: AUV %d refuses the policy: %s", agent, call.response.message.c_str());
+    return false;
+  }
+  agent_policies_[static_cast<std::size_t>(agent)] = call.response.policy_id;
+  return true;
+}
+
+/// Leaves the running episode, which an older policy began.
+void TrainerNode::StartEpisode() {
+  auv_msgs::Reset call;
+  if (ros::service::call(topics::kReset, call) && call.response.success) {
+    first_episode_ = call.response.episode;
+  }
+  inlet_ = std::make_unique<RecordInlet>(scenario_, "live");
+}
+
+void TrainerNode::PauseWorld(bool pause) {
+  auv_msgs::Pause call;
+  call.request.pause = pause;
+  ros::service::call(topics::kPause, call);
+}
+
+void TrainerNode::Learn() {
+  PauseWorld(true);
+  const RecordedTrainer::Progress progress = trainer_->Update(collection_);
+  ++updates_done_;
+  for (const RecordedEpisode& episode : collection_) {
+    const auto summary = summaries_.find(episode.number);
+    if (summary != summaries_.end()) lost_rates_.push_back(summary->second.lost_rate);
+  }
+  while (lost_rates_.size() > static_cast<std::size_t>(window_)) lost_rates_.pop_front();
+  Print(progress);
+  collection_.clear();
+  summaries_.clear();
+  for (int i = 0; i < scenario_.agents; ++i) LoadPolicy(i);
+  last_load_ = ros::WallTime::now();
+  StartEpisode();
+  PauseWorld(false);
+}
+
+bool TrainerNode::TargetReached() const {
+  if (target_lost_rate_ < 0.0 || lost_rates_.size() < static_cast<std::size_t>(window_)) {
+    return false;
+  }
+  return std::accumulate(lost_rates_.begin(), lost_rates_.end(), 0.0) <=
+         target_lost_rate_ * static_cast<double>(window_);
+}
+
+/// One line of progress. Tail distance and lost rate are those of the exploring swarm.
+void TrainerNode::Print(const RecordedTrainer::Progress& p) const {
+  double tail = 0.0, lost = 0.0;
+  const auto n = static_cast<double>(std::max<std::size_t>(1, summaries_.size()));
+  for (const auto& [episode, s] : summaries_) {
+    tail += s.tail_distance / n;
+    lost += s.lost_rate / n;
+  }
+  std::printf("update %3lld  %8lld steps  %4.0f s  return %7.1f", static_cast<long long>(p.updates),
+              static_cast<long long>(p.env_steps), (ros::WallTime::now() - began_).toSec(),
+              p.episode_return);
+  if (!summaries_.empty()) std::printf("  tail %.4f m  lost %.3f", tail, lost);
+  std::printf("  KL %.4f clip %.3f EV %.3f sigma %.3f  %d episodes, %llu dropped, update %.1f s\n",
+              p.kl, p.clip_fraction, p.explained_variance, p.sigma, p.episodes,
+              static_cast<unsigned long long>(recording_.total_dropped()), p.seconds);
+  std::fflush(stdout);
+}
+
+void TrainerNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+  if (trainer_) {
+    status.add("policy", trainer_->policy_id());
+    status.add("updates", trainer_->state().collections);
+    status.add("environment steps", trainer_->state().env_steps);
+  }
+  status.add("episodes in this collection", collection_.size());
+  status.add("episodes used", recording_.used);
+  for (std::size_t f = 1; f < recording_.dropped.size(); ++f) {
+    status.add(std::string("episodes dropped: ") + ToString(static_cast<Flaw>(f)),
+               recording_.dropped[f]);
+  }
+  status.add("bags unreadable", recording_.unreadable_sources);
+  status.add("messages of another type or AUV", recording_.foreign_messages);
+  if (recording_.total_dropped() >
+          recording_.dropped[static_cast<std::size_t>(Flaw::kUnfinished)] ||
+      recording_.unreadable_sources > 0) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "recordings dropped");
+  }
+}
+
+}  // namespace stg

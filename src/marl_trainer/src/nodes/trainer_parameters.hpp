@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "marl_trainer/train_config.hpp"
+
+namespace stg {
+
+/// Private parameters named as the options of `train`, with _ for -, over the given defaults.
+/// Throws UserError for another type; ranges are checked with the rest of the configuration.
+TrainConfig LoadTrainParameters(const TrainConfig& defaults);
+
+/// The bags to train on: a list of texts, or one text with names separated by spaces.
+std::vector<std::string> LoadBagNames();
+
+}  // namespace stg
