@@ -116,7 +116,8 @@ TEST(Mlp, InitialWeightsAreOrthogonalWithTheStatedGain) {
 
 /// The loss of Eqs. 41-44 in libtorch operations, by automatic differentiation.
 TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
-  for (const char* activation : {"tanh", "relu"}) {
+  for (const auto& [activation, imitation] :
+       {std::pair("tanh", 0.0F), std::pair("relu", 0.0F), std::pair("tanh", 0.3F)}) {
     TrainConfig config;
     config.activation = activation;
     config.actor_hidden = {32, 16};
@@ -161,7 +162,12 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     const torch::Tensor value =
         TorchForward(networks.critic, critic, View(states, {count, state})).squeeze(1);
     const torch::Tensor value_loss = (value - View(targets, {count})).pow(2).sum() / minibatch;
-    const torch::Tensor loss = -surrogate.sum() / (minibatch * agents) -
+    // -log pi(teacher's action), as far as it depends on the mean.
+    std::vector<float> teacher = Draw(count * agents * actions, 0.5F, 11);
+    const torch::Tensor miss =
+        (View(teacher, {count * agents, actions}) - mean) / log_std.detach().exp();
+    const torch::Tensor loss = -(1 - imitation) * surrogate.sum() / (minibatch * agents) +
+                               imitation * 0.5 * miss.pow(2).sum() / (minibatch * agents) -
                                config.entropy * entropy * count / minibatch +
                                config.value_weight * value_loss;
     loss.backward();
@@ -172,13 +178,16 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     batch.observations = obs.data();
     batch.actions = act.data();
     batch.log_prob = old.data();
+    batch.teacher = teacher.data();
+    batch.imitation = imitation;
     batch.states = states.data();
     batch.advantages = advantages.data();
     batch.targets = targets.data();
     std::vector<float> gradient(networks.parameters(), 0.0F);
     const PpoSums sums = PpoLoss(networks, config, count, agents)
                              .AddGradient(p.data(), batch, minibatch, gradient.data());
-    EXPECT_LT(GradientError(networks.actor, actor, gradient.data()), 1e-4) << activation;
+    EXPECT_LT(GradientError(networks.actor, actor, gradient.data()), 1e-4)
+        << activation << ", imitation " << imitation;
     EXPECT_LT(GradientError(networks.critic, critic, gradient.data() + networks.critic_offset()),
               1e-4)
         << activation;
