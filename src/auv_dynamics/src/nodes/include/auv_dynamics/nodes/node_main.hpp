@@ -22,8 +22,9 @@ inline void HandleMessages(double wait_s) {
 template <class Node>
 int RunNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
+  // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
+  ros::NodeHandle keeps_ros_running;
   try {
-    ros::NodeHandle keeps_ros_running;
     Node node;
     node.Spin();
   } catch (const UserError& error) {
