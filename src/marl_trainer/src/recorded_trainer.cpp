@@ -52,6 +52,11 @@ TrainConfig Fit(TrainConfig config, const Scenario& scenario, const Policy* star
     }
     config.activation = p.activation == Policy::Activation::kRelu ? "relu" : "tanh";
     config.observation_clip = static_cast<double>(p.input_clip);
+    // A component that never moved has the smallest deviation: the floor, scaled.
+    const auto smallest = static_cast<double>(p.input_std.minCoeff());
+    if (smallest < config.std_floor * config.std_scale) {
+      config.std_scale = smallest / config.std_floor;
+    }
   }
   config.ValidateOrThrow();
   if (steps % config.minibatch != 0) {
@@ -78,6 +83,7 @@ TrainConfig RecordedConfig(const Scenario& scenario) {
   TrainConfig config = Preset("fast");
   config.epochs = 10;
   config.lr_final = 1.0;
+  config.target_kl = 0.1;
   config.minibatch = std::min(500, scenario.time.episode_steps);
   while (scenario.time.episode_steps % config.minibatch != 0) --config.minibatch;
   return config;
@@ -155,7 +161,8 @@ void RecordedTrainer::StartFrom(const Policy& policy) {
     moments.push_back(static_cast<double>(p.input_mean[static_cast<Eigen::Index>(i)]));
   }
   for (std::size_t i = 0; i < size; ++i) {
-    const auto std = static_cast<double>(p.input_std[static_cast<Eigen::Index>(i)]);
+    const double std =
+        static_cast<double>(p.input_std[static_cast<Eigen::Index>(i)]) / config_.std_scale;
     moments.push_back(count * std * std);
   }
   RunningMoments observations(static_cast<int>(size));
