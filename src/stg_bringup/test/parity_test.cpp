@@ -15,9 +15,7 @@
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/env.hpp"
-#include "stg_agent/agent.hpp"
-#include "stg_agent/pursuit.hpp"
+#include "marl_trainer/evaluation.hpp"
 
 namespace stg {
 namespace {
@@ -75,9 +73,7 @@ double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - 
 TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
   const Scenario s = LoadScenarioParameters();
   const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
-  BuiltinKind kind;
-  ASSERT_TRUE(ParseBuiltin(TextParameter("policy", ""), &kind));
-  const PursuitOptions options = BuiltinOptions(kind);
+  const Controller controller = MakeController(TextParameter("policy", ""), s);
   const Flight flight = Listen(s);
   ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));
 
@@ -88,7 +84,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EnvGroup env(s, env_options);
     env.Reset();
     const int size = env.action_size();
-    std::vector<float> actions(static_cast<std::size_t>(kLanes * s.agents * size));
+    std::vector<double> actions(static_cast<std::size_t>(kLanes * s.agents * size));
     double worst = 0.0;
     for (int k = 0; k < steps; ++k) {
       const int index = e * (steps + 1) + k;
@@ -101,12 +97,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
         worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));
         ASSERT_LE(worst, kTolerance) << "episode " << e << ", step " << k << ", AUV " << i;
       }
-      for (int lane = 0; lane < kLanes; ++lane) {
-        for (int i = 0; i < s.agents; ++i) {
-          BuiltinAction(kind, options, env.agent(lane, i),
-                        actions.data() + (lane * s.agents + i) * size);
-        }
-      }
+      Decide(controller, env, actions.data());
       const std::vector<float> state(env.states(), env.states() + env.state_size());
       env.Step(actions.data());
       const auto report = flight.reports.find(index + 1);
