@@ -240,7 +240,7 @@ void AddTrack(Table* t, TrackConfig* c) {
   t->Add("initial_speed_std_mps", &c->initial_speed_std_mps, Positive(100), "m/s",
          "standard deviation of each velocity component of a new track");
   t->Add("gate_sigma", &c->gate_sigma, Positive(1e3), "-",
-         "shared estimates farther than this many deviations restart the track");
+         "own detections farther off are set aside, three in a row restart the track");
   t->Add("lost_std_m", &c->lost_std_m, Positive(1e4), "m",
          "a track whose position is no better than this counts as lost");
   t->Add("neighbour_max_age_s", &c->neighbour_max_age_s, Positive(1e5), "s",
