@@ -29,7 +29,9 @@ fi
 wanted=$(printf '%s\n' "${options[@]}" "$root"/src/*/package.xml)
 stamp=$build/stg_configured
 if [[ ! -f "$build/build.ninja" || ! -f "$stamp" || "$(<"$stamp")" != "$wanted" ]]; then
-  mkdir -p "$build"
+  # Catkin caches the environment of its tests while configuring, and leaves out what is not there
+  # yet: without these folders the first build of a clone tests without our Python messages.
+  mkdir -p "$build" "$base/devel/lib/pkgconfig" "$base/devel/lib/python3/dist-packages"
   rm -f "$stamp"
   log=$build/configure.log
   echo "build: configuring (log: $log)"
