@@ -45,10 +45,7 @@ void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
 Controller MakeController(const std::string& name, const Scenario& scenario) {
   Controller c;
   c.name = name;
-  if (ParseBuiltin(name, &c.builtin)) {
-    c.options = BuiltinOptions(c.builtin);
-    return c;
-  }
+  if (ParseBuiltin(name, &c.builtin, &c.options)) return c;
   auto policy = std::make_shared<Policy>(Policy::LoadOnnx(name));
   policy->RequireFits(scenario);
   c.policy = policy;
@@ -62,7 +59,8 @@ void Decide(const Controller& c, const EnvGroup& env, double* actions) {
     std::fill(actions, actions + rows * size, 0.0);
     return;
   }
-  if (c.policy == nullptr && env.scenario().mode == InformationMode::kTruth) {
+  const bool truth = c.privileged || env.scenario().mode == InformationMode::kTruth;
+  if (c.policy == nullptr && truth) {
     DecideTruth(c, env, actions);
     return;
   }

@@ -73,12 +73,22 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
     // Where the clipped branch is the smaller one, it is constant.
     const bool active = ratio * advantage <= clipped * advantage;
     const float d_log_prob = active ? -weight * share * ratio * advantage : 0.0F;
+    // Against the size of the teacher's action: a hold needs finer actions than an approach.
+    float shrink = 1.0F;
+    if (teacher != nullptr) {
+      float squares = 0.0F;
+      for (int a = 0; a < size; ++a) {
+        const float t = teacher[a] * inverse_std[a];
+        squares += t * t;
+      }
+      shrink = batch.imitation * weight / std::sqrt(1.0F + squares);
+    }
     for (int a = 0; a < size; ++a) {
       // d mean / d net = scale (1 - tanh^2) = scale - mean^2 / scale.
       float d_mean = d_log_prob * z[a] * inverse_std[a];
       if (teacher != nullptr) {
         const float miss = mean[a] - teacher[a];
-        d_mean += batch.imitation * weight * miss * inverse_std[a] * inverse_std[a];
+        d_mean += shrink * miss * inverse_std[a] * inverse_std[a];
         sums->imitation_error += static_cast<double>(miss) * miss;
       }
       d[a] = d_mean * (scale - mean[a] * mean[a] / scale);

@@ -81,6 +81,7 @@ RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCrit
   last_states_.resize(Size(envs, state));
   if (!config.imitate.empty()) {
     teachers_.push_back(MakeController(config.imitate, scenarios.front()));
+    teachers_.front().privileged = config.privileged_teacher;
   }
   RestartAt(0);
 }

@@ -70,6 +70,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainConfig& config, const Opti
         mix_, networks(), config_, first, std::min(RolloutUnit::kEnvs, config.envs - first)));
   }
   learner_.Initialise(&state_);
+  if (!config_.start_from.empty() && !options_.resume) StartFrom(config_.start_from);
   state_.config = ToJson(config_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
   OpenFolder();
@@ -93,6 +94,19 @@ void Trainer::OpenFolder() {
   log_ = std::make_unique<TrainLog>(options_.out, options_.resume ? state_.env_steps : -1,
                                     config_.steps, options_.log);
   if (options_.resume && !state_.log.empty()) log_->Load(state_.log);
+}
+
+void Trainer::StartFrom(const std::string& folder) {
+  const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, options_.log);
+  if (!theirs) throw UserError("--start-from: no checkpoint in " + folder);
+  const std::size_t first = networks().log_std_offset();
+  const std::vector<float> untrained = state_.parameters;
+  if (!learner_.Restore(*theirs)) {
+    throw UserError("--start-from: the networks in " + folder + " have other sizes");
+  }
+  state_.parameters = theirs->parameters;
+  std::copy_n(untrained.begin() + static_cast<std::ptrdiff_t>(first), networks().action_size(),
+              state_.parameters.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 void Trainer::Restore() {

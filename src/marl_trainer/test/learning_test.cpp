@@ -162,12 +162,14 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     const torch::Tensor value =
         TorchForward(networks.critic, critic, View(states, {count, state})).squeeze(1);
     const torch::Tensor value_loss = (value - View(targets, {count})).pow(2).sum() / minibatch;
-    // -log pi(teacher's action), as far as it depends on the mean.
+    // The miss in sigmas, against the size of the teacher's action.
     std::vector<float> teacher = Draw(count * agents * actions, 0.5F, 11);
-    const torch::Tensor miss =
-        (View(teacher, {count * agents, actions}) - mean) / log_std.detach().exp();
+    const torch::Tensor sigma = log_std.detach().exp();
+    const torch::Tensor taught = View(teacher, {count * agents, actions});
+    const torch::Tensor miss = ((taught - mean) / sigma).pow(2).sum(1) /
+                               (1 + (taught / sigma).pow(2).sum(1)).sqrt();
     const torch::Tensor loss = -(1 - imitation) * surrogate.sum() / (minibatch * agents) +
-                               imitation * 0.5 * miss.pow(2).sum() / (minibatch * agents) -
+                               imitation * 0.5 * miss.sum() / (minibatch * agents) -
                                config.entropy * entropy * count / minibatch +
                                config.value_weight * value_loss;
     loss.backward();

@@ -231,6 +231,32 @@ TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {
   EXPECT_EQ(row, 8);
 }
 
+TEST_F(TrainerTest, ARunCanStartFromTheNetworksOfAnother) {
+  const Scenario scenario = ShortScenario();
+  TrainConfig config = SmallConfig();
+  Trainer first(scenario, config, Options("first"));
+  ASSERT_TRUE(first.Run());
+
+  config.start_from = (folder_ / "first").string();
+  config.lr = config.critic_lr = 1e-8;  // no step to speak of: what it starts with is what remains
+  config.seed = 1;
+  config.steps = 2560;
+  Trainer second(scenario, config, Options("second"));
+  const std::size_t actor = second.networks().log_std_offset();
+  for (std::size_t i = 0; i < actor; ++i) {
+    ASSERT_EQ(second.state().parameters[i], first.state().parameters[i]);
+  }
+  EXPECT_EQ(second.state().parameters[actor], static_cast<float>(config.initial_log_std));
+  EXPECT_EQ(second.state().env_steps, 0);
+  ASSERT_TRUE(second.Run());
+  EXPECT_NEAR(second.state().parameters[0], first.state().parameters[0], 1e-5);
+
+  config.actor_hidden = {8};
+  EXPECT_THROW(Trainer(scenario, config, Options("third")), UserError);
+  config.start_from = (folder_ / "nowhere").string();
+  EXPECT_THROW(Trainer(scenario, config, Options("fourth")), UserError);
+}
+
 TEST_F(TrainerTest, EveryVariantTrains) {
   for (const char* variant : {"stg", "semantic", "velocity3", "tau6"}) {
     TrainConfig config = SmallConfig();

@@ -1,6 +1,10 @@
 #include "stg_agent/pursuit.hpp"
 
+#include <cstdlib>
+#include <sstream>
+
 #include "auv_dynamics/control.hpp"
+#include "auv_dynamics/error.hpp"
 #include "stg_agent/agent.hpp"
 
 namespace stg {
@@ -8,6 +12,26 @@ namespace {
 
 /// Repulsion reaches centimetres; more neighbours than this cannot be that close.
 constexpr int kMaxRepelling = 16;
+
+/// Takes one "name=value" of the controller called `text`.
+void SetOption(const std::string& text, const std::string& item, PursuitOptions* options) {
+  const std::size_t equals = item.find('=');
+  const std::string name = item.substr(0, equals);
+  bool found = false;
+  VisitPursuitOptions(*options, [&](const char* known, double& field, const char*) {
+    if (name != known) return;
+    found = true;
+    char* end = nullptr;
+    const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
+    field = std::strtod(value.c_str(), &end);
+    const double largest = &field == &options->cap ? 1.0 : 1e3;
+    if (value.empty() || *end != '\0' || !(field >= 0.0 && field <= largest)) {
+      throw UserError("'" + text + "': " + name + " must be a number from 0 to " +
+                      (largest > 1.0 ? "1000" : "1"));
+    }
+  });
+  if (!found) throw UserError("'" + text + "': no such constant: " + name);
+}
 
 }  // namespace
 
@@ -33,12 +57,15 @@ const char* ToString(BuiltinKind kind) {
   return "";
 }
 
-bool ParseBuiltin(const std::string& name, BuiltinKind* kind) {
+bool ParseBuiltin(const std::string& text, BuiltinKind* kind, PursuitOptions* options) {
+  const std::size_t colon = text.find(':');
   for (const auto k : {BuiltinKind::kIdle, BuiltinKind::kPursuit, BuiltinKind::kPursuitSeparated}) {
-    if (name == ToString(k)) {
-      *kind = k;
-      return true;
-    }
+    if (text.substr(0, colon) != ToString(k)) continue;
+    *kind = k;
+    *options = BuiltinOptions(k);
+    std::istringstream rest(colon == std::string::npos ? "" : text.substr(colon + 1));
+    for (std::string item; std::getline(rest, item, ',');) SetOption(text, item, options);
+    return true;
   }
   return false;
 }

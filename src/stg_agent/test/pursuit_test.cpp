@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "auv_dynamics/error.hpp"
+
 namespace stg {
 namespace {
 
@@ -84,13 +86,39 @@ TEST(Pursuit, PacksAndScalarsAgreeBitForBit) {
 TEST(Pursuit, NamesParseToTheirKindAndNothingElseDoes) {
   for (const auto k : {BuiltinKind::kIdle, BuiltinKind::kPursuit, BuiltinKind::kPursuitSeparated}) {
     BuiltinKind parsed;
-    ASSERT_TRUE(ParseBuiltin(ToString(k), &parsed));
+    PursuitOptions options;
+    ASSERT_TRUE(ParseBuiltin(ToString(k), &parsed, &options));
     EXPECT_EQ(parsed, k);
   }
   BuiltinKind kind;
+  PursuitOptions options;
   for (const char* name : {"", "Pursuit", "pursuit ", "pursuit.onnx"}) {
-    EXPECT_FALSE(ParseBuiltin(name, &kind)) << name;
+    EXPECT_FALSE(ParseBuiltin(name, &kind, &options)) << name;
   }
+}
+
+TEST(Pursuit, ANameMayCarryConstantsAndAWrongOneIsRefused) {
+  BuiltinKind kind;
+  PursuitOptions options;
+  ASSERT_TRUE(ParseBuiltin("pursuit_separated:gain=2.5,feedforward=1.2", &kind, &options));
+  EXPECT_EQ(kind, BuiltinKind::kPursuitSeparated);
+  EXPECT_EQ(options.gain_per_s, 2.5);
+  EXPECT_EQ(options.feedforward, 1.2);
+  EXPECT_EQ(options.standoff_m, BuiltinOptions(kind).standoff_m);
+  for (const char* bad : {"pursuit:gain", "pursuit:gain=", "pursuit:gain=2x", "pursuit:gain=nan",
+                          "pursuit:gain=-1", "pursuit:cap=1.1", "pursuit:speed=1"}) {
+    EXPECT_THROW(ParseBuiltin(bad, &kind, &options), UserError) << bad;
+  }
+}
+
+TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
+  PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  o.feedforward = 1.5;
+  const VehicleConfig vehicle;
+  double a[3];
+  PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m, 0.0}, V{0.02, 0.0, 0.0}, nullptr, 0, a);
+  EXPECT_DOUBLE_EQ(a[0] * vehicle.max_velocity_mps[0], 0.03);
+  EXPECT_DOUBLE_EQ(a[1], 0.0);
 }
 
 }  // namespace

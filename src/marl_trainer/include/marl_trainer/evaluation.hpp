@@ -17,15 +17,16 @@ struct Controller {
   std::shared_ptr<const Policy> policy;  ///< null: built-in
   BuiltinKind builtin = BuiltinKind::kIdle;
   PursuitOptions options;
+  bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
 };
 
-/// `pursuit`, `pursuit_separated`, `idle`, or the path of an ONNX file, which
+/// A built-in controller (see ParseBuiltin), or the path of an ONNX file, which
 /// must fit the scenario. Throws UserError.
 Controller MakeController(const std::string& name_or_file, const Scenario& scenario);
 
 /// Deterministic actions of every AUV of every lane, [kLanes, agents, action_size].
 /// In truth mode a built-in controller reads true states, in acoustic mode each
-/// agent's own estimates.
+/// agent's own estimates unless it is privileged.
 void Decide(const Controller& controller, const EnvGroup& env, double* actions);
 
 /// Runs `episodes` episodes, episode e from world seed `seed` + e, on `workers`

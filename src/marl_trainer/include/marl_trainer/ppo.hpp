@@ -30,8 +30,9 @@ struct PpoBatch {
   const float* states = nullptr;        ///< [count, S]
   const float* advantages = nullptr;    ///< [count], normalised
   const float* targets = nullptr;       ///< [count], normalised value targets
-  /// In [0, 1]: share of the actor's loss that is -log pi(teacher's action) instead of
-  /// Eq. 41. The deviation sigma is not fitted to the teacher.
+  /// In [0, 1]: share of the actor's loss that is, instead of Eq. 41, half the squared miss of
+  /// the teacher's action a, in sigmas, over the root of 1 + |a / sigma|^2. Sigma is not
+  /// fitted to it.
   float imitation = 0.0F;
 };
 

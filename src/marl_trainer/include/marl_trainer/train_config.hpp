@@ -45,6 +45,8 @@ struct TrainConfig {
 
   std::string imitate;  ///< built-in controller to start from; empty: none
   std::int64_t imitation_steps = 0;
+  bool privileged_teacher = false;
+  std::string start_from;  ///< folder of another run; empty: untrained networks
 
   std::int64_t validation_interval = 32000;
   int validation_episodes = 32;
@@ -88,9 +90,16 @@ void VisitTrainConfig(Config& c, Visitor&& visit) {
         "the actor's inputs are divided by this much of their standard deviation: below 1, the "
         "neighbourhood of the target is seen larger and distant offsets are clipped");
   visit("stagger", c.stagger, "spread the ends of the first episodes");
-  visit("imitate", c.imitate, "built-in controller whose actions the policy first learns; empty: none");
+  visit("imitate", c.imitate,
+        "built-in controller whose actions the policy first learns, with constants if need be, as "
+        "in pursuit_separated:gain=2,cap=0.5; empty: none");
   visit("imitation-steps", c.imitation_steps,
         "environment steps of imitation: alone for the first half, then fading into the return");
+  visit("privileged-teacher", c.privileged_teacher,
+        "the controller to imitate reads true states, as the critic does; the policy never does");
+  visit("start-from", c.start_from,
+        "folder of a finished run whose networks and normalisers to start from; steps, optimiser "
+        "and exploration start anew; empty: untrained networks");
   visit("validation-interval", c.validation_interval, "environment steps between validations");
   visit("validation-episodes", c.validation_episodes, "held-out episodes per validation");
   visit("checkpoint-interval", c.checkpoint_interval, "environment steps between checkpoints");

@@ -49,6 +49,7 @@ class Trainer {
 
  private:
   void OpenFolder();
+  void StartFrom(const std::string& folder);
   void Restore();
   void Iterate(TrainRecord* record);
   void Validate(TrainRecord* record);

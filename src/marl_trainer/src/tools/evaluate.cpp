@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -36,7 +37,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> overrides;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 3000;
-  double gain = -1.0, standoff = -1.0, cap = -1.0, repulsion = -1.0, repulsion_range = -1.0;
+  const stg::PursuitOptions tuned;
+  bool privileged = false;
   app.add_option("--policy", policy, "ONNX file, or pursuit, pursuit_separated, idle")->required();
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
   app.add_option("--condition", condition,
@@ -54,28 +56,22 @@ int main(int argc, char** argv) {
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
   app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256));
   app.add_option("--csv", csv, "write one row per episode to this file");
-  app.add_option("--gain", gain, "pursuit: gain [1/s]")->check(CLI::NonNegativeNumber);
-  app.add_option("--standoff", standoff, "pursuit: distance to hold [m]")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--cap", cap, "pursuit: speed cap per axis, fraction of the maximum")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--repulsion", repulsion, "pursuit_separated: repulsion gain [1/s]")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--repulsion-range", repulsion_range, "pursuit_separated: range [m]")
-      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--privileged", privileged,
+               "a built-in controller reads true states in acoustic mode, too");
+  std::map<std::string, std::string> constants;
+  stg::VisitPursuitOptions(tuned, [&](const char* name, double, const char* text) {
+    app.add_option(std::string("--") + name, constants[name], text);
+  });
   CLI11_PARSE(app, argc, argv);
   try {
     const stg::Scenario s = stg::ValidationScenario(
         stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, overrides), variant);
+    for (const auto& [name, value] : constants) {
+      if (value.empty()) continue;
+      policy += (policy.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+    }
     stg::Controller controller = stg::MakeController(policy, s);
-    const auto given = [](double option, double* value) {
-      if (option >= 0.0) *value = option;
-    };
-    given(gain, &controller.options.gain_per_s);
-    given(standoff, &controller.options.standoff_m);
-    given(cap, &controller.options.cap);
-    given(repulsion, &controller.options.repulsion_gain_per_s);
-    given(repulsion_range, &controller.options.repulsion_range_m);
+    controller.privileged = privileged;
     const auto metrics = stg::Evaluate(s, controller, episodes, seed, workers, [&](int done) {
       std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
     });

@@ -18,16 +18,39 @@ struct PursuitOptions {
   double repulsion_gain_per_s = 0.0;  ///< 0: neighbours are ignored
   double repulsion_range_m = 0.03;    ///< neighbours closer than this repel
   double tangential_range_m = 0.05;   ///< closer to the target repulsion only turns aside
+  /// Share of the target's velocity that is added. Above 1 it makes up for the speed that the
+  /// proportional velocity loop (Eq. 24) loses to drag.
+  double feedforward = 1.0;
+  /// Where gain (d - standoff) is more, the speed is approach_speed + approach_gain (d - standoff):
+  /// a stiff hold after an unhurried approach. Both 0: no such limit.
+  double approach_speed_mps = 0.0;
+  double approach_gain_per_s = 0.0;
 };
+
+/// Calls visit(name, field, description) for every constant that a user may set; one list for
+/// command lines and for names such as "pursuit:gain=2".
+template <class Options, class Visitor>
+void VisitPursuitOptions(Options& o, Visitor&& visit) {
+  visit("gain", o.gain_per_s, "pursuit: gain [1/s]");
+  visit("standoff", o.standoff_m, "pursuit: distance to hold [m]");
+  visit("cap", o.cap, "pursuit: speed cap per axis, fraction of the maximum");
+  visit("repulsion", o.repulsion_gain_per_s, "pursuit_separated: repulsion gain [1/s]");
+  visit("repulsion-range", o.repulsion_range_m, "pursuit_separated: range [m]");
+  visit("feedforward", o.feedforward, "pursuit: share of the target's velocity that is added");
+  visit("approach-speed", o.approach_speed_mps, "pursuit: speed from which the gain falls [m/s]");
+  visit("approach-gain", o.approach_gain_per_s, "pursuit: gain from there on [1/s]");
+}
 
 /// The tuned constants of a controller.
 PursuitOptions BuiltinOptions(BuiltinKind kind);
 
-/// "idle", "pursuit", "pursuit_separated"; false for any other name.
-bool ParseBuiltin(const std::string& name, BuiltinKind* kind);
+/// "idle", "pursuit" or "pursuit_separated", alone or with constants that differ from the tuned
+/// ones, as in "pursuit_separated:gain=2,cap=0.5"; false for any other name. UserError on an
+/// unknown constant, or one that is not a number in range.
+bool ParseBuiltin(const std::string& text, BuiltinKind* kind, PursuitOptions* options);
 const char* ToString(BuiltinKind kind);
 
-/// Pursuit: v = gain (d - standoff) los + v_T, plus, from each neighbour closer than the
+/// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than the
 /// repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
 /// the part of the repulsion along the line of sight is left out: AUVs then spread over the
 /// sphere around the target and keep their distance to it. Capped per axis at the end.
@@ -43,7 +66,12 @@ inline void PursuitAction(const PursuitOptions& o, const VehicleConfig& vehicle,
   const T zero(0.0), tiny(1e-9);
   const T d = Norm(r_BT_W);
   const Vec3<T> los = r_BT_W * (T(1.0) / Max(d, tiny));
-  Vec3<T> v = los * (T(o.gain_per_s) * (d - T(o.standoff_m))) + v_WT;
+  const T error = d - T(o.standoff_m);
+  T speed = T(o.gain_per_s) * error;
+  if (o.approach_speed_mps > 0.0 || o.approach_gain_per_s > 0.0) {
+    speed = Min(speed, T(o.approach_speed_mps) + T(o.approach_gain_per_s) * Max(error, zero));
+  }
+  Vec3<T> v = los * speed + v_WT * T(o.feedforward);
   if (o.repulsion_gain_per_s > 0.0) {
     Vec3<T> push;
     for (int j = 0; j < count; ++j) {

@@ -21,8 +21,7 @@ std::string Resolve(const std::string& name, const Scenario& scenario) {
 
 Decider::Decider(const std::string& wanted, const Scenario& scenario) {
   const std::string name = Resolve(wanted, scenario);
-  if (ParseBuiltin(name, &builtin_)) {
-    options_ = BuiltinOptions(builtin_);
+  if (ParseBuiltin(name, &builtin_, &options_)) {
     id_ = name;
     return;
   }
