@@ -9,6 +9,7 @@
 #include "acoustic_channel/nodes/topics.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
@@ -50,11 +51,13 @@ ChannelNode::ChannelNode()
 }
 
 void ChannelNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(open_ && started_ ? std::min(0.2, timeout_s_) : 0.2);
-    CloseIfDue();
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
+}
+
+double ChannelNode::Work() {
+  CloseIfDue();
+  health_.Tick();
+  return open_ && started_ ? std::min(0.2, timeout_s_) : 0.2;
 }
 
 void ChannelNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "acoustic_channel/channel.hpp"
-#include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/nodes/health.hpp"
+#include "auv_dynamics/scenario.hpp"
 
 namespace stg {
 
@@ -39,6 +39,7 @@ class ChannelNode {
     std::vector<ros::Subscriber> subscribers;
   };
 
+  double Work();
   void OnSync(const auv_msgs::SensorSync::ConstPtr& message);
   void OnOdometry(int i, const nav_msgs::Odometry::ConstPtr& message);
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);

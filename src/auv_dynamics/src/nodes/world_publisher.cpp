@@ -78,17 +78,9 @@ void WorldPublisher::PublishClock(TimeNs now) {
   clock_.publish(clock);
 }
 
-void WorldPublisher::Publish(const World& world, TimeNs start, std::uint32_t episode,
-                             std::uint32_t step) {
+void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint32_t episode,
+                                    std::uint32_t step) {
   const TimeNs now = start + world.time(0);
-  PublishClock(now);
-  for (int k = 0; k < world.targets(); ++k) {
-    nav_msgs::Odometry& m = target_messages_[static_cast<std::size_t>(k)];
-    m.header.stamp = TimeOf(now);
-    SetVector(Lane(world.target(k).p_WT, 0), &m.pose.pose.position);
-    SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
-    targets_[static_cast<std::size_t>(k)].publish(m);
-  }
   for (int i = 0; i < world.agents(); ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
     auv_msgs::SensorSync& sync = auv.sync_message;
@@ -107,7 +99,19 @@ void WorldPublisher::Publish(const World& world, TimeNs start, std::uint32_t epi
     }
     auv.sync.publish(sync);
   }
+}
+
+void WorldPublisher::PublishViews(const World& world, TimeNs start) {
+  const TimeNs now = start + world.time(0);
+  for (int k = 0; k < world.targets(); ++k) {
+    nav_msgs::Odometry& m = target_messages_[static_cast<std::size_t>(k)];
+    m.header.stamp = TimeOf(now);
+    SetVector(Lane(world.target(k).p_WT, 0), &m.pose.pose.position);
+    SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
+    targets_[static_cast<std::size_t>(k)].publish(m);
+  }
   PublishFrames(now);
+  PublishClock(now);
 }
 
 int WorldPublisher::PublishDetections(const World& world, TimeNs now, int i) {

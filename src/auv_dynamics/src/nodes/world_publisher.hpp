@@ -21,8 +21,12 @@ class WorldPublisher {
   ///                        largest rate of /clock: no step waits for either
   WorldPublisher(const Scenario& scenario, double display_rate_hz);
 
-  /// Everything of decision `step` of `episode`, whose step 0 was at clock time `start` [ns].
-  void Publish(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+  /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
+  /// [ns].
+  void PublishSensors(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+
+  /// What only observers need of the same decision: targets, transforms, the clock.
+  void PublishViews(const World& world, TimeNs start);
 
  private:
   struct AuvTopics {

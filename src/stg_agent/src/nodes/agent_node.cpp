@@ -9,6 +9,7 @@
 #include "auv_dynamics/control.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
@@ -63,11 +64,13 @@ AgentNode::AgentNode()
 }
 
 void AgentNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(sync_ ? std::clamp(patience_s_, 0.001, 0.2) : 0.2);
-    DecideIfDue();
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
+}
+
+double AgentNode::Work() {
+  DecideIfDue();
+  health_.Tick();
+  return sync_ ? std::clamp(patience_s_, 0.001, 0.2) : 0.2;
 }
 
 void AgentNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {

@@ -7,6 +7,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
@@ -95,12 +96,14 @@ void MetricsNode::Subscribe() {
 }
 
 void MetricsNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(0.1);
-    JudgeFrames();
-    if (show_table_) table_.Tick(judge_, now_s_);
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
+}
+
+double MetricsNode::Work() {
+  JudgeFrames();
+  if (show_table_) table_.Tick(judge_, now_s_);
+  health_.Tick();
+  return 0.1;
 }
 
 void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {

@@ -23,6 +23,7 @@ class MetricsNode {
   void Spin();
 
  private:
+  double Work();
   void Subscribe();
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
   void JudgeFrames();

@@ -2,6 +2,7 @@
 
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <sched.h>
 
 #include <string>
 
@@ -16,6 +17,15 @@ inline ros::TransportHints NoDelay() { return ros::TransportHints().tcpNoDelay()
 /// there. Single-threaded: nodes need no locks.
 inline void HandleMessages(double wait_s) {
   ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(wait_s));
+}
+
+/// For a process that only watches: its wake-ups interrupt nobody who is at work, so that a step is
+/// decided first and looked at then. To be called before ros::init, as threads inherit it. What
+/// `nice` does not do here: roslaunch gives each node a session, and Linux shares out the processor
+/// by session first.
+inline void WatchOnly() {
+  const sched_param parameters{};
+  sched_setscheduler(0, SCHED_BATCH, &parameters);  // fails: it watches as any other process
 }
 
 /// A node's main: Node has a constructor without arguments that may throw UserError, and Spin().
