@@ -91,8 +91,8 @@ void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint3
     sync.episode = episode;
     sync.step = step;
     sync.seed = world.seed(0);
-    sync.cue_valid = step == 0;
     if (step == 0) {
+      sync.cue_valid = true;  // and stays in the message, for an agent that comes late
       const Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
       SetVector(cue.p_WT, &sync.cue_position);
       sync.cue_std = cue.std_m;

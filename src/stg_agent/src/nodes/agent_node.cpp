@@ -158,7 +158,7 @@ void AgentNode::DecideIfDue() {
 
 void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
   Cue cue;
-  cue.target = -1;  // none: this node came in the middle of an episode
+  cue.target = -1;  // none
   if (sync.cue_valid && FiniteVector(sync.cue_position) && sync.cue_std >= 0.0) {
     cue.target = agent_.target();
     cue.p_WT = VectorOf(sync.cue_position);
