@@ -221,7 +221,7 @@ void AgentNode::Decide() {
   decider_->Mean(agent_, observation_.data(), action_);
   float log_probability = 0.0F;
   if (explore_) {
-    log_probability = decider_->Explore(sync_->seed, sync_->episode, sync_->step, id_, action_);
+    log_probability = decider_->Explore(sync_->seed, sync_->step, id_, action_);
   }
   Publish(agent_.Act(action_), log_probability);
   decisions_.Add();
