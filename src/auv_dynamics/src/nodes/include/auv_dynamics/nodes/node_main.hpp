@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 #include <sched.h>
 
+#include <csignal>
 #include <string>
 
 #include "auv_dynamics/error.hpp"
@@ -28,10 +29,12 @@ inline void WatchOnly() {
   sched_setscheduler(0, SCHED_BATCH, &parameters);  // fails: it watches as any other process
 }
 
-/// A node's main: Node has a constructor without arguments that may throw UserError, and Spin().
+/// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
+/// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does.
 template <class Node>
 int RunNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
   ros::NodeHandle keeps_ros_running;
   try {
