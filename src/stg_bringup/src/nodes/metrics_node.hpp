@@ -25,6 +25,8 @@ class MetricsNode {
  private:
   double Work();
   void Subscribe();
+  /// Of the scenario's sizes, and finite.
+  bool Usable(const auv_msgs::SwarmState& message) const;
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
   void JudgeFrames();
   void Publish(const EpisodeJudge::Verdict& verdict);
