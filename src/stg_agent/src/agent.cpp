@@ -32,8 +32,8 @@ Agent::Constants::Constants(const Scenario& s)
     : scenario(s),
       codec(s),
       slots(
-          static_cast<int>(Max(1.0, std::round(s.channel.transmit_period_s / s.decision_dt_s())))) {
-}
+          static_cast<int>(Max(1.0, std::round(s.channel.transmit_period_s / s.decision_dt_s())))),
+      period(static_cast<TimeNs>(std::llround(s.time.dt_s * 1e9)) * s.time.decision_steps) {}
 
 Agent::Agent(const Scenario& scenario, int id)
     : Agent(std::make_shared<const Constants>(scenario), id) {}
@@ -123,7 +123,7 @@ void Agent::Observe(const NavState& nav, float* observation) {
 
 void Agent::UpdateTrack(TimeNs now) {
   if (cue_pending_) {
-    track_.Start(cue_.p_WT, cue_.std_m, now);
+    track_.Start(cue_.p_WT, cue_.std_m, 0);
     cue_pending_ = false;
   }
   track_.Predict(now);
@@ -256,8 +256,8 @@ AgentOutput Agent::Act(const float* action) {
       out.fraction[k] = action_[static_cast<std::size_t>(k)] = Clip(wanted[k], -1.0, 1.0);
   }
   std::copy(action_.begin(), action_.end(), out.action);
-  const auto slots = static_cast<std::uint32_t>(constants_->slots);
-  out.transmit = step_ % slots == static_cast<std::uint32_t>(id_) % slots;
+  const TimeNs decision = now_ / constants_->period;
+  out.transmit = decision % constants_->slots == id_ % constants_->slots;
   if (out.transmit) {
     out.packet = MakePacket();
     out.generation = now_;

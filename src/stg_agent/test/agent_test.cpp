@@ -221,6 +221,25 @@ TEST(Agent, SendsOncePerPeriodInItsOwnSlot) {
   }
 }
 
+TEST(Agent, OneThatComesLateKeepsItsSlotAndFindsTheCueAsUncertainAsItHasBecome) {
+  const Scenario s;  // a slot each 5 decisions
+  for (int late = 1; late <= 7; ++late) {
+    Agent always(s, 2), restarted(s, 2);
+    always.Reset(0, CueAt({0.2, 0.0, 0.0}));
+    restarted.Reset(0, CueAt({0.2, 0.0, 0.0}));
+    for (int k = 0; k < 20; ++k) {
+      Look(&always, Nav(k * kStep, {}));
+      const bool sends = always.Act(kZero).transmit;
+      if (k < late) continue;
+      Look(&restarted, Nav(k * kStep, {}));
+      EXPECT_EQ(restarted.Act(kZero).transmit, sends) << "decision " << k;
+      EXPECT_NEAR(restarted.track().estimate().position_std_m(),
+                  always.track().estimate().position_std_m(), 1e-12);
+      EXPECT_EQ(restarted.knowledge().distance, 0.2);
+    }
+  }
+}
+
 TEST(Agent, PacketTellsOwnStateAndTheEstimateAsOfItsLastObservation) {
   const Scenario s;
   Agent agent(s, 0);

@@ -38,8 +38,11 @@ class Faults(unittest.TestCase):
         """Returns how many messages of `topic` the node says it refused."""
         return self.diagnostics.value(node, f"refused {topic}: {reason}")
 
-    def check_refusals(self, node, topic, message_type, spoil, good):
-        """Sends spoilt messages of each kind; each kind must be refused, counted and shown."""
+    def check_refusals(self, node, topic, message_type, frames, spoil):
+        """Sends spoilt messages of each kind; each kind must be refused, counted and shown.
+
+        `frames` are the right frame and a wrong one; spoil(message) makes a number NaN.
+        """
         publisher = rospy.Publisher(topic, message_type, queue_size=10)
         key = topic if node == "world" else topic.rsplit("/", 1)[1]
         wait_for(lambda: self.refused(node, key, "stale") is not None, 20.0, "diagnostics")
@@ -48,8 +51,13 @@ class Faults(unittest.TestCase):
             before = self.refused(node, key, reason)
 
             def sent_and_refused(reason=reason, before=before):
-                message = good()
-                spoil(message, reason)
+                message = message_type()
+                message.header.stamp = self.odom.message.header.stamp
+                message.header.frame_id = frames[reason == "wrong frame"]
+                if reason == "not finite":
+                    spoil(message)
+                elif reason == "stale":
+                    message.header.stamp -= rospy.Duration(1.0)
                 publisher.publish(message)
                 return self.refused(node, key, reason) > before
 
@@ -60,40 +68,20 @@ class Faults(unittest.TestCase):
         publisher.unregister()
 
     def test_bad_wrenches_are_refused_and_shown(self):
-        def good():
-            message = WrenchStamped()
-            message.header.stamp = self.odom.message.header.stamp
-            message.header.frame_id = "auv_0/base_link"
-            return message
+        def spoil(message):
+            message.wrench.torque.y = NAN
 
-        def spoil(message, reason):
-            if reason == "not finite":
-                message.wrench.torque.y = NAN
-            elif reason == "wrong frame":
-                message.header.frame_id = "world"
-            else:
-                message.header.stamp -= rospy.Duration(1.0)
-
-        self.check_refusals("world", "/auv_0/wrench", WrenchStamped, spoil, good)
+        self.check_refusals(
+            "world", "/auv_0/wrench", WrenchStamped, ("auv_0/base_link", "world"), spoil)
         position = self.odom.message.pose.pose.position
         self.assertTrue(all(abs(x) <= 1.0 for x in (position.x, position.y, position.z)))
 
     def test_bad_velocity_commands_are_refused_and_shown(self):
-        def good():
-            message = TwistStamped()
-            message.header.stamp = self.odom.message.header.stamp
-            message.header.frame_id = "world"
-            return message
+        def spoil(message):
+            message.twist.linear.z = NAN
 
-        def spoil(message, reason):
-            if reason == "not finite":
-                message.twist.linear.z = NAN
-            elif reason == "wrong frame":
-                message.header.frame_id = "auv_0/base_link"
-            else:
-                message.header.stamp -= rospy.Duration(1.0)
-
-        self.check_refusals("auv_0/controller", "/auv_0/cmd_vel", TwistStamped, spoil, good)
+        self.check_refusals(
+            "auv_0/controller", "/auv_0/cmd_vel", TwistStamped, ("world", "auv_0/base_link"), spoil)
 
     def test_every_node_but_the_world_comes_back_after_its_death(self):
         for node in ("/auv_0/agent", "/auv_0/controller", "/acoustic_channel", "/metrics"):

@@ -97,13 +97,18 @@ class Markers(unittest.TestCase):
     def test_every_auv_has_a_hull_in_the_colour_of_its_phase(self):
         count = synthetic_bag.AGENTS
         self.publish_until(lambda: len(self.shown("overview", "hull")) == count, "hulls")
+        # Grey for "no word yet" is a colour as well: only the labels tell that all have spoken.
+        words = ("search", "approach", "stable", "lost", "leads")
+
+        def labelled():
+            labels = " ".join(m.text for m in self.shown("overview", "label"))
+            return all(word in labels for word in words)
+
+        self.publish_until(labelled, f"labels with {words}")
         self.publish_until(
             lambda: len({(m.color.r, m.color.g) for m in self.shown("close", "hull")}) == count,
             "four colours for four phases",
         )
-        labels = " ".join(m.text for m in self.shown("overview", "label"))
-        for word in ("search", "approach", "stable", "lost", "leads"):
-            self.assertIn(word, labels)
 
     def test_lost_packets_appear_with_their_reason_and_go(self):
         self.publish_until(lambda: self.shown("overview", "hull"), "a hull")

@@ -126,6 +126,20 @@ class RecordReplay(unittest.TestCase):
             self.assertGreater(len(after), STEPS // 2)
             self.assertEqual(after, before[len(before) - len(after):])
 
+    def test_replay_from_the_middle_has_the_scenario_and_the_static_frames(self):
+        # Both were published once, before the part that is shown.
+        process, environment = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
+                                      "start:=3", "rate:=0.3", "delay:=0.1")
+        try:
+            for topic, content in (("/scenario", "name: medium"), ("/tf_static", "world_ned")):
+                heard = subprocess.run(
+                    ["timeout", "15", "bash", "-c",
+                     f"until rostopic echo -n 1 {topic} 2>/dev/null; do sleep 0.2; done"],
+                    env=environment, stdout=subprocess.PIPE, universal_newlines=True, check=False)
+                self.assertIn(content, heard.stdout, topic)
+        finally:
+            stop(process)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -188,6 +188,27 @@ class TrainOnline(unittest.TestCase):
         self.assertEqual(code, 2, text)
         self.assertIn("recorded in another scenario", text)
 
+    def test_6_sigterm_ends_live_training_with_the_last_update_kept(self):
+        folder = self.out / "stopped"
+        program = roslib.packages.find_node("marl_trainer", "trainer_node")[0]
+        with subprocess.Popen(
+            [program, "__name:=stopped", f"_out:={folder}", "_episodes_per_update:=2"],
+            stdout=subprocess.PIPE,
+            universal_newlines=True,
+        ) as trainer:
+            limit = threading.Timer(40.0, trainer.kill)
+            limit.start()
+            text = ""
+            for line in trainer.stdout:
+                text += line
+                if line.startswith("update"):
+                    trainer.terminate()
+            limit.cancel()
+        self.assertEqual(trainer.returncode, 0, text)
+        self.assertRegex(text, r"trainer: stopped after [1-9]\d* updates")
+        self.assertTrue(list(folder.glob("checkpoint_*.pt")))
+        self.assertTrue((folder / "policy_last.onnx").exists())
+
 
 if __name__ == "__main__":
     rospy.init_node("train_online_test")

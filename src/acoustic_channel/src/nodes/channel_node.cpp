@@ -9,6 +9,7 @@
 #include "acoustic_channel/nodes/topics.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
@@ -35,31 +36,42 @@ ChannelNode::ChannelNode()
     Auv& auv = auvs_[static_cast<std::size_t>(i)];
     auv.reception = node.advertise<auv_msgs::AcousticReception>(
         topics::AuvTopic(i, topics::kAcousticRx), kQueue, true);
-    const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> on_odometry =
-        [this, i](const auto& message) { OnOdometry(i, message); };
     const boost::function<void(const auv_msgs::AcousticPacket::ConstPtr&)> on_transmission =
         [this, i](const auto& message) { OnTransmission(i, message); };
-    auv.subscribers.push_back(node.subscribe<nav_msgs::Odometry>(
-        topics::AuvTopic(i, topics::kOdom), kQueue, on_odometry, ros::VoidConstPtr(), NoDelay()));
-    auv.subscribers.push_back(
+    auv.subscriber =
         node.subscribe<auv_msgs::AcousticPacket>(topics::AuvTopic(i, topics::kAcousticTx), kQueue,
-                                                 on_transmission, ros::VoidConstPtr(), NoDelay()));
+                                                 on_transmission, ros::VoidConstPtr(), NoDelay());
   }
-  sync_ = node.subscribe(topics::AuvTopic(0, topics::kSensorSync), kQueue, &ChannelNode::OnSync,
-                         this, NoDelay());
+  swarm_ = node.subscribe(topics::kSwarmState, kQueue, &ChannelNode::OnSwarm, this, NoDelay());
 }
 
 void ChannelNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(open_ && started_ ? std::min(0.2, timeout_s_) : 0.2);
-    CloseIfDue();
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
 }
 
-void ChannelNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
+double ChannelNode::Work() {
+  CloseIfDue();
+  health_.Tick();
+  return open_ && started_ ? std::min(0.2, timeout_s_) : 0.2;
+}
+
+void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
+  const auto finite = [](const geometry_msgs::Pose& pose) { return FiniteVector(pose.position); };
+  if (message->header.frame_id != frames::kWorld) {
+    refused_swarm_.Add(Refusals::kFrame);
+    return;
+  }
+  if (message->poses.size() != auvs_.size()) {
+    refused_swarm_.Add(Refusals::kMalformed);
+    return;
+  }
+  if (!std::all_of(message->poses.begin(), message->poses.end(), finite)) {
+    refused_swarm_.Add(Refusals::kNotFinite);
+    return;
+  }
   const TimeNs stamp = NsOf(message->header.stamp);
   if (open_ && stamp > stamp_) {
+    // The world has gone on without this channel.
     Close();
     ++incomplete_steps_;
   }
@@ -69,28 +81,12 @@ void ChannelNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
   stamp_ = stamp;
   episode_ = message->episode;
   step_ = message->step;
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    positions_[i] = VectorOf(message->poses[i].position);
+  }
   open_ = true;
   opened_ = ros::WallTime::now();
   CloseIfDue();
-}
-
-void ChannelNode::OnOdometry(int i, const nav_msgs::Odometry::ConstPtr& message) {
-  if (message->header.frame_id != frames::kWorld) {
-    refused_odometry_.Add(Refusals::kFrame);
-  } else if (!FiniteVector(message->pose.pose.position)) {
-    refused_odometry_.Add(Refusals::kNotFinite);
-  } else {
-    const TimeNs stamp = NsOf(message->header.stamp);
-    if (open_ && stamp > stamp_) {
-      // The world has gone on without this channel.
-      Close();
-      ++incomplete_steps_;
-    }
-    Auv& auv = auvs_[static_cast<std::size_t>(i)];
-    auv.position_stamp = stamp;
-    positions_[static_cast<std::size_t>(i)] = VectorOf(message->pose.pose.position);
-    CloseIfDue();
-  }
 }
 
 void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message) {
@@ -121,7 +117,6 @@ bool ChannelNode::Usable(int i, const auv_msgs::AcousticPacket& message) {
 
 bool ChannelNode::Complete(bool wait_for_all) const {
   for (const Auv& auv : auvs_) {
-    if (auv.position_stamp != stamp_) return false;
     const bool sent = auv.transmission && NsOf(auv.transmission->header.stamp) == stamp_;
     if (!sent && (auv.present || wait_for_all)) return false;
   }
@@ -216,7 +211,7 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const double rate = static_cast<double>(steps_.TakeRecent()) / health_.period_s();
   status.add("steps per second", rate);
   status.add("steps closed without an AUV", incomplete_steps_);
-  refused_odometry_.Report(topics::kOdom, &status);
+  refused_swarm_.Report(topics::kSwarmState, &status);
   refused_transmissions_.Report(topics::kAcousticTx, &status);
   if (steps_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no step closed yet");

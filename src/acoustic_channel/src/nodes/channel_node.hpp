@@ -3,8 +3,7 @@
 #include <auv_msgs/AcousticPacket.h>
 #include <auv_msgs/AcousticReception.h>
 #include <auv_msgs/LinkStates.h>
-#include <auv_msgs/SensorSync.h>
-#include <nav_msgs/Odometry.h>
+#include <auv_msgs/SwarmState.h>
 #include <ros/node_handle.h>
 
 #include <memory>
@@ -12,8 +11,8 @@
 #include <vector>
 
 #include "acoustic_channel/channel.hpp"
-#include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/nodes/health.hpp"
+#include "auv_dynamics/scenario.hpp"
 
 namespace stg {
 
@@ -22,8 +21,8 @@ namespace stg {
 /// Step k closes when the position and the transmission of every AUV at t_k are in; then each AUV
 /// gets its reception window (t_k, t_{k+1}], and the world its acknowledgement. An AUV that is
 /// silent for `timeout` seconds, or whose step the world has left behind, is gone for the channel
-/// and not waited for again before it transmits again. Step, episode and seed come with the
-/// sensor_sync of AUV 0.
+/// and not waited for again before it transmits again. Positions, step, episode and
+/// seed come with /swarm_state.
 class ChannelNode {
  public:
   /// Throws UserError.
@@ -32,15 +31,14 @@ class ChannelNode {
 
  private:
   struct Auv {
-    TimeNs position_stamp = -1;                       ///< clock time; -1: none yet
     bool present = true;                              ///< its transmissions are waited for
     auv_msgs::AcousticPacket::ConstPtr transmission;  ///< newest one
     ros::Publisher reception;
-    std::vector<ros::Subscriber> subscribers;
+    ros::Subscriber subscriber;
   };
 
-  void OnSync(const auv_msgs::SensorSync::ConstPtr& message);
-  void OnOdometry(int i, const nav_msgs::Odometry::ConstPtr& message);
+  double Work();
+  void OnSwarm(const auv_msgs::SwarmState::ConstPtr& message);
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
   bool Usable(int i, const auv_msgs::AcousticPacket& message);
   bool Complete(bool wait_for_all) const;
@@ -67,9 +65,9 @@ class ChannelNode {
   auv_msgs::LinkStates links_message_;
   EventRate steps_;
   std::uint64_t incomplete_steps_ = 0;
-  Refusals refused_odometry_, refused_transmissions_;
+  Refusals refused_swarm_, refused_transmissions_;
   ros::Publisher done_, links_;
-  ros::Subscriber sync_;
+  ros::Subscriber swarm_;
   Health health_;
 };
 

@@ -7,6 +7,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
@@ -39,10 +40,12 @@ ControllerNode::ControllerNode()
 }
 
 void ControllerNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(0.2);
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
+}
+
+double ControllerNode::Work() {
+  health_.Tick();
+  return 0.2;
 }
 
 void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {

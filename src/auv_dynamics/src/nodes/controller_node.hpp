@@ -20,6 +20,7 @@ class ControllerNode {
   void Spin();
 
  private:
+  double Work();
   void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
   void OnCommand(const geometry_msgs::TwistStamped::ConstPtr& message);
   void Answer();

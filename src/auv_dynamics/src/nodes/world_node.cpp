@@ -6,6 +6,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {
@@ -16,6 +17,9 @@ constexpr std::uint32_t kQueue = 20;
 constexpr TimeNs kFirstStamp = 1'000'000'000;
 constexpr std::size_t kMaxDelays = 10'000;
 constexpr TimeNs kRecent = 10'000'000'000;
+/// Observers get a step when it is answered, or this long after it was opened [s]: a message on
+/// /clock wakes every node, and would do so just when all of them are to decide.
+constexpr double kViewDelay_s = 0.005;
 
 }  // namespace
 
@@ -55,22 +59,28 @@ WorldNode::WorldNode()
 }
 
 void WorldNode::Spin() {
-  while (ros::ok() && !done_) {
-    HandleMessages(WaitTime());
-    health_.Tick();
-    if (finishing_) {
-      if (ros::WallTime::now() > deadline_) done_ = true;
-    } else if (!paused_) {
-      Advance();
-    }
+  PollLoop([this] { return Work(); });
+}
+
+double WorldNode::Work() {
+  health_.Tick();
+  if (finishing_) {
+    if (ros::WallTime::now() > deadline_) done_ = true;
+  } else {
+    if (Complete() || OpenFor() >= kViewDelay_s) ShowStep();
+    if (!paused_) Advance();
   }
+  return done_ ? kLoopDone : WaitTime();
 }
 
 /// Seconds until something is to be done without a message.
 double WorldNode::WaitTime() const {
-  if (paused_ || finishing_ || !running_) return 0.05;
-  const ros::WallTime next = Complete() ? due_ : deadline_;
-  return std::clamp((next - ros::WallTime::now()).toSec(), 0.0, 0.2);
+  double wait_s = 0.05;
+  if (running_ && !paused_ && !finishing_) {
+    const ros::WallTime next = Complete() ? due_ : deadline_;
+    wait_s = std::clamp((next - ros::WallTime::now()).toSec(), 0.0, 0.2);
+  }
+  return shown_ ? wait_s : std::min(wait_s, std::max(0.0, kViewDelay_s - OpenFor()));
 }
 
 void WorldNode::Advance() {
@@ -134,7 +144,14 @@ void WorldNode::CountMisses() {
   }
 }
 
+void WorldNode::ShowStep() {
+  if (shown_) return;
+  publisher_->PublishViews(world_, start_);
+  shown_ = true;
+}
+
 void WorldNode::StepWorld() {
+  ShowStep();
   bool missed = false;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     Auv& auv = auvs_[i];
@@ -154,6 +171,7 @@ void WorldNode::StepWorld() {
 }
 
 void WorldNode::StartEpisode(std::uint32_t episode) {
+  ShowStep();
   start_ = Now() + period_;
   episode_ = episode;
   step_ = 0;
@@ -169,7 +187,8 @@ void WorldNode::OpenStep() {
   for (Auv& auv : auvs_) auv.answered = false;
   channel_answered_ = false;
   opened_ = ros::WallTime::now();
-  publisher_->Publish(world_, start_, episode_, step_);
+  publisher_->PublishSensors(world_, start_, episode_, step_);
+  shown_ = false;
   const ros::WallTime now = ros::WallTime::now();
   if (!running_) {
     deadline_ = now + ros::WallDuration(start_timeout_s_);

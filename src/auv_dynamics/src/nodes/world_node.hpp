@@ -52,6 +52,8 @@ class WorldNode {
   bool OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Response& response);
   bool OnPause(auv_msgs::Pause::Request& request, auv_msgs::Pause::Response& response);
 
+  double Work();
+  double OpenFor() const { return (ros::WallTime::now() - opened_).toSec(); }
   double WaitTime() const;
   void Advance();
   bool ListenersReady();
@@ -60,6 +62,7 @@ class WorldNode {
   void StepWorld();
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
+  void ShowStep();
   void Finish();
   void KeepDelay();
   double DelayQuantile(double share) const;
@@ -82,6 +85,7 @@ class WorldNode {
   bool paused_ = false, finishing_ = false, done_ = false;
   bool channel_answered_ = false, channel_present_ = true;
   std::uint64_t channel_misses_ = 0, missed_steps_ = 0;
+  bool shown_ = true;  ///< observers have the present step
   EventRate steps_;
   ros::WallTime opened_;          ///< the present step's sensor data began to go out
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays

@@ -30,7 +30,6 @@ geometry_msgs::TransformStamped TransformOf(const nav_msgs::Odometry& m) {
 WorldPublisher::WorldPublisher(const Scenario& scenario, double display_rate_hz)
     : scenario_(scenario), display_period_s_(1.0 / display_rate_hz) {
   ros::NodeHandle node;
-  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kQueue, true);
   for (int i = 0; i < scenario_.agents; ++i) {
     AuvTopics auv;
     auv.odometry =
@@ -44,6 +43,14 @@ WorldPublisher::WorldPublisher(const Scenario& scenario, double display_rate_hz)
     auv.sync_message.header.frame_id = frames::Body(i);
     auvs_.push_back(auv);
   }
+  // roscpp sends in the order of these lines: who decides is served first.
+  swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kQueue, true);
+  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kQueue, true);
+  swarm_message_.header.frame_id = frames::kWorld;
+  swarm_message_.poses.resize(auvs_.size());
+  swarm_message_.twists.resize(auvs_.size());
+  swarm_message_.target_positions.resize(static_cast<std::size_t>(scenario_.target.count));
+  swarm_message_.target_velocities.resize(swarm_message_.target_positions.size());
   for (int k = 0; k < scenario_.target.count; ++k) {
     targets_.push_back(node.advertise<nav_msgs::Odometry>(topics::TargetOdom(k), kQueue, true));
     nav_msgs::Odometry m;
@@ -78,17 +85,9 @@ void WorldPublisher::PublishClock(TimeNs now) {
   clock_.publish(clock);
 }
 
-void WorldPublisher::Publish(const World& world, TimeNs start, std::uint32_t episode,
-                             std::uint32_t step) {
+void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint32_t episode,
+                                    std::uint32_t step) {
   const TimeNs now = start + world.time(0);
-  PublishClock(now);
-  for (int k = 0; k < world.targets(); ++k) {
-    nav_msgs::Odometry& m = target_messages_[static_cast<std::size_t>(k)];
-    m.header.stamp = TimeOf(now);
-    SetVector(Lane(world.target(k).p_WT, 0), &m.pose.pose.position);
-    SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
-    targets_[static_cast<std::size_t>(k)].publish(m);
-  }
   for (int i = 0; i < world.agents(); ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
     auv_msgs::SensorSync& sync = auv.sync_message;
@@ -99,15 +98,39 @@ void WorldPublisher::Publish(const World& world, TimeNs start, std::uint32_t epi
     sync.episode = episode;
     sync.step = step;
     sync.seed = world.seed(0);
-    sync.cue_valid = step == 0;
     if (step == 0) {
+      sync.cue_valid = true;  // and stays in the message, for an agent that comes late
       const Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
       SetVector(cue.p_WT, &sync.cue_position);
       sync.cue_std = cue.std_m;
     }
     auv.sync.publish(sync);
+    swarm_message_.poses[static_cast<std::size_t>(i)] = auv.odometry_message.pose.pose;
+    swarm_message_.twists[static_cast<std::size_t>(i)] = auv.odometry_message.twist.twist;
+  }
+  for (int k = 0; k < world.targets(); ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    SetVector(Lane(world.target(k).p_WT, 0), &swarm_message_.target_positions[u]);
+    SetVector(Lane(world.target(k).v_WT, 0), &swarm_message_.target_velocities[u]);
+  }
+  swarm_message_.header.stamp = TimeOf(now);
+  swarm_message_.episode = episode;
+  swarm_message_.step = step;
+  swarm_message_.seed = world.seed(0);
+  swarm_.publish(swarm_message_);
+}
+
+void WorldPublisher::PublishViews(const World& world, TimeNs start) {
+  const TimeNs now = start + world.time(0);
+  for (int k = 0; k < world.targets(); ++k) {
+    nav_msgs::Odometry& m = target_messages_[static_cast<std::size_t>(k)];
+    m.header.stamp = TimeOf(now);
+    SetVector(Lane(world.target(k).p_WT, 0), &m.pose.pose.position);
+    SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
+    targets_[static_cast<std::size_t>(k)].publish(m);
   }
   PublishFrames(now);
+  PublishClock(now);
 }
 
 int WorldPublisher::PublishDetections(const World& world, TimeNs now, int i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <auv_msgs/SensorSync.h>
+#include <auv_msgs/SwarmState.h>
 #include <auv_msgs/TargetDetection.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
@@ -21,8 +22,12 @@ class WorldPublisher {
   ///                        largest rate of /clock: no step waits for either
   WorldPublisher(const Scenario& scenario, double display_rate_hz);
 
-  /// Everything of decision `step` of `episode`, whose step 0 was at clock time `start` [ns].
-  void Publish(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+  /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
+  /// [ns], and what is true of them all.
+  void PublishSensors(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+
+  /// What only observers need of the same decision: targets, transforms, the clock.
+  void PublishViews(const World& world, TimeNs start);
 
  private:
   struct AuvTopics {
@@ -42,7 +47,8 @@ class WorldPublisher {
   std::vector<ros::Publisher> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;
   auv_msgs::TargetDetection detection_message_;
-  ros::Publisher clock_, scenario_topic_;
+  auv_msgs::SwarmState swarm_message_;
+  ros::Publisher swarm_, clock_, scenario_topic_;
   tf2_ros::TransformBroadcaster frames_;
   tf2_ros::StaticTransformBroadcaster static_frames_;
   std::vector<geometry_msgs::TransformStamped> transforms_;

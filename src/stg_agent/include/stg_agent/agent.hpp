@@ -56,7 +56,8 @@ struct TaskView {
 ///   reward.lost_distance_m.
 /// - A neighbour not heard of counts as link quality 0 in the mean, and in no other average.
 /// - Agent i sends at decisions k with k mod P = i mod P, where P is transmit_period_s in
-///   decisions, rounded, at least 1.
+///   decisions, rounded, at least 1. k comes from the stamp, not from counting: an agent
+///   that joins in the middle of an episode keeps to its slot.
 class Agent {
  public:
   /// Throws UserError when the scenario does not fit the packet layout.
@@ -64,7 +65,8 @@ class Agent {
   /// The same mind for AUV `id`, sharing the scenario and tables of `other`; starts reset.
   Agent(const Agent& other, int id);
 
-  /// Starts an episode: forgets everything. The cue counts from the first Observe.
+  /// Starts an episode: forgets everything. The cue was true at time 0, whenever the first
+  /// Observe is: one that comes late finds it as uncertain as it has become.
   void Reset(std::uint32_t episode, const Cue& cue);
 
   /// Own detection; of another target than this agent's: ignored. The newest before the
@@ -87,7 +89,7 @@ class Agent {
   int id() const { return id_; }
   const Scenario& scenario() const { return constants_->scenario; }
   std::uint32_t episode() const { return episode_; }
-  /// Decision k of the last Observe, counted from 0 in each episode.
+  /// Number of the last Observe, counted from 0 since Reset.
   std::uint32_t step() const { return step_; }
 
   /// State of knowledge of the last Observe.
@@ -108,7 +110,8 @@ class Agent {
     explicit Constants(const Scenario& s);
     Scenario scenario;
     PacketCodec codec;
-    int slots;  // decisions per transmit period, P
+    int slots;      // decisions per transmit period, P
+    TimeNs period;  // of decisions
   };
   Agent(std::shared_ptr<const Constants> constants, int id);
 

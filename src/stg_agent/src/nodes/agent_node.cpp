@@ -9,6 +9,7 @@
 #include "auv_dynamics/control.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
@@ -63,11 +64,13 @@ AgentNode::AgentNode()
 }
 
 void AgentNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(sync_ ? std::clamp(patience_s_, 0.001, 0.2) : 0.2);
-    DecideIfDue();
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
+}
+
+double AgentNode::Work() {
+  DecideIfDue();
+  health_.Tick();
+  return sync_ ? std::clamp(patience_s_, 0.001, 0.2) : 0.2;
 }
 
 void AgentNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
@@ -155,7 +158,7 @@ void AgentNode::DecideIfDue() {
 
 void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
   Cue cue;
-  cue.target = -1;  // none: this node came in the middle of an episode
+  cue.target = -1;  // none
   if (sync.cue_valid && FiniteVector(sync.cue_position) && sync.cue_std >= 0.0) {
     cue.target = agent_.target();
     cue.p_WT = VectorOf(sync.cue_position);
@@ -218,7 +221,7 @@ void AgentNode::Decide() {
   decider_->Mean(agent_, observation_.data(), action_);
   float log_probability = 0.0F;
   if (explore_) {
-    log_probability = decider_->Explore(sync_->seed, sync_->episode, sync_->step, id_, action_);
+    log_probability = decider_->Explore(sync_->seed, sync_->step, id_, action_);
   }
   Publish(agent_.Act(action_), log_probability);
   decisions_.Add();

@@ -36,6 +36,7 @@ class AgentNode {
   void Spin();
 
  private:
+  double Work();
   void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
   void OnDetection(const auv_msgs::TargetDetection::ConstPtr& message);
   void OnSync(const auv_msgs::SensorSync::ConstPtr& message);

@@ -42,12 +42,11 @@ void Decider::Mean(const Agent& agent, const float* observation, float* action) 
   }
 }
 
-float Decider::Explore(std::uint64_t seed, std::uint32_t episode, std::uint32_t step, int agent,
-                       float* action) const {
+float Decider::Explore(std::uint64_t seed, std::uint32_t step, int agent, float* action) const {
   if (!policy_) return 0.0F;
   constexpr float kHalfLogTwoPi = 0.918938533F;
   const Eigen::VectorXf& log_std = policy_->parameters().log_std;
-  Random random(seed, Stream::kPolicy, episode, step, static_cast<std::uint32_t>(agent));
+  Random random(seed, Stream::kPolicy, 0, step, static_cast<std::uint32_t>(agent));
   float log_density = 0.0F;
   for (Eigen::Index k = 0; k < log_std.size(); ++k) {
     const float z = static_cast<float>(random.Normal());

@@ -23,11 +23,11 @@ class Decider {
   /// The policy's mean action, or the built-in controller's.
   void Mean(const Agent& agent, const float* observation, float* action) const;
 
-  /// Replaces the mean by a sample of the policy's Gaussian, a function of (seed, episode, step,
-  /// agent) only; returns its natural log density. A built-in controller has no spread: returns 0
-  /// and leaves the mean.
-  float Explore(std::uint64_t seed, std::uint32_t episode, std::uint32_t step, int agent,
-                float* action) const;
+  /// Replaces the mean by a sample of the policy's Gaussian, a function of (seed, step, agent)
+  /// only; returns its natural log density. A built-in controller has no spread: returns 0 and
+  /// leaves the mean.
+  /// @param seed that of the episode: the same seed gives the same episode, whatever its number
+  float Explore(std::uint64_t seed, std::uint32_t step, int agent, float* action) const;
 
   const std::string& id() const { return id_; }
 

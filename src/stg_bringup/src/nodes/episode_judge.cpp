@@ -27,14 +27,14 @@ EpisodeJudge::EpisodeJudge(const Scenario& scenario)
 
 EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   Verdict verdict;
-  const bool truth = frame.HasTruth();
+  const bool truth = frame.truth != nullptr;
   const bool follows =
-      truth && started_ && frame.sync->episode == episode_ && frame.sync->step > step_;
-  if (started_ && !follows && (truth || frame.sync)) {
+      truth && started_ && frame.truth->episode == episode_ && frame.truth->step > step_;
+  if (started_ && !follows && truth) {
     // Cut short by a reset: what there is still counts as an incomplete episode.
     complete_ = false;
     started_ = false;
-    if (env_.step() > 0) FillSummary(frame.sync->header.stamp, env_.MetricsSoFar(0), &verdict);
+    if (env_.step() > 0) FillSummary(frame.truth->header.stamp, env_.MetricsSoFar(0), &verdict);
   }
   if (!truth) {
     complete_ = false;
@@ -42,41 +42,42 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   }
   SetTruth(frame);
   if (!follows) {
-    if (frame.sync->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps)) {
+    if (frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps)) {
       return verdict;  // the end of an episode that was not watched
     }
     for (auto* v : {&swarm_.fractions, &swarm_.actions})
       std::fill(v->begin(), v->end(), std::array<double, 6>{});
     deadline_misses_ = 0;
     started_ = true;
-    complete_ = frame.sync->step == 0;
+    complete_ = frame.truth->step == 0;
     env_.FollowStart(swarm_);
   } else {
-    complete_ = complete_ && frame.sync->step == step_ + 1;
+    complete_ = complete_ && frame.truth->step == step_ + 1;
     const std::vector<float> state(env_.states(), env_.states() + env_.state_size());
     env_.FollowStep(swarm_);
     FillReport(frame, state, &verdict);
-    const bool last = frame.sync->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
+    const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
     if (last) {
       started_ = false;
       complete_ = complete_ && env_.truncated();
-      FillSummary(frame.sync->header.stamp, env_.MetricsSoFar(0), &verdict);
+      FillSummary(frame.truth->header.stamp, env_.MetricsSoFar(0), &verdict);
     }
   }
-  episode_ = frame.sync->episode;
-  step_ = frame.sync->step;
-  seed_ = frame.sync->seed;
+  episode_ = frame.truth->episode;
+  step_ = frame.truth->step;
+  seed_ = frame.truth->seed;
   if (started_) TakeAnswers(frame);
   return verdict;
 }
 
 void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
+  const auv_msgs::SwarmState& truth = *frame.truth;
   for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
-    swarm_.vehicles[i] = NavOf(*frame.vehicles[i], 0);
+    swarm_.vehicles[i] = NavOf(truth.poses[i], truth.twists[i], NsOf(truth.header.stamp));
   }
   for (std::size_t k = 0; k < swarm_.targets.size(); ++k) {
-    swarm_.targets[k].p_WT = VectorOf(frame.targets[k]->pose.pose.position);
-    swarm_.targets[k].v_WT = VectorOf(frame.targets[k]->twist.twist.linear);
+    swarm_.targets[k].p_WT = VectorOf(truth.target_positions[k]);
+    swarm_.targets[k].v_WT = VectorOf(truth.target_velocities[k]);
   }
   double sum = 0.0;
   for (const auto& task : frame.tasks) {
@@ -111,10 +112,10 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>&
                               Verdict* verdict) const {
   verdict->has_report = true;
   auv_msgs::StepReport& m = verdict->report;
-  m.header.stamp = frame.sync->header.stamp;
+  m.header.stamp = frame.truth->header.stamp;
   m.header.frame_id = frames::kWorld;
   m.episode = episode_;
-  m.step = frame.sync->step - 1;
+  m.step = frame.truth->step - 1;
   m.global_state = state;
   m.truncated = env_.truncated();
   if (m.truncated) m.final_state.assign(env_.states(), env_.states() + env_.state_size());

@@ -17,6 +17,7 @@
 #include <regex>
 
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marker_builder.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -252,6 +253,7 @@ class MarkerNode {
 }  // namespace stg
 
 int main(int argc, char** argv) {
+  stg::WatchOnly();
   ros::init(argc, argv, "markers");
   try {
     const stg::MarkerNode node;

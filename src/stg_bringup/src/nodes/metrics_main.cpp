@@ -1,4 +1,7 @@
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "metrics_node.hpp"
 
-int main(int argc, char** argv) { return stg::RunNode<stg::MetricsNode>(argc, argv, "metrics"); }
+int main(int argc, char** argv) {
+  stg::WatchOnly();
+  return stg::RunNode<stg::MetricsNode>(argc, argv, "metrics");
+}

@@ -1,5 +1,6 @@
 #include "metrics_node.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +8,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
@@ -28,7 +30,7 @@ MetricsNode::MetricsNode()
               scenario_.time.decision_steps),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
-      frames_(scenario_.agents, scenario_.target.count),
+      frames_(scenario_.agents),
       judge_(scenario_),
       table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       file_name_(TextParameter("summary_file", "")),
@@ -63,21 +65,11 @@ void MetricsNode::Subscribe() {
     subscribers_.push_back(
         node.subscribe<Message>(topic, kUnlimited, callback, ros::VoidConstPtr(), NoDelay()));
   };
-  const auto any = [](const auto&) { return true; };
   into_frames(
-      topics::AuvTopic(0, topics::kSensorSync), [](SwarmFrame & f) -> auto& { return f.sync; },
-      any);
-  for (int k = 0; k < scenario_.target.count; ++k) {
-    const auto u = static_cast<std::size_t>(k);
-    into_frames(
-        topics::TargetOdom(k), [u](SwarmFrame & f) -> auto& { return f.targets[u]; },
-        [](const auto& m) { return FiniteOdometry(m); });
-  }
+      topics::kSwarmState, [](SwarmFrame & f) -> auto& { return f.truth; },
+      [this](const auto& m) { return Usable(m); });
   for (int i = 0; i < scenario_.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    into_frames(
-        topics::AuvTopic(i, topics::kOdom), [u](SwarmFrame & f) -> auto& { return f.vehicles[u]; },
-        [](const auto& m) { return FiniteOdometry(m); });
     into_frames(
         topics::AuvTopic(i, topics::kTaskState),
         [u](SwarmFrame & f) -> auto& { return f.tasks[u]; },
@@ -94,13 +86,27 @@ void MetricsNode::Subscribe() {
       node.subscribe(topics::kLinks, 10, &MetricsNode::OnLinks, this, NoDelay()));
 }
 
+bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
+  const auto n = static_cast<std::size_t>(scenario_.agents);
+  const auto targets = static_cast<std::size_t>(scenario_.target.count);
+  const auto finite = [](const auto& v) { return FiniteVector(v); };
+  const auto& p = m.target_positions;
+  const auto& v = m.target_velocities;
+  return m.poses.size() == n && m.twists.size() == n && p.size() == targets &&
+         v.size() == targets && std::all_of(m.poses.begin(), m.poses.end(), FinitePose) &&
+         std::all_of(m.twists.begin(), m.twists.end(), FiniteTwist) &&
+         std::all_of(p.begin(), p.end(), finite) && std::all_of(v.begin(), v.end(), finite);
+}
+
 void MetricsNode::Spin() {
-  while (ros::ok()) {
-    HandleMessages(0.1);
-    JudgeFrames();
-    if (show_table_) table_.Tick(judge_, now_s_);
-    health_.Tick();
-  }
+  PollLoop([this] { return Work(); });
+}
+
+double MetricsNode::Work() {
+  JudgeFrames();
+  if (show_table_) table_.Tick(judge_, now_s_);
+  health_.Tick();
+  return 0.1;
 }
 
 void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
@@ -121,7 +127,7 @@ void MetricsNode::JudgeFrames() {
       const auto& task = frame.tasks[static_cast<std::size_t>(i)];
       if (task) table_.SetPhase(i, task->phase);
     }
-    if (frame.sync) now_s_ = Seconds(period_) * frame.sync->step;
+    if (frame.truth) now_s_ = Seconds(period_) * frame.truth->step;
     Publish(judge_.Judge(frame));
   }
 }

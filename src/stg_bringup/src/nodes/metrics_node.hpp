@@ -23,7 +23,10 @@ class MetricsNode {
   void Spin();
 
  private:
+  double Work();
   void Subscribe();
+  /// Of the scenario's sizes, and finite.
+  bool Usable(const auv_msgs::SwarmState& message) const;
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
   void JudgeFrames();
   void Publish(const EpisodeJudge::Verdict& verdict);

@@ -15,12 +15,9 @@ bool All(const Messages& messages) {
 
 }  // namespace
 
-bool SwarmFrame::HasTruth() const { return sync && All(vehicles) && All(targets); }
+bool SwarmFrame::Complete() const { return truth && All(tasks) && All(wrenches); }
 
-bool SwarmFrame::Complete() const { return HasTruth() && All(tasks) && All(wrenches); }
-
-SwarmFrames::SwarmFrames(int agents, int targets)
-    : agents_(static_cast<std::size_t>(agents)), targets_(static_cast<std::size_t>(targets)) {}
+SwarmFrames::SwarmFrames(int agents) : agents_(static_cast<std::size_t>(agents)) {}
 
 SwarmFrame* SwarmFrames::At(const ros::Time& stamp) {
   const bool clock_went_back = taken_ - stamp > ros::Duration(60.0);
@@ -33,8 +30,6 @@ SwarmFrame* SwarmFrames::At(const ros::Time& stamp) {
   if (found != frames_.end()) return &found->second;
   if (frames_.size() >= kMaxFrames) frames_.erase(frames_.begin());
   SwarmFrame frame;
-  frame.vehicles.resize(agents_);
-  frame.targets.resize(targets_);
   frame.tasks.resize(agents_);
   frame.wrenches.resize(agents_);
   frame.opened = ros::WallTime::now();

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <auv_msgs/SensorSync.h>
+#include <auv_msgs/SwarmState.h>
 #include <auv_msgs/TaskState.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <nav_msgs/Odometry.h>
 #include <ros/time.h>
 
 #include <array>
@@ -17,15 +16,11 @@ namespace stg {
 
 /// All messages of the swarm with one stamp. A null pointer: not here (yet).
 struct SwarmFrame {
-  auv_msgs::SensorSync::ConstPtr sync;
-  std::vector<nav_msgs::Odometry::ConstPtr> vehicles;            ///< [agents]
-  std::vector<nav_msgs::Odometry::ConstPtr> targets;             ///< [targets]
-  std::vector<auv_msgs::TaskState::ConstPtr> tasks;              ///< [agents]
+  auv_msgs::SwarmState::ConstPtr truth;              ///< what no step can be judged without
+  std::vector<auv_msgs::TaskState::ConstPtr> tasks;  ///< [agents]
   std::vector<geometry_msgs::WrenchStamped::ConstPtr> wrenches;  ///< [agents]
   ros::WallTime opened;
 
-  /// The truth is here: what no step can be judged without.
-  bool HasTruth() const;
   /// Everything is here.
   bool Complete() const;
 };
@@ -33,7 +28,7 @@ struct SwarmFrame {
 /// Sorts messages of many topics by stamp and gives frames in order of time.
 class SwarmFrames {
  public:
-  SwarmFrames(int agents, int targets);
+  explicit SwarmFrames(int agents);
 
   /// The frame of a stamp, or null when it is older than one already taken.
   SwarmFrame* At(const ros::Time& stamp);
@@ -43,7 +38,7 @@ class SwarmFrames {
   bool Take(double patience_s, SwarmFrame* frame);
 
  private:
-  std::size_t agents_, targets_;
+  std::size_t agents_;
   ros::Time taken_;
   std::map<ros::Time, SwarmFrame> frames_;
 };

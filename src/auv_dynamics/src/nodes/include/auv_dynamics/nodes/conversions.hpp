@@ -45,24 +45,34 @@ inline void SetOdometry(const NavState& nav, TimeNs start, nav_msgs::Odometry* m
   SetVector(nav.w_WB_B, &m->twist.twist.angular);
 }
 
-/// The inverse of SetOdometry.
-inline NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
+/// Pose in `world`, twist in body axes, at a time since the episode's step 0.
+inline NavState NavOf(const geometry_msgs::Pose& pose, const geometry_msgs::Twist& twist,
+                      TimeNs stamp) {
   NavState nav;
-  nav.stamp = NsOf(m.header.stamp) - start;
-  nav.p_WB = VectorOf(m.pose.pose.position);
-  nav.q_WB[0] = m.pose.pose.orientation.w;
-  nav.q_WB[1] = m.pose.pose.orientation.x;
-  nav.q_WB[2] = m.pose.pose.orientation.y;
-  nav.q_WB[3] = m.pose.pose.orientation.z;
-  nav.v_WB_B = VectorOf(m.twist.twist.linear);
-  nav.w_WB_B = VectorOf(m.twist.twist.angular);
+  nav.stamp = stamp;
+  nav.p_WB = VectorOf(pose.position);
+  nav.q_WB[0] = pose.orientation.w;
+  nav.q_WB[1] = pose.orientation.x;
+  nav.q_WB[2] = pose.orientation.y;
+  nav.q_WB[3] = pose.orientation.z;
+  nav.v_WB_B = VectorOf(twist.linear);
+  nav.w_WB_B = VectorOf(twist.angular);
   return nav;
 }
 
+/// The inverse of SetOdometry.
+inline NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
+  return NavOf(m.pose.pose, m.twist.twist, NsOf(m.header.stamp) - start);
+}
+
+inline bool FinitePose(const geometry_msgs::Pose& m) {
+  return FiniteVector(m.position) && FiniteVector(m.orientation) && Finite(m.orientation.w);
+}
+inline bool FiniteTwist(const geometry_msgs::Twist& m) {
+  return FiniteVector(m.linear) && FiniteVector(m.angular);
+}
 inline bool FiniteOdometry(const nav_msgs::Odometry& m) {
-  const auto& q = m.pose.pose.orientation;
-  return FiniteVector(m.pose.pose.position) && FiniteVector(q) && Finite(q.w) &&
-         FiniteVector(m.twist.twist.linear) && FiniteVector(m.twist.twist.angular);
+  return FinitePose(m.pose.pose) && FiniteTwist(m.twist.twist);
 }
 
 }  // namespace stg

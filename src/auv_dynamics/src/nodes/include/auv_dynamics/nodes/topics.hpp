@@ -18,6 +18,7 @@ inline constexpr char kWrench[] = "wrench";
 
 // Of the whole run.
 inline std::string TargetOdom(int k) { return "/target_" + std::to_string(k) + "/odom"; }
+inline constexpr char kSwarmState[] = "/swarm_state";
 inline constexpr char kClock[] = "/clock";
 inline constexpr char kScenario[] = "/scenario";
 inline constexpr char kReset[] = "/reset";

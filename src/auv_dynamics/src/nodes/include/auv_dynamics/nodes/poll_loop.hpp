@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+
+namespace stg {
+
+/// Wait time that ends a PollLoop.
+inline constexpr double kLoopDone = -1.0;
+
+/// Runs a node in the thread in which roscpp reads and writes its sockets.
+///
+/// With ros::spin a message changes threads twice on its way through a node: from the socket's
+/// thread to the spinner's, and what that publishes back again. Each change wakes a sleeping
+/// thread, which costs more than all the rest of a node here. In this loop, messages are read,
+/// handled and answered in one go: one wake-up for each batch of messages. The price: while a
+/// callback or `work` runs, nothing is read or sent, and neither may wait for another node, as a
+/// service call does.
+///
+/// Handles every message that is there, then calls `work`, over and over. `work` returns the
+/// seconds of wall time after which it wants to be called again even without a message (coarser
+/// than 0.1 s: as often), or kLoopDone. Returns when `work` is done or ROS shuts down; what `work`
+/// or a callback throws is thrown here.
+void PollLoop(const std::function<double()>& work);
+
+}  // namespace stg
