@@ -1,6 +1,8 @@
 #include "auv_dynamics/world.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "auv_dynamics/integrator.hpp"
 #include "auv_dynamics/random.hpp"
@@ -8,7 +10,9 @@
 
 namespace stg {
 
-World::World(const Scenario& scenario) : scenario_(scenario) {
+World::World(const Scenario& scenario)
+    : scenario_(scenario),
+      dt_ns_(static_cast<TimeNs>(std::llround(scenario.time.dt_s * 1e9))) {
   scenario_.ValidateOrThrow();
   model_ = std::make_unique<VehicleModel>(scenario_.vehicle);
   const auto n = static_cast<size_t>(scenario_.agents);
@@ -28,23 +32,29 @@ World::World(const Scenario& scenario) : scenario_(scenario) {
 World::~World() = default;
 World::World(World&&) noexcept = default;
 
-TimeNs World::time(int lane) const {
-  const auto dt_ns = static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9));
-  return dt_ns * static_cast<TimeNs>(step_[lane]);
+Navigation<Pack> World::Nav(int i) const {
+  const VehicleState<Pack>& v = vehicle(i);
+  Navigation<Pack> nav;
+  nav.stamp = time(0);
+  nav.p_WB = v.p_WB;
+  nav.v_WB_B = v.v_WB_B;
+  nav.w_WB_B = v.w_WB_B;
+  if (scenario_.vehicle.integrator == Integrator::kSemiImplicit) {
+    QuaternionOf(v.rpy, &nav.q_WB);
+  } else {
+    std::copy(v.q_WB, v.q_WB + 4, nav.q_WB);
+  }
+  return nav;
 }
 
 NavState World::Nav(int lane, int i) const {
-  const VehicleState<Pack>& v = vehicle(i);
+  const Navigation<Pack> all = Nav(i);
   NavState nav;
   nav.stamp = time(lane);
-  nav.p_WB = Lane(v.p_WB, lane);
-  nav.v_WB_B = Lane(v.v_WB_B, lane);
-  nav.w_WB_B = Lane(v.w_WB_B, lane);
-  if (scenario_.vehicle.integrator == Integrator::kSemiImplicit) {
-    QuaternionOf(Lane(v.rpy, lane), &nav.q_WB);
-  } else {
-    for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(v.q_WB[k], lane);
-  }
+  nav.p_WB = Lane(all.p_WB, lane);
+  nav.v_WB_B = Lane(all.v_WB_B, lane);
+  nav.w_WB_B = Lane(all.w_WB_B, lane);
+  for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(all.q_WB[k], lane);
   return nav;
 }
 

@@ -86,9 +86,8 @@ void EnvGroup::BeginSemantics() {
   if (acoustic_) {
     acoustic_->Start(world_);
     AcousticObserve();
-  } else {
-    WriteObservations();
   }
+  WriteObservations();
   WriteStates();
 }
 
@@ -119,7 +118,7 @@ void EnvGroup::Step() {
   Measure(false);
   if (acoustic_) AcousticObserve();  // before the reward: the agents' link quality is in it
   ComputeRewards();
-  if (!acoustic_) WriteObservations();
+  WriteObservations();
   WriteStates();
   truncated_ = step_ >= episode_steps_;
   if (truncated_) FinishEpisode();
@@ -234,32 +233,18 @@ Pack EnvGroup::MeanError(size_t i, const Pack& error) {
 
 void EnvGroup::NeighbourFeatures(int i, Knowledge<Pack>* k) const {
   const int n = agents();
-  Vec3<Pack> nearest[kNeighbourSlots];
   if (scenario_.observation.order == NeighbourOrder::kIndex) {
     for (int slot = 0, j = 0; slot < kNeighbourSlots && j < n; ++j) {
       if (j == i) continue;
-      nearest[slot++] = world_.vehicle(j).p_WB - k->p_WB;
+      k->neighbour[slot++] = world_.vehicle(j).p_WB - k->p_WB;
     }
-  } else {
-    Pack distance[kNeighbourSlots] = {Pack(1e9), Pack(1e9), Pack(1e9)};
-    for (int j = 0; j < n; ++j) {
-      if (j == i) continue;
-      Pack d = world_.distance(i, j);
-      // Insertion into the sorted slots, one branch-free exchange each.
-      if (!Any(d < distance[kNeighbourSlots - 1])) continue;
-      Vec3<Pack> r = world_.vehicle(j).p_WB - k->p_WB;
-      for (int slot = 0; slot < kNeighbourSlots; ++slot) {
-        const auto closer = d < distance[slot];
-        const Pack d_out = Select(closer, distance[slot], d);
-        const Vec3<Pack> r_out = Select<Pack>(closer, nearest[slot], r);
-        distance[slot] = Select(closer, d, distance[slot]);
-        nearest[slot] = Select<Pack>(closer, r, nearest[slot]);
-        d = d_out;
-        r = r_out;
-      }
-    }
+    return;
   }
-  for (int slot = 0; slot < kNeighbourSlots; ++slot) k->neighbour[slot] = nearest[slot];
+  NearestSlots<Pack> nearest;
+  for (int j = 0; j < n; ++j) {
+    if (j != i) nearest.Offer(world_.vehicle(j).p_WB - k->p_WB, world_.distance(i, j));
+  }
+  std::copy(nearest.offset, nearest.offset + kNeighbourSlots, k->neighbour);
 }
 
 void EnvGroup::ComputeRewards() {

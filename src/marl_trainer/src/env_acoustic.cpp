@@ -1,6 +1,6 @@
+#include <algorithm>
 #include <cassert>
 
-#include "auv_dynamics/control.hpp"
 #include "env_internal.hpp"
 
 namespace stg {
@@ -8,47 +8,36 @@ namespace stg {
 EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   const auto n = static_cast<size_t>(s.agents);
   const Agent first(s, 0);
-  agents.reserve(n * kLanes);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    // Not plain copies: those would lose the memory that an agent reserves.
-    for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
-    channels.push_back(MakeChannel(s));
-  }
+  agents.reserve(n);
+  for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
+  for (int lane = 0; lane < kLanes; ++lane) channels.push_back(MakeChannel(s));
   sequence.assign(n * kLanes, 0);
-  fraction.assign(n * 6 * kLanes, 0.0);
-  action = fraction;
+  senders.reserve(n);
   sent.reserve(n);
   received.reserve(8 * n);
   positions.resize(n);
 }
 
 void EnvGroup::Acoustic::Start(const World& world) {
+  std::fill(sequence.begin(), sequence.end(), 0);
   for (int lane = 0; lane < kLanes; ++lane) {
     channels[static_cast<size_t>(lane)]->Reset(world.seed(lane), world.episode(lane));
     for (int i = 0; i < scenario.agents; ++i) {
-      const auto index = static_cast<size_t>(lane * scenario.agents + i);
-      agents[index].Reset(world.episode(lane), world.InitialCue(lane, i, scenario.target_of(i)));
-      sequence[index] = 0;
+      agents[static_cast<size_t>(i)].Reset(lane, world.episode(lane),
+                                           world.InitialCue(lane, i, scenario.target_of(i)));
     }
   }
 }
 
 Pack EnvGroup::Acoustic::MeanLinkQuality() const {
-  alignas(64) double mean[kLanes];
-  const int n = scenario.agents;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    mean[lane] = 0.0;
-    for (int i = 0; i < n; ++i) {
-      mean[lane] += agents[static_cast<size_t>(lane * n + i)].knowledge().mean_quality;
-    }
-    mean[lane] = mean[lane] / n;
-  }
-  return Pack::load_aligned(mean);
+  Pack sum(0.0);
+  for (const AgentLanes& a : agents) sum += a.knowledge().mean_quality;
+  return sum / Pack(scenario.agents);
 }
 
 const Agent& EnvGroup::agent(int lane, int i) const {
   assert(acoustic_);
-  return acoustic_->agents[static_cast<size_t>(lane * scenario_.agents + i)];
+  return acoustic_->agents[static_cast<size_t>(i)].agent(lane);
 }
 
 const Channel& EnvGroup::channel(int lane) const {
@@ -58,25 +47,20 @@ const Channel& EnvGroup::channel(int lane) const {
 
 void EnvGroup::AcousticObserve() {
   Acoustic& a = *acoustic_;
-  const int n = agents();
-  const auto size = static_cast<size_t>(observation_size_);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const TimeNs now = world_.time(lane);
-    Channel& channel = *a.channels[static_cast<size_t>(lane)];
-    for (int i = 0; i < n; ++i) {
-      const auto index = static_cast<size_t>(lane * n + i);
-      Agent& agent = a.agents[index];
+  for (int i = 0; i < agents(); ++i) {
+    AgentLanes& agent = a.agents[static_cast<size_t>(i)];
+    for (int lane = 0; lane < kLanes; ++lane) {
       if (step_ > 0) {
         a.received.clear();
-        channel.Deliver(i, now, &a.received);
-        for (const Reception& r : a.received) agent.Receive(r);
+        a.channels[static_cast<size_t>(lane)]->Deliver(i, world_.time(lane), &a.received);
+        for (const Reception& r : a.received) agent.Receive(lane, r);
       }
       for (int k = 0; k < scenario_.target.count; ++k) {
         Detection detection;
-        if (world_.Sense(lane, i, k, &detection)) agent.Detect(detection);
+        if (world_.Sense(lane, i, k, &detection)) agent.Detect(lane, detection);
       }
-      agent.Observe(world_.Nav(lane, i), observations_.data() + index * size);
     }
+    agent.Observe(world_.Nav(i));
   }
 }
 
@@ -84,34 +68,37 @@ void EnvGroup::AcousticActions() {
   Acoustic& a = *acoustic_;
   const int n = agents();
   const int size = action_size();
-  for (int lane = 0; lane < kLanes; ++lane) {
-    a.sent.clear();
-    const TimeNs now = world_.time(lane);
-    for (int i = 0; i < n; ++i) {
-      const auto index = static_cast<size_t>(lane * n + i);
-      const auto ui = static_cast<size_t>(i);
-      float action[6];
-      for (int k = 0; k < size; ++k) {
-        action[k] = static_cast<float>(actions_[index * static_cast<size_t>(size) + static_cast<size_t>(k)]);
+  a.senders.clear();
+  for (int i = 0; i < n; ++i) {
+    const auto ui = static_cast<size_t>(i);
+    Pack wanted[6];
+    for (int k = 0; k < size; ++k) {
+      alignas(64) double buffer[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        // What a policy says is float.
+        buffer[lane] = static_cast<float>(actions_[static_cast<size_t>((lane * n + i) * size + k)]);
       }
-      const AgentOutput out = a.agents[index].Act(action);
-      for (int k = 0; k < 6; ++k) {
-        a.fraction[(ui * 6 + static_cast<size_t>(k)) * kLanes + static_cast<size_t>(lane)] =
-            out.fraction[k];
-        a.action[(ui * 6 + static_cast<size_t>(k)) * kLanes + static_cast<size_t>(lane)] =
-            k < size ? out.action[k] : 0.0;
-      }
-      if (out.transmit) {
-        a.sent.push_back({i, a.sequence[index]++, now, out.packet, out.generation});
-      }
-      a.positions[ui] = Lane(world_.vehicle(i).p_WB, lane);
+      wanted[k] = Pack::load_aligned(buffer);
     }
-    a.channels[static_cast<size_t>(lane)]->Step(now, static_cast<std::uint32_t>(step_),
-                                                a.positions, a.sent);
+    AgentLanes& agent = a.agents[ui];
+    agent.Act(wanted);
+    if (agent.transmits()) a.senders.push_back(i);
+    std::copy(agent.knowledge().tau, agent.knowledge().tau + 6, tau_[ui].begin());
+    std::copy(agent.action().begin(), agent.action().begin() + size, action_[ui].begin());
   }
-  for (size_t k = 0; k < static_cast<size_t>(n) * 6; ++k) {
-    tau_[k / 6][k % 6] = Pack::load_unaligned(&a.fraction[k * kLanes]);
-    action_[k / 6][k % 6] = Pack::load_unaligned(&a.action[k * kLanes]);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const TimeNs now = world_.time(lane);
+    a.sent.clear();
+    for (const int i : a.senders) {
+      std::uint32_t& sequence = a.sequence[static_cast<size_t>(lane * n + i)];
+      a.sent.push_back(
+          {i, sequence++, now, a.agents[static_cast<size_t>(i)].MakePacket(lane), now});
+    }
+    for (int i = 0; i < n; ++i) {
+      a.positions[static_cast<size_t>(i)] = Lane(world_.vehicle(i).p_WB, lane);
+    }
+    a.channels[static_cast<size_t>(lane)]->Step(now, static_cast<std::uint32_t>(step_), a.positions,
+                                                a.sent);
   }
 }
 

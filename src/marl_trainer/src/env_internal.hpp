@@ -4,7 +4,7 @@
 
 #include "acoustic_channel/channel.hpp"
 #include "marl_trainer/env.hpp"
-#include "stg_agent/agent.hpp"
+#include "stg_agent/agent_lanes.hpp"
 
 namespace stg {
 
@@ -32,13 +32,13 @@ struct EnvGroup::Acoustic {
   /// (unknown neighbour: 0).
   Pack MeanLinkQuality() const;
 
-  std::vector<Agent> agents;                       // [lane, agent]
+  std::vector<AgentLanes> agents;                  // [agent]
   std::vector<std::unique_ptr<Channel>> channels;  // [lane]
   std::vector<std::uint32_t> sequence;             // [lane, agent]
+  std::vector<int> senders;                        // of the present decision, any lane
   std::vector<Transmission> sent;
   std::vector<Reception> received;
   std::vector<Vec3<double>> positions;
-  std::vector<double> fraction, action;  // [agent, component, lane]
   Scenario scenario;
 };
 

@@ -44,7 +44,7 @@ void EnvGroup::WriteObservations() {
   const size_t stride = truth_.size() * size;
   Pack columns[kLargestObservation];
   for (size_t i = 0; i < truth_.size(); ++i) {
-    BuildObservation(scenario_, truth_[i],
+    BuildObservation(scenario_, acoustic_ ? acoustic_->agents[i].knowledge() : truth_[i],
                      [&](int index, const Pack& value) { columns[index] = value; });
     Scatter(columns, observation_size_, observations_.data() + i * size, stride);
   }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "acoustic_channel/link_quality.hpp"
-
 namespace stg {
 
 NeighbourTable::NeighbourTable(const Scenario& scenario, int self)
@@ -23,6 +21,7 @@ NeighbourTable::NeighbourTable(const Scenario& scenario, int self)
 void NeighbourTable::Clear() {
   for (const int id : known_) slots_[static_cast<std::size_t>(id)] = Neighbour();
   known_.clear();
+  unread_ = false;
 }
 
 bool NeighbourTable::Update(const NeighbourState& state) {
@@ -36,7 +35,13 @@ bool NeighbourTable::Update(const NeighbourState& state) {
   }
   n.state = state;
   n.unread_target = state.has_target;
+  unread_ = unread_ || state.has_target;
   return true;
+}
+
+void NeighbourTable::MarkRead() {
+  for (const int id : known_) slots_[static_cast<std::size_t>(id)].unread_target = false;
+  unread_ = false;
 }
 
 void NeighbourTable::Predict(TimeNs now, const Vec3<double>& p_WB) {
@@ -48,7 +53,7 @@ void NeighbourTable::Predict(TimeNs now, const Vec3<double>& p_WB) {
       n = Neighbour();
       continue;
     }
-    n.p_WN = Clip(n.state.p_W + n.state.v_W * n.age_s, -half_extent_m_, half_extent_m_);
+    n.p_WN = DeadReckon(n.state.p_W, n.state.v_W, n.age_s, half_extent_m_);
     n.r_BN_W = n.p_WN - p_WB;
     n.distance_m = Norm(n.r_BN_W);
     distance_[kept] = n.distance_m;
@@ -61,9 +66,7 @@ void NeighbourTable::Predict(TimeNs now, const Vec3<double>& p_WB) {
   for (std::size_t k = 0; k < kept; k += static_cast<std::size_t>(kLanes)) {
     const Pack d = Pack::load_unaligned(&distance_[k]);
     const Pack age = Pack::load_unaligned(&age_[k]);
-    const Pack q = channel_.model == ChannelModel::kRange ? RangeQuality(d, channel_.range_m)
-                                                          : ExtendedQuality(d, age, channel_);
-    q.store_unaligned(&quality_[k]);
+    LinkQuality(channel_, d, age).store_unaligned(&quality_[k]);
   }
   for (std::size_t k = 0; k < kept; ++k) {
     slots_[static_cast<std::size_t>(known_[k])].link_quality = quality_[k];

@@ -31,21 +31,25 @@ struct Flight {
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries;
 };
 
-/// Listens until the summaries of kEpisodes are in, or a minute has passed.
+/// Listens until all of kEpisodes is in, or a minute has passed.
 Flight Listen(const Scenario& s) {
   Flight flight;
   const double period = s.decision_dt_s() * 1e9;
   const auto index_of = [period](const ros::Time& t) {
     return static_cast<int>(std::llround(static_cast<double>(NsOf(t) - kFirstStamp) / period));
   };
+  int missing = kEpisodes * s.time.episode_steps * s.agents;
   ros::NodeHandle node;
   std::vector<ros::Subscriber> subscribers;
   for (int i = 0; i < s.agents; ++i) {
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> callback =
         [&, i](const nav_msgs::Odometry::ConstPtr& m) {
-          auto& states = flight.states[index_of(m->header.stamp)];
+          const int index = index_of(m->header.stamp);
+          auto& states = flight.states[index];
           states.resize(static_cast<std::size_t>(s.agents));
           states[static_cast<std::size_t>(i)] = NavOf(*m, 0);
+          // The state after the last step decides nothing and is not compared.
+          missing -= index % (s.time.episode_steps + 1) < s.time.episode_steps ? 1 : 0;
         };
     subscribers.push_back(
         node.subscribe<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), 0, callback));
@@ -62,7 +66,7 @@ Flight Listen(const Scenario& s) {
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(50.0);
   const auto reports = static_cast<std::size_t>(kEpisodes * s.time.episode_steps);
   while (ros::ok() && ros::WallTime::now() < end &&
-         (flight.summaries.size() < kEpisodes || flight.reports.size() < reports)) {
+         (missing > 0 || flight.summaries.size() < kEpisodes || flight.reports.size() < reports)) {
     HandleMessages(0.1);
   }
   return flight;

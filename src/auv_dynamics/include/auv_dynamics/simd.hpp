@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <xsimd/xsimd.hpp>
 
 /// Scalar and SIMD arithmetic behind one set of names.
@@ -76,14 +77,15 @@ inline T RoundToFloat(const T& a) {
 
 /// Value of one lane; a double has the same value in every lane.
 inline double Lane(double a, int) { return a; }
-inline double Lane(const Pack& a, int lane) { return a.get(static_cast<std::size_t>(lane)); }
+// One load or store where the pack lies; Pack::get copies the whole pack first.
+inline double Lane(const Pack& a, int lane) {
+  double value;
+  std::memcpy(&value, reinterpret_cast<const double*>(&a) + lane, sizeof(value));
+  return value;
+}
 inline void SetLane(double* a, int, double value) { *a = value; }
 inline void SetLane(Pack* a, int lane, double value) {
-  // Lane-by-lane writes happen on resets only, never per step.
-  alignas(Pack::arch_type::alignment()) double buffer[kLanes];
-  a->store_aligned(buffer);
-  buffer[lane] = value;
-  *a = Pack::load_aligned(buffer);
+  std::memcpy(reinterpret_cast<double*>(a) + lane, &value, sizeof(value));
 }
 
 template <class T>

@@ -12,14 +12,17 @@ namespace stg {
 using TimeNs = std::int64_t;
 inline double Seconds(TimeNs t) { return static_cast<double>(t) * 1e-9; }
 
-/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU).
-struct NavState {
+/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU). T = Pack: kLanes
+/// vehicles at the same time.
+template <class T>
+struct Navigation {
   TimeNs stamp = 0;
-  Vec3<double> p_WB;                        ///< position [m]
-  double q_WB[4] = {1.0, 0.0, 0.0, 0.0};    ///< orientation, w x y z, unit norm
-  Vec3<double> v_WB_B;                      ///< velocity over ground in body axes [m/s]
-  Vec3<double> w_WB_B;                      ///< body rates p, q, r [rad/s]
+  Vec3<T> p_WB;                                  ///< position [m]
+  T q_WB[4] = {T(1.0), T(0.0), T(0.0), T(0.0)};  ///< orientation, w x y z, unit norm
+  Vec3<T> v_WB_B;                                ///< velocity over ground in body axes [m/s]
+  Vec3<T> w_WB_B;                                ///< body rates p, q, r [rad/s]
 };
+using NavState = Navigation<double>;
 
 /// One detection of a target by one vehicle's own sensor.
 struct Detection {

@@ -72,8 +72,10 @@ class World {
 
   /// Truth of one lane as the vehicle's own navigation gives it.
   NavState Nav(int lane, int i) const;
+  /// The same of all lanes; the stamp is that of lane 0.
+  Navigation<Pack> Nav(int i) const;
   /// Simulated time since the start of the episode: physics steps times dt.
-  TimeNs time(int lane) const;
+  TimeNs time(int lane) const { return dt_ns_ * static_cast<TimeNs>(step_[lane]); }
   std::uint32_t step(int lane) const { return step_[lane]; }
   std::uint32_t episode(int lane) const { return episode_[lane]; }
   std::uint64_t seed(int lane) const { return seed_[lane]; }
@@ -99,6 +101,7 @@ class World {
   void MeasureDistances();
 
   Scenario scenario_;
+  TimeNs dt_ns_;
   std::unique_ptr<VehicleModel> model_;
   std::vector<VehicleState<Pack>> vehicles_;
   std::vector<TargetState<Pack>> targets_;

@@ -9,6 +9,7 @@
 #include "acoustic_channel/packet.hpp"
 #include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/types.hpp"
+#include "stg_agent/mind.hpp"
 #include "stg_agent/neighbour_table.hpp"
 #include "stg_agent/observation.hpp"
 #include "stg_agent/target_track.hpp"
@@ -93,15 +94,15 @@ class Agent {
   std::uint32_t step() const { return step_; }
 
   /// State of knowledge of the last Observe.
-  const Knowledge<double>& knowledge() const { return knowledge_; }
+  const Knowledge<double>& knowledge() const { return mind_.knowledge; }
   TaskView task() const;
   const NeighbourTable& neighbours() const { return neighbours_; }
   const TargetTrack& track() const { return track_; }
   /// Target this agent is tasked with.
   int target() const { return target_; }
-  bool lost() const { return knowledge_.lost > 0.5; }
+  bool lost() const { return knowledge().lost > 0.5; }
   /// Smoothed action of the last Act; action_size() entries count.
-  const std::array<double, 6>& action() const { return action_; }
+  const std::array<double, 6>& action() const { return mind_.action; }
   /// Packets of this episode that did not decode.
   std::uint64_t refused_packets() const { return refused_packets_; }
 
@@ -115,20 +116,24 @@ class Agent {
   };
   Agent(std::shared_ptr<const Constants> constants, int id);
 
-  void UpdateTrack(TimeNs now);
-  void SetNavigation(const NavState& nav);
-  void SetTracking(TimeNs now);
-  void SetNeighbours();
-  void SetGraph();
+  friend class AgentLanes;
+
+  /// The state a packet holds when it is news of a neighbour, else null.
+  const NeighbourState* Take(const Reception& reception);
+  /// Starts the next decision.
+  void Begin(TimeNs now);
+  void UpdateTrack();
+  /// The last Observe's information rests on an observation of late.
+  bool Current() const;
+  NeighbourView<double> SeeNeighbours() const;
+  bool MyTurn() const;
   Packet MakePacket() const;
 
   std::shared_ptr<const Constants> constants_;
   int id_, target_;
   NeighbourTable neighbours_;
   TargetTrack track_;
-  Knowledge<double> knowledge_;
-  std::vector<double> error_window_;  // ring of the last error_window tracking errors
-  std::array<double, 6> action_{};
+  Mind<double> mind_;
   Cue cue_;
   Detection detection_;
   bool cue_pending_ = false, detection_pending_ = false;

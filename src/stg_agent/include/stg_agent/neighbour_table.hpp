@@ -2,11 +2,25 @@
 
 #include <vector>
 
+#include "acoustic_channel/link_quality.hpp"
 #include "acoustic_channel/packet.hpp"
 #include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/types.hpp"
 
 namespace stg {
+
+/// Dead reckoning p + v age inside the walls [m].
+template <class T>
+Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, double half_extent_m) {
+  return Clip(p_W + v_W * age_s, -half_extent_m, half_extent_m);
+}
+
+/// q of Eq. 5 or 6, by the channel model, at distance d [m] and age of information age_s [s].
+template <class T>
+T LinkQuality(const ChannelConfig& c, const T& d, const T& age_s) {
+  return c.model == ChannelModel::kRange ? RangeQuality(d, c.range_m)
+                                         : ExtendedQuality(d, age_s, c);
+}
 
 /// What one AUV knows of another: its newest packet, carried forward to now.
 struct Neighbour {
@@ -17,7 +31,7 @@ struct Neighbour {
   Vec3<double> p_WN;           ///< dead-reckoned position p + v age, inside the walls [m]
   Vec3<double> r_BN_W;         ///< p_WN minus own position [m]
   double distance_m = 0.0;     ///< length of r_BN_W
-  double link_quality = 0.0;   ///< q of Eq. 5 or 6, by the channel model, at distance and age
+  double link_quality = 0.0;   ///< LinkQuality at distance and age
 };
 
 /// The neighbours of one AUV, fed by received packets only. Fixed capacity (the
@@ -48,14 +62,17 @@ class NeighbourTable {
   /// first (ties: lower index first); returns how many there were.
   int Nearest(int count, int* ids) const;
 
-  /// The track has taken the target estimate of neighbour `id`.
-  void MarkTargetRead(int id) { slots_[static_cast<std::size_t>(id)].unread_target = false; }
+  /// Some neighbour's target estimate is unread.
+  bool unread() const { return unread_; }
+  /// The track has taken all target estimates.
+  void MarkRead();
 
  private:
   ChannelConfig channel_;
   double max_age_s_;
   double half_extent_m_;
   int self_;
+  bool unread_ = false;
   std::vector<Neighbour> slots_;  // [agents]
   std::vector<int> known_;
   std::vector<double> distance_, age_, quality_;  // of known_, padded to whole packs

@@ -38,9 +38,31 @@ struct Knowledge {
   T lost = T(0.0);               ///< l, 0 or 1
   T lost_steps = T(0.0);         ///< consecutive decisions lost
   // Task graph (Eqs. 18-19) before normalisation.
-  T closest = T(0.0);            ///< 1 when no other AUV is closer to the target
+  T closest = T(0.0);  ///< 1 when no other AUV is closer to the target
   T effective_fraction = T(0.0), mean_quality = T(0.0), best_quality = T(0.0);
   T mean_neighbour_error = T(0.0);
+};
+
+/// The kNeighbourSlots nearest of the neighbours offered one by one, nearest first; of two at
+/// the same distance the one offered first.
+template <class T>
+struct NearestSlots {
+  Vec3<T> offset[kNeighbourSlots];  ///< zero where there is none
+  T distance[kNeighbourSlots] = {T(1e9), T(1e9), T(1e9)};
+
+  void Offer(Vec3<T> r, T d) {
+    // Insertion into the sorted slots, one branch-free exchange each.
+    if (!Any(d < distance[kNeighbourSlots - 1])) return;
+    for (int slot = 0; slot < kNeighbourSlots; ++slot) {
+      const auto closer = d < distance[slot];
+      const T d_out = Select(closer, distance[slot], d);
+      const Vec3<T> r_out = Select<T>(closer, offset[slot], r);
+      distance[slot] = Select(closer, d, distance[slot]);
+      offset[slot] = Select<T>(closer, r, offset[slot]);
+      d = d_out;
+      r = r_out;
+    }
+  }
 };
 
 /// c of Eq. 13.
@@ -113,8 +135,8 @@ inline void GraphSummary(const ObservationConfig& c, const Knowledge<T>& k, T (*
   (*graph)[2] = k.best_quality;
   (*graph)[3] = neighbour_error;
   (*graph)[4] = neighbour_error - Clip(k.error * scale, zero, one);  // in [-1, 1]
-  (*graph)[5] = Select((*graph)[4] > zero,
-                       Select(k.confidence >= T(c.role_confidence), one, zero), zero);
+  (*graph)[5] =
+      Select((*graph)[4] > zero, Select(k.confidence >= T(c.role_confidence), one, zero), zero);
 }
 
 /// z_track of Eq. 14, normalised.
