@@ -19,6 +19,7 @@ PpoLoss::PpoLoss(const ActorCritic& networks, const TrainConfig& config, int max
                  int agents)
     : networks_(networks),
       clip_(static_cast<float>(config.clip)),
+      focus_(static_cast<float>(-0.5 * config.imitation_focus)),
       entropy_(static_cast<float>(config.entropy)),
       value_weight_(static_cast<float>(config.value_weight)),
       actor_(networks.actor, max_samples * agents),
@@ -81,7 +82,7 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
         const float t = teacher[a] * inverse_std[a];
         squares += t * t;
       }
-      shrink = batch.imitation * weight / std::sqrt(1.0F + squares);
+      shrink = batch.imitation * weight * std::pow(1.0F + squares, focus_);
     }
     for (int a = 0; a < size; ++a) {
       // d mean / d net = scale (1 - tanh^2) = scale - mean^2 / scale.

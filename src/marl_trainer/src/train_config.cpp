@@ -57,6 +57,8 @@ void TrainConfig::ValidateOrThrow() const {
   Require(imitate.empty() == (imitation_steps == 0), "imitation-steps",
           "goes with --imitate, and the other way round");
   RequireRange("imitation-steps", static_cast<double>(imitation_steps), 0, 1e12);
+  RequireRange("imitation-share", imitation_share, 0.0, 1.0);
+  RequireRange("imitation-focus", imitation_focus, 0.0, 4.0);
   RequireRange("std-scale", std_scale, 1e-3, 1e3);
   RequireRange("validation-interval", static_cast<double>(validation_interval), 1, 1e12);
   RequireRange("validation-episodes", validation_episodes, 1, 10000);

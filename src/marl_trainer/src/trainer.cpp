@@ -166,11 +166,12 @@ bool Trainer::Run() {
 void Trainer::Iterate(TrainRecord* record) {
   const double begin = Now();
   const auto collection = static_cast<std::uint32_t>(state_.collections);
-  // All of the loss for the first half of the imitation steps, then ever less.
+  // In full for the first half of the imitation steps, then ever less.
   const double left = 1.0 - static_cast<double>(state_.env_steps) /
                                 static_cast<double>(std::max<std::int64_t>(1, config_.imitation_steps));
   const double imitation =
-      config_.imitate.empty() ? 0.0 : std::min(std::max(2.0 * left, 0.0), 1.0);
+      config_.imitate.empty() ? 0.0
+                              : config_.imitation_share * std::min(std::max(2.0 * left, 0.0), 1.0);
   pool_.Run(static_cast<int>(units_.size()), [&](int u, int) {
     units_[static_cast<std::size_t>(u)]->Collect(state_.parameters.data(), learner_.scales(),
                                                  collection, imitation > 0.0);

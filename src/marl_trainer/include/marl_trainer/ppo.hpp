@@ -31,8 +31,8 @@ struct PpoBatch {
   const float* advantages = nullptr;    ///< [count], normalised
   const float* targets = nullptr;       ///< [count], normalised value targets
   /// In [0, 1]: share of the actor's loss that is, instead of Eq. 41, half the squared miss of
-  /// the teacher's action a, in sigmas, over the root of 1 + |a / sigma|^2. Sigma is not
-  /// fitted to it.
+  /// the teacher's action a, in sigmas, over (1 + |a / sigma|^2)^(f/2), f = imitation_focus.
+  /// Sigma is not fitted to it.
   float imitation = 0.0F;
 };
 
@@ -53,7 +53,7 @@ class PpoLoss {
                  PpoSums* sums);
 
   const ActorCritic& networks_;
-  const float clip_, entropy_, value_weight_;
+  const float clip_, focus_, entropy_, value_weight_;
   Mlp::Workspace actor_, critic_;
   std::vector<float> d_actor_, d_critic_;
 };

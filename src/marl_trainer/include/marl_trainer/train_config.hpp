@@ -45,6 +45,8 @@ struct TrainConfig {
 
   std::string imitate;  ///< built-in controller to start from; empty: none
   std::int64_t imitation_steps = 0;
+  double imitation_share = 1.0;
+  double imitation_focus = 1.0;
   bool privileged_teacher = false;
   std::string start_from;  ///< folder of another run; empty: untrained networks
 
@@ -94,7 +96,12 @@ void VisitTrainConfig(Config& c, Visitor&& visit) {
         "built-in controller whose actions the policy first learns, with constants if need be, as "
         "in pursuit_separated:gain=2,cap=0.5; empty: none");
   visit("imitation-steps", c.imitation_steps,
-        "environment steps of imitation: alone for the first half, then fading into the return");
+        "environment steps of imitation: in full for the first half, then fading into the return");
+  visit("imitation-share", c.imitation_share,
+        "share of the actor's loss that is imitation where it is in full");
+  visit("imitation-focus", c.imitation_focus,
+        "misses weigh by the size of the teacher's action, in sigmas, to minus this power: 0 all "
+        "alike, 2 little more than the hold");
   visit("privileged-teacher", c.privileged_teacher,
         "the controller to imitate reads true states, as the critic does; the policy never does");
   visit("start-from", c.start_from,
