@@ -75,10 +75,10 @@ void EnvGroup::AcousticActions() {
     for (int k = 0; k < size; ++k) {
       alignas(64) double buffer[kLanes];
       for (int lane = 0; lane < kLanes; ++lane) {
-        // What a policy says is float.
-        buffer[lane] = static_cast<float>(actions_[static_cast<size_t>((lane * n + i) * size + k)]);
+        buffer[lane] = actions_[static_cast<size_t>((lane * n + i) * size + k)];
       }
-      wanted[k] = Pack::load_aligned(buffer);
+      // What a policy says is float.
+      wanted[k] = RoundToFloat(Pack::load_aligned(buffer));
     }
     AgentLanes& agent = a.agents[ui];
     agent.Act(wanted);

@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""Evaluates the shipped policies and the built-in controllers in acoustic mode, side by side.
+
+Usage: shipped_tables.py OUT [SILENT_FOLDER], in a built and sourced workspace. Writes OUT/tables.md
+and OUT/results.csv. SILENT_FOLDER/SCENARIO.onnx, where given, was trained without messages.
+"""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+
+CONDITIONS = (
+    "nominal", "fast_target", "far_initialization", "limited_sensing", "degraded_communication",
+    "combined_stress",
+)
+TEACHER = (
+    "pursuit_separated:gain=1.5,cap=0.95,standoff=0.0144,repulsion=2,repulsion-range=0.0385,"
+    "feedforward=1.21,approach-speed=0.001,approach-gain=0.87"
+)
+RETUNED = "pursuit_separated:gain=2,cap=0.58,standoff=0.0144,repulsion=1.4,repulsion-range=0.029"
+SILENCE = ("--set", "channel.loss_probability=1.0")
+COLUMNS = (
+    ("return", 1), ("return_std", 1), ("tail_distance", 4), ("tracking_error", 5),
+    ("lost_rate", 3), ("colliding_pairs", 3), ("tail_colliding_pairs", 3), ("band_rate", 2),
+)
+EPISODES, SEED = 30, 3000
+
+
+def evaluate(policy, scenario, condition, options=()):
+    """Returns the metrics that `evaluate` prints on its last line."""
+    command = [
+        "rosrun", "marl_trainer", "evaluate", "--policy", policy, "--scenario", scenario,
+        "--condition", condition, "--episodes", str(EPISODES), "--seed", str(SEED), *options,
+    ]
+    output = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    return json.loads(output.strip().splitlines()[-1])
+
+
+def fliers(scenario, policies, silent):
+    """Returns [(label, policy, options)], the rows of one condition."""
+    shipped = os.path.join(policies, scenario + ".onnx")
+    rows = [(f"policies/{scenario}.onnx", shipped, ()), ("the same, all packets lost", shipped, SILENCE)]
+    if silent:
+        rows.append(
+            ("trained and flown without messages", os.path.join(silent, scenario + ".onnx"), SILENCE)
+        )
+    return rows + [
+        ("pursuit_separated", "pursuit_separated", ()),
+        ("pursuit_separated, retuned", RETUNED, ()),
+        ("the teacher's law on own estimates", TEACHER, ()),
+        ("pursuit_separated, all packets lost", "pursuit_separated", SILENCE),
+        ("pursuit", "pursuit", ()),
+    ]
+
+
+def main():
+    if not 2 <= len(sys.argv) <= 3:
+        sys.exit(__doc__)
+    out, silent = sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None
+    package = subprocess.run(
+        ["rospack", "find", "stg_bringup"], check=True, stdout=subprocess.PIPE, text=True
+    ).stdout.strip()
+    os.makedirs(out, exist_ok=True)
+    lines, records = [], []
+    for scenario in ("medium", "hard"):
+        lines += [
+            f"## {scenario}", "",
+            "| condition | who | return | tail distance | tail error | lost | contact "
+            "| contact, tail | in band |",
+            "|---|---|---:|---:|---:|---:|---:|---:|---:|",
+        ]
+        for condition in CONDITIONS:
+            for label, policy, options in fliers(scenario, os.path.join(package, "policies"), silent):
+                found = evaluate(policy, scenario, condition, options)
+                text = [f"{found[name]:.{digits}f}" for name, digits in COLUMNS]
+                lines.append(
+                    f"| {condition} | {label} | {text[0]} ± {text[1]} | " + " | ".join(text[2:]) + " |"
+                )
+                records.append([scenario, condition, label] + [found[name] for name, _ in COLUMNS])
+                print(lines[-1], file=sys.stderr)
+        lines.append("")
+    with open(os.path.join(out, "tables.md"), "w", encoding="utf-8") as page:
+        page.write("\n".join(lines))
+    with open(os.path.join(out, "results.csv"), "w", encoding="utf-8", newline="") as table:
+        writer = csv.writer(table)
+        writer.writerow(["scenario", "condition", "who"] + [name for name, _ in COLUMNS])
+        writer.writerows(records)
+
+
+if __name__ == "__main__":
+    main()

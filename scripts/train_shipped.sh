@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Trains a policy as the shipped ones were trained, in a built and sourced workspace, in three runs:
+# imitation of a privileged controller, MAPPO, MAPPO with a share of imitation. Runs again what is
+# missing. The policy is OUT/hold/policy_last.onnx. See docs/adr/008-privileged-teacher.md.
+# Usage: train_shipped.sh SCENARIO OUT [TRAIN_OPTION ...]   e.g. train_shipped.sh medium runs/medium
+set -euo pipefail
+(($# >= 2)) || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
+scenario=$1 out=$2
+shift 2
+
+teacher=pursuit_separated:gain=1.5,cap=0.95,standoff=0.0144,repulsion=2,repulsion-range=0.0385
+teacher+=,feedforward=1.21,approach-speed=0.001,approach-gain=0.87
+# Poor links need the most practice.
+poor=degraded_communication,combined_stress
+conditions=nominal,$poor,fast_target,$poor,far_initialization,$poor,limited_sensing,$poor
+
+# stage NAME OPTION...: one run, unless it is finished.
+stage() {
+  local folder=$out/$1
+  shift
+  if grep -qs '"finished"' "$folder/summary.json"; then return; fi
+  local resume=()
+  if compgen -G "$folder/checkpoint_*.pt" >/dev/null; then resume=(--resume); fi
+  rosrun marl_trainer train --scenario "$scenario" --out "$folder" --train-on "$conditions" \
+    --envs 96 --actor-hidden 128,128 --std-scale 0.3 --min-log-std -8 --max-log-std -2 \
+    --lr-final 0.01 --validation-interval 480000 --set reward.weights.separation=0.1 \
+    --set reward.separation_distance_m=0.0233 "${resume[@]}" "$@"
+}
+imitation=(--imitate "$teacher" --privileged-teacher true)
+
+stage imitate "${imitation[@]}" --imitation-steps 14400000 --steps 7200000 --lr 2e-3 \
+  --initial-log-std -4.5 "$@"
+stage return --start-from "$out/imitate" --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
+  --initial-log-std -4 "$@"
+stage hold --start-from "$out/return" "${imitation[@]}" --imitation-steps 1000000000 \
+  --imitation-share 0.5 --imitation-focus 4 --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
+  --initial-log-std -5 "$@"
+echo "$out/hold/policy_last.onnx"
