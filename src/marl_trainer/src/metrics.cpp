@@ -1,5 +1,6 @@
 #include "marl_trainer/metrics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stg {
@@ -26,6 +27,11 @@ std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
           {"reward_communication", reward_communication},
           {"reward_semantic", reward_semantic},
           {"reward_separation", reward_separation}};
+}
+
+double MetricSummary::Mean(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? 0.0 : mean[static_cast<size_t>(found - names.begin())];
 }
 
 MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes) {

@@ -15,13 +15,6 @@ constexpr double kLineInterval = 2.0;  // [s] between progress lines without a v
 const std::pair<const char*, double> kThresholds[] = {
     {"1000", 1000.0}, {"1020", 1020.0}, {"1030", 1030.0}, {"1040", 1040.0}};
 
-double Metric(const MetricSummary& summary, const std::string& name) {
-  for (std::size_t i = 0; i < summary.names.size(); ++i) {
-    if (summary.names[i] == name) return summary.mean[i];
-  }
-  return 0.0;
-}
-
 /// Name and value of every column but the validation's.
 std::vector<std::pair<const char*, double>> Columns(const TrainRecord& r) {
   return {{"env_steps", static_cast<double>(r.env_steps)},
@@ -108,7 +101,7 @@ void TrainLog::Add(const TrainRecord& r) {
   std::string row;
   for (const auto& column : Columns(r)) row += Number(column.second) + ",";
   for (const auto& item : EpisodeMetrics().Items()) {
-    row += (r.validated ? Number(Metric(r.validation, item.first)) : "") + ",";
+    row += (r.validated ? Number(r.validation.Mean(item.first)) : "") + ",";
   }
   row.back() = '\n';
   csv_ << row;
@@ -119,8 +112,8 @@ void TrainLog::Add(const TrainRecord& r) {
     for (std::size_t i = 0; i < r.validation.names.size(); ++i) {
       last_validation_[r.validation.names[i]] = r.validation.mean[i];
     }
-    const double value = Metric(r.validation, "return");
-    const bool kept = Metric(r.validation, "lost_rate") == 0.0;
+    const double value = r.validation.Mean("return");
+    const bool kept = r.validation.Mean("lost_rate") == 0.0;
     const Moment now{r.wall_seconds, r.env_steps};
     if (kept) reached_.emplace("no_loss", now);
     for (const auto& [name, threshold] : kThresholds) {
@@ -144,8 +137,8 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   *lines_ << text;
   if (r.validated) {
     std::snprintf(text, sizeof text, " | return %7.1f tail %.4f m lost %.3f contacts %.2f",
-                  Metric(r.validation, "return"), Metric(r.validation, "tail_distance"),
-                  Metric(r.validation, "lost_rate"), Metric(r.validation, "tail_colliding_pairs"));
+                  r.validation.Mean("return"), r.validation.Mean("tail_distance"),
+                  r.validation.Mean("lost_rate"), r.validation.Mean("tail_colliding_pairs"));
     *lines_ << text;
   } else {
     std::snprintf(text, sizeof text, " | reward %.4f", r.reward);

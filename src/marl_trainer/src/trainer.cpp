@@ -26,11 +26,13 @@ Scenario Valid(const Scenario& scenario, const TrainConfig& config) {
   return scenario;
 }
 
-double Metric(const MetricSummary& summary, const std::string& name) {
-  for (std::size_t i = 0; i < summary.names.size(); ++i) {
-    if (summary.names[i] == name) return summary.mean[i];
+/// A run that was ended before its first checkpoint leaves nothing worth keeping.
+bool HoldsRun(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".pt" || extension == ".onnx") return true;
   }
-  return 0.0;
+  return false;
 }
 
 /// The scenarios to train in, all with the observation and episode of the first.
@@ -86,7 +88,7 @@ void Trainer::OpenFolder() {
   if (!fs::is_directory(options_.out)) throw UserError(options_.out + ": cannot create the folder");
   if (options_.resume) {
     Restore();
-  } else if (fs::exists(fs::path(options_.out) / "config.json")) {
+  } else if (HoldsRun(options_.out)) {
     throw UserError(options_.out + ": holds another run; use --resume or another folder");
   }
   std::ofstream(fs::path(options_.out) / "config.json") << ToJson(config_).dump(2) << "\n";
@@ -167,11 +169,12 @@ void Trainer::Iterate(TrainRecord* record) {
   const double begin = Now();
   const auto collection = static_cast<std::uint32_t>(state_.collections);
   // In full for the first half of the imitation steps, then ever less.
-  const double left = 1.0 - static_cast<double>(state_.env_steps) /
-                                static_cast<double>(std::max<std::int64_t>(1, config_.imitation_steps));
-  const double imitation =
-      config_.imitate.empty() ? 0.0
-                              : config_.imitation_share * std::min(std::max(2.0 * left, 0.0), 1.0);
+  const double left =
+      1.0 - static_cast<double>(state_.env_steps) /
+                static_cast<double>(std::max<std::int64_t>(1, config_.imitation_steps));
+  const double imitation = config_.imitate.empty()
+                               ? 0.0
+                               : config_.imitation_share * std::min(std::max(2.0 * left, 0.0), 1.0);
   pool_.Run(static_cast<int>(units_.size()), [&](int u, int) {
     units_[static_cast<std::size_t>(u)]->Collect(state_.parameters.data(), learner_.scales(),
                                                  collection, imitation > 0.0);
@@ -223,9 +226,9 @@ void Trainer::Iterate(TrainRecord* record) {
   record->episodes = static_cast<int>(episodes.size());
   if (!episodes.empty()) {
     const MetricSummary summary = Summarise(episodes);
-    record->train_return = Metric(summary, "return");
-    record->train_tail_distance = Metric(summary, "tail_distance");
-    record->train_lost_rate = Metric(summary, "lost_rate");
+    record->train_return = summary.Mean("return");
+    record->train_tail_distance = summary.Mean("tail_distance");
+    record->train_lost_rate = summary.Mean("lost_rate");
   }
 }
 
@@ -235,8 +238,8 @@ void Trainer::Validate(TrainRecord* record) {
       Summarise(validation_.Run(state_.parameters.data(), learner_.scales().observations));
   record->validated = true;
   record->validation = last_validation_;
-  if (Metric(last_validation_, "return") > state_.best_return) {
-    state_.best_return = Metric(last_validation_, "return");
+  if (last_validation_.Mean("return") > state_.best_return) {
+    state_.best_return = last_validation_.Mean("return");
     SavePolicy("policy_best.onnx");
   }
   next_validation_ =
@@ -286,7 +289,7 @@ Policy Trainer::MakePolicy() const {
        {"return", "tail_distance", "tracking_error", "lost_rate", "tail_colliding_pairs"}) {
     if (last_validation_.names.empty()) break;
     char text[32];
-    std::snprintf(text, sizeof text, "%.6g", Metric(last_validation_, name));
+    std::snprintf(text, sizeof text, "%.6g", last_validation_.Mean(name));
     m.metrics[std::string("validation_") + name] = text;
   }
   return networks().ToPolicy(state_.parameters.data(), learner_.scales().observations,

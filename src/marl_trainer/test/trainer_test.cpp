@@ -209,6 +209,10 @@ TEST_F(TrainerTest, RefusesToMixRuns) {
   EXPECT_THROW(Trainer(ShortScenario("hard_release"), config, resume), UserError);
   resume.out = (folder_ / "empty").string();
   EXPECT_THROW(Trainer(scenario, config, resume), UserError);
+  // A run that ended before its first checkpoint is no obstacle.
+  fs::create_directories(folder_ / "early");
+  std::ofstream(folder_ / "early" / "config.json") << "{}";
+  EXPECT_NO_THROW(Trainer(scenario, config, Options("early")));
 }
 
 TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {

@@ -35,6 +35,8 @@ void Validate(const Policy::Parameters& p) {
           std::to_string(p.layers.size()) + " layers, allowed are 1 to " +
               std::to_string(Policy::kMaxLayers));
   Eigen::Index inputs = p.input_mean.size();
+  // Largest magnitude that can reach each layer; past float's range inf - inf would give NaN.
+  Eigen::VectorXd bound = Eigen::VectorXd::Constant(inputs, static_cast<double>(p.input_clip));
   for (std::size_t l = 0; l < p.layers.size(); ++l) {
     const std::string name = "layer " + std::to_string(l);
     const Policy::Layer& layer = p.layers[l];
@@ -43,10 +45,14 @@ void Validate(const Policy::Parameters& p) {
                                                " numbers but is given " + std::to_string(inputs));
     Require(layer.bias.size() == layer.weight.rows(), name + ": bias and weight differ in size");
     Require(layer.weight.allFinite() && layer.bias.allFinite(), name + " is not finite");
+    bound = layer.weight.cwiseAbs().cast<double>() * bound + layer.bias.cwiseAbs().cast<double>();
+    Require(bound.maxCoeff() < 1e30, name + " can overflow");
+    if (p.activation == Activation::kTanh) bound = bound.cwiseMin(1.0);
     inputs = layer.weight.rows();
   }
   Require(p.log_std.size() == inputs, "log_std and the last layer differ in size");
-  Require(p.log_std.allFinite(), "log_std is not finite");
+  Require(p.log_std.allFinite() && p.log_std.cwiseAbs().maxCoeff() <= 20.0F,
+          "log_std is not in [-20, 20]");
   const double scale = p.metadata.action_scale;
   Require(std::isfinite(scale) && scale > 0.0 && scale <= 1.0, "action_scale is not in (0, 1]");
 }

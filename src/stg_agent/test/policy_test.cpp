@@ -383,6 +383,8 @@ TEST_F(PolicyTest, ConstructorChecksShapesAndNumbers) {
   bad([](auto* p) { p->layers.clear(); });
   bad([](auto* p) { p->log_std.resize(1); });
   bad([](auto* p) { p->layers[0].weight(0, 0) = INFINITY; });
+  bad([](auto* p) { p->layers[0].weight.setConstant(3e38F); });
+  bad([](auto* p) { p->log_std(0) = 100.0F; });
   bad([](auto* p) { p->metadata.action_scale = 1.5; });
   bad([](auto* p) {
     const Policy::Layer square{Eigen::MatrixXf::Zero(4, 4), Eigen::VectorXf::Zero(4)};

@@ -37,6 +37,9 @@ struct MetricSummary {
   std::vector<std::string> names;
   std::vector<double> mean, std;
   int episodes = 0;
+
+  /// Mean of the metric called `name`; 0 where there is none.
+  double Mean(const std::string& name) const;
 };
 MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes);
 

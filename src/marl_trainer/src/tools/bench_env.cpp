@@ -16,8 +16,7 @@ using Clock = std::chrono::steady_clock;
 /// Environment steps per second of `groups` on one thread for about `seconds`.
 double Run(std::vector<stg::EnvGroup>* groups, double seconds) {
   const stg::EnvGroup& first = groups->front();
-  const size_t size =
-      static_cast<size_t>(stg::kLanes * first.agents() * first.action_size());
+  const size_t size = static_cast<size_t>(stg::kLanes * first.agents() * first.action_size());
   // Random actions, drawn beforehand: the bench is of the environment.
   std::vector<std::vector<float>> actions(64, std::vector<float>(size));
   stg::Random random(1, stg::Stream::kPolicy, 0, 0, 0);
@@ -80,7 +79,11 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   app.add_flag("--scaling", scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   try {
     const auto load = [&](std::vector<std::string> extra) {
       extra.insert(extra.begin(), overrides.begin(), overrides.end());
@@ -88,19 +91,17 @@ int main(int argc, char** argv) {
     };
     const stg::Scenario s = load({});
     const double rate = Bench(s, envs, workers, seconds);
-    nlohmann::json json = {{"scenario", scenario},
-                           {"agents", s.agents},
-                           {"workers", workers},
-                           {"environments", envs},
-                           {"env_steps_per_second", rate},
-                           {"agent_steps_per_second", rate * s.agents}};
+    nlohmann::json json = {
+        {"scenario", scenario},         {"agents", s.agents},
+        {"workers", workers},           {"environments", envs},
+        {"env_steps_per_second", rate}, {"agent_steps_per_second", rate * s.agents}};
     std::cout << scenario << ": " << static_cast<long>(rate) << " environment steps/s of "
               << s.agents << " AUVs on " << workers << " worker(s)\n";
     if (scaling) {
       nlohmann::json rows = nlohmann::json::array();
       for (const int n : {4, 8, 20, 50, 100}) {
-        const stg::Scenario sn = load({"agents=" + std::to_string(n),
-                                       "reset.min_separation_m=0.03"});
+        const stg::Scenario sn =
+            load({"agents=" + std::to_string(n), "reset.min_separation_m=0.03"});
         const double r = Bench(sn, envs, workers, seconds);
         const double ns = 1e9 * workers / (r * n);
         std::cout << "  " << n << " AUVs: " << static_cast<long>(r) << " environment steps/s, "
@@ -114,5 +115,8 @@ int main(int argc, char** argv) {
   } catch (const stg::UserError& e) {
     std::cerr << "bench_env: " << e.what() << "\n";
     return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "bench_env: " << e.what() << "\n";
+    return 1;
   }
 }

@@ -17,7 +17,11 @@ int main(int argc, char** argv) {
   app.add_option("--scenario", scenario, "settings that the trace's config does not state")
       ->capture_default_str();
   app.add_option("--tolerance", tolerance, "largest absolute error allowed")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   try {
     const stg::Scenario base = stg::LoadNamedScenario(stg::ScenarioFolder(), scenario);
     double worst = 0.0;
@@ -25,13 +29,13 @@ int main(int argc, char** argv) {
     for (const auto& folder : folders) {
       const stg::TraceError e = stg::ReplayTrace(stg::LoadTrace(folder, base), tolerance);
       worst = std::max(worst, e.max_abs_error);
-      traces.push_back({{"trace", folder},
-                        {"max_abs_error", e.max_abs_error},
-                        {"by_group", e.by_group},
-                        {"steps", e.steps},
-                        {"worst", {{"column", e.worst_column},
-                                   {"step", e.worst_step},
-                                   {"agent", e.worst_agent}}}});
+      traces.push_back(
+          {{"trace", folder},
+           {"max_abs_error", e.max_abs_error},
+           {"by_group", e.by_group},
+           {"steps", e.steps},
+           {"worst",
+            {{"column", e.worst_column}, {"step", e.worst_step}, {"agent", e.worst_agent}}}});
       for (const auto& [column, error] : e.by_column) {
         if (!(error <= tolerance)) std::cout << "  " << column << ": " << error << "\n";
       }
@@ -53,5 +57,8 @@ int main(int argc, char** argv) {
   } catch (const stg::UserError& e) {
     std::cerr << "check_trace: " << e.what() << "\n";
     return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "check_trace: " << e.what() << "\n";
+    return 1;
   }
 }

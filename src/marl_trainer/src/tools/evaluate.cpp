@@ -62,7 +62,11 @@ int main(int argc, char** argv) {
   stg::VisitPursuitOptions(tuned, [&](const char* name, double, const char* text) {
     app.add_option(std::string("--") + name, constants[name], text);
   });
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   try {
     const stg::Scenario s = stg::ValidationScenario(
         stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, overrides), variant);
@@ -78,9 +82,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "\n");
     if (!csv.empty()) WriteCsv(csv, metrics, seed);
     const stg::MetricSummary summary = stg::Summarise(metrics);
-    nlohmann::json json = {{"policy", policy},     {"scenario", scenario},
+    nlohmann::json json = {{"policy", policy},       {"scenario", scenario},
                            {"condition", condition}, {"episodes", episodes},
-                           {"seed", seed},         {"scenario_hash", stg::ScenarioHash(s)}};
+                           {"seed", seed},           {"scenario_hash", stg::ScenarioHash(s)}};
     std::printf("%s on %s, %s: %d episodes from seed %llu\n", policy.c_str(), scenario.c_str(),
                 condition.c_str(), episodes, static_cast<unsigned long long>(seed));
     for (size_t k = 0; k < summary.names.size(); ++k) {
@@ -95,5 +99,8 @@ int main(int argc, char** argv) {
   } catch (const stg::UserError& e) {
     std::cerr << "evaluate: " << e.what() << "\n";
     return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "evaluate: " << e.what() << "\n";
+    return 1;
   }
 }

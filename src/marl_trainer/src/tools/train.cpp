@@ -99,5 +99,8 @@ int main(int argc, char** argv) {
   } catch (const stg::UserError& error) {
     std::cerr << "train: " << error.what() << std::endl;
     return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "train: " << error.what() << std::endl;
+    return 1;
   }
 }
