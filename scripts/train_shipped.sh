@@ -33,6 +33,6 @@ stage imitate "${imitation[@]}" --imitation-steps 14400000 --steps 7200000 --lr 
 stage return --start-from "$out/imitate" --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
   --initial-log-std -4 "$@"
 stage hold --start-from "$out/return" "${imitation[@]}" --imitation-steps 1000000000 \
-  --imitation-share 0.5 --imitation-focus 4 --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
+  --imitation-share 0.5 --imitation-focus 2 --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
   --initial-log-std -5 "$@"
 echo "$out/hold/policy_last.onnx"

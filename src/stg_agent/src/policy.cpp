@@ -47,7 +47,7 @@ void Validate(const Policy::Parameters& p) {
     Require(layer.weight.allFinite() && layer.bias.allFinite(), name + " is not finite");
     bound = layer.weight.cwiseAbs().cast<double>() * bound + layer.bias.cwiseAbs().cast<double>();
     Require(bound.maxCoeff() < 1e30, name + " can overflow");
-    if (p.activation == Activation::kTanh) bound = bound.cwiseMin(1.0);
+    if (p.activation == Policy::Activation::kTanh) bound = bound.cwiseMin(1.0);
     inputs = layer.weight.rows();
   }
   Require(p.log_std.size() == inputs, "log_std and the last layer differ in size");
