@@ -43,12 +43,10 @@ void ControllerNode::Spin() {
   PollLoop([this] { return Work(); });
 }
 
-double ControllerNode::Work() {
-  health_.Tick();
-  return 0.2;
-}
+double ControllerNode::Work() { return health_.TickWhenQuiet(busy_); }
 
 void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
+  busy_ = ros::WallTime::now();
   if (message->header.frame_id != frames::kWorld || message->child_frame_id != body_frame_) {
     refused_odometry_.Add(Refusals::kFrame);
   } else if (!FiniteOdometry(*message)) {

@@ -32,6 +32,7 @@ class ControllerNode {
   TimeNs period_;  ///< of decisions
   NavState nav_;   ///< newest odometry, with its absolute stamp
   bool has_nav_ = false;
+  ros::WallTime busy_;
   geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry
   geometry_msgs::WrenchStamped wrench_;
   EventRate answers_;

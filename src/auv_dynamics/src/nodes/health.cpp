@@ -29,6 +29,16 @@ Health::Health(const std::string& name, const std::string& hardware, Report repo
   updater_.add(name, std::move(report));
 }
 
+double Health::TickWhenQuiet(const ros::WallTime& busy) {
+  constexpr double kQuiet_s = 0.005, kIdle_s = 0.2;
+  const ros::WallTime now = ros::WallTime::now();
+  const double late_s = (now - last_).toSec() - 1.0;
+  const double left_s = kQuiet_s - (now - busy).toSec();
+  if (late_s >= 0.0 && left_s > 0.0 && late_s < 1.0) return left_s;
+  Tick();
+  return kIdle_s;
+}
+
 void Health::Tick() {
   const ros::WallTime now = ros::WallTime::now();
   const double elapsed = (now - last_).toSec();

@@ -63,11 +63,12 @@ void WorldNode::Spin() {
 }
 
 double WorldNode::Work() {
-  health_.Tick();
+  if (shown_ || real_time_factor_ == 0.0) health_.Tick();
   if (finishing_) {
     if (ros::WallTime::now() > deadline_) done_ = true;
   } else {
-    if (Complete() || OpenFor() >= kViewDelay_s) ShowStep();
+    const bool quiet = real_time_factor_ > 0.0 ? Answered() : Complete();
+    if (quiet || OpenFor() >= kViewDelay_s) ShowStep();
     if (!paused_) Advance();
   }
   return done_ ? kLoopDone : WaitTime();
@@ -123,12 +124,12 @@ bool WorldNode::ListenersReady() {
   return (now - awaited_seen_).toSec() > 1.5;
 }
 
-bool WorldNode::Complete() const {
-  for (const Auv& auv : auvs_) {
-    if (auv.present && !auv.answered) return false;
-  }
-  return !channel_present_ || channel_answered_;
+bool WorldNode::Answered() const {
+  return std::all_of(auvs_.begin(), auvs_.end(),
+                     [](const Auv& auv) { return !auv.present || auv.answered; });
 }
+
+bool WorldNode::Complete() const { return Answered() && (!channel_present_ || channel_answered_); }
 
 void WorldNode::CountMisses() {
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
@@ -146,6 +147,7 @@ void WorldNode::CountMisses() {
 
 void WorldNode::ShowStep() {
   if (shown_) return;
+  if (real_time_factor_ > 0.0) publisher_->PublishSwarm();
   publisher_->PublishViews(world_, start_);
   shown_ = true;
 }
@@ -188,6 +190,8 @@ void WorldNode::OpenStep() {
   channel_answered_ = false;
   opened_ = ros::WallTime::now();
   publisher_->PublishSensors(world_, start_, episode_, step_);
+  // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
+  if (real_time_factor_ == 0.0) publisher_->PublishSwarm();
   shown_ = false;
   const ros::WallTime now = ros::WallTime::now();
   if (!running_) {

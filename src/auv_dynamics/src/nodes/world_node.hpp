@@ -57,6 +57,7 @@ class WorldNode {
   double WaitTime() const;
   void Advance();
   bool ListenersReady();
+  bool Answered() const;  ///< by all AUVs that are present
   bool Complete() const;
   void CountMisses();
   void StepWorld();

@@ -117,8 +117,9 @@ void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint3
   swarm_message_.episode = episode;
   swarm_message_.step = step;
   swarm_message_.seed = world.seed(0);
-  swarm_.publish(swarm_message_);
 }
+
+void WorldPublisher::PublishSwarm() { swarm_.publish(swarm_message_); }
 
 void WorldPublisher::PublishViews(const World& world, TimeNs start) {
   const TimeNs now = start + world.time(0);

@@ -23,8 +23,11 @@ class WorldPublisher {
   WorldPublisher(const Scenario& scenario, double display_rate_hz);
 
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
-  /// [ns], and what is true of them all.
+  /// [ns].
   void PublishSensors(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+
+  /// The true state of all of them at the decision of the last PublishSensors.
+  void PublishSwarm();
 
   /// What only observers need of the same decision: targets, transforms, the clock.
   void PublishViews(const World& world, TimeNs start);

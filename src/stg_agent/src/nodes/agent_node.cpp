@@ -32,6 +32,7 @@ AgentNode::AgentNode()
       period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
               scenario_.time.decision_steps),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
+      report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
@@ -69,11 +70,21 @@ void AgentNode::Spin() {
 
 double AgentNode::Work() {
   DecideIfDue();
-  health_.Tick();
-  return sync_ ? std::clamp(patience_s_, 0.001, 0.2) : 0.2;
+  double wait_s = health_.TickWhenQuiet(busy_);
+  if (sync_) wait_s = std::min(wait_s, std::max(patience_s_, 0.001));
+  if (unreported_) {
+    const double left_s = report_delay_s_ - (ros::WallTime::now() - commanded_).toSec();
+    if (left_s <= 0.0) {
+      ReportDecision();
+    } else {
+      wait_s = std::min(wait_s, left_s);
+    }
+  }
+  return wait_s;
 }
 
 void AgentNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
+  busy_ = ros::WallTime::now();
   if (message->header.frame_id != frames::kWorld || message->child_frame_id != body_frame_) {
     refused_odometry_.Add(Refusals::kFrame);
   } else if (!FiniteOdometry(*message)) {
@@ -209,6 +220,7 @@ void AgentNode::TakeReceptions(TimeNs stamp) {
 }
 
 void AgentNode::Decide() {
+  if (unreported_) ReportDecision();
   const TimeNs stamp = NsOf(sync_->header.stamp);
   const TimeNs start = stamp - static_cast<TimeNs>(sync_->step) * period_;
   if (!in_episode_ || start != start_ || sync_->episode != episode_) {
@@ -219,16 +231,18 @@ void AgentNode::Decide() {
   TakeDetections(stamp);
   agent_.Observe(NavOf(*odometry_, start_), observation_.data());
   decider_->Mean(agent_, observation_.data(), action_);
-  float log_probability = 0.0F;
-  if (explore_) {
-    log_probability = decider_->Explore(sync_->seed, sync_->step, id_, action_);
-  }
-  Publish(agent_.Act(action_), log_probability);
+  log_probability_ = explore_ ? decider_->Explore(sync_->seed, sync_->step, id_, action_) : 0.0F;
+  output_ = agent_.Act(action_);
+  Command();
   decisions_.Add();
+  unreported_ = std::move(sync_);
   sync_.reset();
+  commanded_ = ros::WallTime::now();
+  if (report_delay_s_ == 0.0) ReportDecision();
 }
 
-void AgentNode::Publish(const AgentOutput& output, float log_probability) {
+void AgentNode::Command() {
+  const AgentOutput& output = output_;
   const ros::Time stamp = sync_->header.stamp;
   if (scenario_.control.interface == ActionInterface::kVelocity3) {
     command_message_.header.stamp = stamp;
@@ -241,6 +255,12 @@ void AgentNode::Publish(const AgentOutput& output, float log_probability) {
     SetVector(wrench.moment, &wrench_message_.wrench.torque);
     command_.publish(wrench_message_);
   }
+}
+
+void AgentNode::ReportDecision() {
+  const AgentOutput& output = output_;
+  const auv_msgs::SensorSync& sync = *unreported_;
+  const ros::Time stamp = sync.header.stamp;
   packet_message_.header.stamp = stamp;
   packet_message_.sequence = sequence_;
   packet_message_.data.clear();
@@ -252,19 +272,20 @@ void AgentNode::Publish(const AgentOutput& output, float log_probability) {
   }
   packet_.publish(packet_message_);
   task_message_.header.stamp = stamp;
-  task_message_.episode = sync_->episode;
-  task_message_.step = sync_->step;
+  task_message_.episode = sync.episode;
+  task_message_.step = sync.step;
   task_message_.policy_id = decider_->id();
   SetTaskState(agent_, output, &task_message_);
   task_.publish(task_message_);
   step_message_.header.stamp = stamp;
-  step_message_.episode = sync_->episode;
-  step_message_.step = sync_->step;
+  step_message_.episode = sync.episode;
+  step_message_.step = sync.step;
   step_message_.observation = observation_;
   step_message_.action.assign(action_, action_ + scenario_.action_size());
-  step_message_.log_probability = log_probability;
+  step_message_.log_probability = log_probability_;
   step_message_.policy_id = decider_->id();
   step_.publish(step_message_);
+  unreported_.reset();
 }
 
 void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {

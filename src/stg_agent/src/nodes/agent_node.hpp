@@ -49,7 +49,10 @@ class AgentNode {
   void TakeDetections(TimeNs stamp);
   void TakeReceptions(TimeNs stamp);
   void Decide();
-  void Publish(const AgentOutput& output, float log_probability);
+  /// Publishes what the last decision commands.
+  void Command();
+  /// Publishes what else it has to say: packet, task state and record.
+  void ReportDecision();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Scenario scenario_;
@@ -58,8 +61,12 @@ class AgentNode {
   Agent agent_;
   std::unique_ptr<const Decider> decider_;
   TimeNs period_;  ///< of decisions [ns]
-  double patience_s_;
+  double patience_s_, report_delay_s_;
   bool explore_;
+  AgentOutput output_;  ///< of the last decision
+  float log_probability_ = 0.0F;
+  auv_msgs::SensorSync::ConstPtr unreported_;  ///< of the last decision, until it is reported
+  ros::WallTime busy_, commanded_;
 
   nav_msgs::Odometry::ConstPtr odometry_;  ///< newest
   auv_msgs::SensorSync::ConstPtr sync_;    ///< of the open step; null: none is open

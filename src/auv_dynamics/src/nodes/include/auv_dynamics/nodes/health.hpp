@@ -50,6 +50,10 @@ class Health {
 
   /// To be called often; publishes when a second has passed.
   void Tick();
+  /// The same for a node whose answers are waited for: publishes only when it was quiet for 5 ms or
+  /// is overdue by another second. Returns the seconds after which to call again.
+  /// @param busy when the node last had something to do
+  double TickWhenQuiet(const ros::WallTime& busy);
   /// Seconds of wall time between the last two reports.
   double period_s() const { return period_s_; }
 
