@@ -126,6 +126,9 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_NEAR(summary.saturation_rate, m.saturation_rate, kTolerance);
     EXPECT_NEAR(summary.control_cost, m.control_cost, kTolerance);
     EXPECT_NEAR(summary.communication_quality, m.communication_quality, kTolerance);
+    EXPECT_NEAR(summary.band_rate, m.band_rate, kTolerance);
+    EXPECT_NEAR(summary.colliding_pairs, m.colliding_pairs, kTolerance);
+    EXPECT_NEAR(summary.tail_colliding_pairs, m.tail_colliding_pairs, kTolerance);
     EXPECT_NEAR(summary.min_separation, m.min_separation, kTolerance);
     RecordProperty("worst_difference_" + std::to_string(e), std::to_string(worst));
     std::printf("episode %d: largest difference %.3g\n", e, worst);
