@@ -23,6 +23,13 @@ class Watch(roslaunch.pmon.ProcessListener):
     def __init__(self):
         self.required = set()
         self.failure = ""
+        self.refused = False
+        self.started = False
+
+    def end_if_refused(self):
+        """Ends the run as Ctrl-C does, but not while roslaunch is still starting nodes."""
+        if self.refused and self.started:
+            os.kill(os.getpid(), signal.SIGINT)
 
     def process_died(self, process_name, exit_code):
         """Called by roslaunch's monitor; a process is named as its node, with a number behind."""
@@ -31,7 +38,8 @@ class Watch(roslaunch.pmon.ProcessListener):
             return
         if exit_code == REFUSED:
             self.failure = f"/{node} refuses its configuration (its message is above)"
-            os.kill(os.getpid(), signal.SIGINT)  # as Ctrl-C does
+            self.refused = True
+            self.end_if_refused()
         elif node in self.required:
             self.failure = f"/{node} died with exit status {exit_code}"
 
@@ -51,6 +59,11 @@ def main():
                 if node.required
             }
             self.runner.add_process_listener(watch)
+
+        def start(self, *arguments, **options):
+            super().start(*arguments, **options)
+            watch.started = True
+            watch.end_if_refused()
 
     roslaunch.parent.ROSLaunchParent = Parent
     roslaunch.main()

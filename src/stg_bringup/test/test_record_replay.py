@@ -179,6 +179,8 @@ class ExitStatus(unittest.TestCase):
 
     def test_death_of_the_world_ends_the_run_with_status_1(self):
         process, environment = self.launch()
+        process_of("/metrics", environment)  # the last one to start
+        time.sleep(1.0)
         os.kill(process_of("/world", environment), signal.SIGKILL)
         output = process.communicate(timeout=40)[0]
         self.assertEqual(process.returncode, 1, output)
