@@ -2,6 +2,7 @@
 # Measures the ROS graph of a built and sourced workspace and prints one line of JSON: lockstep speed
 # with 4 and 20 AUVs, time from detection to wrench in real time, resident memory of agent nodes.
 # Usage: bench_ros.sh [FILE]   also writes the JSON to FILE
+# Exit status 1, after the JSON, when a figure is missing; the runs' last lines are on stderr.
 set -euo pipefail
 
 work=$(mktemp -d)
@@ -66,3 +67,8 @@ json+=$(printf '"real_time_deadline_misses": %s, "largest_agent_memory_mib": %s,
   "$(figure live "$misses")" "$(awk "BEGIN { printf \"%.1f\", $memory / 1024 }")" "$(env -u OMP_NUM_THREADS nproc)")
 echo "$json"
 [[ $# -eq 0 ]] || echo "$json" >"$1"
+if [[ "$json" == *": null"* ]] || ((memory == 0)); then
+  tail -n 20 "$work"/*.log >&2
+  echo "bench_ros: a figure is missing; above, the end of each run" >&2
+  exit 1
+fi

@@ -50,7 +50,8 @@ TABLES = {
     "episodes": (
         "episode t seed scenario policy_id steps complete episode_return tail_distance"
         " tracking_error lost_rate action_norm saturation_rate control_cost"
-        " communication_quality colliding_pairs min_separation time_to_band deadline_misses"
+        " communication_quality band_rate colliding_pairs tail_colliding_pairs min_separation"
+        " time_to_band deadline_misses"
     ).split(),
 }
 

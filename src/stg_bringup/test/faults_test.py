@@ -2,10 +2,13 @@
 """What goes wrong at sea: bad messages, dead nodes, a silent modem, resets in the middle."""
 
 import os
+import pathlib
 import signal
+import tempfile
 import time
 import unittest
 
+import rospkg
 import rospy
 import rostest
 from auv_msgs.msg import AcousticReception, EpisodeSummary, SensorSync, TaskState
@@ -83,6 +86,27 @@ class Faults(unittest.TestCase):
         self.check_refusals(
             "auv_0/controller", "/auv_0/cmd_vel", TwistStamped, ("world", "auv_0/base_link"), spoil)
 
+    def test_agent_refuses_finite_numbers_that_would_break_it(self):
+        publisher = rospy.Publisher("/auv_0/odom", Odometry, queue_size=10)
+        wait_for(lambda: publisher.get_num_connections() > 0, 20.0, "the agent on /auv_0/odom")
+        wait_for(lambda: self.refused("auv_0/agent", "odom", "not finite") is not None, 20.0,
+                 "diagnostics")
+        pid = rosnode_pid("/auv_0/agent")
+        before = self.refused("auv_0/agent", "odom", "not finite")
+
+        def sent_and_refused():
+            message = self.odom.message
+            huge = Odometry(header=message.header, child_frame_id=message.child_frame_id)
+            huge.pose.pose.position.x = 1e200
+            huge.pose.pose.orientation.w = 1.0
+            publisher.publish(huge)
+            return self.refused("auv_0/agent", "odom", "not finite") > before
+
+        wait_for(sent_and_refused, 10.0, "the agent refuses a position of 1e200 m")
+        publisher.unregister()
+        self.task.wait_for_more(5)
+        self.assertEqual(rosnode_pid("/auv_0/agent"), pid, "the agent lives on")
+
     def test_every_node_but_the_world_comes_back_after_its_death(self):
         for node in ("/auv_0/agent", "/auv_0/controller", "/acoustic_channel", "/metrics"):
             with self.subTest(node):
@@ -144,6 +168,17 @@ class Faults(unittest.TestCase):
         self.assertFalse(bad.success)
         self.assertIn("/nonexistent/policy.onnx", bad.message)
         self.assertEqual(bad.policy_id, "pursuit_separated")
+        shipped = pathlib.Path(rospkg.RosPack().get_path("stg_bringup")) / "policies/medium.onnx"
+        loaded = load(path=str(shipped))
+        self.assertTrue(loaded.success, loaded.message)
+        wait_for(lambda: self.task.message.policy_id == loaded.policy_id, 10.0, "the network")
+        with tempfile.TemporaryDirectory() as folder:
+            truncated = pathlib.Path(folder) / "truncated.onnx"
+            truncated.write_bytes(shipped.read_bytes()[: shipped.stat().st_size // 2])
+            bad = load(path=str(truncated))
+        self.assertFalse(bad.success)
+        self.assertIn("truncated.onnx", bad.message)
+        self.assertEqual(bad.policy_id, loaded.policy_id, "keeps the one it has")
         self.assertTrue(load(path="idle").success)
         wait_for(lambda: self.task.message.policy_id == "idle", 10.0, "the idle policy")
         self.assertTrue(load(path="pursuit_separated").success)

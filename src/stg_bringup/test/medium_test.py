@@ -38,11 +38,12 @@ class Medium(unittest.TestCase):
         cls.diagnostics = Diagnostics()
         cls.summary = Latest("/episode_summary", EpisodeSummary)
 
-    def test_swarm_holds_the_target_and_no_deadline_is_missed(self):
+    def test_shipped_policy_holds_the_target_and_no_deadline_is_missed(self):
         summary = self.summary.wait(50.0)
         self.assertTrue(summary.complete)
         self.assertEqual(summary.steps, 500)
         self.assertEqual(summary.deadline_misses, 0)
+        self.assertNotIn(summary.policy_id, ("", "idle", "pursuit", "pursuit_separated"))
         self.assertEqual(summary.lost_rate, 0.0)
         self.assertGreater(summary.tail_distance, 0.010)
         self.assertLess(summary.tail_distance, 0.016)

@@ -1,6 +1,9 @@
 """Checks every launch file: it loads with its defaults, its nodes exist, its arguments are told."""
 
+import os
 import pathlib
+import subprocess
+import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -8,6 +11,7 @@ import roslaunch.config
 import roslib.packages
 import rospkg
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 LAUNCH = pathlib.Path(rospkg.RosPack().get_path("stg_bringup")) / "launch"
 
 
@@ -25,6 +29,11 @@ def required_arguments(root):
     ]
 
 
+def load(path, arguments):
+    """Returns what roslaunch would start."""
+    return roslaunch.config.load_config_default([(str(path), arguments)], port=None, verbose=False)
+
+
 class LaunchFiles(unittest.TestCase):
     """The launch files work as far as one can see without running them."""
 
@@ -32,9 +41,7 @@ class LaunchFiles(unittest.TestCase):
         for path in launch_files():
             with self.subTest(path.name):
                 root = ElementTree.parse(path).getroot()
-                config = roslaunch.config.load_config_default(
-                    [(str(path), required_arguments(root))], port=None, verbose=False
-                )
+                config = load(path, required_arguments(root))
                 self.assertEqual(config.config_errors, [])
                 for node in config.nodes:
                     self.assertTrue(
@@ -48,6 +55,70 @@ class LaunchFiles(unittest.TestCase):
                 for arg in ElementTree.parse(path).getroot().findall("arg"):
                     if arg.get("value") is None:
                         self.assertTrue(arg.get("doc"), f"no doc for argument {arg.get('name')}")
+
+    def test_every_node_stays_on_the_loopback_unless_told_otherwise(self):
+        told = os.environ.get("ROS_IP", "127.0.0.1")
+        for path in launch_files():
+            with self.subTest(path.name):
+                config = load(path, required_arguments(ElementTree.parse(path).getroot()))
+                self.assertTrue(config.nodes)
+                for node in config.nodes:
+                    self.assertIn(("ROS_IP", told), node.env_args, node.name)
+
+
+class Graph(unittest.TestCase):
+    """The launch file of a run gives its nodes what the user meant."""
+
+    def parameters(self, *arguments):
+        """Returns the parameters of a run, by name."""
+        config = load(LAUNCH / "medium.launch", list(arguments))
+        return {name: param.value for name, param in config.params.items()}
+
+    def test_relative_paths_start_at_the_folder_of_the_user(self):
+        here = os.environ["PWD"]
+        given = self.parameters("scenario:=mine.yaml", "condition:=sub/rough.yaml",
+                                "policy:=sub/mine.onnx", "summary_file:=out.csv")
+        self.assertEqual(given["/scenario"], f"{here}/mine.yaml")
+        self.assertEqual(given["/condition"], f"{here}/sub/rough.yaml")
+        self.assertEqual(given["/auv_3/agent/policy"], f"{here}/sub/mine.onnx")
+        self.assertEqual(given["/metrics/summary_file"], f"{here}/out.csv")
+
+    def test_names_and_absolute_paths_stay_as_they_are(self):
+        given = self.parameters("condition:=fast_target", "policy:=pursuit:cap=0.5",
+                                "scenario:=/a/mine.yaml")
+        self.assertEqual(given["/scenario"], "/a/mine.yaml")
+        self.assertEqual(given["/condition"], "fast_target")
+        self.assertEqual(given["/auv_0/agent/policy"], "pursuit:cap=0.5")
+        self.assertEqual(given["/metrics/summary_file"], "")
+
+    def test_recording_holds_every_target_a_scenario_may_have(self):
+        config = load(LAUNCH / "medium.launch", ["record:=true"])
+        (recorder,) = (node for node in config.nodes if node.name == "recorder")
+        self.assertLessEqual({f"/target_{k}/odom" for k in range(16)}, set(recorder.args.split()))
+
+
+class ScenarioAgents(unittest.TestCase):
+    """The number of AUVs of a scenario is found before anything is launched."""
+
+    def agents(self, scenario):
+        """Returns what the script prints."""
+        script = ROOT / "scripts" / "scenario_agents.py"
+        return subprocess.run([str(script), str(scenario)], stdout=subprocess.PIPE,
+                              universal_newlines=True, check=True).stdout.strip()
+
+    def test_own_number_counts_else_that_of_the_base(self):
+        self.assertEqual(self.agents("swarm20"), "20")
+        shipped = ROOT / "src" / "stg_bringup" / "scenarios"
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "seven.yaml").write_text(f"base: {shipped}/medium.yaml\nagents: 7\n")
+            (folder / "heir.yaml").write_text("base: seven.yaml\nname: heir\n")
+            (folder / "circle.yaml").write_text("base: circle.yaml\n")
+            (folder / "broken.yaml").write_text("agents: [4\n")
+            self.assertEqual(self.agents(folder / "seven.yaml"), "7")
+            self.assertEqual(self.agents(folder / "heir.yaml"), "7")
+            for wrong in ("circle", "broken", "missing"):
+                self.assertEqual(self.agents(folder / f"{wrong}.yaml"), "", wrong)
 
 
 if __name__ == "__main__":

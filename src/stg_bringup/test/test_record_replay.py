@@ -1,6 +1,7 @@
 """A user's whole run: launch, record, clean exit, metrics file, replay of the bag."""
 
 import collections
+import csv
 import json
 import os
 import pathlib
@@ -10,10 +11,12 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xmlrpc.client
 
 import rosbag
 import rosgraph
 
+LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "launch.py"
 STEPS = 60
 AGENTS = 4
 OF_EVERY_STEP = ("odom", "sensor_sync", "cmd_vel", "wrench", "acoustic/tx", "acoustic/rx",
@@ -28,14 +31,26 @@ def free_port():
 
 
 def launch(folder, *arguments):
-    """Starts roslaunch with a master of its own; returns (process, environment)."""
+    """Starts a launch as `./stg run` does, with a master of its own; returns (process, environment)."""
     port = free_port()
     environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
                        ROS_HOME=str(folder / "ros_home"), PWD=str(folder))
     process = subprocess.Popen(
-        ["roslaunch", "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
+        [str(LAUNCH), "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
     return process, environment
+
+
+def process_of(node, environment):
+    """Returns a node's process id once it runs."""
+    master = rosgraph.Master("/record_replay", master_uri=environment["ROS_MASTER_URI"])
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
+        try:
+            return xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid("/record_replay")[2]
+        except (OSError, rosgraph.MasterException):
+            time.sleep(0.1)
+    raise AssertionError(f"no {node}")
 
 
 def stop(process):
@@ -60,7 +75,7 @@ class RecordReplay(unittest.TestCase):
             cls.folder, "medium.launch", "episodes:=1", "real_time_factor:=0", "deadline:=20",
             "policy:=pursuit_separated", "record:=true", "bag:=run.bag",
             f"overrides:=[time.episode_steps={STEPS}, time.tail_steps=20]",
-            f"summary_file:={cls.folder}/summary.json")
+            "summary_file:=summary.json")
         try:
             cls.output = process.communicate(timeout=60)[0]
         except subprocess.TimeoutExpired:
@@ -139,6 +154,77 @@ class RecordReplay(unittest.TestCase):
                 self.assertIn(content, heard.stdout, topic)
         finally:
             stop(process)
+
+
+class ExitStatus(unittest.TestCase):
+    """A run that went wrong says so by its exit status, and ends."""
+
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def launch(self, *arguments):
+        """Starts an endless run of the medium scenario but for `arguments`."""
+        process, environment = launch(self.folder, "medium.launch", "table:=false", *arguments)
+        self.addCleanup(stop, process)
+        return process, environment
+
+    def test_unknown_policy_ends_the_run_with_status_1(self):
+        process, _ = self.launch("policy:=nonesuch.onnx")
+        output = process.communicate(timeout=40)[0]
+        self.assertEqual(process.returncode, 1, output)
+        self.assertIn("agent refuses its configuration", output)
+        self.assertIn(f"{self.folder}/nonesuch.onnx", output)
+
+    def test_death_of_the_world_ends_the_run_with_status_1(self):
+        process, environment = self.launch()
+        process_of("/metrics", environment)  # the last one to start
+        time.sleep(1.0)
+        os.kill(process_of("/world", environment), signal.SIGKILL)
+        output = process.communicate(timeout=40)[0]
+        self.assertEqual(process.returncode, 1, output)
+        self.assertIn("/world died with exit status -9", output)
+
+    def test_interrupted_run_ends_with_status_0(self):
+        process, environment = self.launch()
+        process_of("/auv_3/controller", environment)
+        output = stop(process)
+        self.assertEqual(process.returncode, 0, output)
+
+
+class SummaryFile(unittest.TestCase):
+    """The file of a run whose metrics node dies and comes back."""
+
+    def test_restarted_node_goes_on_with_the_rows_of_the_run_and_a_new_run_starts_anew(self):
+        policy = "pursuit_separated:gain=2,cap=0.5"
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            file = folder / "summary.csv"
+            file.write_text("of an earlier run\n")
+            process, environment = launch(
+                folder, "medium.launch", "episodes:=8", "real_time_factor:=10", "table:=false",
+                f"policy:={policy}", "summary_file:=summary.csv",
+                f"overrides:=[time.episode_steps={STEPS}, time.tail_steps=20]")
+            try:
+                end = time.monotonic() + 40.0
+                while file.read_text().count("\n") < 2:
+                    self.assertLess(time.monotonic(), end, "no first episode")
+                    time.sleep(0.05)
+                first = file.read_text()
+                os.kill(process_of("/metrics", environment), signal.SIGKILL)
+                output = process.communicate(timeout=40)[0]
+            finally:
+                stop(process)
+            text = file.read_text()
+            self.assertTrue(text.startswith(first), text)
+            rows = list(csv.DictReader(text.splitlines()))
+            episodes = [row["episode"] for row in rows]
+            self.assertEqual((episodes[0], episodes[-1]), ("0", "7"), output)
+            self.assertEqual(len(set(episodes)), len(episodes), "no second header, nothing twice")
+            self.assertEqual({row["policy"] for row in rows}, {policy})
+            self.assertIn("band_rate", rows[0])
+            self.assertNotIn(None, rows[0], "as many fields as names")
 
 
 if __name__ == "__main__":

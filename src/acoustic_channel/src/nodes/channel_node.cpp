@@ -196,7 +196,7 @@ void ChannelNode::PublishLinks(TimeNs now) {
       link.delay = s.delay_s;
       link.age = s.age_s;
       link.average_age = s.average_age_s;
-      link.peak_age = s.max_age_s;
+      link.peak_age = s.peak_age_s;
       link.delivered = static_cast<std::uint32_t>(s.delivered);
       link.dropped = static_cast<std::uint32_t>(s.dropped);
       link.last_drop_reason = static_cast<std::uint8_t>(s.last_drop);

@@ -1,5 +1,6 @@
 #include "auv_dynamics/nodes/parameters.hpp"
 
+#include <ros/console.h>
 #include <ros/param.h>
 
 #include <cmath>
@@ -87,8 +88,20 @@ Scenario LoadScenarioParameters() {
   const int agents = IntegerParameter("agents", 0, 0, 255);
   if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
   overrides.emplace_back("mode=acoustic");
-  return LoadNamedScenario(ScenarioFolder(), TextParameter("scenario", "medium"),
-                           TextParameter("condition", "nominal"), overrides);
+  Scenario scenario = LoadNamedScenario(ScenarioFolder(), TextParameter("scenario", "medium"),
+                                        TextParameter("condition", "nominal"), overrides);
+  if (agents > 0 && scenario.agents != agents) {
+    throw UserError("parameter overrides: the number of AUVs is the launch argument 'agents'");
+  }
+  return scenario;
+}
+
+void WarnOfOverriddenAgents(const Scenario& scenario) {
+  const std::string name = TextParameter("scenario", "medium");
+  const int own = LoadNamedScenario(ScenarioFolder(), name).agents;
+  if (own == scenario.agents) return;
+  ROS_WARN("%d AUVs, as the launch argument 'agents' says; scenario '%s' itself has %d",
+           scenario.agents, name.c_str(), own);
 }
 
 }  // namespace stg

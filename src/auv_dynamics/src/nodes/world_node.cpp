@@ -40,6 +40,7 @@ WorldNode::WorldNode()
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       commands_(auvs_.size()),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
+  WarnOfOverriddenAgents(scenario_);
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));

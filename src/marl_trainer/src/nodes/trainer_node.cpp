@@ -114,6 +114,7 @@ void TrainerNode::Subscribe() {
 
 void TrainerNode::TrainLive() {
   Subscribe();
+  PauseWorld(false);  // a trainer that was killed while it learned left the world paused
   bool finished = false;
   while (ros::ok() && !finished) {
     HandleMessages(0.05);
@@ -201,6 +202,8 @@ void TrainerNode::PauseWorld(bool pause) {
 
 void TrainerNode::Learn() {
   PauseWorld(true);
+  // However this ends: the world does not stand still for ever.
+  const std::shared_ptr<void> resume(nullptr, [this](void*) { PauseWorld(false); });
   const RecordedTrainer::Progress progress = trainer_->Update(collection_);
   ++updates_done_;
   for (const RecordedEpisode& episode : collection_) {
@@ -214,7 +217,6 @@ void TrainerNode::Learn() {
   for (int i = 0; i < scenario_.agents; ++i) LoadPolicy(i);
   last_load_ = ros::WallTime::now();
   StartEpisode();
-  PauseWorld(false);
 }
 
 bool TrainerNode::TargetReached() const {

@@ -124,7 +124,10 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
 }
 
 void AgentNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
-  if (message->header.frame_id != body_frame_) return;
+  if (message->header.frame_id != body_frame_) {
+    refused_syncs_.Add(Refusals::kFrame);
+    return;
+  }
   if (sync_) {
     ++skipped_steps_;
   } else {
@@ -170,7 +173,8 @@ void AgentNode::DecideIfDue() {
 void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
   Cue cue;
   cue.target = -1;  // none
-  if (sync.cue_valid && FiniteVector(sync.cue_position) && sync.cue_std >= 0.0) {
+  if (sync.cue_valid && FiniteVector(sync.cue_position) && Finite(sync.cue_std) &&
+      sync.cue_std >= 0.0) {
     cue.target = agent_.target();
     cue.p_WT = VectorOf(sync.cue_position);
     cue.std_m = sync.cue_std;
@@ -307,6 +311,7 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   refused_odometry_.Report(topics::kOdom, &status);
   refused_detections_.Report(topics::kTargetDetection, &status);
   refused_receptions_.Report(topics::kAcousticRx, &status);
+  refused_syncs_.Report(topics::kSensorSync, &status);
   if (decisions_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no decision yet");
   }

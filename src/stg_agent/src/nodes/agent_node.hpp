@@ -92,7 +92,7 @@ class AgentNode {
 
   EventRate decisions_;
   std::uint64_t skipped_steps_ = 0, missing_windows_ = 0, missing_detections_ = 0;
-  Refusals refused_odometry_, refused_detections_, refused_receptions_;
+  Refusals refused_odometry_, refused_detections_, refused_receptions_, refused_syncs_;
   Health health_;
 };
 

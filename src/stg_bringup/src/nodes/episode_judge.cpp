@@ -157,7 +157,9 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const EpisodeMetrics& e,
   m.saturation_rate = e.saturation_rate;
   m.control_cost = e.control_cost;
   m.communication_quality = e.communication_quality;
+  m.band_rate = e.band_rate;
   m.colliding_pairs = e.colliding_pairs;
+  m.tail_colliding_pairs = e.tail_colliding_pairs;
   m.min_separation = e.min_separation;
   m.time_to_band = e.time_to_band;
   m.deadline_misses = deadline_misses_;

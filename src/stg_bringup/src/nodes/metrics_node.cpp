@@ -18,6 +18,13 @@ namespace {
 /// Without limit: in lockstep nobody waits for this node, and a lost message spoils an episode.
 constexpr std::uint32_t kUnlimited = 0;
 
+/// A text as one field of a CSV file.
+std::string Quoted(std::string text) {
+  for (std::size_t k = 0; (k = text.find('"', k)) != std::string::npos; k += 2)
+    text.insert(k, "\"");
+  return '"' + text + '"';
+}
+
 bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
@@ -35,9 +42,8 @@ MetricsNode::MetricsNode()
       table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       file_name_(TextParameter("summary_file", "")),
       health_("metrics", "simulation", [this](auto& status) { Report(status); }) {
-  if (!file_name_.empty()) {
-    file_.open(file_name_, std::ios::trunc);
-    if (!file_) throw UserError("summary_file: cannot write '" + file_name_ + "'");
+  if (!file_name_.empty() && !std::ofstream(file_name_, std::ios::app)) {
+    throw UserError("summary_file: cannot write '" + file_name_ + "'");
   }
   step_report_ = ros::NodeHandle().advertise<auv_msgs::StepReport>(topics::kStepReport, 1000, true);
   Subscribe();
@@ -73,7 +79,10 @@ void MetricsNode::Subscribe() {
     into_frames(
         topics::AuvTopic(i, topics::kTaskState),
         [u](SwarmFrame & f) -> auto& { return f.tasks[u]; },
-        [](const auto& m) { return Finite(m.graph_summary[1]); });
+        [](const auto& m) {
+          return Finite(m.graph_summary[1]) &&
+                 std::all_of(m.action.begin(), m.action.end(), Finite);
+        });
     into_frames(
         topics::AuvTopic(i, topics::kWrench),
         [u](SwarmFrame & f) -> auto& { return f.wrenches[u]; },
@@ -127,6 +136,7 @@ void MetricsNode::JudgeFrames() {
       const auto& task = frame.tasks[static_cast<std::size_t>(i)];
       if (task) table_.SetPhase(i, task->phase);
     }
+    if (frame.truth && !file_name_.empty() && !file_.is_open()) OpenSummary(frame.truth->episode);
     if (frame.truth) now_s_ = Seconds(period_) * frame.truth->step;
     Publish(judge_.Judge(frame));
   }
@@ -144,6 +154,11 @@ void MetricsNode::Publish(const EpisodeJudge::Verdict& verdict) {
   if (summary_) summary_.publish(verdict.summary);
 }
 
+/// A run begins with episode 0 and an empty file. In any other, this node has died and goes on.
+void MetricsNode::OpenSummary(std::uint32_t episode) {
+  file_.open(file_name_, episode == 0 ? std::ios::trunc : std::ios::app | std::ios::ate);
+}
+
 /// One line per episode: CSV with a header, or for any other file name a JSON object.
 void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
   const auto& s = verdict.summary;
@@ -155,8 +170,8 @@ void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
       for (const auto& item : items) file_ << "," << item.first;
       file_ << "\n";
     }
-    file_ << s.episode << "," << s.seed << "," << s.scenario << "," << s.policy_id << "," << s.steps
-          << "," << (s.complete ? 1 : 0) << "," << s.deadline_misses;
+    file_ << s.episode << "," << s.seed << "," << Quoted(s.scenario) << "," << Quoted(s.policy_id)
+          << "," << s.steps << "," << (s.complete ? 1 : 0) << "," << s.deadline_misses;
     for (const auto& item : items) file_ << "," << item.second;
     file_ << std::endl;
     return;

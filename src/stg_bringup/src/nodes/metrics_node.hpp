@@ -30,6 +30,7 @@ class MetricsNode {
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
   void JudgeFrames();
   void Publish(const EpisodeJudge::Verdict& verdict);
+  void OpenSummary(std::uint32_t episode);
   void WriteSummary(const EpisodeJudge::Verdict& verdict);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 

@@ -27,10 +27,14 @@ inline void SetVector(const Vec3<double>& v, Message* m) {
   m->z = v.z;
 }
 
-inline bool Finite(double x) { return std::isfinite(x); }
+/// Beyond this a number from outside is a fault, and squares of it spoil what they enter.
+inline constexpr double kLargestInput = 1e6;
+
+/// Each of these also refuses numbers beyond kLargestInput.
+inline bool Finite(double x) { return std::abs(x) <= kLargestInput; }
 template <class Message>
 inline bool FiniteVector(const Message& m) {
-  return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.z);
+  return Finite(m.x) && Finite(m.y) && Finite(m.z);
 }
 
 /// Pose in `world`, twist in body axes (REP 103); the message's stamp is nav.stamp + start.
@@ -65,8 +69,11 @@ inline NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
   return NavOf(m.pose.pose, m.twist.twist, NsOf(m.header.stamp) - start);
 }
 
+/// The orientation must be a rotation: a quaternion of length one.
 inline bool FinitePose(const geometry_msgs::Pose& m) {
-  return FiniteVector(m.position) && FiniteVector(m.orientation) && Finite(m.orientation.w);
+  const auto& q = m.orientation;
+  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return FiniteVector(m.position) && std::abs(length - 1.0) <= 1e-3;
 }
 inline bool FiniteTwist(const geometry_msgs::Twist& m) {
   return FiniteVector(m.linear) && FiniteVector(m.angular);

@@ -5,6 +5,7 @@
 #include <sched.h>
 
 #include <csignal>
+#include <exception>
 #include <string>
 
 #include "auv_dynamics/error.hpp"
@@ -30,7 +31,8 @@ inline void WatchOnly() {
 }
 
 /// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
-/// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does.
+/// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
+/// a UserError, 3 after any other exception.
 template <class Node>
 int RunNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
@@ -43,6 +45,9 @@ int RunNode(int argc, char** argv, const std::string& name) {
   } catch (const UserError& error) {
     ROS_FATAL("%s", error.what());
     return 2;
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 3;
   }
   return 0;
 }

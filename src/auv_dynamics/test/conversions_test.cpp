@@ -1,0 +1,56 @@
+// Numbers from outside that a node would trip over are told from those it can use.
+
+#include "auv_dynamics/nodes/conversions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace stg {
+namespace {
+
+nav_msgs::Odometry AtRest() {
+  nav_msgs::Odometry m;
+  m.pose.pose.orientation.w = 1.0;
+  return m;
+}
+
+TEST(FiniteOdometry, TakesOrdinaryNumbersAndThoseOnTheBound) {
+  nav_msgs::Odometry m = AtRest();
+  EXPECT_TRUE(FiniteOdometry(m));
+  m.pose.pose.position.x = -1e6;
+  m.twist.twist.angular.z = 1e6;
+  EXPECT_TRUE(FiniteOdometry(m));
+}
+
+TEST(FiniteOdometry, RefusesNanInfinityAndHugeNumbersInEveryPart) {
+  const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
+                        -std::numeric_limits<double>::infinity(), 1e300, -1.001e6};
+  for (const double x : bad) {
+    nav_msgs::Odometry m = AtRest();
+    m.pose.pose.position.y = x;
+    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    m = AtRest();
+    m.twist.twist.linear.z = x;
+    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    m = AtRest();
+    m.twist.twist.angular.x = x;
+    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    m = AtRest();
+    m.pose.pose.orientation.w = x;
+    EXPECT_FALSE(FiniteOdometry(m)) << x;
+  }
+}
+
+TEST(FinitePose, RefusesAQuaternionThatIsNoRotation) {
+  geometry_msgs::Pose pose;
+  EXPECT_FALSE(FinitePose(pose)) << "all zero";
+  pose.orientation.w = 0.6;
+  pose.orientation.z = -0.8;
+  EXPECT_TRUE(FinitePose(pose));
+  pose.orientation.z = -0.802;
+  EXPECT_FALSE(FinitePose(pose));
+}
+
+}  // namespace
+}  // namespace stg
