@@ -1,8 +1,7 @@
 #!/usr/bin/python3
-"""Measures a built and sourced workspace: environment, trainer and, where there is one, ROS graph.
+"""Measures a built and sourced workspace: environment, trainer and ROS graph (scripts/bench_ros.sh).
 
-Prints a report and writes everything as JSON. scripts/bench_ros.sh joins in when it exists: its
-text is shown, and a JSON object on its last line becomes part of the file.
+Prints a report and writes everything as JSON.
 """
 
 import argparse
@@ -193,19 +192,11 @@ def report_training(summaries):
 
 
 def bench_ros():
-    """The ROS graph's own benchmark, where the repository has one."""
-    script = os.path.join(HERE, "bench_ros.sh")
-    if not os.access(script, os.X_OK):
-        return None
+    """Runs the ROS graph's own benchmark, whose last line is a JSON object."""
     heading("ROS graph")
-    output = run([script])
-    lines = output.strip().splitlines()
-    try:
-        result = json.loads(lines[-1])
-        lines = lines[:-1]
-    except (ValueError, IndexError):
-        result = {"text": output}
-    print("\n".join(lines), flush=True)
+    result = json.loads(run([os.path.join(HERE, "bench_ros.sh")]).strip().splitlines()[-1])
+    for name, figure in result.items():
+        print(f"{name.replace('_', ' '):32s} {figure}", flush=True)
     return result
 
 
