@@ -70,11 +70,12 @@ int main(int argc, char** argv) {
   try {
     const stg::Scenario s = stg::ValidationScenario(
         stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, overrides), variant);
+    std::string full = policy;
     for (const auto& [name, value] : constants) {
       if (value.empty()) continue;
-      policy += (policy.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
+      full += (full.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
     }
-    stg::Controller controller = stg::MakeController(policy, s);
+    stg::Controller controller = stg::MakeController(full, s);
     controller.privileged = privileged;
     const auto metrics = stg::Evaluate(s, controller, episodes, seed, workers, [&](int done) {
       std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
