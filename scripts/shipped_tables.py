@@ -15,10 +15,8 @@ CONDITIONS = (
     "nominal", "fast_target", "far_initialization", "limited_sensing", "degraded_communication",
     "combined_stress",
 )
-TEACHER = (
-    "pursuit_separated:gain=1.5,cap=0.95,standoff=0.0144,repulsion=2,repulsion-range=0.0385,"
-    "feedforward=1.21,approach-speed=0.001,approach-gain=0.87"
-)
+with open(os.path.join(os.path.dirname(os.path.realpath(__file__)), "shipped_teacher.txt")) as _file:
+    TEACHER = _file.read().strip()
 RETUNED = "pursuit_separated:gain=2,cap=0.58,standoff=0.0144,repulsion=1.4,repulsion-range=0.029"
 SILENCE = ("--set", "channel.loss_probability=1.0")
 COLUMNS = (

@@ -8,8 +8,7 @@ set -euo pipefail
 scenario=$1 out=$2
 shift 2
 
-teacher=pursuit_separated:gain=1.5,cap=0.95,standoff=0.0144,repulsion=2,repulsion-range=0.0385
-teacher+=,feedforward=1.21,approach-speed=0.001,approach-gain=0.87
+teacher=$(<"$(dirname "$(readlink -f "$0")")/shipped_teacher.txt")
 # Poor links need the most practice.
 poor=degraded_communication,combined_stress
 conditions=nominal,$poor,fast_target,$poor,far_initialization,$poor,limited_sensing,$poor

@@ -158,5 +158,21 @@ TEST(Idle, DoesNotMove) {
   }
 }
 
+TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
+  const auto actions = [](const char* mode, bool privileged) {
+    const Scenario s = LoadNamedScenario(ScenarioFolder(), "medium", "nominal",
+                                         {std::string("mode=") + mode});
+    EnvGroup env(s, EnvOptions());
+    env.Reset();
+    Controller controller = MakeController("pursuit_separated", s);
+    controller.privileged = privileged;
+    std::vector<double> a(static_cast<size_t>(kLanes * env.agents() * env.action_size()));
+    Decide(controller, env, a.data());
+    return a;
+  };
+  EXPECT_EQ(actions("acoustic", true), actions("truth", false));
+  EXPECT_NE(actions("acoustic", false), actions("truth", false));  // a cue is 5 cm off
+}
+
 }  // namespace
 }  // namespace stg

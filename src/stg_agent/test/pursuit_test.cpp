@@ -111,6 +111,20 @@ TEST(Pursuit, ANameMayCarryConstantsAndAWrongOneIsRefused) {
   }
 }
 
+TEST(Pursuit, ApproachIsUnhurriedAndTheHoldStaysStiff) {
+  PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  o.gain_per_s = 3.0;
+  o.approach_speed_mps = 0.01;
+  o.approach_gain_per_s = 0.5;
+  const VehicleConfig vehicle;
+  // Distance beyond the standoff and the speed it asks for; 0.004 m is where the two meet.
+  for (const auto& [error, speed] : {std::pair{-0.002, -0.006}, {0.002, 0.006}, {0.1, 0.06}}) {
+    double a[3];
+    PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m + error, 0.0}, V{}, nullptr, 0, a);
+    EXPECT_NEAR(a[1] * vehicle.max_velocity_mps[1], speed, 1e-12) << error;
+  }
+}
+
 TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
   PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
   o.feedforward = 1.5;
