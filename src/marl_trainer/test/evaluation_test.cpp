@@ -160,8 +160,8 @@ TEST(Idle, DoesNotMove) {
 
 TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
   const auto actions = [](const char* mode, bool privileged) {
-    const Scenario s = LoadNamedScenario(ScenarioFolder(), "medium", "nominal",
-                                         {std::string("mode=") + mode});
+    const Scenario s =
+        LoadNamedScenario(ScenarioFolder(), "medium", "nominal", {std::string("mode=") + mode});
     EnvGroup env(s, EnvOptions());
     env.Reset();
     Controller controller = MakeController("pursuit_separated", s);
