@@ -91,6 +91,12 @@ class Graph(unittest.TestCase):
         self.assertEqual(given["/auv_0/agent/policy"], "pursuit:cap=0.5")
         self.assertEqual(given["/metrics/summary_file"], "")
 
+    def test_real_time_priority_is_for_runs_at_the_pace_of_the_wall_clock(self):
+        for factor, priority in (("1.0", 10), ("0.5", 10), ("0", 0), ("20", 0)):
+            given = self.parameters(f"real_time_factor:={factor}")
+            self.assertEqual(given["/realtime_priority"], priority, factor)
+        self.assertEqual(self.parameters("realtime_priority:=0")["/realtime_priority"], 0)
+
     def test_recording_holds_every_target_a_scenario_may_have(self):
         config = load(LAUNCH / "medium.launch", ["record:=true"])
         (recorder,) = (node for node in config.nodes if node.name == "recorder")

@@ -46,7 +46,7 @@ ChannelNode::ChannelNode()
 }
 
 void ChannelNode::Spin() {
-  PollLoop([this] { return Work(); });
+  PollLoop([this] { return Work(); }, RealtimePriorityParameter());
 }
 
 double ChannelNode::Work() {

@@ -40,7 +40,7 @@ ControllerNode::ControllerNode()
 }
 
 void ControllerNode::Spin() {
-  PollLoop([this] { return Work(); });
+  PollLoop([this] { return Work(); }, RealtimePriorityParameter());
 }
 
 double ControllerNode::Work() { return health_.TickWhenQuiet(busy_); }

@@ -3,6 +3,7 @@
 #include <ros/callback_queue.h>
 #include <ros/poll_manager.h>
 #include <ros/ros.h>
+#include <sched.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
@@ -11,10 +12,14 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <mutex>
 #include <system_error>
+#include <utility>
+
+#include "auv_dynamics/nodes/parameters.hpp"
 
 namespace stg {
 namespace {
@@ -66,16 +71,30 @@ class Alarm {
   std::shared_ptr<State> state_;
 };
 
+/// Gives the calling thread a real-time priority. Threads that it starts are ordinary again.
+void RunInRealTime(int priority) {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  if (sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &parameters) != 0) {
+    ROS_INFO("no real-time priority: %s; delays depend on what else runs here",
+             std::strerror(errno));
+  }
+}
+
 }  // namespace
 
-void PollLoop(const std::function<double()>& work) {
+int RealtimePriorityParameter() { return IntegerParameter("realtime_priority", 0, 0, 99); }
+
+void PollLoop(const std::function<double()>& work, int realtime_priority) {
   std::mutex mutex;
   std::condition_variable changed;
   std::exception_ptr failure;
   bool done = false;
+  bool to_promote = realtime_priority > 0;
   Alarm alarm;
   const auto round = [&] {
     if (done || !ros::ok()) return;
+    if (std::exchange(to_promote, false)) RunInRealTime(realtime_priority);
     double wait_s = kLoopDone;
     std::exception_ptr thrown;
     try {

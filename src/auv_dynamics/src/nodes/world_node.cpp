@@ -60,7 +60,7 @@ WorldNode::WorldNode()
 }
 
 void WorldNode::Spin() {
-  PollLoop([this] { return Work(); });
+  PollLoop([this] { return Work(); }, RealtimePriorityParameter());
 }
 
 double WorldNode::Work() {

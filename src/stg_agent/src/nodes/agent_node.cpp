@@ -65,7 +65,7 @@ AgentNode::AgentNode()
 }
 
 void AgentNode::Spin() {
-  PollLoop([this] { return Work(); });
+  PollLoop([this] { return Work(); }, RealtimePriorityParameter());
 }
 
 double AgentNode::Work() {

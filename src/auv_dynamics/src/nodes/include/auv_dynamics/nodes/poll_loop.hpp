@@ -20,6 +20,12 @@ inline constexpr double kLoopDone = -1.0;
 /// seconds of wall time after which it wants to be called again even without a message (coarser
 /// than 0.1 s: as often), or kLoopDone. Returns when `work` is done or ROS shuts down; what `work`
 /// or a callback throws is thrown here.
-void PollLoop(const std::function<double()>& work);
+/// @param realtime_priority 1 to 99: the thread runs at this real-time priority (SCHED_RR), before
+///        all ordinary threads of the machine; where the system does not permit it the node says so
+///        once and runs as an ordinary one. 0: ordinary.
+void PollLoop(const std::function<double()>& work, int realtime_priority = 0);
+
+/// The parameter `realtime_priority` of a node or of the whole graph, default 0. Throws UserError.
+int RealtimePriorityParameter();
 
 }  // namespace stg

@@ -1,0 +1,52 @@
+#!/usr/bin/python3
+"""On the wall clock, the thread of each node that a wrench waits for has a real-time priority."""
+
+import os
+import pathlib
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import WrenchStamped
+from graph_listener import Latest, rosnode_pid
+
+PRIORITY = 7  # as in realtime.test
+ON_THE_WAY = ["/world", "/acoustic_channel", "/auv_0/agent", "/auv_3/agent", "/auv_0/controller"]
+
+
+def permitted():
+    """Tells whether this system gives a process of this user a real-time priority."""
+    before = os.sched_getscheduler(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
+    except PermissionError:
+        return False
+    os.sched_setscheduler(0, before, os.sched_param(0))
+    return True
+
+
+def realtime_threads(node):
+    """Returns the priority of each thread of a node that has one."""
+    tasks = pathlib.Path(f"/proc/{rosnode_pid(node)}/task")
+    threads = [int(entry.name) for entry in tasks.iterdir()]
+    return [os.sched_getparam(thread).sched_priority for thread in threads
+            if os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_RR]
+
+
+class Realtime(unittest.TestCase):
+    """A run at the pace of the wall clock."""
+
+    def test_one_thread_of_each_node_on_the_way_goes_first(self):
+        Latest("/auv_0/wrench", WrenchStamped).wait_for_more(5, 30.0)
+        expected = [PRIORITY] if permitted() else []
+        for node in ON_THE_WAY:
+            self.assertEqual(realtime_threads(node), expected, node)
+
+    def test_who_only_watches_has_none(self):
+        Latest("/auv_0/wrench", WrenchStamped).wait_for_more(5, 30.0)
+        self.assertEqual(realtime_threads("/metrics"), [])
+
+
+if __name__ == "__main__":
+    rospy.init_node("realtime_test")
+    rostest.rosrun("stg_bringup", "realtime", Realtime)
