@@ -17,6 +17,7 @@ import visualization_msgs.msg
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import synthetic_bag  # noqa: E402  (lies beside this file)
+from graph_listener import Diagnostics, wait_for  # noqa: E402
 
 Marker = visualization_msgs.msg.Marker
 TASK = auv_msgs.msg.TaskState
@@ -75,6 +76,7 @@ class Markers(unittest.TestCase):
             return rospy.Subscriber(f"/markers/{view}", kind, on_array)
 
         cls.subscribers = [listen(view) for view in cls.arrays]
+        cls.diagnostics = Diagnostics()
         cls.run_under_test = Run()
         cls.step = 0
 
@@ -140,6 +142,10 @@ class Markers(unittest.TestCase):
             for marker in self.arrays[view]:
                 for p in [marker.pose.position, *marker.points]:
                     self.assertTrue(math.isfinite(p.x + p.y + p.z), marker.ns)
+        wait_for(lambda: self.diagnostics.value("markers", "refused odom: not finite"), 10.0,
+                 "refused odometry in the diagnostics")
+        wait_for(lambda: self.diagnostics.value("markers", "AUVs seen") == synthetic_bag.AGENTS,
+                 10.0, "all AUVs in the diagnostics")
 
     def test_no_marker_is_one_that_rviz_complains_about(self):
         self.publish_until(lambda: self.shown("close", "hull"), "a hull")

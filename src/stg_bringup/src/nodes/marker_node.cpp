@@ -17,6 +17,7 @@
 #include <regex>
 
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_dynamics/nodes/health.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marker_builder.hpp"
@@ -54,7 +55,8 @@ bool Finite(const geometry_msgs::Point& p) {
 
 class MarkerNode {
  public:
-  MarkerNode() : private_nh_("~") {
+  MarkerNode()
+      : private_nh_("~"), health_("markers", "view", [this](auto& status) { Report(status); }) {
     private_nh_.param("overview/vehicle_scale", overview_.vehicle_scale, 8.0);
     private_nh_.param("close/vehicle_scale", close_.vehicle_scale, 1.0);
     private_nh_.param("overview/trail_s", overview_.trail_s, 60.0);
@@ -168,7 +170,7 @@ class MarkerNode {
   }
 
   void OnOdom(std::size_t i, const nav_msgs::Odometry& odom) {
-    if (!Finite(odom.pose.pose.position)) return;
+    if (!Finite(odom.pose.pose.position)) return refused_.Add(Refusals::kNotFinite);
     Advance(odom.header.stamp);
     VehicleView& v = view_.vehicles[i];
     v.seen = true;
@@ -177,7 +179,7 @@ class MarkerNode {
   }
 
   void OnTarget(std::size_t k, const nav_msgs::Odometry& odom) {
-    if (!Finite(odom.pose.pose.position)) return;
+    if (!Finite(odom.pose.pose.position)) return refused_.Add(Refusals::kNotFinite);
     MovingTarget& t = view_.targets[k];
     t.seen = true;
     t.position = odom.pose.pose.position;
@@ -234,10 +236,28 @@ class MarkerNode {
     }
     Draw(overview_, &overview_pub_);
     Draw(close_, &close_pub_);
+    health_.Tick();
   }
 
   void Draw(const MarkerStyle& style, ros::Publisher* publisher) {
-    if (publisher->getNumSubscribers() > 0) publisher->publish(BuildMarkers(view_, style));
+    if (publisher->getNumSubscribers() == 0) return;
+    publisher->publish(BuildMarkers(view_, style));
+    drawn_.Add();
+  }
+
+  void Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+    const auto seen = [](const auto& all) {
+      return std::count_if(all.begin(), all.end(), [](const auto& one) { return one.seen; });
+    };
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+    status.add("AUVs seen", seen(view_.vehicles));
+    status.add("targets seen", seen(view_.targets));
+    status.add("views drawn per second",
+               static_cast<double>(drawn_.TakeRecent()) / health_.period_s());
+    refused_.Report(topics::kOdom, &status);
+    if (seen(view_.vehicles) == 0) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no AUV to be seen");
+    }
   }
 
   ros::NodeHandle nh_, private_nh_;
@@ -247,6 +267,9 @@ class MarkerNode {
   ros::Subscriber scenario_sub_, links_sub_;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer draw_timer_, discover_timer_;
+  Health health_;
+  EventRate drawn_;
+  Refusals refused_;
 };
 
 }  // namespace
