@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "marl_trainer/ppo.hpp"
+#include "stg_agent/gaussian.hpp"
 
 namespace stg {
 
@@ -50,7 +51,7 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
   float inverse_std[kMaxActions], sum_log_std = 0.0F;
   for (int a = 0; a < size; ++a) {
     inverse_std[a] = std::exp(-log_std[a]);
-    sum_log_std += log_std[a] + 0.918938533F;  // log sqrt(2 pi)
+    sum_log_std += log_std[a] + kHalfLogTwoPi;
   }
   double d_sigma[kMaxActions] = {};
   const float* action = batch.actions;

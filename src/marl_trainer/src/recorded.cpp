@@ -5,10 +5,11 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "stg_agent/gaussian.hpp"
+
 namespace stg {
 namespace {
 
-constexpr double kHalfLogTwoPi = 0.9189385332046727;
 constexpr std::size_t kOpenEpisodes = 2;
 
 bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
@@ -219,15 +220,8 @@ Finding EpisodeChecker::CheckStep(const AgentRecord& r) const {
 double EpisodeChecker::LogProbability(const AgentRecord& r) const {
   std::vector<float> mean(r.action.size());
   policy_.Mean(r.observation.data(), mean.data());
-  double sum = 0.0;
-  for (std::size_t a = 0; a < mean.size(); ++a) {
-    const auto log_std =
-        static_cast<double>(policy_.parameters().log_std[static_cast<Eigen::Index>(a)]);
-    const double z =
-        (static_cast<double>(r.action[a]) - static_cast<double>(mean[a])) * std::exp(-log_std);
-    sum -= 0.5 * z * z + log_std + kHalfLogTwoPi;
-  }
-  return sum;
+  return GaussianLogDensity(mean.data(), policy_.parameters().log_std.data(), r.action.data(),
+                            static_cast<int>(mean.size()));
 }
 
 std::uint32_t LayoutVersion(const Scenario& scenario) {

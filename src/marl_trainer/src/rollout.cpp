@@ -7,6 +7,7 @@
 
 #include "auv_dynamics/random.hpp"
 #include "marl_trainer/gae.hpp"
+#include "stg_agent/gaussian.hpp"
 
 namespace stg {
 namespace {
@@ -159,17 +160,11 @@ void RolloutUnit::ActRandomly(const float* parameters, std::uint32_t collection,
   const float* log_std = parameters + networks_.log_std_offset();
   float* action = buffer_.actions.data() + Size(t, rows, size);
   float* log_prob = buffer_.log_prob.data() + Size(t, rows);
-  const float half_log_two_pi = 0.918938533F;
-  for (int r = 0; r < rows; ++r) {
+  std::copy_n(mean, rows * size, action);
+  for (int r = 0; r < rows; ++r, action += size) {
     Random random(seed_, Stream::kPolicy, collection, static_cast<std::uint32_t>(t),
                   static_cast<std::uint32_t>(first_env_ * agents_ + r));
-    float sum = 0.0F;
-    for (int a = 0; a < size; ++a, ++action, ++mean) {
-      const float z = static_cast<float>(random.Normal());
-      *action = *mean + std::exp(log_std[a]) * z;
-      sum -= 0.5F * z * z + log_std[a] + half_log_two_pi;
-    }
-    log_prob[r] = sum;
+    log_prob[r] = SampleGaussian(log_std, size, &random, action);
   }
 }
 

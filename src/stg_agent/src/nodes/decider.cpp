@@ -1,11 +1,11 @@
 #include "decider.hpp"
 
-#include <cmath>
 #include <fstream>
 
 #include "auv_dynamics/error.hpp"
 #include "auv_dynamics/random.hpp"
 #include "auv_dynamics/scenario_yaml.hpp"
+#include "stg_agent/gaussian.hpp"
 
 namespace stg {
 
@@ -44,16 +44,9 @@ void Decider::Mean(const Agent& agent, const float* observation, float* action) 
 
 float Decider::Explore(std::uint64_t seed, std::uint32_t step, int agent, float* action) const {
   if (!policy_) return 0.0F;
-  constexpr float kHalfLogTwoPi = 0.918938533F;
   const Eigen::VectorXf& log_std = policy_->parameters().log_std;
   Random random(seed, Stream::kPolicy, 0, step, static_cast<std::uint32_t>(agent));
-  float log_density = 0.0F;
-  for (Eigen::Index k = 0; k < log_std.size(); ++k) {
-    const float z = static_cast<float>(random.Normal());
-    action[k] += std::exp(log_std[k]) * z;
-    log_density -= 0.5F * z * z + log_std[k] + kHalfLogTwoPi;
-  }
-  return log_density;
+  return SampleGaussian(log_std.data(), static_cast<int>(log_std.size()), &random, action);
 }
 
 }  // namespace stg
