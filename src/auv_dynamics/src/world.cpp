@@ -12,7 +12,7 @@ namespace stg {
 
 World::World(const Scenario& scenario)
     : scenario_(scenario),
-      dt_ns_(static_cast<TimeNs>(std::llround(scenario.time.dt_s * 1e9))) {
+      dt_ns_(scenario.step_period()) {
   scenario_.ValidateOrThrow();
   model_ = std::make_unique<VehicleModel>(scenario_.vehicle);
   const auto n = static_cast<size_t>(scenario_.agents);

@@ -33,7 +33,7 @@ Agent::Constants::Constants(const Scenario& s)
       codec(s),
       slots(
           static_cast<int>(Max(1.0, std::round(s.channel.transmit_period_s / s.decision_dt_s())))),
-      period(static_cast<TimeNs>(std::llround(s.time.dt_s * 1e9)) * s.time.decision_steps) {}
+      period(s.decision_period()) {}
 
 Agent::Agent(const Scenario& scenario, int id)
     : Agent(std::make_shared<const Constants>(scenario), id) {}

@@ -3,7 +3,6 @@
 #include <std_msgs/Header.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
@@ -22,8 +21,7 @@ constexpr std::uint32_t kQueue = 50;
 ChannelNode::ChannelNode()
     : scenario_(LoadScenarioParameters()),
       channel_(MakeChannel(scenario_)),
-      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
-              scenario_.time.decision_steps),
+      period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
       auvs_(static_cast<std::size_t>(scenario_.agents)),

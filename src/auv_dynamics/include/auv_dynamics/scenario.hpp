@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "auv_dynamics/simd.hpp"
+#include "auv_dynamics/types.hpp"
 
 /// A scenario: everything a run depends on besides a seed and a policy.
 ///
@@ -229,6 +231,9 @@ struct Scenario {
   void ValidateOrThrow() const;
 
   double decision_dt_s() const { return time.dt_s * time.decision_steps; }
+  /// The same times in whole nanoseconds, in which stamps are counted: they never drift.
+  TimeNs step_period() const { return static_cast<TimeNs>(std::llround(time.dt_s * 1e9)); }
+  TimeNs decision_period() const { return step_period() * time.decision_steps; }
   /// Target that agent i is tasked with: i modulo the number of targets.
   int target_of(int agent) const { return agent % target.count; }
   int action_size() const { return control.interface == ActionInterface::kVelocity3 ? 3 : 6; }

@@ -1,6 +1,5 @@
 #include "controller_node.hpp"
 
-#include <cmath>
 
 #include "auv_dynamics/control.hpp"
 #include "auv_dynamics/error.hpp"
@@ -21,8 +20,7 @@ ControllerNode::ControllerNode()
     : scenario_(LoadScenarioParameters()),
       id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
       body_frame_(frames::Body(id_)),
-      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
-              scenario_.time.decision_steps),
+      period_(scenario_.decision_period()),
       health_("velocity controller", topics::Auv(id_).substr(1),
               [this](auto& status) { Report(status); }) {
   if (scenario_.control.interface != ActionInterface::kVelocity3) {

@@ -1,7 +1,6 @@
 #include "world_node.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/node_main.hpp"
@@ -26,8 +25,7 @@ constexpr double kViewDelay_s = 0.005;
 WorldNode::WorldNode()
     : scenario_(LoadScenarioParameters()),
       world_(scenario_),
-      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
-              scenario_.time.decision_steps),
+      period_(scenario_.decision_period()),
       real_time_factor_(NumberParameter("real_time_factor", 1.0, 0.0, 1000.0)),
       deadline_s_(NumberParameter("deadline", 0.5, 0.001, 3600.0)),
       start_timeout_s_(NumberParameter("start_timeout", 30.0, 0.0, 3600.0)),

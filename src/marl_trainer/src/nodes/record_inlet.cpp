@@ -1,14 +1,12 @@
 #include "record_inlet.hpp"
 
-#include <cmath>
 
 #include "auv_dynamics/nodes/conversions.hpp"
 
 namespace stg {
 
 RecordInlet::RecordInlet(const Scenario& scenario, const std::string& source)
-    : period_(static_cast<TimeNs>(std::llround(scenario.time.dt_s * 1e9)) *
-              scenario.time.decision_steps),
+    : period_(scenario.decision_period()),
       agents_(scenario.agents),
       episodes_(scenario, source) {}
 

@@ -29,8 +29,7 @@ AgentNode::AgentNode()
       agent_(scenario_, id_),
       decider_(
           std::make_unique<const Decider>(TextParameter("policy", "pursuit_separated"), scenario_)),
-      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
-              scenario_.time.decision_steps),
+      period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),

@@ -1,7 +1,6 @@
 #include "metrics_node.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "acoustic_channel/nodes/topics.hpp"
@@ -33,8 +32,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
 
 MetricsNode::MetricsNode()
     : scenario_(LoadScenarioParameters()),
-      period_(static_cast<TimeNs>(std::llround(scenario_.time.dt_s * 1e9)) *
-              scenario_.time.decision_steps),
+      period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
       frames_(scenario_.agents),
