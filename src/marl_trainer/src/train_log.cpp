@@ -55,7 +55,7 @@ std::string Header() {
   return header;
 }
 
-/// Rows of an earlier session that a resumed run does not repeat.
+/// Rows from before an interruption that a resumed run does not repeat.
 std::string KeptRows(const std::string& path, std::int64_t resume_at) {
   std::ifstream in(path);
   std::string kept, line;

@@ -14,7 +14,7 @@ namespace stg {
 /// What one collection and its update measured.
 struct TrainRecord {
   std::int64_t env_steps = 0, collections = 0;
-  double wall_seconds = 0.0;  ///< since the start of the run, all sessions
+  double wall_seconds = 0.0;  ///< since the start of the run, interruptions left out
   double learning_rate = 0.0;
   // Training episodes that ended in this collection, with exploration and the training reward.
   int episodes = 0;
