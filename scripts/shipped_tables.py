@@ -17,7 +17,10 @@ CONDITIONS = (
 )
 with open(os.path.join(os.path.dirname(os.path.realpath(__file__)), "shipped_teacher.txt")) as _file:
     TEACHER = _file.read().strip()
-RETUNED = "pursuit_separated:gain=2,cap=0.58,standoff=0.0144,repulsion=1.4,repulsion-range=0.029"
+RETUNED = (
+    "pursuit_separated:gain=2,cap=0.58,standoff=0.0144,repulsion=1.4,repulsion-range=0.029,"
+    "wall-margin=0.015"
+)
 SILENCE = ("--set", "channel.loss_probability=1.0")
 COLUMNS = (
     ("return", 1), ("return_std", 1), ("tail_distance", 4), ("tracking_error", 5),

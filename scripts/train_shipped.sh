@@ -21,8 +21,9 @@ stage() {
   local resume=()
   if compgen -G "$folder/checkpoint_*.pt" >/dev/null; then resume=(--resume); fi
   rosrun marl_trainer train --scenario "$scenario" --out "$folder" --train-on "$conditions" \
-    --envs 96 --actor-hidden 128,128 --std-scale 0.3 --min-log-std -8 --max-log-std -2 \
-    --lr-final 0.01 --validation-interval 480000 --set reward.weights.separation=0.1 \
+    --envs 96 --actor-hidden 128,128 --activation relu --std-scale 0.3 --min-log-std -8 \
+    --max-log-std -2 --lr-final 0.01 --validation-interval 480000 \
+    --set reward.weights.separation=0.1 \
     --set reward.separation_distance_m=0.0233 "${resume[@]}" "$@"
 }
 imitation=(--imitate "$teacher" --privileged-teacher true)

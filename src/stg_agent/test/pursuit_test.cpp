@@ -125,6 +125,26 @@ TEST(Pursuit, ApproachIsUnhurriedAndTheHoldStaysStiff) {
   }
 }
 
+TEST(Pursuit, ATargetAtTheWallIsTakenToStandOffIt) {
+  const V p_WB{0.97, 0.0, -0.99};
+  V r_BT_W{0.025, 0.4, -0.01}, v_WT{0.02, 0.01, -0.03};
+  KeepFromWalls(1.0, 0.015, p_WB, &r_BT_W, &v_WT);
+  // The target is at (0.995, 0.4, -1): x and z lie beyond 0.985, y does not.
+  EXPECT_NEAR(r_BT_W.x, 0.985 - 0.97, 1e-15);
+  EXPECT_NEAR(r_BT_W.y, 0.4, 1e-15);
+  EXPECT_NEAR(r_BT_W.z, 0.99 - 0.985, 1e-15);
+  EXPECT_EQ(v_WT.x, 0.0);
+  EXPECT_EQ(v_WT.y, 0.01);
+  EXPECT_EQ(v_WT.z, 0.0);
+}
+
+TEST(Pursuit, WithoutAMarginTheWallChangesNothing) {
+  V r_BT_W{0.025, 0.4, -0.01}, v_WT{0.02, 0.01, -0.03};
+  KeepFromWalls(1.0, 0.0, V{0.97, 0.0, -0.99}, &r_BT_W, &v_WT);
+  EXPECT_EQ(r_BT_W.x, 0.025);
+  EXPECT_EQ(v_WT.z, -0.03);
+}
+
 TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
   PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
   o.feedforward = 1.5;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "auv_dynamics/scenario.hpp"
@@ -25,6 +26,9 @@ struct PursuitOptions {
   /// a stiff hold after an unhurried approach. Both 0: no such limit.
   double approach_speed_mps = 0.0;
   double approach_gain_per_s = 0.0;
+  /// A target closer to a wall than this is taken to stand that far from it: on the wall itself the
+  /// AUVs would have half a sphere to spread over, where four of them cannot but touch. 0: not so.
+  double wall_margin_m = 0.0;
 };
 
 /// Calls visit(name, field, description) for every constant that a user may set; one list for
@@ -39,6 +43,7 @@ void VisitPursuitOptions(Options& o, Visitor&& visit) {
   visit("feedforward", o.feedforward, "pursuit: share of the target's velocity that is added");
   visit("approach-speed", o.approach_speed_mps, "pursuit: speed from which the gain falls [m/s]");
   visit("approach-gain", o.approach_gain_per_s, "pursuit: gain from there on [1/s]");
+  visit("wall-margin", o.wall_margin_m, "pursuit: targets are kept this far from the walls [m]");
 }
 
 /// The tuned constants of a controller.
@@ -86,6 +91,23 @@ inline void PursuitAction(const PursuitOptions& o, const VehicleConfig& vehicle,
   action[0] = Clip(v.x * T(1.0 / vmax[0]), T(-o.cap), T(o.cap));
   action[1] = Clip(v.y * T(1.0 / vmax[1]), T(-o.cap), T(o.cap));
   action[2] = Clip(v.z * T(1.0 / vmax[2]), T(-o.cap), T(o.cap));
+}
+
+/// Moves a target that is closer to a wall than the margin away from it, and takes the velocity
+/// towards or off that wall from it.
+template <class T>
+inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& p_WB,
+                          Vec3<T>* r_BT_W, Vec3<T>* v_WT) {
+  if (margin_m <= 0.0) return;
+  const T limit(std::max(half_extent_m - margin_m, 0.0)), zero(0.0);
+  const auto keep = [&](const T& own, T* offset, T* velocity) {
+    const T position = own + *offset;
+    *velocity = Select(limit < Abs(position), zero, *velocity);
+    *offset = Clip(position, -limit, limit) - own;
+  };
+  keep(p_WB.x, &r_BT_W->x, &v_WT->x);
+  keep(p_WB.y, &r_BT_W->y, &v_WT->y);
+  keep(p_WB.z, &r_BT_W->z, &v_WT->z);
 }
 
 class Agent;
