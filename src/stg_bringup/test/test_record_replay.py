@@ -119,17 +119,19 @@ class RecordReplay(unittest.TestCase):
         self.assertEqual(len(reports[-1].final_state), len(reports[-1].global_state))
 
     def test_replay_publishes_what_was_recorded(self):
+        # The delay gives the recorder time to subscribe, also on a busy machine.
         process, environment = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
-                                      "rate:=4")
+                                      "rate:=4", "delay:=8")
         try:
             output = self.folder / "replayed.bag"
             end = time.monotonic() + 20.0
             while not rosgraph.is_master_online(environment["ROS_MASTER_URI"]):
                 self.assertLess(time.monotonic(), end, "no master")
                 time.sleep(0.1)
-            with subprocess.Popen(["rosbag", "record", "-q", "-O", str(output), "/auv_0/odom",
-                                   "/auv_3/task_state"], env=environment) as recorder:
-                process.wait(timeout=30)
+            with subprocess.Popen(["rosrun", "rosbag", "record", "-q", "-O", str(output),
+                                   "/auv_0/odom", "/auv_3/task_state"],
+                                  env=environment) as recorder:
+                process.wait(timeout=40)
                 recorder.send_signal(signal.SIGINT)
                 recorder.wait(timeout=10)
         finally:
