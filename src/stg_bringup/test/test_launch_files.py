@@ -97,6 +97,13 @@ class Graph(unittest.TestCase):
             self.assertEqual(given["/realtime_priority"], priority, factor)
         self.assertEqual(self.parameters("realtime_priority:=0")["/realtime_priority"], 0)
 
+    def test_in_lockstep_each_waits_less_long_than_those_who_wait_for_it(self):
+        # A stall that somebody gives up on makes a lockstep run another one.
+        given = self.parameters("real_time_factor:=0", "deadline:=5")
+        waits = [given["/acoustic_channel/timeout"], given["/auv_0/agent/patience"],
+                 given["/world/deadline"]]
+        self.assertEqual(waits, [2.0, 4.0, 5.0])
+
     def test_recording_holds_every_target_a_scenario_may_have(self):
         config = load(LAUNCH / "medium.launch", ["record:=true"])
         (recorder,) = (node for node in config.nodes if node.name == "recorder")

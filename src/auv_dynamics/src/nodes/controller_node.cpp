@@ -1,6 +1,5 @@
 #include "controller_node.hpp"
 
-
 #include "auv_dynamics/control.hpp"
 #include "auv_dynamics/error.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"

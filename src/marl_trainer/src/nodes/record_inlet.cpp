@@ -1,6 +1,5 @@
 #include "record_inlet.hpp"
 
-
 #include "auv_dynamics/nodes/conversions.hpp"
 
 namespace stg {
