@@ -26,9 +26,7 @@ void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
     }
     Pack a[6];
     const Knowledge<Pack>& k = env.truth(i);
-    Vec3<Pack> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
-    KeepFromWalls(s.workspace.half_extent_m, c.options.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
-    PursuitAction(c.options, s.vehicle, r_BT_W, v_WT, neighbours.data(), count, a);
+    PursuitAction(c.options, s, k, neighbours.data(), count, a);
     if (s.control.interface == ActionInterface::kTau6) {
       const VehicleState<Pack>& v = env.world().vehicle(i);
       Pack fraction[6];

@@ -83,9 +83,7 @@ void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent&
       count = agent.neighbours().Nearest(kMaxRepelling, ids);
       for (int j = 0; j < count; ++j) offsets[j] = agent.neighbours().at(ids[j]).r_BN_W;
     }
-    Vec3<double> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
-    KeepFromWalls(s.workspace.half_extent_m, options.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
-    PursuitAction(options, s.vehicle, r_BT_W, v_WT, offsets, count, a);
+    PursuitAction(options, s, k, offsets, count, a);
   }
   if (s.control.interface == ActionInterface::kTau6 && kind != BuiltinKind::kIdle) {
     const Vec3<double> v_des_W = DesiredVelocity(s.vehicle, a);

@@ -5,6 +5,7 @@
 
 #include "auv_dynamics/scenario.hpp"
 #include "auv_dynamics/simd.hpp"
+#include "stg_agent/observation.hpp"
 
 /// Built-in controllers: what a policy has to beat.
 namespace stg {
@@ -108,6 +109,15 @@ inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& 
   keep(p_WB.x, &r_BT_W->x, &v_WT->x);
   keep(p_WB.y, &r_BT_W->y, &v_WT->y);
   keep(p_WB.z, &r_BT_W->z, &v_WT->z);
+}
+
+/// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
+template <class T>
+inline void PursuitAction(const PursuitOptions& o, const Scenario& scenario, const Knowledge<T>& k,
+                          const Vec3<T>* r_BN_W, int count, T* action) {
+  Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
+  KeepFromWalls(scenario.workspace.half_extent_m, o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
+  PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, r_BN_W, count, action);
 }
 
 class Agent;
