@@ -4,6 +4,7 @@
 
 #include "auv_dynamics/error.hpp"
 #include "auv_dynamics/simd.hpp"
+#include "marl_trainer/actor_critic.hpp"
 
 namespace stg {
 namespace {
@@ -60,6 +61,11 @@ void TrainConfig::ValidateOrThrow() const {
   RequireRange("imitation-share", imitation_share, 0.0, 1.0);
   RequireRange("imitation-focus", imitation_focus, 0.0, 4.0);
   RequireRange("std-scale", std_scale, 1e-3, 1e3);
+  RequireRange("wall-units", wall_units, 0.0, 1e3);
+  Require(wall_units == 0.0 || !start_from.empty(), "wall-units",
+          "needs the normalisers of another run: --start-from");
+  Require(wall_units == 0.0 || (activation == "relu" && actor_hidden[0] >= ActorCritic::kWallUnits),
+          "wall-units", "needs --activation relu and 24 units in the actor's first layer");
   RequireRange("validation-interval", static_cast<double>(validation_interval), 1, 1e12);
   RequireRange("validation-episodes", validation_episodes, 1, 10000);
   RequireRange("checkpoint-interval", static_cast<double>(checkpoint_interval), 1, 1e12);

@@ -109,6 +109,10 @@ void Trainer::StartFrom(const std::string& folder) {
   state_.parameters = theirs->parameters;
   std::copy_n(untrained.begin() + static_cast<std::ptrdiff_t>(first), networks().action_size(),
               state_.parameters.begin() + static_cast<std::ptrdiff_t>(first));
+  if (config_.wall_units > 0.0) {
+    networks().PlaceWallUnits(config_.wall_units, train_scenario_.workspace.half_extent_m,
+                              learner_.scales().observations, state_.parameters.data());
+  }
 }
 
 void Trainer::Restore() {

@@ -351,6 +351,14 @@ TEST(TrainConfig, EveryFieldSurvivesJsonAndBadValuesAreNamed) {
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("--lr"), std::string::npos);
   }
+  c = Preset("fast");
+  c.wall_units = 0.015;
+  c.activation = "relu";
+  EXPECT_THROW(c.ValidateOrThrow(), UserError);  // nothing to start from
+  c.start_from = "there";
+  EXPECT_NO_THROW(c.ValidateOrThrow());
+  c.actor_hidden = {16, 64};
+  EXPECT_THROW(c.ValidateOrThrow(), UserError);
   EXPECT_THROW(Preset("slow"), UserError);
   EXPECT_NO_THROW(Preset("fast").ValidateOrThrow());
   EXPECT_NO_THROW(Preset("paper").ValidateOrThrow());

@@ -49,6 +49,7 @@ struct TrainConfig {
   double imitation_focus = 1.0;
   bool privileged_teacher = false;
   std::string start_from;  ///< folder of another run; empty: untrained networks
+  double wall_units = 0.0;  ///< margin [m] of ActorCritic::PlaceWallUnits; 0: none
 
   std::int64_t validation_interval = 32000;
   int validation_episodes = 32;
@@ -107,6 +108,9 @@ void VisitTrainConfig(Config& c, Visitor&& visit) {
   visit("start-from", c.start_from,
         "folder of a finished run whose networks and normalisers to start from; steps, optimiser "
         "and exploration start anew; empty: untrained networks");
+  visit("wall-units", c.wall_units,
+        "with --start-from and relu: 24 units of the actor's first layer start anew as hinges on "
+        "the target's room to each wall, at 1/2, 1, 2 and 4 times this margin [m]; 0: none");
   visit("validation-interval", c.validation_interval, "environment steps between validations");
   visit("validation-episodes", c.validation_episodes, "held-out episodes per validation");
   visit("checkpoint-interval", c.checkpoint_interval, "environment steps between checkpoints");

@@ -11,6 +11,8 @@ namespace stg {
 
 inline constexpr int kNeighbourSlots = 3;
 inline constexpr int kRawSize = 51;
+/// Where own position and target offset begin, both by the half extent of the workspace.
+inline constexpr int kOwnPositionIndex = 0, kTargetOffsetIndex = 15;
 
 enum Phase { kSearch = 0, kApproach = 1, kStable = 2, kLost = 3 };
 enum Quality { kHigh = 0, kMedium = 1, kLow = 2, kUnavailable = 3 };
