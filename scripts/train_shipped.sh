@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Trains a policy as the shipped ones were trained, in a built and sourced workspace, in three runs:
-# imitation of a privileged controller, MAPPO, MAPPO with a share of imitation. Runs again what is
-# missing. The policy is OUT/hold/policy_last.onnx. See docs/adr/008-privileged-teacher.md.
+# Trains a policy as the shipped ones were trained, in a built and sourced workspace, in four runs:
+# imitation of a privileged controller, the same with wall units, MAPPO, MAPPO with a share of
+# imitation. Runs again what is missing. The policy is OUT/hold/policy_last.onnx. See
+# docs/adr/008-privileged-teacher.md.
 # Usage: train_shipped.sh SCENARIO OUT [TRAIN_OPTION ...]   e.g. train_shipped.sh medium runs/medium
 set -euo pipefail
-(($# >= 2)) || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
+(($# >= 2)) || { sed -n '2,6s/^# //p' "$0" >&2; exit 2; }
 scenario=$1 out=$2
 shift 2
 
@@ -21,15 +22,18 @@ stage() {
   local resume=()
   if compgen -G "$folder/checkpoint_*.pt" >/dev/null; then resume=(--resume); fi
   rosrun marl_trainer train --scenario "$scenario" --out "$folder" --train-on "$conditions" \
-    --envs 96 --actor-hidden 128,128 --activation relu --std-scale 0.3 --min-log-std -8 \
+    --envs 96 --actor-hidden 192,192 --activation relu --std-scale 0.3 --min-log-std -8 \
     --max-log-std -2 --lr-final 0.01 --validation-interval 480000 \
-    --set reward.weights.separation=0.1 \
+    --set reward.weights.separation=0.2 \
     --set reward.separation_distance_m=0.0233 "${resume[@]}" "$@"
 }
 imitation=(--imitate "$teacher" --privileged-teacher true)
 
-stage imitate "${imitation[@]}" --imitation-steps 14400000 --steps 7200000 --lr 2e-3 \
+# The wall units need settled normalisers, so a short run comes first.
+stage settle "${imitation[@]}" --imitation-steps 1000000000 --steps 1200000 --lr 2e-3 \
   --initial-log-std -4.5 "$@"
+stage imitate --start-from "$out/settle" --wall-units 0.015 "${imitation[@]}" \
+  --imitation-steps 1000000000 --steps 6000000 --lr 2e-3 --initial-log-std -4.5 "$@"
 stage return --start-from "$out/imitate" --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
   --initial-log-std -4 "$@"
 stage hold --start-from "$out/return" "${imitation[@]}" --imitation-steps 1000000000 \
