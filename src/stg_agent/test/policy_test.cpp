@@ -1,25 +1,18 @@
-#include "stg_agent/policy.hpp"
-
 #include <gtest/gtest.h>
 #include <onnx/checker.h>
 #include <onnx/onnx_pb.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
-#include <random>
-#include <sstream>
 #include <thread>
 
 #include "auv_dynamics/error.hpp"
+#include "policy_files.hpp"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -33,36 +26,6 @@ extern "C" void* malloc(std::size_t size) {
 
 namespace stg {
 namespace {
-
-namespace fs = std::filesystem;
-
-Policy::Parameters RandomParameters(const std::vector<int>& sizes, Policy::Activation activation,
-                                    unsigned seed) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<float> normal;
-  const auto draw = [&](float scale) { return [&, scale] { return scale * normal(rng); }; };
-  Policy::Parameters p;
-  p.input_mean = Eigen::VectorXf::NullaryExpr(sizes.front(), draw(1.0F));
-  p.input_std = Eigen::VectorXf::NullaryExpr(sizes.front(), draw(1.0F)).array().abs() + 0.01F;
-  p.activation = activation;
-  for (std::size_t l = 1; l < sizes.size(); ++l) {
-    const float gain = 1.0F / std::sqrt(static_cast<float>(sizes[l - 1]));
-    Policy::Layer layer;
-    layer.weight = Eigen::MatrixXf::NullaryExpr(sizes[l], sizes[l - 1], draw(gain));
-    layer.bias = Eigen::VectorXf::NullaryExpr(sizes[l], draw(0.1F));
-    p.layers.push_back(layer);
-  }
-  p.log_std = Eigen::VectorXf::Constant(sizes.back(), -1.2345678F);
-  p.metadata.id = "test";
-  p.metadata.observation_layout = ObservationLayout(Scenario());
-  p.metadata.action_interface = "velocity3";
-  p.metadata.action_scale = 0.75;
-  p.metadata.scenario_hash = "0123456789abcdef";
-  p.metadata.training_step = 123456789;
-  p.metadata.seed = 18446744073709551615ULL;
-  p.metadata.metrics = {{"return", "1040.5"}};
-  return p;
-}
 
 /// The definition in double precision, written without the class under test.
 std::vector<double> Reference(const Policy::Parameters& p, const std::vector<float>& observation) {
@@ -80,57 +43,6 @@ std::vector<double> Reference(const Policy::Parameters& p, const std::vector<flo
   for (const double v : x) action.push_back(p.metadata.action_scale * v);
   return action;
 }
-
-std::vector<float> RandomObservation(int size, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<float> normal(0.0F, 2.0F);
-  std::vector<float> o(static_cast<std::size_t>(size));
-  for (float& v : o) v = normal(rng);
-  return o;
-}
-
-class PolicyTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "policy_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::string Bytes(const std::string& path) const {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
-  void Write(const std::string& path, const std::string& bytes) const {
-    std::ofstream(path, std::ios::binary) << bytes;
-  }
-  /// Saves a good policy, lets `change` spoil the model, and expects a refusal
-  /// that names the file and contains `reason`.
-  void ExpectRefused(const std::function<void(onnx::ModelProto*)>& change,
-                     const std::string& reason) {
-    Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
-    onnx::ModelProto model;
-    ASSERT_TRUE(model.ParseFromString(Bytes(Path("good.onnx"))));
-    change(&model);
-    Write(Path("bad.onnx"), model.SerializeAsString());
-    ExpectFileRefused(Path("bad.onnx"), reason);
-  }
-  void ExpectFileRefused(const std::string& path, const std::string& reason) {
-    try {
-      Policy::LoadOnnx(path);
-      FAIL() << "accepted; expected: " << reason;
-    } catch (const UserError& error) {
-      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
-    }
-  }
-
-  fs::path folder_;
-};
 
 TEST_F(PolicyTest, MeanIsTheDefinition) {
   for (const auto activation : {Policy::Activation::kTanh, Policy::Activation::kRelu}) {
@@ -259,115 +171,6 @@ TEST_F(PolicyTest, ThreadsAndCopiesGetTheSameBits) {
   float other[3];
   std::thread([&] { copy.Mean(aligned.data(), other); }).join();
   EXPECT_EQ(std::memcmp(expected, other, sizeof expected), 0);
-}
-
-TEST_F(PolicyTest, RefusesWhatIsNotAPolicyFile) {
-  ExpectFileRefused(Path("missing.onnx"), "no such");
-  ExpectFileRefused(folder_.string(), "regular file");
-  Write(Path("empty.onnx"), "");
-  ExpectFileRefused(Path("empty.onnx"), "not a policy");
-  Write(Path("text.onnx"), "input_mean: 1\n");
-  ExpectFileRefused(Path("text.onnx"), "not a policy");
-  std::string noise(10000, '\0');
-  std::mt19937 rng(1);
-  for (char& c : noise) c = static_cast<char>(rng());
-  Write(Path("noise.onnx"), noise);
-  ExpectFileRefused(Path("noise.onnx"), "not a policy");
-  Write(Path("huge.onnx"), "");
-  ASSERT_EQ(truncate(Path("huge.onnx").c_str(), Policy::kMaxFileBytes + 1), 0);
-  ExpectFileRefused(Path("huge.onnx"), "larger");
-}
-
-TEST_F(PolicyTest, RefusesEveryTruncation) {
-  Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
-  const std::string bytes = Bytes(Path("good.onnx"));
-  for (std::size_t size = 0; size < bytes.size(); ++size) {
-    Write(Path("cut.onnx"), bytes.substr(0, size));
-    EXPECT_THROW(Policy::LoadOnnx(Path("cut.onnx")), UserError) << size << " of " << bytes.size();
-  }
-}
-
-TEST_F(PolicyTest, ChangedBytesNeverCrashAndNeverChangeTheNumbers) {
-  const Policy good(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1));
-  good.SaveOnnx(Path("good.onnx"));
-  const std::string bytes = Bytes(Path("good.onnx"));
-  std::mt19937 rng(1);
-  for (int k = 0; k < 1000; ++k) {
-    std::string changed = bytes;
-    changed[rng() % changed.size()] = static_cast<char>(rng());
-    Write(Path("changed.onnx"), changed);
-    try {
-      const Policy read = Policy::LoadOnnx(Path("changed.onnx"));
-      const std::vector<float> o = RandomObservation(6, 1);
-      float a[3], b[3];
-      good.Mean(o.data(), a);
-      read.Mean(o.data(), b);
-      EXPECT_EQ(std::memcmp(a, b, sizeof a), 0) << k;
-    } catch (const UserError&) {
-    }
-  }
-}
-
-TEST_F(PolicyTest, RefusesOtherGraphs) {
-  using Model = onnx::ModelProto*;
-  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(3)->set_op_type("MatMul"); },
-                "not Gemm");
-  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(4)->set_op_type("Sigmoid"); },
-                "not Tanh or Relu");
-  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(3)->set_domain("custom"); },
-                "not Gemm");
-  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(3)->set_input(0, "observation"); },
-                "does not continue");
-  ExpectRefused(
-      [](Model m) { m->mutable_graph()->mutable_node(3)->mutable_attribute(3)->set_i(0); },
-      "Gemm is not");
-  ExpectRefused(
-      [](Model m) {
-        onnx::AttributeProto* a = m->mutable_graph()->mutable_node(4)->add_attribute();
-        a->set_name("body");
-        a->set_type(onnx::AttributeProto::GRAPH);
-      },
-      "attribute 'body'");
-  ExpectRefused([](Model m) { m->mutable_graph()->add_node()->set_op_type("Loop"); },
-                "operators after Mul");
-  ExpectRefused([](Model m) { m->mutable_opset_import(0)->set_version(13); }, "operator set");
-  ExpectRefused([](Model m) { m->add_functions(); }, "functions");
-  ExpectRefused([](Model m) { m->clear_graph(); }, "no graph");
-  ExpectRefused(
-      [](Model m) {
-        for (int i = 0; i < 40; ++i) m->mutable_graph()->add_node()->set_op_type("Tanh");
-      },
-      "too many");
-}
-
-TEST_F(PolicyTest, RefusesBadConstants) {
-  using Model = onnx::ModelProto*;
-  const auto tensor = [](Model m, int i) { return m->mutable_graph()->mutable_initializer(i); };
-  ExpectRefused([&](Model m) { tensor(m, 2)->set_dims(0, 5); }, "another size");
-  ExpectRefused([&](Model m) { tensor(m, 2)->set_dims(0, -1); }, "dimension of -1");
-  ExpectRefused([&](Model m) { tensor(m, 2)->set_dims(0, 1LL << 40); }, "dimension of");
-  ExpectRefused([&](Model m) { tensor(m, 2)->set_data_type(onnx::TensorProto::DOUBLE); },
-                "not float32");
-  ExpectRefused(
-      [&](Model m) {
-        tensor(m, 2)->set_data_location(onnx::TensorProto::EXTERNAL);
-        onnx::StringStringEntryProto* e = tensor(m, 2)->add_external_data();
-        e->set_key("location");
-        e->set_value("/etc/passwd");
-      },
-      "outside the file");
-  ExpectRefused(
-      [&](Model m) {
-        const float nan = std::numeric_limits<float>::quiet_NaN();
-        std::memcpy(tensor(m, 2)->mutable_raw_data()->data(), &nan, sizeof nan);
-      },
-      "not finite");
-  ExpectRefused([&](Model m) { tensor(m, 2)->mutable_raw_data()->data()[1] ^= 1; }, "checksum");
-  ExpectRefused([&](Model m) { tensor(m, 2)->set_name("other"); }, "not a constant");
-  ExpectRefused([&](Model m) { *m->mutable_graph()->add_initializer() = *tensor(m, 0); },
-                "defined twice");
-  ExpectRefused([](Model m) { m->mutable_metadata_props(3)->set_value("0.5"); }, "action scale");
-  ExpectRefused([](Model m) { m->mutable_metadata_props(3)->set_value("nan"); }, "not a number");
 }
 
 TEST_F(PolicyTest, ConstructorChecksShapesAndNumbers) {

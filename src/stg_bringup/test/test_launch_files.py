@@ -17,7 +17,9 @@ LAUNCH = pathlib.Path(rospkg.RosPack().get_path("stg_bringup")) / "launch"
 
 def launch_files():
     """Returns all launch files of the package, as roslaunch sees them."""
-    return sorted(LAUNCH.glob("*.launch"))
+    found = sorted(LAUNCH.glob("*.launch"))
+    assert {"hard.launch", "medium.launch"} <= {path.name for path in found}, found
+    return found
 
 
 def required_arguments(root):
@@ -43,6 +45,7 @@ class LaunchFiles(unittest.TestCase):
                 root = ElementTree.parse(path).getroot()
                 config = load(path, required_arguments(root))
                 self.assertEqual(config.config_errors, [])
+                self.assertTrue(config.nodes)
                 for node in config.nodes:
                     self.assertTrue(
                         roslib.packages.find_node(node.package, node.type),
@@ -52,7 +55,9 @@ class LaunchFiles(unittest.TestCase):
     def test_each_argument_is_documented(self):
         for path in launch_files():
             with self.subTest(path.name):
-                for arg in ElementTree.parse(path).getroot().findall("arg"):
+                arguments = ElementTree.parse(path).getroot().findall("arg")
+                self.assertTrue(arguments)
+                for arg in arguments:
                     if arg.get("value") is None:
                         self.assertTrue(arg.get("doc"), f"no doc for argument {arg.get('name')}")
 
