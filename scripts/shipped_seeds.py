@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+"""Evaluates the shipped policies' recipe over seeds of training, with and without messages.
+
+Usage: shipped_seeds.py OUT RUNS, in a built and sourced workspace. Writes OUT/seeds.md and
+OUT/seeds.csv. RUNS/SCENARIO_SEED and RUNS/silent_SCENARIO_SEED are what train_shipped.sh left, the
+silent ones trained with `--set channel.loss_probability=1.0`.
+"""
+
+import csv
+import glob
+import os
+import re
+import statistics
+import sys
+
+from shipped_tables import COLUMNS, CONDITIONS, SILENCE, evaluate
+
+METRICS = [(name, digits) for name, digits in COLUMNS if name != "return_std"]
+KINDS = (("", "with messages", ()), ("silent_", "without messages", SILENCE))
+
+
+def trainings(runs, kind, scenario):
+    """Returns [(seed, policy)] of the finished trainings of one kind."""
+    found = []
+    for policy in glob.glob(os.path.join(runs, f"{kind}{scenario}_*", "hold", "policy_last.onnx")):
+        seed = re.fullmatch(rf"{kind}{scenario}_(\d+)", policy.split(os.sep)[-3])
+        if seed:
+            found.append((int(seed[1]), policy))
+    if len(found) < 2:
+        sys.exit(f"{runs}/{kind}{scenario}_SEED: {len(found)} finished trainings, needs two or more")
+    return sorted(found)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    out, runs = sys.argv[1:]
+    lines, records = [], []
+    for scenario in ("medium", "hard"):
+        lines += [
+            f"## {scenario}", "",
+            "| condition | trained and flown | seeds | return | tail distance | tail error | lost "
+            "| contact | contact, tail | in band |",
+            "|---|---|---|---:|---:|---:|---:|---:|---:|---:|",
+        ]
+        for condition in CONDITIONS:
+            for kind, label, options in KINDS:
+                rows = []
+                for seed, policy in trainings(runs, kind, scenario):
+                    found = evaluate(policy, scenario, condition, options)
+                    rows.append([found[name] for name, _ in METRICS])
+                    records.append([scenario, condition, label, seed] + rows[-1])
+                cells = [
+                    f"{statistics.mean(values):.{digits}f} ± {statistics.stdev(values):.{digits}f}"
+                    for (_, digits), values in zip(METRICS, zip(*rows))
+                ]
+                lines.append(f"| {condition} | {label} | {len(rows)} | " + " | ".join(cells) + " |")
+                print(lines[-1], file=sys.stderr)
+        lines.append("")
+    os.makedirs(out, exist_ok=True)
+    with open(os.path.join(out, "seeds.md"), "w", encoding="utf-8") as page:
+        page.write("\n".join(lines))
+    with open(os.path.join(out, "seeds.csv"), "w", encoding="utf-8", newline="") as table:
+        writer = csv.writer(table)
+        writer.writerow(["scenario", "condition", "trained and flown", "seed"] + [n for n, _ in METRICS])
+        writer.writerows(records)
+
+
+if __name__ == "__main__":
+    main()
