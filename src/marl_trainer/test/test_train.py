@@ -1,0 +1,88 @@
+"""The train command as a user runs it: interrupted, resumed, and refused."""
+
+import csv
+import hashlib
+import json
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import roslib.packages
+
+SMALL = ["--scenario", "medium_release", "--envs", "4", "--horizon", "25", "--minibatch", "100",
+         "--actor-hidden", "8", "--critic-hidden", "8", "--workers", "1"]
+
+
+class Train(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.run_folder = pathlib.Path(folder.name) / "run"
+        (self.program,) = roslib.packages.find_node("marl_trainer", "train")
+
+    def start(self, *options):
+        """Starts a training in the folder of the run."""
+        return subprocess.Popen(
+            [self.program, "--out", str(self.run_folder), *SMALL, *options],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+
+    def train(self, *options):
+        """Returns the exit status and the output of a whole training."""
+        process = self.start(*options)
+        output, _ = process.communicate(timeout=60)
+        return process.returncode, output
+
+    def steps(self):
+        """Returns the environment steps of the rows of the progress file."""
+        file = self.run_folder / "progress.csv"
+        with open(file, encoding="utf-8", newline="") as rows:
+            return [int(row["env_steps"]) for row in csv.DictReader(rows)]
+
+    def test_interrupted_it_saves_and_resume_goes_on(self):
+        process = self.start("--steps", "100000000")
+        end = time.monotonic() + 30
+        while process.poll() is None and time.monotonic() < end:
+            if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
+                break
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, output)
+        before = self.steps()
+        self.assertIn(f"stopped at {before[-1]} steps and saved; --resume goes on", output)
+        self.assertTrue((self.run_folder / "policy_last.onnx").exists())
+
+        status, output = self.train("--resume", "--steps", str(before[-1] + 1000))
+        self.assertEqual(status, 0, output)
+        after = self.steps()
+        self.assertEqual(after[:len(before)], before)
+        self.assertEqual(after[len(before):], list(range(before[-1] + 100, after[-1] + 1, 100)))
+        self.assertEqual(after[-1], before[-1] + 1000)
+        summary = json.loads((self.run_folder / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["stopped"], "finished")
+
+    def test_another_configuration_is_refused_by_name_and_nothing_is_lost(self):
+        status, output = self.train("--steps", "300")
+        self.assertEqual(status, 0, output)
+
+        def contents():
+            return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+                    for path in self.run_folder.iterdir()}
+
+        before = contents()
+        for options, reason in (
+                (("--resume", "--gamma", "0.8"), "--gamma is 0.8"),
+                (("--resume", "--set", "reward.weights.separation=0.3"), "the scenario is not"),
+                ((), "holds another run"),
+                (("--resume", "--lr", "-1"), "--lr")):
+            status, output = self.train("--steps", "600", *options)
+            self.assertEqual(status, 2, output)
+            self.assertIn(reason, output)
+        self.assertEqual(contents(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
