@@ -60,26 +60,31 @@ class PackagePages(unittest.TestCase):
         return set(re.findall(r'constexpr char k\w+\[\] = "([\w/]+)"', topics))
 
     def test_every_package_has_a_page_with_its_topics_and_services(self):
+        self.assertGreater(len(set().union(*map(self.constants, PACKAGES))), 10)
         for package in PACKAGES:
             with self.subTest(package):
                 # The metrics node of stg_bringup publishes what auv_dynamics names.
                 pages = {package, "stg_bringup"}
                 text = "".join((DOCS / "packages" / f"{page}.md").read_text() for page in pages)
                 for name in self.constants(package):
-                    self.assertTrue(name in text, f"{name} is not on the page")
+                    whole_name = rf"(?<!\w){re.escape(name)}(?!\w)"
+                    self.assertTrue(re.search(whole_name, text), f"{name} is not on the page")
 
     def test_every_private_parameter_of_a_node_is_on_its_page(self):
         pattern = re.compile(
             r'(?:Text|Flag|Number|Integer)Parameter\(\s*"(\w+)"|private_nh_\.param\("([\w/]+)"'
         )
+        found = 0
         for package in PACKAGES:
             text = (DOCS / "packages" / f"{package}.md").read_text()
             for source in sorted((SOURCES / package / "src" / "nodes").glob("*.cpp")):
                 for match in pattern.finditer(source.read_text()):
                     name = match.group(1) or match.group(2)
+                    found += 1
                     self.assertTrue(
                         f"`{name}`" in text, f"{source.name}: {name} is not on the page"
                     )
+        self.assertGreater(found, 20)
 
 
 if __name__ == "__main__":

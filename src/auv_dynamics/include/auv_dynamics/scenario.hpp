@@ -17,22 +17,35 @@
 /// the world is ENU.
 namespace stg {
 
+/// What agents decide on: everybody's true state (the release's way), or their own sensing and
+/// what the channel brings.
 enum class InformationMode { kTruth, kAcoustic };
+/// How the equations of motion are stepped; the release's is semi-implicit Euler.
 enum class Integrator { kSemiImplicit, kRk4 };
 /// Added-mass part of C(nu); the rigid-body part is always there.
 enum class AddedMassCoriolis { kFull, kNoMunk, kOff };
+/// How a target moves on its own, before walls turn it back.
 enum class TargetMotion { kConstantVelocity, kCoordinatedTurn, kRandomWaypoint, kEvasive };
+/// What a policy commands: velocity per world axis, or force and torque per body axis.
 enum class ActionInterface { kVelocity3, kTau6 };
+/// Desired yaw: none, or along the desired velocity.
 enum class HeadingMode { kFree, kAlongVelocity };
+/// Which neighbours fill the slots of the observation, and in which order.
 enum class NeighbourOrder { kNearest, kIndex };
+/// The link: all within R_c (Eq. 5), Eq. 6 with loss and delay, or a later physical model.
 enum class ChannelModel { kRange, kExtended, kPhysical };
+/// The reward as the paper writes it (Eqs. 28-36), as the release computes it, and the release's
+/// for its baselines without a task graph.
 enum class RewardKind { kPaper, kRelease, kReleaseRaw };
+/// Stages of the curriculum: how far out and how fast targets start.
 enum class ResetStage { kEasy, kMedium, kHard };
 
+/// Closed; what is drawn from it is uniform.
 struct Interval {
   double lo = 0.0, hi = 0.0;
 };
 
+/// Clocks of physics, decisions and episodes.
 struct TimeConfig {
   double dt_s = 0.1;                ///< physics step
   int decision_steps = 1;           ///< physics steps per decision
@@ -66,6 +79,7 @@ struct VehicleConfig {
   double radius_m = 0.011;           ///< collision radius
 };
 
+/// Water current, v_c of Eq. 3.
 struct CurrentConfig {
   std::array<double, 3> velocity_mps{0.0, 0.0, 0.0};  ///< world frame, irrotational
 };
@@ -77,11 +91,14 @@ struct DisturbanceConfig {
   double correlation_time_s = 2.0;
 };
 
+/// Repulsion between vehicles that touch: stiffness * softness * softplus(overlap / softness).
 struct ContactConfig {
   double stiffness = 100.0;          ///< [N per m of softplus argument]
   double softness_m = 0.001;
 };
 
+/// The box and what is left of a velocity that meets a wall: its normal and tangential world
+/// components, and the body velocity and rates of the vehicle.
 struct WorkspaceConfig {
   double half_extent_m = 1.0;        ///< walls at +-half_extent on each axis
   double restitution = 0.2;
@@ -90,6 +107,7 @@ struct WorkspaceConfig {
   double body_rate = 0.8;
 };
 
+/// Targets and how they move.
 struct TargetConfig {
   int count = 1;
   TargetMotion motion = TargetMotion::kConstantVelocity;
@@ -101,12 +119,14 @@ struct TargetConfig {
   double evasion_range_m = 0.10;     ///< evasive: flees AUVs closer than this
 };
 
+/// Where and how fast an episode starts.
 struct ResetStageConfig {
   Interval target_radius_m{0.25, 0.55};
   Interval auv_distance_m{0.25, 0.45};
   Interval target_speed_mps{0.003, 0.008};
 };
 
+/// How episodes start; stages are in the order easy, medium, hard.
 struct ResetConfig {
   ResetStage stage = ResetStage::kMedium;   ///< evaluation and fixed training
   bool curriculum = false;                  ///< training: easy, medium, hard by reset count
@@ -121,6 +141,7 @@ struct ResetConfig {
   }};
 };
 
+/// The agents' own target sensor.
 struct SensingConfig {
   double range_m = 0.45;             ///< R_s: detection range and confidence scale (Eq. 13)
   double noise_std_m = 0.0;          ///< per component
@@ -130,6 +151,7 @@ struct SensingConfig {
   double cue_std_m = 0.05;           ///< uncertainty of the initial datum, per component
 };
 
+/// From a policy's action to force and torque, Eqs. 23-27.
 struct ControlConfig {
   ActionInterface interface = ActionInterface::kVelocity3;
   double action_scale = 0.75;        ///< of the policy mean
@@ -142,6 +164,7 @@ struct ControlConfig {
   double heading_gain = 0.12;        ///< along_velocity: of the maximum moment per rad
 };
 
+/// The acoustic channel and the link quality of Eqs. 5-6.
 struct ChannelConfig {
   ChannelModel model = ChannelModel::kExtended;
   double range_m = 0.45;             ///< R_c of Eq. 5
@@ -155,6 +178,7 @@ struct ChannelConfig {
   double freshness_s = 2.0;          ///< tau_f
 };
 
+/// The agents' target filter and their memory of neighbours.
 struct TrackConfig {
   double process_accel_std_mps2 = 0.01;   ///< white acceleration of the target model
   double measurement_std_m = 0.001;       ///< floor of a detection's standard deviation
@@ -188,11 +212,13 @@ struct ObservationConfig {
   double role_confidence = 0.40;
 };
 
+/// Weights of the terms of Eq. 36.
 struct RewardWeights {
   double tracking = 0.72, observation = 0.16, coordination = 0.02, communication = 0.01,
          semantic = 0.09, control_cost = 0.08, separation = 0.0;
 };
 
+/// Constants of the reward, Eqs. 28-36.
 struct RewardConfig {
   RewardKind kind = RewardKind::kPaper;
   RewardWeights weights;
@@ -206,6 +232,7 @@ struct RewardConfig {
   double total_limit = 2.0;
 };
 
+/// All of a scenario.
 struct Scenario {
   std::string name = "medium";
   std::uint64_t seed = 0;

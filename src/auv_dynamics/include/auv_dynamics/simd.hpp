@@ -18,6 +18,7 @@ namespace stg {
 using Pack = xsimd::batch<double>;
 inline constexpr int kLanes = static_cast<int>(Pack::size);
 
+/// What comparing two T gives: Mask<double> is bool, Mask<Pack> one truth per lane.
 template <class T>
 struct MaskOf;
 template <>

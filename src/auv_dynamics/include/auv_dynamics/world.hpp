@@ -23,6 +23,7 @@ struct VehicleState {
   Vec3<T> v_WB;       ///< velocity over ground, world axes [m/s]
 };
 
+/// A target, world axes.
 template <class T>
 struct TargetState {
   Vec3<T> p_WT;       ///< position [m]

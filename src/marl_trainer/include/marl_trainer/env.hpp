@@ -16,6 +16,7 @@ namespace stg {
 class Agent;
 class Channel;
 
+/// Which episodes an EnvGroup draws.
 struct EnvOptions {
   /// Episode r of all copies together (r = env + k * total_envs, k-th episode of
   /// environment env) is drawn from seed + r.

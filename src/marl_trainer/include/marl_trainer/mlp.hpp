@@ -8,6 +8,7 @@
 
 namespace stg {
 
+/// Of the layers between observation and output.
 enum class HiddenActivation { kTanh, kRelu };
 
 /// Shape of a multilayer perceptron whose parameters lie in one flat array:

@@ -23,6 +23,7 @@ struct Trace {
 /// UserError with file, line and key or column.
 Trace LoadTrace(const std::string& folder, const Scenario& base);
 
+/// How far a replay is from its trace: absolute differences, each in the unit of its column.
 struct TraceError {
   double max_abs_error = 0.0;
   std::map<std::string, double> by_group;  ///< state, tau, target, observation, reward

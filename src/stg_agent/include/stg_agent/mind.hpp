@@ -46,6 +46,8 @@ struct TargetView {
   T current = T(0.0);   ///< 1: it rests on a recent observation
 };
 
+/// What an agent makes of its inputs, per decision: SetNavigation, SetTracking, SetNeighbours, then
+/// Act. T is double for one agent, Pack for the same agent of kLanes worlds.
 template <class T>
 class Mind {
  public:

@@ -10,6 +10,7 @@
 /// Built-in controllers: what a policy has to beat.
 namespace stg {
 
+/// The built-in controllers by name: `idle`, `pursuit`, `pursuit_separated`.
 enum class BuiltinKind { kIdle, kPursuit, kPursuitSeparated };
 
 /// Constants of the pursuit law; the defaults are those of `pursuit`.
