@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 """roslaunch that tells by its exit status whether the run went well.
 
-Takes roslaunch's arguments and does what it does, with two differences. A node that exits with
+Takes roslaunch's arguments and does what it does, with three differences. A node that exits with
 status 2 refuses its configuration (stg::RunNode): the run ends at once, where respawning would
-repeat it for ever. And the exit status is 1 after that, or when a required node died with an error.
+repeat it for ever. The exit status is 1 after that, or when a required node died with an error. And
+nothing is left running when a required node dies while others start, where roslaunch gives up
+before its monitor has stopped them.
 """
 
 import os
@@ -15,6 +17,7 @@ import roslaunch.parent
 import roslaunch.pmon
 
 REFUSED = 2
+MONITOR_ENDS_S = 30  # a node has 15 s after SIGINT and 2 s after SIGTERM
 
 
 class Watch(roslaunch.pmon.ProcessListener):
@@ -25,6 +28,27 @@ class Watch(roslaunch.pmon.ProcessListener):
         self.failure = ""
         self.refused = False
         self.started = False
+        self.monitor = None
+        self.processes = []
+
+    def observe(self, monitor):
+        """Remembers what the monitor is given to look after."""
+        self.monitor = monitor
+        register = monitor.register
+
+        def remember(process):
+            self.processes.append(process)
+            register(process)
+
+        monitor.register = remember
+
+    def stop_the_rest(self):
+        """Waits for the monitor to stop its processes, then stops those that started too late."""
+        if self.monitor:
+            self.monitor.join(MONITOR_ENDS_S)
+        for process in reversed(self.processes):  # the master came first and ends last
+            if process.started and process.is_alive():
+                process.stop([])
 
     def end_if_refused(self):
         """Ends the run as Ctrl-C does, but not while roslaunch is still starting nodes."""
@@ -59,6 +83,7 @@ def main():
                 if node.required
             }
             self.runner.add_process_listener(watch)
+            watch.observe(self.pm)
 
         def start(self, *arguments, **options):
             super().start(*arguments, **options)
@@ -66,10 +91,17 @@ def main():
             watch.end_if_refused()
 
     roslaunch.parent.ROSLaunchParent = Parent
-    roslaunch.main()
+    status = 0
+    try:
+        roslaunch.main()
+    except SystemExit as gave_up:
+        status = gave_up.code
+    finally:
+        watch.stop_the_rest()
     if watch.failure:
         print(f"stg: the run failed: {watch.failure}", file=sys.stderr)
-    return 1 if watch.failure else 0
+        return 1
+    return status
 
 
 if __name__ == "__main__":
