@@ -6,15 +6,15 @@ OUT/seeds.csv. RUNS/SCENARIO_SEED and RUNS/silent_SCENARIO_SEED are what train_s
 silent ones trained with `--set channel.loss_probability=1.0`.
 """
 
-import csv
 import glob
 import os
 import re
 import statistics
 import sys
 
-from shipped_tables import COLUMNS, CONDITIONS, SILENCE, evaluate
+from shipped_tables import COLUMNS, CONDITIONS, SILENCE, evaluate, write
 
+SCENARIOS = ("medium", "hard")
 METRICS = [(name, digits) for name, digits in COLUMNS if name != "return_std"]
 KINDS = (("", "with messages", ()), ("silent_", "without messages", SILENCE))
 
@@ -35,8 +35,10 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     out, runs = sys.argv[1:]
-    lines, records = [], []
-    for scenario in ("medium", "hard"):
+    lines = []
+    table = [["scenario", "condition", "trained and flown", "seed"] + [name for name, _ in METRICS]]
+    policies = {(s, kind): trainings(runs, kind, s) for s in SCENARIOS for kind, _, _ in KINDS}
+    for scenario in SCENARIOS:
         lines += [
             f"## {scenario}", "",
             "| condition | trained and flown | seeds | return | tail distance | tail error | lost "
@@ -46,10 +48,10 @@ def main():
         for condition in CONDITIONS:
             for kind, label, options in KINDS:
                 rows = []
-                for seed, policy in trainings(runs, kind, scenario):
+                for seed, policy in policies[scenario, kind]:
                     found = evaluate(policy, scenario, condition, options)
                     rows.append([found[name] for name, _ in METRICS])
-                    records.append([scenario, condition, label, seed] + rows[-1])
+                    table.append([scenario, condition, label, seed] + rows[-1])
                 cells = [
                     f"{statistics.mean(values):.{digits}f} ± {statistics.stdev(values):.{digits}f}"
                     for (_, digits), values in zip(METRICS, zip(*rows))
@@ -57,13 +59,7 @@ def main():
                 lines.append(f"| {condition} | {label} | {len(rows)} | " + " | ".join(cells) + " |")
                 print(lines[-1], file=sys.stderr)
         lines.append("")
-    os.makedirs(out, exist_ok=True)
-    with open(os.path.join(out, "seeds.md"), "w", encoding="utf-8") as page:
-        page.write("\n".join(lines))
-    with open(os.path.join(out, "seeds.csv"), "w", encoding="utf-8", newline="") as table:
-        writer = csv.writer(table)
-        writer.writerow(["scenario", "condition", "trained and flown", "seed"] + [n for n, _ in METRICS])
-        writer.writerows(records)
+    write(out, "seeds.md", lines, "seeds.csv", table)
 
 
 if __name__ == "__main__":

@@ -56,6 +56,15 @@ def fliers(scenario, policies, silent):
     ]
 
 
+def write(out, page, lines, table, rows):
+    """Writes the lines of a page and the rows of a CSV file, header first, into a folder."""
+    os.makedirs(out, exist_ok=True)
+    with open(os.path.join(out, page), "w", encoding="utf-8") as file:
+        file.write("\n".join(lines))
+    with open(os.path.join(out, table), "w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows(rows)
+
+
 def main():
     if not 2 <= len(sys.argv) <= 3:
         sys.exit(__doc__)
@@ -63,8 +72,8 @@ def main():
     package = subprocess.run(
         ["rospack", "find", "stg_bringup"], check=True, stdout=subprocess.PIPE, text=True
     ).stdout.strip()
-    os.makedirs(out, exist_ok=True)
-    lines, records = [], []
+    lines = []
+    rows = [["scenario", "condition", "who"] + [name for name, _ in COLUMNS]]
     for scenario in ("medium", "hard"):
         lines += [
             f"## {scenario}", "",
@@ -79,15 +88,10 @@ def main():
                 lines.append(
                     f"| {condition} | {label} | {text[0]} ± {text[1]} | " + " | ".join(text[2:]) + " |"
                 )
-                records.append([scenario, condition, label] + [found[name] for name, _ in COLUMNS])
+                rows.append([scenario, condition, label] + [found[name] for name, _ in COLUMNS])
                 print(lines[-1], file=sys.stderr)
         lines.append("")
-    with open(os.path.join(out, "tables.md"), "w", encoding="utf-8") as page:
-        page.write("\n".join(lines))
-    with open(os.path.join(out, "results.csv"), "w", encoding="utf-8", newline="") as table:
-        writer = csv.writer(table)
-        writer.writerow(["scenario", "condition", "who"] + [name for name, _ in COLUMNS])
-        writer.writerows(records)
+    write(out, "tables.md", lines, "results.csv", rows)
 
 
 if __name__ == "__main__":

@@ -79,7 +79,7 @@ struct VehicleConfig {
   double radius_m = 0.011;           ///< collision radius
 };
 
-/// Water current, v_c of Eq. 3.
+/// Water current; the hull forces of Eq. 3 act on the velocity relative to it.
 struct CurrentConfig {
   std::array<double, 3> velocity_mps{0.0, 0.0, 0.0};  ///< world frame, irrotational
 };
@@ -91,7 +91,7 @@ struct DisturbanceConfig {
   double correlation_time_s = 2.0;
 };
 
-/// Repulsion between vehicles that touch: stiffness * softness * softplus(overlap / softness).
+/// Repulsion between vehicles: stiffness * softness * softplus((2 radius - distance) / softness).
 struct ContactConfig {
   double stiffness = 100.0;          ///< [N per m of softplus argument]
   double softness_m = 0.001;
@@ -212,13 +212,13 @@ struct ObservationConfig {
   double role_confidence = 0.40;
 };
 
-/// Weights of the terms of Eq. 36.
+/// Weights of the terms of Eq. 36, and of our separation term.
 struct RewardWeights {
   double tracking = 0.72, observation = 0.16, coordination = 0.02, communication = 0.01,
          semantic = 0.09, control_cost = 0.08, separation = 0.0;
 };
 
-/// Constants of the reward, Eqs. 28-36.
+/// Constants of the reward, Eqs. 28-36, and of our separation term.
 struct RewardConfig {
   RewardKind kind = RewardKind::kPaper;
   RewardWeights weights;

@@ -8,7 +8,7 @@
 
 namespace stg {
 
-/// Of the layers between observation and output.
+/// Nonlinearity of the hidden layers.
 enum class HiddenActivation { kTanh, kRelu };
 
 /// Shape of a multilayer perceptron whose parameters lie in one flat array:
