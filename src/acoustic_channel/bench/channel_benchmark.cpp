@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "acoustic_channel/channel.hpp"
+#include "acoustic_channel/channel/channel.hpp"
 
 /// Cost of the channel as the vectorised environment uses it: N agents in the medium workspace,
 /// dt 0.1 s, one packet per agent every 0.5 s (staggered), all receptions fetched every step.

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "acoustic_channel/channel.hpp"
-#include "acoustic_channel/link_statistics.hpp"
+#include "acoustic_channel/channel/channel.hpp"
+#include "acoustic_channel/link/link_statistics.hpp"
 
 namespace stg {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "acoustic_channel/channel.hpp"
+#include "acoustic_channel/channel/channel.hpp"
 
 namespace {
 long g_allocations = 0;

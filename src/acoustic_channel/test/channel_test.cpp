@@ -1,4 +1,4 @@
-#include "acoustic_channel/channel.hpp"
+#include "acoustic_channel/channel/channel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "acoustic_channel/link_quality.hpp"
-#include "auv_dynamics/error.hpp"
+#include "acoustic_channel/link/link_quality.hpp"
+#include "auv_common/error.hpp"
 
 namespace stg {
 namespace {

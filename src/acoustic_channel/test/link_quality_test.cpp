@@ -1,4 +1,4 @@
-#include "acoustic_channel/link_quality.hpp"
+#include "acoustic_channel/link/link_quality.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 /// What the tests of packets share.
 #pragma once
 
-#include "acoustic_channel/packet.hpp"
+#include "stg_agent/packet/packet.hpp"
 
 namespace stg {
 

@@ -1,4 +1,4 @@
-#include "auv_dynamics/control.hpp"
+#include "auv_dynamics/control/control.hpp"
 
 #include <gtest/gtest.h>
 

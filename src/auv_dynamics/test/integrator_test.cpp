@@ -1,4 +1,4 @@
-#include "auv_dynamics/integrator.hpp"
+#include "auv_dynamics/vehicle/integrator.hpp"
 
 #include <gtest/gtest.h>
 

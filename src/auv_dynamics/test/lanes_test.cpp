@@ -3,7 +3,7 @@
 #include <cstring>
 #include <vector>
 
-#include "auv_dynamics/control.hpp"
+#include "auv_dynamics/control/control.hpp"
 #include "physics.hpp"
 
 namespace stg {

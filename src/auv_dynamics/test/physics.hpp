@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
-#include "auv_dynamics/integrator.hpp"
-#include "auv_dynamics/vehicle.hpp"
-#include "auv_dynamics/world.hpp"
+#include "auv_dynamics/vehicle/integrator.hpp"
+#include "auv_dynamics/vehicle/vehicle_model.hpp"
+#include "auv_dynamics/world/world.hpp"
 
 /// What the physics tests share.
 namespace stg {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "auv_dynamics/random.hpp"
+#include "auv_common/numbers/random.hpp"
 #include "physics.hpp"
 
 namespace stg {

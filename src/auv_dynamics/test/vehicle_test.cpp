@@ -1,10 +1,10 @@
-#include "auv_dynamics/vehicle.hpp"
+#include "auv_dynamics/vehicle/vehicle_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "physics.hpp"
 
 namespace stg {

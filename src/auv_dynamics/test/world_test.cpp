@@ -1,4 +1,4 @@
-#include "auv_dynamics/world.hpp"
+#include "auv_dynamics/world/world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "physics.hpp"
 
 namespace {

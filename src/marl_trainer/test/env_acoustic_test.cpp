@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "acoustic_channel/channel.hpp"
+#include "acoustic_channel/channel/channel.hpp"
 #include "env_fixture.hpp"
-#include "stg_agent/agent.hpp"
+#include "stg_agent/agent/agent.hpp"
 
 namespace stg {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/random.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/env.hpp"
+#include "auv_common/numbers/random.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/env/env.hpp"
 
 /// What the tests of the environment share.
 namespace stg {

@@ -1,4 +1,4 @@
-#include "marl_trainer/env.hpp"
+#include "marl_trainer/env/env.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "marl_trainer/evaluation.hpp"
+#include "marl_trainer/env/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "env_fixture.hpp"
 
 namespace stg {

@@ -6,12 +6,12 @@
 #include <random>
 #include <stdexcept>
 
-#include "auv_dynamics/error.hpp"
-#include "marl_trainer/blas.hpp"
-#include "marl_trainer/gae.hpp"
-#include "marl_trainer/normaliser.hpp"
-#include "marl_trainer/ppo.hpp"
-#include "marl_trainer/worker_pool.hpp"
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/learn/algorithms/mappo/gae.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
+#include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
+#include "auv_common/parallel/worker_pool.hpp"
 
 namespace stg {
 namespace {

@@ -1,4 +1,4 @@
-#include "marl_trainer/recorded.hpp"
+#include "marl_trainer/learn/recorded/recorded.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,10 +9,10 @@
 #include <limits>
 #include <sstream>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/random.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/recorded_trainer.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/numbers/random.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 
 namespace stg {
 namespace {

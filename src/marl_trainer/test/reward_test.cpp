@@ -1,4 +1,4 @@
-#include "marl_trainer/reward.hpp"
+#include "marl_trainer/task/reward.hpp"
 
 #include <gtest/gtest.h>
 

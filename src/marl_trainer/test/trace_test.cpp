@@ -1,4 +1,4 @@
-#include "marl_trainer/trace.hpp"
+#include "marl_trainer/env/trace.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "env_fixture.hpp"
 
 namespace stg {

@@ -1,10 +1,10 @@
-#include "marl_trainer/train_config.hpp"
+#include "marl_trainer/learn/train_config.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 
 namespace stg {
 namespace {

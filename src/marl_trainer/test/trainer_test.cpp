@@ -1,4 +1,4 @@
-#include "marl_trainer/trainer.hpp"
+#include "marl_trainer/learn/trainer.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/config/loader.hpp"
 
 namespace stg {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "auv_dynamics/attitude.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/actor_critic.hpp"
-#include "stg_agent/observation.hpp"
+#include "auv_common/numbers/attitude.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/learn/nn/actor_critic.hpp"
+#include "stg_agent/graph/observation.hpp"
 
 namespace stg {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "stg_agent/policy.hpp"
+#include "stg_agent/policy/policy.hpp"
 
 /// What the writer and the reader of policy files share.
 namespace stg {

@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "auv_dynamics/attitude.hpp"
-#include "stg_agent/agent.hpp"
+#include "auv_common/numbers/attitude.hpp"
+#include "stg_agent/agent/agent.hpp"
 
 namespace stg {
 

@@ -1,4 +1,4 @@
-#include "stg_agent/agent_lanes.hpp"
+#include "stg_agent/agent/agent_lanes.hpp"
 
 #include <gtest/gtest.h>
 

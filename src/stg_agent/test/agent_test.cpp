@@ -1,12 +1,12 @@
-#include "stg_agent/agent.hpp"
+#include "stg_agent/agent/agent.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "agent_fixture.hpp"
-#include "auv_dynamics/control.hpp"
-#include "stg_agent/pursuit.hpp"
+#include "auv_dynamics/control/control.hpp"
+#include "stg_agent/controllers/pursuit.hpp"
 
 namespace stg {
 namespace {

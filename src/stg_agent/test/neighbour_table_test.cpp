@@ -1,8 +1,8 @@
-#include "stg_agent/neighbour_table.hpp"
+#include "stg_agent/inbox/neighbour_table.hpp"
 
 #include <gtest/gtest.h>
 
-#include "acoustic_channel/link_quality.hpp"
+#include "acoustic_channel/link/link_quality.hpp"
 
 namespace stg {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "stg_agent/policy.hpp"
+#include "stg_agent/policy/policy.hpp"
 
 namespace stg {
 

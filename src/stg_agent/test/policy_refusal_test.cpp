@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "policy_files.hpp"
 
 namespace stg {

@@ -11,7 +11,7 @@
 #include <limits>
 #include <thread>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "policy_files.hpp"
 
 namespace {

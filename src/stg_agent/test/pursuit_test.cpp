@@ -1,10 +1,10 @@
-#include "stg_agent/pursuit.hpp"
+#include "stg_agent/controllers/pursuit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 
 namespace stg {
 namespace {

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "auv_dynamics/nodes/conversions.hpp"
-#include "auv_dynamics/nodes/node_main.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/env.hpp"
+#include "marl_trainer/env/env.hpp"
 #include "stg_agent/nodes/topics.hpp"
-#include "stg_agent/policy.hpp"
+#include "stg_agent/policy/policy.hpp"
 
 namespace stg {
 namespace {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "auv_dynamics/nodes/conversions.hpp"
-#include "auv_dynamics/nodes/node_main.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/evaluation.hpp"
+#include "marl_trainer/env/evaluation.hpp"
 
 namespace stg {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "acoustic_channel/channel.hpp"
-#include "auv_dynamics/nodes/health.hpp"
-#include "auv_dynamics/scenario.hpp"
+#include "acoustic_channel/channel/channel.hpp"
+#include "auv_common/nodes/health.hpp"
+#include "auv_dynamics/world/world_config.hpp"
 
 namespace stg {
 

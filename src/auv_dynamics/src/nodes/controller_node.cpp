@@ -1,11 +1,11 @@
 #include "controller_node.hpp"
 
-#include "auv_dynamics/control.hpp"
-#include "auv_dynamics/error.hpp"
+#include "auv_dynamics/control/control.hpp"
+#include "auv_common/error.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
-#include "auv_dynamics/nodes/node_main.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
-#include "auv_dynamics/nodes/poll_loop.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {

@@ -5,9 +5,9 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 
-#include "auv_dynamics/nodes/health.hpp"
-#include "auv_dynamics/scenario.hpp"
-#include "auv_dynamics/types.hpp"
+#include "auv_common/nodes/health.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/measurements.hpp"
 
 namespace stg {
 

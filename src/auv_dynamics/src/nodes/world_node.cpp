@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "auv_dynamics/nodes/conversions.hpp"
-#include "auv_dynamics/nodes/node_main.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
-#include "auv_dynamics/nodes/poll_loop.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg {

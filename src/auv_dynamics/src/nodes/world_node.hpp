@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/nodes/health.hpp"
-#include "auv_dynamics/scenario.hpp"
-#include "auv_dynamics/world.hpp"
+#include "auv_common/nodes/health.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/world/world.hpp"
 #include "world_publisher.hpp"
 
 namespace stg {

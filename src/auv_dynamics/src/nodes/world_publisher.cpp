@@ -7,7 +7,7 @@
 
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
+#include "auv_common/config/loader.hpp"
 
 namespace stg {
 namespace {

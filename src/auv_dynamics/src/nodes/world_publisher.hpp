@@ -10,8 +10,8 @@
 
 #include <vector>
 
-#include "auv_dynamics/scenario.hpp"
-#include "auv_dynamics/world.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/world/world.hpp"
 
 namespace stg {
 

@@ -9,9 +9,9 @@
 #include <map>
 #include <sstream>
 
-#include "auv_dynamics/error.hpp"
+#include "auv_common/error.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
+#include "auv_common/config/loader.hpp"
 #include "record_inlet.hpp"
 #include "stg_agent/nodes/topics.hpp"
 

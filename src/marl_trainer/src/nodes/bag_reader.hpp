@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/recorded.hpp"
+#include "marl_trainer/learn/recorded/recorded.hpp"
 
 namespace stg {
 

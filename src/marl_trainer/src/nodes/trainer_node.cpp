@@ -10,8 +10,8 @@
 #include <iostream>
 #include <numeric>
 
-#include "auv_dynamics/nodes/node_main.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "bag_reader.hpp"
 #include "stg_agent/nodes/topics.hpp"

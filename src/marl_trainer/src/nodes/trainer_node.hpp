@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/nodes/health.hpp"
-#include "marl_trainer/recorded_trainer.hpp"
+#include "auv_common/nodes/health.hpp"
+#include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 #include "record_inlet.hpp"
 
 namespace stg {

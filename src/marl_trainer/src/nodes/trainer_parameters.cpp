@@ -6,8 +6,8 @@
 #include <sstream>
 #include <type_traits>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/nodes/parameters.hpp"
 
 namespace stg {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/train_config.hpp"
+#include "marl_trainer/learn/train_config.hpp"
 
 namespace stg {
 

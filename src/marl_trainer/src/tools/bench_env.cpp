@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/random.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/env.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/numbers/random.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/env/env.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/trace.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/env/trace.hpp"
 
 /// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
 /// on unusable input.

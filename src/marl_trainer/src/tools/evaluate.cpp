@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/evaluation.hpp"
-#include "marl_trainer/train_config.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/env/evaluation.hpp"
+#include "marl_trainer/learn/train_config.hpp"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <iostream>
 #include <thread>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "marl_trainer/trainer.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/config/loader.hpp"
+#include "marl_trainer/learn/trainer.hpp"
 
 namespace {
 

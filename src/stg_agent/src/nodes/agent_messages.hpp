@@ -2,7 +2,7 @@
 
 #include <auv_msgs/TaskState.h>
 
-#include "stg_agent/agent.hpp"
+#include "stg_agent/agent/agent.hpp"
 
 namespace stg {
 

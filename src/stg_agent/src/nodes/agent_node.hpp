@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/nodes/health.hpp"
+#include "auv_common/nodes/health.hpp"
 #include "decider.hpp"
-#include "stg_agent/agent.hpp"
+#include "stg_agent/agent/agent.hpp"
 
 namespace stg {
 

@@ -2,10 +2,10 @@
 
 #include <fstream>
 
-#include "auv_dynamics/error.hpp"
-#include "auv_dynamics/random.hpp"
-#include "auv_dynamics/scenario_yaml.hpp"
-#include "stg_agent/gaussian.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/numbers/random.hpp"
+#include "auv_common/config/loader.hpp"
+#include "stg_agent/policy/gaussian.hpp"
 
 namespace stg {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "stg_agent/agent.hpp"
-#include "stg_agent/policy.hpp"
-#include "stg_agent/pursuit.hpp"
+#include "stg_agent/agent/agent.hpp"
+#include "stg_agent/policy/policy.hpp"
+#include "stg_agent/controllers/pursuit.hpp"
 
 namespace stg {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/env.hpp"
+#include "marl_trainer/env/env.hpp"
 #include "swarm_frames.hpp"
 
 namespace stg {

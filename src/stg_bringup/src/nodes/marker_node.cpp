@@ -17,8 +17,8 @@
 #include <regex>
 
 #include "acoustic_channel/nodes/topics.hpp"
-#include "auv_dynamics/nodes/health.hpp"
-#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_common/nodes/health.hpp"
+#include "auv_common/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marker_builder.hpp"
 #include "stg_agent/nodes/topics.hpp"

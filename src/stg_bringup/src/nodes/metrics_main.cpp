@@ -1,4 +1,4 @@
-#include "auv_dynamics/nodes/node_main.hpp"
+#include "auv_common/nodes/node_main.hpp"
 #include "metrics_node.hpp"
 
 int main(int argc, char** argv) {

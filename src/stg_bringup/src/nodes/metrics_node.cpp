@@ -5,9 +5,9 @@
 
 #include "acoustic_channel/nodes/topics.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
-#include "auv_dynamics/nodes/node_main.hpp"
-#include "auv_dynamics/nodes/parameters.hpp"
-#include "auv_dynamics/nodes/poll_loop.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 

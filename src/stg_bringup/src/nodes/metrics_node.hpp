@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/nodes/health.hpp"
+#include "auv_common/nodes/health.hpp"
 #include "live_table.hpp"
 #include "swarm_frames.hpp"
 

@@ -9,8 +9,8 @@
 #include <map>
 #include <vector>
 
-#include "auv_dynamics/scenario.hpp"
-#include "auv_dynamics/types.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/measurements.hpp"
 
 namespace stg {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "acoustic_channel/channel.hpp"
+#include "acoustic_channel/channel/channel.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 
 namespace stg {

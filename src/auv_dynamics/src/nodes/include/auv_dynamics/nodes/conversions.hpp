@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "auv_dynamics/types.hpp"
+#include "auv_dynamics/measurements.hpp"
 
 /// Between the core's plain data and messages. Doubles and integer nanoseconds pass unchanged, so
 /// that a graph of nodes computes the same bits as one process.

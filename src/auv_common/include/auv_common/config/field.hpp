@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// How a section of a configuration file is described: one field per key, beside the struct that
+/// it fills. Loading, saving, validation and the reference in docs/scenarios.md all read these
+/// descriptions, so they cannot disagree.
+///
+/// A section is a plain, default-initialised struct with a function
+///   void Describe(Section* section, config::Table* table);
+/// and a configuration composes sections; see config/loader.hpp.
+namespace stg {
+
+/// Closed; what is drawn from it is uniform.
+struct Interval {
+  double lo = 0.0, hi = 0.0;
+};
+
+}  // namespace stg
+
+namespace stg::config {
+
+/// Allowed values [lo, hi], or (lo, hi] when lo is excluded. Holds for every
+/// component of an array and both ends of an interval.
+struct Limits {
+  double lo = 0.0;
+  double hi = 0.0;
+  bool lo_excluded = false;
+
+  bool Contain(double value) const {
+    return (lo_excluded ? value > lo : value >= lo) && value <= hi;
+  }
+};
+
+inline Limits Positive(double hi) { return {0.0, hi, true}; }
+inline Limits NonNegative(double hi) { return {0.0, hi, false}; }
+inline Limits Within(double lo, double hi) { return {lo, hi, false}; }
+inline constexpr Limits kFraction{0.0, 1.0, false};
+inline constexpr Limits kNone{};  ///< of keys that are not numbers
+
+/// An enumeration by its names; an index is the enumerator's value.
+struct EnumRef {
+  std::vector<std::string> names;
+  std::function<int()> get;
+  std::function<void(int)> set;
+};
+
+template <class E>
+EnumRef Enum(E* value, std::vector<std::string> names) {
+  return {std::move(names), [value] { return static_cast<int>(*value); },
+          [value](int index) { *value = static_cast<E>(index); }};
+}
+
+/// A fixed number of doubles, written as a sequence.
+struct NumbersRef {
+  double* data = nullptr;
+  int size = 0;
+};
+
+template <std::size_t N>
+NumbersRef Numbers(std::array<double, N>* values) {
+  return {values->data(), static_cast<int>(N)};
+}
+
+using ValueRef = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef,
+                              NumbersRef, Interval*>;
+
+/// One key of a file and the member of the struct that it fills.
+struct Field {
+  std::string path;     ///< dotted, e.g. "time.dt_s"
+  ValueRef value;       ///< points into the struct that the table was made for
+  Limits limits;        ///< of numbers; unused for other types
+  std::string unit;     ///< unit and, where it matters, frame
+  std::string meaning;  ///< one sentence
+};
+
+/// All keys of a configuration in file order; keys of one section are adjacent. The references
+/// are valid as long as the described struct stays where it is.
+class Table {
+ public:
+  /// Keys added from here on lie in this section; "" is the top level.
+  void Section(const std::string& path) { prefix_ = path.empty() ? "" : path + "."; }
+  void Add(const std::string& key, ValueRef value, Limits limits, const std::string& unit,
+           const std::string& meaning) {
+    fields_.push_back({prefix_ + key, std::move(value), limits, unit, meaning});
+  }
+  /// A key that files of earlier versions may have, and the one that replaces it: the refusal
+  /// names it.
+  void Moved(const std::string& from, const std::string& to) { moved_.emplace_back(from, to); }
+
+  const std::vector<Field>& fields() const { return fields_; }
+  const std::vector<std::pair<std::string, std::string>>& moved() const { return moved_; }
+
+ private:
+  std::string prefix_;
+  std::vector<Field> fields_;
+  std::vector<std::pair<std::string, std::string>> moved_;
+};
+
+/// Why a configuration as a whole is refused: the key to blame first, then the keys that it
+/// contradicts.
+struct Violation {
+  std::vector<std::string> keys;
+  std::string message;
+};
+
+}  // namespace stg::config

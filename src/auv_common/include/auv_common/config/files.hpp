@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "auv_common/config/loader.hpp"
+
+/// Where shipped scenario files lie and how they are named.
+namespace stg::config {
+
+/// Finds shipped files by name: `medium` is <folder>/medium.yaml, condition `fast_target` of it is
+/// <folder>/conditions/<stage>_fast_target.yaml, where stage is the file's reset.stage (nominal:
+/// no overlay). A name with a slash or ending in .yaml is taken as a path. Throws UserError.
+Source NamedSource(const std::string& folder, const std::string& scenario,
+                   const std::string& condition = "nominal",
+                   const std::vector<std::string>& overrides = {});
+
+/// The folder with the shipped scenarios: $STG_SCENARIOS if set, else the
+/// stg_bringup package found on ROS_PACKAGE_PATH or beside the source tree.
+std::string ScenarioFolder();
+
+}  // namespace stg::config

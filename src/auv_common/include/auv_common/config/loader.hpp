@@ -1,0 +1,135 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "auv_common/config/field.hpp"
+#include "auv_common/config/value.hpp"
+#include "auv_common/config/yaml_tree.hpp"
+
+/// Strict YAML into described structs.
+///
+/// A file either states every key or names another one with `base: <file>` (relative to itself)
+/// and states the difference; overlays (files with a subset of the keys) and `key.path=value`
+/// overrides follow in order. An unknown or missing key, a wrong type, a non-finite or
+/// out-of-range value throws UserError with file, line and key.
+namespace stg::config {
+
+/// Where a configuration comes from.
+struct Source {
+  std::string file;
+  std::vector<std::string> overlays = {};   ///< files
+  std::vector<std::string> overrides = {};  ///< key.path=value
+};
+
+/// What a file may hold besides the described keys: nothing, or sections that belong to others. A
+/// program that needs some sections of a file leaves the rest to the program that knows them all.
+enum class Scope { kWhole, kOwnSections };
+
+/// Fills the fields of one table; every value remembers where it came from.
+class Loader {
+ public:
+  /// @param table must outlive this object.
+  Loader(const Table& table, Scope scope);
+  Loader(const Loader&) = delete;
+  Loader& operator=(const Loader&) = delete;
+
+  void Apply(const Source& source);
+  /// A whole file that is given as text; `origin` stands for its name. It cannot have a base.
+  void ApplyText(const std::string& text, const std::string& origin);
+  /// Throws the violation with the origin of each of its keys.
+  [[noreturn]] void Refuse(const Violation& violation) const;
+
+ private:
+  using Keys = std::set<std::string>;
+  void ApplyFile(const std::string& path);
+  void ApplyOverlay(const std::string& path);
+  void ApplyOverride(const std::string& text);
+  void ApplyBase(const std::string& path, const YamlTree::Entry& entry);
+  void ApplyMap(const YamlTree& map, const std::string& prefix, const std::string& file,
+                Keys* given);
+  void Set(const Field& field, const YamlTree& value, const std::string& where);
+  void RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const;
+  bool Foreign(const std::string& path) const;
+  std::string Unknown(const std::string& path) const;
+  std::string Origin(const std::string& key) const;
+
+  const Table& table_;
+  const Scope scope_;
+  std::map<std::string, const Field*> index_;
+  Keys sections_;
+  std::map<std::string, std::string> origin_;  ///< key to "file:line: "
+  std::map<std::string, int> section_lines_;
+  std::vector<std::string> open_;  ///< files whose bases are being loaded
+};
+
+/// First field whose value is not allowed, else nothing.
+std::optional<Violation> FindBadValue(const Table& table);
+
+/// Loads a configuration: a struct with Describe(Config*, Table*) and, for rules between keys,
+/// std::optional<Violation> FindConflict(const Config&). Throws UserError.
+template <class Config>
+Config Load(const Source& source, Scope scope = Scope::kWhole) {
+  Config config;
+  Table table;
+  Describe(&config, &table);
+  Loader loader(table, scope);
+  loader.Apply(source);
+  if (const auto violation = FindConflict(config)) loader.Refuse(*violation);
+  return config;
+}
+
+/// The same from the text of a whole file.
+template <class Config>
+Config LoadText(const std::string& text, const std::string& origin) {
+  Config config;
+  Table table;
+  Describe(&config, &table);
+  Loader loader(table, Scope::kWhole);
+  loader.ApplyText(text, origin);
+  if (const auto violation = FindConflict(config)) loader.Refuse(*violation);
+  return config;
+}
+
+/// First violation of a range or of a rule between keys, else nothing.
+template <class Config>
+std::optional<Violation> FindViolation(const Config& config) {
+  Config copy = config;
+  Table table;
+  Describe(&copy, &table);
+  if (auto violation = FindBadValue(table)) return violation;
+  return FindConflict(config);
+}
+
+/// Throws UserError that begins with `what` and names the key when a value is out of range or two
+/// keys contradict each other.
+void ThrowViolation(const std::string& what, const Violation& violation);
+template <class Config>
+void ValidateOrThrow(const Config& config, const std::string& what = "scenario") {
+  if (const auto violation = FindViolation(config)) ThrowViolation(what, *violation);
+}
+
+/// Every key with its value; loading the result gives the same struct.
+std::string ToYaml(const Table& table);
+template <class Config>
+std::string ToYaml(const Config& config) {
+  Config copy = config;
+  Table table;
+  Describe(&copy, &table);
+  return ToYaml(table);
+}
+
+/// FNV-1a 64, hexadecimal.
+std::string HashOf(const std::string& text);
+
+/// The source as one file: base, overlays and overrides merged, numbers as ToYaml writes them.
+/// Checks nothing but the syntax.
+std::string ResolvedText(const Source& source);
+
+/// The value of one scalar key in the file or the nearest base that states it, unchecked.
+std::optional<std::string> FindScalar(const std::string& file, const std::string& path);
+
+}  // namespace stg::config

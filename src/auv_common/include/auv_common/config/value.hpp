@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "auv_common/config/field.hpp"
+#include "auv_common/config/yaml_tree.hpp"
+
+/// Values of single keys as text: read, write, check.
+namespace stg::config {
+
+/// What a node is, for "expected ..., found ..." messages.
+std::string KindName(const YamlTree& node);
+
+/// Reads the node into the member that the field points to. Message when type
+/// or range do not fit, else nothing. Numbers are strict: no surrounding text,
+/// no quotes, no NaN or infinity, integers without a point.
+std::optional<std::string> ParseValue(const Field& field, const YamlTree& node);
+
+/// The value as a YAML scalar or flow sequence; numbers round-trip exactly.
+std::string FormatValue(const ValueRef& value);
+
+/// Allowed values in words: "(0, 10]", "truth | acoustic", "true | false".
+std::string FormatRange(const Field& field);
+
+/// Message when the value itself is not allowed, else nothing.
+std::optional<std::string> CheckValue(const Field& field);
+
+}  // namespace stg::config

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <xsimd/xsimd.hpp>
+
+/// Scalar and SIMD arithmetic behind one set of names.
+///
+/// Every formula of the core is a template over T, which is `double` (one
+/// vehicle, one agent) or `Pack` (the same quantity of kLanes independent
+/// environments). Transcendental functions of a double are evaluated through a
+/// Pack, so that both instantiations round alike: a ROS node and the vectorised
+/// environment then agree bit for bit (the build sets -ffp-contract=off).
+namespace stg {
+
+using Pack = xsimd::batch<double>;
+inline constexpr int kLanes = static_cast<int>(Pack::size);
+
+/// What comparing two T gives: Mask<double> is bool, Mask<Pack> one truth per lane.
+template <class T>
+struct MaskOf;
+template <>
+struct MaskOf<double> {
+  using type = bool;
+};
+template <>
+struct MaskOf<Pack> {
+  using type = Pack::batch_bool_type;
+};
+template <class T>
+using Mask = typename MaskOf<T>::type;
+
+inline double Select(bool m, double a, double b) { return m ? a : b; }
+inline Pack Select(const Pack::batch_bool_type& m, const Pack& a, const Pack& b) {
+  return xsimd::select(m, a, b);
+}
+inline bool Any(bool m) { return m; }
+inline bool Any(const Pack::batch_bool_type& m) { return xsimd::any(m); }
+
+inline double Min(double a, double b) { return std::min(a, b); }
+inline Pack Min(const Pack& a, const Pack& b) { return xsimd::min(a, b); }
+inline double Max(double a, double b) { return std::max(a, b); }
+inline Pack Max(const Pack& a, const Pack& b) { return xsimd::max(a, b); }
+inline double Abs(double a) { return std::abs(a); }
+inline Pack Abs(const Pack& a) { return xsimd::abs(a); }
+inline double Sqrt(double a) { return std::sqrt(a); }
+inline Pack Sqrt(const Pack& a) { return xsimd::sqrt(a); }
+inline double Floor(double a) { return std::floor(a); }
+inline Pack Floor(const Pack& a) { return xsimd::floor(a); }
+
+inline Pack Exp(const Pack& a) { return xsimd::exp(a); }
+inline double Exp(double a) { return Exp(Pack(a)).get(0); }
+inline Pack Log1p(const Pack& a) { return xsimd::log1p(a); }
+inline double Log1p(double a) { return Log1p(Pack(a)).get(0); }
+inline Pack Atan2(const Pack& y, const Pack& x) { return xsimd::atan2(y, x); }
+inline double Atan2(double y, double x) { return Atan2(Pack(y), Pack(x)).get(0); }
+inline void SinCos(const Pack& a, Pack* s, Pack* c) {
+  const auto sc = xsimd::sincos(a);
+  *s = sc.first;
+  *c = sc.second;
+}
+inline void SinCos(double a, double* s, double* c) {
+  const auto sc = xsimd::sincos(Pack(a));
+  *s = sc.first.get(0);
+  *c = sc.second.get(0);
+}
+
+/// Nearest number with float32's 24-bit significand, by Veltkamp's splitting.
+/// Not a pair of casts: GCC 12 at -O3 drops a vectorised double-float-double
+/// round trip. Exact for float32's normal range, which is all it is used for.
+template <class T>
+inline T RoundToFloat(const T& a) {
+  const T c = a * T(536870913.0);  // 2^29 + 1
+  return c - (c - a);
+}
+
+/// Value of one lane; a double has the same value in every lane.
+inline double Lane(double a, int) { return a; }
+// One load or store where the pack lies; Pack::get copies the whole pack first.
+inline double Lane(const Pack& a, int lane) {
+  double value;
+  std::memcpy(&value, reinterpret_cast<const double*>(&a) + lane, sizeof(value));
+  return value;
+}
+inline void SetLane(double* a, int, double value) { *a = value; }
+inline void SetLane(Pack* a, int lane, double value) {
+  std::memcpy(reinterpret_cast<double*>(a) + lane, &value, sizeof(value));
+}
+
+template <class T>
+inline T Clip(const T& a, const T& lo, const T& hi) {
+  return Min(Max(a, lo), hi);
+}
+inline Pack Clip(const Pack& a, double lo, double hi) { return Clip(a, Pack(lo), Pack(hi)); }
+
+}  // namespace stg

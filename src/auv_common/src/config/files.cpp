@@ -1,0 +1,110 @@
+#include "auv_common/config/files.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "auv_common/error.hpp"
+
+namespace stg::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsPath(const std::string& name) {
+  const std::string ending = ".yaml";
+  return name.find('/') != std::string::npos ||
+         (name.size() > ending.size() &&
+          name.compare(name.size() - ending.size(), ending.size(), ending) == 0);
+}
+
+bool IsFolder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+/// Names of the YAML files in a folder that begin with `prefix`, without it.
+std::string ListNames(const fs::path& folder, const std::string& prefix) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string stem = it->path().stem().string();
+    if (it->path().extension() == ".yaml" && stem.rfind(prefix, 0) == 0) {
+      names.push_back(stem.substr(prefix.size()));
+    }
+  }
+  std::sort(names.begin(), names.end());
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+/// Sources of the workspace come as <entry>/stg_bringup or, when the repository
+/// is cloned into a larger workspace, as <entry>/<repository>/src/stg_bringup.
+std::vector<fs::path> CandidatesUnder(const fs::path& entry) {
+  std::vector<fs::path> candidates;
+  if (entry.filename() == "stg_bringup") candidates.push_back(entry / "scenarios");
+  candidates.push_back(entry / "stg_bringup" / "scenarios");
+  std::error_code error;
+  for (fs::directory_iterator it(entry, error), end; !error && it != end; it.increment(error)) {
+    if (!IsFolder(it->path())) continue;
+    candidates.push_back(it->path() / "stg_bringup" / "scenarios");
+    candidates.push_back(it->path() / "src" / "stg_bringup" / "scenarios");
+  }
+  return candidates;
+}
+
+}  // namespace
+
+std::string ScenarioFolder() {
+  if (const char* folder = std::getenv("STG_SCENARIOS"); folder != nullptr && *folder != '\0') {
+    if (!IsFolder(folder)) {
+      throw UserError("STG_SCENARIOS: " + std::string(folder) + " is not a folder");
+    }
+    return folder;
+  }
+  const char* package_path = std::getenv("ROS_PACKAGE_PATH");
+  std::istringstream entries(package_path != nullptr ? package_path : "");
+  for (std::string entry; std::getline(entries, entry, ':');) {
+    if (entry.empty()) continue;
+    for (const fs::path& candidate : CandidatesUnder(entry)) {
+      if (IsFolder(candidate)) return candidate.string();
+    }
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  std::string tried;
+  for (const char* relative :
+       {"../../share/stg_bringup/scenarios", "../../../src/stg_bringup/scenarios"}) {
+    const fs::path candidate = (program / relative).lexically_normal();
+    if (!error && IsFolder(candidate)) return candidate.string();
+    tried += ", " + candidate.string();
+  }
+  throw UserError(
+      "no folder with scenarios found; tried STG_SCENARIOS (not set), "
+      "stg_bringup/scenarios on ROS_PACKAGE_PATH (" +
+      std::string(package_path != nullptr ? package_path : "not set") + ")" + tried);
+}
+
+Source NamedSource(const std::string& folder, const std::string& scenario,
+                   const std::string& condition, const std::vector<std::string>& overrides) {
+  const fs::path root(folder);
+  const fs::path file = IsPath(scenario) ? fs::path(scenario) : root / (scenario + ".yaml");
+  std::error_code error;
+  if (!IsPath(scenario) && !fs::exists(file, error)) {
+    throw UserError("scenario " + Quoted(scenario) + ": no file " + file.string() + "; there are " +
+                    ListNames(root, ""));
+  }
+  if (condition == "nominal") return {file.string(), {}, overrides};
+  if (IsPath(condition)) return {file.string(), {condition}, overrides};
+  const std::string stage = FindScalar(file.string(), "reset.stage").value_or("medium") + "_";
+  const fs::path overlay = root / "conditions" / (stage + condition + ".yaml");
+  if (!fs::exists(overlay, error)) {
+    throw UserError("condition " + Quoted(condition) + ": no file " + overlay.string() +
+                    "; there are nominal, " + ListNames(root / "conditions", stage));
+  }
+  return {file.string(), {overlay.string()}, overrides};
+}
+
+}  // namespace stg::config

@@ -1,0 +1,240 @@
+#include "auv_common/config/loader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "auv_common/error.hpp"
+#include "yaml_files.hpp"
+
+namespace stg::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxBases = 8;
+
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string Parent(const std::string& path) {
+  const auto dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+std::string Leaf(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+std::string Where(const std::string& path, int line) {
+  return path + ":" + std::to_string(line) + ": ";
+}
+
+/// User text without the quotes, shortened.
+std::string Shortened(const std::string& text) {
+  const std::string quoted = Quoted(text);
+  return quoted.substr(1, quoted.size() - 2);
+}
+
+}  // namespace
+
+Loader::Loader(const Table& table, Scope scope) : table_(table), scope_(scope) {
+  for (const Field& field : table.fields()) {
+    index_[field.path] = &field;
+    for (std::string p = Parent(field.path); !p.empty(); p = Parent(p)) sections_.insert(p);
+  }
+}
+
+void Loader::Apply(const Source& source) {
+  ApplyFile(source.file);
+  for (const std::string& overlay : source.overlays) ApplyOverlay(overlay);
+  for (const std::string& text : source.overrides) ApplyOverride(text);
+}
+
+void Loader::ApplyText(const std::string& text, const std::string& origin) {
+  const YamlTree root = ParseMap(text, origin);
+  for (const auto& entry : root.entries) {
+    if (entry.key == "base") throw UserError(Where(origin, entry.line) + "base: not allowed here");
+  }
+  Keys given;
+  ApplyMap(root, "", origin, &given);
+  RequireAll(root, origin, given);
+}
+
+void Loader::Refuse(const Violation& violation) const {
+  std::string text = Origin(violation.keys[0]) + violation.keys[0] + ": " + violation.message;
+  for (std::size_t i = 1; i < violation.keys.size(); ++i) {
+    text += "\n  " + Origin(violation.keys[i]) + violation.keys[i] + " is " +
+            FormatValue(index_.at(violation.keys[i])->value);
+  }
+  throw UserError(text);
+}
+
+void Loader::ApplyFile(const std::string& path) {
+  std::error_code error;  // a path that cannot be resolved fails in ReadMap
+  open_.push_back(fs::weakly_canonical(path, error).string());
+  const YamlTree root = ReadMap(path);
+  Keys given;
+  const auto base = std::find_if(root.entries.begin(), root.entries.end(),
+                                 [](const auto& entry) { return entry.key == "base"; });
+  const bool whole = base == root.entries.end();
+  if (!whole) ApplyBase(path, *base);
+  ApplyMap(root, "", path, &given);
+  if (whole) RequireAll(root, path, given);
+  open_.pop_back();
+}
+
+void Loader::ApplyOverlay(const std::string& path) {
+  const YamlTree root = ReadMap(path);
+  for (const auto& entry : root.entries) {
+    if (entry.key == "base") {
+      throw UserError(Where(path, entry.line) + "base: an overlay has no base");
+    }
+  }
+  Keys given;
+  ApplyMap(root, "", path, &given);
+}
+
+void Loader::ApplyOverride(const std::string& text) {
+  const std::string origin = OverrideOrigin(text);
+  const auto [path, value] = SplitOverride(text);
+  const auto found = index_.find(path);
+  if (found != index_.end()) {
+    Set(*found->second, ParseYaml(value, origin + ": " + path, false), origin + ": ");
+  } else if (!Foreign(path)) {
+    throw UserError(origin + ": " + Unknown(path));
+  }
+}
+
+void Loader::ApplyBase(const std::string& path, const YamlTree::Entry& entry) {
+  if (open_.size() >= kMaxBases) {
+    throw UserError(Where(path, entry.line) + "base: too many bases on top of each other");
+  }
+  const std::string base = BaseOf(path, entry);
+  std::error_code error;
+  const std::string canonical = fs::weakly_canonical(base, error).string();
+  if (std::find(open_.begin(), open_.end(), canonical) != open_.end()) {
+    throw UserError(Where(path, entry.line) + "base: " + Quoted(entry.value.scalar) +
+                    " leads back to itself");
+  }
+  if (error || !fs::is_regular_file(base, error)) {
+    throw UserError(Where(path, entry.line) + "base: " + base + " is not a file");
+  }
+  ApplyFile(base);
+}
+
+void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std::string& file,
+              Keys* given) {
+  for (const YamlTree::Entry& entry : map.entries) {
+    const std::string path = prefix + entry.key;
+    if (path == "base") continue;
+    const std::string where = Where(file, entry.line);
+    const auto found = index_.find(path);
+    if (found != index_.end()) {
+      Set(*found->second, entry.value, where);
+      given->insert(path);
+    } else if (sections_.count(path) != 0) {
+      const bool empty = entry.value.kind == YamlTree::Kind::kNull;
+      if (entry.value.kind != YamlTree::Kind::kMap && !empty) {
+        throw UserError(where + path + ": expected a map of keys, found " +
+                        KindName(entry.value));
+      }
+      section_lines_[path] = entry.line;
+      ApplyMap(entry.value, path + ".", file, given);
+    } else if (!Foreign(path)) {
+      throw UserError(where + Unknown(path));
+    }
+  }
+}
+
+void Loader::Set(const Field& field, const YamlTree& value, const std::string& where) {
+  if (const auto message = ParseValue(field, value)) {
+    throw UserError(where + field.path + ": " + *message);
+  }
+  origin_[field.path] = where;
+}
+
+void Loader::RequireAll(const YamlTree& root, const std::string& file,
+                const Keys& given) const {
+  std::vector<std::string> missing;
+  for (const Field& field : table_.fields()) {
+    if (given.count(field.path) == 0) missing.push_back(field.path);
+  }
+  if (missing.empty()) return;
+  int line = root.line;
+  const auto section = section_lines_.find(Parent(missing[0]));
+  if (section != section_lines_.end()) line = section->second;
+  std::string text = Where(file, line) + missing[0] + ": missing key";
+  if (missing.size() > 1) text += ", and " + std::to_string(missing.size() - 1) + " more";
+  throw UserError(text + " (state every key, or name a base file with 'base: <file>')");
+}
+
+/// A key at the top level, or in a section there, that this table says nothing of.
+bool Loader::Foreign(const std::string& path) const {
+  if (scope_ == Scope::kWhole) return false;
+  for (const auto& item : table_.moved()) {
+    if (path == item.first) return false;
+  }
+  const std::string top = path.substr(0, path.find('.'));
+  return index_.count(top) == 0 && sections_.count(top) == 0;
+}
+
+/// The key this was probably meant to be: the same word elsewhere, or a
+/// similar word in the same section.
+std::string Loader::Unknown(const std::string& path) const {
+  for (const auto& [from, to] : table_.moved()) {
+    if (path == from) return path + ": this key is called " + to;
+  }
+  std::set<std::string> keys = sections_;
+  for (const auto& item : index_) keys.insert(item.first);
+  std::string best;
+  if (path.size() <= 200) {
+    std::size_t least = std::max<std::size_t>(2, Leaf(path).size() / 3) + 1;
+    for (const std::string& key : keys) {
+      const std::size_t distance = Parent(key) == Parent(path)
+                                       ? EditDistance(Leaf(path), Leaf(key))
+                                       : EditDistance(path, key);
+      if (distance < least) {
+        least = distance;
+        best = key;
+      }
+    }
+    for (const std::string& key : keys) {
+      if (best.empty() && Leaf(key) == Leaf(path)) best = key;
+    }
+  }
+  const std::string name = Shortened(path);
+  const std::string text = name + ": unknown key";
+  if (sections_.count(path) != 0) return name + ": names a section, not a value";
+  return best.empty() ? text : text + ", did you mean " + best + "?";
+}
+
+std::string Loader::Origin(const std::string& key) const {
+  const auto found = origin_.find(key);
+  return found == origin_.end() ? "" : found->second;
+}
+
+std::optional<Violation> FindBadValue(const Table& table) {
+  for (const Field& field : table.fields()) {
+    if (auto message = CheckValue(field)) return Violation{{field.path}, *message};
+  }
+  return {};
+}
+
+void ThrowViolation(const std::string& what, const Violation& violation) {
+  std::string text = what + ": " + violation.keys[0] + ": " + violation.message;
+  for (std::size_t i = 1; i < violation.keys.size(); ++i) {
+    text += (i == 1 ? " (see " : ", ") + violation.keys[i];
+  }
+  throw UserError(text + (violation.keys.size() > 1 ? ")" : ""));
+}
+
+}  // namespace stg::config

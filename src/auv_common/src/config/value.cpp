@@ -1,0 +1,256 @@
+#include "auv_common/config/value.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace stg::config {
+namespace {
+
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overload(F...) -> Overload<F...>;
+
+/// Shortest text that reads back as the same double, always with a point so
+/// that every YAML reader takes it for a real number.
+std::string FormatNumber(double value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  std::string text(buffer, result.ptr);
+  if (text.find_first_of(".n") == std::string::npos) {
+    const auto exponent = text.find('e');
+    text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
+  }
+  return text;
+}
+
+/// Bounds are written as a person would.
+std::string FormatBound(double value) {
+  char buffer[32];
+  const auto result =
+      std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::general);
+  return {buffer, result.ptr};
+}
+
+std::string FormatNumbers(const double* values, int size) {
+  std::string text = "[";
+  for (int i = 0; i < size; ++i) text += (i > 0 ? ", " : "") + FormatNumber(values[i]);
+  return text + "]";
+}
+
+/// Quotes the words that some YAML readers take for something else.
+std::string FormatWord(const std::string& word) {
+  for (const char* special : {"on", "off", "yes", "no", "true", "false", "null", "y", "n"}) {
+    if (word == special) return "\"" + word + "\"";
+  }
+  return word;
+}
+
+bool IsName(const std::string& text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (text.empty() || text.size() > 64 || !letter(text[0])) return false;
+  for (const char c : text) {
+    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-') return false;
+  }
+  return true;
+}
+
+std::optional<std::string> CheckNumbers(const Field& field, const double* values,
+                                        int size) {
+  for (int i = 0; i < size; ++i) {
+    if (!std::isfinite(values[i])) return "must be finite";
+    if (!field.limits.Contain(values[i])) {
+      return FormatNumber(values[i]) + " is out of range " + FormatRange(field);
+    }
+  }
+  return {};
+}
+
+/// Message of a refused value; the caller adds file, line and key.
+struct Refusal {
+  std::string message;
+};
+
+double ToDouble(const YamlTree& node) {
+  const std::string& s = node.scalar;
+  if (node.kind != YamlTree::Kind::kScalar || node.quoted) {
+    throw Refusal{"expected a number, found " + KindName(node)};
+  }
+  double value = 0.0;
+  const auto result = std::from_chars(s.data(), s.data() + s.size(), value);
+  const bool special = s.find("inf") != std::string::npos || s.find("nan") != std::string::npos ||
+                       s.find("Inf") != std::string::npos || s.find("NaN") != std::string::npos ||
+                       s.find("INF") != std::string::npos || s.find("NAN") != std::string::npos;
+  if (special && s.size() <= 5) throw Refusal{"must be a finite number, found " + KindName(node)};
+  if (result.ec == std::errc::result_out_of_range) {
+    throw Refusal{"no representable number: " + KindName(node)};
+  }
+  if (result.ec != std::errc() || result.ptr != s.data() + s.size() || !std::isfinite(value)) {
+    throw Refusal{"expected a number, found " + KindName(node)};
+  }
+  return value;
+}
+
+template <class Int>
+Int ToInteger(const YamlTree& node) {
+  const std::string& s = node.scalar;
+  if (node.kind != YamlTree::Kind::kScalar || node.quoted) {
+    throw Refusal{"expected an integer, found " + KindName(node)};
+  }
+  Int value = 0;
+  const auto result = std::from_chars(s.data(), s.data() + s.size(), value);
+  const bool digits = !s.empty() &&
+                      s.find_first_not_of("0123456789", s[0] == '-' ? 1 : 0) == std::string::npos &&
+                      s != "-";
+  if (digits && (result.ec != std::errc() || result.ptr != s.data() + s.size())) {
+    throw Refusal{KindName(node) + " is out of range"};
+  }
+  if (!digits) throw Refusal{"expected an integer, found " + KindName(node)};
+  return value;
+}
+
+std::vector<double> ToDoubles(const YamlTree& node, int size) {
+  if (node.kind != YamlTree::Kind::kSequence || static_cast<int>(node.items.size()) != size) {
+    throw Refusal{"expected a sequence of " + std::to_string(size) + " numbers, found " +
+                  (node.kind == YamlTree::Kind::kSequence
+                       ? std::to_string(node.items.size()) + " items"
+                       : KindName(node))};
+  }
+  std::vector<double> values;
+  for (const YamlTree& item : node.items) values.push_back(ToDouble(item));
+  return values;
+}
+
+/// Reads the node into the member that the field points to.
+struct Assign {
+  const YamlTree& node;
+  const Field& field;
+
+  void operator()(double* v) const { *v = ToDouble(node); }
+  void operator()(int* v) const { *v = ToInteger<int>(node); }
+  void operator()(std::uint64_t* v) const { *v = ToInteger<std::uint64_t>(node); }
+  void operator()(bool* v) const {
+    if (node.kind != YamlTree::Kind::kScalar || node.quoted ||
+        (node.scalar != "true" && node.scalar != "false")) {
+      throw Refusal{"expected true or false, found " + KindName(node)};
+    }
+    *v = node.scalar == "true";
+  }
+  void operator()(std::string* v) const {
+    if (node.kind != YamlTree::Kind::kScalar) {
+      throw Refusal{"expected a name, found " + KindName(node)};
+    }
+    *v = node.scalar;
+  }
+  void operator()(const EnumRef& v) const {
+    const auto found = std::find(v.names.begin(), v.names.end(), node.scalar);
+    if (node.kind != YamlTree::Kind::kScalar || found == v.names.end()) {
+      throw Refusal{"expected one of " + FormatRange(field) + ", found " + KindName(node)};
+    }
+    v.set(static_cast<int>(found - v.names.begin()));
+  }
+  void operator()(const NumbersRef& v) const {
+    const auto values = ToDoubles(node, v.size);
+    std::copy(values.begin(), values.end(), v.data);
+  }
+  void operator()(Interval* v) const {
+    const auto values = ToDoubles(node, 2);
+    *v = {values[0], values[1]};
+  }
+};
+
+}  // namespace
+
+std::string KindName(const YamlTree& node) {
+  switch (node.kind) {
+    case YamlTree::Kind::kNull:
+      return "nothing";
+    case YamlTree::Kind::kScalar:
+      return Quoted(node.scalar);
+    case YamlTree::Kind::kSequence:
+      return "a sequence";
+    case YamlTree::Kind::kMap:
+      return "a map";
+  }
+  return "?";
+}
+
+std::string FormatValue(const ValueRef& value) {
+  return std::visit(Overload{[](double* v) { return FormatNumber(*v); },
+                             [](int* v) { return std::to_string(*v); },
+                             [](std::uint64_t* v) { return std::to_string(*v); },
+                             [](bool* v) { return std::string(*v ? "true" : "false"); },
+                             [](std::string* v) { return FormatWord(*v); },
+                             [](const EnumRef& v) {
+                               const auto index = static_cast<std::size_t>(v.get());
+                               return index < v.names.size() ? FormatWord(v.names[index])
+                                                             : std::string("?");
+                             },
+                             [](const NumbersRef& v) { return FormatNumbers(v.data, v.size); },
+                             [](Interval* v) {
+                               const double ends[] = {v->lo, v->hi};
+                               return FormatNumbers(ends, 2);
+                             }},
+                    value);
+}
+
+std::string FormatRange(const Field& field) {
+  const std::string range = std::string(field.limits.lo_excluded ? "(" : "[") +
+                            FormatBound(field.limits.lo) + ", " + FormatBound(field.limits.hi) +
+                            "]";
+  return std::visit(
+      Overload{[&](double*) { return range; }, [&](int*) { return range; },
+               [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },
+               [](bool*) { return std::string("true | false"); },
+               [](std::string*) { return std::string("a letter, then letters, digits, _ or -"); },
+               [](const EnumRef& v) {
+                 std::string names;
+                 for (const auto& name : v.names) names += (names.empty() ? "" : " | ") + name;
+                 return names;
+               },
+               [&](const NumbersRef&) { return range; },
+               [&](Interval*) { return range + ", low <= high"; }},
+      field.value);
+}
+
+std::optional<std::string> CheckValue(const Field& field) {
+  using Result = std::optional<std::string>;
+  return std::visit(
+      Overload{[&](double* v) { return CheckNumbers(field, v, 1); },
+               [&](int* v) -> Result {
+                 if (field.limits.Contain(*v)) return {};
+                 return std::to_string(*v) + " is out of range " + FormatRange(field);
+               },
+               [](std::uint64_t*) -> Result { return {}; }, [](bool*) -> Result { return {}; },
+               [&](std::string* v) -> Result {
+                 if (IsName(*v)) return {};
+                 return Quoted(*v) + " is no name (" + FormatRange(field) + ", 64 at most)";
+               },
+               [&](const EnumRef& v) -> Result {
+                 if (v.get() >= 0 && static_cast<std::size_t>(v.get()) < v.names.size()) return {};
+                 return "must be one of " + FormatRange(field);
+               },
+               [&](const NumbersRef& v) { return CheckNumbers(field, v.data, v.size); },
+               [&](Interval* v) -> Result {
+                 const double ends[] = {v->lo, v->hi};
+                 if (auto message = CheckNumbers(field, ends, 2)) return message;
+                 if (v->lo > v->hi)
+                   return "low " + FormatNumber(v->lo) + " is above high " + FormatNumber(v->hi);
+                 return {};
+               }},
+      field.value);
+}
+
+std::optional<std::string> ParseValue(const Field& field, const YamlTree& node) {
+  try {
+    std::visit(Assign{node, field}, field.value);
+  } catch (const Refusal& refusal) {
+    return refusal.message;
+  }
+  return CheckValue(field);
+}
+
+}  // namespace stg::config

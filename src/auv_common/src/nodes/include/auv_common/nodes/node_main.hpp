@@ -1,0 +1,55 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <sched.h>
+
+#include <csignal>
+#include <exception>
+#include <string>
+
+#include "auv_common/error.hpp"
+
+namespace stg {
+
+/// Low latency for small messages: every subscription asks for it.
+inline ros::TransportHints NoDelay() { return ros::TransportHints().tcpNoDelay(); }
+
+/// Handles incoming messages as they come, for at most `wait_s` seconds of wall time when none is
+/// there. Single-threaded: nodes need no locks.
+inline void HandleMessages(double wait_s) {
+  ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(wait_s));
+}
+
+/// For a process that only watches: its wake-ups interrupt nobody who is at work, so that a step is
+/// decided first and looked at then. To be called before ros::init, as threads inherit it. What
+/// `nice` does not do here: roslaunch gives each node a session, and Linux shares out the processor
+/// by session first.
+inline void WatchOnly() {
+  const sched_param parameters{};
+  sched_setscheduler(0, SCHED_BATCH, &parameters);  // fails: it watches as any other process
+}
+
+/// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
+/// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
+/// a UserError, 3 after any other exception.
+template <class Node>
+int RunNode(int argc, char** argv, const std::string& name) {
+  ros::init(argc, argv, name);
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
+  ros::NodeHandle keeps_ros_running;
+  try {
+    Node node;
+    node.Spin();
+  } catch (const UserError& error) {
+    ROS_FATAL("%s", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 3;
+  }
+  return 0;
+}
+
+}  // namespace stg

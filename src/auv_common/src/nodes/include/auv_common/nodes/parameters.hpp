@@ -1,0 +1,28 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "auv_dynamics/world/world_config.hpp"
+
+namespace stg {
+
+/// The scenario of the run from the parameters `scenario` (name or file, default medium),
+/// `condition` (default nominal), `agents` (overrides the scenario's, 0: does not) and `overrides`
+/// (a list of key.path=value). Each is looked up in the node's private namespace, then upwards, so
+/// that one value at the root serves the whole graph. The information mode is always `acoustic`:
+/// nodes have no other source. Throws UserError.
+Scenario LoadScenarioParameters();
+/// Warns when `agents` overrides another number in the scenario's file. For one node of the graph.
+void WarnOfOverriddenAgents(const Scenario& scenario);
+
+/// A private parameter of any node, checked: throws UserError when it has another type, is not
+/// finite, or lies outside [lo, hi].
+double NumberParameter(const std::string& name, double fallback, double lo, double hi);
+/// The same for whole numbers, which the parameter server holds with 32 bits.
+int IntegerParameter(const std::string& name, int fallback, int lo, int hi);
+bool FlagParameter(const std::string& name, bool fallback);
+std::string TextParameter(const std::string& name, const std::string& fallback);
+
+}  // namespace stg

@@ -1,0 +1,107 @@
+#include "auv_common/nodes/parameters.hpp"
+
+#include <ros/console.h>
+#include <ros/param.h>
+
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "auv_common/error.hpp"
+#include "auv_common/config/loader.hpp"
+
+namespace stg {
+namespace {
+
+/// The value of `name` in the private namespace or the nearest one above; false: nowhere.
+bool Find(const std::string& name, XmlRpc::XmlRpcValue* value) {
+  const ros::NodeHandle node("~");
+  std::string key;
+  return node.searchParam(name, key) && node.getParam(key, *value);
+}
+
+[[noreturn]] void Refuse(const std::string& name, const std::string& wanted) {
+  throw UserError("parameter " + name + ": must be " + wanted);
+}
+
+std::vector<std::string> Words(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+std::vector<std::string> ListParameter(const std::string& name) {
+  XmlRpc::XmlRpcValue value;
+  if (!Find(name, &value)) return {};
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return Words(value);
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeArray) Refuse(name, "a list of texts");
+  std::vector<std::string> list;
+  for (int i = 0; i < value.size(); ++i) {
+    if (value[i].getType() != XmlRpc::XmlRpcValue::TypeString) Refuse(name, "a list of texts");
+    list.push_back(value[i]);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string TextParameter(const std::string& name, const std::string& fallback) {
+  XmlRpc::XmlRpcValue value;
+  if (!Find(name, &value)) return fallback;
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeString) Refuse(name, "a text");
+  return value;
+}
+
+bool FlagParameter(const std::string& name, bool fallback) {
+  XmlRpc::XmlRpcValue value;
+  if (!Find(name, &value)) return fallback;
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean) Refuse(name, "true or false");
+  return value;
+}
+
+double NumberParameter(const std::string& name, double fallback, double lo, double hi) {
+  XmlRpc::XmlRpcValue value;
+  if (!Find(name, &value)) return fallback;
+  double number = 0.0;
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeInt) {
+    number = static_cast<int>(value);
+  } else if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble) {
+    number = value;
+  } else {
+    Refuse(name, "a number");
+  }
+  if (!std::isfinite(number) || number < lo || number > hi) {
+    Refuse(name, "from " + std::to_string(lo) + " to " + std::to_string(hi));
+  }
+  return number;
+}
+
+int IntegerParameter(const std::string& name, int fallback, int lo, int hi) {
+  const double number = NumberParameter(name, fallback, lo, hi);
+  if (number != std::floor(number)) Refuse(name, "a whole number");
+  return static_cast<int>(number);
+}
+
+Scenario LoadScenarioParameters() {
+  std::vector<std::string> overrides = ListParameter("overrides");
+  const int agents = IntegerParameter("agents", 0, 0, 255);
+  if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
+  overrides.emplace_back("mode=acoustic");
+  Scenario scenario = LoadNamedScenario(ScenarioFolder(), TextParameter("scenario", "medium"),
+                                        TextParameter("condition", "nominal"), overrides);
+  if (agents > 0 && scenario.agents != agents) {
+    throw UserError("parameter overrides: the number of AUVs is the launch argument 'agents'");
+  }
+  return scenario;
+}
+
+void WarnOfOverriddenAgents(const Scenario& scenario) {
+  const std::string name = TextParameter("scenario", "medium");
+  const int own = LoadNamedScenario(ScenarioFolder(), name).agents;
+  if (own == scenario.agents) return;
+  ROS_WARN("%d AUVs, as the launch argument 'agents' says; scenario '%s' itself has %d",
+           scenario.agents, name.c_str(), own);
+}
+
+}  // namespace stg

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "auv_common/numbers/attitude.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/measurements.hpp"
+
+/// From a policy's action to force and torque (Eqs. 22-27).
+namespace stg {
+
+/// Rate limit, then smoothing, both against the previous smoothed action
+/// (Eq. 27): previous[k] becomes the action that is executed. `size` is 3 or 6.
+template <class T>
+inline void SmoothAction(const ControlConfig& c, int size, const T* action, T* previous) {
+  for (int k = 0; k < size; ++k) {
+    T a = Clip(action[k], T(-1.0), T(1.0));
+    if (c.max_delta > 0.0) {
+      a = previous[k] + Clip(a - previous[k], T(-c.max_delta), T(c.max_delta));
+    }
+    previous[k] = T(1.0 - c.smoothing) * a + T(c.smoothing) * previous[k];
+  }
+}
+
+/// v_des = s_v a, world axes [m/s] (Eq. 23): an action of 1 asks for the maximum
+/// speed of that axis.
+template <class T>
+inline Vec3<T> DesiredVelocity(const VehicleConfig& v, const T* action) {
+  return {action[0] * T(v.max_velocity_mps[0]), action[1] * T(v.max_velocity_mps[1]),
+          action[2] * T(v.max_velocity_mps[2])};
+}
+
+/// Generalised force as a fraction of its maximum, to newtons and newton metres.
+template <class T>
+inline Wrench<T> ScaleWrench(const VehicleConfig& v, const T* fraction) {
+  const auto& t = v.max_tau;
+  return {{fraction[0] * T(t[0]), fraction[1] * T(t[1]), fraction[2] * T(t[2])},
+          {fraction[3] * T(t[3]), fraction[4] * T(t[4]), fraction[5] * T(t[5])}};
+}
+
+/// Velocity controller (Eqs. 24-26). Writes tau / tau_max, six fractions in
+/// [-1, 1], to `fraction`.
+///
+/// @param v_des_W desired velocity, world axes [m/s]
+/// @param v_WB    velocity over ground, world axes [m/s]
+/// @param rpy     roll, pitch, yaw [rad]
+template <class T>
+inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
+                               const Vec3<T>& v_des_W, const Mat3<T>& R_WB, const Vec3<T>& v_WB,
+                               const Vec3<T>& rpy, const Vec3<T>& w_WB_B, T* fraction) {
+  const auto& vmax = v.max_velocity_mps;
+  const auto& wmax = v.max_rate_radps;
+  const Vec3<T> error = R_WB.TransposeTimes(v_des_W - v_WB);
+  const T lo(-1.0), hi(1.0);
+  fraction[0] = Clip(error.x * T(c.velocity_gain / vmax[0]), lo, hi);
+  fraction[1] = Clip(error.y * T(c.velocity_gain / vmax[1]), lo, hi);
+  fraction[2] = Clip(error.z * T(c.velocity_gain / vmax[2]), lo, hi);
+  Vec3<T> attitude{T(-c.attitude_gain) * rpy.x, T(-c.attitude_gain) * rpy.y, T(0.0)};
+  if (c.heading == HeadingMode::kAlongVelocity) {
+    // Bow along the command, as long as the command is a direction at all.
+    const Vec3<T> b = R_WB.TransposeTimes(v_des_W);
+    const T horizontal = Sqrt(b.x * b.x + b.y * b.y);
+    const Mask<T> moving = Dot(b, b) > T(1e-6 * vmax[0] * vmax[0]);
+    const T gain(c.heading_gain);
+    attitude.y = Select(moving, -gain * Atan2(b.z, horizontal), attitude.y);
+    attitude.z = Select(moving, gain * Atan2(b.y, b.x), T(0.0));
+  }
+  fraction[3] = Clip(attitude.x - w_WB_B.x * T(c.rate_gain / wmax[0]), lo, hi);
+  fraction[4] = Clip(attitude.y - w_WB_B.y * T(c.rate_gain / wmax[1]), lo, hi);
+  fraction[5] = Clip(attitude.z - w_WB_B.z * T(c.rate_gain / wmax[2]), lo, hi);
+}
+
+/// The same from a navigation state: what a controller node runs.
+inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
+                               const Vec3<double>& v_des_W, const NavState& nav,
+                               double* fraction) {
+  const Mat3<double> R_WB = RotationOf(nav.q_WB);
+  VelocityController(c, v, v_des_W, R_WB, R_WB * nav.v_WB_B, RpyOf(TrigOf(R_WB)), nav.w_WB_B,
+                     fraction);
+}
+
+}  // namespace stg

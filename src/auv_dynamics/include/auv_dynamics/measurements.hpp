@@ -1,0 +1,44 @@
+#pragma once
+
+#include "auv_common/numbers/vector.hpp"
+#include "auv_common/time.hpp"
+
+/// Plain data that crosses package and process boundaries. Every field survives
+/// a ROS message unchanged (doubles and integer nanoseconds only).
+namespace stg {
+
+/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU). T = Pack: kLanes
+/// vehicles at the same time.
+template <class T>
+struct Navigation {
+  TimeNs stamp = 0;
+  Vec3<T> p_WB;                                  ///< position [m]
+  T q_WB[4] = {T(1.0), T(0.0), T(0.0), T(0.0)};  ///< orientation, w x y z, unit norm
+  Vec3<T> v_WB_B;                                ///< velocity over ground in body axes [m/s]
+  Vec3<T> w_WB_B;                                ///< body rates p, q, r [rad/s]
+};
+using NavState = Navigation<double>;
+
+/// One detection of a target by one vehicle's own sensor.
+struct Detection {
+  TimeNs stamp = 0;
+  int target = 0;
+  Vec3<double> p_WT;       ///< measured target position in the world [m]
+  double std_m = 0.0;      ///< standard deviation of each component [m]
+};
+
+/// Where a search starts: a datum of stated uncertainty.
+struct Cue {
+  int target = 0;
+  Vec3<double> p_WT;       ///< stated target position in the world [m]
+  double std_m = 0.0;      ///< standard deviation of each component [m]
+};
+
+/// Generalised force tau = [X Y Z K M N] at the body origin, body axes [N, N m].
+template <class T>
+struct Wrench {
+  Vec3<T> force;
+  Vec3<T> moment;
+};
+
+}  // namespace stg

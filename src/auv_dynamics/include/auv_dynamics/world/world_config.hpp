@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "auv_common/config/run_config.hpp"
+#include "auv_dynamics/control/control_config.hpp"
+#include "auv_dynamics/sensing/sensing_config.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
+#include "auv_dynamics/world/reset_config.hpp"
+#include "auv_dynamics/world/surroundings_config.hpp"
+#include "auv_dynamics/world/target_config.hpp"
+
+namespace stg::dynamics {
+
+/// Vehicles, what surrounds them, what they follow and sense, and how they are steered.
+struct WorldConfig : RunConfig {
+  VehicleConfig vehicle;
+  CurrentConfig current;
+  DisturbanceConfig disturbance;
+  ContactConfig contact;
+  WorkspaceConfig workspace;
+  TargetConfig target;
+  ResetConfig reset;
+  SensingConfig sensing;
+  ControlConfig control;
+
+  /// Target that agent i is tasked with: i modulo the number of targets.
+  int target_of(int agent) const { return agent % target.count; }
+  int action_size() const { return control.interface == ActionInterface::kVelocity3 ? 3 : 6; }
+};
+
+/// The sections besides those of RunConfig.
+void DescribeSections(WorldConfig* c, config::Table* t);
+/// All of it.
+void Describe(WorldConfig* c, config::Table* t);
+/// Contradictions between its keys.
+std::optional<config::Violation> FindConflict(const WorldConfig& c);
+
+}  // namespace stg::dynamics

@@ -1,0 +1,113 @@
+#include "auv_dynamics/world/world_config.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+
+namespace stg {
+namespace {
+
+using config::Violation;
+
+/// Fossen's M = M_RB + M_A about the body origin.
+bool MassMatrixIsPositive(const VehicleConfig& v) {
+  Eigen::Matrix<double, 6, 6> m = Eigen::Matrix<double, 6, 6>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    m(i, i) = v.mass_kg - v.added_mass[k];
+    m(i + 3, i + 3) = v.inertia_kgm2[k] - v.added_mass[k + 3];
+  }
+  const auto [x, y, z] = v.r_BG_m;
+  Eigen::Matrix3d s;
+  s << 0.0, -z, y, z, 0.0, -x, -y, x, 0.0;
+  m.topRightCorner<3, 3>() = -v.mass_kg * s;
+  m.bottomLeftCorner<3, 3>() = v.mass_kg * s;
+  return m.llt().info() == Eigen::Success;
+}
+
+/// Can all AUVs be drawn one after the other with this separation around one
+/// point (targets may start together)? The share of the shell's volume that
+/// balls of half the separation may fill stays below what random placement
+/// reaches (about 0.38).
+bool StartsFit(const ResetConfig& reset, const ResetStageConfig& stage, int agents) {
+  constexpr double kShare = 0.25;
+  const double half = 0.5 * reset.min_separation_m;
+  const double outer = stage.auv_distance_m.hi + half;
+  const double inner = std::max(0.0, stage.auv_distance_m.lo - half);
+  return agents == 1 ||
+         agents * half * half * half <= kShare * (outer * outer * outer - inner * inner * inner);
+}
+
+std::optional<Violation> CheckStage(const WorldConfig& s, int index) {
+  const char* const names[] = {"easy", "medium", "hard"};
+  const std::string path = std::string("reset.stages.") + names[index] + ".";
+  const ResetStageConfig& stage = s.reset.stages[static_cast<std::size_t>(index)];
+  if (stage.target_radius_m.hi > s.workspace.half_extent_m) {
+    return Violation{{path + "target_radius_m", "workspace.half_extent_m"},
+                     "a target would start outside the walls"};
+  }
+  if (stage.target_speed_mps.hi > s.target.max_speed_mps) {
+    return Violation{{path + "target_speed_mps", "target.max_speed_mps"},
+                     "a target would start faster than its largest speed"};
+  }
+  if (stage.auv_distance_m.lo > s.reset.start_half_extent_m) {
+    return Violation{{path + "auv_distance_m", "reset.start_half_extent_m"},
+                     "AUVs cannot start this far from a target within the start region"};
+  }
+  const bool used = s.reset.curriculum || static_cast<int>(s.reset.stage) == index;
+  if (used && !StartsFit(s.reset, stage, s.agents)) {
+    return Violation{{"agents", path + "auv_distance_m", "reset.min_separation_m"},
+                     "so many AUVs do not fit around a target with this separation"};
+  }
+  return {};
+}
+
+}  // namespace
+
+void DescribeSections(WorldConfig* c, config::Table* t) {
+  Describe(&c->vehicle, t);
+  Describe(&c->current, t);
+  Describe(&c->disturbance, t);
+  Describe(&c->contact, t);
+  Describe(&c->workspace, t);
+  Describe(&c->target, t);
+  Describe(&c->reset, t);
+  Describe(&c->sensing, t);
+  Describe(&c->control, t);
+}
+
+void Describe(WorldConfig* c, config::Table* t) {
+  Describe(static_cast<RunConfig*>(c), t);
+  DescribeSections(c, t);
+}
+
+std::optional<config::Violation> FindConflict(const WorldConfig& s) {
+  if (auto violation = FindConflict(static_cast<const RunConfig&>(s))) return violation;
+  if (!MassMatrixIsPositive(s.vehicle)) {
+    return Violation{{"vehicle.r_BG_m", "vehicle.inertia_kgm2"},
+                     "the mass matrix is not positive definite"};
+  }
+  if (s.vehicle.radius_m >= s.workspace.half_extent_m) {
+    return Violation{{"vehicle.radius_m", "workspace.half_extent_m"},
+                     "an AUV does not fit between the walls"};
+  }
+  if (s.target.count > s.agents) {
+    return Violation{{"target.count", "agents"}, "there cannot be more targets than AUVs"};
+  }
+  if (s.reset.start_half_extent_m > s.workspace.half_extent_m) {
+    return Violation{{"reset.start_half_extent_m", "workspace.half_extent_m"},
+                     "AUVs would start outside the walls"};
+  }
+  if (s.reset.curriculum_medium_resets < s.reset.curriculum_easy_resets) {
+    return Violation{{"reset.curriculum_medium_resets", "reset.curriculum_easy_resets"},
+                     "the medium stage cannot end before the easy one"};
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (auto violation = CheckStage(s, i)) return violation;
+  }
+  return {};
+}
+
+}  // namespace stg

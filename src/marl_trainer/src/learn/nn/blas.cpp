@@ -1,0 +1,48 @@
+#include "marl_trainer/learn/nn/blas.hpp"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+// The Fortran interface: every provider of the system's BLAS has it, and no header is needed.
+extern "C" void sgemm_(const char* transpose_a, const char* transpose_b, const int* m, const int* n,
+                       const int* k, const float* alpha, const float* a, const int* lda,
+                       const float* b, const int* ldb, const float* beta, float* c, const int* ldc);
+
+namespace stg {
+
+void UseOneBlasThread() {
+  // Looked up at run time: the reference BLAS, which also serves, has no such function.
+  using SetThreads = void (*)(int);
+  if (void* symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) {
+    reinterpret_cast<SetThreads>(symbol)(1);
+  }
+}
+
+void Multiply(bool transpose_a, bool transpose_b, int m, int n, int k, const float* a,
+              const float* b, float beta, float* c) {
+  // Column-major BLAS sees transposes: C^T = op(B)^T op(A)^T.
+  const float alpha = 1.0F;
+  const int lda = transpose_a ? m : k, ldb = transpose_b ? k : n;
+  sgemm_(transpose_b ? "T" : "N", transpose_a ? "T" : "N", &n, &m, &k, &alpha, b, &ldb, a, &lda,
+         &beta, c, &n);
+}
+
+double MeasurePeakFlops() {
+  constexpr int kSize = 512;
+  constexpr int kRepeats = 6;
+  const std::vector<float> a(kSize * kSize, 0.5F), b(kSize * kSize, 0.25F);
+  std::vector<float> c(kSize * kSize, 0.0F);
+  double best = 0.0;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const auto start = std::chrono::steady_clock::now();
+    Multiply(false, false, kSize, kSize, kSize, a.data(), b.data(), 0.0F, c.data());
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    best = std::max(best, 2.0 * kSize * kSize * kSize / took.count());
+  }
+  return best;
+}
+
+}  // namespace stg

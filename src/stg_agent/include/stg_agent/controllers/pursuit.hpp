@@ -1,0 +1,132 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_common/numbers/lanes.hpp"
+#include "stg_agent/graph/observation.hpp"
+
+/// Built-in controllers: what a policy has to beat.
+namespace stg {
+
+/// The built-in controllers by name: `idle`, `pursuit`, `pursuit_separated`.
+enum class BuiltinKind { kIdle, kPursuit, kPursuitSeparated };
+
+/// Constants of the pursuit law; the defaults are those of `pursuit`.
+struct PursuitOptions {
+  double gain_per_s = 4.66;
+  double standoff_m = 0.009;
+  double cap = 0.75;                  ///< of the maximum speed, each axis
+  double repulsion_gain_per_s = 0.0;  ///< 0: neighbours are ignored
+  double repulsion_range_m = 0.03;    ///< neighbours closer than this repel
+  double tangential_range_m = 0.05;   ///< closer to the target repulsion only turns aside
+  /// Share of the target's velocity that is added. Above 1 it makes up for the speed that the
+  /// proportional velocity loop (Eq. 24) loses to drag.
+  double feedforward = 1.0;
+  /// Where gain (d - standoff) is more, the speed is approach_speed + approach_gain (d - standoff):
+  /// a stiff hold after an unhurried approach. Both 0: no such limit.
+  double approach_speed_mps = 0.0;
+  double approach_gain_per_s = 0.0;
+  /// A target closer to a wall than this is taken to stand that far from it: on the wall itself the
+  /// AUVs would have half a sphere to spread over, where four of them cannot but touch. 0: not so.
+  double wall_margin_m = 0.0;
+};
+
+/// Calls visit(name, field, description) for every constant that a user may set; one list for
+/// command lines and for names such as "pursuit:gain=2".
+template <class Options, class Visitor>
+void VisitPursuitOptions(Options& o, Visitor&& visit) {
+  visit("gain", o.gain_per_s, "pursuit: gain [1/s]");
+  visit("standoff", o.standoff_m, "pursuit: distance to hold [m]");
+  visit("cap", o.cap, "pursuit: speed cap per axis, fraction of the maximum");
+  visit("repulsion", o.repulsion_gain_per_s, "pursuit_separated: repulsion gain [1/s]");
+  visit("repulsion-range", o.repulsion_range_m, "pursuit_separated: range [m]");
+  visit("feedforward", o.feedforward, "pursuit: share of the target's velocity that is added");
+  visit("approach-speed", o.approach_speed_mps, "pursuit: speed from which the gain falls [m/s]");
+  visit("approach-gain", o.approach_gain_per_s, "pursuit: gain from there on [1/s]");
+  visit("wall-margin", o.wall_margin_m, "pursuit: targets are kept this far from the walls [m]");
+}
+
+/// The tuned constants of a controller.
+PursuitOptions BuiltinOptions(BuiltinKind kind);
+
+/// "idle", "pursuit" or "pursuit_separated", alone or with constants that differ from the tuned
+/// ones, as in "pursuit_separated:gain=2,cap=0.5"; false for any other name. UserError on an
+/// unknown constant, or one that is not a number in range.
+bool ParseBuiltin(const std::string& text, BuiltinKind* kind, PursuitOptions* options);
+const char* ToString(BuiltinKind kind);
+
+/// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than the
+/// repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
+/// the part of the repulsion along the line of sight is left out: AUVs then spread over the
+/// sphere around the target and keep their distance to it. Capped per axis at the end.
+/// Writes the action v / v_max (Eq. 23 inverted), three numbers in [-cap, cap].
+///
+/// @param r_BT_W target position minus own [m], world axes
+/// @param v_WT   target velocity [m/s], world axes
+/// @param r_BN_W [count] neighbour positions minus own [m]; a zero offset repels nothing
+template <class T>
+inline void PursuitAction(const PursuitOptions& o, const VehicleConfig& vehicle,
+                          const Vec3<T>& r_BT_W, const Vec3<T>& v_WT, const Vec3<T>* r_BN_W,
+                          int count, T* action) {
+  const T zero(0.0), tiny(1e-9);
+  const T d = Norm(r_BT_W);
+  const Vec3<T> los = r_BT_W * (T(1.0) / Max(d, tiny));
+  const T error = d - T(o.standoff_m);
+  T speed = T(o.gain_per_s) * error;
+  if (o.approach_speed_mps > 0.0 || o.approach_gain_per_s > 0.0) {
+    speed = Min(speed, T(o.approach_speed_mps) + T(o.approach_gain_per_s) * Max(error, zero));
+  }
+  Vec3<T> v = los * speed + v_WT * T(o.feedforward);
+  if (o.repulsion_gain_per_s > 0.0) {
+    Vec3<T> push;
+    for (int j = 0; j < count; ++j) {
+      const T s = Norm(r_BN_W[j]);
+      const T strength = T(o.repulsion_gain_per_s) * Max(T(o.repulsion_range_m) - s, zero);
+      push += r_BN_W[j] * (-strength / Max(s, tiny));
+    }
+    const Vec3<T> tangential = push - los * Dot(push, los);
+    v += Select<T>(d < T(o.tangential_range_m), tangential, push);
+  }
+  const auto& vmax = vehicle.max_velocity_mps;
+  action[0] = Clip(v.x * T(1.0 / vmax[0]), T(-o.cap), T(o.cap));
+  action[1] = Clip(v.y * T(1.0 / vmax[1]), T(-o.cap), T(o.cap));
+  action[2] = Clip(v.z * T(1.0 / vmax[2]), T(-o.cap), T(o.cap));
+}
+
+/// Moves a target that is closer to a wall than the margin away from it, and takes the velocity
+/// towards or off that wall from it.
+template <class T>
+inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& p_WB,
+                          Vec3<T>* r_BT_W, Vec3<T>* v_WT) {
+  if (margin_m <= 0.0) return;
+  const T limit(std::max(half_extent_m - margin_m, 0.0)), zero(0.0);
+  const auto keep = [&](const T& own, T* offset, T* velocity) {
+    const T position = own + *offset;
+    *velocity = Select(limit < Abs(position), zero, *velocity);
+    *offset = Clip(position, -limit, limit) - own;
+  };
+  keep(p_WB.x, &r_BT_W->x, &v_WT->x);
+  keep(p_WB.y, &r_BT_W->y, &v_WT->y);
+  keep(p_WB.z, &r_BT_W->z, &v_WT->z);
+}
+
+/// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
+template <class T>
+inline void PursuitAction(const PursuitOptions& o, const Scenario& scenario, const Knowledge<T>& k,
+                          const Vec3<T>* r_BN_W, int count, T* action) {
+  Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
+  KeepFromWalls(scenario.workspace.half_extent_m, o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
+  PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, r_BN_W, count, action);
+}
+
+class Agent;
+
+/// The action of a built-in controller from what an agent knows after Observe: its target
+/// estimate and the neighbours it has heard of. For tau6 the velocity goes through the
+/// velocity controller. Writes action_size() numbers; allocates nothing.
+void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent& agent,
+                   float* action);
+
+}  // namespace stg

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/measurements.hpp"
+
+namespace stg {
+
+/// Estimate of a target's position and velocity, world axes.
+///
+/// Sensor and process noise are isotropic, so the 6x6 covariance is the Kronecker
+/// product of the 2x2 matrix [pp pv; pv vv] and the identity: one small matrix serves
+/// all three axes.
+struct TargetEstimate {
+  TimeNs stamp = 0;
+  Vec3<double> p_WT;  ///< [m]
+  Vec3<double> v_WT;  ///< [m/s]
+  double pp = 0.0;    ///< position variance of each axis [m^2]
+  double pv = 0.0;    ///< covariance of position and velocity [m^2/s]
+  double vv = 0.0;    ///< velocity variance of each axis [m^2/s^2]
+
+  double position_std_m() const { return Sqrt(pp); }
+};
+
+/// A target estimate that another AUV shared.
+struct SharedEstimate {
+  TimeNs stamp = 0;  ///< time at which it was true
+  Vec3<double> p_WT;
+  Vec3<double> v_WT;
+  double std_m = 0.0;  ///< of each position component
+};
+
+/// Constant-velocity Kalman filter of one target.
+///
+/// Process: continuous white acceleration of intensity S = process_accel_std^2 *
+/// decision period, i.e. the acceleration averaged over one decision has the stated
+/// standard deviation. Predicting in one stride or in several gives the same
+/// covariance. A predicted target that reaches a wall is stopped there and the
+/// velocity component flips, as the paper's target does.
+///
+/// Own detections enter by the Kalman update with standard deviation max(stated,
+/// measurement_std_m). Shared estimates are correlated with the track (their source may
+/// have used ours) to an unknown degree, so they enter by covariance intersection, with
+/// the weight that minimises the determinant of the fused covariance; for 2x2 matrices
+/// that weight has a closed form. Packets carry no velocity deviation: it is taken as
+/// initial_speed_std_mps.
+///
+/// Gate: a detection farther than gate_sigma from its prediction is set aside; after
+/// kRestartAfter of them in a row the last two start the track afresh (the last one alone if
+/// no target is fast enough to have made both). A shared
+/// estimate outside the gate replaces the track when it is both newer than the track's
+/// information and more certain than the track, else it is ignored.
+class TargetTrack {
+ public:
+  static constexpr int kRestartAfter = 3;
+
+  explicit TargetTrack(const Scenario& scenario);
+
+  void Clear();
+  /// Starts the track from a datum: velocity zero with initial_speed_std_mps.
+  void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp);
+  bool started() const { return started_; }
+  /// An observation has entered, own or a neighbour's: the track is more than its datum.
+  bool observed() const { return observed_; }
+
+  /// Carries the estimate to time t; earlier times change nothing.
+  void Predict(TimeNs t);
+
+  /// Takes an own detection. One newer than the track predicts it to the detection's
+  /// stamp; an older one is carried forward with the track's velocity, its noise grown by
+  /// that velocity's variance. Starts a track that has not been started.
+  void Detect(const Detection& detection);
+
+  /// Takes a shared estimate of any age; the track keeps its time.
+  void Fuse(const SharedEstimate& shared);
+
+  /// The present estimate, at the time of the last Predict or newer detection.
+  const TargetEstimate& estimate() const { return now_; }
+
+  /// Time of the newest observation that entered, own or a neighbour's; the start before.
+  TimeNs information_stamp() const { return shared_.stamp; }
+  /// What to tell neighbours: the estimate as of information_stamp(), never fresher than
+  /// what it rests on, so that two AUVs cannot keep a stale estimate young by exchanging it.
+  const SharedEstimate& shareable() const { return shared_; }
+  /// Detections in a row that the gate set aside.
+  int rejected_in_a_row() const { return rejected_; }
+
+ private:
+  void Grow(double dt_s, TargetEstimate* e) const;
+  void Remember(TimeNs information, bool observation);
+  void Restart(const Detection& newest, double std_m);
+
+  double intensity_;  // S [m^2/s^3]
+  double floor_std_m_;
+  double speed_std_mps_;
+  double max_speed_mps_;
+  double gate2_;
+  double half_extent_m_;
+  bool started_ = false, observed_ = false;
+  TargetEstimate now_;
+  SharedEstimate shared_;
+  Detection previous_rejected_;
+  int rejected_ = 0;
+};
+
+}  // namespace stg

@@ -1,0 +1,154 @@
+#include "stg_agent/policy/policy.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "auv_common/error.hpp"
+
+namespace stg {
+namespace {
+
+constexpr int kPad = 16;
+
+int PadUp(int n) { return (n + kPad - 1) / kPad * kPad; }
+
+void Require(bool ok, const std::string& what) {
+  if (!ok) throw UserError("policy: " + what);
+}
+
+void RequireWidth(Eigen::Index width, const std::string& what) {
+  Require(width >= 1 && width <= Policy::kMaxWidth, what + " has " + std::to_string(width) +
+                                                        " numbers, allowed are 1 to " +
+                                                        std::to_string(Policy::kMaxWidth));
+}
+
+void Validate(const Policy::Parameters& p) {
+  RequireWidth(p.input_mean.size(), "the normaliser's mean");
+  Require(p.input_std.size() == p.input_mean.size(),
+          "the normaliser's mean and standard deviation differ in size");
+  Require(p.input_mean.allFinite() && p.input_std.allFinite(), "the normaliser is not finite");
+  Require(p.input_std.minCoeff() > 0.0F, "a standard deviation of the normaliser is not positive");
+  Require(std::isfinite(p.input_clip) && p.input_clip > 0.0F, "the input clip is not positive");
+  Require(!p.layers.empty() && p.layers.size() <= Policy::kMaxLayers,
+          std::to_string(p.layers.size()) + " layers, allowed are 1 to " +
+              std::to_string(Policy::kMaxLayers));
+  Eigen::Index inputs = p.input_mean.size();
+  // Largest magnitude that can reach each layer; past float's range inf - inf would give NaN.
+  Eigen::VectorXd bound = Eigen::VectorXd::Constant(inputs, static_cast<double>(p.input_clip));
+  for (std::size_t l = 0; l < p.layers.size(); ++l) {
+    const std::string name = "layer " + std::to_string(l);
+    const Policy::Layer& layer = p.layers[l];
+    RequireWidth(layer.weight.rows(), name);
+    Require(layer.weight.cols() == inputs, name + " takes " + std::to_string(layer.weight.cols()) +
+                                               " numbers but is given " + std::to_string(inputs));
+    Require(layer.bias.size() == layer.weight.rows(), name + ": bias and weight differ in size");
+    Require(layer.weight.allFinite() && layer.bias.allFinite(), name + " is not finite");
+    bound = layer.weight.cwiseAbs().cast<double>() * bound + layer.bias.cwiseAbs().cast<double>();
+    Require(bound.maxCoeff() < 1e30, name + " can overflow");
+    if (p.activation == Policy::Activation::kTanh) bound = bound.cwiseMin(1.0);
+    inputs = layer.weight.rows();
+  }
+  Require(p.log_std.size() == inputs, "log_std and the last layer differ in size");
+  Require(p.log_std.allFinite() && p.log_std.cwiseAbs().maxCoeff() <= 20.0F,
+          "log_std is not in [-20, 20]");
+  const double scale = p.metadata.action_scale;
+  Require(std::isfinite(scale) && scale > 0.0 && scale <= 1.0, "action_scale is not in (0, 1]");
+}
+
+}  // namespace
+
+std::string ObservationLayout(const Scenario& scenario) {
+  std::string layout = "stg-1:raw";
+  if (scenario.observation.tracking) layout += "+tracking";
+  if (scenario.observation.semantic) layout += "+semantic";
+  if (scenario.observation.graph) layout += "+graph";
+  return layout + (scenario.observation.order == NeighbourOrder::kNearest ? ":nearest" : ":index");
+}
+
+std::string ActionInterfaceName(ActionInterface interface) {
+  return interface == ActionInterface::kVelocity3 ? "velocity3" : "tau6";
+}
+
+Policy::Policy(Parameters parameters) : parameters_(std::move(parameters)) {
+  Validate(parameters_);
+  for (const Layer& layer : parameters_.layers) {
+    Packed packed;
+    packed.inputs = static_cast<int>(layer.weight.cols());
+    packed.outputs = static_cast<int>(layer.weight.rows());
+    packed.padded = PadUp(packed.outputs);
+    packed.weight.setZero(static_cast<Eigen::Index>(packed.inputs) * packed.padded);
+    packed.bias.setZero(packed.padded);
+    packed.bias.head(packed.outputs) = layer.bias;
+    for (int i = 0; i < packed.inputs; ++i) {
+      packed.weight.segment(static_cast<Eigen::Index>(i) * packed.padded, packed.outputs) =
+          layer.weight.col(i);
+    }
+    packed_.push_back(std::move(packed));
+  }
+}
+
+void Policy::Mean(const float* observation, float* action) const {
+  using Aligned = Eigen::Map<Eigen::ArrayXf, Eigen::AlignedMax>;
+  using AlignedConst = Eigen::Map<const Eigen::ArrayXf, Eigen::AlignedMax>;
+  alignas(64) float buffers[2][kMaxWidth];
+  float* in = buffers[0];
+  float* out = buffers[1];
+
+  const float clip = parameters_.input_clip;
+  const int size = observation_size();
+  for (int i = 0; i < size; ++i) {
+    assert(std::isfinite(observation[i]));
+    const float x = (observation[i] - parameters_.input_mean[i]) / parameters_.input_std[i];
+    in[i] = std::min(std::max(x, -clip), clip);
+  }
+  for (std::size_t l = 0; l < packed_.size(); ++l) {
+    const Packed& layer = packed_[l];
+    Aligned sum(out, layer.padded);
+    sum = AlignedConst(layer.bias.data(), layer.padded);
+    // Column by column: each output is summed in the order of the inputs,
+    // whatever the SIMD width, and four columns at a time spare stores.
+    const float* column = layer.weight.data();
+    int i = 0;
+    for (; i + 4 <= layer.inputs; i += 4, column += 4 * layer.padded) {
+      const AlignedConst c0(column, layer.padded), c1(column + layer.padded, layer.padded),
+          c2(column + 2 * layer.padded, layer.padded), c3(column + 3 * layer.padded, layer.padded);
+      sum = (((sum + c0 * in[i]) + c1 * in[i + 1]) + c2 * in[i + 2]) + c3 * in[i + 3];
+    }
+    for (; i < layer.inputs; ++i, column += layer.padded) {
+      sum += AlignedConst(column, layer.padded) * in[i];
+    }
+    if (l + 1 == packed_.size() || parameters_.activation == Activation::kTanh) {
+      sum = sum.tanh();
+    } else {
+      sum = sum.max(0.0F);
+    }
+    std::swap(in, out);
+  }
+  const float scale = static_cast<float>(parameters_.metadata.action_scale);
+  for (int a = 0; a < action_size(); ++a) action[a] = scale * in[a];
+}
+
+void Policy::RequireFits(const Scenario& scenario) const {
+  const std::string who = "policy '" + metadata().id + "': ";
+  const std::string layout = ObservationLayout(scenario);
+  if (metadata().observation_layout != layout) {
+    throw UserError(who + "observation layout '" + metadata().observation_layout +
+                    "', the scenario '" + scenario.name + "' gives '" + layout + "'");
+  }
+  const std::string interface = ActionInterfaceName(scenario.control.interface);
+  if (metadata().action_interface != interface) {
+    throw UserError(who + "action interface '" + metadata().action_interface + "', the scenario '" +
+                    scenario.name + "' has '" + interface + "'");
+  }
+  if (observation_size() != scenario.observation_size() ||
+      action_size() != scenario.action_size()) {
+    throw UserError(who + std::to_string(observation_size()) + " observations and " +
+                    std::to_string(action_size()) + " actions, the scenario '" + scenario.name +
+                    "' has " + std::to_string(scenario.observation_size()) + " and " +
+                    std::to_string(scenario.action_size()));
+  }
+}
+
+}  // namespace stg

@@ -1,0 +1,186 @@
+#include "policy_onnx.hpp"
+
+#include <onnx/onnx_pb.h>
+
+#include <cinttypes>
+#include <cstdio>
+#include <fstream>
+#include <utility>
+
+#include "auv_common/error.hpp"
+
+/// Writing of policy files. Operator set 10 is the last whose Clip carries its
+/// bounds as attributes: readers as old as OpenCV 4.6 understand it.
+namespace stg {
+namespace {
+
+constexpr int kOpset = 10;
+constexpr int kIrVersion = 5;
+
+std::string Text(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+/// Appends nodes so that each reads its predecessor's output.
+class ChainWriter {
+ public:
+  ChainWriter(onnx::GraphProto* graph, std::string input)
+      : graph_(graph), last_(std::move(input)) {}
+
+  onnx::NodeProto* Add(const char* op, const std::string& output) {
+    onnx::NodeProto* node = graph_->add_node();
+    node->set_op_type(op);
+    node->set_name(output);
+    node->add_input(last_);
+    node->add_output(output);
+    last_ = output;
+    return node;
+  }
+
+  /// Adds a constant [dims] as the node's next input; `data` is row-major.
+  void AddConstant(onnx::NodeProto* node, const std::string& name,
+                   const std::vector<std::int64_t>& dims, const float* data) {
+    onnx::TensorProto* tensor = graph_->add_initializer();
+    tensor->set_name(name);
+    tensor->set_data_type(onnx::TensorProto::FLOAT);
+    std::size_t count = 1;
+    for (const std::int64_t d : dims) {
+      tensor->add_dims(d);
+      count *= static_cast<std::size_t>(d);
+    }
+    tensor->set_raw_data(data, count * sizeof(float));
+    node->add_input(name);
+  }
+
+ private:
+  onnx::GraphProto* graph_;
+  std::string last_;
+};
+
+void SetFloat(onnx::NodeProto* node, const char* name, float value) {
+  onnx::AttributeProto* attribute = node->add_attribute();
+  attribute->set_name(name);
+  attribute->set_type(onnx::AttributeProto::FLOAT);
+  attribute->set_f(value);
+}
+
+void SetInt(onnx::NodeProto* node, const char* name, std::int64_t value) {
+  onnx::AttributeProto* attribute = node->add_attribute();
+  attribute->set_name(name);
+  attribute->set_type(onnx::AttributeProto::INT);
+  attribute->set_i(value);
+}
+
+void SetValueInfo(onnx::ValueInfoProto* info, const char* name, int size) {
+  info->set_name(name);
+  onnx::TypeProto::Tensor* type = info->mutable_type()->mutable_tensor_type();
+  type->set_elem_type(onnx::TensorProto::FLOAT);
+  type->mutable_shape()->add_dim()->set_dim_value(1);
+  type->mutable_shape()->add_dim()->set_dim_value(size);
+}
+
+void AddProperty(onnx::ModelProto* model, const std::string& key, const std::string& value) {
+  onnx::StringStringEntryProto* entry = model->add_metadata_props();
+  entry->set_key(key);
+  entry->set_value(value);
+}
+
+void WriteMetadata(const Policy::Parameters& p, onnx::ModelProto* model) {
+  const PolicyMetadata& m = p.metadata;
+  AddProperty(model, "stg.id", m.id);
+  AddProperty(model, "stg.observation_layout", m.observation_layout);
+  AddProperty(model, "stg.action_interface", m.action_interface);
+  AddProperty(model, "stg.action_scale", Text(m.action_scale, 17));
+  AddProperty(model, "stg.scenario_hash", m.scenario_hash);
+  AddProperty(model, "stg.training_step", std::to_string(m.training_step));
+  AddProperty(model, "stg.seed", std::to_string(m.seed));
+  std::string log_std;
+  for (Eigen::Index i = 0; i < p.log_std.size(); ++i) {
+    log_std += (i == 0 ? "" : " ") + Text(p.log_std[i], 9);
+  }
+  AddProperty(model, "stg.log_std", log_std);
+  for (const auto& [name, value] : m.metrics) AddProperty(model, kMetricPrefix + name, value);
+  AddProperty(model, "stg.checksum", PolicyChecksum(p));
+}
+
+}  // namespace
+
+std::string PolicyChecksum(const Policy::Parameters& p) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&hash](const float* data, Eigen::Index count) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count) * sizeof(float); ++i) {
+      hash = (hash ^ bytes[i]) * 1099511628211ULL;
+    }
+  };
+  add(p.input_mean.data(), p.input_mean.size());
+  add(p.input_std.data(), p.input_std.size());
+  add(&p.input_clip, 1);
+  for (const Policy::Layer& layer : p.layers) {
+    add(layer.weight.data(), layer.weight.size());
+    add(layer.bias.data(), layer.bias.size());
+  }
+  add(p.log_std.data(), p.log_std.size());
+  const float rest[] = {static_cast<float>(p.activation),
+                        static_cast<float>(p.metadata.action_scale)};
+  add(rest, 2);
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
+}
+
+void Policy::SaveOnnx(const std::string& path) const {
+  const Parameters& p = parameters_;
+  onnx::ModelProto model;
+  model.set_ir_version(kIrVersion);
+  model.set_producer_name("stg");
+  model.add_opset_import()->set_version(kOpset);
+  onnx::GraphProto* graph = model.mutable_graph();
+  graph->set_name("policy");
+  SetValueInfo(graph->add_input(), "observation", observation_size());
+  SetValueInfo(graph->add_output(), "action", action_size());
+
+  ChainWriter chain(graph, "observation");
+  chain.AddConstant(chain.Add("Sub", "centred"), "input_mean", {1, observation_size()},
+                    p.input_mean.data());
+  chain.AddConstant(chain.Add("Div", "scaled"), "input_std", {1, observation_size()},
+                    p.input_std.data());
+  onnx::NodeProto* clip = chain.Add("Clip", "clipped");
+  SetFloat(clip, "min", -p.input_clip);
+  SetFloat(clip, "max", p.input_clip);
+  using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (std::size_t l = 0; l < p.layers.size(); ++l) {
+    const std::string n = std::to_string(l);
+    const RowMajor weight = p.layers[l].weight;
+    onnx::NodeProto* gemm = chain.Add("Gemm", "sum" + n);
+    chain.AddConstant(gemm, "weight" + n, {weight.rows(), weight.cols()}, weight.data());
+    chain.AddConstant(gemm, "bias" + n, {weight.rows()}, p.layers[l].bias.data());
+    SetFloat(gemm, "alpha", 1.0F);
+    SetFloat(gemm, "beta", 1.0F);
+    SetInt(gemm, "transA", 0);
+    SetInt(gemm, "transB", 1);
+    const bool tanh = l + 1 == p.layers.size() || p.activation == Activation::kTanh;
+    chain.Add(tanh ? "Tanh" : "Relu", "hidden" + n);
+  }
+  const Eigen::VectorXf scale =
+      Eigen::VectorXf::Constant(action_size(), static_cast<float>(p.metadata.action_scale));
+  chain.AddConstant(chain.Add("Mul", "action"), "action_scale", {1, action_size()}, scale.data());
+  WriteMetadata(p, &model);
+
+  const std::string temporary = path + ".tmp";
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    if (!out || !model.SerializeToOstream(&out) || !out.flush()) {
+      std::remove(temporary.c_str());
+      throw UserError(path + ": cannot write the policy");
+    }
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw UserError(path + ": cannot write the policy");
+  }
+}
+
+}  // namespace stg
