@@ -4,13 +4,13 @@
 
 /// Cost of the channel as the vectorised environment uses it: N agents in the medium workspace,
 /// dt 0.1 s, one packet per agent every 0.5 s (staggered), all receptions fetched every step.
-namespace stg {
+namespace stg::acoustics {
 namespace {
 
 constexpr TimeNs kDt = 100'000'000;
 
-NeighbourState State(int source, TimeNs t, const Vec3<double>& p) {
-  NeighbourState s;
+agent::NeighbourState State(int source, TimeNs t, const Vec3<double>& p) {
+  agent::NeighbourState s;
   s.source = source;
   s.generation = t;
   s.p_W = p;
@@ -22,16 +22,16 @@ NeighbourState State(int source, TimeNs t, const Vec3<double>& p) {
 
 void Step(benchmark::State& bench, ChannelModel model) {
   const int agents = static_cast<int>(bench.range(0));
-  Scenario s;
+  NetworkConfig s;
   s.agents = agents;
   s.channel.model = model;
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   channel->Reset(1, 0);
   std::vector<Vec3<double>> p_W;
   for (int i = 0; i < agents; ++i) {
     p_W.push_back({0.02 * (i % 7), 0.02 * (i / 7), 0.01 * (i % 3)});
   }
-  const PacketCodec codec(s);
+  const agent::PacketCodec codec(s);
   std::vector<std::vector<Transmission>> sent(5);
   for (int i = 0; i < agents; ++i) {
     Transmission packet;
@@ -62,29 +62,29 @@ BENCHMARK(RangeStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 
 void Encode(benchmark::State& bench) {
-  const PacketCodec codec{Scenario{}};
-  NeighbourState state = State(1, 12'300'000'000, {0.1, 0.2, 0.3});
+  const agent::PacketCodec codec{NetworkConfig{}};
+  agent::NeighbourState state = State(1, 12'300'000'000, {0.1, 0.2, 0.3});
   for (auto _ : bench) {
     benchmark::DoNotOptimize(state);
-    Packet packet = codec.Encode(state);
+    agent::Packet packet = codec.Encode(state);
     benchmark::DoNotOptimize(packet);
   }
 }
 BENCHMARK(Encode);
 
 void Decode(benchmark::State& bench) {
-  const PacketCodec codec{Scenario{}};
-  Packet packet = codec.Encode(State(1, 12'300'000'000, {0.1, 0.2, 0.3}));
+  const agent::PacketCodec codec{NetworkConfig{}};
+  agent::Packet packet = codec.Encode(State(1, 12'300'000'000, {0.1, 0.2, 0.3}));
   for (auto _ : bench) {
     benchmark::DoNotOptimize(packet);
-    NeighbourState state = codec.Decode(packet.data(), packet.size(), 12'400'000'000);
+    agent::NeighbourState state = codec.Decode(packet.data(), packet.size(), 12'400'000'000);
     benchmark::DoNotOptimize(state);
   }
 }
 BENCHMARK(Decode);
 
 void Link(benchmark::State& bench) {
-  const auto channel = MakeChannel(Scenario{});
+  const auto channel = MakeChannel(ChannelConfig{}, 4);
   channel->Reset(1, 0);
   channel->Step(0, 0, std::vector<Vec3<double>>(4), {});
   TimeNs now = 0;
@@ -96,6 +96,6 @@ void Link(benchmark::State& bench) {
 BENCHMARK(Link);
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::acoustics
 
 BENCHMARK_MAIN();

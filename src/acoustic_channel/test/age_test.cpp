@@ -5,7 +5,7 @@
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/link/link_statistics.hpp"
 
-namespace stg {
+namespace stg::acoustics {
 namespace {
 
 constexpr TimeNs kSecond = 1'000'000'000;
@@ -68,13 +68,13 @@ TEST(Age, AskingDoesNotChangeTheAnswer) {
 void CheckPeriodic(double p, double delay_s, int frame_steps) {
   constexpr TimeNs kDt = kSecond / 10;
   constexpr int kFrames = 100000;
-  Scenario s;
+  NetworkConfig s;
   s.agents = 2;
   s.channel.model = ChannelModel::kExtended;
   s.channel.loss_probability = p;
   s.channel.loss_distance_m = 1e12;
   s.channel.sound_speed_mps = 1.0 / delay_s;  // the AUVs are 1 m apart
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   channel->Reset(17, 3);
   const std::vector<Vec3<double>> p_W{{0, 0, 0}, {0.6, 0.8, 0}};
   std::vector<Reception> got;
@@ -106,4 +106,4 @@ TEST(Age, HeavyLossMatchesTheClosedForm) { CheckPeriodic(0.7, 0.02, 5); }
 TEST(Age, SeveralPacketsUnderWayMatchTheClosedForm) { CheckPeriodic(0.3, 1.27, 5); }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::acoustics

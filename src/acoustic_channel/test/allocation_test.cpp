@@ -18,7 +18,7 @@ long g_allocations = 0;
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
-namespace stg {
+namespace stg::acoustics {
 namespace {
 
 TEST(Allocation, TheCounterCounts) {
@@ -31,11 +31,11 @@ TEST(Allocation, CodecAndChannelAllocateNothingAfterWarmUp) {
   constexpr TimeNs kDt = 100'000'000;
   for (const ChannelModel model : {ChannelModel::kRange, ChannelModel::kExtended}) {
     for (const int agents : {4, 21}) {
-      Scenario s;
+      NetworkConfig s;
       s.agents = agents;
       s.channel.model = model;
-      const PacketCodec codec(s);
-      const auto channel = MakeChannel(s);
+      const agent::PacketCodec codec(s);
+      const auto channel = MakeChannel(s.channel, s.agents);
       std::vector<Vec3<double>> p_W(static_cast<std::size_t>(agents));
       std::vector<Transmission> sent;
       std::vector<Reception> got;
@@ -52,7 +52,7 @@ TEST(Allocation, CodecAndChannelAllocateNothingAfterWarmUp) {
             auto& p = p_W[static_cast<std::size_t>(i)];
             p = {0.02 * i, 0.001 * k, 0.0};
             if ((static_cast<std::uint32_t>(i) + k) % 5 != 0) continue;
-            NeighbourState state;
+            agent::NeighbourState state;
             state.source = i;
             state.generation = t;
             state.p_W = p;
@@ -82,4 +82,4 @@ TEST(Allocation, CodecAndChannelAllocateNothingAfterWarmUp) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::acoustics

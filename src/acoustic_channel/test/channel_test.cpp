@@ -11,13 +11,13 @@
 #include "acoustic_channel/link/link_quality.hpp"
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::acoustics {
 namespace {
 
 constexpr TimeNs kDt = 100'000'000;
 
-Scenario ExtendedScenario(int agents) {
-  Scenario s;
+NetworkConfig ExtendedScenario(int agents) {
+  NetworkConfig s;
   s.agents = agents;
   s.channel.model = ChannelModel::kExtended;
   s.channel.max_range_m = 3.5;
@@ -26,8 +26,8 @@ Scenario ExtendedScenario(int agents) {
   return s;
 }
 
-Scenario LosslessScenario(int agents) {
-  Scenario s = ExtendedScenario(agents);
+NetworkConfig LosslessScenario(int agents) {
+  NetworkConfig s = ExtendedScenario(agents);
   s.channel.loss_probability = 0.0;
   s.channel.loss_distance_m = 1e12;
   return s;
@@ -74,11 +74,11 @@ struct Record {
 
 /// `steps` steps in which every AUV with a true entry in `sends` transmits, in the order that
 /// `shuffle` gives.
-std::vector<Record> Play(const Scenario& scenario, std::uint64_t seed, std::uint32_t episode,
+std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std::uint32_t episode,
                          int steps, const std::vector<bool>& sends, std::uint64_t shuffle,
                          Channel* reuse = nullptr, double spread = 1.0) {
   std::unique_ptr<Channel> own;
-  if (reuse == nullptr) own = MakeChannel(scenario);
+  if (reuse == nullptr) own = MakeChannel(scenario.channel, scenario.agents);
   Channel& channel = reuse ? *reuse : *own;
   channel.Reset(seed, episode);
   std::vector<Vec3<double>> p = RandomPositions(scenario.agents, 5);
@@ -103,11 +103,11 @@ std::vector<Record> Play(const Scenario& scenario, std::uint64_t seed, std::uint
 }
 
 TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
-  Scenario s;
+  NetworkConfig s;
   s.agents = 3;
   s.channel.model = ChannelModel::kRange;
   s.channel.range_m = 0.5;
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   channel->Reset(1, 0);
   // 0-1: 0.3 m; 0-2: exactly the range, so q = 0.
   channel->Step(kDt, 1, {{0, 0, 0}, {0.3, 0, 0}, {0, 0.5, 0}}, {From(0, kDt, 9)});
@@ -127,9 +127,9 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
 }
 
 TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
-  Scenario s = LosslessScenario(2);
+  NetworkConfig s = LosslessScenario(2);
   s.channel.sound_speed_mps = 1500.0;
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   for (const double d : {0.0, 0.0015, 0.75, 1.5, 3.0, 3.5}) {
     channel->Reset(1, 0);
     channel->Step(5 * kDt, 5, {{1, 2, 3}, {1, 2, 3 + d}}, {From(1, 5 * kDt)});
@@ -143,9 +143,9 @@ TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
 }
 
 TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
-  Scenario s = LosslessScenario(2);
+  NetworkConfig s = LosslessScenario(2);
   s.channel.sound_speed_mps = 2.0;
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   channel->Reset(1, 0);
   channel->Step(0, 0, {{0, 0, 0}, {1, 0, 0}}, {From(0, 0)});
   channel->Step(kDt, 1, {{0, 0, 0}, {3, 0, 0}}, {});
@@ -160,10 +160,10 @@ TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
 }
 
 TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
-  Scenario s = LosslessScenario(2);
+  NetworkConfig s = LosslessScenario(2);
   s.channel.loss_distance_m = 2.0;
   s.channel.sound_speed_mps = 10.0;
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   std::vector<Reception> got;
   Transmission packet = From(0, 3 * kDt);
   packet.generation = 2 * kDt;
@@ -189,8 +189,8 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
 }
 
 TEST(ExtendedChannel, NothingArrivesBeyondMaxRangeAndTheDropSaysWhy) {
-  const Scenario s = LosslessScenario(3);
-  const auto channel = MakeChannel(s);
+  const NetworkConfig s = LosslessScenario(3);
+  const auto channel = MakeChannel(s.channel, s.agents);
   channel->Reset(1, 0);
   channel->Step(0, 0, {{0, 0, 0}, {3.5, 0, 0}, {0, 0, -3.5000001}}, {From(0, 0)});
   const std::vector<Reception> got = DeliverAll(channel.get(), 3, kDt);
@@ -205,10 +205,10 @@ TEST(ExtendedChannel, NothingArrivesBeyondMaxRangeAndTheDropSaysWhy) {
 }
 
 TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
-  const Scenario s = ExtendedScenario(2);
+  const NetworkConfig s = ExtendedScenario(2);
   const int n = 20000;
   for (const double d : {0.0, 0.3, 1.0, 2.0, 3.0}) {
-    const auto channel = MakeChannel(s);
+    const auto channel = MakeChannel(s.channel, s.agents);
     channel->Reset(11, 2);
     std::vector<Reception> got;
     for (int k = 0; k < n; ++k) {
@@ -226,7 +226,7 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
 }
 
 TEST(ExtendedChannel, LossesOfDifferentLinksAndStepsAreUncorrelated) {
-  Scenario s = LosslessScenario(3);
+  NetworkConfig s = LosslessScenario(3);
   s.channel.loss_probability = 0.5;
   const std::vector<Record> got = Play(s, 3, 0, 20000, {true, true, false}, 0);
   // +1 received, -1 lost, per step, of the links 0-1, 0-2, 1-0.
@@ -247,7 +247,7 @@ TEST(ExtendedChannel, LossesOfDifferentLinksAndStepsAreUncorrelated) {
 }
 
 TEST(ExtendedChannel, OutcomeDependsOnSeedAndEpisodeOnly) {
-  const Scenario s = ExtendedScenario(5);
+  const NetworkConfig s = ExtendedScenario(5);
   const std::vector<bool> all(5, true);
   const auto first = Play(s, 42, 7, 200, all, 0);
   ASSERT_FALSE(first.empty());
@@ -258,7 +258,7 @@ TEST(ExtendedChannel, OutcomeDependsOnSeedAndEpisodeOnly) {
 }
 
 TEST(ExtendedChannel, SilenceOfOthersDoesNotChangeALink) {
-  const Scenario s = ExtendedScenario(5);
+  const NetworkConfig s = ExtendedScenario(5);
   auto together = Play(s, 42, 7, 200, std::vector<bool>(5, true), 0);
   together.erase(std::remove_if(together.begin(), together.end(),
                                 [](const Record& r) { return r.source != 3; }),
@@ -268,7 +268,7 @@ TEST(ExtendedChannel, SilenceOfOthersDoesNotChangeALink) {
 
 TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
   // Same draws, all distances doubled: the survivors are a true subset.
-  const Scenario s = ExtendedScenario(4);
+  const NetworkConfig s = ExtendedScenario(4);
   const auto near = Play(s, 1, 1, 500, std::vector<bool>(4, true), 0, nullptr, 0.5);
   const auto far = Play(s, 1, 1, 500, std::vector<bool>(4, true), 0, nullptr, 1.0);
   EXPECT_LT(far.size(), near.size());
@@ -281,9 +281,9 @@ TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
 }
 
 TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
-  Scenario s = LosslessScenario(9);
+  NetworkConfig s = LosslessScenario(9);
   s.channel.sound_speed_mps = 1.0;
-  const auto channel = MakeChannel(s);
+  const auto channel = MakeChannel(s.channel, s.agents);
   channel->Reset(1, 0);
   // Sources 1..8 around receiver 0 at four distances, two each, farthest first.
   std::vector<Vec3<double>> p(9);
@@ -306,9 +306,9 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
 }
 
 TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
-  Scenario s = ExtendedScenario(4);
+  NetworkConfig s = ExtendedScenario(4);
   s.channel.sound_speed_mps = 3.0;  // packets of the last steps are still under way
-  const auto used = MakeChannel(s);
+  const auto used = MakeChannel(s.channel, s.agents);
   Play(s, 9, 0, 50, std::vector<bool>(4, true), 0, used.get());
   ASSERT_GT(used->totals().delivered, 0u);
   used->Reset(9, 1);
@@ -323,8 +323,8 @@ TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
 }
 
 TEST(ExtendedChannel, EveryPacketIsDeliveredOrDroppedWithAReason) {
-  const Scenario s = ExtendedScenario(6);
-  const auto channel = MakeChannel(s);
+  const NetworkConfig s = ExtendedScenario(6);
+  const auto channel = MakeChannel(s.channel, s.agents);
   Play(s, 4, 0, 300, std::vector<bool>(6, true), 0, channel.get(), 2.0);
   const ChannelTotals& t = channel->totals();
   EXPECT_EQ(t.delivered + t.dropped, 300u * 6u * 5u);
@@ -345,16 +345,16 @@ TEST(ExtendedChannel, EveryPacketIsDeliveredOrDroppedWithAReason) {
 }
 
 TEST(Channel, PhysicalModelIsRefusedUntilItExists) {
-  Scenario s;
+  NetworkConfig s;
   s.channel.model = ChannelModel::kPhysical;
-  EXPECT_THROW(MakeChannel(s), UserError);
+  EXPECT_THROW(MakeChannel(s.channel, s.agents), UserError);
 }
 
 TEST(Channel, NonFinitePositionsAreRefused) {
   for (const ChannelModel model : {ChannelModel::kRange, ChannelModel::kExtended}) {
-    Scenario s = ExtendedScenario(2);
+    NetworkConfig s = ExtendedScenario(2);
     s.channel.model = model;
-    const auto channel = MakeChannel(s);
+    const auto channel = MakeChannel(s.channel, s.agents);
     channel->Reset(0, 0);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
@@ -371,4 +371,4 @@ TEST(Channel, EveryReasonHasItsOwnName) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::acoustics

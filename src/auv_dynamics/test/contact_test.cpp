@@ -4,18 +4,18 @@
 
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 constexpr double kSurgeMass = 31.9 + 2.0, kSwayMass = 31.9 + 35.0;
 
-Scenario ContactScenario(int agents) {
-  Scenario s = QuietScenario(agents);
+WorldConfig ContactScenario(int agents) {
+  WorldConfig s = QuietScenario(agents);
   s.vehicle = ReleaseVehicle();
   return s;
 }
 
-World PlacedWorld(const Scenario& scenario, const std::vector<Vec3<double>>& p_WB) {
+World PlacedWorld(const WorldConfig& scenario, const std::vector<Vec3<double>>& p_WB) {
   World world(scenario);
   for (int lane = 0; lane < kLanes; ++lane) {
     world.Place(lane, p_WB, {{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}});
@@ -66,7 +66,7 @@ TEST(Contact, VehiclesApartFeelNothing) {
 
 TEST(Contact, ForceIsFeltInBodyAxesOfATurnedVehicle) {
   // Bow of vehicle 0 along world y, so that a push along x is a sway force.
-  Scenario scenario = ContactScenario(2);
+  WorldConfig scenario = ContactScenario(2);
   World world = PlacedWorld(scenario, {{0.0, 0.0, 0.0}, {0.02, 0.0, 0.0}});
   VehicleState<Pack>& s = world.mutable_vehicle(0);
   s.rpy.z = Pack(kPi / 2);
@@ -118,4 +118,4 @@ TEST(Contact, PushesOverlappingVehiclesApart) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -4,7 +4,7 @@
 
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 TEST(Control, SmoothingMatchesEquation27ByHand) {
@@ -148,4 +148,4 @@ TEST(Control, HeadingModeWithoutACommandOnlyDampsYaw) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

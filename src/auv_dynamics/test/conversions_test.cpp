@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 nav_msgs::Odometry AtRest() {
@@ -15,42 +15,42 @@ nav_msgs::Odometry AtRest() {
   return m;
 }
 
-TEST(FiniteOdometry, TakesOrdinaryNumbersAndThoseOnTheBound) {
+TEST(nodes::FiniteOdometry, TakesOrdinaryNumbersAndThoseOnTheBound) {
   nav_msgs::Odometry m = AtRest();
-  EXPECT_TRUE(FiniteOdometry(m));
+  EXPECT_TRUE(nodes::FiniteOdometry(m));
   m.pose.pose.position.x = -1e6;
   m.twist.twist.angular.z = 1e6;
-  EXPECT_TRUE(FiniteOdometry(m));
+  EXPECT_TRUE(nodes::FiniteOdometry(m));
 }
 
-TEST(FiniteOdometry, RefusesNanInfinityAndHugeNumbersInEveryPart) {
+TEST(nodes::FiniteOdometry, RefusesNanInfinityAndHugeNumbersInEveryPart) {
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
                         -std::numeric_limits<double>::infinity(), 1e300, -1.001e6};
   for (const double x : bad) {
     nav_msgs::Odometry m = AtRest();
     m.pose.pose.position.y = x;
-    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    EXPECT_FALSE(nodes::FiniteOdometry(m)) << x;
     m = AtRest();
     m.twist.twist.linear.z = x;
-    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    EXPECT_FALSE(nodes::FiniteOdometry(m)) << x;
     m = AtRest();
     m.twist.twist.angular.x = x;
-    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    EXPECT_FALSE(nodes::FiniteOdometry(m)) << x;
     m = AtRest();
     m.pose.pose.orientation.w = x;
-    EXPECT_FALSE(FiniteOdometry(m)) << x;
+    EXPECT_FALSE(nodes::FiniteOdometry(m)) << x;
   }
 }
 
-TEST(FinitePose, RefusesAQuaternionThatIsNoRotation) {
+TEST(nodes::FinitePose, RefusesAQuaternionThatIsNoRotation) {
   geometry_msgs::Pose pose;
-  EXPECT_FALSE(FinitePose(pose)) << "all zero";
+  EXPECT_FALSE(nodes::FinitePose(pose)) << "all zero";
   pose.orientation.w = 0.6;
   pose.orientation.z = -0.8;
-  EXPECT_TRUE(FinitePose(pose));
+  EXPECT_TRUE(nodes::FinitePose(pose));
   pose.orientation.z = -0.802;
-  EXPECT_FALSE(FinitePose(pose));
+  EXPECT_FALSE(nodes::FinitePose(pose));
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -4,7 +4,7 @@
 
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 const Wrench<double> kNoForce{};
@@ -303,4 +303,4 @@ TEST(Integrator, SubstepsEqualSmallerSteps) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

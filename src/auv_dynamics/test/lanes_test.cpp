@@ -6,7 +6,7 @@
 #include "auv_dynamics/control/control.hpp"
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 /// What one world does in one lane: every number that a caller may read.
@@ -54,7 +54,7 @@ void StartIfDue(World* world, int lane, int id, int k) {
 }
 
 /// Runs the given worlds side by side, world ids[l] in lane l; records each.
-std::vector<Record> RunTogether(const Scenario& scenario, const std::vector<int>& ids) {
+std::vector<Record> RunTogether(const WorldConfig& scenario, const std::vector<int>& ids) {
   World world(scenario);
   std::vector<Record> records(ids.size());
   std::vector<Wrench<Pack>> tau = NoForce(scenario.agents);
@@ -83,7 +83,7 @@ TEST(Lanes, EachLaneEqualsTheSameWorldAloneBitForBit) {
     for (const TargetMotion motion :
          {TargetMotion::kConstantVelocity, TargetMotion::kCoordinatedTurn,
           TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
-      Scenario scenario = QuietScenario(4);
+      WorldConfig scenario = QuietScenario(4);
       scenario.vehicle.integrator = integrator;
       scenario.vehicle.float32_tau = motion == TargetMotion::kEvasive;
       if (motion == TargetMotion::kCoordinatedTurn) scenario.vehicle.r_BG_m = {0.0, 0.01, -0.02};
@@ -109,7 +109,7 @@ TEST(Lanes, OrderOfTheLanesDoesNotMatter) {
     forward.push_back(l);
     backward.insert(backward.begin(), l);
   }
-  const Scenario scenario = QuietScenario(3);
+  const WorldConfig scenario = QuietScenario(3);
   const std::vector<Record> a = RunTogether(scenario, forward), b = RunTogether(scenario, backward);
   for (size_t l = 0; l < a.size(); ++l) EXPECT_TRUE(SameBits(a[l], b[a.size() - 1 - l]));
 }
@@ -117,7 +117,7 @@ TEST(Lanes, OrderOfTheLanesDoesNotMatter) {
 TEST(Lanes, ScalarIntegratorEqualsTheWorldBitForBit) {
   // A program that steps one vehicle with doubles gets the World's numbers.
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    Scenario scenario = QuietScenario(1);
+    WorldConfig scenario = QuietScenario(1);
     scenario.vehicle.integrator = integrator;
     scenario.workspace.half_extent_m = 100.0;
     scenario.current.velocity_mps = {0.02, -0.03, 0.01};
@@ -166,4 +166,4 @@ TEST(Lanes, ControllerOfDoublesEqualsThatOfPacksBitForBit) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

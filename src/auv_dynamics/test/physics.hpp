@@ -9,7 +9,7 @@
 #include "auv_dynamics/world/world.hpp"
 
 /// What the physics tests share.
-namespace stg {
+namespace stg::dynamics {
 
 /// REMUS 100 without velocity limits: the equations alone.
 inline VehicleConfig FreeVehicle() {
@@ -60,9 +60,9 @@ inline double Power(const BodyVelocity<double>& a, const BodyVelocity<double>& b
   return Dot(a.v, b.v) + Dot(a.w, b.w);
 }
 
-/// Scenario with `agents` vehicles and nothing random in it.
-inline Scenario QuietScenario(int agents) {
-  Scenario s;
+/// WorldConfig with `agents` vehicles and nothing random in it.
+inline WorldConfig QuietScenario(int agents) {
+  WorldConfig s;
   s.agents = agents;
   s.sensing.cue_std_m = 0.0;
   return s;
@@ -72,4 +72,4 @@ inline std::vector<Wrench<Pack>> NoForce(int agents) {
   return std::vector<Wrench<Pack>>(static_cast<size_t>(agents));
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -5,22 +5,22 @@
 
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 constexpr std::array<ResetStage, 3> kStages{ResetStage::kEasy, ResetStage::kMedium,
                                             ResetStage::kHard};
 
-void ExpectWithin(double value, const Interval& interval) {
+void ExpectWithin(double value, const config::Interval& interval) {
   EXPECT_GE(value, interval.lo - 1e-12);
   EXPECT_LE(value, interval.hi + 1e-12);
 }
 
 TEST(Reset, DrawsLieInTheIntervalsOfEachStage) {
   // Table S2 and the release's easy stage, written out.
-  const Interval radius[3] = {{0.05, 0.20}, {0.25, 0.55}, {0.45, 0.75}};
-  const Interval distance[3] = {{0.08, 0.20}, {0.25, 0.45}, {0.40, 0.70}};
-  const Interval speed[3] = {{0.001, 0.004}, {0.003, 0.008}, {0.006, 0.014}};
+  const config::Interval radius[3] = {{0.05, 0.20}, {0.25, 0.55}, {0.45, 0.75}};
+  const config::Interval distance[3] = {{0.08, 0.20}, {0.25, 0.45}, {0.40, 0.70}};
+  const config::Interval speed[3] = {{0.001, 0.004}, {0.003, 0.008}, {0.006, 0.014}};
   World world(QuietScenario(4));
   for (size_t k = 0; k < kStages.size(); ++k) {
     for (std::uint32_t e = 0; e < 2000; ++e) {
@@ -99,7 +99,7 @@ TEST(Reset, DirectionsAreUniformOnTheSphere) {
 
 TEST(Reset, VehiclesStartAtRestAndLevelWhateverCameBefore) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    Scenario scenario = QuietScenario(2);
+    WorldConfig scenario = QuietScenario(2);
     scenario.vehicle.integrator = integrator;
     World world(scenario);
     std::vector<Wrench<Pack>> tau = NoForce(2);
@@ -156,7 +156,7 @@ TEST(Reset, AnotherSeedOrEpisodeGivesAnotherStart) {
 }
 
 TEST(Reset, VehiclesStartAroundTheTargetTheyAreTaskedWith) {
-  Scenario scenario = QuietScenario(6);
+  WorldConfig scenario = QuietScenario(6);
   scenario.target.count = 3;
   World world(scenario);
   for (std::uint32_t e = 0; e < 200; ++e) {
@@ -169,4 +169,4 @@ TEST(Reset, VehiclesStartAroundTheTargetTheyAreTaskedWith) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

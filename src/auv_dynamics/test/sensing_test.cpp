@@ -5,12 +5,12 @@
 
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 /// One vehicle that always has its target within range.
-Scenario SensingScenario() {
-  Scenario s = QuietScenario(1);
+WorldConfig SensingScenario() {
+  WorldConfig s = QuietScenario(1);
   s.vehicle = ReleaseVehicle();
   s.sensing.range_m = 10.0;
   return s;
@@ -26,7 +26,7 @@ void ExpectShare(int hits, int draws, double probability) {
 void ExpectChiSquare(double sum, int n) { EXPECT_NEAR(sum, n, 5.0 * std::sqrt(2.0 * n)); }
 
 TEST(Sensing, DetectsWithinRangeOnly) {
-  Scenario scenario = SensingScenario();
+  WorldConfig scenario = SensingScenario();
   scenario.sensing.range_m = 0.45;
   World world(scenario);
   Detection detection;
@@ -42,7 +42,7 @@ TEST(Sensing, DetectsWithinRangeOnly) {
 }
 
 TEST(Sensing, DetectionCarriesStampTargetAndStatedNoise) {
-  Scenario scenario = SensingScenario();
+  WorldConfig scenario = SensingScenario();
   scenario.agents = 2;
   scenario.target.count = 2;
   scenario.sensing.noise_std_m = 0.01;
@@ -63,7 +63,7 @@ TEST(Sensing, DetectionCarriesStampTargetAndStatedNoise) {
 
 TEST(Sensing, DetectionProbabilityIsMetWithinBinomialBounds) {
   for (const double probability : {0.05, 0.5, 0.9}) {
-    Scenario scenario = SensingScenario();
+    WorldConfig scenario = SensingScenario();
     scenario.sensing.detection_probability = probability;
     World world(scenario);
     int hits = 0;
@@ -79,7 +79,7 @@ TEST(Sensing, DetectionProbabilityIsMetWithinBinomialBounds) {
 
 TEST(Sensing, DetectionProbabilityZeroAndOneAreCertain) {
   for (const double probability : {0.0, 1.0}) {
-    Scenario scenario = SensingScenario();
+    WorldConfig scenario = SensingScenario();
     scenario.sensing.detection_probability = probability;
     scenario.sensing.noise_std_m = 0.001;
     World world(scenario);
@@ -92,7 +92,7 @@ TEST(Sensing, DetectionProbabilityZeroAndOneAreCertain) {
 }
 
 TEST(Sensing, NoiseHasTheStatedDeviationAndNoBias) {
-  Scenario scenario = SensingScenario();
+  WorldConfig scenario = SensingScenario();
   scenario.sensing.noise_std_m = 0.02;
   World world(scenario);
   world.Reset(0, 7, 0, ResetStage::kEasy);
@@ -116,7 +116,7 @@ TEST(Sensing, NoiseHasTheStatedDeviationAndNoBias) {
 }
 
 TEST(Sensing, DropoutMakesBlindSpellsOfTheStatedShareAndLength) {
-  Scenario scenario = SensingScenario();
+  WorldConfig scenario = SensingScenario();
   scenario.sensing.dropout_rate_hz = 0.25;
   scenario.sensing.dropout_duration_s = 2.0;
   World world(scenario);
@@ -138,7 +138,7 @@ TEST(Sensing, DropoutMakesBlindSpellsOfTheStatedShareAndLength) {
 }
 
 TEST(Sensing, CueHasTheStatedDeviationAndIsSharedByAllVehicles) {
-  Scenario scenario = SensingScenario();
+  WorldConfig scenario = SensingScenario();
   scenario.agents = 3;
   scenario.target.count = 2;
   scenario.sensing.cue_std_m = 0.05;
@@ -168,4 +168,4 @@ TEST(Sensing, CueOfNoUncertaintyIsTheTarget) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

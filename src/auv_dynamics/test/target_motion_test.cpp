@@ -6,11 +6,11 @@
 #include "auv_common/numbers/random.hpp"
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
-Scenario TargetScenario(TargetMotion motion) {
-  Scenario s = QuietScenario(1);
+WorldConfig TargetScenario(TargetMotion motion) {
+  WorldConfig s = QuietScenario(1);
   s.target.motion = motion;
   s.vehicle = ReleaseVehicle();
   return s;
@@ -47,7 +47,7 @@ TEST(TargetMotion, ReflectionClampsAndFlipsThatComponentOnly) {
 }
 
 /// Steps `world` and checks every lane's target against its limits.
-void CheckLimits(const Scenario& scenario, World* world, int steps) {
+void CheckLimits(const WorldConfig& scenario, World* world, int steps) {
   const double most = scenario.target.max_turn_rate_radps * scenario.time.dt_s;
   const double dt = scenario.time.dt_s;
   std::array<Vec3<double>, static_cast<size_t>(kLanes)> p, v;
@@ -76,7 +76,7 @@ void CheckLimits(const Scenario& scenario, World* world, int steps) {
 TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
   for (const TargetMotion motion :
        {TargetMotion::kCoordinatedTurn, TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
-    Scenario scenario = TargetScenario(motion);
+    WorldConfig scenario = TargetScenario(motion);
     // As fast as the reset stage may start it: fast enough to meet every wall.
     scenario.reset.stages[2].target_speed_mps = {0.01, 0.05};
     scenario.target.evasion_range_m = 1.0;
@@ -92,7 +92,7 @@ TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
 }
 
 TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
-  Scenario scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
+  WorldConfig scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
   scenario.target.turn_period_s = 1.0;
   scenario.workspace.half_extent_m = 100.0;  // no wall interferes
   World world(scenario);
@@ -111,7 +111,7 @@ TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
 TEST(TargetMotion, EvasiveTargetTurnsAwayFromAnAuvInRange) {
   for (const Vec3<double>& auv : {Vec3<double>{0.06, 0.0, 0.0}, Vec3<double>{-0.03, 0.05, 0.0},
                                   Vec3<double>{0.01, -0.02, -0.06}}) {
-    Scenario scenario = TargetScenario(TargetMotion::kEvasive);
+    WorldConfig scenario = TargetScenario(TargetMotion::kEvasive);
     World world(scenario);
     const Vec3<double> towards = auv * (0.01 / Norm(auv));
     world.Place(0, {auv}, {{0.0, 0.0, 0.0}}, {towards + Vec3<double>{0.0, 0.001, 0.001}});
@@ -152,7 +152,7 @@ struct Tour {
 };
 
 /// Follows a target through its waypoints, in order; it may skip a few of them.
-Tour FollowTour(const Scenario& scenario, std::uint64_t seed, int steps) {
+Tour FollowTour(const WorldConfig& scenario, std::uint64_t seed, int steps) {
   World world(scenario);
   world.Reset(0, seed, 0, ResetStage::kHard);
   Tour tour;
@@ -175,7 +175,7 @@ Tour FollowTour(const Scenario& scenario, std::uint64_t seed, int steps) {
 }
 
 TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
-  Scenario scenario = TargetScenario(TargetMotion::kRandomWaypoint);
+  WorldConfig scenario = TargetScenario(TargetMotion::kRandomWaypoint);
   for (const double speed : {0.02, 0.05}) {
     scenario.reset.stages[2].target_speed_mps = {speed, speed};
     // Two ways along the diagonal of the waypoint cube, and a turn.
@@ -194,7 +194,7 @@ TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
 }
 
 TEST(TargetMotion, SeveralTargetsMoveIndependently) {
-  Scenario scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
+  WorldConfig scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
   scenario.agents = 2;
   scenario.target.count = 2;
   World world(scenario);
@@ -205,4 +205,4 @@ TEST(TargetMotion, SeveralTargetsMoveIndependently) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -7,7 +7,7 @@
 #include "auv_common/error.hpp"
 #include "physics.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -221,4 +221,4 @@ TEST(Vehicle, LimitsActOnEachAxisAndBothSigns) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

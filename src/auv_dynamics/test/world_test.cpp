@@ -30,17 +30,17 @@ void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 TEST(World, RefusesAScenarioThatFailsItsValidation) {
-  Scenario scenario = QuietScenario(2);
+  WorldConfig scenario = QuietScenario(2);
   scenario.time.dt_s = -0.1;
   EXPECT_THROW(World{scenario}, UserError);
 }
 
 TEST(World, TimeIsStepsTimesDt) {
-  Scenario scenario = QuietScenario(1);
+  WorldConfig scenario = QuietScenario(1);
   World world(scenario);
   world.Reset(0, 1, 0, ResetStage::kMedium);
   for (int k = 0; k < 123; ++k) world.Step(NoForce(1));
@@ -50,7 +50,7 @@ TEST(World, TimeIsStepsTimesDt) {
 
 /// Vehicle 0 of a release world, moved to p with body velocity v at zero attitude.
 World AtWall(const Vec3<double>& p, const Vec3<double>& v) {
-  Scenario scenario = QuietScenario(1);
+  WorldConfig scenario = QuietScenario(1);
   scenario.vehicle = ReleaseVehicle();
   scenario.vehicle.linear_damping = {};
   scenario.vehicle.quadratic_damping = {};
@@ -105,7 +105,7 @@ TEST(World, NothingHappensJustInsideTheWall) {
 }
 
 TEST(World, CommandIsClippedToTheActuatorLimits) {
-  Scenario scenario = QuietScenario(1);
+  WorldConfig scenario = QuietScenario(1);
   scenario.vehicle = ReleaseVehicle();
   World world(scenario);
   world.Place(0, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
@@ -120,7 +120,7 @@ TEST(World, CommandIsClippedToTheActuatorLimits) {
 
 TEST(World, CommandIsRoundedToFloatOnlyWhereAskedFor) {
   for (const bool rounded : {false, true}) {
-    Scenario scenario = QuietScenario(1);
+    WorldConfig scenario = QuietScenario(1);
     scenario.vehicle = ReleaseVehicle();
     scenario.vehicle.float32_tau = rounded;
     World world(scenario);
@@ -134,7 +134,7 @@ TEST(World, CommandIsRoundedToFloatOnlyWhereAskedFor) {
 }
 
 TEST(World, CurrentCarriesTheWholeSwarmAtItsSpeed) {
-  Scenario scenario = QuietScenario(2);
+  WorldConfig scenario = QuietScenario(2);
   scenario.workspace.half_extent_m = 100.0;
   scenario.reset.start_half_extent_m = 0.9;
   scenario.current.velocity_mps = {0.1, -0.05, 0.02};
@@ -148,7 +148,7 @@ TEST(World, CurrentCarriesTheWholeSwarmAtItsSpeed) {
 }
 
 TEST(World, DisturbanceHasItsStationaryDeviationAndCorrelationTime) {
-  Scenario scenario = QuietScenario(1);
+  WorldConfig scenario = QuietScenario(1);
   scenario.vehicle = ReleaseVehicle();
   scenario.vehicle.linear_damping = {};
   scenario.vehicle.quadratic_damping = {};
@@ -183,7 +183,7 @@ TEST(World, DisturbanceHasItsStationaryDeviationAndCorrelationTime) {
 }
 
 TEST(World, DisturbanceIsNotLimitedByTheActuators) {
-  Scenario scenario = QuietScenario(1);
+  WorldConfig scenario = QuietScenario(1);
   scenario.vehicle = ReleaseVehicle();
   scenario.disturbance.force_std_n = 1e4;
   World world(scenario);
@@ -196,7 +196,7 @@ TEST(World, StepAllocatesNothing) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
     for (const TargetMotion motion :
          {TargetMotion::kCoordinatedTurn, TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
-      Scenario scenario = QuietScenario(8);
+      WorldConfig scenario = QuietScenario(8);
       scenario.vehicle.integrator = integrator;
       scenario.vehicle.float32_tau = true;
       scenario.target.motion = motion;
@@ -221,4 +221,4 @@ TEST(World, StepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::dynamics

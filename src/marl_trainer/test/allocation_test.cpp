@@ -30,7 +30,7 @@ void* Allocate(std::size_t size, std::size_t alignment) {
   std::free(p);
 }
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 TEST(Allocation, TheCounterCountsPlainAndAlignedMemory) {
@@ -82,4 +82,4 @@ TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

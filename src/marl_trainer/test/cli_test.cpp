@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ TEST_F(CommandLine, CheckTraceExitsWithTwoForWhatIsNoTrace) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

@@ -7,13 +7,13 @@
 #include "env_fixture.hpp"
 #include "stg_agent/agent/agent.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 /// Nobody senses a target that starts 0.25 m away or farther.
 Scenario Blind() { return Short(Shipped("medium", "nominal", {"sensing.range_m=0.02"}), 200); }
 
-TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
+TEST(dynamics::Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
   const Scenario s = Blind();
   double square = 0.0;
   int count = 0;
@@ -21,7 +21,7 @@ TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
   for (std::uint64_t round = 0; round < 100; ++round) {
     env.RestartAt(round, 0);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Cue cue = env.world().InitialCue(lane, 0, 0);
+      const dynamics::Cue cue = env.world().InitialCue(lane, 0, 0);
       const Vec3<double> noise = cue.p_WT - Lane(env.world().target(0).p_WT, lane);
       square += Dot(noise, noise);
       count += 3;
@@ -81,7 +81,7 @@ TEST(NoLeak, ATargetBeyondEverybodysRangeChangesNoObservation) {
 bool OthersNoticeTheFourth(InformationMode mode, double gap) {
   Scenario s = Short(Blind(), 200);
   s.mode = mode;
-  s.channel.model = ChannelModel::kRange;
+  s.channel.model = acoustics::ChannelModel::kRange;
   s.channel.range_m = 0.4;
   s.observation.graph = s.observation.semantic = true;
   const EnvOptions o;
@@ -159,7 +159,7 @@ Links Fly(const std::string& scenario, const std::string& condition) {
     }
   }
   for (int lane = 0; lane < kLanes; ++lane) {
-    const ChannelTotals& t = env.channel(lane).totals();
+    const acoustics::ChannelTotals& t = env.channel(lane).totals();
     links.delivered += static_cast<double>(t.delivered);
     sent += static_cast<double>(t.delivered + t.dropped);
   }
@@ -220,4 +220,4 @@ TEST(AcousticMode, RewardAndCriticStateComeFromTheTruth) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

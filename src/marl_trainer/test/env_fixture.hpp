@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/env/env.hpp"
 
 /// What the tests of the environment share.
-namespace stg {
+namespace stg::env {
 
 inline Scenario Shipped(const std::string& name, const std::string& condition = "nominal",
                         const std::vector<std::string>& overrides = {}) {
@@ -69,4 +70,4 @@ enum ObservationIndex {
   kGraph = 68,
 };
 
-}  // namespace stg
+}  // namespace stg::env

@@ -6,7 +6,7 @@
 
 #include "env_fixture.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 const InformationMode kModes[] = {InformationMode::kTruth, InformationMode::kAcoustic};
@@ -52,7 +52,7 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
     int agents, targets;
   };
   for (const auto mode : kModes) {
-    for (const auto interface : {ActionInterface::kVelocity3, ActionInterface::kTau6}) {
+    for (const auto interface : {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
       for (const Case c : {Case{1, 1}, Case{2, 1}, Case{2, 2}, Case{5, 2}, Case{20, 1}}) {
         Scenario s = Short(Shipped("medium"), 25);
         s.mode = mode;
@@ -64,7 +64,7 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
         EnvGroup env(s, o);
         EXPECT_EQ(env.observation_size(), 74);
         EXPECT_EQ(env.state_size(), 19 * c.agents + 6 * c.targets);
-        EXPECT_EQ(env.action_size(), interface == ActionInterface::kTau6 ? 6 : 3);
+        EXPECT_EQ(env.action_size(), interface == dynamics::ActionInterface::kTau6 ? 6 : 3);
         env.Reset();
         for (int k = 0; k < 60; ++k) {  // over two truncations
           env.Step(ActionsOf(env, o).data());
@@ -196,7 +196,7 @@ TEST(Observation, ReleaseBookkeepingHidesProgress) {
       env.Step(Idle(env).data());
       // The target comes 4 mm a step: a tenth of the progress scale.
       EXPECT_NEAR(Row(env, 0, 0)[kTracking + 2], release ? 0.0 : 0.1, 1e-5);
-      EXPECT_EQ(Row(env, 0, 0)[kSemantic + kApproach], release ? 0.0F : 1.0F);
+      EXPECT_EQ(Row(env, 0, 0)[kSemantic + agent::kApproach], release ? 0.0F : 1.0F);
     }
   }
 }
@@ -226,7 +226,7 @@ TEST(Tau6, ASurgeForceMovesTheBowAndIsNotSmoothed) {
   for (const auto mode : kModes) {
     Scenario s = Short(Shipped("medium"), 50);
     s.mode = mode;
-    s.control.interface = ActionInterface::kTau6;
+    s.control.interface = dynamics::ActionInterface::kTau6;
     EnvGroup env(s, EnvOptions{});
     env.Reset();
     std::vector<float> actions = Idle(env);
@@ -241,4 +241,4 @@ TEST(Tau6, ASurgeForceMovesTheBowAndIsNotSmoothed) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

@@ -8,17 +8,17 @@
 
 #include "env_fixture.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 /// Everything random at once: noise, missed detections, disturbance, moving targets.
-Scenario Noisy(InformationMode mode, ActionInterface interface) {
+Scenario Noisy(InformationMode mode, dynamics::ActionInterface interface) {
   Scenario s = Short(Shipped("medium"), 40);
   s.mode = mode;
   s.control.interface = interface;
   s.agents = 5;
   s.target.count = 2;
-  s.target.motion = TargetMotion::kCoordinatedTurn;
+  s.target.motion = dynamics::TargetMotion::kCoordinatedTurn;
   s.sensing.noise_std_m = 0.005;
   s.sensing.detection_probability = 0.7;
   s.sensing.dropout_rate_hz = 0.2;
@@ -59,7 +59,7 @@ bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
 
 TEST(Lanes, AnEpisodeIsTheSameWhicheverLaneGroupOrRoundRunsIt) {
   for (const auto mode : {InformationMode::kTruth, InformationMode::kAcoustic}) {
-    for (const auto interface : {ActionInterface::kVelocity3, ActionInterface::kTau6}) {
+    for (const auto interface : {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
       const Scenario s = Noisy(mode, interface);
       EnvOptions o;
       o.seed = 17;
@@ -84,14 +84,14 @@ TEST(Lanes, AnEpisodeIsTheSameWhicheverLaneGroupOrRoundRunsIt) {
 }
 
 TEST(Lanes, APairInContactDoesNotMoveTheFarPairOfAnotherLane) {
-  World alone(Shipped("medium", "nominal", {"agents=2"}));
-  World mixed(Shipped("medium", "nominal", {"agents=2"}));
+  dynamics::World alone(Shipped("medium", "nominal", {"agents=2"}));
+  dynamics::World mixed(Shipped("medium", "nominal", {"agents=2"}));
   for (int lane = 0; lane < kLanes; ++lane) {
     const double gap = lane == 1 ? 0.02 : 0.07;
     alone.Place(lane, {{0.0, 0.0, 0.0}, {0.07, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{}});
     mixed.Place(lane, {{0.0, 0.0, 0.0}, {gap, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{}});
   }
-  const std::vector<Wrench<Pack>> nothing(2);
+  const std::vector<dynamics::Wrench<Pack>> nothing(2);
   for (int k = 0; k < 10; ++k) {
     alone.Step(nothing);
     mixed.Step(nothing);
@@ -117,7 +117,7 @@ TEST(Seeds, AnotherSeedIsAnotherEpisodeAndSeedPlusOneIsTheNextReset) {
 
 TEST(Truncation, FinalObservationsAreThoseOfALongerEpisode) {
   for (const auto mode : {InformationMode::kTruth, InformationMode::kAcoustic}) {
-    const Scenario s = Noisy(mode, ActionInterface::kVelocity3);
+    const Scenario s = Noisy(mode, dynamics::ActionInterface::kVelocity3);
     const EnvOptions o;
     EnvGroup brief(Short(s, 12), o), longer(Short(s, 30), o), fresh(Short(s, 12), o);
     brief.Reset();
@@ -150,7 +150,7 @@ TEST(Truncation, FinalObservationsAreThoseOfALongerEpisode) {
 
 TEST(Restart, AtARoundEqualsHavingRunUpToIt) {
   for (const auto mode : {InformationMode::kTruth, InformationMode::kAcoustic}) {
-    const Scenario s = Short(Noisy(mode, ActionInterface::kVelocity3), 9);
+    const Scenario s = Short(Noisy(mode, dynamics::ActionInterface::kVelocity3), 9);
     EnvOptions o;
     o.first_env = 4;
     o.total_envs = 12;
@@ -241,7 +241,7 @@ TEST(Rewards, TheTeamRewardIsTheMeanOverAuvsAndTheReturnTheirSum) {
 TEST(Decision, OfSeveralPhysicsStepsHoldsItsActionForAllOfThem) {
   // tau6 has no filter: one decision of five steps is five decisions of one step.
   Scenario one = Short(Shipped("medium_release"), 50);
-  one.control.interface = ActionInterface::kTau6;
+  one.control.interface = dynamics::ActionInterface::kTau6;
   Scenario five = one;
   five.time.decision_steps = 5;
   const EnvOptions o;
@@ -275,7 +275,7 @@ TEST(Metrics, OfASwarmAtRestAreItsGeometry) {
     }
   }
   ASSERT_TRUE(env.truncated());
-  const EpisodeMetrics& m = env.metrics(kLanes - 1);
+  const task::EpisodeMetrics& m = env.metrics(kLanes - 1);
   EXPECT_EQ(m.steps, 10);
   EXPECT_NEAR(m.tail_distance, (0.014 + 0.032 + 0.7) / 3.0, 1e-12);
   EXPECT_NEAR(m.tracking_error, (0.001 + 0.017 + 0.685) / 3.0, 1e-12);
@@ -308,7 +308,7 @@ TEST(Metrics, TheTailIsTheLastStepsOnly) {
 
 TEST(Metrics, SaturationCountsExecutedComponentsAndTheNormIsOfTau) {
   Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 4);
-  s.control.interface = ActionInterface::kTau6;
+  s.control.interface = dynamics::ActionInterface::kTau6;
   EnvGroup env(s, EnvOptions{});
   env.Place({{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
   std::vector<float> actions;
@@ -324,16 +324,16 @@ TEST(Metrics, SaturationCountsExecutedComponentsAndTheNormIsOfTau) {
 }
 
 TEST(Metrics, SummaryIsMeanAndSampleStandardDeviation) {
-  std::vector<EpisodeMetrics> episodes(3);
+  std::vector<task::EpisodeMetrics> episodes(3);
   episodes[0].episode_return = 1.0;
   episodes[1].episode_return = 2.0;
   episodes[2].episode_return = 6.0;
-  const MetricSummary s = Summarise(episodes);
+  const task::MetricSummary s = task::Summarise(episodes);
   ASSERT_EQ(s.names[0], "return");
   EXPECT_DOUBLE_EQ(s.mean[0], 3.0);
   EXPECT_DOUBLE_EQ(s.std[0], std::sqrt((4.0 + 1.0 + 9.0) / 2.0));
-  EXPECT_EQ(Summarise({episodes[0]}).std[0], 0.0);
+  EXPECT_EQ(task::Summarise({episodes[0]}).std[0], 0.0);
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

@@ -8,10 +8,10 @@
 #include "auv_common/error.hpp"
 #include "env_fixture.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
-double Value(const EpisodeMetrics& m, const std::string& name) {
+double Value(const task::EpisodeMetrics& m, const std::string& name) {
   for (const auto& item : m.Items()) {
     if (item.first == name) return item.second;
   }
@@ -88,7 +88,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
         c.options.standoff_m = 0.0125;
         c.options.cap = 1.0;
       }
-      const MetricSummary m = Summarise(Evaluate(s, c, kEpisodes, 3000, 1));
+      const task::MetricSummary m = task::Summarise(Evaluate(s, c, kEpisodes, 3000, 1));
       // Four standard errors of the difference of two means, and the table's rounding.
       const auto expect = [&](const std::string& name, double expected, double rounding) {
         const auto k =
@@ -108,7 +108,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
 TEST(PursuitSeparated, HoldsTheBandWithoutContactOnTrueStates) {
   const Scenario s = Shipped("medium_release");
   const auto separated = Evaluate(s, MakeController("pursuit_separated", s), 28, 3000, 1);
-  const MetricSummary m = Summarise(separated);
+  const task::MetricSummary m = task::Summarise(separated);
   const auto mean = [&](const std::string& name) {
     double sum = 0.0;
     for (const auto& e : separated) sum += Value(e, name) / 28.0;
@@ -141,7 +141,7 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
 TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
   for (const char* name : {"medium", "hard"}) {
     const Scenario s = Shipped(name);
-    const MetricSummary m = Summarise(Evaluate(s, MakeController("pursuit", s), 12, 3000, 1));
+    const task::MetricSummary m = task::Summarise(Evaluate(s, MakeController("pursuit", s), 12, 3000, 1));
     const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
                                        m.names.begin());
     EXPECT_LT(m.mean[k], 0.05) << name;
@@ -161,7 +161,7 @@ TEST(Idle, DoesNotMove) {
 TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
   const auto actions = [](const char* mode, bool privileged) {
     const Scenario s =
-        LoadNamedScenario(ScenarioFolder(), "medium", "nominal", {std::string("mode=") + mode});
+        LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal", {std::string("mode=") + mode});
     EnvGroup env(s, EnvOptions());
     env.Reset();
     Controller controller = MakeController("pursuit_separated", s);
@@ -175,4 +175,4 @@ TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

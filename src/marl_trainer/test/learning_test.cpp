@@ -13,7 +13,7 @@
 #include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 std::vector<float> Draw(std::size_t count, float scale, unsigned seed) {
@@ -216,7 +216,7 @@ TEST(ActorCritic, ExportedPolicyIsTheActorAsLibtorchComputesIt) {
       Draw(static_cast<std::size_t>(100 * networks.actor.inputs()), 3.0F, 5);
   moments.Add(seen.data(), 100);
   const Normaliser normaliser = Normaliser::From(moments, 0.01F, 10.0F);
-  const Policy policy = networks.ToPolicy(p.data(), normaliser, PolicyMetadata());
+  const agent::Policy policy = networks.ToPolicy(p.data(), normaliser, agent::PolicyMetadata());
   std::vector<float> obs = Draw(static_cast<std::size_t>(networks.actor.inputs()), 5.0F, 6);
   std::vector<float> normal(obs.size()), action(3);
   policy.Mean(obs.data(), action.data());
@@ -334,4 +334,4 @@ TEST(WorkerPool, RunsEverySliceOnceAndPassesExceptionsOn) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::learn

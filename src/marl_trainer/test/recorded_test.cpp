@@ -11,10 +11,11 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +43,7 @@ class RecordedTest : public ::testing::Test {
     return config;
   }
   static Scenario Short() {
-    return LoadNamedScenario(ScenarioFolder(), "medium", "nominal",
+    return LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal",
                              {"time.episode_steps=20", "time.tail_steps=10"});
   }
   RecordedTrainer::Options Options(const std::string& name, const std::string& policy = "") {
@@ -54,7 +55,7 @@ class RecordedTest : public ::testing::Test {
   }
 
   /// Actions drawn from the policy; the reward is largest where the first component is 0.5.
-  AgentRecord Step(const Policy& policy, std::uint32_t episode, std::uint32_t t, int agent) const {
+  AgentRecord Step(const agent::Policy& policy, std::uint32_t episode, std::uint32_t t, int agent) const {
     Random random(7, Stream::kPolicy, episode, t, static_cast<std::uint32_t>(agent));
     AgentRecord r;
     r.layout_version = 1;
@@ -219,11 +220,11 @@ TEST_F(RecordedTest, LearnsWhichActionIsRewarded) {
 
 TEST_F(RecordedTest, EachUpdateMakesAPolicyOfItsOwnAndRefusesTheLastOnesEpisodes) {
   const std::string first = trainer_->policy_id();
-  EXPECT_EQ(Policy::LoadOnnx(trainer_->policy_path()).metadata().id, first);
+  EXPECT_EQ(agent::Policy::LoadOnnx(trainer_->policy_path()).metadata().id, first);
   const RecordedEpisode episode = Episode(0);
   trainer_->Update({episode});
   EXPECT_NE(trainer_->policy_id(), first);
-  EXPECT_EQ(Policy::LoadOnnx(trainer_->policy_path()).metadata().id, trainer_->policy_id());
+  EXPECT_EQ(agent::Policy::LoadOnnx(trainer_->policy_path()).metadata().id, trainer_->policy_id());
   EXPECT_EQ(trainer_->Check(episode).flaw, Flaw::kForeignPolicy);
 }
 
@@ -279,4 +280,4 @@ TEST(RecordingReport, CountsByReason) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::learn

@@ -4,7 +4,7 @@
 
 #include "env_fixture.hpp"
 
-namespace stg {
+namespace stg::task {
 namespace {
 
 Scenario With(RewardKind kind) {
@@ -114,10 +114,10 @@ TEST(Reward, EveryTermAndTheTotalStayWithinTheirLimits) {
   EXPECT_EQ(r.track, -1.0);
   EXPECT_EQ(r.total, -2.0);
   // Progress and closing saturate at one unit of their scales.
-  const ObservationConfig o;
-  EXPECT_EQ(Progress(o, 1.0, 0.0), 1.0);
-  EXPECT_EQ(Progress(o, 0.0, 1.0), -1.0);
-  EXPECT_EQ(Closing(o, 1.0), 1.0);
+  const agent::ObservationConfig o;
+  EXPECT_EQ(agent::Progress(o, 1.0, 0.0), 1.0);
+  EXPECT_EQ(agent::Progress(o, 0.0, 1.0), -1.0);
+  EXPECT_EQ(agent::Closing(o, 1.0), 1.0);
 }
 
 TEST(Reward, EachWeightScalesItsTermAlone) {
@@ -176,8 +176,8 @@ TEST(Reward, PacksAndScalarsGiveTheSameBits) {
 }
 
 /// Four AUVs on a line at 0, 0.09, 0.27 and 0.87 m, at rest, far from the target.
-EnvGroup Line(const Scenario& s) {
-  EnvGroup env(s, EnvOptions{});
+env::EnvGroup Line(const Scenario& s) {
+  env::EnvGroup env(s, env::EnvOptions{});
   env.Place({{0.0, 0.0, 0.0}, {0.09, 0.0, 0.0}, {0.27, 0.0, 0.0}, {0.87, 0.0, 0.0}},
             {{0.0, 0.5, 0.0}}, {{0.0, 0.0, 0.0}});
   env.Step(Idle(env).data());
@@ -185,7 +185,7 @@ EnvGroup Line(const Scenario& s) {
 }
 
 TEST(SwarmReward, CommunicationIsTheMeanOverExistingLinksOnly) {
-  const EnvGroup env = Line(Shipped("medium", "nominal", {"mode=truth"}));
+  const env::EnvGroup env = Line(Shipped("medium", "nominal", {"mode=truth"}));
   // q of the three pairs within 0.45 m: 0.8, 0.4, 0.6. The fourth AUV has no link.
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(Lane(env.terms(i).communication, 0), 0.6, 1e-9);
 }
@@ -197,8 +197,8 @@ TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
     deviation += (d - 0.015) / 4.0;
     error += std::abs(d - 0.015) / 4.0;
   }
-  const EnvGroup paper = Line(Shipped("medium", "nominal", {"mode=truth"}));
-  const EnvGroup release = Line(Shipped("medium_release"));
+  const env::EnvGroup paper = Line(Shipped("medium", "nominal", {"mode=truth"}));
+  const env::EnvGroup release = Line(Shipped("medium_release"));
   EXPECT_NEAR(Lane(paper.terms(0).coordination, 0), 1.0 - deviation / 0.8, 1e-9);
   EXPECT_NEAR(Lane(release.terms(3).coordination, 0), 1.0 - deviation / 0.8, 1e-9);
   // The release's "communication" is a function of target distance, here out of range.
@@ -207,10 +207,10 @@ TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
 }
 
 /// Two AUVs 0.012 m apart, which is half the separation distance, and one away.
-EnvGroup Crowd(const std::vector<std::string>& overrides) {
+env::EnvGroup Crowd(const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {"mode=truth", "agents=3", "contact.stiffness=0"};
   all.insert(all.end(), overrides.begin(), overrides.end());
-  EnvGroup env(Shipped("medium", "nominal", all), EnvOptions{});
+  env::EnvGroup env(Shipped("medium", "nominal", all), env::EnvOptions{});
   env.Place({{0.0, 0.0, 0.0}, {0.012, 0.0, 0.0}, {0.5, 0.0, 0.0}}, {{0.0, 0.3, 0.0}},
             {{0.0, 0.0, 0.0}});
   env.Step(Idle(env).data());
@@ -218,7 +218,7 @@ EnvGroup Crowd(const std::vector<std::string>& overrides) {
 }
 
 TEST(SeparationReward, IsNothingByDefaultHoweverCrowded) {
-  const EnvGroup env = Crowd({});
+  const env::EnvGroup env = Crowd({});
   for (int i = 0; i < 3; ++i) EXPECT_EQ(Lane(env.terms(i).separation, 0), 0.0);
   for (const char* name : {"medium", "hard", "medium_release", "hard_release"}) {
     EXPECT_EQ(Shipped(name).reward.weights.separation, 0.0) << name;
@@ -226,8 +226,8 @@ TEST(SeparationReward, IsNothingByDefaultHoweverCrowded) {
 }
 
 TEST(SeparationReward, CostsTheCrowdedAndOnlyThem) {
-  const EnvGroup off = Crowd({});
-  const EnvGroup on = Crowd({"reward.weights.separation=0.4"});
+  const env::EnvGroup off = Crowd({});
+  const env::EnvGroup on = Crowd({"reward.weights.separation=0.4"});
   for (int i = 0; i < 2; ++i) {
     EXPECT_NEAR(Lane(on.terms(i).separation, 0), -0.5, 1e-9);
     EXPECT_NEAR(Lane(on.terms(i).total, 0) - Lane(off.terms(i).total, 0), -0.2, 1e-9);
@@ -237,4 +237,4 @@ TEST(SeparationReward, CostsTheCrowdedAndOnlyThem) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::task

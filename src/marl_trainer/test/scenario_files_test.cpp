@@ -9,7 +9,8 @@
 
 #include "../src/scenario_value.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 /// The shipped scenario files and the reference of their keys.
 namespace stg {
@@ -76,8 +77,8 @@ TEST(ShippedScenarios, MediumIsTheStructsDefault) {
 TEST(ShippedScenarios, HardDiffersFromMediumInNameAndStageOnly) {
   for (const std::string suffix : {"", "_release"}) {
     Scenario hard = LoadNamedScenario(kFolder, "hard" + suffix);
-    EXPECT_EQ(hard.reset.stage, ResetStage::kHard);
-    hard.reset.stage = ResetStage::kMedium;
+    EXPECT_EQ(hard.reset.stage, dynamics::ResetStage::kHard);
+    hard.reset.stage = dynamics::ResetStage::kMedium;
     hard.name = "medium" + suffix;
     EXPECT_EQ(ToYaml(hard), ToYaml(LoadNamedScenario(kFolder, "medium" + suffix)));
   }
@@ -86,15 +87,15 @@ TEST(ShippedScenarios, HardDiffersFromMediumInNameAndStageOnly) {
 TEST(ShippedScenarios, ReleaseProfileIsTheReleasesSimulator) {
   const Scenario s = LoadNamedScenario(kFolder, "medium_release");
   EXPECT_EQ(s.mode, InformationMode::kTruth);
-  EXPECT_EQ(s.vehicle.added_mass_coriolis, AddedMassCoriolis::kOff);
+  EXPECT_EQ(s.vehicle.added_mass_coriolis, dynamics::AddedMassCoriolis::kOff);
   EXPECT_TRUE(s.vehicle.reversed_coriolis);
   EXPECT_FALSE(s.vehicle.restoring);
-  EXPECT_EQ(s.vehicle.integrator, Integrator::kSemiImplicit);
+  EXPECT_EQ(s.vehicle.integrator, dynamics::Integrator::kSemiImplicit);
   EXPECT_TRUE(s.vehicle.float32_tau);
   EXPECT_TRUE(s.vehicle.clip_velocity);
-  EXPECT_EQ(s.reward.kind, RewardKind::kRelease);
-  EXPECT_EQ(s.observation.order, NeighbourOrder::kIndex);
-  EXPECT_EQ(s.channel.model, ChannelModel::kRange);
+  EXPECT_EQ(s.reward.kind, task::RewardKind::kRelease);
+  EXPECT_EQ(s.observation.order, agent::NeighbourOrder::kIndex);
+  EXPECT_EQ(s.channel.model, acoustics::ChannelModel::kRange);
   EXPECT_EQ(s.observation_size(), 74);
 }
 
@@ -115,11 +116,11 @@ TEST(StressConditions, HaveTheReleasesNumbers) {
       EXPECT_EQ(speed(load(hard, condition)).hi, 0.020);
     }
     for (const char* condition : {"far_initialization", "combined_stress"}) {
-      EXPECT_EQ(load(medium, condition).reset.stage, ResetStage::kHard);
+      EXPECT_EQ(load(medium, condition).reset.stage, dynamics::ResetStage::kHard);
       EXPECT_EQ(load(medium, condition).reset.min_separation_m, 0.10);
       EXPECT_EQ(load(hard, condition).reset.min_separation_m, 0.14);
     }
-    EXPECT_EQ(load(medium, "fast_target").reset.stage, ResetStage::kMedium);
+    EXPECT_EQ(load(medium, "fast_target").reset.stage, dynamics::ResetStage::kMedium);
     for (const std::string& name : {medium, hard}) {
       for (const char* condition :
            {"limited_sensing", "degraded_communication", "combined_stress"}) {
@@ -133,9 +134,9 @@ TEST(StressConditions, HaveTheReleasesNumbers) {
 
 TEST(StressConditions, DegradedCommunicationDegradesEveryAspectOfALink) {
   for (const char* name : {"medium", "hard"}) {
-    const ChannelConfig good = LoadNamedScenario(kFolder, name).channel;
+    const acoustics::ChannelConfig good = LoadNamedScenario(kFolder, name).channel;
     for (const char* condition : {"degraded_communication", "combined_stress"}) {
-      const ChannelConfig bad = LoadNamedScenario(kFolder, name, condition).channel;
+      const acoustics::ChannelConfig bad = LoadNamedScenario(kFolder, name, condition).channel;
       EXPECT_GT(bad.loss_probability, good.loss_probability);
       EXPECT_LT(bad.loss_distance_m, good.loss_distance_m);
       EXPECT_GT(bad.attenuation_per_m, good.attenuation_per_m);
@@ -146,7 +147,7 @@ TEST(StressConditions, DegradedCommunicationDegradesEveryAspectOfALink) {
 
 TEST(NamedScenario, ConditionFollowsTheStageOfTheFileAndOverridesComeLast) {
   const Scenario s = LoadNamedScenario(kFolder, "medium", "fast_target", {"reset.stage=hard"});
-  EXPECT_EQ(s.reset.stage, ResetStage::kHard);
+  EXPECT_EQ(s.reset.stage, dynamics::ResetStage::kHard);
   EXPECT_EQ(s.reset.stages[2].target_speed_mps.hi, 0.014);
   const std::string path = kFolder + "/medium.yaml";
   EXPECT_EQ(ToYaml(LoadNamedScenario("/none", path)), ToYaml(Scenario{}));
@@ -169,16 +170,16 @@ TEST(NamedScenario, UnknownNamesListWhatThereIs) {
   EXPECT_NE(error("medium", "storm").find("nominal, combined_stress"), std::string::npos);
 }
 
-TEST(ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
+TEST(config::ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
   setenv("STG_SCENARIOS", kFolder.c_str(), 1);
-  EXPECT_EQ(ScenarioFolder(), kFolder);
+  EXPECT_EQ(config::ScenarioFolder(), kFolder);
   setenv("STG_SCENARIOS", "/does/not/exist", 1);
-  EXPECT_THROW(ScenarioFolder(), UserError);
+  EXPECT_THROW(config::ScenarioFolder(), UserError);
   unsetenv("STG_SCENARIOS");
   const fs::path source = fs::canonical(kFolder).parent_path().parent_path();
   for (const fs::path& entry : {source / "stg_bringup", source, source.parent_path()}) {
     setenv("ROS_PACKAGE_PATH", ("/does/not/exist::" + entry.string()).c_str(), 1);
-    EXPECT_TRUE(fs::equivalent(ScenarioFolder(), kFolder)) << entry;
+    EXPECT_TRUE(fs::equivalent(config::ScenarioFolder(), kFolder)) << entry;
   }
   unsetenv("ROS_PACKAGE_PATH");
 }
@@ -248,9 +249,9 @@ std::string KeyTables() {
               "\n\n| key | meaning | unit, frame | allowed | default |\n|---|---|---|---|---|\n";
     }
     open = section;
-    std::string range = std::regex_replace(FormatRange(field), std::regex(" \\| "), ", ");
+    std::string range = std::regex_replace(config::FormatRange(field), std::regex(" \\| "), ", ");
     text += "| `" + field.path + "` | " + field.meaning + " | " + field.unit + " | " + range +
-            " | `" + FormatValue(field.value) + "` |\n";
+            " | `" + config::FormatValue(field.value) + "` |\n";
   }
   return text + "\n";
 }

@@ -11,7 +11,8 @@
 
 #include "../src/scenario_value.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg {
 namespace {
@@ -84,16 +85,16 @@ TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
   scenario.vehicle.mass_kg = 0.1 + 0.2;  // needs all 17 digits
   scenario.seed = std::numeric_limits<std::uint64_t>::max();
   scenario.sensing.noise_std_m = 1e-300;
-  scenario.vehicle.added_mass_coriolis = AddedMassCoriolis::kOff;
-  scenario.control.interface = ActionInterface::kTau6;
+  scenario.vehicle.added_mass_coriolis = dynamics::AddedMassCoriolis::kOff;
+  scenario.control.interface = dynamics::ActionInterface::kTau6;
   scenario.reset.stages[2].target_radius_m = {1.0 / 3.0, 2.0 / 3.0};
   scenario.name = "off";
   const Scenario loaded = LoadScenario(Write("a.yaml", ToYaml(scenario)));
   EXPECT_EQ(loaded.vehicle.mass_kg, scenario.vehicle.mass_kg);
   EXPECT_EQ(loaded.seed, scenario.seed);
   EXPECT_EQ(loaded.sensing.noise_std_m, 1e-300);
-  EXPECT_EQ(loaded.vehicle.added_mass_coriolis, AddedMassCoriolis::kOff);
-  EXPECT_EQ(loaded.control.interface, ActionInterface::kTau6);
+  EXPECT_EQ(loaded.vehicle.added_mass_coriolis, dynamics::AddedMassCoriolis::kOff);
+  EXPECT_EQ(loaded.control.interface, dynamics::ActionInterface::kTau6);
   EXPECT_EQ(loaded.reset.stages[2].target_radius_m.lo, 1.0 / 3.0);
   EXPECT_EQ(loaded.name, "off");
   EXPECT_EQ(ToYaml(loaded), ToYaml(scenario));
@@ -110,11 +111,11 @@ void Change(const ScenarioField& field) {
   if (auto v = std::get_if<std::uint64_t*>(&field.value)) **v += 1;
   if (auto v = std::get_if<bool*>(&field.value)) **v = !**v;
   if (auto v = std::get_if<std::string*>(&field.value)) **v += "x";
-  if (auto v = std::get_if<EnumRef>(&field.value)) {
+  if (auto v = std::get_if<config::EnumRef>(&field.value)) {
     v->set((v->get() + 1) % static_cast<int>(v->names.size()));
   }
-  if (auto v = std::get_if<NumbersRef>(&field.value)) v->data[v->size - 1] += 0.5;
-  if (auto v = std::get_if<Interval*>(&field.value)) (*v)->hi += 0.5;
+  if (auto v = std::get_if<config::NumbersRef>(&field.value)) v->data[v->size - 1] += 0.5;
+  if (auto v = std::get_if<config::Interval*>(&field.value)) (*v)->hi += 0.5;
 }
 
 TEST(Scenario, HashAndFileChangeWithEveryKey) {
@@ -242,9 +243,9 @@ TEST_F(ScenarioInput, EveryNumberIsRefusedOutsideItsRange) {
         **v = value;
       } else if (auto v = std::get_if<int*>(&field.value)) {
         **v = static_cast<int>(edge) + (above ? 1 : -1);
-      } else if (auto v = std::get_if<NumbersRef>(&field.value)) {
+      } else if (auto v = std::get_if<config::NumbersRef>(&field.value)) {
         v->data[v->size - 1] = value;
-      } else if (auto v = std::get_if<Interval*>(&field.value)) {
+      } else if (auto v = std::get_if<config::Interval*>(&field.value)) {
         (above ? (*v)->hi : (*v)->lo) = value;
       } else {
         continue;
@@ -296,7 +297,7 @@ TEST_F(ScenarioInput, KeysThatContradictEachOtherAreRefused) {
       {{"channel.transmit_period_s=0.05"}, "channel.transmit_period_s"},
       {{"observation.quality_medium=0.9"}, "observation.quality_medium"},
       {{"reward.band_m=[0.02, 0.01]"}, "reward.band_m"},
-      {{"reward.lost_distance_m=0.01"}, "reward.lost_distance_m"},
+      {{"task.lost_distance_m=0.01"}, "task.lost_distance_m"},
       {{"reward.weights.separation=1", "reward.separation_distance_m=0.02"},
        "reward.separation_distance_m"},
   };

@@ -12,7 +12,7 @@
 #include "auv_common/error.hpp"
 #include "env_fixture.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 namespace fs = std::filesystem;
@@ -290,4 +290,4 @@ TEST_F(BadTrace, ATraceWithNothingToCompareIsRefused) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::env

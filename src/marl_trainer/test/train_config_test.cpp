@@ -6,7 +6,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 TEST(TrainConfig, EveryFieldSurvivesJsonAndBadValuesAreNamed) {
@@ -65,7 +65,7 @@ TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
   EXPECT_EQ(tau6.control.action_scale, 0.18);
   EXPECT_EQ(tau6.control.smoothing, 0.0);
   EXPECT_EQ(tau6.control.max_delta, 0.0);
-  EXPECT_EQ(tau6.reward.kind, RewardKind::kReleaseRaw);
+  EXPECT_EQ(tau6.reward.kind, task::RewardKind::kReleaseRaw);
   EXPECT_EQ(tau6.reward.weights.coordination, 0.10);
   EXPECT_EQ(ValidationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
   EXPECT_EQ(ValidationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
@@ -74,4 +74,4 @@ TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::learn

@@ -9,9 +9,10 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,7 +35,7 @@ TrainConfig SmallConfig() {
 }
 
 Scenario ShortScenario(const std::string& name = "medium_release") {
-  return LoadNamedScenario(ScenarioFolder(), name, "nominal",
+  return LoadNamedScenario(config::ScenarioFolder(), name, "nominal",
                            {"time.episode_steps=40", "time.tail_steps=10"});
 }
 
@@ -135,7 +136,7 @@ TEST_F(TrainerTest, StopSavesAtTheNextBoundaryAndLeavesALoadablePolicy) {
   Trainer trainer(ShortScenario(), SmallConfig(), options);
   EXPECT_FALSE(trainer.Run());
   EXPECT_EQ(trainer.state().env_steps, 2 * 640);
-  const Policy policy = Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
+  const agent::Policy policy = agent::Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
   EXPECT_NO_THROW(policy.RequireFits(ShortScenario()));
   EXPECT_TRUE(fs::exists(folder_ / "run" / "summary.json"));
   EXPECT_NO_THROW(LoadCheckpoint(CheckpointPath((folder_ / "run").string(), 1280)));
@@ -268,7 +269,7 @@ TEST_F(TrainerTest, EveryVariantTrains) {
     config.steps = 640;
     Trainer trainer(ShortScenario(), config, Options(variant));
     EXPECT_TRUE(trainer.Run());
-    const Policy policy = Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
+    const agent::Policy policy = agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
     EXPECT_NO_THROW(policy.RequireFits(VariantScenario(ShortScenario(), variant)));
   }
 }
@@ -278,13 +279,13 @@ TEST_F(TrainerTest, AShortRunImprovesTheReturn) {
   config.steps = 128000;
   config.validation_interval = 1000000;
   config.validation_episodes = 16;
-  const Scenario scenario = LoadNamedScenario(ScenarioFolder(), "medium_release");
+  const Scenario scenario = LoadNamedScenario(config::ScenarioFolder(), "medium_release");
   Trainer trainer(scenario, config, Options("run", 2));
   WorkerPool pool(2);
   const ActorCritic& networks = trainer.networks();
   Validation validation(scenario, networks, 16, &pool);
   const RunningMoments nothing(networks.actor.inputs());
-  const MetricSummary before = Summarise(
+  const task::MetricSummary before = task::Summarise(
       validation.Run(trainer.state().parameters.data(), Normaliser::From(nothing, 1.0F, 10.0F)));
   EXPECT_TRUE(trainer.Run());
   const double untrained = before.mean[0];
@@ -293,4 +294,4 @@ TEST_F(TrainerTest, AShortRunImprovesTheReturn) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::learn

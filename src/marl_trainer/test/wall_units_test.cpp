@@ -5,11 +5,12 @@
 #include <random>
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/nn/actor_critic.hpp"
 #include "stg_agent/graph/observation.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 constexpr int kUnits = 40;
@@ -17,7 +18,7 @@ constexpr double kMargin = 0.015;
 
 class WallUnits : public ::testing::Test {
  protected:
-  WallUnits() : scenario_(LoadNamedScenario(ScenarioFolder(), "hard")), networks_(Networks()) {
+  WallUnits() : scenario_(LoadNamedScenario(config::ScenarioFolder(), "hard")), networks_(Networks()) {
     scenario_.workspace.half_extent_m = 2.0;
     std::mt19937 rng(5);
     std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -53,13 +54,13 @@ class WallUnits : public ::testing::Test {
 
   /// Activations of the placed units at a position and a target offset [m], ascending.
   std::vector<double> Activations(const Vec3<double>& p_WB, const Vec3<double>& r_BT_W) const {
-    Knowledge<double> k;
+    agent::Knowledge<double> k;
     k.p_WB = p_WB;
     k.r_BT_W = r_BT_W;
     k.trig = {0.0, 1.0, 0.0, 1.0, 0.0, 1.0};
     k.R_WB = RotationOf(k.trig);
     std::vector<float> x(static_cast<std::size_t>(Inputs()));
-    BuildObservation(scenario_, k, [&](int i, double value) {
+    agent::BuildObservation(scenario_, k, [&](int i, double value) {
       x[static_cast<std::size_t>(i)] = static_cast<float>(value);
     });
     normaliser_.Apply(x.data(), 1, x.data());
@@ -142,4 +143,4 @@ TEST_F(WallUnits, TakeThePlaceOfTheUnitsThatSayLeastAndStartUnheard) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::learn

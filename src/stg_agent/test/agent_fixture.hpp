@@ -7,13 +7,13 @@
 #include "auv_common/numbers/attitude.hpp"
 #include "stg_agent/agent/agent.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 inline constexpr TimeNs kStep = 100'000'000;
 
 /// A level, unturned AUV at a position with a world velocity.
-inline NavState Nav(TimeNs stamp, const Vec3<double>& p_WB, const Vec3<double>& v_WB = {}) {
-  NavState nav;
+inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB, const Vec3<double>& v_WB = {}) {
+  dynamics::NavState nav;
   nav.stamp = stamp;
   nav.p_WB = p_WB;
   nav.v_WB_B = v_WB;
@@ -21,8 +21,8 @@ inline NavState Nav(TimeNs stamp, const Vec3<double>& p_WB, const Vec3<double>& 
 }
 
 /// A packet as the channel would give it at its time of generation.
-inline Reception Heard(const Scenario& s, const NeighbourState& state, TimeNs arrival) {
-  Reception r;
+inline acoustics::Reception Heard(const AgentConfig& s, const NeighbourState& state, TimeNs arrival) {
+  acoustics::Reception r;
   r.source = state.source;
   r.generation = r.transmit = state.generation;
   r.arrival = arrival;
@@ -32,15 +32,15 @@ inline Reception Heard(const Scenario& s, const NeighbourState& state, TimeNs ar
 
 /// Everything one agent is given in one step.
 struct Input {
-  NavState nav;
-  std::vector<Detection> detections;
-  std::vector<Reception> receptions;
+  dynamics::NavState nav;
+  std::vector<dynamics::Detection> detections;
+  std::vector<acoustics::Reception> receptions;
   float action[6];
 };
 
 /// A seeded episode for one agent: neighbours that wander and report, a target that comes
 /// and goes, arbitrary attitudes and actions. All positions are moved by `shift`.
-inline std::vector<Input> RandomEpisode(const Scenario& s, int id, int steps, unsigned seed,
+inline std::vector<Input> RandomEpisode(const AgentConfig& s, int id, int steps, unsigned seed,
                                         const Vec3<double>& shift = {}, double extent = 0.9,
                                         bool reports_targets = true) {
   std::mt19937_64 generator(seed);
@@ -91,18 +91,18 @@ inline std::vector<Input> RandomEpisode(const Scenario& s, int id, int steps, un
 
 /// One step; the observation goes to `observation`.
 inline AgentOutput Drive(Agent* agent, const Input& in, std::vector<float>* observation) {
-  for (const Reception& r : in.receptions) agent->Receive(r);
-  for (const Detection& d : in.detections) agent->Detect(d);
+  for (const acoustics::Reception& r : in.receptions) agent->Receive(r);
+  for (const dynamics::Detection& d : in.detections) agent->Detect(d);
   observation->resize(static_cast<std::size_t>(agent->scenario().observation_size()));
   agent->Observe(in.nav, observation->data());
   return agent->Act(in.action);
 }
 
-inline Cue CueAt(const Vec3<double>& p_WT, double std_m = 0.05) {
-  Cue cue;
+inline dynamics::Cue CueAt(const Vec3<double>& p_WT, double std_m = 0.05) {
+  dynamics::Cue cue;
   cue.p_WT = p_WT;
   cue.std_m = std_m;
   return cue;
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -7,7 +7,7 @@
 
 #include "agent_fixture.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 constexpr int kSteps = 150;
@@ -17,10 +17,10 @@ bool SameBits(const T& a, const T& b) {
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-Navigation<Pack> Beside(const std::vector<std::vector<Input>>& lanes, std::size_t step) {
-  Navigation<Pack> nav;
+dynamics::Navigation<Pack> Beside(const std::vector<std::vector<Input>>& lanes, std::size_t step) {
+  dynamics::Navigation<Pack> nav;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const NavState& n = lanes[static_cast<std::size_t>(lane)][step].nav;
+    const dynamics::NavState& n = lanes[static_cast<std::size_t>(lane)][step].nav;
     nav.stamp = n.stamp;
     SetLane(&nav.p_WB, lane, n.p_WB);
     SetLane(&nav.v_WB_B, lane, n.v_WB_B);
@@ -32,14 +32,14 @@ Navigation<Pack> Beside(const std::vector<std::vector<Input>>& lanes, std::size_
 
 /// Flies AUV 1 through a different episode in every lane, alone and side by side, and compares
 /// all that comes out, bit for bit. Neighbours fall silent from time to time.
-void ExpectSame(const Scenario& s, unsigned seed) {
+void ExpectSame(const AgentConfig& s, unsigned seed) {
   std::vector<Agent> alone;
   std::vector<std::vector<Input>> lanes;
   AgentLanes beside(Agent(s, 0), 1);
   for (int lane = 0; lane < kLanes; ++lane) {
     alone.emplace_back(s, 1);
     lanes.push_back(RandomEpisode(s, 1, kSteps, seed + static_cast<unsigned>(lane)));
-    const Cue cue = CueAt({0.1 * lane, 0.0, 0.0});
+    const dynamics::Cue cue = CueAt({0.1 * lane, 0.0, 0.0});
     alone.back().Reset(3, cue);
     beside.Reset(lane, 3, cue);
   }
@@ -51,8 +51,8 @@ void ExpectSame(const Scenario& s, unsigned seed) {
     for (int lane = 0; lane < kLanes; ++lane) {
       Input& in = lanes[static_cast<std::size_t>(lane)][step];
       if (silence) in.receptions.clear();
-      for (const Reception& r : in.receptions) beside.Receive(lane, r);
-      for (const Detection& d : in.detections) beside.Detect(lane, d);
+      for (const acoustics::Reception& r : in.receptions) beside.Receive(lane, r);
+      for (const dynamics::Detection& d : in.detections) beside.Detect(lane, d);
       for (int k = 0; k < 6; ++k) SetLane(&wanted[k], lane, static_cast<double>(in.action[k]));
     }
     beside.Observe(Beside(lanes, step));
@@ -96,8 +96,8 @@ void ExpectSame(const Scenario& s, unsigned seed) {
   EXPECT_GT(forgotten, 0);
 }
 
-Scenario Forgetful(int agents) {
-  Scenario s;
+AgentConfig Forgetful(int agents) {
+  AgentConfig s;
   s.agents = agents;
   s.track.neighbour_max_age_s = 0.7;
   return s;
@@ -110,19 +110,19 @@ TEST(AgentLanes, DoWhatSeparateAgentsDoBitForBit) {
 }
 
 TEST(AgentLanes, DoSoWithEveryKindOfLinkOrderAndAction) {
-  Scenario range = Forgetful(5), index = Forgetful(5), tau = Forgetful(5), bow = Forgetful(5);
-  range.channel.model = ChannelModel::kRange;
+  AgentConfig range = Forgetful(5), index = Forgetful(5), tau = Forgetful(5), bow = Forgetful(5);
+  range.channel.model = acoustics::ChannelModel::kRange;
   index.observation.order = NeighbourOrder::kIndex;
-  tau.control.interface = ActionInterface::kTau6;
-  bow.control.heading = HeadingMode::kAlongVelocity;
-  for (const Scenario& s : {range, index, tau, bow}) ExpectSame(s, 4);
+  tau.control.interface = dynamics::ActionInterface::kTau6;
+  bow.control.heading = dynamics::HeadingMode::kAlongVelocity;
+  for (const AgentConfig& s : {range, index, tau, bow}) ExpectSame(s, 4);
 }
 
 TEST(AgentLanes, RefuseWhatIsNotFiniteInAnyLane) {
-  const Scenario s;
+  const AgentConfig s;
   AgentLanes lanes(Agent(s, 0), 1);
   for (int lane = 0; lane < kLanes; ++lane) lanes.Reset(lane, 0, CueAt({}));
-  Navigation<Pack> nav;
+  dynamics::Navigation<Pack> nav;
   lanes.Observe(nav);
   Pack action[6] = {Pack(0.0), Pack(0.0), Pack(0.0), Pack(0.0), Pack(0.0), Pack(0.0)};
   SetLane(&action[2], kLanes - 1, std::numeric_limits<double>::quiet_NaN());
@@ -132,4 +132,4 @@ TEST(AgentLanes, RefuseWhatIsNotFiniteInAnyLane) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

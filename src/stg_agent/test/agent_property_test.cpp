@@ -19,7 +19,7 @@ long allocations = 0;
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// Observations of a whole episode, one after the other, and the outputs.
@@ -46,7 +46,7 @@ void ExpectSame(const std::vector<AgentOutput>& a, const std::vector<AgentOutput
 }
 
 TEST(AgentProperty, UsedThenResetEqualsFresh) {
-  const Scenario s;
+  const AgentConfig s;
   const auto inputs = RandomEpisode(s, 2, 200, 11);
   Agent fresh(s, 2), used(s, 2);
   RunEpisode(&used, RandomEpisode(s, 2, 137, 5));
@@ -58,7 +58,7 @@ TEST(AgentProperty, UsedThenResetEqualsFresh) {
 }
 
 TEST(AgentProperty, OrderOfMessagesWithinAStepDoesNotMatter) {
-  const Scenario s;
+  const AgentConfig s;
   auto inputs = RandomEpisode(s, 0, 200, 21);
   Agent a(s, 0), b(s, 0);
   a.Reset(0, CueAt({}));
@@ -66,7 +66,7 @@ TEST(AgentProperty, OrderOfMessagesWithinAStepDoesNotMatter) {
   std::vector<float> x, y;
   for (Input& in : inputs) {
     Drive(&a, in, &x);
-    for (const Detection& d : in.detections) b.Detect(d);
+    for (const dynamics::Detection& d : in.detections) b.Detect(d);
     std::reverse(in.receptions.begin(), in.receptions.end());
     in.detections.clear();
     Drive(&b, in, &y);
@@ -77,7 +77,7 @@ TEST(AgentProperty, OrderOfMessagesWithinAStepDoesNotMatter) {
 TEST(AgentProperty, ObservationsAreFiniteAndWithinTheirBounds) {
   for (const int agents : {1, 2, 4, 9}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
-      Scenario s;
+      AgentConfig s;
       s.agents = agents;
       Agent agent(s, 0);
       agent.Reset(0, CueAt({0.9, -0.9, 0.9}, 0.5));
@@ -105,7 +105,7 @@ TEST(AgentProperty, ObservationsAreFiniteAndWithinTheirBounds) {
 }
 
 TEST(AgentProperty, TranslatingTheWorldChangesOnlyPositionAndWallFeatures) {
-  const Scenario s;
+  const AgentConfig s;
   // A multiple of the packet's position steps, so that packets round alike.
   const auto fields = PacketCodec(s).fields();
   const double resolution = fields[0].resolution;
@@ -133,7 +133,7 @@ TEST(AgentProperty, TranslatingTheWorldChangesOnlyPositionAndWallFeatures) {
 }
 
 TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
-  Scenario s;
+  AgentConfig s;
   s.agents = 6;
   const int permutation[] = {0, 4, 5, 1, 3, 2};
   // Without target estimates: fusing them in another order rounds and weighs differently.
@@ -145,7 +145,7 @@ TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
   std::vector<float> x, y;
   for (Input in : inputs) {
     Drive(&a, in, &x);
-    for (Reception& r : in.receptions) {
+    for (acoustics::Reception& r : in.receptions) {
       NeighbourState n = codec.Decode(r.data.data(), r.data.size(), r.arrival);
       n.source = permutation[n.source];
       r.source = n.source;
@@ -159,7 +159,7 @@ TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
 
 TEST(AgentProperty, AStepAllocatesNothing) {
   for (const int agents : {4, 50}) {
-    Scenario s;
+    AgentConfig s;
     s.agents = agents;
     auto inputs = RandomEpisode(s, 0, 100, 51);
     std::size_t damaged = 20;
@@ -182,7 +182,7 @@ TEST(AgentProperty, AStepAllocatesNothing) {
 }
 
 TEST(AgentProperty, CopiesThatShareTheScenarioActAlike) {
-  const Scenario s;
+  const AgentConfig s;
   const auto inputs = RandomEpisode(s, 3, 100, 61);
   Agent alone(s, 3);
   Agent shared = MakeAgents(s)[3];
@@ -192,4 +192,4 @@ TEST(AgentProperty, CopiesThatShareTheScenarioActAlike) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

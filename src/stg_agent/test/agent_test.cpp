@@ -8,19 +8,19 @@
 #include "auv_dynamics/control/control.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 const float kZero[6] = {};
 
 /// Observes without reading the numbers.
-void Look(Agent* agent, const NavState& nav) {
+void Look(Agent* agent, const dynamics::NavState& nav) {
   float observation[128];
   agent->Observe(nav, observation);
 }
 
 TEST(Agent, StartsFromTheCueWithNoConfidence) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   Look(&agent, Nav(0, {}));
@@ -36,7 +36,7 @@ TEST(Agent, StartsFromTheCueWithNoConfidence) {
 }
 
 TEST(Agent, ConfidenceEndsWithTheFreshnessOfTheLastObservation) {
-  const Scenario s;  // freshness 2 s
+  const AgentConfig s;  // freshness 2 s
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   agent.Detect({0, 0, {0.2, 0.0, 0.0}, 0.0});
@@ -47,7 +47,7 @@ TEST(Agent, ConfidenceEndsWithTheFreshnessOfTheLastObservation) {
 }
 
 TEST(Agent, ConfidenceAlsoRestsOnWhatANeighbourSees) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   NeighbourState n;
@@ -62,7 +62,7 @@ TEST(Agent, ConfidenceAlsoRestsOnWhatANeighbourSees) {
 }
 
 TEST(Agent, LosesAnUnseenTargetAndCountsTheSteps) {
-  Scenario s;
+  AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.1, 0.0, 0.0}));
   int lost_steps = 0;
@@ -81,7 +81,7 @@ TEST(Agent, LosesAnUnseenTargetAndCountsTheSteps) {
 }
 
 TEST(Agent, ATargetBeyondTheLostDistanceIsLost) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.649, 0.0, 0.0}, 0.001));
   Look(&agent, Nav(0, {}));
@@ -92,7 +92,7 @@ TEST(Agent, ATargetBeyondTheLostDistanceIsLost) {
 }
 
 TEST(Agent, RemembersDistancesAndErrorsPerDecision) {
-  const Scenario s;  // window 5
+  const AgentConfig s;  // window 5
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.5, 0.0, 0.0}, 0.001));
   std::vector<double> errors;
@@ -113,7 +113,7 @@ TEST(Agent, RemembersDistancesAndErrorsPerDecision) {
 }
 
 TEST(Agent, GraphCountsUnheardNeighboursAsNoLink) {
-  const Scenario s;  // three others
+  const AgentConfig s;  // three others
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   Look(&agent, Nav(0, {}));
@@ -137,7 +137,7 @@ TEST(Agent, GraphCountsUnheardNeighboursAsNoLink) {
 }
 
 TEST(Agent, NeighbourSlotsAreNearestFirstOrByIndex) {
-  Scenario s;
+  AgentConfig s;
   s.agents = 5;
   const double x[] = {0.4, 0.0, 0.1, 0.3, 0.2};
   for (const NeighbourOrder order : {NeighbourOrder::kNearest, NeighbourOrder::kIndex}) {
@@ -160,7 +160,7 @@ TEST(Agent, NeighbourSlotsAreNearestFirstOrByIndex) {
 }
 
 TEST(Agent, FractionIsWhatTheControllerNodeComputesAndIsObservedNext) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.1, 0.0}));
   std::vector<float> observation;
@@ -169,7 +169,7 @@ TEST(Agent, FractionIsWhatTheControllerNodeComputesAndIsObservedNext) {
     const AgentOutput out = Drive(&agent, in, &observation);
     for (int k = 0; k < 6; ++k) EXPECT_EQ(observation[static_cast<std::size_t>(45 + k)], last[k]);
     double fraction[6];
-    VelocityController(s.control, s.vehicle, out.cmd_vel_W, in.nav, fraction);
+    dynamics::VelocityController(s.control, s.vehicle, out.cmd_vel_W, in.nav, fraction);
     for (int k = 0; k < 6; ++k) {
       EXPECT_EQ(out.fraction[k], fraction[k]);
       last[k] = static_cast<float>(fraction[k]);
@@ -178,7 +178,7 @@ TEST(Agent, FractionIsWhatTheControllerNodeComputesAndIsObservedNext) {
 }
 
 TEST(Agent, ActionIsRateLimitedSmoothedAndScaledToSpeed) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   const float full[] = {5.0F, -1.0F, 0.1F};
@@ -193,8 +193,8 @@ TEST(Agent, ActionIsRateLimitedSmoothedAndScaledToSpeed) {
 }
 
 TEST(Agent, Tau6ActionsAreTheForceFractions) {
-  Scenario s;
-  s.control.interface = ActionInterface::kTau6;
+  AgentConfig s;
+  s.control.interface = dynamics::ActionInterface::kTau6;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   Look(&agent, Nav(0, {}));
@@ -206,7 +206,7 @@ TEST(Agent, Tau6ActionsAreTheForceFractions) {
 }
 
 TEST(Agent, SendsOncePerPeriodInItsOwnSlot) {
-  const Scenario s;  // 0.5 s at 0.1 s
+  const AgentConfig s;  // 0.5 s at 0.1 s
   std::vector<Agent> agents = MakeAgents(s);
   for (Agent& a : agents) a.Reset(0, CueAt({}));
   for (int k = 0; k < 23; ++k) {
@@ -222,7 +222,7 @@ TEST(Agent, SendsOncePerPeriodInItsOwnSlot) {
 }
 
 TEST(Agent, OneThatComesLateKeepsItsSlotAndFindsTheCueAsUncertainAsItHasBecome) {
-  const Scenario s;  // a slot each 5 decisions
+  const AgentConfig s;  // a slot each 5 decisions
   for (int late = 1; late <= 7; ++late) {
     Agent always(s, 2), restarted(s, 2);
     always.Reset(0, CueAt({0.2, 0.0, 0.0}));
@@ -241,7 +241,7 @@ TEST(Agent, OneThatComesLateKeepsItsSlotAndFindsTheCueAsUncertainAsItHasBecome) 
 }
 
 TEST(Agent, PacketTellsOwnStateAndTheEstimateAsOfItsLastObservation) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   const PacketCodec codec(s);
@@ -266,7 +266,7 @@ TEST(Agent, PacketTellsOwnStateAndTheEstimateAsOfItsLastObservation) {
 }
 
 TEST(Agent, SaysNothingOfATargetItKnowsFromTheCueOnly) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   Look(&agent, Nav(0, {}));
@@ -275,12 +275,12 @@ TEST(Agent, SaysNothingOfATargetItKnowsFromTheCueOnly) {
 }
 
 TEST(Agent, DamagedPacketsAreCountedAndChangeNothing) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   NeighbourState n;
   n.source = 1;
-  Reception r = Heard(s, n, 0);
+  acoustics::Reception r = Heard(s, n, 0);
   r.data[5] ^= 4;
   agent.Receive(r);
   EXPECT_EQ(agent.refused_packets(), 1U);
@@ -288,11 +288,11 @@ TEST(Agent, DamagedPacketsAreCountedAndChangeNothing) {
 }
 
 TEST(Agent, AttendsToItsOwnTargetOnly) {
-  Scenario s;
+  AgentConfig s;
   s.target.count = 2;
   Agent agent(s, 1);
   EXPECT_EQ(agent.target(), 1);
-  Cue cue = CueAt({0.2, 0.0, 0.0});
+  dynamics::Cue cue = CueAt({0.2, 0.0, 0.0});
   cue.target = 1;
   agent.Reset(0, cue);
   agent.Detect({0, 0, {-0.3, 0.0, 0.0}, 0.0});
@@ -308,12 +308,12 @@ TEST(Agent, AttendsToItsOwnTargetOnly) {
 }
 
 TEST(Agent, NonFiniteInputIsTheCallersBug) {
-  const Scenario s;
+  const AgentConfig s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   float observation[128];
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    NavState nav = Nav(0, {0.0, bad, 0.0});
+    dynamics::NavState nav = Nav(0, {0.0, bad, 0.0});
     EXPECT_THROW(agent.Observe(nav, observation), std::invalid_argument);
     nav = Nav(0, {});
     nav.q_WB[3] = bad;
@@ -330,8 +330,8 @@ TEST(Agent, NonFiniteInputIsTheCallersBug) {
 }
 
 TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
-  for (const ActionInterface interface : {ActionInterface::kVelocity3, ActionInterface::kTau6}) {
-    Scenario s;
+  for (const dynamics::ActionInterface interface : {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
+    AgentConfig s;
     s.control.interface = interface;
     Agent agent(s, 0);
     agent.Reset(0, CueAt({0.0, 0.0, 0.3}));
@@ -347,4 +347,4 @@ TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

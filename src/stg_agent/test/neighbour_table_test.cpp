@@ -4,7 +4,7 @@
 
 #include "acoustic_channel/link/link_quality.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 constexpr TimeNs kSecond = 1'000'000'000;
@@ -20,7 +20,7 @@ NeighbourState State(int source, TimeNs generation, const Vec3<double>& p,
 }
 
 TEST(NeighbourTable, DeadReckonsFromTheGenerationTime) {
-  NeighbourTable table(Scenario(), 0);
+  NeighbourTable table(AgentConfig(), 0);
   ASSERT_TRUE(table.Update(State(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0})));
   table.Predict(3 * kSecond, {0.3, 0.0, 0.0});
   const Neighbour& n = table.at(2);
@@ -32,14 +32,14 @@ TEST(NeighbourTable, DeadReckonsFromTheGenerationTime) {
 }
 
 TEST(NeighbourTable, DeadReckoningStopsAtTheWalls) {
-  NeighbourTable table(Scenario(), 0);
+  NeighbourTable table(AgentConfig(), 0);
   table.Update(State(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
   table.Predict(5 * kSecond, {});
   EXPECT_DOUBLE_EQ(table.at(1).p_WN.x, 1.0);
 }
 
 TEST(NeighbourTable, KeepsTheNewestStateWhateverTheOrder) {
-  NeighbourTable table(Scenario(), 0);
+  NeighbourTable table(AgentConfig(), 0);
   EXPECT_TRUE(table.Update(State(1, 2 * kSecond, {0.2, 0.0, 0.0})));
   EXPECT_FALSE(table.Update(State(1, kSecond, {0.1, 0.0, 0.0})));
   EXPECT_FALSE(table.Update(State(1, 2 * kSecond, {0.5, 0.0, 0.0})));
@@ -48,7 +48,7 @@ TEST(NeighbourTable, KeepsTheNewestStateWhateverTheOrder) {
 }
 
 TEST(NeighbourTable, IgnoresOneselfAndStrangers) {
-  NeighbourTable table(Scenario(), 3);
+  NeighbourTable table(AgentConfig(), 3);
   EXPECT_FALSE(table.Update(State(3, 0, {})));
   EXPECT_FALSE(table.Update(State(-1, 0, {})));
   EXPECT_FALSE(table.Update(State(4, 0, {})));
@@ -56,7 +56,7 @@ TEST(NeighbourTable, IgnoresOneselfAndStrangers) {
 }
 
 TEST(NeighbourTable, ForgetsTheSilentAndTakesThemBack) {
-  Scenario s;
+  AgentConfig s;
   NeighbourTable table(s, 0);
   table.Update(State(1, 0, {}));
   table.Update(State(2, 5 * kSecond, {}));
@@ -71,9 +71,9 @@ TEST(NeighbourTable, ForgetsTheSilentAndTakesThemBack) {
 }
 
 TEST(NeighbourTable, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
-  for (const ChannelModel model : {ChannelModel::kRange, ChannelModel::kExtended}) {
+  for (const acoustics::ChannelModel model : {acoustics::ChannelModel::kRange, acoustics::ChannelModel::kExtended}) {
     for (const int agents : {2, 4, 7, 23}) {
-      Scenario s;
+      AgentConfig s;
       s.agents = agents;
       s.channel.model = model;
       NeighbourTable table(s, 1);
@@ -84,9 +84,9 @@ TEST(NeighbourTable, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
       ASSERT_EQ(static_cast<int>(table.known().size()), agents - 1);
       for (const int i : table.known()) {
         const Neighbour& n = table.at(i);
-        const double q = model == ChannelModel::kRange
-                             ? RangeQuality(n.distance_m, s.channel.range_m)
-                             : ExtendedQuality(n.distance_m, n.age_s, s.channel);
+        const double q = model == acoustics::ChannelModel::kRange
+                             ? acoustics::RangeQuality(n.distance_m, s.channel.range_m)
+                             : acoustics::ExtendedQuality(n.distance_m, n.age_s, s.channel);
         EXPECT_EQ(n.link_quality, q);
         EXPECT_GT(q, 0.0 - 1e-300);
       }
@@ -95,7 +95,7 @@ TEST(NeighbourTable, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
 }
 
 TEST(NeighbourTable, NearestAreSortedAndTiesGoToTheLowerIndex) {
-  Scenario s;
+  AgentConfig s;
   s.agents = 8;
   NeighbourTable table(s, 0);
   const double x[] = {0.0, 0.5, 0.2, 0.9, 0.2, 0.1, 0.7, 0.4};
@@ -111,4 +111,4 @@ TEST(NeighbourTable, NearestAreSortedAndTiesGoToTheLowerIndex) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

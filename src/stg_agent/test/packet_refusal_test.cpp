@@ -10,7 +10,7 @@
 #include "auv_common/error.hpp"
 #include "packet_examples.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 void Flip(Packet* packet, int bit) {
@@ -119,7 +119,7 @@ TEST(PacketRefusal, NonFiniteAndImpossibleValuesAreABug) {
 }
 
 TEST(PacketRefusal, ScenariosThatDoNotFitTheLayoutAreRefused) {
-  Scenario s;
+  AgentConfig s;
   s.agents = 256;
   s.target.count = 64;
   EXPECT_NO_THROW(PacketCodec{s});
@@ -131,4 +131,4 @@ TEST(PacketRefusal, ScenariosThatDoNotFitTheLayoutAreRefused) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

@@ -14,7 +14,7 @@
 
 #include "stg_agent/policy/policy.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 /// A network of the given layer sizes with random weights and complete metadata.
 inline Policy::Parameters RandomParameters(const std::vector<int>& sizes,
@@ -35,7 +35,7 @@ inline Policy::Parameters RandomParameters(const std::vector<int>& sizes,
   }
   p.log_std = Eigen::VectorXf::Constant(sizes.back(), -1.2345678F);
   p.metadata.id = "test";
-  p.metadata.observation_layout = ObservationLayout(Scenario());
+  p.metadata.observation_layout = ObservationLayout(AgentConfig());
   p.metadata.action_interface = "velocity3";
   p.metadata.action_scale = 0.75;
   p.metadata.scenario_hash = "0123456789abcdef";
@@ -77,4 +77,4 @@ class PolicyTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -14,7 +14,7 @@
 #include "auv_common/error.hpp"
 #include "policy_files.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 class PolicyRefusal : public PolicyTest {
@@ -151,4 +151,4 @@ TEST_F(PolicyRefusal, RefusesBadConstants) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

@@ -24,7 +24,7 @@ extern "C" void* malloc(std::size_t size) {
   return __libc_malloc(size);
 }
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// The definition in double precision, written without the class under test.
@@ -196,18 +196,18 @@ TEST_F(PolicyTest, ConstructorChecksShapesAndNumbers) {
 }
 
 TEST_F(PolicyTest, FitsOnlyTheScenarioItWasMadeFor) {
-  Scenario scenario;
+  AgentConfig scenario;
   const Policy policy(RandomParameters({74, 8, 3}, Policy::Activation::kTanh, 1));
   EXPECT_NO_THROW(policy.RequireFits(scenario));
   scenario.observation.graph = false;
   EXPECT_THROW(policy.RequireFits(scenario), UserError);
-  scenario = Scenario();
+  scenario = AgentConfig();
   scenario.observation.order = NeighbourOrder::kIndex;
   EXPECT_THROW(policy.RequireFits(scenario), UserError);
-  scenario = Scenario();
-  scenario.control.interface = ActionInterface::kTau6;
+  scenario = AgentConfig();
+  scenario.control.interface = dynamics::ActionInterface::kTau6;
   EXPECT_THROW(policy.RequireFits(scenario), UserError);
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

@@ -6,13 +6,13 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 using V = Vec3<double>;
 
 TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
-  const VehicleConfig vehicle;
+  const dynamics::VehicleConfig vehicle;
   const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m, 0.0}, V{0.01, 0.0, -0.02}, nullptr, 0, a);
@@ -22,7 +22,7 @@ TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
 }
 
 TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
-  const VehicleConfig vehicle;
+  const dynamics::VehicleConfig vehicle;
   const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.03, 0.0, 0.04}, V{}, nullptr, 0, a);
@@ -34,7 +34,7 @@ TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
 }
 
 TEST(Pursuit, NeighboursRepelWithinTheirRangeOnly) {
-  const VehicleConfig vehicle;
+  const dynamics::VehicleConfig vehicle;
   PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
   double a[3], b[3];
   const V target{0.5, 0.0, 0.0};
@@ -49,7 +49,7 @@ TEST(Pursuit, NeighboursRepelWithinTheirRangeOnly) {
 }
 
 TEST(Pursuit, CloseToTheTargetRepulsionLeavesTheDistanceAlone) {
-  const VehicleConfig vehicle;
+  const dynamics::VehicleConfig vehicle;
   const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
   const V target{o.standoff_m, 0.0, 0.0};
   const V neighbours[] = {{0.01, 0.01, 0.0}, {-0.005, 0.0, 0.012}};
@@ -64,7 +64,7 @@ TEST(Pursuit, ZeroOffsetsAreFiniteAndRepelNothing) {
   const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
   const V zero[1];
   double a[3];
-  PursuitAction<double>(o, VehicleConfig(), V{}, V{}, zero, 1, a);
+  PursuitAction<double>(o, dynamics::VehicleConfig(), V{}, V{}, zero, 1, a);
   for (const double x : a) EXPECT_EQ(x, 0.0);
 }
 
@@ -77,8 +77,8 @@ TEST(Pursuit, PacksAndScalarsAgreeBitForBit) {
     const Vec3<Pack> near_pack[] = {Broadcast(near[0]), Broadcast(near[1])};
     double a[3];
     Pack b[3];
-    PursuitAction<double>(o, VehicleConfig(), r, v, near, 2, a);
-    PursuitAction<Pack>(o, VehicleConfig(), Broadcast(r), Broadcast(v), near_pack, 2, b);
+    PursuitAction<double>(o, dynamics::VehicleConfig(), r, v, near, 2, a);
+    PursuitAction<Pack>(o, dynamics::VehicleConfig(), Broadcast(r), Broadcast(v), near_pack, 2, b);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(a[k], Lane(b[k], kLanes - 1));
   }
 }
@@ -116,7 +116,7 @@ TEST(Pursuit, ApproachIsUnhurriedAndTheHoldStaysStiff) {
   o.gain_per_s = 3.0;
   o.approach_speed_mps = 0.01;
   o.approach_gain_per_s = 0.5;
-  const VehicleConfig vehicle;
+  const dynamics::VehicleConfig vehicle;
   // Distance beyond the standoff and the speed it asks for; 0.004 m is where the two meet.
   for (const auto& [error, speed] : {std::pair{-0.002, -0.006}, {0.002, 0.006}, {0.1, 0.06}}) {
     double a[3];
@@ -148,7 +148,7 @@ TEST(Pursuit, WithoutAMarginTheWallChangesNothing) {
 TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
   PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
   o.feedforward = 1.5;
-  const VehicleConfig vehicle;
+  const dynamics::VehicleConfig vehicle;
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m, 0.0}, V{0.02, 0.0, 0.0}, nullptr, 0, a);
   EXPECT_DOUBLE_EQ(a[0] * vehicle.max_velocity_mps[0], 0.03);
@@ -156,4 +156,4 @@ TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::agent

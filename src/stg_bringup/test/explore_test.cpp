@@ -20,7 +20,7 @@
 #include "stg_agent/nodes/topics.hpp"
 #include "stg_agent/policy/policy.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr double kTolerance = 1e-9;
@@ -28,7 +28,7 @@ constexpr double kTolerance = 1e-9;
 /// What AUVs recorded and where they were.
 struct Episode {
   std::map<std::uint32_t, std::vector<auv_msgs::AgentStep>> records;  ///< [step][agents]
-  std::map<std::uint32_t, std::vector<NavState>> states;              ///< [step][agents]
+  std::map<std::uint32_t, std::vector<dynamics::NavState>> states;              ///< [step][agents]
 };
 
 /// Hears every AUV.
@@ -98,7 +98,7 @@ class Listener {
 class Explore : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scenario_ = new Scenario(LoadScenarioParameters());
+    scenario_ = new Scenario(LoadScenarioParameters<Scenario>(config::Scope::kWhole));
     seed_ = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
     const Listener listener(*scenario_);
     first_ = new Episode(listener.WaitFor(0, scenario_->time.episode_steps));
@@ -123,7 +123,7 @@ class Explore : public testing::Test {
 };
 
 TEST_F(Explore, LogProbabilityIsThatOfThePolicysGaussian) {
-  const Policy policy = Policy::LoadOnnx(TextParameter("policy", ""));
+  const agent::Policy policy = agent::Policy::LoadOnnx(TextParameter("policy", ""));
   const Eigen::VectorXf& log_std = policy.parameters().log_std;
   double squares = 0.0;
   int count = 0;
@@ -149,9 +149,9 @@ TEST_F(Explore, LogProbabilityIsThatOfThePolicysGaussian) {
 }
 
 TEST_F(Explore, TheRecordedActionsFlyTheRecordedEpisode) {
-  EnvOptions options;
+  env::EnvOptions options;
   options.seed = seed_;
-  EnvGroup env(*scenario_, options);
+  env::EnvGroup env(*scenario_, options);
   env.Reset();
   const auto size = static_cast<std::size_t>(env.action_size());
   const auto width = static_cast<std::size_t>(env.observation_size());
@@ -160,8 +160,8 @@ TEST_F(Explore, TheRecordedActionsFlyTheRecordedEpisode) {
   for (int k = 0; k < scenario_->time.episode_steps; ++k) {
     const auto& row = first_->records.at(static_cast<std::uint32_t>(k));
     for (std::size_t i = 0; i < agents; ++i) {
-      const NavState truth = env.world().Nav(0, static_cast<int>(i));
-      const NavState& flown = first_->states.at(static_cast<std::uint32_t>(k))[i];
+      const dynamics::NavState truth = env.world().Nav(0, static_cast<int>(i));
+      const dynamics::NavState& flown = first_->states.at(static_cast<std::uint32_t>(k))[i];
       ASSERT_LE(Norm(truth.p_WB - flown.p_WB), kTolerance) << "step " << k << ", AUV " << i;
       ASSERT_LE(Norm(truth.v_WB_B - flown.v_WB_B), kTolerance) << "step " << k << ", AUV " << i;
       const float* observation = env.observations() + i * width;
@@ -189,7 +189,7 @@ TEST_F(Explore, TheSameSeedGivesTheSameEpisodeAndAgentsDrawApart) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::nodes
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

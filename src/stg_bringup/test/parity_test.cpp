@@ -17,7 +17,7 @@
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr TimeNs kFirstStamp = 1'000'000'000;
@@ -27,7 +27,7 @@ constexpr int kEpisodes = 2;
 
 /// What the graph published, by index of the stamp (steps 0 to T of each episode in a row).
 struct Flight {
-  std::map<int, std::vector<NavState>> states;
+  std::map<int, std::vector<dynamics::NavState>> states;
   std::map<int, auv_msgs::StepReport> reports;
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries;
 };
@@ -80,17 +80,17 @@ Flight Listen(const Scenario& s) {
 double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
 
 TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
-  const Scenario s = LoadScenarioParameters();
+  const Scenario s = LoadScenarioParameters<Scenario>(config::Scope::kWhole);
   const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
-  const Controller controller = MakeController(TextParameter("policy", ""), s);
+  const env::Controller controller = env::MakeController(TextParameter("policy", ""), s);
   const Flight flight = Listen(s);
   ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));
 
   const int steps = s.time.episode_steps;
   for (int e = 0; e < kEpisodes; ++e) {
-    EnvOptions env_options;
+    env::EnvOptions env_options;
     env_options.seed = seed + static_cast<std::uint64_t>(e);
-    EnvGroup env(s, env_options);
+    env::EnvGroup env(s, env_options);
     env.Reset();
     const int size = env.action_size();
     std::vector<double> actions(static_cast<std::size_t>(kLanes * s.agents * size));
@@ -100,13 +100,13 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
       const auto found = flight.states.find(index);
       ASSERT_NE(found, flight.states.end()) << "episode " << e << ", step " << k;
       for (int i = 0; i < s.agents; ++i) {
-        const NavState truth = env.world().Nav(0, i);
-        const NavState& flown = found->second[static_cast<std::size_t>(i)];
+        const dynamics::NavState truth = env.world().Nav(0, i);
+        const dynamics::NavState& flown = found->second[static_cast<std::size_t>(i)];
         worst = std::max(worst, Distance(truth.p_WB, flown.p_WB));
         worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));
         ASSERT_EQ(worst, 0.0) << "episode " << e << ", step " << k << ", AUV " << i;
       }
-      Decide(controller, env, actions.data());
+      env::Decide(controller, env, actions.data());
       const std::vector<float> state(env.states(), env.states() + env.state_size());
       env.Step(actions.data());
       const auto report = flight.reports.find(index + 1);
@@ -118,7 +118,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
       }
     }
     ASSERT_TRUE(env.truncated());
-    const EpisodeMetrics& m = env.metrics(0);
+    const task::EpisodeMetrics& m = env.metrics(0);
     const auv_msgs::EpisodeSummary& summary = flight.summaries.at(static_cast<std::uint32_t>(e));
     EXPECT_TRUE(summary.complete);
     EXPECT_EQ(summary.deadline_misses, 0U);
@@ -141,7 +141,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::nodes
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

@@ -9,7 +9,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 
-namespace stg {
+namespace stg::acoustics {
 namespace {
 
 template <class T>
@@ -62,11 +62,11 @@ class ExtendedModel {
 template <class Model>
 class IndependentLinks : public Channel {
  public:
-  explicit IndependentLinks(const Scenario& scenario)
-      : agents_(scenario.agents),
-        padded_((scenario.agents + kLanes - 1) / kLanes * kLanes),
-        model_(scenario.channel),
-        table_(scenario.agents),
+  IndependentLinks(const ChannelConfig& config, int nodes)
+      : agents_(nodes),
+        padded_((nodes + kLanes - 1) / kLanes * kLanes),
+        model_(config),
+        table_(nodes),
         pending_(static_cast<std::size_t>(agents_)) {
     for (std::vector<double>* v : {&x_, &y_, &z_, &distance_, &loss_, &quality_, &delay_s_}) {
       v->assign(static_cast<std::size_t>(padded_), 0.0);
@@ -228,16 +228,16 @@ class IndependentLinks : public Channel {
 
 }  // namespace
 
-std::unique_ptr<Channel> MakeChannel(const Scenario& scenario) {
-  switch (scenario.channel.model) {
+std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, int nodes) {
+  switch (config.model) {
     case ChannelModel::kRange:
-      return std::make_unique<IndependentLinks<RangeModel>>(scenario);
+      return std::make_unique<IndependentLinks<RangeModel>>(config, nodes);
     case ChannelModel::kExtended:
-      return std::make_unique<IndependentLinks<ExtendedModel>>(scenario);
+      return std::make_unique<IndependentLinks<ExtendedModel>>(config, nodes);
     case ChannelModel::kPhysical:
       break;
   }
   throw UserError("channel.model: the physical model is not available yet; use range or extended");
 }
 
-}  // namespace stg
+}  // namespace stg::acoustics

@@ -6,28 +6,27 @@ using config::Enum;
 using config::kFraction;
 using config::kNone;
 using config::NonNegative;
-using config::Numbers;
 using config::Positive;
 using config::Within;
 
 void Describe(ChannelConfig* c, config::Table* t) {
   t->Section("channel");
-  t->Add("model", Enum(&c->model, {"range", "extended", "physical"}), kNone, "-",
+  t->Add("model", config::Enum(&c->model, {"range", "extended", "physical"}), config::kNone, "-",
          "link model: Eq. 5, Eq. 6, or the acoustic modem");
-  t->Add("range_m", &c->range_m, Positive(1e6), "m", "range: R_c of Eq. 5");
-  t->Add("transmit_period_s", &c->transmit_period_s, Positive(1e4), "s",
+  t->Add("range_m", &c->range_m, config::Positive(1e6), "m", "range: R_c of Eq. 5");
+  t->Add("transmit_period_s", &c->transmit_period_s, config::Positive(1e4), "s",
          "every AUV sends one packet per period, staggered; at least one decision");
-  t->Add("sound_speed_mps", &c->sound_speed_mps, Within(1.0, 1e5), "m/s",
+  t->Add("sound_speed_mps", &c->sound_speed_mps, config::Within(1.0, 1e5), "m/s",
          "propagation speed of packets");
-  t->Add("max_range_m", &c->max_range_m, Positive(1e6), "m",
+  t->Add("max_range_m", &c->max_range_m, config::Positive(1e6), "m",
          "extended: nothing arrives beyond this distance");
-  t->Add("attenuation_per_m", &c->attenuation_per_m, NonNegative(1e4), "1/m",
+  t->Add("attenuation_per_m", &c->attenuation_per_m, config::NonNegative(1e4), "1/m",
          "extended: alpha of Eq. 6");
-  t->Add("loss_probability", &c->loss_probability, kFraction, "-",
+  t->Add("loss_probability", &c->loss_probability, config::kFraction, "-",
          "extended: probability p0 that a packet is lost at zero distance");
-  t->Add("loss_distance_m", &c->loss_distance_m, Positive(1e6), "m",
+  t->Add("loss_distance_m", &c->loss_distance_m, config::Positive(1e6), "m",
          "extended: scale D of p_loss(d) = 1 - (1 - p0) exp(-(d/D)^2)");
-  t->Add("freshness_s", &c->freshness_s, Positive(1e5), "s",
+  t->Add("freshness_s", &c->freshness_s, config::Positive(1e5), "s",
          "extended: decay time tau_f of Eq. 6 with the age of the information");
 }
 

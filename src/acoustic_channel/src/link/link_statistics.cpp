@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace stg {
+namespace stg::acoustics {
 namespace {
 
 /// Integral of t - freshest over [from, to] [s^2].
@@ -99,4 +99,4 @@ LinkStatistics LinkTable::At(int source, int destination, TimeNs now) const {
   return s;
 }
 
-}  // namespace stg
+}  // namespace stg::acoustics

@@ -9,9 +9,9 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
-#include "auv_dynamics/nodes/topics.hpp"
+#include "auv_common/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
@@ -19,8 +19,8 @@ constexpr std::uint32_t kQueue = 50;
 }  // namespace
 
 ChannelNode::ChannelNode()
-    : scenario_(LoadScenarioParameters()),
-      channel_(MakeChannel(scenario_)),
+    : scenario_(LoadScenarioParameters<acoustics::NetworkConfig>()),
+      channel_(acoustics::MakeChannel(scenario_.channel, scenario_.agents)),
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
@@ -100,7 +100,7 @@ bool ChannelNode::Usable(int i, const auv_msgs::AcousticPacket& message) {
   if (message.header.frame_id != frames::Body(i)) {
     refused_transmissions_.Add(Refusals::kFrame);
   } else if (message.source != static_cast<std::uint32_t>(i) ||
-             (!silent && (message.data.size() != static_cast<std::size_t>(kPacketBytes) ||
+             (!silent && (message.data.size() != std::tuple_size<acoustics::Payload>::value ||
                           message.generation > message.header.stamp))) {
     refused_transmissions_.Add(Refusals::kMalformed);
   } else if (NsOf(message.header.stamp) < stamp_ ||
@@ -142,7 +142,7 @@ void ChannelNode::Close() {
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     const auto& m = auvs_[i].transmission;
     if (!m || NsOf(m->header.stamp) != stamp_ || m->data.empty()) continue;
-    Transmission t;
+    acoustics::Transmission t;
     t.source = static_cast<int>(i);
     t.sequence = m->sequence;
     t.stamp = now;
@@ -184,7 +184,7 @@ void ChannelNode::PublishLinks(TimeNs now) {
   for (int i = 0; i < scenario_.agents; ++i) {
     for (int j = 0; j < scenario_.agents; ++j) {
       if (i == j) continue;
-      const LinkStatistics s = channel_->Link(i, j, now);
+      const acoustics::LinkStatistics s = channel_->Link(i, j, now);
       auv_msgs::LinkState link;
       link.source = static_cast<std::uint32_t>(i);
       link.destination = static_cast<std::uint32_t>(j);
@@ -215,10 +215,10 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no step closed yet");
     return;
   }
-  const ChannelTotals& totals = channel_->totals();
+  const acoustics::ChannelTotals& totals = channel_->totals();
   status.add("packets delivered in this episode", totals.delivered);
   for (std::size_t k = 1; k < totals.drops.size(); ++k) {
-    status.add(std::string("packets dropped: ") + ToString(static_cast<DropReason>(k)),
+    status.add(std::string("packets dropped: ") + ToString(static_cast<acoustics::DropReason>(k)),
                totals.drops[k]);
   }
   double largest = 0.0, sum = 0.0;
@@ -242,4 +242,4 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

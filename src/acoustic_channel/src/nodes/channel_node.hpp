@@ -12,9 +12,9 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "auv_common/nodes/health.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "acoustic_channel/channel/channel_config.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// The acoustic channel of the whole swarm.
 ///
@@ -48,8 +48,8 @@ class ChannelNode {
   void PublishLinks(TimeNs now);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  Scenario scenario_;
-  std::unique_ptr<Channel> channel_;
+  acoustics::NetworkConfig scenario_;
+  std::unique_ptr<acoustics::Channel> channel_;
   TimeNs period_;  ///< of decisions [ns]
   double timeout_s_, display_period_s_;
   bool open_ = false, started_ = false;
@@ -59,8 +59,8 @@ class ChannelNode {
   ros::WallTime opened_, links_sent_;
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_;
-  std::vector<Transmission> sent_;
-  std::vector<Reception> received_;
+  std::vector<acoustics::Transmission> sent_;
+  std::vector<acoustics::Reception> received_;
   auv_msgs::AcousticReception reception_message_;
   auv_msgs::LinkStates links_message_;
   EventRate steps_;
@@ -71,4 +71,4 @@ class ChannelNode {
   Health health_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

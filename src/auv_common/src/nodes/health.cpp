@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace stg {
+namespace stg::nodes {
 
 std::uint64_t Refusals::total() const {
   return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
@@ -48,4 +48,4 @@ void Health::Tick() {
   updater_.force_update();
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "auv_common/config/run_config.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 /// The value of `name` in the private namespace or the nearest one above; false: nowhere.
@@ -83,25 +84,29 @@ int IntegerParameter(const std::string& name, int fallback, int lo, int hi) {
   return static_cast<int>(number);
 }
 
-Scenario LoadScenarioParameters() {
+config::Source ScenarioSource() {
   std::vector<std::string> overrides = ListParameter("overrides");
   const int agents = IntegerParameter("agents", 0, 0, 255);
   if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
   overrides.emplace_back("mode=acoustic");
-  Scenario scenario = LoadNamedScenario(ScenarioFolder(), TextParameter("scenario", "medium"),
-                                        TextParameter("condition", "nominal"), overrides);
-  if (agents > 0 && scenario.agents != agents) {
+  return config::NamedSource(config::ScenarioFolder(), TextParameter("scenario", "medium"),
+                             TextParameter("condition", "nominal"), overrides);
+}
+
+void RequireAgents(int agents) {
+  const int wanted = IntegerParameter("agents", 0, 0, 255);
+  if (wanted > 0 && agents != wanted) {
     throw UserError("parameter overrides: the number of AUVs is the launch argument 'agents'");
   }
-  return scenario;
 }
 
-void WarnOfOverriddenAgents(const Scenario& scenario) {
+void WarnOfOverriddenAgents(int agents) {
   const std::string name = TextParameter("scenario", "medium");
-  const int own = LoadNamedScenario(ScenarioFolder(), name).agents;
-  if (own == scenario.agents) return;
-  ROS_WARN("%d AUVs, as the launch argument 'agents' says; scenario '%s' itself has %d",
-           scenario.agents, name.c_str(), own);
+  const config::Source file = config::NamedSource(config::ScenarioFolder(), name);
+  const int own = config::Load<RunConfig>(file, config::Scope::kOwnSections).agents;
+  if (own == agents) return;
+  ROS_WARN("%d AUVs, as the launch argument 'agents' says; scenario '%s' itself has %d", agents,
+           name.c_str(), own);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -21,7 +21,7 @@
 
 #include "auv_common/nodes/parameters.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 /// roscpp's thread looks around by itself at least this often [s].
@@ -123,4 +123,4 @@ void PollLoop(const std::function<double()>& work, int realtime_priority) {
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -5,7 +5,7 @@
 
 /// Plain data that crosses package and process boundaries. Every field survives
 /// a ROS message unchanged (doubles and integer nanoseconds only).
-namespace stg {
+namespace stg::dynamics {
 
 /// What a vehicle's own navigation gives: body B (FLU) in world W (ENU). T = Pack: kLanes
 /// vehicles at the same time.
@@ -41,4 +41,4 @@ struct Wrench {
   Vec3<T> moment;
 };
 
-}  // namespace stg
+}  // namespace stg::dynamics

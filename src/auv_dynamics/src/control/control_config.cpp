@@ -3,32 +3,29 @@
 namespace stg::dynamics {
 
 using config::Enum;
-using config::kFraction;
 using config::kNone;
 using config::NonNegative;
-using config::Numbers;
-using config::Positive;
 using config::Within;
 
 void Describe(ControlConfig* c, config::Table* t) {
   t->Section("control");
-  t->Add("interface", Enum(&c->interface, {"velocity3", "tau6"}), kNone, "-",
+  t->Add("interface", config::Enum(&c->interface, {"velocity3", "tau6"}), config::kNone, "-",
          "action: desired world velocity (3), or body force and moment (6)");
-  t->Add("action_scale", &c->action_scale, Within(0.0, 1.0), "-",
+  t->Add("action_scale", &c->action_scale, config::Within(0.0, 1.0), "-",
          "the policy's mean is this times its tanh; 0.18 in the paper's force interface");
-  t->Add("max_delta", &c->max_delta, NonNegative(2), "-",
+  t->Add("max_delta", &c->max_delta, config::NonNegative(2), "-",
          "velocity3: largest change of an action per decision; 0: no limit");
-  t->Add("smoothing", &c->smoothing, Within(0.0, 0.999), "-",
+  t->Add("smoothing", &c->smoothing, config::Within(0.0, 0.999), "-",
          "velocity3: weight alpha of the previous action in Eq. 27; 0: none");
-  t->Add("velocity_gain", &c->velocity_gain, NonNegative(1e3), "-",
+  t->Add("velocity_gain", &c->velocity_gain, config::NonNegative(1e3), "-",
          "K_v of Eq. 24, times max_tau / max_velocity_mps");
-  t->Add("attitude_gain", &c->attitude_gain, NonNegative(1e3), "1/rad",
+  t->Add("attitude_gain", &c->attitude_gain, config::NonNegative(1e3), "1/rad",
          "K_eta of Eq. 25 for roll and pitch, as a share of the largest moment");
-  t->Add("rate_gain", &c->rate_gain, NonNegative(1e3), "-",
+  t->Add("rate_gain", &c->rate_gain, config::NonNegative(1e3), "-",
          "K_omega of Eq. 25, as a share of the largest moment at the largest rate");
-  t->Add("heading", Enum(&c->heading, {"free", "along_velocity"}), kNone, "-",
+  t->Add("heading", config::Enum(&c->heading, {"free", "along_velocity"}), config::kNone, "-",
          "yaw: only damped, or the bow points along the commanded velocity");
-  t->Add("heading_gain", &c->heading_gain, NonNegative(1e3), "1/rad",
+  t->Add("heading_gain", &c->heading_gain, config::NonNegative(1e3), "1/rad",
          "along_velocity: gain, as a share of the largest moment");
 }
 

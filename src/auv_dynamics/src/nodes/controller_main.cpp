@@ -2,5 +2,5 @@
 #include "controller_node.hpp"
 
 int main(int argc, char** argv) {
-  return stg::RunNode<stg::ControllerNode>(argc, argv, "controller");
+  return stg::nodes::RunNode<stg::nodes::ControllerNode>(argc, argv, "controller");
 }

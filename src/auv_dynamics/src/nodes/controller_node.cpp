@@ -8,7 +8,7 @@
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 20;
@@ -16,13 +16,13 @@ constexpr std::uint32_t kQueue = 20;
 }  // namespace
 
 ControllerNode::ControllerNode()
-    : scenario_(LoadScenarioParameters()),
+    : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
       id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
       body_frame_(frames::Body(id_)),
       period_(scenario_.decision_period()),
       health_("velocity controller", topics::Auv(id_).substr(1),
               [this](auto& status) { Report(status); }) {
-  if (scenario_.control.interface != ActionInterface::kVelocity3) {
+  if (scenario_.control.interface != dynamics::ActionInterface::kVelocity3) {
     ROS_INFO("the scenario's policy commands force and moment itself: nothing to control");
     return;
   }
@@ -77,9 +77,9 @@ void ControllerNode::OnCommand(const geometry_msgs::TwistStamped::ConstPtr& mess
 void ControllerNode::Answer() {
   if (!has_nav_ || !command_ || NsOf(command_->header.stamp) != nav_.stamp) return;
   double fraction[6];
-  VelocityController(scenario_.control, scenario_.vehicle, VectorOf(command_->twist.linear), nav_,
+  dynamics::VelocityController(scenario_.control, scenario_.vehicle, VectorOf(command_->twist.linear), nav_,
                      fraction);
-  const Wrench<double> wrench = ScaleWrench(scenario_.vehicle, fraction);
+  const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.vehicle, fraction);
   wrench_.header.stamp = command_->header.stamp;
   SetVector(wrench.force, &wrench_.wrench.force);
   SetVector(wrench.moment, &wrench_.wrench.torque);
@@ -98,4 +98,4 @@ void ControllerNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status)
   refused_odometry_.Report(topics::kOdom, &status);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -9,7 +9,7 @@
 #include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Velocity controller of one AUV (Eqs. 24-26): answers each desired velocity with the wrench for
 /// the odometry of the same stamp. Holds no state between steps.
@@ -26,11 +26,11 @@ class ControllerNode {
   void Answer();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  Scenario scenario_;
+  dynamics::WorldConfig scenario_;
   int id_;
   std::string body_frame_;
   TimeNs period_;  ///< of decisions
-  NavState nav_;   ///< newest odometry, with its absolute stamp
+  dynamics::NavState nav_;   ///< newest odometry, with its absolute stamp
   bool has_nav_ = false;
   ros::WallTime busy_;
   geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry
@@ -42,4 +42,4 @@ class ControllerNode {
   Health health_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

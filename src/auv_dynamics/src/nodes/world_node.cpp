@@ -8,7 +8,7 @@
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 20;
@@ -23,7 +23,7 @@ constexpr double kViewDelay_s = 0.005;
 }  // namespace
 
 WorldNode::WorldNode()
-    : scenario_(LoadScenarioParameters()),
+    : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
       world_(scenario_),
       period_(scenario_.decision_period()),
       real_time_factor_(NumberParameter("real_time_factor", 1.0, 0.0, 1000.0)),
@@ -38,7 +38,7 @@ WorldNode::WorldNode()
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       commands_(auvs_.size()),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
-  WarnOfOverriddenAgents(scenario_);
+  WarnOfOverriddenAgents(scenario_.agents);
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
@@ -160,7 +160,7 @@ void WorldNode::StepWorld() {
       ++auv.misses;
       missed = true;
     }
-    const Wrench<double>& c = auv.command;
+    const dynamics::Wrench<double>& c = auv.command;
     commands_[i] = {{Pack(c.force.x), Pack(c.force.y), Pack(c.force.z)},
                     {Pack(c.moment.x), Pack(c.moment.y), Pack(c.moment.z)}};
   }
@@ -180,7 +180,7 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   for (int lane = 0; lane < kLanes; ++lane) {
     world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.reset.stage);
   }
-  for (Auv& auv : auvs_) auv.command = Wrench<double>();
+  for (Auv& auv : auvs_) auv.command = dynamics::Wrench<double>();
   OpenStep();
 }
 
@@ -325,4 +325,4 @@ void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

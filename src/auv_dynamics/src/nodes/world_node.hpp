@@ -16,7 +16,7 @@
 #include "auv_dynamics/world/world.hpp"
 #include "world_publisher.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Steps the world and paces the whole graph.
 ///
@@ -38,7 +38,7 @@ class WorldNode {
 
  private:
   struct Auv {
-    Wrench<double> command;  ///< for the present step if answered, else the last one
+    dynamics::Wrench<double> command;  ///< for the present step if answered, else the last one
     bool answered = false;   ///< the command is for the present step
     bool present = true;     ///< waited for
     std::uint64_t misses = 0;
@@ -71,8 +71,8 @@ class WorldNode {
   TimeNs Now() const { return start_ + world_.time(0); }
   bool AtEnd() const { return step_ >= static_cast<std::uint32_t>(scenario_.time.episode_steps); }
 
-  Scenario scenario_;
-  World world_;
+  dynamics::WorldConfig scenario_;
+  dynamics::World world_;
   TimeNs period_;  ///< of decisions [ns]
   double real_time_factor_, deadline_s_, start_timeout_s_, summary_timeout_s_;
   int episodes_;         ///< to run; 0: until stopped
@@ -93,11 +93,11 @@ class WorldNode {
   std::size_t next_answer_ = 0;
   ros::WallTime began_, due_, deadline_, awaited_seen_;
   std::vector<Auv> auvs_;
-  std::vector<Wrench<Pack>> commands_;
+  std::vector<dynamics::Wrench<Pack>> commands_;
   std::unique_ptr<WorldPublisher> publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   Health health_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

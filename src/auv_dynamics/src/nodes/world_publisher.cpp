@@ -7,9 +7,9 @@
 
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/nodes/parameters.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 100;
@@ -27,7 +27,7 @@ geometry_msgs::TransformStamped TransformOf(const nav_msgs::Odometry& m) {
 
 }  // namespace
 
-WorldPublisher::WorldPublisher(const Scenario& scenario, double display_rate_hz)
+WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz)
     : scenario_(scenario), display_period_s_(1.0 / display_rate_hz) {
   ros::NodeHandle node;
   for (int i = 0; i < scenario_.agents; ++i) {
@@ -62,7 +62,7 @@ WorldPublisher::WorldPublisher(const Scenario& scenario, double display_rate_hz)
   detection_message_.header.frame_id = frames::kWorld;
   SendWorldNed();
   std_msgs::String resolved;
-  resolved.data = ToYaml(scenario_);
+  resolved.data = config::ResolvedText(ScenarioSource());
   scenario_topic_ = node.advertise<std_msgs::String>(topics::kScenario, 1, true);
   scenario_topic_.publish(resolved);
 }
@@ -85,7 +85,7 @@ void WorldPublisher::PublishClock(TimeNs now) {
   clock_.publish(clock);
 }
 
-void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint32_t episode,
+void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
                                     std::uint32_t step) {
   const TimeNs now = start + world.time(0);
   for (int i = 0; i < world.agents(); ++i) {
@@ -100,7 +100,7 @@ void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint3
     sync.seed = world.seed(0);
     if (step == 0) {
       sync.cue_valid = true;  // and stays in the message, for an agent that comes late
-      const Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
+      const dynamics::Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
       SetVector(cue.p_WT, &sync.cue_position);
       sync.cue_std = cue.std_m;
     }
@@ -121,7 +121,7 @@ void WorldPublisher::PublishSensors(const World& world, TimeNs start, std::uint3
 
 void WorldPublisher::PublishSwarm() { swarm_.publish(swarm_message_); }
 
-void WorldPublisher::PublishViews(const World& world, TimeNs start) {
+void WorldPublisher::PublishViews(const dynamics::World& world, TimeNs start) {
   const TimeNs now = start + world.time(0);
   for (int k = 0; k < world.targets(); ++k) {
     nav_msgs::Odometry& m = target_messages_[static_cast<std::size_t>(k)];
@@ -134,10 +134,10 @@ void WorldPublisher::PublishViews(const World& world, TimeNs start) {
   PublishClock(now);
 }
 
-int WorldPublisher::PublishDetections(const World& world, TimeNs now, int i) {
+int WorldPublisher::PublishDetections(const dynamics::World& world, TimeNs now, int i) {
   int count = 0;
   for (int k = 0; k < world.targets(); ++k) {
-    Detection detection;
+    dynamics::Detection detection;
     if (!world.Sense(0, i, k, &detection)) continue;
     auv_msgs::TargetDetection& m = detection_message_;
     const Vec3<double> r = detection.p_WT - Lane(world.vehicle(i).p_WB, 0);
@@ -165,4 +165,4 @@ void WorldPublisher::PublishFrames(TimeNs now) {
   frames_.sendTransform(transforms_);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -13,24 +13,24 @@
 #include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/world/world.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Puts the state of lane 0 of a world on topics.
 class WorldPublisher {
  public:
   /// @param display_rate_hz largest rate of transforms per second of wall time, and a tenth of the
   ///                        largest rate of /clock: no step waits for either
-  WorldPublisher(const Scenario& scenario, double display_rate_hz);
+  WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz);
 
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
   /// [ns].
-  void PublishSensors(const World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+  void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
 
   /// The true state of all of them at the decision of the last PublishSensors.
   void PublishSwarm();
 
   /// What only observers need of the same decision: targets, transforms, the clock.
-  void PublishViews(const World& world, TimeNs start);
+  void PublishViews(const dynamics::World& world, TimeNs start);
 
  private:
   struct AuvTopics {
@@ -38,12 +38,12 @@ class WorldPublisher {
     nav_msgs::Odometry odometry_message;
     auv_msgs::SensorSync sync_message;
   };
-  int PublishDetections(const World& world, TimeNs now, int i);
+  int PublishDetections(const dynamics::World& world, TimeNs now, int i);
   void PublishClock(TimeNs now);
   void PublishFrames(TimeNs now);
   void SendWorldNed();
 
-  Scenario scenario_;
+  dynamics::WorldConfig scenario_;
   double display_period_s_;
   ros::WallTime clock_sent_, frames_sent_;
   std::vector<AuvTopics> auvs_;
@@ -57,4 +57,4 @@ class WorldPublisher {
   std::vector<geometry_msgs::TransformStamped> transforms_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -4,7 +4,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -49,4 +49,4 @@ double VehicleModel::KineticEnergy(const BodyVelocity<double>& nu) const {
   return 0.5 * x.dot(Eigen::Map<const Matrix6>(M_.data()) * x);
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -3,35 +3,32 @@
 namespace stg::dynamics {
 
 using config::Enum;
-using config::kFraction;
 using config::kNone;
 using config::NonNegative;
-using config::Numbers;
 using config::Positive;
-using config::Within;
 
 void Describe(ResetConfig* c, config::Table* t) {
   t->Section("reset");
-  t->Add("stage", Enum(&c->stage, {"easy", "medium", "hard"}), kNone, "-",
+  t->Add("stage", config::Enum(&c->stage, {"easy", "medium", "hard"}), config::kNone, "-",
          "reset stage of evaluation and of training without a curriculum");
-  t->Add("curriculum", &c->curriculum, kNone, "-",
+  t->Add("curriculum", &c->curriculum, config::kNone, "-",
          "training draws the stage from the number of resets: easy, medium, then hard");
-  t->Add("curriculum_easy_resets", &c->curriculum_easy_resets, NonNegative(1e9), "resets",
+  t->Add("curriculum_easy_resets", &c->curriculum_easy_resets, config::NonNegative(1e9), "resets",
          "curriculum: resets up to this number are easy");
-  t->Add("curriculum_medium_resets", &c->curriculum_medium_resets, NonNegative(1e9), "resets",
+  t->Add("curriculum_medium_resets", &c->curriculum_medium_resets, config::NonNegative(1e9), "resets",
          "curriculum: resets up to this number are medium, later ones hard");
-  t->Add("min_separation_m", &c->min_separation_m, NonNegative(1e4), "m",
+  t->Add("min_separation_m", &c->min_separation_m, config::NonNegative(1e4), "m",
          "AUVs start at least this far from each other");
-  t->Add("start_half_extent_m", &c->start_half_extent_m, Positive(1e5), "m, world ENU",
+  t->Add("start_half_extent_m", &c->start_half_extent_m, config::Positive(1e5), "m, world ENU",
          "AUVs start within +- this value on each axis");
   const char* names[] = {"easy", "medium", "hard"};
   for (std::size_t i = 0; i < c->stages.size(); ++i) {
     t->Section(std::string("reset.stages.") + names[i]);
-    t->Add("target_radius_m", &c->stages[i].target_radius_m, NonNegative(1e5), "m",
+    t->Add("target_radius_m", &c->stages[i].target_radius_m, config::NonNegative(1e5), "m",
            "[low, high] distance of a target from the origin of the world");
-    t->Add("auv_distance_m", &c->stages[i].auv_distance_m, NonNegative(1e5), "m",
+    t->Add("auv_distance_m", &c->stages[i].auv_distance_m, config::NonNegative(1e5), "m",
            "[low, high] distance of an AUV from its target");
-    t->Add("target_speed_mps", &c->stages[i].target_speed_mps, NonNegative(10), "m/s",
+    t->Add("target_speed_mps", &c->stages[i].target_speed_mps, config::NonNegative(10), "m/s",
            "[low, high] speed of a target, in a uniformly drawn direction");
   }
 }

@@ -2,9 +2,7 @@
 
 namespace stg::dynamics {
 
-using config::Enum;
 using config::kFraction;
-using config::kNone;
 using config::NonNegative;
 using config::Numbers;
 using config::Positive;
@@ -12,39 +10,39 @@ using config::Within;
 
 void Describe(CurrentConfig* c, config::Table* t) {
   t->Section("current");
-  t->Add("velocity_mps", Numbers(&c->velocity_mps), Within(-10, 10), "m/s, world ENU",
+  t->Add("velocity_mps", config::Numbers(&c->velocity_mps), config::Within(-10, 10), "m/s, world ENU",
          "constant, irrotational water current");
 }
 
 void Describe(DisturbanceConfig* c, config::Table* t) {
   t->Section("disturbance");
-  t->Add("force_std_n", &c->force_std_n, NonNegative(1e5), "N, body",
+  t->Add("force_std_n", &c->force_std_n, config::NonNegative(1e5), "N, body",
          "standard deviation of each force component of w in Eq. 3; 0: none");
-  t->Add("moment_std_nm", &c->moment_std_nm, NonNegative(1e5), "N m, body",
+  t->Add("moment_std_nm", &c->moment_std_nm, config::NonNegative(1e5), "N m, body",
          "standard deviation of each moment component of w; 0: none");
-  t->Add("correlation_time_s", &c->correlation_time_s, Positive(1e5), "s",
+  t->Add("correlation_time_s", &c->correlation_time_s, config::Positive(1e5), "s",
          "correlation time of the Gauss-Markov disturbance");
 }
 
 void Describe(ContactConfig* c, config::Table* t) {
   t->Section("contact");
-  t->Add("stiffness", &c->stiffness, NonNegative(1e7), "N/m",
+  t->Add("stiffness", &c->stiffness, config::NonNegative(1e7), "N/m",
          "contact force per metre of the softplus overlap; 0: AUVs pass through each other");
-  t->Add("softness_m", &c->softness_m, Positive(1), "m",
+  t->Add("softness_m", &c->softness_m, config::Positive(1), "m",
          "length over which the contact force sets in");
 }
 
 void Describe(WorkspaceConfig* c, config::Table* t) {
   t->Section("workspace");
-  t->Add("half_extent_m", &c->half_extent_m, Positive(1e5), "m, world ENU",
+  t->Add("half_extent_m", &c->half_extent_m, config::Positive(1e5), "m, world ENU",
          "walls at +- this value on each axis");
-  t->Add("restitution", &c->restitution, kFraction, "-",
+  t->Add("restitution", &c->restitution, config::kFraction, "-",
          "kept share of the velocity component normal to a wall");
-  t->Add("tangential", &c->tangential, kFraction, "-",
+  t->Add("tangential", &c->tangential, config::kFraction, "-",
          "kept share of the velocity components along a wall");
-  t->Add("body_velocity", &c->body_velocity, kFraction, "-",
+  t->Add("body_velocity", &c->body_velocity, config::kFraction, "-",
          "kept share of the body velocity at a wall");
-  t->Add("body_rate", &c->body_rate, kFraction, "-", "kept share of the body rates at a wall");
+  t->Add("body_rate", &c->body_rate, config::kFraction, "-", "kept share of the body rates at a wall");
 }
 
 }  // namespace stg::dynamics

@@ -3,30 +3,28 @@
 namespace stg::dynamics {
 
 using config::Enum;
-using config::kFraction;
 using config::kNone;
 using config::NonNegative;
-using config::Numbers;
 using config::Positive;
 using config::Within;
 
 void Describe(TargetConfig* c, config::Table* t) {
   t->Section("target");
-  t->Add("count", &c->count, Within(1, 16), "-",
+  t->Add("count", &c->count, config::Within(1, 16), "-",
          "number of targets; AUV i is tasked with target i modulo this");
   t->Add("motion",
-         Enum(&c->motion, {"constant_velocity", "coordinated_turn", "random_waypoint", "evasive"}),
-         kNone, "-", "motion of the targets");
-  t->Add("max_speed_mps", &c->max_speed_mps, Positive(10), "m/s", "no target is faster");
-  t->Add("max_turn_rate_radps", &c->max_turn_rate_radps, Positive(10), "rad/s",
+         config::Enum(&c->motion, {"constant_velocity", "coordinated_turn", "random_waypoint", "evasive"}),
+         config::kNone, "-", "motion of the targets");
+  t->Add("max_speed_mps", &c->max_speed_mps, config::Positive(10), "m/s", "no target is faster");
+  t->Add("max_turn_rate_radps", &c->max_turn_rate_radps, config::Positive(10), "rad/s",
          "no target turns faster, walls apart");
-  t->Add("turn_rate_radps", &c->turn_rate_radps, NonNegative(10), "rad/s",
+  t->Add("turn_rate_radps", &c->turn_rate_radps, config::NonNegative(10), "rad/s",
          "coordinated_turn: mean magnitude of the turn rate");
-  t->Add("turn_period_s", &c->turn_period_s, Positive(1e5), "s",
+  t->Add("turn_period_s", &c->turn_period_s, config::Positive(1e5), "s",
          "coordinated_turn: time between new turn rates");
-  t->Add("waypoint_radius_m", &c->waypoint_radius_m, Positive(1e4), "m",
+  t->Add("waypoint_radius_m", &c->waypoint_radius_m, config::Positive(1e4), "m",
          "random_waypoint: distance at which a waypoint counts as reached");
-  t->Add("evasion_range_m", &c->evasion_range_m, NonNegative(1e4), "m",
+  t->Add("evasion_range_m", &c->evasion_range_m, config::NonNegative(1e4), "m",
          "evasive: the target flees AUVs closer than this");
 }
 

@@ -4,16 +4,17 @@
 #include <cassert>
 #include <cmath>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_dynamics/vehicle/integrator.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 
-World::World(const Scenario& scenario)
+World::World(const WorldConfig& scenario)
     : scenario_(scenario),
       dt_ns_(scenario.step_period()) {
-  scenario_.ValidateOrThrow();
+  config::ValidateOrThrow(scenario_);
   model_ = std::make_unique<VehicleModel>(scenario_.vehicle);
   const auto n = static_cast<size_t>(scenario_.agents);
   const auto m = static_cast<size_t>(scenario_.target.count);
@@ -179,4 +180,4 @@ void World::MeasureDistances() {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -6,7 +6,7 @@
 #include <cmath>
 
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 using config::Violation;
@@ -110,4 +110,4 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   return {};
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

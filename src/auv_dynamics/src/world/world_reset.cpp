@@ -6,7 +6,7 @@
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 #include "auv_dynamics/world/world.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 Vec3<double> UniformDirection(Random* random) {
@@ -123,4 +123,4 @@ void World::Follow(const std::vector<NavState>& vehicles,
   MeasureDistances();
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

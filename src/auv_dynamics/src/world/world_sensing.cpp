@@ -4,7 +4,7 @@
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 #include "auv_dynamics/world/world.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 /// Dropouts start in each spell-long slot with the probability of a Poisson
@@ -54,4 +54,4 @@ Cue World::InitialCue(int lane, int i, int k) const {
   return cue;
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -4,7 +4,7 @@
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 #include "auv_dynamics/world/world.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 namespace {
 
 /// Velocity v turned towards a direction by at most `angle`, at its own speed.
@@ -106,4 +106,4 @@ void World::SteerTarget(int lane, int k) {
   SetLane(&t.v_WT, lane, v);
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

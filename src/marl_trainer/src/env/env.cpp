@@ -6,7 +6,7 @@
 #include "auv_dynamics/control/control.hpp"
 #include "env_internal.hpp"
 
-namespace stg {
+namespace stg::env {
 
 EnvGroup::EnvGroup(const Scenario& scenario, const EnvOptions& options)
     : scenario_(scenario),
@@ -52,12 +52,12 @@ void EnvGroup::StartEpisode() {
     const std::uint64_t r =
         static_cast<std::uint64_t>(options_.first_env + lane) +
         round_ * static_cast<std::uint64_t>(options_.total_envs);
-    ResetStage stage = scenario_.reset.stage;
+    dynamics::ResetStage stage = scenario_.reset.stage;
     if (options_.curriculum) {
       const auto& c = scenario_.reset;
-      stage = r < static_cast<std::uint64_t>(c.curriculum_easy_resets)     ? ResetStage::kEasy
-              : r < static_cast<std::uint64_t>(c.curriculum_medium_resets) ? ResetStage::kMedium
-                                                                           : ResetStage::kHard;
+      stage = r < static_cast<std::uint64_t>(c.curriculum_easy_resets)     ? dynamics::ResetStage::kEasy
+              : r < static_cast<std::uint64_t>(c.curriculum_medium_resets) ? dynamics::ResetStage::kMedium
+                                                                           : dynamics::ResetStage::kHard;
     }
     world_.Reset(lane, options_.seed + r, 0, stage);
   }
@@ -112,7 +112,7 @@ void EnvGroup::Step() {
   } else {
     TruthActions();
   }
-  for (size_t i = 0; i < n; ++i) wrench_[i] = ScaleWrench(scenario_.vehicle, tau_[i].data());
+  for (size_t i = 0; i < n; ++i) wrench_[i] = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
   ++step_;
   Measure(false);
@@ -140,31 +140,31 @@ void EnvGroup::TruthActions() {
     }
     auto& executed = action_[static_cast<size_t>(i)];
     auto& tau = tau_[static_cast<size_t>(i)];
-    if (scenario_.control.interface == ActionInterface::kTau6) {
+    if (scenario_.control.interface == dynamics::ActionInterface::kTau6) {
       // Rate limit and smoothing belong to the velocity interface.
       for (int k = 0; k < 6; ++k) executed[static_cast<size_t>(k)] = Clip(a[k], -1.0, 1.0);
       tau = executed;
       continue;
     }
-    SmoothAction(scenario_.control, size, a, executed.data());
-    const VehicleState<Pack>& s = world_.vehicle(i);
+    dynamics::SmoothAction(scenario_.control, size, a, executed.data());
+    const dynamics::VehicleState<Pack>& s = world_.vehicle(i);
     Vec3<Pack> rpy = s.rpy;
-    if (scenario_.vehicle.integrator == Integrator::kRk4) rpy = RpyOf(s.trig);
-    VelocityController(scenario_.control, scenario_.vehicle,
-                       DesiredVelocity(scenario_.vehicle, executed.data()), s.R_WB, s.v_WB, rpy,
+    if (scenario_.vehicle.integrator == dynamics::Integrator::kRk4) rpy = RpyOf(s.trig);
+    dynamics::VelocityController(scenario_.control, scenario_.vehicle,
+                       dynamics::DesiredVelocity(scenario_.vehicle, executed.data()), s.R_WB, s.v_WB, rpy,
                        s.w_WB_B, tau.data());
   }
 }
 
 void EnvGroup::Measure(bool first) {
-  const ObservationConfig& c = scenario_.observation;
+  const agent::ObservationConfig& c = scenario_.observation;
   const int n = agents();
   const Pack zero(0.0), one(1.0);
   for (int i = 0; i < n; ++i) {
     const auto ui = static_cast<size_t>(i);
-    const VehicleState<Pack>& s = world_.vehicle(i);
-    const TargetState<Pack>& t = world_.target(scenario_.target_of(i));
-    Knowledge<Pack>& k = truth_[ui];
+    const dynamics::VehicleState<Pack>& s = world_.vehicle(i);
+    const dynamics::TargetState<Pack>& t = world_.target(scenario_.target_of(i));
+    agent::Knowledge<Pack>& k = truth_[ui];
     k.p_WB = s.p_WB;
     k.v_WB = s.v_WB;
     k.v_WB_B = s.v_WB_B;
@@ -177,11 +177,11 @@ void EnvGroup::Measure(bool first) {
     const Pack d = Norm(k.r_BT_W);
     k.previous_distance = first ? d : k.distance;
     k.distance = d;
-    k.error = Abs(d - Pack(scenario_.reward.desired_distance_m));
+    k.error = Abs(d - Pack(scenario_.task.desired_distance_m));
     k.mean_error = MeanError(ui, k.error);
-    k.closing = ClosingSpeed(k.r_BT_W, d, k.v_WB, k.v_WT);
-    k.confidence = Confidence(d, scenario_.sensing.range_m);
-    k.lost = Select(d > Pack(scenario_.reward.lost_distance_m), one, zero);
+    k.closing = agent::ClosingSpeed(k.r_BT_W, d, k.v_WB, k.v_WT);
+    k.confidence = agent::Confidence(d, scenario_.sensing.range_m);
+    k.lost = Select(d > Pack(scenario_.task.lost_distance_m), one, zero);
     Pack lost_steps = k.lost_steps + one;
     // The release counts a lost decision in the reward and once more for show.
     if (c.release_bookkeeping && !first) lost_steps = Max(lost_steps, Pack(2.0));
@@ -195,11 +195,11 @@ void EnvGroup::Measure(bool first) {
   }
   const Pack others(1.0 / std::max(1, n - 1)), available(c.link_available);
   for (int i = 0; i < n; ++i) {
-    Knowledge<Pack>& k = truth_[static_cast<size_t>(i)];
+    agent::Knowledge<Pack>& k = truth_[static_cast<size_t>(i)];
     Pack mean = zero, best = zero, effective = zero;
     for (int j = 0; j < n; ++j) {
       if (j == i) continue;
-      const Pack q = RangeQuality(world_.distance(i, j), c.link_radius_m);
+      const Pack q = acoustics::RangeQuality(world_.distance(i, j), scenario_.channel.range_m);
       mean += q;
       best = Max(best, q);
       effective += Select(q > available, one, zero);
@@ -231,34 +231,34 @@ Pack EnvGroup::MeanError(size_t i, const Pack& error) {
   return sum * Pack(1.0 / count);
 }
 
-void EnvGroup::NeighbourFeatures(int i, Knowledge<Pack>* k) const {
+void EnvGroup::NeighbourFeatures(int i, agent::Knowledge<Pack>* k) const {
   const int n = agents();
-  if (scenario_.observation.order == NeighbourOrder::kIndex) {
-    for (int slot = 0, j = 0; slot < kNeighbourSlots && j < n; ++j) {
+  if (scenario_.observation.order == agent::NeighbourOrder::kIndex) {
+    for (int slot = 0, j = 0; slot < agent::kNeighbourSlots && j < n; ++j) {
       if (j == i) continue;
       k->neighbour[slot++] = world_.vehicle(j).p_WB - k->p_WB;
     }
     return;
   }
-  NearestSlots<Pack> nearest;
+  agent::NearestSlots<Pack> nearest;
   for (int j = 0; j < n; ++j) {
     if (j != i) nearest.Offer(world_.vehicle(j).p_WB - k->p_WB, world_.distance(i, j));
   }
-  std::copy(nearest.offset, nearest.offset + kNeighbourSlots, k->neighbour);
+  std::copy(nearest.offset, nearest.offset + agent::kNeighbourSlots, k->neighbour);
 }
 
 void EnvGroup::ComputeRewards() {
   const int n = agents();
-  const RewardConfig& c = scenario_.reward;
-  const bool raw = c.kind == RewardKind::kReleaseRaw;
+  const task::RewardConfig& c = scenario_.reward;
+  const bool raw = c.kind == task::RewardKind::kReleaseRaw;
   const Pack inv_n(1.0 / n), zero(0.0), one(1.0);
   Pack deviation = zero;
-  for (const auto& k : truth_) deviation += raw ? k.error : BandDeviation(c, k.distance);
+  for (const auto& k : truth_) deviation += raw ? k.error : task::BandDeviation(c, k.distance);
   deviation = deviation * inv_n;
-  const Pack coordination = CoordinationReward(c, deviation);
+  const Pack coordination = task::CoordinationReward(c, deviation);
   Pack communication = zero;
-  if (c.kind != RewardKind::kPaper) {
-    communication = ReleaseCommunication(deviation, scenario_.sensing.range_m);
+  if (c.kind != task::RewardKind::kPaper) {
+    communication = task::ReleaseCommunication(deviation, scenario_.sensing.range_m);
   } else if (acoustic_) {
     communication = acoustic_->MeanLinkQuality();
   } else if (followed_quality_) {
@@ -268,7 +268,7 @@ void EnvGroup::ComputeRewards() {
     Pack edges = zero;
     for (int i = 0; i < n; ++i) {
       for (int j = i + 1; j < n; ++j) {
-        const Pack q = RangeQuality(world_.distance(i, j), scenario_.channel.range_m);
+        const Pack q = acoustics::RangeQuality(world_.distance(i, j), scenario_.channel.range_m);
         communication += q;
         edges += Select(q > zero, one, zero);
       }
@@ -279,8 +279,8 @@ void EnvGroup::ComputeRewards() {
   const bool crowding = c.weights.separation != 0.0;
   for (int i = 0; i < n; ++i) {
     const auto ui = static_cast<size_t>(i);
-    const Knowledge<Pack>& k = truth_[ui];
-    RewardInput<Pack> in;
+    const agent::Knowledge<Pack>& k = truth_[ui];
+    task::RewardInput<Pack> in;
     in.distance = k.distance;
     const bool unknown = scenario_.observation.release_bookkeeping && step_ == 1;
     in.previous_distance = unknown ? k.distance : k.previous_distance;
@@ -288,7 +288,7 @@ void EnvGroup::ComputeRewards() {
     in.confidence = k.confidence;
     in.lost = k.lost;
     for (int j = 0; crowding && j < n; ++j) {
-      if (j != i) in.crowding += SeparationPenalty(c, world_.distance(i, j));
+      if (j != i) in.crowding += task::SeparationPenalty(c, world_.distance(i, j));
     }
     for (size_t a = 0; a < 6; ++a) {
       in.tau[a] = tau_[ui][a];
@@ -296,7 +296,7 @@ void EnvGroup::ComputeRewards() {
       in.action[a] = action_[ui][a];
       in.previous_action[a] = previous_action_[ui][a];
     }
-    terms_[ui] = Reward(scenario_, in, coordination, communication);
+    terms_[ui] = task::Reward(scenario_, in, coordination, communication);
     team += terms_[ui].total;
   }
   const Pack mean = team * inv_n;
@@ -317,4 +317,4 @@ void EnvGroup::FinishEpisode() {
   StartEpisode();
 }
 
-}  // namespace stg
+}  // namespace stg::env

@@ -3,14 +3,14 @@
 
 #include "env_internal.hpp"
 
-namespace stg {
+namespace stg::env {
 
 EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   const auto n = static_cast<size_t>(s.agents);
-  const Agent first(s, 0);
+  const agent::Agent first(s, 0);
   agents.reserve(n);
   for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
-  for (int lane = 0; lane < kLanes; ++lane) channels.push_back(MakeChannel(s));
+  for (int lane = 0; lane < kLanes; ++lane) channels.push_back(acoustics::MakeChannel(s.channel, s.agents));
   sequence.assign(n * kLanes, 0);
   senders.reserve(n);
   sent.reserve(n);
@@ -18,7 +18,7 @@ EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   positions.resize(n);
 }
 
-void EnvGroup::Acoustic::Start(const World& world) {
+void EnvGroup::Acoustic::Start(const dynamics::World& world) {
   std::fill(sequence.begin(), sequence.end(), 0);
   for (int lane = 0; lane < kLanes; ++lane) {
     channels[static_cast<size_t>(lane)]->Reset(world.seed(lane), world.episode(lane));
@@ -31,16 +31,16 @@ void EnvGroup::Acoustic::Start(const World& world) {
 
 Pack EnvGroup::Acoustic::MeanLinkQuality() const {
   Pack sum(0.0);
-  for (const AgentLanes& a : agents) sum += a.knowledge().mean_quality;
+  for (const agent::AgentLanes& a : agents) sum += a.knowledge().mean_quality;
   return sum / Pack(scenario.agents);
 }
 
-const Agent& EnvGroup::agent(int lane, int i) const {
+const agent::Agent& EnvGroup::agent(int lane, int i) const {
   assert(acoustic_);
   return acoustic_->agents[static_cast<size_t>(i)].agent(lane);
 }
 
-const Channel& EnvGroup::channel(int lane) const {
+const acoustics::Channel& EnvGroup::channel(int lane) const {
   assert(acoustic_);
   return *acoustic_->channels[static_cast<size_t>(lane)];
 }
@@ -48,15 +48,15 @@ const Channel& EnvGroup::channel(int lane) const {
 void EnvGroup::AcousticObserve() {
   Acoustic& a = *acoustic_;
   for (int i = 0; i < agents(); ++i) {
-    AgentLanes& agent = a.agents[static_cast<size_t>(i)];
+    agent::AgentLanes& agent = a.agents[static_cast<size_t>(i)];
     for (int lane = 0; lane < kLanes; ++lane) {
       if (step_ > 0) {
         a.received.clear();
         a.channels[static_cast<size_t>(lane)]->Deliver(i, world_.time(lane), &a.received);
-        for (const Reception& r : a.received) agent.Receive(lane, r);
+        for (const acoustics::Reception& r : a.received) agent.Receive(lane, r);
       }
       for (int k = 0; k < scenario_.target.count; ++k) {
-        Detection detection;
+        dynamics::Detection detection;
         if (world_.Sense(lane, i, k, &detection)) agent.Detect(lane, detection);
       }
     }
@@ -80,7 +80,7 @@ void EnvGroup::AcousticActions() {
       // What a policy says is float.
       wanted[k] = RoundToFloat(Pack::load_aligned(buffer));
     }
-    AgentLanes& agent = a.agents[ui];
+    agent::AgentLanes& agent = a.agents[ui];
     agent.Act(wanted);
     if (agent.transmits()) a.senders.push_back(i);
     std::copy(agent.knowledge().tau, agent.knowledge().tau + 6, tau_[ui].begin());
@@ -102,4 +102,4 @@ void EnvGroup::AcousticActions() {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::env

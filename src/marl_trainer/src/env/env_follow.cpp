@@ -2,7 +2,7 @@
 
 #include "env_internal.hpp"
 
-namespace stg {
+namespace stg::env {
 
 void EnvGroup::FollowStart(const FollowedSwarm& swarm) {
   assert(!acoustic_);
@@ -37,6 +37,6 @@ void EnvGroup::FollowStep(const FollowedSwarm& swarm) {
   }
 }
 
-EpisodeMetrics EnvGroup::MetricsSoFar(int lane) const { return totals_->Metrics(lane); }
+task::EpisodeMetrics EnvGroup::MetricsSoFar(int lane) const { return totals_->Metrics(lane); }
 
-}  // namespace stg
+}  // namespace stg::env

@@ -6,14 +6,14 @@
 #include "marl_trainer/env/env.hpp"
 #include "stg_agent/agent/agent_lanes.hpp"
 
-namespace stg {
+namespace stg::env {
 
 /// Sums behind EpisodeMetrics, all lanes at once.
 struct EnvGroup::Totals {
   explicit Totals(const Scenario& scenario);
   void Clear();
   void Add(const EnvGroup& env, bool tail);
-  EpisodeMetrics Metrics(int lane) const;
+  task::EpisodeMetrics Metrics(int lane) const;
 
  private:
   const Scenario scenario_;
@@ -27,19 +27,19 @@ struct EnvGroup::Totals {
 /// The agents and channels of every lane.
 struct EnvGroup::Acoustic {
   explicit Acoustic(const Scenario& scenario);
-  void Start(const World& world);
+  void Start(const dynamics::World& world);
   /// Mean over all ordered pairs of the link quality that the agents know
   /// (unknown neighbour: 0).
   Pack MeanLinkQuality() const;
 
-  std::vector<AgentLanes> agents;                  // [agent]
-  std::vector<std::unique_ptr<Channel>> channels;  // [lane]
+  std::vector<agent::AgentLanes> agents;                  // [agent]
+  std::vector<std::unique_ptr<acoustics::Channel>> channels;  // [lane]
   std::vector<std::uint32_t> sequence;             // [lane, agent]
   std::vector<int> senders;                        // of the present decision, any lane
-  std::vector<Transmission> sent;
-  std::vector<Reception> received;
+  std::vector<acoustics::Transmission> sent;
+  std::vector<acoustics::Reception> received;
   std::vector<Vec3<double>> positions;
   Scenario scenario;
 };
 
-}  // namespace stg
+}  // namespace stg::env

@@ -1,6 +1,6 @@
 #include "env_internal.hpp"
 
-namespace stg {
+namespace stg::env {
 
 EnvGroup::Totals::Totals(const Scenario& scenario)
     : scenario_(scenario), entered_(static_cast<size_t>(scenario.agents)) {
@@ -20,13 +20,13 @@ void EnvGroup::Totals::Clear() {
 
 void EnvGroup::Totals::Add(const EnvGroup& env, bool tail) {
   const Pack zero(0.0), one(1.0);
-  const RewardConfig& c = scenario_.reward;
+  const task::RewardConfig& c = scenario_.reward;
   ++steps_;
   if (tail) ++tail_steps_;
   const int size = scenario_.action_size();
   for (size_t i = 0; i < env.truth_.size(); ++i) {
-    const Knowledge<Pack>& k = env.truth_[i];
-    const RewardTerms<Pack>& r = env.terms_[i];
+    const agent::Knowledge<Pack>& k = env.truth_[i];
+    const task::RewardTerms<Pack>& r = env.terms_[i];
     return_ += r.total;
     cost_ += r.cost;
     track_ += r.track;
@@ -57,11 +57,11 @@ void EnvGroup::Totals::Add(const EnvGroup& env, bool tail) {
   separation_ = Min(separation_, env.world_.smallest_separation());
 }
 
-EpisodeMetrics EnvGroup::Totals::Metrics(int lane) const {
+task::EpisodeMetrics EnvGroup::Totals::Metrics(int lane) const {
   const double n = static_cast<double>(entered_.size());
   const double all = n * steps_, tail = n * std::max(1, tail_steps_);
   const auto at = [lane](const Pack& p) { return Lane(p, lane); };
-  EpisodeMetrics m;
+  task::EpisodeMetrics m;
   m.steps = steps_;
   m.episode_return = at(return_);
   m.tail_distance = at(distance_) / tail;
@@ -90,4 +90,4 @@ EpisodeMetrics EnvGroup::Totals::Metrics(int lane) const {
   return m;
 }
 
-}  // namespace stg
+}  // namespace stg::env

@@ -4,7 +4,7 @@
 
 #include "env_internal.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 /// Turns columns of packs into one float row per lane.
@@ -44,7 +44,7 @@ void EnvGroup::WriteObservations() {
   const size_t stride = truth_.size() * size;
   Pack columns[kLargestObservation];
   for (size_t i = 0; i < truth_.size(); ++i) {
-    BuildObservation(scenario_, acoustic_ ? acoustic_->agents[i].knowledge() : truth_[i],
+    agent::BuildObservation(scenario_, acoustic_ ? acoustic_->agents[i].knowledge() : truth_[i],
                      [&](int index, const Pack& value) { columns[index] = value; });
     Scatter(columns, observation_size_, observations_.data() + i * size, stride);
   }
@@ -73,15 +73,15 @@ void EnvGroup::WriteStates() {
     put3(Scale(k.v_WT - k.v_WB, inv_v));
     put3(Scale(k.w_WB_B, inv_w));
     put3({k.tau[0], k.tau[1], k.tau[2]});
-    put3({Clip((k.distance - Pack(scenario_.reward.desired_distance_m)) * Pack(1.0 / 0.05),
+    put3({Clip((k.distance - Pack(scenario_.task.desired_distance_m)) * Pack(1.0 / 0.05),
                Pack(-1.0), Pack(1.0)),
-          Progress(scenario_.observation, k.previous_distance, k.distance), k.lost});
+          agent::Progress(scenario_.observation, k.previous_distance, k.distance), k.lost});
     c[n] = k.trig.cos_phi * k.trig.cos_theta;
     Scatter(c, 19, out, size);
     out += 19;
   }
   for (int t = 0; t < world_.targets(); ++t) {
-    const TargetState<Pack>& s = world_.target(t);
+    const dynamics::TargetState<Pack>& s = world_.target(t);
     const Vec3<Pack> v = Scale(s.v_WT, inv_v) * Pack(20.0);
     const Pack columns[6] = {s.p_WT.x, s.p_WT.y, s.p_WT.z, v.x, v.y, v.z};
     Scatter(columns, 6, out, size);
@@ -89,4 +89,4 @@ void EnvGroup::WriteStates() {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::env

@@ -9,7 +9,7 @@
 #include "auv_common/error.hpp"
 #include "stg_agent/agent/agent.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
@@ -25,12 +25,12 @@ void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
       }
     }
     Pack a[6];
-    const Knowledge<Pack>& k = env.truth(i);
-    PursuitAction(c.options, s, k, neighbours.data(), count, a);
-    if (s.control.interface == ActionInterface::kTau6) {
-      const VehicleState<Pack>& v = env.world().vehicle(i);
+    const agent::Knowledge<Pack>& k = env.truth(i);
+    agent::PursuitAction(c.options, s, k, neighbours.data(), count, a);
+    if (s.control.interface == dynamics::ActionInterface::kTau6) {
+      const dynamics::VehicleState<Pack>& v = env.world().vehicle(i);
       Pack fraction[6];
-      VelocityController(s.control, s.vehicle, DesiredVelocity(s.vehicle, a), v.R_WB, v.v_WB,
+      dynamics::VelocityController(s.control, s.vehicle, dynamics::DesiredVelocity(s.vehicle, a), v.R_WB, v.v_WB,
                          RpyOf(v.trig), v.w_WB_B, fraction);
       std::copy(fraction, fraction + 6, a);
     }
@@ -45,8 +45,8 @@ void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
 Controller MakeController(const std::string& name, const Scenario& scenario) {
   Controller c;
   c.name = name;
-  if (ParseBuiltin(name, &c.builtin, &c.options)) return c;
-  auto policy = std::make_shared<Policy>(Policy::LoadOnnx(name));
+  if (agent::ParseBuiltin(name, &c.builtin, &c.options)) return c;
+  auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(name));
   policy->RequireFits(scenario);
   c.policy = policy;
   return c;
@@ -55,7 +55,7 @@ Controller MakeController(const std::string& name, const Scenario& scenario) {
 void Decide(const Controller& c, const EnvGroup& env, double* actions) {
   const int n = env.agents(), size = env.action_size();
   const int rows = kLanes * n;
-  if (c.policy == nullptr && c.builtin == BuiltinKind::kIdle) {
+  if (c.policy == nullptr && c.builtin == agent::BuiltinKind::kIdle) {
     std::fill(actions, actions + rows * size, 0.0);
     return;
   }
@@ -70,17 +70,17 @@ void Decide(const Controller& c, const EnvGroup& env, double* actions) {
       c.policy->Mean(env.observations() + static_cast<std::ptrdiff_t>(row) * env.observation_size(),
                      a);
     } else {
-      BuiltinAction(c.builtin, c.options, env.agent(row / n, row % n), a);
+      agent::BuiltinAction(c.builtin, c.options, env.agent(row / n, row % n), a);
     }
     for (int k = 0; k < size; ++k) actions[row * size + k] = static_cast<double>(a[k]);
   }
 }
 
-std::vector<EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
                                      int episodes, std::uint64_t seed, int workers,
                                      const std::function<void(int)>& progress) {
   const int groups = (episodes + kLanes - 1) / kLanes;
-  std::vector<EpisodeMetrics> metrics(static_cast<size_t>(groups * kLanes));
+  std::vector<task::EpisodeMetrics> metrics(static_cast<size_t>(groups * kLanes));
   std::atomic<int> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
@@ -122,4 +122,4 @@ std::vector<EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller&
   return metrics;
 }
 
-}  // namespace stg
+}  // namespace stg::env

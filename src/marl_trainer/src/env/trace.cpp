@@ -13,7 +13,7 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/env/env.hpp"
 
-namespace stg {
+namespace stg::env {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -172,7 +172,7 @@ Columns OurColumns(const EnvGroup& env, const Scenario& s) {
     add(group, names[2], [f](int i) { return f(i).z; });
   };
   const EnvGroup* e = &env;
-  const auto v = [e](int i) -> const VehicleState<Pack>& { return e->world().vehicle(i); };
+  const auto v = [e](int i) -> const dynamics::VehicleState<Pack>& { return e->world().vehicle(i); };
   vec("state", {"px", "py", "pz"}, [v](int i) { return Lane(v(i).p_WB, 0); });
   vec("state", {"vx", "vy", "vz"}, [v](int i) { return Lane(v(i).v_WB, 0); });
   vec("state", {"u", "v", "w"}, [v](int i) { return Lane(v(i).v_WB_B, 0); });
@@ -192,7 +192,7 @@ Columns OurColumns(const EnvGroup& env, const Scenario& s) {
       return static_cast<double>(e->observations()[i * e->observation_size() + k]);
     });
   }
-  const auto term = [e](int i) -> const RewardTerms<Pack>& { return e->terms(i); };
+  const auto term = [e](int i) -> const task::RewardTerms<Pack>& { return e->terms(i); };
   add("reward", "reward", [term](int i) { return Lane(term(i).total, 0); });
   add("reward", "r_track", [term](int i) { return Lane(term(i).track, 0); });
   add("reward", "r_obs", [term](int i) { return Lane(term(i).observation, 0); });
@@ -217,15 +217,15 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
   s.agents = c.Whole("agents", 1, 255);
   s.time.dt_s = c.Number("dt");
   c.Choice("action_interface",
-           {{"velocity3", [&] { s.control.interface = ActionInterface::kVelocity3; }},
-            {"tau6", [&] { s.control.interface = ActionInterface::kTau6; }}});
+           {{"velocity3", [&] { s.control.interface = dynamics::ActionInterface::kVelocity3; }},
+            {"tau6", [&] { s.control.interface = dynamics::ActionInterface::kTau6; }}});
   s.control.smoothing = c.Number("action_smoothing");
   s.control.max_delta = c.Number("action_max_delta");
   s.control.velocity_gain = c.Number("velocity_gain");
   s.control.attitude_gain = c.Number("attitude_gain");
   s.control.rate_gain = c.Number("rate_gain");
-  c.Choice("reward", {{"stg", [&] { s.reward.kind = RewardKind::kRelease; }},
-                      {"raw", [&] { s.reward.kind = RewardKind::kReleaseRaw; }}});
+  c.Choice("reward", {{"stg", [&] { s.reward.kind = task::RewardKind::kRelease; }},
+                      {"raw", [&] { s.reward.kind = task::RewardKind::kReleaseRaw; }}});
   const YAML::Node weights = c.Get("reward_weights");
   const auto weight = [&](const char* key) { return c.Number(weights[key], key); };
   for (const char* key :
@@ -326,4 +326,4 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
   return result;
 }
 
-}  // namespace stg
+}  // namespace stg::env

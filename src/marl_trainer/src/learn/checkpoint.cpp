@@ -15,7 +15,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -238,4 +238,4 @@ std::optional<TrainState> LoadNewestCheckpoint(const std::string& folder, std::o
   return std::nullopt;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

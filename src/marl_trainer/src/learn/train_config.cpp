@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "auv_common/error.hpp"
-#include "auv_common/numbers/lanes.hpp"
+#include "auv_common/numbers/vector.hpp"
 #include "marl_trainer/learn/nn/actor_critic.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 void Require(bool ok, const char* option, const std::string& what) {
@@ -98,8 +98,8 @@ Scenario VariantScenario(const Scenario& scenario, const std::string& variant) {
   Scenario s = scenario;
   if (variant == "stg") return s;
   s.observation.graph = false;
-  s.reward.kind = RewardKind::kReleaseRaw;
-  RewardWeights raw;
+  s.reward.kind = task::RewardKind::kReleaseRaw;
+  task::RewardWeights raw;
   raw.tracking = 0.55;
   raw.observation = 0.20;
   raw.coordination = 0.10;
@@ -115,7 +115,7 @@ Scenario VariantScenario(const Scenario& scenario, const std::string& variant) {
   if (variant != "tau6") {
     throw UserError("--variant: '" + variant + "' is not stg, semantic, velocity3 or tau6");
   }
-  s.control.interface = ActionInterface::kTau6;
+  s.control.interface = dynamics::ActionInterface::kTau6;
   s.control.action_scale = 0.18;
   s.control.smoothing = 0.0;
   s.control.max_delta = 0.0;
@@ -154,4 +154,4 @@ TrainConfig TrainConfigFromJson(const nlohmann::ordered_json& json) {
   return c;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -8,7 +8,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 constexpr double kLineInterval = 2.0;  // [s] between progress lines without a validation
@@ -50,7 +50,7 @@ std::string Number(double value) {
 std::string Header() {
   std::string header;
   for (const auto& column : Columns(TrainRecord())) header += std::string(column.first) + ",";
-  for (const auto& item : EpisodeMetrics().Items()) header += "validation_" + item.first + ",";
+  for (const auto& item : task::EpisodeMetrics().Items()) header += "validation_" + item.first + ",";
   header.back() = '\n';
   return header;
 }
@@ -100,7 +100,7 @@ void TrainLog::Add(const TrainRecord& r) {
 
   std::string row;
   for (const auto& column : Columns(r)) row += Number(column.second) + ",";
-  for (const auto& item : EpisodeMetrics().Items()) {
+  for (const auto& item : task::EpisodeMetrics().Items()) {
     row += (r.validated ? Number(r.validation.Mean(item.first)) : "") + ",";
   }
   row.back() = '\n';
@@ -221,4 +221,4 @@ void TrainLog::Load(const std::string& text) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -8,10 +8,11 @@
 #include <fstream>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,7 +47,7 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
     if (s.agents != base.agents || s.target.count != base.target.count ||
         s.time.episode_steps != base.time.episode_steps ||
         s.control.interface != base.control.interface ||
-        ObservationLayout(s) != ObservationLayout(base)) {
+        agent::ObservationLayout(s) != agent::ObservationLayout(base)) {
       throw UserError("the scenarios to train in differ in swarm, episode or observation");
     }
   }
@@ -200,7 +201,7 @@ void Trainer::Iterate(TrainRecord* record) {
   state_.env_steps += static_cast<std::int64_t>(config_.envs) * config_.horizon;
 
   double env = 0.0, inference = 0.0;
-  std::vector<EpisodeMetrics> episodes;
+  std::vector<task::EpisodeMetrics> episodes;
   for (const auto& unit : units_) {
     env += unit->env_seconds();
     inference += unit->inference_seconds();
@@ -229,7 +230,7 @@ void Trainer::Iterate(TrainRecord* record) {
   }
   record->episodes = static_cast<int>(episodes.size());
   if (!episodes.empty()) {
-    const MetricSummary summary = Summarise(episodes);
+    const task::MetricSummary summary = task::Summarise(episodes);
     record->train_return = summary.Mean("return");
     record->train_tail_distance = summary.Mean("tail_distance");
     record->train_lost_rate = summary.Mean("lost_rate");
@@ -239,7 +240,7 @@ void Trainer::Iterate(TrainRecord* record) {
 void Trainer::Validate(TrainRecord* record) {
   const double begin = Now();
   last_validation_ =
-      Summarise(validation_.Run(state_.parameters.data(), learner_.scales().observations));
+      task::Summarise(validation_.Run(state_.parameters.data(), learner_.scales().observations));
   record->validated = true;
   record->validation = last_validation_;
   if (last_validation_.Mean("return") > state_.best_return) {
@@ -280,12 +281,12 @@ void Trainer::Save() {
       (state_.env_steps / config_.checkpoint_interval + 1) * config_.checkpoint_interval;
 }
 
-Policy Trainer::MakePolicy() const {
-  PolicyMetadata m;
+agent::Policy Trainer::MakePolicy() const {
+  agent::PolicyMetadata m;
   m.id = scenario_.name + "-" + config_.variant + "-" + config_.preset + "-seed" +
          std::to_string(config_.seed) + "-" + std::to_string(state_.env_steps);
-  m.observation_layout = ObservationLayout(train_scenario_);
-  m.action_interface = ActionInterfaceName(train_scenario_.control.interface);
+  m.observation_layout = agent::ObservationLayout(train_scenario_);
+  m.action_interface = agent::ActionInterfaceName(train_scenario_.control.interface);
   m.scenario_hash = ScenarioHash(train_scenario_);
   m.training_step = state_.env_steps;
   m.seed = config_.seed;
@@ -304,4 +305,4 @@ void Trainer::SavePolicy(const std::string& name) const {
   MakePolicy().SaveOnnx((fs::path(options_.out) / name).string());
 }
 
-}  // namespace stg
+}  // namespace stg::learn

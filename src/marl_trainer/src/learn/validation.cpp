@@ -4,7 +4,7 @@
 
 #include "marl_trainer/learn/train_config.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Environments that one worker flies through whole episodes.
 struct Validation::Unit {
@@ -14,7 +14,7 @@ struct Validation::Unit {
        int total_envs)
       : workspace(networks.actor, envs * scenario.agents),
         observations(static_cast<std::size_t>(envs * scenario.agents * networks.actor.inputs())) {
-    EnvOptions options;
+    env::EnvOptions options;
     options.seed = kValidationSeed;
     options.total_envs = total_envs;
     for (int env = 0; env < envs; env += kLanes) {
@@ -24,31 +24,31 @@ struct Validation::Unit {
   }
 
   void Fly(const ActorCritic& networks, const float* parameters, const Normaliser& normaliser,
-           int steps, EpisodeMetrics* metrics) {
+           int steps, task::EpisodeMetrics* metrics) {
     const int rows_per_group = kLanes * groups.front().agents();
     const int rows = rows_per_group * static_cast<int>(groups.size());
     const int size = networks.action_size();
-    for (EnvGroup& group : groups) group.RestartAt(0, 0);
+    for (env::EnvGroup& group : groups) group.RestartAt(0, 0);
     for (int t = 0; t < steps; ++t) {
       float* x = observations.data();
-      for (EnvGroup& group : groups) {
+      for (env::EnvGroup& group : groups) {
         normaliser.Apply(group.observations(), rows_per_group, x);
         x += rows_per_group * networks.actor.inputs();
       }
       networks.actor.Forward(parameters, observations.data(), rows, &workspace);
       float* action = workspace.output();
       SquashMean(networks.action_scale, rows * size, action);
-      for (EnvGroup& group : groups) {
+      for (env::EnvGroup& group : groups) {
         group.Step(action);
         action += rows_per_group * size;
       }
     }
-    for (EnvGroup& group : groups) {
+    for (env::EnvGroup& group : groups) {
       for (int lane = 0; lane < kLanes; ++lane) *metrics++ = group.metrics(lane);
     }
   }
 
-  std::vector<EnvGroup> groups;
+  std::vector<env::EnvGroup> groups;
   Mlp::Workspace workspace;
   std::vector<float> observations;
 };
@@ -68,9 +68,9 @@ Validation::Validation(const Scenario& scenario, const ActorCritic& networks, in
 
 Validation::~Validation() = default;
 
-std::vector<EpisodeMetrics> Validation::Run(const float* parameters,
+std::vector<task::EpisodeMetrics> Validation::Run(const float* parameters,
                                             const Normaliser& observations) {
-  std::vector<EpisodeMetrics> metrics(units_.size() * static_cast<std::size_t>(Unit::kEnvs));
+  std::vector<task::EpisodeMetrics> metrics(units_.size() * static_cast<std::size_t>(Unit::kEnvs));
   pool_->Run(static_cast<int>(units_.size()), [&](int u, int) {
     units_[static_cast<std::size_t>(u)]->Fly(
         networks_, parameters, observations, episode_steps_,
@@ -80,4 +80,4 @@ std::vector<EpisodeMetrics> Validation::Run(const float* parameters,
   return metrics;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

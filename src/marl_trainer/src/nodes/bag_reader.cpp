@@ -11,11 +11,12 @@
 
 #include "auv_common/error.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "record_inlet.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +107,4 @@ std::vector<std::string> FindBags(const std::vector<std::string>& names) {
   return bags;
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

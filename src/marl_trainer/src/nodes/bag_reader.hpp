@@ -6,11 +6,11 @@
 
 #include "marl_trainer/learn/recorded/recorded.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// What one bag holds for the trainer.
 struct BagContents {
-  std::vector<RecordedEpisode> episodes;  ///< not yet checked
+  std::vector<learn::RecordedEpisode> episodes;  ///< not yet checked
   std::uint64_t foreign_messages = 0;     ///< of another type or of an AUV that is not there
   std::string error;                      ///< why the bag, or its rest, could not be used
 };
@@ -24,4 +24,4 @@ BagContents ReadBag(const std::string& path, const Scenario& scenario);
 /// name that does not exist or a folder without bags.
 std::vector<std::string> FindBags(const std::vector<std::string>& names);
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -2,7 +2,7 @@
 
 #include "auv_dynamics/nodes/conversions.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 RecordInlet::RecordInlet(const Scenario& scenario, const std::string& source)
     : period_(scenario.decision_period()),
@@ -14,7 +14,7 @@ void RecordInlet::Add(int agent, const auv_msgs::AgentStep& m) {
     ++foreign_;
     return;
   }
-  AgentRecord record;
+  learn::AgentRecord record;
   record.layout_version = m.observation_layout;
   record.observation = m.observation;
   record.action = m.action;
@@ -25,7 +25,7 @@ void RecordInlet::Add(int agent, const auv_msgs::AgentStep& m) {
 }
 
 void RecordInlet::Add(const auv_msgs::StepReport& m) {
-  RewardRecord record;
+  learn::RewardRecord record;
   record.state = m.global_state;
   record.final_state = m.final_state;
   record.reward = m.reward;
@@ -34,4 +34,4 @@ void RecordInlet::Add(const auv_msgs::StepReport& m) {
   episodes_.Add(m.episode, start, m.step, std::move(record));
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -9,7 +9,7 @@
 
 #include "marl_trainer/learn/recorded/recorded.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Turns messages of one source, live or from a bag, into episodes.
 class RecordInlet {
@@ -20,15 +20,15 @@ class RecordInlet {
   void Add(int agent, const auv_msgs::AgentStep& message);
   void Add(const auv_msgs::StepReport& message);
 
-  EpisodeAssembler& episodes() { return episodes_; }
+  learn::EpisodeAssembler& episodes() { return episodes_; }
   /// Messages that belong to no AUV of the scenario.
   std::uint64_t foreign() const { return foreign_; }
 
  private:
   const TimeNs period_;  ///< of decisions [ns]
   const int agents_;
-  EpisodeAssembler episodes_;
+  learn::EpisodeAssembler episodes_;
   std::uint64_t foreign_ = 0;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

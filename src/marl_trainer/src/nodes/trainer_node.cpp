@@ -17,7 +17,7 @@
 #include "stg_agent/nodes/topics.hpp"
 #include "trainer_parameters.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kUnlimited = 0;     // queue: nothing may be lost during an update
@@ -34,7 +34,7 @@ std::string Seconds(const ros::WallDuration& d) {
 }  // namespace
 
 TrainerNode::TrainerNode()
-    : scenario_(LoadScenarioParameters()),
+    : scenario_(LoadScenarioParameters<Scenario>(config::Scope::kWhole)),
       bags_(LoadBagNames()),
       episodes_per_update_(IntegerParameter("episodes_per_update", 8, 1, 10000)),
       updates_(IntegerParameter("updates", 0, 0, 1000000)),
@@ -43,14 +43,14 @@ TrainerNode::TrainerNode()
       agent_policies_(static_cast<std::size_t>(scenario_.agents)),
       began_(ros::WallTime::now()),
       health_("trainer", "trainer", [this](auto& status) { Report(status); }) {
-  RecordedTrainer::Options options;
+  learn::RecordedTrainer::Options options;
   options.out = TextParameter("out", "");
   if (options.out.empty()) throw UserError("parameter out: must name a folder");
   options.policy = TextParameter("start_policy", "");
   options.workers = IntegerParameter("workers", 2, 1, 1024);
   options.log = &std::cout;
-  trainer_ = std::make_unique<RecordedTrainer>(
-      scenario_, LoadTrainParameters(RecordedConfig(scenario_)), options);
+  trainer_ = std::make_unique<learn::RecordedTrainer>(
+      scenario_, LoadTrainParameters(learn::RecordedConfig(scenario_)), options);
 }
 
 void TrainerNode::Spin() {
@@ -63,9 +63,9 @@ void TrainerNode::Spin() {
   }
 }
 
-void TrainerNode::Judge(RecordedEpisode episode) {
-  const Finding finding = trainer_->Check(episode);
-  if (finding.flaw == Flaw::kNone) {
+void TrainerNode::Judge(learn::RecordedEpisode episode) {
+  const learn::Finding finding = trainer_->Check(episode);
+  if (finding.flaw == learn::Flaw::kNone) {
     ++recording_.used;
     collection_.push_back(std::move(episode));
     return;
@@ -83,7 +83,7 @@ void TrainerNode::TrainOnBags() {
       ROS_ERROR("trainer: %s: %s", bag.c_str(), contents.error.c_str());
     }
     recording_.foreign_messages += contents.foreign_messages;
-    for (RecordedEpisode& episode : contents.episodes) Judge(std::move(episode));
+    for (learn::RecordedEpisode& episode : contents.episodes) Judge(std::move(episode));
     health_.Tick();
   }
   std::cout << "trainer: " << recording_.Text() << std::endl;
@@ -119,7 +119,7 @@ void TrainerNode::TrainLive() {
   while (ros::ok() && !finished) {
     HandleMessages(0.05);
     UpdateAgents();
-    for (RecordedEpisode& episode : inlet_->episodes().TakeDone()) {
+    for (learn::RecordedEpisode& episode : inlet_->episodes().TakeDone()) {
       Judge(std::move(episode));
       collected_ = ros::WallTime::now();
     }
@@ -204,9 +204,9 @@ void TrainerNode::Learn() {
   PauseWorld(true);
   // However this ends: the world does not stand still for ever.
   const std::shared_ptr<void> resume(nullptr, [this](void*) { PauseWorld(false); });
-  const RecordedTrainer::Progress progress = trainer_->Update(collection_);
+  const learn::RecordedTrainer::Progress progress = trainer_->Update(collection_);
   ++updates_done_;
-  for (const RecordedEpisode& episode : collection_) {
+  for (const learn::RecordedEpisode& episode : collection_) {
     const auto summary = summaries_.find(episode.number);
     if (summary != summaries_.end()) lost_rates_.push_back(summary->second.lost_rate);
   }
@@ -228,7 +228,7 @@ bool TrainerNode::TargetReached() const {
 }
 
 /// One line of progress. Tail distance and lost rate are those of the exploring swarm.
-void TrainerNode::Print(const RecordedTrainer::Progress& p) const {
+void TrainerNode::Print(const learn::RecordedTrainer::Progress& p) const {
   double tail = 0.0, lost = 0.0;
   const auto n = static_cast<double>(std::max<std::size_t>(1, summaries_.size()));
   for (const auto& [episode, s] : summaries_) {
@@ -255,16 +255,16 @@ void TrainerNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("episodes in this collection", collection_.size());
   status.add("episodes used", recording_.used);
   for (std::size_t f = 1; f < recording_.dropped.size(); ++f) {
-    status.add(std::string("episodes dropped: ") + ToString(static_cast<Flaw>(f)),
+    status.add(std::string("episodes dropped: ") + ToString(static_cast<learn::Flaw>(f)),
                recording_.dropped[f]);
   }
   status.add("bags unreadable", recording_.unreadable_sources);
   status.add("messages of another type or AUV", recording_.foreign_messages);
   if (recording_.total_dropped() >
-          recording_.dropped[static_cast<std::size_t>(Flaw::kUnfinished)] ||
+          recording_.dropped[static_cast<std::size_t>(learn::Flaw::kUnfinished)] ||
       recording_.unreadable_sources > 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "recordings dropped");
   }
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

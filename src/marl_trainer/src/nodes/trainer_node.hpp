@@ -15,7 +15,7 @@
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 #include "record_inlet.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// MAPPO over recorded episodes: from bags, one update; or live, update after update, with each
 /// new policy loaded into the agents.
@@ -34,9 +34,9 @@ class TrainerNode {
   void TrainLive();
   void Subscribe();
   /// Adds the episode to the collection, or counts and tells why not.
-  void Judge(RecordedEpisode episode);
+  void Judge(learn::RecordedEpisode episode);
   void Learn();
-  void Print(const RecordedTrainer::Progress& progress) const;
+  void Print(const learn::RecordedTrainer::Progress& progress) const;
 
   void OnAgentStep(int agent, const auv_msgs::AgentStep& message);
   void OnReport(const auv_msgs::StepReport& message);
@@ -54,10 +54,10 @@ class TrainerNode {
   std::vector<std::string> bags_;
   int episodes_per_update_, updates_, window_;
   double target_lost_rate_;
-  std::unique_ptr<RecordedTrainer> trainer_;
+  std::unique_ptr<learn::RecordedTrainer> trainer_;
 
-  std::vector<RecordedEpisode> collection_;
-  RecordingReport recording_;
+  std::vector<learn::RecordedEpisode> collection_;
+  learn::RecordingReport recording_;
   std::unique_ptr<RecordInlet> inlet_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<std::string> agent_policies_;  ///< with which each agent decided last; "": unknown
@@ -69,4 +69,4 @@ class TrainerNode {
   Health health_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

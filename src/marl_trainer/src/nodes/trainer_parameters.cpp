@@ -9,7 +9,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/nodes/parameters.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 void Load(const std::string& name, std::string* value) { *value = TextParameter(name, *value); }
@@ -33,10 +33,10 @@ std::enable_if_t<std::is_integral_v<Integer>> Load(const std::string& name, Inte
 
 }  // namespace
 
-TrainConfig LoadTrainParameters(const TrainConfig& defaults) {
-  TrainConfig config = defaults;
+learn::TrainConfig LoadTrainParameters(const learn::TrainConfig& defaults) {
+  learn::TrainConfig config = defaults;
   const ros::NodeHandle node("~");
-  VisitTrainConfig(config, [&node](const char* option, auto& field, const char*) {
+  learn::VisitTrainConfig(config, [&node](const char* option, auto& field, const char*) {
     std::string name = option;
     std::replace(name.begin(), name.end(), '-', '_');
     // Private ones only: `seed` of the world, say, is another one.
@@ -54,4 +54,4 @@ std::vector<std::string> LoadBagNames() {
   return names;
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -12,7 +12,7 @@ void Describe(Scenario* s, config::Table* t) {
   t->Add("mode", config::Enum(&s->mode, {"truth", "acoustic"}), config::kNone, "-",
          "what agents know: true states, or own sensors and received packets");
   Describe(&s->time, t);
-  DescribeSections(static_cast<dynamics::WorldConfig*>(s), t);
+  dynamics::DescribeSections(static_cast<dynamics::WorldConfig*>(s), t);
   Describe(&s->channel, t);
   Describe(&s->track, t);
   Describe(&s->observation, t);

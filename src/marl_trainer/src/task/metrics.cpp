@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stg {
+namespace stg::task {
 
 std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
   return {{"return", episode_return},
@@ -58,4 +58,4 @@ MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes) {
   return s;
 }
 
-}  // namespace stg
+}  // namespace stg::task

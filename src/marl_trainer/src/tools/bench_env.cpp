@@ -6,7 +6,8 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/env/env.hpp"
 
 namespace {
@@ -14,8 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Environment steps per second of `groups` on one thread for about `seconds`.
-double Run(std::vector<stg::EnvGroup>* groups, double seconds) {
-  const stg::EnvGroup& first = groups->front();
+double Run(std::vector<stg::env::EnvGroup>* groups, double seconds) {
+  const stg::env::EnvGroup& first = groups->front();
   const size_t size = static_cast<size_t>(stg::kLanes * first.agents() * first.action_size());
   // Random actions, drawn beforehand: the bench is of the environment.
   std::vector<std::vector<float>> actions(64, std::vector<float>(size));
@@ -40,10 +41,10 @@ double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
   std::vector<std::thread> threads;
   for (int w = 0; w < workers; ++w) {
     threads.emplace_back([&, w] {
-      std::vector<stg::EnvGroup> groups;
+      std::vector<stg::env::EnvGroup> groups;
       const int count = std::max(1, envs / stg::kLanes / workers);
       for (int g = 0; g < count; ++g) {
-        stg::EnvOptions o;
+        stg::env::EnvOptions o;
         o.first_env = (w * count + g) * stg::kLanes;
         o.total_envs = count * workers * stg::kLanes;
         groups.emplace_back(s, o);
@@ -87,7 +88,7 @@ int main(int argc, char** argv) {
   try {
     const auto load = [&](std::vector<std::string> extra) {
       extra.insert(extra.begin(), overrides.begin(), overrides.end());
-      return stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, extra);
+      return stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, extra);
     };
     const stg::Scenario s = load({});
     const double rate = Bench(s, envs, workers, seconds);

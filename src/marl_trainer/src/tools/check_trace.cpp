@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/env/trace.hpp"
 
 /// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
@@ -23,11 +24,11 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const stg::Scenario base = stg::LoadNamedScenario(stg::ScenarioFolder(), scenario);
+    const stg::Scenario base = stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario);
     double worst = 0.0;
     nlohmann::json traces = nlohmann::json::array();
     for (const auto& folder : folders) {
-      const stg::TraceError e = stg::ReplayTrace(stg::LoadTrace(folder, base), tolerance);
+      const stg::env::TraceError e = stg::env::ReplayTrace(stg::env::LoadTrace(folder, base), tolerance);
       worst = std::max(worst, e.max_abs_error);
       traces.push_back(
           {{"trace", folder},

@@ -7,17 +7,18 @@
 #include <thread>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 
 namespace {
 
-void WriteCsv(const std::string& file, const std::vector<stg::EpisodeMetrics>& episodes,
+void WriteCsv(const std::string& file, const std::vector<stg::task::EpisodeMetrics>& episodes,
               std::uint64_t seed) {
   std::ofstream out(file);
   out << "episode,seed";
-  for (const auto& item : stg::EpisodeMetrics{}.Items()) out << ',' << item.first;
+  for (const auto& item : stg::task::EpisodeMetrics{}.Items()) out << ',' << item.first;
   out << '\n';
   for (size_t e = 0; e < episodes.size(); ++e) {
     out << e << ',' << seed + e;
@@ -37,7 +38,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> overrides;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 3000;
-  const stg::PursuitOptions tuned;
+  const stg::agent::PursuitOptions tuned;
   bool privileged = false;
   app.add_option("--policy", policy, "ONNX file, or pursuit, pursuit_separated, idle")->required();
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
@@ -59,7 +60,7 @@ int main(int argc, char** argv) {
   app.add_flag("--privileged", privileged,
                "a built-in controller reads true states in acoustic mode, too");
   std::map<std::string, std::string> constants;
-  stg::VisitPursuitOptions(tuned, [&](const char* name, double, const char* text) {
+  stg::agent::VisitPursuitOptions(tuned, [&](const char* name, double, const char* text) {
     app.add_option(std::string("--") + name, constants[name], text);
   });
   try {
@@ -68,21 +69,21 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const stg::Scenario s = stg::ValidationScenario(
-        stg::LoadNamedScenario(stg::ScenarioFolder(), scenario, condition, overrides), variant);
+    const stg::Scenario s = stg::learn::ValidationScenario(
+        stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides), variant);
     std::string full = policy;
     for (const auto& [name, value] : constants) {
       if (value.empty()) continue;
       full += (full.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
     }
-    stg::Controller controller = stg::MakeController(full, s);
+    stg::env::Controller controller = stg::env::MakeController(full, s);
     controller.privileged = privileged;
-    const auto metrics = stg::Evaluate(s, controller, episodes, seed, workers, [&](int done) {
+    const auto metrics = stg::env::Evaluate(s, controller, episodes, seed, workers, [&](int done) {
       std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
     });
     std::fprintf(stderr, "\n");
     if (!csv.empty()) WriteCsv(csv, metrics, seed);
-    const stg::MetricSummary summary = stg::Summarise(metrics);
+    const stg::task::MetricSummary summary = stg::task::Summarise(metrics);
     nlohmann::json json = {{"policy", policy},       {"scenario", scenario},
                            {"condition", condition}, {"episodes", episodes},
                            {"seed", seed},           {"scenario_hash", stg::ScenarioHash(s)}};

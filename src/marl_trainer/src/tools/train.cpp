@@ -6,7 +6,8 @@
 #include <thread>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/trainer.hpp"
 
 namespace {
@@ -30,7 +31,7 @@ std::string PresetArgument(int argc, char** argv) {
 }
 
 int Train(int argc, char** argv) {
-  stg::TrainConfig config = stg::Preset(PresetArgument(argc, argv));
+  stg::learn::TrainConfig config = stg::learn::Preset(PresetArgument(argc, argv));
   std::string scenario_name = "medium", condition = "nominal", out;
   std::vector<std::string> overrides, mix;
   bool resume = false;
@@ -57,7 +58,7 @@ int Train(int argc, char** argv) {
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  stg::VisitTrainConfig(config, [&](const char* name, auto& field, const char* text) {
+  stg::learn::VisitTrainConfig(config, [&](const char* name, auto& field, const char* text) {
     CLI::Option* option = app.add_option(std::string("--") + name, field, text);
     if constexpr (std::is_same_v<std::decay_t<decltype(field)>, std::vector<int>>) {
       option->delimiter(',');
@@ -71,20 +72,20 @@ int Train(int argc, char** argv) {
   }
 
   const stg::Scenario scenario =
-      stg::LoadNamedScenario(stg::ScenarioFolder(), scenario_name, condition, overrides);
-  stg::Trainer::Options options;
+      stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, condition, overrides);
+  stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;
   options.workers = workers;
   options.log = &std::cout;
   for (const std::string& name : mix) {
     options.mix.push_back(
-        stg::LoadNamedScenario(stg::ScenarioFolder(), scenario_name, name, overrides));
+        stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, name, overrides));
   }
   options.stop = &stop_signal;
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
-  stg::Trainer trainer(scenario, config, options);
+  stg::learn::Trainer trainer(scenario, config, options);
   if (trainer.Run()) return 0;
   std::cout << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
             << std::endl;

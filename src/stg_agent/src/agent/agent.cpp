@@ -7,7 +7,7 @@
 #include "auv_dynamics/control/control.hpp"
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// Oldest target estimate worth sending: the packet's age field ends at 32.767 s.
@@ -28,14 +28,14 @@ int IndexOfOne(const double (&one_hot)[4]) {
 
 }  // namespace
 
-Agent::Constants::Constants(const Scenario& s)
+Agent::Constants::Constants(const AgentConfig& s)
     : scenario(s),
       codec(s),
       slots(
           static_cast<int>(Max(1.0, std::round(s.channel.transmit_period_s / s.decision_dt_s())))),
       period(s.decision_period()) {}
 
-Agent::Agent(const Scenario& scenario, int id)
+Agent::Agent(const AgentConfig& scenario, int id)
     : Agent(std::make_shared<const Constants>(scenario), id) {}
 
 Agent::Agent(const Agent& other, int id) : Agent(other.constants_, id) {}
@@ -52,7 +52,7 @@ Agent::Agent(std::shared_ptr<const Constants> constants, int id)
   }
 }
 
-std::vector<Agent> MakeAgents(const Scenario& scenario) {
+std::vector<Agent> MakeAgents(const AgentConfig& scenario) {
   std::vector<Agent> agents;
   agents.reserve(static_cast<std::size_t>(scenario.agents));
   for (int i = 0; i < scenario.agents; ++i) {
@@ -65,13 +65,13 @@ std::vector<Agent> MakeAgents(const Scenario& scenario) {
   return agents;
 }
 
-void Agent::Reset(std::uint32_t episode, const Cue& cue) {
+void Agent::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
   neighbours_.Clear();
   track_.Clear();
   mind_.Reset();
   cue_ = cue;
   cue_pending_ = cue.target == target_;
-  detection_ = Detection();
+  detection_ = dynamics::Detection();
   detection_pending_ = false;
   now_ = 0;
   episode_ = episode;
@@ -80,7 +80,7 @@ void Agent::Reset(std::uint32_t episode, const Cue& cue) {
   refused_packets_ = 0;
 }
 
-void Agent::Detect(const Detection& detection) {
+void Agent::Detect(const dynamics::Detection& detection) {
   if (detection.target != target_) return;
   if (!Finite(detection.p_WT) || !std::isfinite(detection.std_m)) {
     throw std::invalid_argument("non-finite target detection");
@@ -90,7 +90,7 @@ void Agent::Detect(const Detection& detection) {
   detection_pending_ = true;
 }
 
-const NeighbourState* Agent::Take(const Reception& reception) {
+const NeighbourState* Agent::Take(const acoustics::Reception& reception) {
   try {
     const NeighbourState state =
         constants_->codec.Decode(reception.data.data(), reception.data.size(), reception.arrival);
@@ -101,15 +101,15 @@ const NeighbourState* Agent::Take(const Reception& reception) {
   }
 }
 
-void Agent::Receive(const Reception& reception) { Take(reception); }
+void Agent::Receive(const acoustics::Reception& reception) { Take(reception); }
 
-void Agent::Observe(const NavState& nav, float* observation) {
+void Agent::Observe(const dynamics::NavState& nav, float* observation) {
   const Vec3<double> q_xyz{nav.q_WB[1], nav.q_WB[2], nav.q_WB[3]};
   if (!Finite(nav.p_WB) || !Finite(nav.v_WB_B) || !Finite(nav.w_WB_B) || !Finite(q_xyz) ||
       !std::isfinite(nav.q_WB[0])) {
     throw std::invalid_argument("non-finite navigation state");
   }
-  const Scenario& s = constants_->scenario;
+  const AgentConfig& s = constants_->scenario;
   Begin(nav.stamp);
   neighbours_.Predict(nav.stamp, nav.p_WB);
   UpdateTrack();
@@ -159,7 +159,7 @@ bool Agent::Current() const {
 }
 
 NeighbourView<double> Agent::SeeNeighbours() const {
-  const Scenario& s = constants_->scenario;
+  const AgentConfig& s = constants_->scenario;
   NeighbourView<double> view;
   for (const int id : neighbours_.known()) {
     const Neighbour& n = neighbours_.at(id);
@@ -196,7 +196,7 @@ TaskView Agent::task() const {
 }
 
 AgentOutput Agent::Act(const float* action) {
-  const Scenario& s = constants_->scenario;
+  const AgentConfig& s = constants_->scenario;
   double wanted[6];
   for (int k = 0; k < s.action_size(); ++k) {
     wanted[k] = static_cast<double>(action[k]);
@@ -247,4 +247,4 @@ Packet Agent::MakePacket() const {
   return constants_->codec.Encode(state);
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// One lane of a structure of numbers that is a template over their type.
@@ -38,13 +38,13 @@ AgentLanes::AgentLanes(const Agent& first, int id)
   for (int lane = 0; lane < kLanes; ++lane) agents_.emplace_back(first, id);
 }
 
-void AgentLanes::Reset(int lane, std::uint32_t episode, const Cue& cue) {
+void AgentLanes::Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue) {
   At(lane).Reset(episode, cue);
   for (Report& r : reports_) SetLane(&r.known, lane, 0.0);
   mind_.Reset();  // of all lanes: each of them starts
 }
 
-void AgentLanes::Receive(int lane, const Reception& reception) {
+void AgentLanes::Receive(int lane, const acoustics::Reception& reception) {
   const NeighbourState* state = At(lane).Take(reception);
   if (!state) return;
   Report& r = reports_[static_cast<std::size_t>(state->source)];
@@ -55,7 +55,7 @@ void AgentLanes::Receive(int lane, const Reception& reception) {
   SetLane(&r.known, lane, 1.0);
 }
 
-void AgentLanes::Observe(const Navigation<Pack>& nav) {
+void AgentLanes::Observe(const dynamics::Navigation<Pack>& nav) {
   Pack finite = Finiteness(nav.p_WB) + Finiteness(nav.v_WB_B) + Finiteness(nav.w_WB_B);
   for (const Pack& q : nav.q_WB) finite += q - q;
   if (AnyNonZero(finite)) throw std::invalid_argument("non-finite navigation state");
@@ -77,7 +77,7 @@ void AgentLanes::Observe(const Navigation<Pack>& nav) {
   mind_.SetNeighbours(scenario(), SeeNeighbours(target.p_WT));
 }
 
-void AgentLanes::Forget(const Mask<Pack>& past, const Navigation<Pack>& nav) {
+void AgentLanes::Forget(const Mask<Pack>& past, const dynamics::Navigation<Pack>& nav) {
   const Pack gone = Select(past, Pack(1.0), Pack(0.0));
   for (int lane = 0; lane < kLanes; ++lane) {
     if (Lane(gone, lane) == 0.0) continue;
@@ -110,7 +110,7 @@ TargetView<Pack> AgentLanes::SeeTarget() const {
 }
 
 NeighbourView<Pack> AgentLanes::SeeNeighbours(const Vec3<Pack>& p_WT) const {
-  const Scenario& s = scenario();
+  const AgentConfig& s = scenario();
   const Pack zero(0.0), nowhere(1e9);
   const bool nearest = s.observation.order == NeighbourOrder::kNearest;
   const int self = agents_.front().id();
@@ -156,4 +156,4 @@ const Agent& AgentLanes::agent(int lane) {
   return a;
 }
 
-}  // namespace stg
+}  // namespace stg::agent

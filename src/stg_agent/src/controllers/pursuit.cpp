@@ -7,7 +7,7 @@
 #include "auv_common/error.hpp"
 #include "stg_agent/agent/agent.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// Repulsion reaches centimetres; more neighbours than this cannot be that close.
@@ -72,7 +72,7 @@ bool ParseBuiltin(const std::string& text, BuiltinKind* kind, PursuitOptions* op
 
 void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent& agent,
                    float* action) {
-  const Scenario& s = agent.scenario();
+  const AgentConfig& s = agent.scenario();
   const Knowledge<double>& k = agent.knowledge();
   double a[6] = {};
   if (kind != BuiltinKind::kIdle) {
@@ -85,11 +85,11 @@ void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent&
     }
     PursuitAction(options, s, k, offsets, count, a);
   }
-  if (s.control.interface == ActionInterface::kTau6 && kind != BuiltinKind::kIdle) {
-    const Vec3<double> v_des_W = DesiredVelocity(s.vehicle, a);
-    VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B, a);
+  if (s.control.interface == dynamics::ActionInterface::kTau6 && kind != BuiltinKind::kIdle) {
+    const Vec3<double> v_des_W = dynamics::DesiredVelocity(s.vehicle, a);
+    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B, a);
   }
   for (int n = 0; n < s.action_size(); ++n) action[n] = static_cast<float>(a[n]);
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-namespace stg {
+namespace stg::agent {
 
-NeighbourTable::NeighbourTable(const Scenario& scenario, int self)
+NeighbourTable::NeighbourTable(const AgentConfig& scenario, int self)
     : channel_(scenario.channel),
       max_age_s_(scenario.track.neighbour_max_age_s),
       half_extent_m_(scenario.workspace.half_extent_m),
@@ -87,4 +87,4 @@ int NeighbourTable::Nearest(int count, int* ids) const {
   return found;
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// Stops a target at a wall and turns its velocity component back, as the world does.
@@ -33,7 +33,7 @@ void Information(const TargetEstimate& e, double (*I)[3]) {
 
 }  // namespace
 
-TargetTrack::TargetTrack(const Scenario& scenario)
+TargetTrack::TargetTrack(const AgentConfig& scenario)
     : intensity_(scenario.track.process_accel_std_mps2 * scenario.track.process_accel_std_mps2 *
                  scenario.decision_dt_s()),
       floor_std_m_(scenario.track.measurement_std_m),
@@ -46,7 +46,7 @@ void TargetTrack::Clear() {
   started_ = observed_ = false;
   now_ = TargetEstimate();
   shared_ = SharedEstimate();
-  previous_rejected_ = stg::Detection();
+  previous_rejected_ = stg::dynamics::Detection();
   rejected_ = 0;
 }
 
@@ -81,7 +81,7 @@ void TargetTrack::Remember(TimeNs information, bool observation) {
   shared_ = SharedEstimate{information, now_.p_WT - now_.v_WT * back, now_.v_WT, Sqrt(now_.pp)};
 }
 
-void TargetTrack::Detect(const Detection& detection) {
+void TargetTrack::Detect(const dynamics::Detection& detection) {
   const double std_m = Max(detection.std_m, floor_std_m_);
   if (!started_) {
     Start(detection.p_WT, std_m, detection.stamp);
@@ -108,7 +108,7 @@ void TargetTrack::Detect(const Detection& detection) {
   Remember(std::max(shared_.stamp, detection.stamp), true);
 }
 
-void TargetTrack::Restart(const Detection& newest, double std_m) {
+void TargetTrack::Restart(const dynamics::Detection& newest, double std_m) {
   // Two-point differencing: position from the newest, velocity from the last two.
   const double t = Seconds(newest.stamp - previous_rejected_.stamp);
   Start(newest.p_WT, std_m, newest.stamp);
@@ -169,4 +169,4 @@ void TargetTrack::Fuse(const SharedEstimate& shared) {
   Remember(std::max(shared_.stamp, shared.stamp), true);
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -4,12 +4,12 @@
 
 #include "auv_dynamics/nodes/conversions.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
-void SetTaskState(const Agent& agent, const AgentOutput& output, auv_msgs::TaskState* m) {
-  const TaskView task = agent.task();
-  const Knowledge<double>& k = agent.knowledge();
-  const TargetEstimate& target = agent.track().estimate();
+void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output, auv_msgs::TaskState* m) {
+  const agent::TaskView task = agent.task();
+  const agent::Knowledge<double>& k = agent.knowledge();
+  const agent::TargetEstimate& target = agent.track().estimate();
   std::copy(task.z_track.begin(), task.z_track.end(), m->z_track.begin());
   std::copy(task.graph.begin(), task.graph.end(), m->graph_summary.begin());
   m->phase = static_cast<std::uint8_t>(task.phase);
@@ -32,4 +32,4 @@ void SetTaskState(const Agent& agent, const AgentOutput& output, auv_msgs::TaskS
   }
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

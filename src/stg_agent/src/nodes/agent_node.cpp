@@ -10,10 +10,11 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
@@ -23,7 +24,7 @@ constexpr std::uint32_t kLayoutVersion = 1;  // "stg-1"
 }  // namespace
 
 AgentNode::AgentNode()
-    : scenario_(LoadScenarioParameters()),
+    : scenario_(LoadScenarioParameters<agent::AgentConfig>()),
       id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
       body_frame_(frames::Body(id_)),
       agent_(scenario_, id_),
@@ -37,7 +38,7 @@ AgentNode::AgentNode()
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
   const auto own = [this](const char* name) { return topics::AuvTopic(id_, name); };
-  if (scenario_.control.interface == ActionInterface::kVelocity3) {
+  if (scenario_.control.interface == dynamics::ActionInterface::kVelocity3) {
     command_ = node.advertise<geometry_msgs::TwistStamped>(own(topics::kCmdVel), kQueue, true);
   } else {
     command_ = node.advertise<geometry_msgs::WrenchStamped>(own(topics::kWrench), kQueue, true);
@@ -170,7 +171,7 @@ void AgentNode::DecideIfDue() {
 }
 
 void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
-  Cue cue;
+  dynamics::Cue cue;
   cue.target = -1;  // none
   if (sync.cue_valid && FiniteVector(sync.cue_position) && Finite(sync.cue_std) &&
       sync.cue_std >= 0.0) {
@@ -188,7 +189,7 @@ void AgentNode::TakeDetections(TimeNs stamp) {
   for (const auto& m : detections_) {
     const TimeNs t = NsOf(m->header.stamp);
     if (t < start_ || t > stamp) continue;
-    Detection detection;
+    dynamics::Detection detection;
     detection.stamp = t - start_;
     detection.target = static_cast<int>(m->target);
     detection.p_WT = VectorOf(m->position);
@@ -206,7 +207,7 @@ void AgentNode::TakeReceptions(TimeNs stamp) {
     const TimeNs end = NsOf(m->header.stamp);
     if (end <= start_ || end > stamp) continue;
     for (const auto& packet : m->packets) {
-      Reception reception;
+      acoustics::Reception reception;
       if (!ReceptionOf(packet, id_, start_, &reception)) {
         refused_receptions_.Add(Refusals::kMalformed);
       } else if (reception.arrival < 0 || reception.arrival > stamp - start_) {
@@ -245,14 +246,14 @@ void AgentNode::Decide() {
 }
 
 void AgentNode::Command() {
-  const AgentOutput& output = output_;
+  const agent::AgentOutput& output = output_;
   const ros::Time stamp = sync_->header.stamp;
-  if (scenario_.control.interface == ActionInterface::kVelocity3) {
+  if (scenario_.control.interface == dynamics::ActionInterface::kVelocity3) {
     command_message_.header.stamp = stamp;
     SetVector(output.cmd_vel_W, &command_message_.twist.linear);
     command_.publish(command_message_);
   } else {
-    const Wrench<double> wrench = ScaleWrench(scenario_.vehicle, output.fraction);
+    const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.vehicle, output.fraction);
     wrench_message_.header.stamp = stamp;
     SetVector(wrench.force, &wrench_message_.wrench.force);
     SetVector(wrench.moment, &wrench_message_.wrench.torque);
@@ -261,7 +262,7 @@ void AgentNode::Command() {
 }
 
 void AgentNode::ReportDecision() {
-  const AgentOutput& output = output_;
+  const agent::AgentOutput& output = output_;
   const auv_msgs::SensorSync& sync = *unreported_;
   const ros::Time stamp = sync.header.stamp;
   packet_message_.header.stamp = stamp;
@@ -319,4 +320,4 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

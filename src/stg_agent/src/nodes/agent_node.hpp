@@ -20,7 +20,7 @@
 #include "decider.hpp"
 #include "stg_agent/agent/agent.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// The mind of one AUV. Hears its own navigation, its own detections and its own modem, nothing
 /// else.
@@ -55,15 +55,15 @@ class AgentNode {
   void ReportDecision();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  Scenario scenario_;
+  agent::AgentConfig scenario_;
   int id_;
   std::string body_frame_;
-  Agent agent_;
+  agent::Agent agent_;
   std::unique_ptr<const Decider> decider_;
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_, report_delay_s_;
   bool explore_;
-  AgentOutput output_;  ///< of the last decision
+  agent::AgentOutput output_;  ///< of the last decision
   float log_probability_ = 0.0F;
   auv_msgs::SensorSync::ConstPtr unreported_;  ///< of the last decision, until it is reported
   ros::WallTime busy_, commanded_;
@@ -96,4 +96,4 @@ class AgentNode {
   Health health_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

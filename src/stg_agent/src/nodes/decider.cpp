@@ -4,24 +4,24 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 namespace {
 
-std::string Resolve(const std::string& name, const Scenario& scenario) {
+std::string Resolve(const std::string& name, const agent::AgentConfig& scenario) {
   if (name != "auto") return name;
-  const std::string shipped = ScenarioFolder() + "/../policies/" + scenario.name + ".onnx";
-  return std::ifstream(shipped).good() ? shipped : ToString(BuiltinKind::kPursuitSeparated);
+  const std::string shipped = config::ScenarioFolder() + "/../policies/" + scenario.name + ".onnx";
+  return std::ifstream(shipped).good() ? shipped : ToString(agent::BuiltinKind::kPursuitSeparated);
 }
 
 }  // namespace
 
-Decider::Decider(const std::string& wanted, const Scenario& scenario) {
+Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario) {
   const std::string name = Resolve(wanted, scenario);
-  if (ParseBuiltin(name, &builtin_, &options_)) {
+  if (agent::ParseBuiltin(name, &builtin_, &options_)) {
     id_ = name;
     return;
   }
@@ -29,16 +29,16 @@ Decider::Decider(const std::string& wanted, const Scenario& scenario) {
     throw UserError("policy '" + name +
                     "': neither idle, pursuit, pursuit_separated nor an .onnx file");
   }
-  policy_ = std::make_unique<const Policy>(Policy::LoadOnnx(name));
+  policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(name));
   policy_->RequireFits(scenario);
   id_ = policy_->metadata().id;
 }
 
-void Decider::Mean(const Agent& agent, const float* observation, float* action) const {
+void Decider::Mean(const agent::Agent& agent, const float* observation, float* action) const {
   if (policy_) {
     policy_->Mean(observation, action);
   } else {
-    BuiltinAction(builtin_, options_, agent, action);
+    agent::BuiltinAction(builtin_, options_, agent, action);
   }
 }
 
@@ -46,7 +46,7 @@ float Decider::Explore(std::uint64_t seed, std::uint32_t step, int agent, float*
   if (!policy_) return 0.0F;
   const Eigen::VectorXf& log_std = policy_->parameters().log_std;
   Random random(seed, Stream::kPolicy, 0, step, static_cast<std::uint32_t>(agent));
-  return SampleGaussian(log_std.data(), static_cast<int>(log_std.size()), &random, action);
+  return agent::SampleGaussian(log_std.data(), static_cast<int>(log_std.size()), &random, action);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -9,7 +9,7 @@
 #include "stg_agent/policy/policy.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// What turns an observation into an action: a policy file or a built-in controller.
 class Decider {
@@ -18,10 +18,10 @@ class Decider {
   /// shipped
   ///             for the scenario's name where there is one, else pursuit_separated
   /// Throws UserError when the file is not a policy for this scenario.
-  Decider(const std::string& name, const Scenario& scenario);
+  Decider(const std::string& name, const agent::AgentConfig& scenario);
 
   /// The policy's mean action, or the built-in controller's.
-  void Mean(const Agent& agent, const float* observation, float* action) const;
+  void Mean(const agent::Agent& agent, const float* observation, float* action) const;
 
   /// Replaces the mean by a sample of the policy's Gaussian, a function of (seed, step, agent)
   /// only; returns its natural log density. A built-in controller has no spread: returns 0 and
@@ -33,9 +33,9 @@ class Decider {
 
  private:
   std::string id_;
-  std::unique_ptr<const Policy> policy_;  // null: built-in
-  BuiltinKind builtin_ = BuiltinKind::kIdle;
-  PursuitOptions options_;
+  std::unique_ptr<const agent::Policy> policy_;  // null: built-in
+  agent::BuiltinKind builtin_ = agent::BuiltinKind::kIdle;
+  agent::PursuitOptions options_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -8,7 +8,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// Bits [first, first + count) of the packet, least significant bit of byte 0 first.
@@ -117,17 +117,17 @@ std::int64_t Ticks(TimeNs t) {
 /// Zero when all components are finite, NaN otherwise.
 double Finiteness(const Vec3<double>& v) { return v.x * 0.0 + v.y * 0.0 + v.z * 0.0; }
 
-double CurrentSpeed(const Scenario& s) {
+double CurrentSpeed(const AgentConfig& s) {
   const auto& v = s.current.velocity_mps;
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-double SpeedLimit(const Scenario& s) {
+double SpeedLimit(const AgentConfig& s) {
   const auto& v = s.vehicle.max_velocity_mps;
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + CurrentSpeed(s);
 }
 
-double TargetSpeedLimit(const Scenario& s) {
+double TargetSpeedLimit(const AgentConfig& s) {
   // A filter that starts with no velocity must be able to say what it believes.
   return std::max(
       {kTargetSpeedMargin * s.target.max_speed_mps, 4.0 * s.track.initial_speed_std_mps, 1e-3});
@@ -192,7 +192,7 @@ PacketCodec::Quantiser PacketCodec::Unsigned(double lo, double hi, int bits) {
   return q;
 }
 
-PacketCodec::PacketCodec(const Scenario& s)
+PacketCodec::PacketCodec(const AgentConfig& s)
     : agents_(s.agents),
       targets_(s.target.count),
       position_(Signed(kPositionMargin * s.workspace.half_extent_m, kPositionBits)),
@@ -313,4 +313,4 @@ std::array<PacketField, PacketCodec::kFieldCount> PacketCodec::fields() const {
            field("log_target_std", kStd.count, log_std_)}};
 }
 
-}  // namespace stg
+}  // namespace stg::agent

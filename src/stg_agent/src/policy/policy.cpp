@@ -7,7 +7,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::agent {
 namespace {
 
 constexpr int kPad = 16;
@@ -59,7 +59,7 @@ void Validate(const Policy::Parameters& p) {
 
 }  // namespace
 
-std::string ObservationLayout(const Scenario& scenario) {
+std::string ObservationLayout(const AgentConfig& scenario) {
   std::string layout = "stg-1:raw";
   if (scenario.observation.tracking) layout += "+tracking";
   if (scenario.observation.semantic) layout += "+semantic";
@@ -67,8 +67,8 @@ std::string ObservationLayout(const Scenario& scenario) {
   return layout + (scenario.observation.order == NeighbourOrder::kNearest ? ":nearest" : ":index");
 }
 
-std::string ActionInterfaceName(ActionInterface interface) {
-  return interface == ActionInterface::kVelocity3 ? "velocity3" : "tau6";
+std::string ActionInterfaceName(dynamics::ActionInterface interface) {
+  return interface == dynamics::ActionInterface::kVelocity3 ? "velocity3" : "tau6";
 }
 
 Policy::Policy(Parameters parameters) : parameters_(std::move(parameters)) {
@@ -130,7 +130,7 @@ void Policy::Mean(const float* observation, float* action) const {
   for (int a = 0; a < action_size(); ++a) action[a] = scale * in[a];
 }
 
-void Policy::RequireFits(const Scenario& scenario) const {
+void Policy::RequireFits(const AgentConfig& scenario) const {
   const std::string who = "policy '" + metadata().id + "': ";
   const std::string layout = ObservationLayout(scenario);
   if (metadata().observation_layout != layout) {
@@ -151,4 +151,4 @@ void Policy::RequireFits(const Scenario& scenario) const {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -11,7 +11,7 @@
 
 /// Writing of policy files. Operator set 10 is the last whose Clip carries its
 /// bounds as attributes: readers as old as OpenCV 4.6 understand it.
-namespace stg {
+namespace stg::agent {
 namespace {
 
 constexpr int kOpset = 10;
@@ -183,4 +183,4 @@ void Policy::SaveOnnx(const std::string& path) const {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -13,7 +13,7 @@
 #include "policy_onnx.hpp"
 
 /// Reading of policy files: one known chain of operators, everything checked.
-namespace stg {
+namespace stg::agent {
 namespace {
 
 /// Everything that can be wrong is reported with the file's name.
@@ -280,4 +280,4 @@ Policy Policy::LoadOnnx(const std::string& path) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -5,7 +5,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 /// The environment in the mode without agents: they run elsewhere.
@@ -17,7 +17,7 @@ Scenario WithoutAgents(Scenario scenario) {
 }  // namespace
 
 EpisodeJudge::EpisodeJudge(const Scenario& scenario)
-    : scenario_(WithoutAgents(scenario)), env_(scenario_, EnvOptions()) {
+    : scenario_(WithoutAgents(scenario)), env_(scenario_, env::EnvOptions()) {
   const auto n = static_cast<std::size_t>(scenario_.agents);
   swarm_.vehicles.resize(n);
   swarm_.targets.resize(static_cast<std::size_t>(scenario_.target.count));
@@ -120,7 +120,7 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>&
   m.truncated = env_.truncated();
   if (m.truncated) m.final_state.assign(env_.states(), env_.states() + env_.state_size());
   for (int i = 0; i < scenario_.agents; ++i) {
-    const RewardTerms<Pack>& r = env_.terms(i);
+    const task::RewardTerms<Pack>& r = env_.terms(i);
     m.agent_rewards.push_back(Lane(r.total, 0));
     m.r_track.push_back(Lane(r.track, 0));
     m.r_obs.push_back(Lane(r.observation, 0));
@@ -136,7 +136,7 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>&
   m.smallest_separation = scenario_.agents > 1 ? Lane(env_.world().smallest_separation(), 0) : 0.0;
 }
 
-void EpisodeJudge::FillSummary(const ros::Time& stamp, const EpisodeMetrics& e,
+void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& e,
                                Verdict* verdict) const {
   verdict->has_summary = true;
   verdict->metrics = e;
@@ -165,4 +165,4 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const EpisodeMetrics& e,
   m.deadline_misses = deadline_misses_;
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -9,7 +9,7 @@
 #include "marl_trainer/env/env.hpp"
 #include "swarm_frames.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Judges the run frame by frame with the environment's own reward and metrics.
 class EpisodeJudge {
@@ -21,13 +21,13 @@ class EpisodeJudge {
     bool has_report = false, has_summary = false;
     auv_msgs::StepReport report;
     auv_msgs::EpisodeSummary summary;
-    EpisodeMetrics metrics;  ///< of the summary
+    task::EpisodeMetrics metrics;  ///< of the summary
   };
   /// Frames come in order of time. A frame without truth ends the episode it belongs to.
   Verdict Judge(const SwarmFrame& frame);
 
   /// Present truth, for display.
-  const EnvGroup& env() const { return env_; }
+  const env::EnvGroup& env() const { return env_; }
   std::uint32_t episode() const { return episode_; }
   std::uint32_t step() const { return step_; }
   bool started() const { return started_; }
@@ -37,11 +37,11 @@ class EpisodeJudge {
   void SetTruth(const SwarmFrame& frame);
   void TakeAnswers(const SwarmFrame& frame);
   void FillReport(const SwarmFrame& frame, const std::vector<float>& state, Verdict* verdict) const;
-  void FillSummary(const ros::Time& stamp, const EpisodeMetrics& metrics, Verdict* verdict) const;
+  void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics, Verdict* verdict) const;
 
   Scenario scenario_;
-  EnvGroup env_;
-  FollowedSwarm swarm_;
+  env::EnvGroup env_;
+  env::FollowedSwarm swarm_;
   bool started_ = false;  ///< an episode is being judged
   bool complete_ = true;  ///< no step of it is missing
   std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0;
@@ -49,4 +49,4 @@ class EpisodeJudge {
   std::string policy_id_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -6,7 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr int kMaxRows = 24;  // more AUVs than this do not fit on a screen
@@ -105,7 +105,7 @@ std::string LiveTable::Line(const EpisodeJudge& judge, double now_s) const {
       scenario_.agents * (scenario_.agents - 1), Mean(age_), speed_);
 }
 
-void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s, const EpisodeMetrics& metrics) {
+void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s, const task::EpisodeMetrics& metrics) {
   std::printf("\nepisode %u, seed %llu, %u steps%s, policy %s, %u deadline misses\n", s.episode + 1,
               static_cast<unsigned long long>(s.seed), s.steps, s.complete ? "" : " (incomplete)",
               s.policy_id.c_str(), s.deadline_misses);
@@ -116,9 +116,9 @@ void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s, const EpisodeMet
   drawn_lines_ = 0;
 }
 
-void LiveTable::PrintRun(const std::vector<EpisodeMetrics>& episodes) const {
+void LiveTable::PrintRun(const std::vector<task::EpisodeMetrics>& episodes) const {
   if (episodes.size() < 2) return;
-  const MetricSummary summary = Summarise(episodes);
+  const task::MetricSummary summary = task::Summarise(episodes);
   std::printf("\n%d episodes: mean +- standard deviation\n", summary.episodes);
   for (std::size_t k = 0; k < summary.names.size(); ++k) {
     std::printf("  %-22s %12.5f +- %.5f\n", summary.names[k].c_str(), summary.mean[k],
@@ -127,4 +127,4 @@ void LiveTable::PrintRun(const std::vector<EpisodeMetrics>& episodes) const {
   std::fflush(stdout);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

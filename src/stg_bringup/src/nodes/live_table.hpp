@@ -7,7 +7,7 @@
 
 #include "episode_judge.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// The run in the terminal: redrawn in place where standard output is a terminal, else one line per
 /// second.
@@ -23,9 +23,9 @@ class LiveTable {
   void Tick(const EpisodeJudge& judge, double now_s);
 
   /// Leaves the table as it is and prints an episode's metrics below it.
-  void PrintEpisode(const auv_msgs::EpisodeSummary& summary, const EpisodeMetrics& metrics);
+  void PrintEpisode(const auv_msgs::EpisodeSummary& summary, const task::EpisodeMetrics& metrics);
   /// Mean and deviation over all episodes so far.
-  void PrintRun(const std::vector<EpisodeMetrics>& episodes) const;
+  void PrintRun(const std::vector<task::EpisodeMetrics>& episodes) const;
 
  private:
   std::string Table(const EpisodeJudge& judge, double now_s) const;
@@ -43,4 +43,4 @@ class LiveTable {
   std::vector<int> live_links_;        ///< [agents], incoming links with usable quality
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -7,7 +7,7 @@
 
 #include "marker_list.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 using geometry_msgs::Point;
@@ -342,4 +342,4 @@ MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style) {
   return Builder(view, style).Build();
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -4,7 +4,7 @@
 
 #include "swarm_view.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// How a view is drawn. Vehicles and lines scale together; bands, walls and collision spheres keep
 /// their true size.
@@ -25,4 +25,4 @@ visualization_msgs::MarkerArray BuildMarkers(const SwarmView& view, const Marker
 /// Names of the drop reasons of auv_msgs/LinkState.
 const char* DropReasonName(std::uint8_t reason);
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -7,7 +7,7 @@
 
 #include "marker_palette.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// A growing array of markers in frame world, and the shapes it is made of.
 class MarkerList {
@@ -82,4 +82,4 @@ class MarkerList {
   visualization_msgs::MarkerArray array_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

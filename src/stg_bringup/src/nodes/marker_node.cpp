@@ -24,7 +24,7 @@
 #include "stg_agent/nodes/topics.hpp"
 #include "swarm_view.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
@@ -273,13 +273,13 @@ class MarkerNode {
 };
 
 }  // namespace
-}  // namespace stg
+}  // namespace stg::nodes
 
 int main(int argc, char** argv) {
-  stg::WatchOnly();
+  stg::nodes::WatchOnly();
   ros::init(argc, argv, "markers");
   try {
-    const stg::MarkerNode node;
+    const stg::nodes::MarkerNode node;
     ros::spin();
   } catch (const std::invalid_argument& e) {
     ROS_FATAL("markers: %s", e.what());

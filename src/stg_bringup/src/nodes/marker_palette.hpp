@@ -9,7 +9,7 @@
 #include "swarm_view.hpp"
 
 /// Points and colours of the markers.
-namespace stg {
+namespace stg::nodes {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
@@ -66,4 +66,4 @@ inline std_msgs::ColorRGBA QualityColor(double quality) {
   return Color(0.70 - 0.55 * q, 0.20 + 0.75 * q, 0.65 + 0.30 * q, 0.25 + 0.65 * q);
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

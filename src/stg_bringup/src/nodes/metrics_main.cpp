@@ -2,6 +2,6 @@
 #include "metrics_node.hpp"
 
 int main(int argc, char** argv) {
-  stg::WatchOnly();
-  return stg::RunNode<stg::MetricsNode>(argc, argv, "metrics");
+  stg::nodes::WatchOnly();
+  return stg::nodes::RunNode<stg::nodes::MetricsNode>(argc, argv, "metrics");
 }

@@ -11,7 +11,7 @@
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 /// Without limit: in lockstep nobody waits for this node, and a lost message spoils an episode.
@@ -31,7 +31,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
 }  // namespace
 
 MetricsNode::MetricsNode()
-    : scenario_(LoadScenarioParameters()),
+    : scenario_(LoadScenarioParameters<Scenario>(config::Scope::kWhole)),
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
@@ -198,4 +198,4 @@ void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -10,7 +10,7 @@
 #include "live_table.hpp"
 #include "swarm_frames.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Watches the whole swarm, truth included: rewards of every step, metrics of every episode, and a
 /// live table in the terminal. Nothing listens to it but the world, which waits for the last
@@ -42,7 +42,7 @@ class MetricsNode {
   EpisodeJudge judge_;
   LiveTable table_;
   double now_s_ = 0.0;
-  std::vector<EpisodeMetrics> episodes_;  ///< complete ones
+  std::vector<task::EpisodeMetrics> episodes_;  ///< complete ones
   std::string file_name_;
   std::ofstream file_;
   EventRate reports_;
@@ -52,4 +52,4 @@ class MetricsNode {
   Health health_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

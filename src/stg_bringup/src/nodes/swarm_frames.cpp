@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace stg {
+namespace stg::nodes {
 namespace {
 
 /// Memory for a run whose frames never get complete.
@@ -48,4 +48,4 @@ bool SwarmFrames::Take(double patience_s, SwarmFrame* frame) {
   return true;
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

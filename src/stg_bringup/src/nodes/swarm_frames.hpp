@@ -9,10 +9,10 @@
 #include <map>
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// All messages of the swarm with one stamp. A null pointer: not here (yet).
 struct SwarmFrame {
@@ -43,4 +43,4 @@ class SwarmFrames {
   std::map<ros::Time, SwarmFrame> frames_;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

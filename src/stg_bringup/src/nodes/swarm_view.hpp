@@ -13,7 +13,7 @@
 
 /// What a viewer knows of a run: the newest of everything that was published, and a short past.
 /// Lengths [m], frame world; times [s] of simulated time.
-namespace stg {
+namespace stg::nodes {
 
 /// The part of a scenario that is drawn.
 struct SceneConfig {
@@ -76,4 +76,4 @@ struct SwarmView {
   std::deque<PacketEvent> packets;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -1,23 +1,26 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "acoustic_channel/link/link_statistics.hpp"
-#include "stg_agent/packet/packet.hpp"
-#include "auv_dynamics/world/world_config.hpp"
-#include "auv_dynamics/measurements.hpp"
+#include "acoustic_channel/channel/channel_config.hpp"
+#include "auv_common/numbers/vector.hpp"
+#include "auv_common/time.hpp"
 
 /// The acoustic channel: takes packets and true positions, delivers or drops.
-namespace stg {
+namespace stg::acoustics {
+
+using Payload = std::array<std::uint8_t, 32>;
 
 /// A packet handed to the sender's modem, for all other AUVs.
 struct Transmission {
   int source = 0;
   std::uint32_t sequence = 0;  ///< counted per sender from the start of the episode
   TimeNs stamp = 0;            ///< time of the step it is handed over in
-  Packet data{};
+  Payload data{};
   TimeNs generation = 0;  ///< time at which the payload was true, not after `stamp`
 };
 
@@ -36,7 +39,7 @@ struct Reception {
   double noise_level_db = 0.0;     ///< re 1 uPa, in the modem's band
   double sinr_db = 0.0;            ///< signal to interference and noise
   double doppler_mps = 0.0;        ///< closing speed, positive closing
-  Packet data{};
+  Payload data{};
 };
 
 /// Carries packets between AUVs. One object per environment; not thread-safe.
@@ -69,7 +72,7 @@ class Channel {
   virtual const ChannelTotals& totals() const = 0;
 };
 
-/// The channel that the scenario names. Throws UserError for a model that is not available.
-std::unique_ptr<Channel> MakeChannel(const Scenario& scenario);
+/// The channel that the section names, between `nodes` vehicles. Throws UserError for a model that is not available.
+std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, int nodes);
 
-}  // namespace stg
+}  // namespace stg::acoustics

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "auv_dynamics/world/world_config.hpp"
-#include "auv_common/numbers/lanes.hpp"
+#include "acoustic_channel/channel/channel_config.hpp"
+#include "auv_common/numbers/vector.hpp"
 
 /// Link quality of the paper, for one link (double) or kLanes links (Pack).
-namespace stg {
+namespace stg::acoustics {
 
 /// Normalised link availability q of Eq. 5: 1 at zero distance, 0 at R_c [m] and beyond.
 template <class T>
@@ -30,4 +30,4 @@ T ExtendedQuality(const T& d, const T& age_s, const ChannelConfig& config) {
          Exp(-(d * T(config.attenuation_per_m) + age_s * T(1.0 / config.freshness_s)));
 }
 
-}  // namespace stg
+}  // namespace stg::acoustics

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "auv_dynamics/measurements.hpp"
+#include "auv_common/time.hpp"
 
 /// Delivery counts, delay and age of information of every ordered pair of AUVs.
-namespace stg {
+namespace stg::acoustics {
 
 /// Why a packet did not reach one receiver. kNone: nothing was dropped.
 enum class DropReason : std::uint8_t {
@@ -97,4 +97,4 @@ class LinkTable {
   std::vector<DropCounts> drops_;
 };
 
-}  // namespace stg
+}  // namespace stg::acoustics

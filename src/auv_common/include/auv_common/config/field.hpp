@@ -16,16 +16,12 @@
 /// A section is a plain, default-initialised struct with a function
 ///   void Describe(Section* section, config::Table* table);
 /// and a configuration composes sections; see config/loader.hpp.
-namespace stg {
+namespace stg::config {
 
 /// Closed; what is drawn from it is uniform.
 struct Interval {
   double lo = 0.0, hi = 0.0;
 };
-
-}  // namespace stg
-
-namespace stg::config {
 
 /// Allowed values [lo, hi], or (lo, hi] when lo is excluded. Holds for every
 /// component of an array and both ends of an interval.

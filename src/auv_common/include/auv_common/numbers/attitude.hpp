@@ -1,6 +1,6 @@
 #pragma once
 
-#include "auv_common/numbers/lanes.hpp"
+#include "auv_common/numbers/vector.hpp"
 
 /// Attitude of the body B (FLU) in the world W (ENU): R_WB = Rz(psi) Ry(theta)
 /// Rx(phi), Fossen's zyx convention. Quaternions are w x y z.

@@ -1,11 +1,12 @@
 #pragma once
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/control/control_config.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
 /// From a policy's action to force and torque (Eqs. 22-27).
-namespace stg {
+namespace stg::dynamics {
 
 /// Rate limit, then smoothing, both against the previous smoothed action
 /// (Eq. 27): previous[k] becomes the action that is executed. `size` is 3 or 6.
@@ -77,4 +78,4 @@ inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
                      fraction);
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

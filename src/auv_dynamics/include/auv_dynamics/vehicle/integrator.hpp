@@ -3,7 +3,7 @@
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 #include "auv_dynamics/world/world.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 
 /// The release's step: velocities by explicit Euler, then position and Euler
 /// angles with the new velocities through the old attitude.
@@ -98,4 +98,4 @@ void Integrate(const VehicleModel& model, const Wrench<T>& tau, const Vec3<T>& v
   }
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

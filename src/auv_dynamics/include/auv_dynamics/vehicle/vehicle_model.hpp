@@ -1,10 +1,10 @@
 #pragma once
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 
 /// Body velocity nu = [u v w p q r], body axes.
 template <class T>
@@ -152,4 +152,4 @@ BodyVelocity<T> VehicleModel::LimitVelocity(const BodyVelocity<T>& nu) const {
           {Clip(nu.w.x, -w[0], w[0]), Clip(nu.w.y, -w[1], w[1]), Clip(nu.w.z, -w[2], w[2])}};
 }
 
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -11,9 +11,9 @@ enum class ResetStage { kEasy, kMedium, kHard };
 
 /// Where and how fast an episode starts.
 struct ResetStageConfig {
-  Interval target_radius_m{0.25, 0.55};
-  Interval auv_distance_m{0.25, 0.45};
-  Interval target_speed_mps{0.003, 0.008};
+  config::Interval target_radius_m{0.25, 0.55};
+  config::Interval auv_distance_m{0.25, 0.45};
+  config::Interval target_speed_mps{0.003, 0.008};
 };
 
 /// How episodes start; stages are in the order easy, medium, hard.

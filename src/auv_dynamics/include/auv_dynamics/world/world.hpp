@@ -8,7 +8,7 @@
 #include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-namespace stg {
+namespace stg::dynamics {
 
 /// Truth of one vehicle: body B in world W.
 template <class T>
@@ -38,7 +38,7 @@ class VehicleModel;
 class World {
  public:
   /// Throws UserError for a scenario that fails its validation.
-  explicit World(const Scenario& scenario);
+  explicit World(const WorldConfig& scenario);
   ~World();
   World(World&&) noexcept;
 
@@ -101,7 +101,7 @@ class World {
   void SteerTarget(int lane, int k);
   void MeasureDistances();
 
-  Scenario scenario_;
+  WorldConfig scenario_;
   TimeNs dt_ns_;
   std::unique_ptr<VehicleModel> model_;
   std::vector<VehicleState<Pack>> vehicles_;
@@ -116,4 +116,4 @@ class World {
   std::uint32_t step_[kLanes] = {};
 };
 
-}  // namespace stg
+}  // namespace stg::dynamics

@@ -11,10 +11,14 @@
 #include "marl_trainer/task/reward.hpp"
 #include "stg_agent/graph/observation.hpp"
 
-namespace stg {
-
+namespace stg::agent {
 class Agent;
+}
+namespace stg::acoustics {
 class Channel;
+}
+
+namespace stg::env {
 
 /// Which episodes an EnvGroup draws.
 struct EnvOptions {
@@ -29,8 +33,8 @@ struct EnvOptions {
 
 /// True state of a swarm that moves elsewhere, and what led to it.
 struct FollowedSwarm {
-  std::vector<NavState> vehicles;             ///< [agents]
-  std::vector<TargetState<double>> targets;   ///< [targets]
+  std::vector<dynamics::NavState> vehicles;             ///< [agents]
+  std::vector<dynamics::TargetState<double>> targets;   ///< [targets]
   /// [agents]: tau / tau_max and executed action of the decision that led here.
   std::vector<std::array<double, 6>> fractions, actions;
   double link_quality = 0.0;  ///< mean over AUVs of the mean link quality each one knows, now
@@ -71,7 +75,7 @@ class EnvGroup {
   const float* final_observations() const { return final_observations_.data(); }
   const float* final_states() const { return final_states_.data(); }
   /// Valid while truncated().
-  const EpisodeMetrics& metrics(int lane) const { return finished_[static_cast<size_t>(lane)]; }
+  const task::EpisodeMetrics& metrics(int lane) const { return finished_[static_cast<size_t>(lane)]; }
 
   /// Decisions made in the current episode, and k of the EnvOptions::seed rule.
   int step() const { return step_; }
@@ -80,11 +84,11 @@ class EnvGroup {
   void RestartAt(std::uint64_t round, int first_episode_steps);
 
   // For built-in controllers, tests and traces.
-  const World& world() const { return world_; }
-  const Agent& agent(int lane, int i) const;  ///< acoustic mode
-  const Channel& channel(int lane) const;     ///< acoustic mode
-  const RewardTerms<Pack>& terms(int i) const { return terms_[static_cast<size_t>(i)]; }
-  const Knowledge<Pack>& truth(int i) const { return truth_[static_cast<size_t>(i)]; }
+  const dynamics::World& world() const { return world_; }
+  const agent::Agent& agent(int lane, int i) const;  ///< acoustic mode
+  const acoustics::Channel& channel(int lane) const;     ///< acoustic mode
+  const task::RewardTerms<Pack>& terms(int i) const { return terms_[static_cast<size_t>(i)]; }
+  const agent::Knowledge<Pack>& truth(int i) const { return truth_[static_cast<size_t>(i)]; }
   /// Starts an episode of every lane from given states (golden traces).
   void Place(const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
              const std::vector<Vec3<double>>& v_WT);
@@ -96,7 +100,7 @@ class EnvGroup {
   void FollowStart(const FollowedSwarm& swarm);
   void FollowStep(const FollowedSwarm& swarm);
   /// Metrics of the present episode up to now.
-  EpisodeMetrics MetricsSoFar(int lane) const;
+  task::EpisodeMetrics MetricsSoFar(int lane) const;
 
  private:
   struct Totals;
@@ -106,7 +110,7 @@ class EnvGroup {
   void BeginSemantics();
   void Measure(bool first);
   Pack MeanError(size_t i, const Pack& error);
-  void NeighbourFeatures(int i, Knowledge<Pack>* k) const;
+  void NeighbourFeatures(int i, agent::Knowledge<Pack>* k) const;
   void Step();
   void TruthActions();
   void AcousticActions();
@@ -118,7 +122,7 @@ class EnvGroup {
 
   Scenario scenario_;
   EnvOptions options_;
-  World world_;
+  dynamics::World world_;
   int observation_size_;
   int step_ = 0;
   int episode_steps_;
@@ -126,16 +130,16 @@ class EnvGroup {
   bool truncated_ = false;
   std::optional<Pack> followed_quality_;
 
-  std::vector<Knowledge<Pack>> truth_;          // what the truth mode lets each AUV know
+  std::vector<agent::Knowledge<Pack>> truth_;          // what the truth mode lets each AUV know
   std::vector<std::vector<Pack>> error_window_;  // [agent][k]
   std::vector<std::array<Pack, 6>> action_, previous_action_, tau_, previous_tau_;
-  std::vector<Wrench<Pack>> wrench_;
-  std::vector<RewardTerms<Pack>> terms_;
+  std::vector<dynamics::Wrench<Pack>> wrench_;
+  std::vector<task::RewardTerms<Pack>> terms_;
   std::unique_ptr<Totals> totals_;
   std::unique_ptr<Acoustic> acoustic_;
   std::vector<double> actions_;  // [lane, agent, action]
   std::vector<float> observations_, states_, rewards_, final_observations_, final_states_;
-  std::vector<EpisodeMetrics> finished_;
+  std::vector<task::EpisodeMetrics> finished_;
 };
 
-}  // namespace stg
+}  // namespace stg::env

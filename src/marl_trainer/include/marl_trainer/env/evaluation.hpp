@@ -9,14 +9,14 @@
 #include "stg_agent/policy/policy.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
-namespace stg {
+namespace stg::env {
 
 /// Who flies in an evaluation: a policy file or a built-in controller.
 struct Controller {
   std::string name;
-  std::shared_ptr<const Policy> policy;  ///< null: built-in
-  BuiltinKind builtin = BuiltinKind::kIdle;
-  PursuitOptions options;
+  std::shared_ptr<const agent::Policy> policy;  ///< null: built-in
+  agent::BuiltinKind builtin = agent::BuiltinKind::kIdle;
+  agent::PursuitOptions options;
   bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
 };
 
@@ -32,8 +32,8 @@ void Decide(const Controller& controller, const EnvGroup& env, double* actions);
 /// Runs `episodes` episodes, episode e from world seed `seed` + e, on `workers`
 /// threads. The result does not depend on the number of workers.
 /// @param progress called with the number of finished episodes; may be empty.
-std::vector<EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
                                      int episodes, std::uint64_t seed, int workers,
                                      const std::function<void(int)>& progress = {});
 
-}  // namespace stg
+}  // namespace stg::env

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "auv_common/numbers/vector.hpp"
 
-namespace stg {
+#include "marl_trainer/scenario/scenario.hpp"
+
+namespace stg::env {
 
 /// A golden trace: the release's simulator driven by given actions. A folder
 /// with config.yaml (initial state, settings) and steps.csv (one row per step
@@ -38,4 +40,4 @@ struct TraceError {
 /// Replays the trace's actions in our simulator and compares every column.
 TraceError ReplayTrace(const Trace& trace, double tolerance);
 
-}  // namespace stg
+}  // namespace stg::env

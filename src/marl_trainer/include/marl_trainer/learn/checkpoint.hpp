@@ -8,7 +8,7 @@
 
 #include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Everything a training run needs to go on as if it had never stopped. It is
 /// taken where every environment starts an episode, so the environments are
@@ -44,4 +44,4 @@ void PruneCheckpoints(const std::string& folder, int keep);
 /// passed over. Empty when there is none.
 std::optional<TrainState> LoadNewestCheckpoint(const std::string& folder, std::ostream* log);
 
-}  // namespace stg
+}  // namespace stg::learn

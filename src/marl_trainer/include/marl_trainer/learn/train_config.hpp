@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Everything of a training run besides the scenario and its output folder.
 /// Defaults are the `fast` preset.
@@ -142,4 +142,4 @@ TrainConfig TrainConfigFromJson(const nlohmann::ordered_json& json);
 inline constexpr std::uint64_t kValidationSeed = 900000;
 inline std::uint64_t TrainingSeed(std::uint64_t seed) { return (seed + 1) * 1000000000ULL; }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -9,7 +9,7 @@
 
 #include "marl_trainer/task/metrics.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// What one collection and its update measured.
 struct TrainRecord {
@@ -28,7 +28,7 @@ struct TrainRecord {
   double env_seconds = 0.0, inference_seconds = 0.0, update_seconds = 0.0, validation_seconds = 0.0;
   double update_flops = 0.0;
   bool validated = false;
-  MetricSummary validation;  ///< deterministic policy; the scenario's own reward
+  task::MetricSummary validation;  ///< deterministic policy; the scenario's own reward
 };
 
 /// Progress lines, progress.csv and the times to the return thresholds.
@@ -68,4 +68,4 @@ class TrainLog {
   std::int64_t line_steps_ = 0;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -11,7 +11,7 @@
 #include "marl_trainer/learn/train_log.hpp"
 #include "marl_trainer/learn/validation.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// MAPPO (Eqs. 37-44): collect, update, validate, save; one instance per run.
 ///
@@ -45,7 +45,7 @@ class Trainer {
 
   const TrainState& state() const { return state_; }
   const ActorCritic& networks() const { return learner_.networks(); }
-  Policy MakePolicy() const;
+  agent::Policy MakePolicy() const;
 
  private:
   void OpenFolder();
@@ -70,9 +70,9 @@ class Trainer {
   Validation validation_;
   std::unique_ptr<TrainLog> log_;
   TrainState state_;
-  MetricSummary last_validation_;
+  task::MetricSummary last_validation_;
   double start_ = 0.0;
   std::int64_t next_validation_ = 0, next_checkpoint_ = 0;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -7,7 +7,7 @@
 #include "marl_trainer/env/env.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Flies the deterministic policy on the same held-out episodes every time
 /// (seeds kValidationSeed + r, the scenario's own stage and reward).
@@ -17,7 +17,7 @@ class Validation {
   ~Validation();
 
   /// @param parameters of the networks. Returns one entry per episode, in order.
-  std::vector<EpisodeMetrics> Run(const float* parameters, const Normaliser& observations);
+  std::vector<task::EpisodeMetrics> Run(const float* parameters, const Normaliser& observations);
 
  private:
   struct Unit;
@@ -28,4 +28,4 @@ class Validation {
   std::vector<std::unique_ptr<Unit>> units_;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

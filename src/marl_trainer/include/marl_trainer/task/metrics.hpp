@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace stg {
+namespace stg::task {
 
 /// Metrics of one episode (Table S1 and what the paper leaves out). Tail: the
 /// last tail_steps decisions. Means over AUVs and decisions unless named.
@@ -43,4 +43,4 @@ struct MetricSummary {
 };
 MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes);
 
-}  // namespace stg
+}  // namespace stg::task

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 /// The task's reward (Eqs. 28-36) and the release's two variants, on true
 /// states. T is double or Pack.
-namespace stg {
+namespace stg::task {
 
 /// Terms of one AUV, each before its weight, and their weighted sum.
 template <class T>
@@ -81,15 +81,15 @@ inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const 
   const RewardConfig& c = s.reward;
   const T zero(0.0), one(1.0);
   const T& d = in.distance;
-  const T P = Progress(s.observation, in.previous_distance, d);
-  const T C = Closing(s.observation, in.closing);
+  const T P = agent::Progress(s.observation, in.previous_distance, d);
+  const T C = agent::Closing(s.observation, in.closing);
   const T U = Clip((T(c.band_m.lo) - d) * T(1.0 / c.band_m.lo), zero, one);
   const T b = BandDeviation(c, d);
   const auto lost = in.lost > T(0.5);
   const auto in_band = b <= T(1e-9);
   RewardTerms<T> r;
   if (c.kind == RewardKind::kReleaseRaw) {
-    const T error = Abs(d - T(c.desired_distance_m));
+    const T error = Abs(d - T(s.task.desired_distance_m));
     const T score = one - Clip(error * T(1.0 / c.error_max_m), zero, one);
     r.track = Clip(T(0.45) * score + T(0.40) * P + T(0.15) * C, -one, one);
   } else {
@@ -104,8 +104,8 @@ inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const 
   r.communication = communication;
   // The paper's third case of Eq. 34 is the stable phase, the release's the band.
   T phase[4];
-  PhaseOneHot(s.observation, in.lost, d, P, &phase);
-  const auto holding = c.kind == RewardKind::kPaper ? phase[kStable] > T(0.5) : in_band;
+  agent::PhaseOneHot(s.observation, in.lost, d, P, &phase);
+  const auto holding = c.kind == RewardKind::kPaper ? phase[agent::kStable] > T(0.5) : in_band;
   const T seeking = T(0.65) * P + T(0.35) * C - T(0.25) * U;
   const T stable = T(0.55) * in.confidence + T(0.45) * (one - U);
   if (c.kind == RewardKind::kReleaseRaw) {
@@ -126,4 +126,4 @@ inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const 
   return r;
 }
 
-}  // namespace stg
+}  // namespace stg::task

@@ -18,7 +18,7 @@ struct RewardWeights {
 struct RewardConfig {
   RewardKind kind = RewardKind::kPaper;
   RewardWeights weights;
-  Interval band_m{0.010, 0.015};       ///< [d_l, d_u]
+  config::Interval band_m{0.010, 0.015};       ///< [d_l, d_u]
   double error_max_m = 0.8;            ///< e_max
   double w_band = 0.35, w_progress = 0.30, w_closing = 0.15, w_reacquire = 0.20,
          w_too_close = 0.20;           ///< Eq. 30

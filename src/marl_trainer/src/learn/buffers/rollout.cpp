@@ -9,7 +9,7 @@
 #include "marl_trainer/learn/algorithms/mappo/gae.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -56,7 +56,7 @@ RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCrit
       observation_moments_(networks.actor.inputs()),
       state_moments_(networks.critic.inputs()) {
   assert(envs % kLanes == 0);
-  EnvOptions options;
+  env::EnvOptions options;
   options.seed = seed_;
   options.total_envs = config.envs;
   for (int env = 0; env < envs; env += kLanes) {
@@ -81,7 +81,7 @@ RolloutUnit::RolloutUnit(const std::vector<Scenario>& scenarios, const ActorCrit
   raw_states_.resize(Size(envs, state));
   last_states_.resize(Size(envs, state));
   if (!config.imitate.empty()) {
-    teachers_.push_back(MakeController(config.imitate, scenarios.front()));
+    teachers_.push_back(env::MakeController(config.imitate, scenarios.front()));
     teachers_.front().privileged = config.privileged_teacher;
   }
   RestartAt(0);
@@ -100,7 +100,7 @@ void RolloutUnit::RestartAt(std::uint64_t round) {
 
 bool RolloutUnit::at_episode_start() const {
   return std::all_of(groups_.begin(), groups_.end(),
-                     [](const EnvGroup& group) { return group.step() == 0; });
+                     [](const env::EnvGroup& group) { return group.step() == 0; });
 }
 
 void RolloutUnit::Collect(const float* parameters, const Scales& scales, std::uint32_t collection,
@@ -164,7 +164,7 @@ void RolloutUnit::ActRandomly(const float* parameters, std::uint32_t collection,
   for (int r = 0; r < rows; ++r, action += size) {
     Random random(seed_, Stream::kPolicy, collection, static_cast<std::uint32_t>(t),
                   static_cast<std::uint32_t>(first_env_ * agents_ + r));
-    log_prob[r] = SampleGaussian(log_std, size, &random, action);
+    log_prob[r] = agent::SampleGaussian(log_std, size, &random, action);
   }
 }
 
@@ -174,8 +174,8 @@ void RolloutUnit::AskTeacher(int t) {
   buffer_.teacher.resize(buffer_.actions.size());
   float* out = buffer_.teacher.data() + Size(t, envs_, agents_) *
                                             static_cast<std::size_t>(networks_.action_size());
-  for (const EnvGroup& group : groups_) {
-    Decide(teachers_.front(), group, actions.data());
+  for (const env::EnvGroup& group : groups_) {
+    env::Decide(teachers_.front(), group, actions.data());
     for (const double a : actions) *out++ = static_cast<float>(a);
   }
 }
@@ -183,7 +183,7 @@ void RolloutUnit::AskTeacher(int t) {
 void RolloutUnit::StoreStep(const Scales& scales, int t) {
   const int state = networks_.critic.inputs();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const EnvGroup& group = groups_[g];
+    const env::EnvGroup& group = groups_[g];
     const std::size_t first = Size(t, envs_) + g * static_cast<std::size_t>(kLanes);
     std::copy_n(group.rewards(), kLanes, buffer_.rewards.data() + first);
     if (!group.truncated()) continue;
@@ -223,4 +223,4 @@ void RolloutUnit::ComputeValues(const float* parameters, const Scales& scales) {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -7,7 +7,7 @@
 
 #include "stg_agent/graph/observation.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 std::vector<int> Sizes(int inputs, const std::vector<int>& hidden, int outputs) {
@@ -60,7 +60,7 @@ void ActorCritic::PlaceWallUnits(double margin_m, double half_extent_m,
         // relu(1 - room / margin) of the room between target and wall, 1 - wall (own + offset).
         in.row(*unit).setZero();
         double constant = 1.0 - 1.0 / margin;
-        for (const int i : {kOwnPositionIndex + axis, kTargetOffsetIndex + axis}) {
+        for (const int i : {agent::kOwnPositionIndex + axis, agent::kTargetOffsetIndex + axis}) {
           const auto n = static_cast<std::size_t>(i);
           in(*unit, i) =
               static_cast<float>(wall / margin * static_cast<double>(observations.std[n]));
@@ -73,18 +73,18 @@ void ActorCritic::PlaceWallUnits(double margin_m, double half_extent_m,
   }
 }
 
-Policy ActorCritic::ToPolicy(const float* parameters, const Normaliser& observations,
-                             PolicyMetadata metadata) const {
+agent::Policy ActorCritic::ToPolicy(const float* parameters, const Normaliser& observations,
+                             agent::PolicyMetadata metadata) const {
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Policy::Parameters p;
+  agent::Policy::Parameters p;
   const Eigen::Index size = actor.inputs();
   p.input_mean = Eigen::Map<const Eigen::VectorXf>(observations.mean.data(), size);
   p.input_std = Eigen::Map<const Eigen::VectorXf>(observations.std.data(), size);
   p.input_clip = observations.clip;
-  p.activation = actor.activation() == HiddenActivation::kRelu ? Policy::Activation::kRelu
-                                                               : Policy::Activation::kTanh;
+  p.activation = actor.activation() == HiddenActivation::kRelu ? agent::Policy::Activation::kRelu
+                                                               : agent::Policy::Activation::kTanh;
   for (int l = 0; l < actor.layers(); ++l) {
-    Policy::Layer layer;
+    agent::Policy::Layer layer;
     layer.weight = Eigen::Map<const RowMajor>(parameters + actor.weight_offset(l),
                                               actor.layer_outputs(l), actor.layer_inputs(l));
     layer.bias = Eigen::Map<const Eigen::VectorXf>(parameters + actor.bias_offset(l),
@@ -94,7 +94,7 @@ Policy ActorCritic::ToPolicy(const float* parameters, const Normaliser& observat
   p.log_std = Eigen::Map<const Eigen::VectorXf>(parameters + log_std_offset(), action_size());
   metadata.action_scale = static_cast<double>(action_scale);
   p.metadata = std::move(metadata);
-  return Policy(std::move(p));
+  return agent::Policy(std::move(p));
 }
 
 void SquashMean(float scale, int count, float* net) {
@@ -102,4 +102,4 @@ void SquashMean(float scale, int count, float* net) {
   a = scale * a.tanh();
 }
 
-}  // namespace stg
+}  // namespace stg::learn

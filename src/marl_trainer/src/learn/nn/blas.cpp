@@ -11,7 +11,7 @@ extern "C" void sgemm_(const char* transpose_a, const char* transpose_b, const i
                        const int* k, const float* alpha, const float* a, const int* lda,
                        const float* b, const int* ldb, const float* beta, float* c, const int* ldc);
 
-namespace stg {
+namespace stg::learn {
 
 void UseOneBlasThread() {
   // Looked up at run time: the reference BLAS, which also serves, has no such function.
@@ -45,4 +45,4 @@ double MeasurePeakFlops() {
   return best;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -9,7 +9,7 @@
 
 #include "marl_trainer/learn/nn/blas.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 using Array = Eigen::Map<Eigen::ArrayXf>;
@@ -145,4 +145,4 @@ void Mlp::Backward(const float* parameters, const float* x, const float* d_outpu
   }
 }
 
-}  // namespace stg
+}  // namespace stg::learn

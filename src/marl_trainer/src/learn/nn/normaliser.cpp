@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace stg {
+namespace stg::learn {
 
 RunningMoments::RunningMoments(int size)
     : mean_(static_cast<std::size_t>(size), 0.0),
@@ -103,4 +103,4 @@ void Normaliser::Apply(const float* x, int rows, float* y) const {
   }
 }
 
-}  // namespace stg
+}  // namespace stg::learn

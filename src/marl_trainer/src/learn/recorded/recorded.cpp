@@ -7,7 +7,7 @@
 
 #include "stg_agent/policy/gaussian.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 constexpr std::size_t kOpenEpisodes = 2;
@@ -101,7 +101,7 @@ void EpisodeAssembler::Add(std::uint32_t episode, TimeNs start, std::uint32_t st
   RecordedEpisode& e = At(episode, start);
   const auto [place, added] = e.steps[static_cast<std::size_t>(agent)].try_emplace(step, record);
   if (!added && !(place->second == record)) {
-    e.finding = {Flaw::kContradiction, stg::At(step, agent)};
+    e.finding = {Flaw::kContradiction, learn::At(step, agent)};
   }
 }
 
@@ -141,7 +141,7 @@ std::vector<RecordedEpisode> EpisodeAssembler::TakeAll() {
   return all;
 }
 
-EpisodeChecker::EpisodeChecker(const Scenario& scenario, int state_size, const Policy& policy)
+EpisodeChecker::EpisodeChecker(const Scenario& scenario, int state_size, const agent::Policy& policy)
     : agents_(scenario.agents),
       episode_steps_(scenario.time.episode_steps),
       state_size_(state_size),
@@ -220,12 +220,12 @@ Finding EpisodeChecker::CheckStep(const AgentRecord& r) const {
 double EpisodeChecker::LogProbability(const AgentRecord& r) const {
   std::vector<float> mean(r.action.size());
   policy_.Mean(r.observation.data(), mean.data());
-  return GaussianLogDensity(mean.data(), policy_.parameters().log_std.data(), r.action.data(),
+  return agent::GaussianLogDensity(mean.data(), policy_.parameters().log_std.data(), r.action.data(),
                             static_cast<int>(mean.size()));
 }
 
 std::uint32_t LayoutVersion(const Scenario& scenario) {
-  const std::string layout = ObservationLayout(scenario);
+  const std::string layout = agent::ObservationLayout(scenario);
   return static_cast<std::uint32_t>(
       std::strtoul(layout.c_str() + layout.find('-') + 1, nullptr, 10));
 }
@@ -254,4 +254,4 @@ std::string RecordingReport::Text() const {
   return text;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

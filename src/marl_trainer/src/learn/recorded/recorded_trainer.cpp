@@ -8,11 +8,12 @@
 #include <filesystem>
 
 #include "auv_common/error.hpp"
-#include "auv_common/config/loader.hpp"
+#include "auv_common/config/files.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/algorithms/mappo/gae.hpp"
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,9 +26,9 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::shared_ptr<const Policy> LoadStart(const std::string& path, const Scenario& scenario) {
+std::shared_ptr<const agent::Policy> LoadStart(const std::string& path, const Scenario& scenario) {
   if (path.empty()) return nullptr;
-  auto policy = std::make_shared<const Policy>(Policy::LoadOnnx(path));
+  auto policy = std::make_shared<const agent::Policy>(agent::Policy::LoadOnnx(path));
   policy->RequireFits(scenario);
   const double scale = policy->metadata().action_scale;
   if (std::abs(scale - scenario.control.action_scale) > 1e-6) {
@@ -39,18 +40,18 @@ std::shared_ptr<const Policy> LoadStart(const std::string& path, const Scenario&
 }
 
 /// The configuration with the actor's shape taken from the policy to start from.
-TrainConfig Fit(TrainConfig config, const Scenario& scenario, const Policy* start) {
+TrainConfig Fit(TrainConfig config, const Scenario& scenario, const agent::Policy* start) {
   const int steps = scenario.time.episode_steps;
   config.envs = kLanes;
   config.horizon = steps;
   config.stagger = false;
   if (start != nullptr) {
-    const Policy::Parameters& p = start->parameters();
+    const agent::Policy::Parameters& p = start->parameters();
     config.actor_hidden.clear();
     for (std::size_t l = 0; l + 1 < p.layers.size(); ++l) {
       config.actor_hidden.push_back(static_cast<int>(p.layers[l].bias.size()));
     }
-    config.activation = p.activation == Policy::Activation::kRelu ? "relu" : "tanh";
+    config.activation = p.activation == agent::Policy::Activation::kRelu ? "relu" : "tanh";
     config.observation_clip = static_cast<double>(p.input_clip);
     // A component that never moved has the smallest deviation: the floor, scaled.
     const auto smallest = static_cast<double>(p.input_std.minCoeff());
@@ -94,7 +95,7 @@ RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainConfig& co
     : RecordedTrainer(scenario, config, options, LoadStart(options.policy, scenario)) {}
 
 RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainConfig& config,
-                                 const Options& options, const std::shared_ptr<const Policy>& start)
+                                 const Options& options, const std::shared_ptr<const agent::Policy>& start)
     : scenario_(scenario),
       config_(Fit(config, scenario, start.get())),
       options_(options),
@@ -116,11 +117,11 @@ RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainConfig& co
     StartFrom(*start);
     policy_ = start;
   }
-  if (!policy_) policy_ = std::make_shared<const Policy>(MakePolicy());
+  if (!policy_) policy_ = std::make_shared<const agent::Policy>(MakePolicy());
   policy_->SaveOnnx(policy_path());
 }
 
-void RecordedTrainer::Restore(const TrainState& state, const Policy* start) {
+void RecordedTrainer::Restore(const TrainState& state, const agent::Policy* start) {
   if (state.scenario != state_.scenario) {
     throw UserError(options_.out + ": holds a training in another scenario");
   }
@@ -130,7 +131,7 @@ void RecordedTrainer::Restore(const TrainState& state, const Policy* start) {
   const std::string config = state_.config;
   state_ = state;
   state_.config = config;
-  policy_ = std::make_shared<const Policy>(MakePolicy());
+  policy_ = std::make_shared<const agent::Policy>(MakePolicy());
   if (start != nullptr && start->metadata().id != policy_id()) {
     throw UserError(options_.out + ": holds the training of '" + policy_id() + "', not of '" +
                     start->metadata().id + "'; use another folder or no policy");
@@ -138,13 +139,13 @@ void RecordedTrainer::Restore(const TrainState& state, const Policy* start) {
 }
 
 /// Takes actor, spread and observation normaliser from a policy; the critic stays untrained.
-void RecordedTrainer::StartFrom(const Policy& policy) {
+void RecordedTrainer::StartFrom(const agent::Policy& policy) {
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Policy::Parameters& p = policy.parameters();
+  const agent::Policy::Parameters& p = policy.parameters();
   const ActorCritic& networks = learner_.networks();
   float* out = state_.parameters.data();
   for (int l = 0; l < networks.actor.layers(); ++l) {
-    const Policy::Layer& layer = p.layers[static_cast<std::size_t>(l)];
+    const agent::Policy::Layer& layer = p.layers[static_cast<std::size_t>(l)];
     Eigen::Map<RowMajor>(out + networks.actor.weight_offset(l), layer.weight.rows(),
                          layer.weight.cols()) = layer.weight;
     Eigen::Map<Eigen::VectorXf>(out + networks.actor.bias_offset(l), layer.bias.size()) =
@@ -239,7 +240,7 @@ RecordedTrainer::Progress RecordedTrainer::Update(const std::vector<RecordedEpis
   ++state_.collections;
   state_.env_steps +=
       static_cast<std::int64_t>(episodes.size()) * static_cast<std::int64_t>(config_.horizon);
-  policy_ = std::make_shared<const Policy>(MakePolicy());
+  policy_ = std::make_shared<const agent::Policy>(MakePolicy());
   policy_->SaveOnnx(policy_path());
 
   Progress p;
@@ -261,12 +262,12 @@ RecordedTrainer::Progress RecordedTrainer::Update(const std::vector<RecordedEpis
   return p;
 }
 
-Policy RecordedTrainer::MakePolicy() const {
-  PolicyMetadata m;
+agent::Policy RecordedTrainer::MakePolicy() const {
+  agent::PolicyMetadata m;
   m.id = scenario_.name + "-recorded-" + std::to_string(state_.env_steps) + "-" +
          Hash(state_.parameters);
-  m.observation_layout = ObservationLayout(scenario_);
-  m.action_interface = ActionInterfaceName(scenario_.control.interface);
+  m.observation_layout = agent::ObservationLayout(scenario_);
+  m.action_interface = agent::ActionInterfaceName(scenario_.control.interface);
   m.scenario_hash = ScenarioHash(scenario_);
   m.training_step = state_.env_steps;
   m.seed = config_.seed;
@@ -274,4 +275,4 @@ Policy RecordedTrainer::MakePolicy() const {
                                       std::move(m));
 }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -7,14 +7,14 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "stg_agent/packet/packet.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "stg_agent/agent/mind.hpp"
 #include "stg_agent/inbox/neighbour_table.hpp"
 #include "stg_agent/graph/observation.hpp"
 #include "stg_agent/inbox/target_track.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 /// What an agent decides at one step.
 struct AgentOutput {
@@ -54,7 +54,7 @@ struct TaskView {
 ///   rests on an observation, own or shared, not older than channel.freshness_s; else 0.
 ///   The cue is no observation.
 /// - Lost: position std above track.lost_std_m, or estimated distance above
-///   reward.lost_distance_m.
+///   task.lost_distance_m.
 /// - A neighbour not heard of counts as link quality 0 in the mean, and in no other average.
 /// - Agent i sends at decisions k with k mod P = i mod P, where P is transmit_period_s in
 ///   decisions, rounded, at least 1. k comes from the stamp, not from counting: an agent
@@ -62,25 +62,25 @@ struct TaskView {
 class Agent {
  public:
   /// Throws UserError when the scenario does not fit the packet layout.
-  Agent(const Scenario& scenario, int id);
+  Agent(const AgentConfig& scenario, int id);
   /// The same mind for AUV `id`, sharing the scenario and tables of `other`; starts reset.
   Agent(const Agent& other, int id);
 
   /// Starts an episode: forgets everything. The cue was true at time 0, whenever the first
   /// Observe is: one that comes late finds it as uncertain as it has become.
-  void Reset(std::uint32_t episode, const Cue& cue);
+  void Reset(std::uint32_t episode, const dynamics::Cue& cue);
 
   /// Own detection; of another target than this agent's: ignored. The newest before the
   /// next Observe counts.
-  void Detect(const Detection& detection);
+  void Detect(const dynamics::Detection& detection);
 
   /// A packet that the modem gave. One that does not decode is counted and ignored.
-  void Receive(const Reception& reception);
+  void Receive(const acoustics::Reception& reception);
 
   /// Brings all knowledge to nav.stamp and writes the observation.
   /// @param observation [observation_size()], finite.
   /// Throws std::invalid_argument for a non-finite navigation state: a bug of the caller.
-  void Observe(const NavState& nav, float* observation);
+  void Observe(const dynamics::NavState& nav, float* observation);
 
   /// Executes an action (Eqs. 23-27), once after each Observe.
   /// @param action [action_size()], clipped to [-1, 1] inside. Non-finite values throw
@@ -88,7 +88,7 @@ class Agent {
   AgentOutput Act(const float* action);
 
   int id() const { return id_; }
-  const Scenario& scenario() const { return constants_->scenario; }
+  const AgentConfig& scenario() const { return constants_->scenario; }
   std::uint32_t episode() const { return episode_; }
   /// Number of the last Observe, counted from 0 since Reset.
   std::uint32_t step() const { return step_; }
@@ -108,8 +108,8 @@ class Agent {
 
  private:
   struct Constants {
-    explicit Constants(const Scenario& s);
-    Scenario scenario;
+    explicit Constants(const AgentConfig& s);
+    AgentConfig scenario;
     PacketCodec codec;
     int slots;      // decisions per transmit period, P
     TimeNs period;  // of decisions
@@ -119,7 +119,7 @@ class Agent {
   friend class AgentLanes;
 
   /// The state a packet holds when it is news of a neighbour, else null.
-  const NeighbourState* Take(const Reception& reception);
+  const NeighbourState* Take(const acoustics::Reception& reception);
   /// Starts the next decision.
   void Begin(TimeNs now);
   void UpdateTrack();
@@ -134,8 +134,8 @@ class Agent {
   NeighbourTable neighbours_;
   TargetTrack track_;
   Mind<double> mind_;
-  Cue cue_;
-  Detection detection_;
+  dynamics::Cue cue_;
+  dynamics::Detection detection_;
   bool cue_pending_ = false, detection_pending_ = false;
   TimeNs now_ = 0;
   std::uint32_t episode_ = 0, step_ = 0, decisions_ = 0;
@@ -143,6 +143,6 @@ class Agent {
 };
 
 /// Agents 0 .. scenario.agents - 1, sharing one copy of the scenario.
-std::vector<Agent> MakeAgents(const Scenario& scenario);
+std::vector<Agent> MakeAgents(const AgentConfig& scenario);
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -4,7 +4,7 @@
 
 #include "stg_agent/agent/agent.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 /// The same AUV's agent in kLanes environments that run in lockstep: same time, same decision
 /// count. Does what kLanes objects of class Agent do, bit for bit, with the arithmetic of all
@@ -18,13 +18,13 @@ class AgentLanes {
   AgentLanes(const Agent& first, int id);
 
   /// Starts an episode in one lane. Lanes run in lockstep: reset all of them, then Observe.
-  void Reset(int lane, std::uint32_t episode, const Cue& cue);
-  void Detect(int lane, const Detection& detection) { At(lane).Detect(detection); }
-  void Receive(int lane, const Reception& reception);
+  void Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue);
+  void Detect(int lane, const dynamics::Detection& detection) { At(lane).Detect(detection); }
+  void Receive(int lane, const acoustics::Reception& reception);
 
   /// Brings all knowledge to nav.stamp; the observation is BuildObservation of knowledge().
   /// Throws std::invalid_argument for a non-finite navigation state: a bug of the caller.
-  void Observe(const Navigation<Pack>& nav);
+  void Observe(const dynamics::Navigation<Pack>& nav);
   const Knowledge<Pack>& knowledge() const { return mind_.knowledge; }
 
   /// Executes an action [action_size] as Agent::Act; knowledge().tau is then the command.
@@ -47,9 +47,9 @@ class AgentLanes {
   };
 
   Agent& At(int lane) { return agents_[static_cast<std::size_t>(lane)]; }
-  const Scenario& scenario() const { return agents_.front().scenario(); }
+  const AgentConfig& scenario() const { return agents_.front().scenario(); }
   /// Drops what is too old in the lanes of the mask.
-  void Forget(const Mask<Pack>& past, const Navigation<Pack>& nav);
+  void Forget(const Mask<Pack>& past, const dynamics::Navigation<Pack>& nav);
   TargetView<Pack> SeeTarget() const;
   NeighbourView<Pack> SeeNeighbours(const Vec3<Pack>& p_WT) const;
 
@@ -59,4 +59,4 @@ class AgentLanes {
   Mind<Pack> mind_;
 };
 
-}  // namespace stg
+}  // namespace stg::agent

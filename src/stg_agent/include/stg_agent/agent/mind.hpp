@@ -11,7 +11,7 @@
 /// The part of an agent that does the same at every decision, from what it was told to what the
 /// policy sees, and from the policy's action to the command. T = double: one agent. T = Pack: the
 /// same agent of kLanes environments, bit for bit.
-namespace stg {
+namespace stg::agent {
 
 /// Lets the neighbours into an agent's knowledge, in the order of their indices.
 template <class T>
@@ -51,7 +51,7 @@ struct TargetView {
 template <class T>
 class Mind {
  public:
-  explicit Mind(const Scenario& s)
+  explicit Mind(const AgentConfig& s)
       : window_(static_cast<std::size_t>(std::max(1, s.observation.error_window)), T(0.0)) {}
 
   void Reset() {
@@ -60,7 +60,7 @@ class Mind {
     std::fill(window_.begin(), window_.end(), T(0.0));
   }
 
-  void SetNavigation(const Navigation<T>& nav) {
+  void SetNavigation(const dynamics::Navigation<T>& nav) {
     Knowledge<T>& k = knowledge;
     k.p_WB = nav.p_WB;
     k.v_WB_B = nav.v_WB_B;
@@ -71,7 +71,7 @@ class Mind {
   }
 
   /// After SetNavigation, at decision `step` of the episode.
-  void SetTracking(const Scenario& s, const TargetView<T>& target, std::uint32_t step) {
+  void SetTracking(const AgentConfig& s, const TargetView<T>& target, std::uint32_t step) {
     const T zero(0.0), one(1.0), half(0.5);
     Knowledge<T>& k = knowledge;
     k.r_BT_W = target.p_WT - k.p_WB;
@@ -80,14 +80,14 @@ class Mind {
     k.previous_distance = step == 0 ? distance : k.distance;
     k.distance = distance;
     k.closing = ClosingSpeed(k.r_BT_W, distance, k.v_WB, k.v_WT);
-    k.error = Abs(distance - T(s.reward.desired_distance_m));
+    k.error = Abs(distance - T(s.task.desired_distance_m));
     window_[step % window_.size()] = k.error;
     T sum(0.0);
     for (const T& e : window_) sum += e;  // zeros where there is no history yet
     k.mean_error = sum / T(static_cast<double>(std::min<std::size_t>(step + 1, window_.size())));
     const Mask<T> lost = (target.started < half) ||
                          (Sqrt(target.variance) > T(s.track.lost_std_m)) ||
-                         (distance > T(s.reward.lost_distance_m));
+                         (distance > T(s.task.lost_distance_m));
     const T seen = Select(target.current > half, Confidence(distance, s.sensing.range_m), zero);
     k.confidence = Select(lost, zero, seen);
     k.lost = Select(lost, one, zero);
@@ -95,7 +95,7 @@ class Mind {
   }
 
   /// After SetTracking. The slots of `view.nearest` are as they are to be shown.
-  void SetNeighbours(const Scenario& s, const NeighbourView<T>& view) {
+  void SetNeighbours(const AgentConfig& s, const NeighbourView<T>& view) {
     const T zero(0.0), one(1.0);
     const T others(1.0 / std::max(1.0, static_cast<double>(s.agents - 1)));
     Knowledge<T>& k = knowledge;
@@ -110,18 +110,18 @@ class Mind {
   /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed.
   /// Returns the desired velocity, world axes [m/s]; zero for tau6.
   /// @param wanted [action_size], clipped to [-1, 1]
-  Vec3<T> Act(const Scenario& s, const T* wanted) {
+  Vec3<T> Act(const AgentConfig& s, const T* wanted) {
     Knowledge<T>& k = knowledge;
     const int size = s.action_size();
-    if (s.control.interface == ActionInterface::kTau6) {
+    if (s.control.interface == dynamics::ActionInterface::kTau6) {
       for (int a = 0; a < size; ++a) {
         k.tau[a] = action[static_cast<std::size_t>(a)] = Clip(wanted[a], T(-1.0), T(1.0));
       }
       return {};
     }
-    SmoothAction(s.control, size, wanted, action.data());
-    const Vec3<T> v_des_W = DesiredVelocity(s.vehicle, action.data());
-    VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B,
+    dynamics::SmoothAction(s.control, size, wanted, action.data());
+    const Vec3<T> v_des_W = dynamics::DesiredVelocity(s.vehicle, action.data());
+    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B,
                        k.tau);
     return v_des_W;
   }
@@ -133,4 +133,4 @@ class Mind {
   std::vector<T> window_;  // ring of the last error_window tracking errors
 };
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <string>
 
-#include "auv_dynamics/world/world_config.hpp"
-#include "auv_common/numbers/lanes.hpp"
+#include "stg_agent/agent/agent_config.hpp"
+#include "auv_common/numbers/vector.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 /// Built-in controllers: what a policy has to beat.
-namespace stg {
+namespace stg::agent {
 
 /// The built-in controllers by name: `idle`, `pursuit`, `pursuit_separated`.
 enum class BuiltinKind { kIdle, kPursuit, kPursuitSeparated };
@@ -67,7 +67,7 @@ const char* ToString(BuiltinKind kind);
 /// @param v_WT   target velocity [m/s], world axes
 /// @param r_BN_W [count] neighbour positions minus own [m]; a zero offset repels nothing
 template <class T>
-inline void PursuitAction(const PursuitOptions& o, const VehicleConfig& vehicle,
+inline void PursuitAction(const PursuitOptions& o, const dynamics::VehicleConfig& vehicle,
                           const Vec3<T>& r_BT_W, const Vec3<T>& v_WT, const Vec3<T>* r_BN_W,
                           int count, T* action) {
   const T zero(0.0), tiny(1e-9);
@@ -114,7 +114,7 @@ inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& 
 
 /// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
 template <class T>
-inline void PursuitAction(const PursuitOptions& o, const Scenario& scenario, const Knowledge<T>& k,
+inline void PursuitAction(const PursuitOptions& o, const AgentConfig& scenario, const Knowledge<T>& k,
                           const Vec3<T>* r_BN_W, int count, T* action) {
   Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
   KeepFromWalls(scenario.workspace.half_extent_m, o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
@@ -129,4 +129,4 @@ class Agent;
 void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent& agent,
                    float* action);
 
-}  // namespace stg
+}  // namespace stg::agent

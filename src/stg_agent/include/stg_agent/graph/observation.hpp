@@ -1,13 +1,13 @@
 #pragma once
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 
 /// The policy input of Eq. 20 from what one AUV knows: raw physical state, the
 /// tracking diagnostics of Eq. 14, the phase and quality of Eqs. 15-16 and the
 /// task-graph summary of Eq. 18. One template serves the truth mode (T = Pack,
 /// knowledge from true states) and an agent (T = double, own knowledge only).
-namespace stg {
+namespace stg::agent {
 
 inline constexpr int kNeighbourSlots = 3;
 inline constexpr int kRawSize = 51;
@@ -159,7 +159,7 @@ inline void TrackingVector(const ObservationConfig& c, const Knowledge<T>& k, T 
 /// scenario.observation_size() - 1, in the order of release_facts (74 numbers
 /// with all blocks on).
 template <class T, class Put>
-inline void BuildObservation(const Scenario& scenario, const Knowledge<T>& k, Put&& put) {
+inline void BuildObservation(const AgentConfig& scenario, const Knowledge<T>& k, Put&& put) {
   const ObservationConfig& c = scenario.observation;
   const auto& vm = scenario.vehicle.max_velocity_mps;
   const auto& wm = scenario.vehicle.max_rate_radps;
@@ -210,4 +210,4 @@ inline void BuildObservation(const Scenario& scenario, const Knowledge<T>& k, Pu
   }
 }
 
-}  // namespace stg
+}  // namespace stg::agent

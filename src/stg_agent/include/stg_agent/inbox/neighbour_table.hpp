@@ -4,10 +4,10 @@
 
 #include "acoustic_channel/link/link_quality.hpp"
 #include "stg_agent/packet/packet.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 /// Dead reckoning p + v age inside the walls [m].
 template <class T>
@@ -17,9 +17,9 @@ Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, doubl
 
 /// q of Eq. 5 or 6, by the channel model, at distance d [m] and age of information age_s [s].
 template <class T>
-T LinkQuality(const ChannelConfig& c, const T& d, const T& age_s) {
-  return c.model == ChannelModel::kRange ? RangeQuality(d, c.range_m)
-                                         : ExtendedQuality(d, age_s, c);
+T LinkQuality(const acoustics::ChannelConfig& c, const T& d, const T& age_s) {
+  return c.model == acoustics::ChannelModel::kRange ? acoustics::RangeQuality(d, c.range_m)
+                                         : acoustics::ExtendedQuality(d, age_s, c);
 }
 
 /// What one AUV knows of another: its newest packet, carried forward to now.
@@ -41,7 +41,7 @@ struct Neighbour {
 /// AUV the newest generation stays.
 class NeighbourTable {
  public:
-  NeighbourTable(const Scenario& scenario, int self);
+  NeighbourTable(const AgentConfig& scenario, int self);
 
   void Clear();
 
@@ -68,7 +68,7 @@ class NeighbourTable {
   void MarkRead();
 
  private:
-  ChannelConfig channel_;
+  acoustics::ChannelConfig channel_;
   double max_age_s_;
   double half_extent_m_;
   int self_;
@@ -78,4 +78,4 @@ class NeighbourTable {
   std::vector<double> distance_, age_, quality_;  // of known_, padded to whole packs
 };
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 /// Estimate of a target's position and velocity, world axes.
 ///
@@ -53,7 +53,7 @@ class TargetTrack {
  public:
   static constexpr int kRestartAfter = 3;
 
-  explicit TargetTrack(const Scenario& scenario);
+  explicit TargetTrack(const AgentConfig& scenario);
 
   void Clear();
   /// Starts the track from a datum: velocity zero with initial_speed_std_mps.
@@ -68,7 +68,7 @@ class TargetTrack {
   /// Takes an own detection. One newer than the track predicts it to the detection's
   /// stamp; an older one is carried forward with the track's velocity, its noise grown by
   /// that velocity's variance. Starts a track that has not been started.
-  void Detect(const Detection& detection);
+  void Detect(const dynamics::Detection& detection);
 
   /// Takes a shared estimate of any age; the track keeps its time.
   void Fuse(const SharedEstimate& shared);
@@ -87,7 +87,7 @@ class TargetTrack {
  private:
   void Grow(double dt_s, TargetEstimate* e) const;
   void Remember(TimeNs information, bool observation);
-  void Restart(const Detection& newest, double std_m);
+  void Restart(const dynamics::Detection& newest, double std_m);
 
   double intensity_;  // S [m^2/s^3]
   double floor_std_m_;
@@ -98,8 +98,8 @@ class TargetTrack {
   bool started_ = false, observed_ = false;
   TargetEstimate now_;
   SharedEstimate shared_;
-  Detection previous_rejected_;
+  dynamics::Detection previous_rejected_;
   int rejected_ = 0;
 };
 
-}  // namespace stg
+}  // namespace stg::agent

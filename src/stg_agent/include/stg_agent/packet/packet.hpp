@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 
 /// What one AUV tells its neighbours, and its 32-byte form on the acoustic link.
-namespace stg {
+namespace stg::agent {
 
 inline constexpr int kPacketBytes = 32;
 using Packet = std::array<std::uint8_t, kPacketBytes>;
@@ -58,7 +58,7 @@ struct PacketField {
 class PacketCodec {
  public:
   /// Throws UserError when the scenario does not fit the layout (more than 256 AUVs, 64 targets).
-  explicit PacketCodec(const Scenario& scenario);
+  explicit PacketCodec(const AgentConfig& scenario);
 
   /// A non-finite value, a negative generation time or an index out of range is a bug of the
   /// caller and throws std::invalid_argument. Allocates nothing otherwise.
@@ -88,4 +88,4 @@ class PacketCodec {
   std::array<double, 256> std_of_code_{};  ///< exp(log_std_) for every code
 };
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -6,7 +6,7 @@
 
 /// The exploring policy of Eq. 37: a Gaussian around the mean, with a standard deviation of its own
 /// for each action that does not depend on the observation.
-namespace stg {
+namespace stg::agent {
 
 /// log sqrt(2 pi)
 inline constexpr float kHalfLogTwoPi = 0.918938533F;
@@ -37,4 +37,4 @@ inline double GaussianLogDensity(const float* mean, const float* log_std, const 
   return sum;
 }
 
-}  // namespace stg
+}  // namespace stg::agent

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 
-namespace stg {
+namespace stg::agent {
 
 /// Where a policy comes from and what it may be connected to.
 struct PolicyMetadata {
@@ -23,9 +23,9 @@ struct PolicyMetadata {
 };
 
 /// Names the observation's layout, e.g. "stg-1:raw+tracking+semantic+graph:nearest".
-std::string ObservationLayout(const Scenario& scenario);
+std::string ObservationLayout(const AgentConfig& scenario);
 /// "velocity3" or "tau6".
-std::string ActionInterfaceName(ActionInterface interface);
+std::string ActionInterfaceName(dynamics::ActionInterface interface);
 
 /// A deterministic policy: the mean of the actor's Gaussian.
 ///
@@ -76,7 +76,7 @@ class Policy {
 
   /// Throws UserError unless layout, action interface and sizes are those of the
   /// scenario. (The scenario hash may differ: policies are evaluated elsewhere.)
-  void RequireFits(const Scenario& scenario) const;
+  void RequireFits(const AgentConfig& scenario) const;
 
   int observation_size() const { return static_cast<int>(parameters_.input_mean.size()); }
   int action_size() const { return static_cast<int>(parameters_.layers.back().bias.size()); }
@@ -95,4 +95,4 @@ class Policy {
   std::vector<Packed> packed_;
 };
 
-}  // namespace stg
+}  // namespace stg::agent

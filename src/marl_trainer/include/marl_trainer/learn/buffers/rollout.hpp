@@ -6,7 +6,7 @@
 #include "marl_trainer/learn/nn/actor_critic.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// What one collection gathers in one unit. Index [t][e][agent]; environment
 /// steps [t][e] are the samples of an update.
@@ -65,7 +65,7 @@ class RolloutUnit {
   const RunningMoments& observation_moments() const { return observation_moments_; }
   const RunningMoments& state_moments() const { return state_moments_; }
   /// Episodes that ended in the last collection.
-  const std::vector<EpisodeMetrics>& finished() const { return finished_; }
+  const std::vector<task::EpisodeMetrics>& finished() const { return finished_; }
   double env_seconds() const { return env_seconds_; }
   double inference_seconds() const { return inference_seconds_; }
 
@@ -84,15 +84,15 @@ class RolloutUnit {
   const int first_env_, envs_, horizon_, agents_, episode_steps_, total_envs_;
   const bool stagger_;
   const float gamma_, lambda_;
-  std::vector<EnvGroup> groups_;
-  std::vector<Controller> teachers_;  // one, or none
+  std::vector<env::EnvGroup> groups_;
+  std::vector<env::Controller> teachers_;  // one, or none
   RolloutBuffer buffer_;
   Mlp::Workspace actor_, critic_;
   std::vector<float> raw_observations_, raw_states_, final_states_, last_states_;
   std::vector<int> final_samples_;
   RunningMoments observation_moments_, state_moments_;
-  std::vector<EpisodeMetrics> finished_;
+  std::vector<task::EpisodeMetrics> finished_;
   double env_seconds_ = 0.0, inference_seconds_ = 0.0;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/nn/mlp.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 #include "stg_agent/policy/policy.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Shapes of the shared actor and the central critic, and the layout of their
 /// parameters in one flat array: actor, log sigma, critic.
@@ -44,11 +44,11 @@ struct ActorCritic {
   static constexpr int kWallUnits = 24;  ///< 6 walls, 4 distances
 
   /// The policy that `parameters` and the observation normaliser make.
-  Policy ToPolicy(const float* parameters, const Normaliser& observations,
-                  PolicyMetadata metadata) const;
+  agent::Policy ToPolicy(const float* parameters, const Normaliser& observations,
+                  agent::PolicyMetadata metadata) const;
 };
 
 /// mean = scale * tanh(net) in place over count numbers.
 void SquashMean(float scale, int count, float* net);
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -1,7 +1,7 @@
 #pragma once
 
 /// Single-precision matrix products on row-major arrays, by the system's BLAS.
-namespace stg {
+namespace stg::learn {
 
 /// One thread per call for BLAS: parallelism is over workers. Call once, early.
 void UseOneBlasThread();
@@ -15,4 +15,4 @@ void Multiply(bool transpose_a, bool transpose_b, int m, int n, int k, const flo
 /// operations per second]: the peak that an update is compared with.
 double MeasurePeakFlops();
 
-}  // namespace stg
+}  // namespace stg::learn

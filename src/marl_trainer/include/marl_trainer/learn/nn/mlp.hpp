@@ -6,7 +6,7 @@
 
 #include "auv_common/numbers/random.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Nonlinearity of the hidden layers.
 enum class HiddenActivation { kTanh, kRelu };
@@ -71,4 +71,4 @@ class Mlp {
   HiddenActivation activation_;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

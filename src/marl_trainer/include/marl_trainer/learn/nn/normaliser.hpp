@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace stg {
+namespace stg::learn {
 
 /// Running mean and variance of vectors, mergeable in any grouping (Chan et
 /// al. 1979): count, mean and sum of squared deviations per component.
@@ -46,4 +46,4 @@ struct Normaliser {
   void Apply(const float* x, int rows, float* y) const;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "stg_agent/policy/policy.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Why an episode cannot be learnt from.
 enum class Flaw {
@@ -96,7 +96,7 @@ class EpisodeChecker {
   static constexpr double kLogProbabilityTolerance = 1e-3;
 
   /// @param policy must outlive this object, and fit the scenario.
-  EpisodeChecker(const Scenario& scenario, int state_size, const Policy& policy);
+  EpisodeChecker(const Scenario& scenario, int state_size, const agent::Policy& policy);
   /// The first flaw found, kNone for an episode to learn from.
   Finding Check(const RecordedEpisode& episode) const;
 
@@ -107,7 +107,7 @@ class EpisodeChecker {
 
   const int agents_, episode_steps_, state_size_;
   const std::uint32_t layout_version_;
-  const Policy& policy_;
+  const agent::Policy& policy_;
 };
 
 /// Version in ObservationLayout(): 1 for "stg-1:...".
@@ -122,4 +122,4 @@ struct RecordingReport {
   std::string Text() const;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -9,7 +9,7 @@
 #include "marl_trainer/learn/algorithms/mappo/learner.hpp"
 #include "marl_trainer/learn/recorded/recorded.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// MAPPO on recorded episodes. Each update makes a new policy with an id of its own; episodes of
 /// any other policy are refused.
@@ -43,7 +43,7 @@ class RecordedTrainer {
   /// One update on episodes that passed Check; at least one. Writes policy and checkpoint.
   Progress Update(const std::vector<RecordedEpisode>& episodes);
 
-  const Policy& policy() const { return *policy_; }
+  const agent::Policy& policy() const { return *policy_; }
   const std::string& policy_id() const { return policy_->metadata().id; }
   std::string policy_path() const;
   const TrainState& state() const { return state_; }
@@ -51,11 +51,11 @@ class RecordedTrainer {
 
  private:
   RecordedTrainer(const Scenario& scenario, const TrainConfig& config, const Options& options,
-                  const std::shared_ptr<const Policy>& start);
-  void Restore(const TrainState& state, const Policy* start);
-  void StartFrom(const Policy& policy);
+                  const std::shared_ptr<const agent::Policy>& start);
+  void Restore(const TrainState& state, const agent::Policy* start);
+  void StartFrom(const agent::Policy& policy);
   RolloutBuffer Rollout(const RecordedEpisode& episode);
-  Policy MakePolicy() const;
+  agent::Policy MakePolicy() const;
 
   const Scenario scenario_;
   const TrainConfig config_;
@@ -65,11 +65,11 @@ class RecordedTrainer {
   TrainState state_;
   Mlp::Workspace critic_;
   RunningMoments observation_moments_, state_moments_;  ///< raw, of the present collection
-  std::shared_ptr<const Policy> policy_;
+  std::shared_ptr<const agent::Policy> policy_;
 };
 
 /// Defaults for updates on few whole episodes: more passes over less data than the presets.
 /// The minibatch is the largest divisor of the episode up to 500 steps.
 TrainConfig RecordedConfig(const Scenario& scenario);
 
-}  // namespace stg
+}  // namespace stg::learn

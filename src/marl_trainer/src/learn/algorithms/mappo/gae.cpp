@@ -1,6 +1,6 @@
 #include "marl_trainer/learn/algorithms/mappo/gae.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 void GeneralisedAdvantages(const float* rewards, const float* values, const std::uint8_t* done,
                            const float* final_values, float bootstrap, int steps, int stride,
@@ -20,4 +20,4 @@ void GeneralisedAdvantages(const float* rewards, const float* values, const std:
   }
 }
 
-}  // namespace stg
+}  // namespace stg::learn

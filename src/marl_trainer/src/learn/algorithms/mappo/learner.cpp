@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stg {
+namespace stg::learn {
 namespace {
 
 /// Value targets that the value normaliser remembers [environment steps].
 constexpr double kValueMemory = 100000.0;
 
-int StateSize(const Scenario& scenario) { return EnvGroup(scenario, EnvOptions()).state_size(); }
+int StateSize(const Scenario& scenario) { return env::EnvGroup(scenario, env::EnvOptions()).state_size(); }
 
 }  // namespace
 
@@ -115,4 +115,4 @@ void Learner::RescaleCritic(double mean, double std, std::vector<float>* paramet
   scales_.value_std = static_cast<float>(std);
 }
 
-}  // namespace stg
+}  // namespace stg::learn

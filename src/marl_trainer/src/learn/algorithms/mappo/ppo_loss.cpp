@@ -4,7 +4,7 @@
 #include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 void PpoSums::Add(const PpoSums& other) {
   actor_loss += other.actor_loss;
@@ -51,7 +51,7 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
   float inverse_std[kMaxActions], sum_log_std = 0.0F;
   for (int a = 0; a < size; ++a) {
     inverse_std[a] = std::exp(-log_std[a]);
-    sum_log_std += log_std[a] + kHalfLogTwoPi;
+    sum_log_std += log_std[a] + agent::kHalfLogTwoPi;
   }
   double d_sigma[kMaxActions] = {};
   const float* action = batch.actions;
@@ -123,4 +123,4 @@ void PpoLoss::AddCritic(const float* parameters, const PpoBatch& batch, int mini
   sums->samples += batch.count;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

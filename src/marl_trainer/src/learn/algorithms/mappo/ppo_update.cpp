@@ -6,7 +6,7 @@
 #include "auv_common/numbers/random.hpp"
 #include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Gathered rows of one block, and the networks' scratch memory.
 struct PpoUpdate::Scratch {
@@ -221,4 +221,4 @@ UpdateReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, c
   return report;
 }
 
-}  // namespace stg
+}  // namespace stg::learn

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_common/nodes/conversions.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// `start` is the clock time of the episode's step 0 [ns]: the core counts from there.
-inline void SetReceivedPacket(const Reception& r, TimeNs start, auv_msgs::ReceivedPacket* m) {
+inline void SetReceivedPacket(const acoustics::Reception& r, TimeNs start, auv_msgs::ReceivedPacket* m) {
   m->source = static_cast<std::uint32_t>(r.source);
   m->sequence = r.sequence;
   m->generation = TimeOf(start + r.generation);
@@ -29,9 +29,9 @@ inline void SetReceivedPacket(const Reception& r, TimeNs start, auv_msgs::Receiv
 /// The inverse, for receiver `destination`; false when the payload has not the size of a packet.
 /// The true distance is not in the message: a modem does not know it.
 inline bool ReceptionOf(const auv_msgs::ReceivedPacket& m, int destination, TimeNs start,
-                        Reception* r) {
-  if (m.data.size() != static_cast<std::size_t>(kPacketBytes)) return false;
-  *r = Reception();
+                        acoustics::Reception* r) {
+  if (m.data.size() != std::tuple_size<acoustics::Payload>::value) return false;
+  *r = acoustics::Reception();
   r->source = static_cast<int>(m.source);
   r->destination = destination;
   r->sequence = m.sequence;
@@ -49,4 +49,4 @@ inline bool ReceptionOf(const auv_msgs::ReceivedPacket& m, int destination, Time
   return true;
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

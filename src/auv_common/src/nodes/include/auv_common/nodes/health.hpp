@@ -8,7 +8,7 @@
 #include <string>
 
 /// What every node tells on /diagnostics, once per second of wall time.
-namespace stg {
+namespace stg::nodes {
 
 /// Counts events; tells how many came since the last report and how often.
 class EventRate {
@@ -63,4 +63,4 @@ class Health {
   double period_s_ = 1.0;
 };
 
-}  // namespace stg
+}  // namespace stg::nodes

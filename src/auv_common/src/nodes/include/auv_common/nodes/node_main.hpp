@@ -10,7 +10,7 @@
 
 #include "auv_common/error.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
 /// Low latency for small messages: every subscription asks for it.
 inline ros::TransportHints NoDelay() { return ros::TransportHints().tcpNoDelay(); }
@@ -52,4 +52,4 @@ int RunNode(int argc, char** argv, const std::string& name) {
   return 0;
 }
 
-}  // namespace stg
+}  // namespace stg::nodes

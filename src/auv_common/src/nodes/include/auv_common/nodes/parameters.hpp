@@ -4,18 +4,31 @@
 
 #include <string>
 
-#include "auv_dynamics/world/world_config.hpp"
+#include "auv_common/config/loader.hpp"
 
-namespace stg {
+namespace stg::nodes {
 
-/// The scenario of the run from the parameters `scenario` (name or file, default medium),
+/// Where the scenario of the run is, from the parameters `scenario` (name or file, default medium),
 /// `condition` (default nominal), `agents` (overrides the scenario's, 0: does not) and `overrides`
 /// (a list of key.path=value). Each is looked up in the node's private namespace, then upwards, so
 /// that one value at the root serves the whole graph. The information mode is always `acoustic`:
 /// nodes have no other source. Throws UserError.
-Scenario LoadScenarioParameters();
+config::Source ScenarioSource();
+
+/// Throws UserError when `overrides` contradicts the parameter `agents`.
+void RequireAgents(int agents);
+
+/// The sections of the run's scenario that Config describes, or all of the scenario. Throws
+/// UserError.
+template <class Config>
+Config LoadScenarioParameters(config::Scope scope = config::Scope::kOwnSections) {
+  Config config = config::Load<Config>(ScenarioSource(), scope);
+  RequireAgents(config.agents);
+  return config;
+}
+
 /// Warns when `agents` overrides another number in the scenario's file. For one node of the graph.
-void WarnOfOverriddenAgents(const Scenario& scenario);
+void WarnOfOverriddenAgents(int agents);
 
 /// A private parameter of any node, checked: throws UserError when it has another type, is not
 /// finite, or lies outside [lo, hi].
@@ -25,4 +38,4 @@ int IntegerParameter(const std::string& name, int fallback, int lo, int hi);
 bool FlagParameter(const std::string& name, bool fallback);
 std::string TextParameter(const std::string& name, const std::string& fallback);
 
-}  // namespace stg
+}  // namespace stg::nodes

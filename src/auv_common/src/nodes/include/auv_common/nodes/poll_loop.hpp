@@ -2,7 +2,7 @@
 
 #include <functional>
 
-namespace stg {
+namespace stg::nodes {
 
 /// Wait time that ends a PollLoop.
 inline constexpr double kLoopDone = -1.0;
@@ -28,4 +28,4 @@ void PollLoop(const std::function<double()>& work, int realtime_priority = 0);
 /// The parameter `realtime_priority` of a node or of the whole graph, default 0. Throws UserError.
 int RealtimePriorityParameter();
 
-}  // namespace stg
+}  // namespace stg::nodes

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <string>
+#include "auv_common/nodes/topics.hpp"
 
 /// Names of the topics, services and frames between world, controllers and the rest of the graph.
 namespace stg::topics {
-
-/// Namespace of everything that belongs to one AUV.
-inline std::string Auv(int i) { return "/auv_" + std::to_string(i); }
-inline std::string AuvTopic(int i, const char* name) { return Auv(i) + "/" + name; }
 
 // Of each AUV, below Auv(i).
 inline constexpr char kOdom[] = "odom";
@@ -18,12 +14,10 @@ inline constexpr char kWrench[] = "wrench";
 
 // Of the whole run.
 inline std::string TargetOdom(int k) { return "/target_" + std::to_string(k) + "/odom"; }
-inline constexpr char kSwarmState[] = "/swarm_state";
 inline constexpr char kClock[] = "/clock";
 inline constexpr char kScenario[] = "/scenario";
 inline constexpr char kReset[] = "/reset";
 inline constexpr char kPause[] = "/pause";
-inline constexpr char kChannelDone[] = "/acoustic_channel/done";
 inline constexpr char kStepReport[] = "/step_report";
 inline constexpr char kEpisodeSummary[] = "/episode_summary";
 
@@ -31,9 +25,7 @@ inline constexpr char kEpisodeSummary[] = "/episode_summary";
 
 namespace stg::frames {
 
-inline constexpr char kWorld[] = "world";
 inline constexpr char kWorldNed[] = "world_ned";
-inline std::string Body(int i) { return "auv_" + std::to_string(i) + "/base_link"; }
 inline std::string Target(int k) { return "target_" + std::to_string(k); }
 
 }  // namespace stg::frames

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace stg {
+namespace stg::learn {
 
 /// Generalised advantage estimation (Eqs. 39-40) of one environment's segment.
 ///
@@ -20,4 +20,4 @@ void GeneralisedAdvantages(const float* rewards, const float* values, const std:
                            const float* final_values, float bootstrap, int steps, int stride,
                            float gamma, float lambda, float* advantages);
 
-}  // namespace stg
+}  // namespace stg::learn

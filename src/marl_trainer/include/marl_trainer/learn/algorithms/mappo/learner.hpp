@@ -6,7 +6,7 @@
 #include "marl_trainer/learn/checkpoint.hpp"
 #include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// MAPPO (Eqs. 37-44) on rollouts from anywhere, with the normalisers of what the networks see and
 /// predict. Weights and optimiser live in the TrainState that every call names.
@@ -53,4 +53,4 @@ class Learner {
   Scales scales_;
 };
 
-}  // namespace stg
+}  // namespace stg::learn

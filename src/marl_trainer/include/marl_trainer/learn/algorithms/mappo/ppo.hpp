@@ -10,7 +10,7 @@
 #include "marl_trainer/learn/buffers/rollout.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
 
-namespace stg {
+namespace stg::learn {
 
 /// Sums over rows of what an update reports.
 struct PpoSums {
@@ -112,4 +112,4 @@ class PpoUpdate {
   std::vector<float> advantages_, targets_;  // normalised, by sample
 };
 
-}  // namespace stg
+}  // namespace stg::learn

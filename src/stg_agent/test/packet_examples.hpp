@@ -3,20 +3,20 @@
 
 #include "stg_agent/packet/packet.hpp"
 
-namespace stg {
+namespace stg::acoustics {
 
 inline constexpr TimeNs kMs = 1'000'000, kSecond = 1'000'000'000;
 
-inline Scenario TestScenario() {
-  Scenario s;
+inline AgentConfig TestScenario() {
+  AgentConfig s;
   s.agents = 7;
   s.target.count = 3;
   return s;
 }
 
 /// A state well inside every range.
-inline NeighbourState Example() {
-  NeighbourState s;
+inline agent::NeighbourState Example() {
+  agent::NeighbourState s;
   s.source = 5;
   s.generation = 0x1234 * kMs;
   s.p_W = {0.5, -0.25, 0.125};
@@ -35,7 +35,7 @@ inline NeighbourState Example() {
 }
 
 /// CRC-8 bit by bit, reflected polynomial 0x1D, initial value 0xFF: the definition.
-inline void Seal(Packet* packet) {
+inline void Seal(agent::Packet* packet) {
   unsigned crc = 0xFF;
   for (std::size_t i = 0; i + 1 < packet->size(); ++i) {
     crc ^= (*packet)[i];
@@ -44,4 +44,4 @@ inline void Seal(Packet* packet) {
   packet->back() = static_cast<std::uint8_t>(crc);
 }
 
-}  // namespace stg
+}  // namespace stg::acoustics

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <cmath>
+
+#include "auv_common/numbers/vector.hpp"
+#include "auv_common/time.hpp"
+
+/// Between the core's plain data and messages. Doubles and integer nanoseconds pass unchanged, so
+/// that a graph of nodes computes the same bits as one process.
+namespace stg::nodes {
+
+inline TimeNs NsOf(const ros::Time& t) { return static_cast<TimeNs>(t.toNSec()); }
+inline ros::Time TimeOf(TimeNs t) { return ros::Time().fromNSec(static_cast<std::uint64_t>(t)); }
+
+template <class Message>
+inline Vec3<double> VectorOf(const Message& m) {
+  return {m.x, m.y, m.z};
+}
+template <class Message>
+inline void SetVector(const Vec3<double>& v, Message* m) {
+  m->x = v.x;
+  m->y = v.y;
+  m->z = v.z;
+}
+
+/// Beyond this a number from outside is a fault, and squares of it spoil what they enter.
+inline constexpr double kLargestInput = 1e6;
+
+/// Each of these also refuses numbers beyond kLargestInput.
+inline bool Finite(double x) { return std::abs(x) <= kLargestInput; }
+template <class Message>
+inline bool FiniteVector(const Message& m) {
+  return Finite(m.x) && Finite(m.y) && Finite(m.z);
+}
+
+}  // namespace stg::nodes
