@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstdint>
+
+namespace stg {
+
+/// Simulated time in integer nanoseconds, as ros::Time carries it.
+using TimeNs = std::int64_t;
+inline double Seconds(TimeNs t) { return static_cast<double>(t) * 1e-9; }
+
+}  // namespace stg
