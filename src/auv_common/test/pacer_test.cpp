@@ -111,6 +111,7 @@ TEST(Pacer, InLockstepAStepIsDueAtOnceAndHasItsOwnPatience) {
   for (const double now_s : {kStart_s, kStart_s + 1e-4, kStart_s + 500.0}) {
     pacer.Open(now_s);
     EXPECT_TRUE(pacer.Due(now_s));
+    EXPECT_EQ(pacer.due_s(), now_s);
     EXPECT_EQ(pacer.deadline_s(), now_s + 0.5);
   }
 }

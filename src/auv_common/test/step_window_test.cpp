@@ -137,6 +137,19 @@ TEST_F(StepWindowTest, StepsFarAheadDoNotSilenceTheOnesBeforeThem) {
   EXPECT_EQ(TakeAll(), std::vector<TimeNs>{580 * kStep});
 }
 
+TEST_F(StepWindowTest, PatienceBeginsWithTheLastWordAboutAnEarlierStep) {
+  Say(0, 580 * kStep);
+  Say(0, 581 * kStep);
+  Say(0, 1 * kStep);
+  now_s_ += 0.9;
+  Say(1, 1 * kStep);
+  ASSERT_TRUE(Take());
+  now_s_ += 0.9;
+  EXPECT_FALSE(Take()) << "1.8 s after its own first word";
+  now_s_ += 0.2;
+  EXPECT_TRUE(Take());
+}
+
 TEST_F(StepWindowTest, WithoutRoomTheLatestStepGoes) {
   for (int k = 11; k <= 18; ++k) EXPECT_TRUE(Say(0, k * kStep));
   EXPECT_EQ(window_.crowded(), 0u);

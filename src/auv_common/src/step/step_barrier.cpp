@@ -34,7 +34,7 @@ StepBarrier::Opening StepBarrier::Open(TimeNs stamp, double deadline_s) {
     party.answered = party.excused = false;
     // Who still owes an answer has no more time than it had.
     party.deadline_s = party.owes ? std::min(party.deadline_s, deadline_s) : deadline_s;
-    party.owes = party.present;
+    party.owes = true;
   }
   return replaced ? Opening::kReplaced : Opening::kOpened;
 }
@@ -68,7 +68,7 @@ const std::vector<int>& StepBarrier::GiveUp(double now_s) {
   for (int i = 0; i < parties(); ++i) {
     Party& party = At(i);
     if (!WaitsFor(party) || now_s < party.deadline_s) continue;
-    party.present = party.owes = false;
+    party.present = false;
     ++party.losses;
     given_up_.push_back(i);
   }

@@ -21,10 +21,10 @@ namespace stg {
 /// there. Nobody waits for a listener, so unlike a StepBarrier it waits for everybody in each step:
 /// that delays what it says, but not the steps. Patience with the steps runs side by side.
 ///
-/// Stamps from the future do no harm: patience with a step begins no sooner than the last word
-/// about an earlier one, so that a step is not given up before the run has come to it; and where
-/// there is no room, the latest step goes. Stamps from the past are refused. That a run has been
-/// started anew, with stamps that were there before, must be said by Clear().
+/// Stamps from the future do no harm while the run goes on: patience with a step begins no sooner
+/// than the last word about an earlier one, so that no step is given up before the run has come to
+/// it; and where there is no room, the latest step goes. Stamps from the past are refused: that a
+/// run has been started anew, with stamps that were there before, must be said by Clear().
 ///
 /// Times `now_s` are wall time in seconds of a clock of the caller's choice that does not go back.
 /// This class reads no clock. Not thread-safe.
@@ -80,7 +80,6 @@ class StepWindow {
   void Clear() {
     steps_.clear();
     has_taken_ = false;
-    heard_before_s_ = kNever;
   }
 
   std::size_t size() const { return steps_.size(); }  ///< open steps
