@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "auv_common/time.hpp"
+
+namespace stg {
+
+/// Who waits for whom in a step: everybody who is present answers, or is given up.
+///
+/// One step is open at a time, known by its stamp (simulated time). A party is present, and waited
+/// for, or absent. The first answer of a party to the open step counts. Whoever has not said a word
+/// by its deadline is absent and not waited for again before it speaks again; a word about another
+/// recent step is enough for that, but is no answer to this one.
+///
+/// Waiting always has an end: a party that has not spoken since it was first asked keeps the
+/// deadline of that step, however many steps are opened, left or closed meanwhile. Its silence
+/// costs nobody else's patience.
+///
+/// Deadlines are wall time in seconds of a clock of the caller's choice that does not go back. This
+/// class reads no clock. Parties that only listen have no place here: nobody waits for them (see
+/// StepWindow). Nothing is allocated after construction. Not thread-safe.
+class StepBarrier {
+ public:
+  /// Words about steps at least this far from the present one prove nothing [ns].
+  static constexpr TimeNs kRecent = 10'000'000'000;
+
+  enum class Opening {
+    kOpened,
+    kReplaced,  ///< opened, and the step that was open is left without an end: nobody missed it
+    kRepeated,  ///< this very step is open or was the last one closed: nothing has changed
+  };
+
+  /// What a party's word is worth.
+  enum class Word {
+    kCounts,     ///< the answer to the open step
+    kDuplicate,  ///< the party has answered this step before
+    kLate,       ///< about an earlier step, or about the last one after it was closed
+    kEarly,      ///< about a later step: keep it and say it again when that step is open
+    kForeign,    ///< about a time that is not of this run: no sign of presence either
+  };
+
+  /// Everybody is present. @param parties at least 0.
+  explicit StepBarrier(int parties);
+
+  /// Opens a step. Any order of stamps is allowed: presence outlives a clock that goes back.
+  /// @param deadline_s until when answers are waited for; infinity: for ever.
+  Opening Open(TimeNs stamp, double deadline_s);
+
+  /// Takes a party's word about the step at `stamp`.
+  Word Hear(int party, TimeNs stamp);
+
+  /// Asks nothing of a party in the open step: not waited for, no miss, no sign of presence.
+  void Excuse(int party);
+
+  /// Marks absent who is out of patience, and says who that is: valid until the next call.
+  const std::vector<int>& GiveUp(double now_s);
+
+  /// A step is open, and everybody who is present (of [first, last)) has answered or is excused.
+  bool Complete() const { return Complete(0, parties()); }
+  bool Complete(int first, int last) const;
+
+  /// Ends the open step: whoever has not answered, present or not, has missed it.
+  void Close();
+
+  /// Gives everybody until `deadline_s`: after a pause.
+  void Extend(double deadline_s);
+
+  /// As new, but for the counters: another run begins.
+  void Restart();
+
+  int parties() const { return static_cast<int>(parties_.size()); }
+  bool open() const { return open_; }
+  /// A step has been closed: whoever has part in the run has had the time to start.
+  bool started() const { return started_; }
+  /// Of the step that is open or was the last one; meaningless before the first.
+  TimeNs stamp() const { return stamp_; }
+  /// The earliest deadline of those who are waited for; infinity: nobody is waited for.
+  double deadline_s() const;
+
+  bool present(int party) const { return At(party).present; }
+  /// Has answered the step that is open or was the last one.
+  bool answered(int party) const { return At(party).answered; }
+  /// Steps that were closed without its answer.
+  std::uint64_t misses(int party) const { return At(party).misses; }
+  /// How often it was given up.
+  std::uint64_t losses(int party) const { return At(party).losses; }
+
+ private:
+  struct Party {
+    bool present = true;
+    bool answered = false;
+    bool excused = false;
+    bool owes = false;        ///< was asked and has not said a word since
+    double deadline_s = 0.0;  ///< if it is waited for
+    std::uint64_t misses = 0, losses = 0;
+  };
+
+  Party& At(int party);
+  const Party& At(int party) const;
+  bool WaitsFor(const Party& party) const;
+
+  bool open_ = false, started_ = false;
+  bool has_stamp_ = false;
+  TimeNs stamp_ = 0;
+  double deadline_s_ = 0.0;  ///< of the open step
+  std::vector<Party> parties_;
+  std::vector<int> given_up_;
+};
+
+}  // namespace stg
