@@ -9,17 +9,6 @@ namespace {
 
 constexpr TimeNs kDt = 100'000'000;
 
-agent::NeighbourState State(int source, TimeNs t, const Vec3<double>& p) {
-  agent::NeighbourState s;
-  s.source = source;
-  s.generation = t;
-  s.p_W = p;
-  s.has_target = true;
-  s.target_stamp = t;
-  s.target_std = 0.01;
-  return s;
-}
-
 void Step(benchmark::State& bench, ChannelModel model) {
   const int agents = static_cast<int>(bench.range(0));
   NetworkConfig s;
@@ -31,12 +20,10 @@ void Step(benchmark::State& bench, ChannelModel model) {
   for (int i = 0; i < agents; ++i) {
     p_W.push_back({0.02 * (i % 7), 0.02 * (i / 7), 0.01 * (i % 3)});
   }
-  const agent::PacketCodec codec(s);
   std::vector<std::vector<Transmission>> sent(5);
   for (int i = 0; i < agents; ++i) {
     Transmission packet;
     packet.source = i;
-    packet.data = codec.Encode(State(i, 0, p_W[static_cast<std::size_t>(i)]));
     sent[static_cast<std::size_t>(i % 5)].push_back(packet);
   }
   std::vector<Reception> got;
@@ -60,28 +47,6 @@ void RangeStep(benchmark::State& bench) { Step(bench, ChannelModel::kRange); }
 void ExtendedStep(benchmark::State& bench) { Step(bench, ChannelModel::kExtended); }
 BENCHMARK(RangeStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
-
-void Encode(benchmark::State& bench) {
-  const agent::PacketCodec codec{NetworkConfig{}};
-  agent::NeighbourState state = State(1, 12'300'000'000, {0.1, 0.2, 0.3});
-  for (auto _ : bench) {
-    benchmark::DoNotOptimize(state);
-    agent::Packet packet = codec.Encode(state);
-    benchmark::DoNotOptimize(packet);
-  }
-}
-BENCHMARK(Encode);
-
-void Decode(benchmark::State& bench) {
-  const agent::PacketCodec codec{NetworkConfig{}};
-  agent::Packet packet = codec.Encode(State(1, 12'300'000'000, {0.1, 0.2, 0.3}));
-  for (auto _ : bench) {
-    benchmark::DoNotOptimize(packet);
-    agent::NeighbourState state = codec.Decode(packet.data(), packet.size(), 12'400'000'000);
-    benchmark::DoNotOptimize(state);
-  }
-}
-BENCHMARK(Decode);
 
 void Link(benchmark::State& bench) {
   const auto channel = MakeChannel(ChannelConfig{}, 4);

@@ -16,7 +16,7 @@ ChannelConfig Config() {
   return c;
 }
 
-TEST(agent::LinkQuality, RangeQualityHasTheHandComputedValuesOfEq5) {
+TEST(LinkQuality, RangeQualityHasTheHandComputedValuesOfEq5) {
   EXPECT_DOUBLE_EQ(RangeQuality(0.0, 0.45), 1.0);
   EXPECT_NEAR(RangeQuality(0.15, 0.45), 2.0 / 3.0, 1e-15);
   EXPECT_NEAR(RangeQuality(0.36, 0.45), 0.2, 1e-15);
@@ -24,14 +24,14 @@ TEST(agent::LinkQuality, RangeQualityHasTheHandComputedValuesOfEq5) {
   EXPECT_EQ(RangeQuality(3.0, 0.45), 0.0);
 }
 
-TEST(agent::LinkQuality, LossProbabilityHasItsHandComputedValues) {
+TEST(LinkQuality, LossProbabilityHasItsHandComputedValues) {
   EXPECT_NEAR(LossProbability(0.0, Config()), 0.1, 1e-15);
   EXPECT_NEAR(LossProbability(2.0, Config()), 0.66890850295, 1e-11);  // 1 - 0.9 / e
   EXPECT_NEAR(LossProbability(1.0, Config()), 0.29907929524, 1e-11);  // 1 - 0.9 e^-0.25
   EXPECT_NEAR(LossProbability(100.0, Config()), 1.0, 1e-15);
 }
 
-TEST(agent::LinkQuality, ExtendedQualityHasTheHandComputedValuesOfEq6) {
+TEST(LinkQuality, ExtendedQualityHasTheHandComputedValuesOfEq6) {
   EXPECT_NEAR(ExtendedQuality(0.0, 0.0, Config()), 0.9, 1e-15);
   // e^-0.5 (attenuation) * 0.9 e^-0.25 (loss) * e^-0.5 (age 1 s of 2 s)
   EXPECT_NEAR(ExtendedQuality(1.0, 1.0, Config()), 0.9 * 0.28650479686, 1e-10);
@@ -40,7 +40,7 @@ TEST(agent::LinkQuality, ExtendedQualityHasTheHandComputedValuesOfEq6) {
               std::exp(1.0), 1e-12);
 }
 
-TEST(agent::LinkQuality, FartherOrOlderIsNeverBetter) {
+TEST(LinkQuality, FartherOrOlderIsNeverBetter) {
   double loss = -1.0, range = 2.0, extended = 2.0;
   for (double d = 0.0; d < 5.0; d += 0.01) {
     EXPECT_GE(LossProbability(d, Config()), loss);
@@ -57,7 +57,7 @@ TEST(agent::LinkQuality, FartherOrOlderIsNeverBetter) {
   }
 }
 
-TEST(agent::LinkQuality, PacksAndScalarsAgreeBitForBit) {
+TEST(LinkQuality, PacksAndScalarsAgreeBitForBit) {
   for (double d = 0.0; d < 4.0; d += 0.037) {
     for (int lane = 0; lane < kLanes; ++lane) {
       EXPECT_EQ(Lane(RangeQuality(Pack(d), 0.45), lane), RangeQuality(d, 0.45));

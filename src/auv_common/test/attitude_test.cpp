@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "physics.hpp"
+#include <random>
 
 namespace stg {
 namespace {
+
+Vec3<double> RandomVector(std::mt19937_64* random, double largest) {
+  std::uniform_real_distribution<double> uniform(-largest, largest);
+  const double x = uniform(*random), y = uniform(*random), z = uniform(*random);
+  return {x, y, z};
+}
 
 double Difference(const Mat3<double>& a, const Mat3<double>& b) {
   double most = 0.0;

@@ -15,7 +15,7 @@ nav_msgs::Odometry AtRest() {
   return m;
 }
 
-TEST(nodes::FiniteOdometry, TakesOrdinaryNumbersAndThoseOnTheBound) {
+TEST(FiniteOdometry, TakesOrdinaryNumbersAndThoseOnTheBound) {
   nav_msgs::Odometry m = AtRest();
   EXPECT_TRUE(nodes::FiniteOdometry(m));
   m.pose.pose.position.x = -1e6;
@@ -23,7 +23,7 @@ TEST(nodes::FiniteOdometry, TakesOrdinaryNumbersAndThoseOnTheBound) {
   EXPECT_TRUE(nodes::FiniteOdometry(m));
 }
 
-TEST(nodes::FiniteOdometry, RefusesNanInfinityAndHugeNumbersInEveryPart) {
+TEST(FiniteOdometry, RefusesNanInfinityAndHugeNumbersInEveryPart) {
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
                         -std::numeric_limits<double>::infinity(), 1e300, -1.001e6};
   for (const double x : bad) {
@@ -42,7 +42,7 @@ TEST(nodes::FiniteOdometry, RefusesNanInfinityAndHugeNumbersInEveryPart) {
   }
 }
 
-TEST(nodes::FinitePose, RefusesAQuaternionThatIsNoRotation) {
+TEST(FinitePose, RefusesAQuaternionThatIsNoRotation) {
   geometry_msgs::Pose pose;
   EXPECT_FALSE(nodes::FinitePose(pose)) << "all zero";
   pose.orientation.w = 0.6;

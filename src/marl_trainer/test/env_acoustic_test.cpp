@@ -13,7 +13,7 @@ namespace {
 /// Nobody senses a target that starts 0.25 m away or farther.
 Scenario Blind() { return Short(Shipped("medium", "nominal", {"sensing.range_m=0.02"}), 200); }
 
-TEST(dynamics::Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
+TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
   const Scenario s = Blind();
   double square = 0.0;
   int count = 0;

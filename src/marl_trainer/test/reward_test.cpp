@@ -185,7 +185,7 @@ env::EnvGroup Line(const Scenario& s) {
 }
 
 TEST(SwarmReward, CommunicationIsTheMeanOverExistingLinksOnly) {
-  const env::EnvGroup env = Line(Shipped("medium", "nominal", {"mode=truth"}));
+  const env::EnvGroup env = Line(env::Shipped("medium", "nominal", {"mode=truth"}));
   // q of the three pairs within 0.45 m: 0.8, 0.4, 0.6. The fourth AUV has no link.
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(Lane(env.terms(i).communication, 0), 0.6, 1e-9);
 }
@@ -197,8 +197,8 @@ TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
     deviation += (d - 0.015) / 4.0;
     error += std::abs(d - 0.015) / 4.0;
   }
-  const env::EnvGroup paper = Line(Shipped("medium", "nominal", {"mode=truth"}));
-  const env::EnvGroup release = Line(Shipped("medium_release"));
+  const env::EnvGroup paper = Line(env::Shipped("medium", "nominal", {"mode=truth"}));
+  const env::EnvGroup release = Line(env::Shipped("medium_release"));
   EXPECT_NEAR(Lane(paper.terms(0).coordination, 0), 1.0 - deviation / 0.8, 1e-9);
   EXPECT_NEAR(Lane(release.terms(3).coordination, 0), 1.0 - deviation / 0.8, 1e-9);
   // The release's "communication" is a function of target distance, here out of range.
@@ -210,7 +210,7 @@ TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
 env::EnvGroup Crowd(const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {"mode=truth", "agents=3", "contact.stiffness=0"};
   all.insert(all.end(), overrides.begin(), overrides.end());
-  env::EnvGroup env(Shipped("medium", "nominal", all), env::EnvOptions{});
+  env::EnvGroup env(env::Shipped("medium", "nominal", all), env::EnvOptions{});
   env.Place({{0.0, 0.0, 0.0}, {0.012, 0.0, 0.0}, {0.5, 0.0, 0.0}}, {{0.0, 0.3, 0.0}},
             {{0.0, 0.0, 0.0}});
   env.Step(Idle(env).data());
@@ -221,7 +221,7 @@ TEST(SeparationReward, IsNothingByDefaultHoweverCrowded) {
   const env::EnvGroup env = Crowd({});
   for (int i = 0; i < 3; ++i) EXPECT_EQ(Lane(env.terms(i).separation, 0), 0.0);
   for (const char* name : {"medium", "hard", "medium_release", "hard_release"}) {
-    EXPECT_EQ(Shipped(name).reward.weights.separation, 0.0) << name;
+    EXPECT_EQ(env::Shipped(name).reward.weights.separation, 0.0) << name;
   }
 }
 

@@ -7,10 +7,9 @@
 #include <set>
 #include <sstream>
 
-#include "../src/scenario_value.hpp"
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/error.hpp"
+#include "scenario_fields.hpp"
 
 /// The shipped scenario files and the reference of their keys.
 namespace stg {
@@ -170,7 +169,7 @@ TEST(NamedScenario, UnknownNamesListWhatThereIs) {
   EXPECT_NE(error("medium", "storm").find("nominal, combined_stress"), std::string::npos);
 }
 
-TEST(config::ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
+TEST(ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
   setenv("STG_SCENARIOS", kFolder.c_str(), 1);
   EXPECT_EQ(config::ScenarioFolder(), kFolder);
   setenv("STG_SCENARIOS", "/does/not/exist", 1);
@@ -184,18 +183,40 @@ TEST(config::ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
   unsetenv("ROS_PACKAGE_PATH");
 }
 
-/// Members of the structs in scenario.hpp, by their text.
+/// The headers with the sections of a scenario.
+const char* const kSections[] = {
+    "auv_common/include/auv_common/config/run_config",
+    "auv_dynamics/include/auv_dynamics/vehicle/vehicle_config",
+    "auv_dynamics/include/auv_dynamics/world/surroundings_config",
+    "auv_dynamics/include/auv_dynamics/world/target_config",
+    "auv_dynamics/include/auv_dynamics/world/reset_config",
+    "auv_dynamics/include/auv_dynamics/world/world_config",
+    "auv_dynamics/include/auv_dynamics/sensing/sensing_config",
+    "auv_dynamics/include/auv_dynamics/control/control_config",
+    "acoustic_channel/include/acoustic_channel/channel/channel_config",
+    "stg_agent/include/stg_agent/agent/agent_config",
+    "marl_trainer/include/marl_trainer/task/reward_config",
+    "marl_trainer/include/marl_trainer/scenario/scenario",
+};
+
+/// Members of the structs in those headers, by their text.
 TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
   std::set<std::string> keys;
   Scenario scenario;
-  for (const ScenarioField& field : ScenarioFields(&scenario)) {
+  for (const config::Field& field : ScenarioFields(&scenario)) {
     std::istringstream parts(field.path);
     for (std::string part; std::getline(parts, part, '.');) keys.insert(part);
   }
   for (const char* stage : {"easy", "medium", "hard"}) keys.erase(stage);
   std::set<std::string> members;
-  std::istringstream header(ReadText(STG_SCENARIO_HEADER));
-  const std::regex section("^  [A-Z][A-Za-z]*(Config|Weights) ([a-z_]+);");
+  std::string text;
+  for (const char* section : kSections) {
+    const std::string header = ReadText(std::string(STG_SOURCE_FOLDER) + "/" + section + ".hpp");
+    ASSERT_FALSE(header.empty()) << section;
+    text += header;
+  }
+  std::istringstream header(text);
+  const std::regex section("^  (?:[a-z]+::)?[A-Z][A-Za-z]*(Config|Weights) ([a-z_]+);");
   const std::regex member("([A-Za-z0-9_]+)( = |\\{)");
   for (std::string line; std::getline(header, line);) {
     line = line.substr(0, line.find("//"));
@@ -225,7 +246,7 @@ TEST(ShippedScenarios, MediumStatesEveryKeyWithItsUnit) {
     if (hash != std::string::npos) comment += line.substr(hash);
     if (start == std::string::npos || hash == start || line.back() == ':') continue;
     ASSERT_LT(next, fields.size());
-    const ScenarioField& field = fields[next++];
+    const config::Field& field = fields[next++];
     const std::string leaf = field.path.substr(field.path.rfind('.') + 1);
     EXPECT_EQ(line.compare(start, leaf.size() + 1, leaf + ":"), 0) << line;
     if (field.unit != "-") {
@@ -241,7 +262,7 @@ TEST(ShippedScenarios, MediumStatesEveryKeyWithItsUnit) {
 std::string KeyTables() {
   Scenario scenario;
   std::string text, open = "?";
-  for (const ScenarioField& field : ScenarioFields(&scenario)) {
+  for (const config::Field& field : ScenarioFields(&scenario)) {
     const auto dot = field.path.find('.');
     const std::string section = dot == std::string::npos ? "" : field.path.substr(0, dot);
     if (section != open) {

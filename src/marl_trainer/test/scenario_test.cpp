@@ -9,10 +9,9 @@
 #include <set>
 #include <sstream>
 
-#include "../src/scenario_value.hpp"
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/error.hpp"
+#include "scenario_fields.hpp"
 
 namespace stg {
 namespace {
@@ -101,7 +100,7 @@ TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
 }
 
 /// Another allowed value of the same type.
-void Change(const ScenarioField& field) {
+void Change(const config::Field& field) {
   const auto other = [&](double v) {
     const double middle = 0.5 * (field.limits.lo + field.limits.hi);
     return v == middle ? 0.75 * middle : middle;
@@ -124,7 +123,7 @@ TEST(Scenario, HashAndFileChangeWithEveryKey) {
   const std::size_t count = ScenarioFields(&scenario).size();
   for (std::size_t i = 0; i < count; ++i) {
     Scenario changed;
-    const ScenarioField field = ScenarioFields(&changed)[i];
+    const config::Field field = ScenarioFields(&changed)[i];
     Change(field);
     EXPECT_TRUE(hashes.insert(ScenarioHash(changed)).second) << field.path;
   }
@@ -134,7 +133,7 @@ TEST(Scenario, HashAndFileChangeWithEveryKey) {
 
 TEST_F(ScenarioInput, EveryMissingKeyIsNamedWithTheLineOfItsSection) {
   Scenario scenario;
-  for (const ScenarioField& field : ScenarioFields(&scenario)) {
+  for (const config::Field& field : ScenarioFields(&scenario)) {
     const std::string yaml = ToYaml(scenario);
     std::istringstream in(yaml);
     std::string without, section;
@@ -235,7 +234,7 @@ TEST_F(ScenarioInput, EveryNumberIsRefusedOutsideItsRange) {
     }();
     for (std::size_t i = 0; i < count; ++i) {
       Scenario s;
-      const ScenarioField field = ScenarioFields(&s)[i];
+      const config::Field field = ScenarioFields(&s)[i];
       const double edge = above ? field.limits.hi : field.limits.lo;
       const double step = 1e-6 * (1.0 + std::abs(edge));
       const double value = above ? edge + step : (field.limits.lo_excluded ? edge : edge - step);
@@ -336,6 +335,22 @@ TEST_F(ScenarioInput, RefusedOverrideIsNamed) {
     const std::string message = ErrorOf([&, t = text] { LoadScenario(base, {}, {t}); });
     EXPECT_EQ(message.rfind("--set '" + text.substr(0, text.find('\n')), 0), 0u) << message;
     EXPECT_NE(message.find(what), std::string::npos) << message;
+  }
+}
+
+/// A key of an earlier version is refused with the name that it has now.
+TEST_F(ScenarioInput, AMovedKeyNamesItsNewPlace) {
+  const std::string base = Write("base.yaml", ToYaml(Scenario{}));
+  const std::pair<const char*, const char*> moved[] = {
+      {"reward.desired_distance_m", "task.desired_distance_m"},
+      {"reward.lost_distance_m", "task.lost_distance_m"},
+      {"observation.link_radius_m", "channel.range_m"},
+  };
+  for (const auto& [from, to] : moved) {
+    const std::string message =
+        ErrorOf([&, key = std::string(from)] { LoadScenario(base, {}, {key + "=0.5"}); });
+    EXPECT_NE(message.find(std::string(from) + ": this key is called " + to), std::string::npos)
+        << message;
   }
 }
 

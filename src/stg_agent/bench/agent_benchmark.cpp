@@ -4,9 +4,8 @@
 
 /// Nanoseconds per agent and decision: Observe, Act, a detection, and as many packets as
 /// arrive on average.
+namespace stg::agent {
 namespace {
-
-using namespace stg;
 
 /// Packets are encoded beforehand for this many decisions; then the episode starts again.
 constexpr std::size_t kEpisode = 64;
@@ -64,6 +63,40 @@ void Step(benchmark::State& state) {
 // Swarm size, packets received per agent and decision.
 BENCHMARK(Step)->Args({4, 0})->Args({4, 1})->Args({20, 1})->Args({100, 1});
 
+NeighbourState Told(int source, TimeNs t, const Vec3<double>& p) {
+  NeighbourState s;
+  s.source = source;
+  s.generation = t;
+  s.p_W = p;
+  s.has_target = true;
+  s.target_stamp = t;
+  s.target_std = 0.01;
+  return s;
+}
+
+void Encode(benchmark::State& bench) {
+  const PacketCodec codec{AgentConfig{}};
+  NeighbourState state = Told(1, 12'300'000'000, {0.1, 0.2, 0.3});
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(state);
+    Packet packet = codec.Encode(state);
+    benchmark::DoNotOptimize(packet);
+  }
+}
+BENCHMARK(Encode);
+
+void Decode(benchmark::State& bench) {
+  const PacketCodec codec{AgentConfig{}};
+  Packet packet = codec.Encode(Told(1, 12'300'000'000, {0.1, 0.2, 0.3}));
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(packet);
+    NeighbourState state = codec.Decode(packet.data(), packet.size(), 12'400'000'000);
+    benchmark::DoNotOptimize(state);
+  }
+}
+BENCHMARK(Decode);
+
 }  // namespace
+}  // namespace stg::agent
 
 BENCHMARK_MAIN();

@@ -3,7 +3,7 @@
 
 #include "stg_agent/packet/packet.hpp"
 
-namespace stg::acoustics {
+namespace stg::agent {
 
 inline constexpr TimeNs kMs = 1'000'000, kSecond = 1'000'000'000;
 
@@ -44,4 +44,4 @@ inline void Seal(agent::Packet* packet) {
   packet->back() = static_cast<std::uint8_t>(crc);
 }
 
-}  // namespace stg::acoustics
+}  // namespace stg::agent
