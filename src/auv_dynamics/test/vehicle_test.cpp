@@ -1,10 +1,9 @@
-#include "auv_dynamics/vehicle/vehicle_model.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
 #include "auv_common/error.hpp"
+#include "auv_dynamics/vehicle/vehicle_model.hpp"
 #include "physics.hpp"
 
 namespace stg::dynamics {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "auv_common/numbers/random.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/numbers/random.hpp"
 #include "marl_trainer/env/env.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 /// What the tests of the environment share.
 namespace stg::env {

@@ -52,7 +52,8 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
     int agents, targets;
   };
   for (const auto mode : kModes) {
-    for (const auto interface : {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
+    for (const auto interface :
+         {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
       for (const Case c : {Case{1, 1}, Case{2, 1}, Case{2, 2}, Case{5, 2}, Case{20, 1}}) {
         Scenario s = Short(Shipped("medium"), 25);
         s.mode = mode;

@@ -59,7 +59,8 @@ bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
 
 TEST(Lanes, AnEpisodeIsTheSameWhicheverLaneGroupOrRoundRunsIt) {
   for (const auto mode : {InformationMode::kTruth, InformationMode::kAcoustic}) {
-    for (const auto interface : {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
+    for (const auto interface :
+         {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
       const Scenario s = Noisy(mode, interface);
       EnvOptions o;
       o.seed = 17;

@@ -141,7 +141,8 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
 TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
   for (const char* name : {"medium", "hard"}) {
     const Scenario s = Shipped(name);
-    const task::MetricSummary m = task::Summarise(Evaluate(s, MakeController("pursuit", s), 12, 3000, 1));
+    const task::MetricSummary m =
+        task::Summarise(Evaluate(s, MakeController("pursuit", s), 12, 3000, 1));
     const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
                                        m.names.begin());
     EXPECT_LT(m.mean[k], 0.05) << name;
@@ -160,8 +161,8 @@ TEST(Idle, DoesNotMove) {
 
 TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
   const auto actions = [](const char* mode, bool privileged) {
-    const Scenario s =
-        LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal", {std::string("mode=") + mode});
+    const Scenario s = LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal",
+                                         {std::string("mode=") + mode});
     EnvGroup env(s, EnvOptions());
     env.Reset();
     Controller controller = MakeController("pursuit_separated", s);

@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/nn/blas.hpp"
-#include "marl_trainer/learn/algorithms/mappo/gae.hpp"
-#include "marl_trainer/learn/nn/normaliser.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/algorithms/mappo/gae.hpp"
+#include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
+#include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
 
 namespace stg::learn {
 namespace {

@@ -9,11 +9,11 @@
 #include <limits>
 #include <sstream>
 
+#include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::learn {
 namespace {
@@ -55,7 +55,8 @@ class RecordedTest : public ::testing::Test {
   }
 
   /// Actions drawn from the policy; the reward is largest where the first component is 0.5.
-  AgentRecord Step(const agent::Policy& policy, std::uint32_t episode, std::uint32_t t, int agent) const {
+  AgentRecord Step(const agent::Policy& policy, std::uint32_t episode, std::uint32_t t,
+                   int agent) const {
     Random random(7, Stream::kPolicy, episode, t, static_cast<std::uint32_t>(agent));
     AgentRecord r;
     r.layout_version = 1;

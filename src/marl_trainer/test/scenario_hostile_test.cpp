@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/files.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
 /// Files that are no scenario at all: the loader refuses each with UserError,

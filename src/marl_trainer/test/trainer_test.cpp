@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::learn {
@@ -136,7 +136,8 @@ TEST_F(TrainerTest, StopSavesAtTheNextBoundaryAndLeavesALoadablePolicy) {
   Trainer trainer(ShortScenario(), SmallConfig(), options);
   EXPECT_FALSE(trainer.Run());
   EXPECT_EQ(trainer.state().env_steps, 2 * 640);
-  const agent::Policy policy = agent::Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
+  const agent::Policy policy =
+      agent::Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
   EXPECT_NO_THROW(policy.RequireFits(ShortScenario()));
   EXPECT_TRUE(fs::exists(folder_ / "run" / "summary.json"));
   EXPECT_NO_THROW(LoadCheckpoint(CheckpointPath((folder_ / "run").string(), 1280)));
@@ -269,7 +270,8 @@ TEST_F(TrainerTest, EveryVariantTrains) {
     config.steps = 640;
     Trainer trainer(ShortScenario(), config, Options(variant));
     EXPECT_TRUE(trainer.Run());
-    const agent::Policy policy = agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
+    const agent::Policy policy =
+        agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
     EXPECT_NO_THROW(policy.RequireFits(VariantScenario(ShortScenario(), variant)));
   }
 }

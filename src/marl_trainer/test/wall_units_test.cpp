@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "auv_common/numbers/attitude.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/numbers/attitude.hpp"
 #include "marl_trainer/learn/nn/actor_critic.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 namespace stg::learn {
@@ -18,7 +18,8 @@ constexpr double kMargin = 0.015;
 
 class WallUnits : public ::testing::Test {
  protected:
-  WallUnits() : scenario_(LoadNamedScenario(config::ScenarioFolder(), "hard")), networks_(Networks()) {
+  WallUnits()
+      : scenario_(LoadNamedScenario(config::ScenarioFolder(), "hard")), networks_(Networks()) {
     scenario_.workspace.half_extent_m = 2.0;
     std::mt19937 rng(5);
     std::uniform_real_distribution<float> uniform(0.0F, 1.0F);

@@ -12,7 +12,8 @@ namespace stg::agent {
 inline constexpr TimeNs kStep = 100'000'000;
 
 /// A level, unturned AUV at a position with a world velocity.
-inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB, const Vec3<double>& v_WB = {}) {
+inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB,
+                              const Vec3<double>& v_WB = {}) {
   dynamics::NavState nav;
   nav.stamp = stamp;
   nav.p_WB = p_WB;
@@ -21,7 +22,8 @@ inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB, const Vec3
 }
 
 /// A packet as the channel would give it at its time of generation.
-inline acoustics::Reception Heard(const AgentConfig& s, const NeighbourState& state, TimeNs arrival) {
+inline acoustics::Reception Heard(const AgentConfig& s, const NeighbourState& state,
+                                  TimeNs arrival) {
   acoustics::Reception r;
   r.source = state.source;
   r.generation = r.transmit = state.generation;

@@ -330,7 +330,8 @@ TEST(Agent, NonFiniteInputIsTheCallersBug) {
 }
 
 TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
-  for (const dynamics::ActionInterface interface : {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
+  for (const dynamics::ActionInterface interface :
+       {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
     AgentConfig s;
     s.control.interface = interface;
     Agent agent(s, 0);

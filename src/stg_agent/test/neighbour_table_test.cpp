@@ -71,7 +71,8 @@ TEST(NeighbourTable, ForgetsTheSilentAndTakesThemBack) {
 }
 
 TEST(NeighbourTable, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
-  for (const acoustics::ChannelModel model : {acoustics::ChannelModel::kRange, acoustics::ChannelModel::kExtended}) {
+  for (const acoustics::ChannelModel model :
+       {acoustics::ChannelModel::kRange, acoustics::ChannelModel::kExtended}) {
     for (const int agents : {2, 4, 7, 23}) {
       AgentConfig s;
       s.agents = agents;

@@ -12,9 +12,9 @@
 #include <map>
 #include <vector>
 
-#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marl_trainer/env/env.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -28,7 +28,7 @@ constexpr double kTolerance = 1e-9;
 /// What AUVs recorded and where they were.
 struct Episode {
   std::map<std::uint32_t, std::vector<auv_msgs::AgentStep>> records;  ///< [step][agents]
-  std::map<std::uint32_t, std::vector<dynamics::NavState>> states;              ///< [step][agents]
+  std::map<std::uint32_t, std::vector<dynamics::NavState>> states;    ///< [step][agents]
 };
 
 /// Hears every AUV.

@@ -11,9 +11,9 @@
 #include <memory>
 #include <vector>
 
-#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 

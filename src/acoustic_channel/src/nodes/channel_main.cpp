@@ -1,4 +1,6 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "channel_node.hpp"
 
-int main(int argc, char** argv) { return stg::nodes::RunNode<stg::nodes::ChannelNode>(argc, argv, "channel"); }
+int main(int argc, char** argv) {
+  return stg::nodes::RunNode<stg::nodes::ChannelNode>(argc, argv, "channel");
+}

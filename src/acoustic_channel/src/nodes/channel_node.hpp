@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "auv_common/nodes/health.hpp"
 #include "acoustic_channel/channel/channel_config.hpp"
+#include "auv_common/nodes/health.hpp"
 
 namespace stg::nodes {
 

@@ -132,7 +132,7 @@ void Loader::ApplyBase(const std::string& path, const YamlTree::Entry& entry) {
 }
 
 void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std::string& file,
-              Keys* given) {
+                      Keys* given) {
   for (const YamlTree::Entry& entry : map.entries) {
     const std::string path = prefix + entry.key;
     if (path == "base") continue;
@@ -144,8 +144,7 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
     } else if (sections_.count(path) != 0) {
       const bool empty = entry.value.kind == YamlTree::Kind::kNull;
       if (entry.value.kind != YamlTree::Kind::kMap && !empty) {
-        throw UserError(where + path + ": expected a map of keys, found " +
-                        KindName(entry.value));
+        throw UserError(where + path + ": expected a map of keys, found " + KindName(entry.value));
       }
       section_lines_[path] = entry.line;
       ApplyMap(entry.value, path + ".", file, given);
@@ -162,8 +161,7 @@ void Loader::Set(const Field& field, const YamlTree& value, const std::string& w
   origin_[field.path] = where;
 }
 
-void Loader::RequireAll(const YamlTree& root, const std::string& file,
-                const Keys& given) const {
+void Loader::RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const {
   std::vector<std::string> missing;
   for (const Field& field : table_.fields()) {
     if (given.count(field.path) == 0) missing.push_back(field.path);
@@ -199,9 +197,8 @@ std::string Loader::Unknown(const std::string& path) const {
   if (path.size() <= 200) {
     std::size_t least = std::max<std::size_t>(2, Leaf(path).size() / 3) + 1;
     for (const std::string& key : keys) {
-      const std::size_t distance = Parent(key) == Parent(path)
-                                       ? EditDistance(Leaf(path), Leaf(key))
-                                       : EditDistance(path, key);
+      const std::size_t distance = Parent(key) == Parent(path) ? EditDistance(Leaf(path), Leaf(key))
+                                                               : EditDistance(path, key);
       if (distance < least) {
         least = distance;
         best = key;

@@ -123,8 +123,8 @@ YamlTree ParseMap(const std::string& text, const std::string& origin) {
   YamlTree root = ParseYaml(text, origin);
   if (root.kind == YamlTree::Kind::kNull) throw UserError(origin + ":1: the file is empty");
   if (root.kind != YamlTree::Kind::kMap) {
-    throw UserError(origin + ":" + std::to_string(root.line) +
-                    ": expected a map of keys, found " + KindName(root));
+    throw UserError(origin + ":" + std::to_string(root.line) + ": expected a map of keys, found " +
+                    KindName(root));
   }
   return root;
 }

@@ -7,10 +7,12 @@ using config::Within;
 
 void Describe(TimeConfig* c, config::Table* t) {
   t->Section("time");
-  t->Add("dt_s", &c->dt_s, config::Within(1e-4, 1.0), "s", "physics step, a whole number of nanoseconds");
+  t->Add("dt_s", &c->dt_s, config::Within(1e-4, 1.0), "s",
+         "physics step, a whole number of nanoseconds");
   t->Add("decision_steps", &c->decision_steps, config::Within(1, 1000), "physics steps",
          "length of one decision");
-  t->Add("episode_steps", &c->episode_steps, config::Within(1, 1e6), "decisions", "episode length T");
+  t->Add("episode_steps", &c->episode_steps, config::Within(1, 1e6), "decisions",
+         "episode length T");
   t->Add("tail_steps", &c->tail_steps, config::Within(1, 1e6), "decisions",
          "last decisions of an episode that count for tail metrics");
 }
@@ -18,7 +20,8 @@ void Describe(TimeConfig* c, config::Table* t) {
 void DescribeTop(RunConfig* c, config::Table* t) {
   t->Section("");
   t->Add("name", &c->name, config::kNone, "-", "label of the scenario in results");
-  t->Add("seed", &c->seed, config::kNone, "-", "seed of all random numbers unless a program is given one");
+  t->Add("seed", &c->seed, config::kNone, "-",
+         "seed of all random numbers unless a program is given one");
   t->Add("agents", &c->agents, config::Within(1, 255), "-", "number of AUVs N");
 }
 

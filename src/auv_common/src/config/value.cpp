@@ -58,8 +58,7 @@ bool IsName(const std::string& text) {
   return true;
 }
 
-std::optional<std::string> CheckNumbers(const Field& field, const double* values,
-                                        int size) {
+std::optional<std::string> CheckNumbers(const Field& field, const double* values, int size) {
   for (int i = 0; i < size; ++i) {
     if (!std::isfinite(values[i])) return "must be finite";
     if (!field.limits.Contain(values[i])) {

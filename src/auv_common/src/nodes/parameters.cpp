@@ -7,9 +7,9 @@
 #include <sstream>
 #include <vector>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/run_config.hpp"
+#include "auv_common/error.hpp"
 
 namespace stg::nodes {
 namespace {

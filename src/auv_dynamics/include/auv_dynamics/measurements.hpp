@@ -23,15 +23,15 @@ using NavState = Navigation<double>;
 struct Detection {
   TimeNs stamp = 0;
   int target = 0;
-  Vec3<double> p_WT;       ///< measured target position in the world [m]
-  double std_m = 0.0;      ///< standard deviation of each component [m]
+  Vec3<double> p_WT;   ///< measured target position in the world [m]
+  double std_m = 0.0;  ///< standard deviation of each component [m]
 };
 
 /// Where a search starts: a datum of stated uncertainty.
 struct Cue {
   int target = 0;
-  Vec3<double> p_WT;       ///< stated target position in the world [m]
-  double std_m = 0.0;      ///< standard deviation of each component [m]
+  Vec3<double> p_WT;   ///< stated target position in the world [m]
+  double std_m = 0.0;  ///< standard deviation of each component [m]
 };
 
 /// Generalised force tau = [X Y Z K M N] at the body origin, body axes [N, N m].

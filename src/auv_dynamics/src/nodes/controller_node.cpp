@@ -1,11 +1,11 @@
 #include "controller_node.hpp"
 
-#include "auv_dynamics/control/control.hpp"
 #include "auv_common/error.hpp"
-#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/control/control.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -77,8 +77,8 @@ void ControllerNode::OnCommand(const geometry_msgs::TwistStamped::ConstPtr& mess
 void ControllerNode::Answer() {
   if (!has_nav_ || !command_ || NsOf(command_->header.stamp) != nav_.stamp) return;
   double fraction[6];
-  dynamics::VelocityController(scenario_.control, scenario_.vehicle, VectorOf(command_->twist.linear), nav_,
-                     fraction);
+  dynamics::VelocityController(scenario_.control, scenario_.vehicle,
+                               VectorOf(command_->twist.linear), nav_, fraction);
   const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.vehicle, fraction);
   wrench_.header.stamp = command_->header.stamp;
   SetVector(wrench.force, &wrench_.wrench.force);

@@ -6,8 +6,8 @@
 #include <ros/node_handle.h>
 
 #include "auv_common/nodes/health.hpp"
-#include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/world/world_config.hpp"
 
 namespace stg::nodes {
 
@@ -29,8 +29,8 @@ class ControllerNode {
   dynamics::WorldConfig scenario_;
   int id_;
   std::string body_frame_;
-  TimeNs period_;  ///< of decisions
-  dynamics::NavState nav_;   ///< newest odometry, with its absolute stamp
+  TimeNs period_;           ///< of decisions
+  dynamics::NavState nav_;  ///< newest odometry, with its absolute stamp
   bool has_nav_ = false;
   ros::WallTime busy_;
   geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry

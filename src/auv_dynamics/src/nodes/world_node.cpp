@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg::nodes {

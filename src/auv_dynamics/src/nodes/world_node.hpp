@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
-#include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/world/world.hpp"
+#include "auv_dynamics/world/world_config.hpp"
 #include "world_publisher.hpp"
 
 namespace stg::nodes {
@@ -39,8 +39,8 @@ class WorldNode {
  private:
   struct Auv {
     dynamics::Wrench<double> command;  ///< for the present step if answered, else the last one
-    bool answered = false;   ///< the command is for the present step
-    bool present = true;     ///< waited for
+    bool answered = false;             ///< the command is for the present step
+    bool present = true;               ///< waited for
     std::uint64_t misses = 0;
     Refusals refused;
     ros::Subscriber subscriber;

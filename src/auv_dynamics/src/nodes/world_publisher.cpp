@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_common/nodes/parameters.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -85,8 +85,8 @@ void WorldPublisher::PublishClock(TimeNs now) {
   clock_.publish(clock);
 }
 
-void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
-                                    std::uint32_t step) {
+void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
+                                    std::uint32_t episode, std::uint32_t step) {
   const TimeNs now = start + world.time(0);
   for (int i = 0; i < world.agents(); ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];

@@ -10,8 +10,8 @@
 
 #include <vector>
 
-#include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/world/world.hpp"
+#include "auv_dynamics/world/world_config.hpp"
 
 namespace stg::nodes {
 
@@ -24,7 +24,8 @@ class WorldPublisher {
 
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
   /// [ns].
-  void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode, std::uint32_t step);
+  void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
+                      std::uint32_t step);
 
   /// The true state of all of them at the decision of the last PublishSensors.
   void PublishSwarm();

@@ -16,10 +16,10 @@ void Describe(VehicleConfig* c, config::Table* t) {
   t->Add("mass_kg", &c->mass_kg, config::Positive(1e6), "kg", "mass m");
   t->Add("inertia_kgm2", config::Numbers(&c->inertia_kgm2), config::Positive(1e8), "kg m^2, body",
          "moments of inertia Ix Iy Iz");
-  t->Add("added_mass", config::Numbers(&c->added_mass), config::Within(-1e8, 0.0), "kg, kg m^2, body",
-         "added-mass derivatives in Fossen's sign, " + axes);
-  t->Add("linear_damping", config::Numbers(&c->linear_damping), config::NonNegative(1e6), "N s/m, N m s/rad, body",
-         "linear damping magnitudes, " + axes);
+  t->Add("added_mass", config::Numbers(&c->added_mass), config::Within(-1e8, 0.0),
+         "kg, kg m^2, body", "added-mass derivatives in Fossen's sign, " + axes);
+  t->Add("linear_damping", config::Numbers(&c->linear_damping), config::NonNegative(1e6),
+         "N s/m, N m s/rad, body", "linear damping magnitudes, " + axes);
   t->Add("quadratic_damping", config::Numbers(&c->quadratic_damping), config::NonNegative(1e6),
          "N s^2/m^2, N m s^2/rad^2, body", "quadratic damping magnitudes, " + axes);
   t->Add("r_BG_m", config::Numbers(&c->r_BG_m), config::Within(-100, 100), "m, body FLU",
@@ -28,15 +28,16 @@ void Describe(VehicleConfig* c, config::Table* t) {
          "centre of buoyancy from the body origin");
   t->Add("weight_n", &c->weight_n, config::NonNegative(1e7), "N", "weight W");
   t->Add("buoyancy_n", &c->buoyancy_n, config::NonNegative(1e7), "N", "buoyancy B");
-  t->Add("added_mass_coriolis", config::Enum(&c->added_mass_coriolis, {"full", "no_munk", "off"}), config::kNone,
-         "-", "added-mass part of C(nu): whole, without the Munk moment, or none");
+  t->Add("added_mass_coriolis", config::Enum(&c->added_mass_coriolis, {"full", "no_munk", "off"}),
+         config::kNone, "-", "added-mass part of C(nu): whole, without the Munk moment, or none");
   t->Add("reversed_coriolis", &c->reversed_coriolis, config::kNone, "-",
          "C(nu) nu enters with the wrong sign, an error of the release that its traces hold");
-  t->Add("restoring", &c->restoring, config::kNone, "-", "weight, buoyancy and righting moment act");
-  t->Add("max_velocity_mps", config::Numbers(&c->max_velocity_mps), config::Positive(100), "m/s, body",
-         "largest u v w; scales actions and observations");
-  t->Add("max_rate_radps", config::Numbers(&c->max_rate_radps), config::Positive(100), "rad/s, body",
-         "largest p q r; scales the controller and observations");
+  t->Add("restoring", &c->restoring, config::kNone, "-",
+         "weight, buoyancy and righting moment act");
+  t->Add("max_velocity_mps", config::Numbers(&c->max_velocity_mps), config::Positive(100),
+         "m/s, body", "largest u v w; scales actions and observations");
+  t->Add("max_rate_radps", config::Numbers(&c->max_rate_radps), config::Positive(100),
+         "rad/s, body", "largest p q r; scales the controller and observations");
   t->Add("clip_velocity", &c->clip_velocity, config::kNone, "-",
          "clip body velocity and rates to these limits after every step");
   t->Add("max_tau", config::Numbers(&c->max_tau), config::Positive(1e6), "N, N m, body",
@@ -45,7 +46,8 @@ void Describe(VehicleConfig* c, config::Table* t) {
          "round the commanded force and torque to float32, as the release does");
   t->Add("integrator", config::Enum(&c->integrator, {"semi_implicit", "rk4"}), config::kNone, "-",
          "time integration: the release's step, or Runge-Kutta of order 4");
-  t->Add("substeps", &c->substeps, config::Within(1, 1000), "-", "integrator steps per physics step");
+  t->Add("substeps", &c->substeps, config::Within(1, 1000), "-",
+         "integrator steps per physics step");
   t->Add("radius_m", &c->radius_m, config::Positive(100), "m", "collision radius of one AUV");
 }
 

@@ -15,8 +15,8 @@ void Describe(ResetConfig* c, config::Table* t) {
          "training draws the stage from the number of resets: easy, medium, then hard");
   t->Add("curriculum_easy_resets", &c->curriculum_easy_resets, config::NonNegative(1e9), "resets",
          "curriculum: resets up to this number are easy");
-  t->Add("curriculum_medium_resets", &c->curriculum_medium_resets, config::NonNegative(1e9), "resets",
-         "curriculum: resets up to this number are medium, later ones hard");
+  t->Add("curriculum_medium_resets", &c->curriculum_medium_resets, config::NonNegative(1e9),
+         "resets", "curriculum: resets up to this number are medium, later ones hard");
   t->Add("min_separation_m", &c->min_separation_m, config::NonNegative(1e4), "m",
          "AUVs start at least this far from each other");
   t->Add("start_half_extent_m", &c->start_half_extent_m, config::Positive(1e5), "m, world ENU",

@@ -10,8 +10,8 @@ using config::Within;
 
 void Describe(CurrentConfig* c, config::Table* t) {
   t->Section("current");
-  t->Add("velocity_mps", config::Numbers(&c->velocity_mps), config::Within(-10, 10), "m/s, world ENU",
-         "constant, irrotational water current");
+  t->Add("velocity_mps", config::Numbers(&c->velocity_mps), config::Within(-10, 10),
+         "m/s, world ENU", "constant, irrotational water current");
 }
 
 void Describe(DisturbanceConfig* c, config::Table* t) {
@@ -42,7 +42,8 @@ void Describe(WorkspaceConfig* c, config::Table* t) {
          "kept share of the velocity components along a wall");
   t->Add("body_velocity", &c->body_velocity, config::kFraction, "-",
          "kept share of the body velocity at a wall");
-  t->Add("body_rate", &c->body_rate, config::kFraction, "-", "kept share of the body rates at a wall");
+  t->Add("body_rate", &c->body_rate, config::kFraction, "-",
+         "kept share of the body rates at a wall");
 }
 
 }  // namespace stg::dynamics

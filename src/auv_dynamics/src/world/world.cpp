@@ -5,15 +5,13 @@
 #include <cmath>
 
 #include "auv_common/config/loader.hpp"
-#include "auv_dynamics/vehicle/integrator.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "auv_dynamics/vehicle/integrator.hpp"
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 
 namespace stg::dynamics {
 
-World::World(const WorldConfig& scenario)
-    : scenario_(scenario),
-      dt_ns_(scenario.step_period()) {
+World::World(const WorldConfig& scenario) : scenario_(scenario), dt_ns_(scenario.step_period()) {
   config::ValidateOrThrow(scenario_);
   model_ = std::make_unique<VehicleModel>(scenario_.vehicle);
   const auto n = static_cast<size_t>(scenario_.agents);
@@ -103,10 +101,8 @@ void World::AddContacts() {
       if (!Any(near)) continue;
       const Pack x = (Pack(reach) - d) * Pack(1.0 / k);
       const Pack softplus = Max(x, Pack(0.0)) + Log1p(Exp(-Abs(x)));
-      const Pack force =
-          Select(near, Pack(scenario_.contact.stiffness * k) * softplus, Pack(0.0));
-      const Vec3<Pack> away =
-          (vehicle(i).p_WB - vehicle(j).p_WB) * (force / Max(d, Pack(1e-9)));
+      const Pack force = Select(near, Pack(scenario_.contact.stiffness * k) * softplus, Pack(0.0));
+      const Vec3<Pack> away = (vehicle(i).p_WB - vehicle(j).p_WB) * (force / Max(d, Pack(1e-9)));
       contact_[static_cast<size_t>(i)] += away;
       contact_[static_cast<size_t>(j)] += -away;
     }

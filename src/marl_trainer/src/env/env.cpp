@@ -32,7 +32,8 @@ EnvGroup::EnvGroup(const Scenario& scenario, const EnvOptions& options)
   rewards_.assign(kLanes, 0.0F);
   actions_.assign(rows * static_cast<size_t>(action_size()), 0.0);
   finished_.resize(kLanes);
-  if (scenario_.mode == InformationMode::kAcoustic) acoustic_ = std::make_unique<Acoustic>(scenario_);
+  if (scenario_.mode == InformationMode::kAcoustic)
+    acoustic_ = std::make_unique<Acoustic>(scenario_);
 }
 
 EnvGroup::~EnvGroup() = default;
@@ -49,15 +50,15 @@ void EnvGroup::RestartAt(std::uint64_t round, int first_episode_steps) {
 
 void EnvGroup::StartEpisode() {
   for (int lane = 0; lane < kLanes; ++lane) {
-    const std::uint64_t r =
-        static_cast<std::uint64_t>(options_.first_env + lane) +
-        round_ * static_cast<std::uint64_t>(options_.total_envs);
+    const std::uint64_t r = static_cast<std::uint64_t>(options_.first_env + lane) +
+                            round_ * static_cast<std::uint64_t>(options_.total_envs);
     dynamics::ResetStage stage = scenario_.reset.stage;
     if (options_.curriculum) {
       const auto& c = scenario_.reset;
-      stage = r < static_cast<std::uint64_t>(c.curriculum_easy_resets)     ? dynamics::ResetStage::kEasy
-              : r < static_cast<std::uint64_t>(c.curriculum_medium_resets) ? dynamics::ResetStage::kMedium
-                                                                           : dynamics::ResetStage::kHard;
+      stage = r < static_cast<std::uint64_t>(c.curriculum_easy_resets) ? dynamics::ResetStage::kEasy
+              : r < static_cast<std::uint64_t>(c.curriculum_medium_resets)
+                  ? dynamics::ResetStage::kMedium
+                  : dynamics::ResetStage::kHard;
     }
     world_.Reset(lane, options_.seed + r, 0, stage);
   }
@@ -112,7 +113,8 @@ void EnvGroup::Step() {
   } else {
     TruthActions();
   }
-  for (size_t i = 0; i < n; ++i) wrench_[i] = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
+  for (size_t i = 0; i < n; ++i)
+    wrench_[i] = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
   ++step_;
   Measure(false);
@@ -151,8 +153,8 @@ void EnvGroup::TruthActions() {
     Vec3<Pack> rpy = s.rpy;
     if (scenario_.vehicle.integrator == dynamics::Integrator::kRk4) rpy = RpyOf(s.trig);
     dynamics::VelocityController(scenario_.control, scenario_.vehicle,
-                       dynamics::DesiredVelocity(scenario_.vehicle, executed.data()), s.R_WB, s.v_WB, rpy,
-                       s.w_WB_B, tau.data());
+                                 dynamics::DesiredVelocity(scenario_.vehicle, executed.data()),
+                                 s.R_WB, s.v_WB, rpy, s.w_WB_B, tau.data());
   }
 }
 

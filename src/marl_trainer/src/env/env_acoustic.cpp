@@ -10,7 +10,8 @@ EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   const agent::Agent first(s, 0);
   agents.reserve(n);
   for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
-  for (int lane = 0; lane < kLanes; ++lane) channels.push_back(acoustics::MakeChannel(s.channel, s.agents));
+  for (int lane = 0; lane < kLanes; ++lane)
+    channels.push_back(acoustics::MakeChannel(s.channel, s.agents));
   sequence.assign(n * kLanes, 0);
   senders.reserve(n);
   sent.reserve(n);

@@ -32,10 +32,10 @@ struct EnvGroup::Acoustic {
   /// (unknown neighbour: 0).
   Pack MeanLinkQuality() const;
 
-  std::vector<agent::AgentLanes> agents;                  // [agent]
+  std::vector<agent::AgentLanes> agents;                      // [agent]
   std::vector<std::unique_ptr<acoustics::Channel>> channels;  // [lane]
-  std::vector<std::uint32_t> sequence;             // [lane, agent]
-  std::vector<int> senders;                        // of the present decision, any lane
+  std::vector<std::uint32_t> sequence;                        // [lane, agent]
+  std::vector<int> senders;                                   // of the present decision, any lane
   std::vector<acoustics::Transmission> sent;
   std::vector<acoustics::Reception> received;
   std::vector<Vec3<double>> positions;

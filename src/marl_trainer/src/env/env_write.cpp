@@ -45,7 +45,7 @@ void EnvGroup::WriteObservations() {
   Pack columns[kLargestObservation];
   for (size_t i = 0; i < truth_.size(); ++i) {
     agent::BuildObservation(scenario_, acoustic_ ? acoustic_->agents[i].knowledge() : truth_[i],
-                     [&](int index, const Pack& value) { columns[index] = value; });
+                            [&](int index, const Pack& value) { columns[index] = value; });
     Scatter(columns, observation_size_, observations_.data() + i * size, stride);
   }
 }

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <thread>
 
-#include "auv_dynamics/control/control.hpp"
 #include "auv_common/error.hpp"
+#include "auv_dynamics/control/control.hpp"
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::env {
@@ -30,8 +30,8 @@ void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
     if (s.control.interface == dynamics::ActionInterface::kTau6) {
       const dynamics::VehicleState<Pack>& v = env.world().vehicle(i);
       Pack fraction[6];
-      dynamics::VelocityController(s.control, s.vehicle, dynamics::DesiredVelocity(s.vehicle, a), v.R_WB, v.v_WB,
-                         RpyOf(v.trig), v.w_WB_B, fraction);
+      dynamics::VelocityController(s.control, s.vehicle, dynamics::DesiredVelocity(s.vehicle, a),
+                                   v.R_WB, v.v_WB, RpyOf(v.trig), v.w_WB_B, fraction);
       std::copy(fraction, fraction + 6, a);
     }
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -77,8 +77,8 @@ void Decide(const Controller& c, const EnvGroup& env, double* actions) {
 }
 
 std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
-                                     int episodes, std::uint64_t seed, int workers,
-                                     const std::function<void(int)>& progress) {
+                                           int episodes, std::uint64_t seed, int workers,
+                                           const std::function<void(int)>& progress) {
   const int groups = (episodes + kLanes - 1) / kLanes;
   std::vector<task::EpisodeMetrics> metrics(static_cast<size_t>(groups * kLanes));
   std::atomic<int> next{0};
@@ -94,8 +94,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Contr
         options.total_envs = groups * kLanes;
         EnvGroup env(scenario, options);
         env.Reset();
-        std::vector<double> actions(
-            static_cast<size_t>(kLanes * env.agents() * env.action_size()));
+        std::vector<double> actions(static_cast<size_t>(kLanes * env.agents() * env.action_size()));
         do {
           Decide(controller, env, actions.data());
           env.Step(actions.data());

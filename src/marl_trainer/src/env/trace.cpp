@@ -172,7 +172,9 @@ Columns OurColumns(const EnvGroup& env, const Scenario& s) {
     add(group, names[2], [f](int i) { return f(i).z; });
   };
   const EnvGroup* e = &env;
-  const auto v = [e](int i) -> const dynamics::VehicleState<Pack>& { return e->world().vehicle(i); };
+  const auto v = [e](int i) -> const dynamics::VehicleState<Pack>& {
+    return e->world().vehicle(i);
+  };
   vec("state", {"px", "py", "pz"}, [v](int i) { return Lane(v(i).p_WB, 0); });
   vec("state", {"vx", "vy", "vz"}, [v](int i) { return Lane(v(i).v_WB, 0); });
   vec("state", {"u", "v", "w"}, [v](int i) { return Lane(v(i).v_WB_B, 0); });

@@ -50,7 +50,8 @@ std::string Number(double value) {
 std::string Header() {
   std::string header;
   for (const auto& column : Columns(TrainRecord())) header += std::string(column.first) + ",";
-  for (const auto& item : task::EpisodeMetrics().Items()) header += "validation_" + item.first + ",";
+  for (const auto& item : task::EpisodeMetrics().Items())
+    header += "validation_" + item.first + ",";
   header.back() = '\n';
   return header;
 }

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::learn {
 namespace {

@@ -69,7 +69,7 @@ Validation::Validation(const Scenario& scenario, const ActorCritic& networks, in
 Validation::~Validation() = default;
 
 std::vector<task::EpisodeMetrics> Validation::Run(const float* parameters,
-                                            const Normaliser& observations) {
+                                                  const Normaliser& observations) {
   std::vector<task::EpisodeMetrics> metrics(units_.size() * static_cast<std::size_t>(Unit::kEnvs));
   pool_->Run(static_cast<int>(units_.size()), [&](int u, int) {
     units_[static_cast<std::size_t>(u)]->Fly(

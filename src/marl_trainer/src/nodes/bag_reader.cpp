@@ -9,9 +9,9 @@
 #include <map>
 #include <sstream>
 
+#include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_common/config/files.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "record_inlet.hpp"
 #include "stg_agent/nodes/topics.hpp"

@@ -11,8 +11,8 @@ namespace stg::nodes {
 /// What one bag holds for the trainer.
 struct BagContents {
   std::vector<learn::RecordedEpisode> episodes;  ///< not yet checked
-  std::uint64_t foreign_messages = 0;     ///< of another type or of an AUV that is not there
-  std::string error;                      ///< why the bag, or its rest, could not be used
+  std::uint64_t foreign_messages = 0;            ///< of another type or of an AUV that is not there
+  std::string error;                             ///< why the bag, or its rest, could not be used
 };
 
 /// Reads agent steps, rewards and the scenario of a bag. Never throws for what a bag holds: a

@@ -1,4 +1,6 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "trainer_node.hpp"
 
-int main(int argc, char** argv) { return stg::nodes::RunNode<stg::nodes::TrainerNode>(argc, argv, "trainer"); }
+int main(int argc, char** argv) {
+  return stg::nodes::RunNode<stg::nodes::TrainerNode>(argc, argv, "trainer");
+}

@@ -14,7 +14,8 @@ void Describe(RewardConfig* c, config::Table* t) {
   t->Section("reward.weights");
   RewardWeights* w = &c->weights;
   t->Add("tracking", &w->tracking, config::NonNegative(1e3), "-", "weight of the tracking term");
-  t->Add("observation", &w->observation, config::NonNegative(1e3), "-", "weight of the observation term");
+  t->Add("observation", &w->observation, config::NonNegative(1e3), "-",
+         "weight of the observation term");
   t->Add("coordination", &w->coordination, config::NonNegative(1e3), "-",
          "weight of the coordination term");
   t->Add("communication", &w->communication, config::NonNegative(1e3), "-",
@@ -26,11 +27,14 @@ void Describe(RewardConfig* c, config::Table* t) {
          "weight of the penalty for closeness to another AUV; 0 in the paper");
   t->Section("reward");
   t->Add("band_m", &c->band_m, config::Positive(1e4), "m", "[d_l, d_u]: tracking band");
-  t->Add("error_max_m", &c->error_max_m, config::Positive(1e5), "m", "e_max: error that earns nothing");
+  t->Add("error_max_m", &c->error_max_m, config::Positive(1e5), "m",
+         "e_max: error that earns nothing");
   t->Add("w_band", &c->w_band, config::NonNegative(1e3), "-", "Eq. 30: weight of the band term");
   t->Add("w_progress", &c->w_progress, config::NonNegative(1e3), "-", "Eq. 30: weight of progress");
-  t->Add("w_closing", &c->w_closing, config::NonNegative(1e3), "-", "Eq. 30: weight of closing speed");
-  t->Add("w_reacquire", &c->w_reacquire, config::NonNegative(1e3), "-", "Eq. 30: weight of reacquisition");
+  t->Add("w_closing", &c->w_closing, config::NonNegative(1e3), "-",
+         "Eq. 30: weight of closing speed");
+  t->Add("w_reacquire", &c->w_reacquire, config::NonNegative(1e3), "-",
+         "Eq. 30: weight of reacquisition");
   t->Add("w_too_close", &c->w_too_close, config::NonNegative(1e3), "-",
          "Eq. 30: weight of the penalty inside d_l");
   t->Add("separation_distance_m", &c->separation_distance_m, config::Positive(1e4), "m",

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/env/env.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace {
 

@@ -2,10 +2,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/env/trace.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 /// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
 /// on unusable input.
@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
     double worst = 0.0;
     nlohmann::json traces = nlohmann::json::array();
     for (const auto& folder : folders) {
-      const stg::env::TraceError e = stg::env::ReplayTrace(stg::env::LoadTrace(folder, base), tolerance);
+      const stg::env::TraceError e =
+          stg::env::ReplayTrace(stg::env::LoadTrace(folder, base), tolerance);
       worst = std::max(worst, e.max_abs_error);
       traces.push_back(
           {{"trace", folder},

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/learn/train_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace {
 
@@ -70,7 +70,8 @@ int main(int argc, char** argv) {
   }
   try {
     const stg::Scenario s = stg::learn::ValidationScenario(
-        stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides), variant);
+        stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides),
+        variant);
     std::string full = policy;
     for (const auto& [name, value] : constants) {
       if (value.empty()) continue;

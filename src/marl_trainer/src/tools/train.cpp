@@ -5,10 +5,10 @@
 #include <iostream>
 #include <thread>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/learn/trainer.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace {
 

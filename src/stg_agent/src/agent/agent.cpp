@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "auv_dynamics/control/control.hpp"
 #include "auv_common/error.hpp"
+#include "auv_dynamics/control/control.hpp"
 
 namespace stg::agent {
 namespace {

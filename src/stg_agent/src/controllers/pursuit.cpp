@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "auv_dynamics/control/control.hpp"
 #include "auv_common/error.hpp"
+#include "auv_dynamics/control/control.hpp"
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::agent {
@@ -87,7 +87,8 @@ void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent&
   }
   if (s.control.interface == dynamics::ActionInterface::kTau6 && kind != BuiltinKind::kIdle) {
     const Vec3<double> v_des_W = dynamics::DesiredVelocity(s.vehicle, a);
-    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B, a);
+    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig),
+                                 k.w_WB_B, a);
   }
   for (int n = 0; n < s.action_size(); ++n) action[n] = static_cast<float>(a[n]);
 }

@@ -1,4 +1,6 @@
 #include "agent_node.hpp"
 #include "auv_common/nodes/node_main.hpp"
 
-int main(int argc, char** argv) { return stg::nodes::RunNode<stg::nodes::AgentNode>(argc, argv, "agent"); }
+int main(int argc, char** argv) {
+  return stg::nodes::RunNode<stg::nodes::AgentNode>(argc, argv, "agent");
+}

@@ -6,7 +6,8 @@
 
 namespace stg::nodes {
 
-void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output, auv_msgs::TaskState* m) {
+void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
+                  auv_msgs::TaskState* m) {
   const agent::TaskView task = agent.task();
   const agent::Knowledge<double>& k = agent.knowledge();
   const agent::TargetEstimate& target = agent.track().estimate();

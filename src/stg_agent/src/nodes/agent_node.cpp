@@ -6,10 +6,10 @@
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
 #include "agent_messages.hpp"
-#include "auv_dynamics/control/control.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -253,7 +253,8 @@ void AgentNode::Command() {
     SetVector(output.cmd_vel_W, &command_message_.twist.linear);
     command_.publish(command_message_);
   } else {
-    const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.vehicle, output.fraction);
+    const dynamics::Wrench<double> wrench =
+        dynamics::ScaleWrench(scenario_.vehicle, output.fraction);
     wrench_message_.header.stamp = stamp;
     SetVector(wrench.force, &wrench_message_.wrench.force);
     SetVector(wrench.moment, &wrench_message_.wrench.torque);

@@ -2,9 +2,9 @@
 
 #include <fstream>
 
+#include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "auv_common/config/files.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::nodes {

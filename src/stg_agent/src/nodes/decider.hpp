@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "stg_agent/agent/agent.hpp"
-#include "stg_agent/policy/policy.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
+#include "stg_agent/policy/policy.hpp"
 
 namespace stg::nodes {
 

@@ -37,7 +37,8 @@ class EpisodeJudge {
   void SetTruth(const SwarmFrame& frame);
   void TakeAnswers(const SwarmFrame& frame);
   void FillReport(const SwarmFrame& frame, const std::vector<float>& state, Verdict* verdict) const;
-  void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics, Verdict* verdict) const;
+  void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics,
+                   Verdict* verdict) const;
 
   Scenario scenario_;
   env::EnvGroup env_;

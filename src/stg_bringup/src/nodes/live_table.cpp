@@ -105,7 +105,8 @@ std::string LiveTable::Line(const EpisodeJudge& judge, double now_s) const {
       scenario_.agents * (scenario_.agents - 1), Mean(age_), speed_);
 }
 
-void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s, const task::EpisodeMetrics& metrics) {
+void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s,
+                             const task::EpisodeMetrics& metrics) {
   std::printf("\nepisode %u, seed %llu, %u steps%s, policy %s, %u deadline misses\n", s.episode + 1,
               static_cast<unsigned long long>(s.seed), s.steps, s.complete ? "" : " (incomplete)",
               s.policy_id.c_str(), s.deadline_misses);

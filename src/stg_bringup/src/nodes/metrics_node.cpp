@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "acoustic_channel/nodes/topics.hpp"
-#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
 

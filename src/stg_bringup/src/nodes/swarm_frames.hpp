@@ -9,8 +9,8 @@
 #include <map>
 #include <vector>
 
-#include "marl_trainer/scenario/scenario.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::nodes {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "acoustic_channel/link/link_statistics.hpp"
 #include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/link/link_statistics.hpp"
 #include "auv_common/numbers/vector.hpp"
 #include "auv_common/time.hpp"
 
@@ -72,7 +72,8 @@ class Channel {
   virtual const ChannelTotals& totals() const = 0;
 };
 
-/// The channel that the section names, between `nodes` vehicles. Throws UserError for a model that is not available.
+/// The channel that the section names, between `nodes` vehicles. Throws UserError for a model that
+/// is not available.
 std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, int nodes);
 
 }  // namespace stg::acoustics

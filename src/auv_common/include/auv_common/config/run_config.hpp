@@ -12,10 +12,10 @@ namespace stg {
 
 /// Clocks of physics, decisions and episodes.
 struct TimeConfig {
-  double dt_s = 0.1;                ///< physics step
-  int decision_steps = 1;           ///< physics steps per decision
-  int episode_steps = 500;          ///< decisions per episode (paper: T)
-  int tail_steps = 100;             ///< last decisions that count for tail metrics
+  double dt_s = 0.1;        ///< physics step
+  int decision_steps = 1;   ///< physics steps per decision
+  int episode_steps = 500;  ///< decisions per episode (paper: T)
+  int tail_steps = 100;     ///< last decisions that count for tail metrics
 };
 
 /// What all programs of one run share. Lengths are in one consistent unit, read as metres (the

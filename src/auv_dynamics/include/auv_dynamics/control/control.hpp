@@ -2,8 +2,8 @@
 
 #include "auv_common/numbers/attitude.hpp"
 #include "auv_dynamics/control/control_config.hpp"
-#include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
 
 /// From a policy's action to force and torque (Eqs. 22-27).
 namespace stg::dynamics {
@@ -71,8 +71,7 @@ inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
 
 /// The same from a navigation state: what a controller node runs.
 inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
-                               const Vec3<double>& v_des_W, const NavState& nav,
-                               double* fraction) {
+                               const Vec3<double>& v_des_W, const NavState& nav, double* fraction) {
   const Mat3<double> R_WB = RotationOf(nav.q_WB);
   VelocityController(c, v, v_des_W, R_WB, R_WB * nav.v_WB_B, RpyOf(TrigOf(R_WB)), nav.w_WB_B,
                      fraction);

@@ -13,14 +13,14 @@ enum class HeadingMode { kFree, kAlongVelocity };
 /// From a policy's action to force and torque, Eqs. 23-27.
 struct ControlConfig {
   ActionInterface interface = ActionInterface::kVelocity3;
-  double action_scale = 0.75;        ///< of the policy mean
-  double max_delta = 0.35;           ///< rate limit per decision; 0: none
-  double smoothing = 0.20;           ///< alpha of Eq. 27; 0: none
-  double velocity_gain = 1.0;        ///< K_v = gain * tau_max / v_max (Eq. 24)
-  double attitude_gain = 0.12;       ///< K_eta (Eq. 25), of the maximum moment per rad
-  double rate_gain = 0.10;           ///< K_omega (Eq. 25), of the maximum moment per max rate
+  double action_scale = 0.75;   ///< of the policy mean
+  double max_delta = 0.35;      ///< rate limit per decision; 0: none
+  double smoothing = 0.20;      ///< alpha of Eq. 27; 0: none
+  double velocity_gain = 1.0;   ///< K_v = gain * tau_max / v_max (Eq. 24)
+  double attitude_gain = 0.12;  ///< K_eta (Eq. 25), of the maximum moment per rad
+  double rate_gain = 0.10;      ///< K_omega (Eq. 25), of the maximum moment per max rate
   HeadingMode heading = HeadingMode::kFree;
-  double heading_gain = 0.12;        ///< along_velocity: of the maximum moment per rad
+  double heading_gain = 0.12;  ///< along_velocity: of the maximum moment per rad
 };
 
 /// Keys, units and ranges of the section.

@@ -27,16 +27,16 @@ struct VehicleConfig {
   double weight_n = 312.939;
   double buoyancy_n = 312.939;
   AddedMassCoriolis added_mass_coriolis = AddedMassCoriolis::kNoMunk;
-  bool reversed_coriolis = false;    ///< the release's sign error: C(nu) nu enters negated
+  bool reversed_coriolis = false;  ///< the release's sign error: C(nu) nu enters negated
   bool restoring = true;
   std::array<double, 3> max_velocity_mps{1.5, 0.5, 0.5};
   std::array<double, 3> max_rate_radps{1.2, 1.2, 1.2};
-  bool clip_velocity = true;         ///< clip body velocity and rates to the limits
+  bool clip_velocity = true;  ///< clip body velocity and rates to the limits
   std::array<double, 6> max_tau{35.0, 20.0, 20.0, 8.0, 10.0, 10.0};
-  bool float32_tau = false;          ///< round force and torque to float32 (release)
+  bool float32_tau = false;  ///< round force and torque to float32 (release)
   Integrator integrator = Integrator::kRk4;
-  int substeps = 1;                  ///< integrator steps per physics step
-  double radius_m = 0.011;           ///< collision radius
+  int substeps = 1;         ///< integrator steps per physics step
+  double radius_m = 0.011;  ///< collision radius
 };
 
 /// Keys, units and ranges of the section.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
 
 namespace stg::dynamics {
 
@@ -57,7 +57,7 @@ class VehicleModel {
  private:
   VehicleConfig config_;
   std::array<double, 36> M_{}, M_inv_{};
-  bool diagonal_ = true;     // no coupling: six divisions instead of a 6x6 product
+  bool diagonal_ = true;  // no coupling: six divisions instead of a 6x6 product
   Vec3<double> r_G_, r_B_, I_G_, A_lin_, A_rot_;
 };
 

@@ -18,8 +18,8 @@ struct ResetStageConfig {
 
 /// How episodes start; stages are in the order easy, medium, hard.
 struct ResetConfig {
-  ResetStage stage = ResetStage::kMedium;   ///< evaluation and fixed training
-  bool curriculum = false;                  ///< training: easy, medium, hard by reset count
+  ResetStage stage = ResetStage::kMedium;  ///< evaluation and fixed training
+  bool curriculum = false;                 ///< training: easy, medium, hard by reset count
   int curriculum_easy_resets = 800;
   int curriculum_medium_resets = 2000;
   double min_separation_m = 0.10;

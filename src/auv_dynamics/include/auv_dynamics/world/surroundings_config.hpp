@@ -20,14 +20,14 @@ struct DisturbanceConfig {
 
 /// Repulsion between vehicles: stiffness * softness * softplus((2 radius - distance) / softness).
 struct ContactConfig {
-  double stiffness = 100.0;          ///< [N per m of softplus argument]
+  double stiffness = 100.0;  ///< [N per m of softplus argument]
   double softness_m = 0.001;
 };
 
 /// The box and what is left of a velocity that meets a wall: its normal and tangential world
 /// components, and the body velocity and rates of the vehicle.
 struct WorkspaceConfig {
-  double half_extent_m = 1.0;        ///< walls at +-half_extent on each axis
+  double half_extent_m = 1.0;  ///< walls at +-half_extent on each axis
   double restitution = 0.2;
   double tangential = 0.85;
   double body_velocity = 0.7;

@@ -13,10 +13,10 @@ struct TargetConfig {
   TargetMotion motion = TargetMotion::kConstantVelocity;
   double max_speed_mps = 0.05;
   double max_turn_rate_radps = 0.5;
-  double turn_rate_radps = 0.1;      ///< coordinated_turn: mean magnitude
-  double turn_period_s = 10.0;       ///< coordinated_turn: time between new turn rates
-  double waypoint_radius_m = 0.05;   ///< random_waypoint: arrival radius
-  double evasion_range_m = 0.10;     ///< evasive: flees AUVs closer than this
+  double turn_rate_radps = 0.1;     ///< coordinated_turn: mean magnitude
+  double turn_period_s = 10.0;      ///< coordinated_turn: time between new turn rates
+  double waypoint_radius_m = 0.05;  ///< random_waypoint: arrival radius
+  double evasion_range_m = 0.10;    ///< evasive: flees AUVs closer than this
 };
 
 /// Keys, units and ranges of the section.

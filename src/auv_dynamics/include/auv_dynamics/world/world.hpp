@@ -5,29 +5,29 @@
 #include <vector>
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_dynamics/world/world_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/world/world_config.hpp"
 
 namespace stg::dynamics {
 
 /// Truth of one vehicle: body B in world W.
 template <class T>
 struct VehicleState {
-  Vec3<T> p_WB;       ///< position [m]
-  Vec3<T> rpy;        ///< roll, pitch, yaw [rad]; master copy of the semi-implicit integrator
+  Vec3<T> p_WB;  ///< position [m]
+  Vec3<T> rpy;   ///< roll, pitch, yaw [rad]; master copy of the semi-implicit integrator
   T q_WB[4] = {T(1.0), T(0.0), T(0.0), T(0.0)};  ///< w x y z; master copy of RK4
-  Mat3<T> R_WB;       ///< of the attitude above
-  EulerTrig<T> trig;  ///< of the attitude above
-  Vec3<T> v_WB_B;     ///< velocity over ground, body axes [m/s]
-  Vec3<T> w_WB_B;     ///< body rates p q r [rad/s]
-  Vec3<T> v_WB;       ///< velocity over ground, world axes [m/s]
+  Mat3<T> R_WB;                                  ///< of the attitude above
+  EulerTrig<T> trig;                             ///< of the attitude above
+  Vec3<T> v_WB_B;                                ///< velocity over ground, body axes [m/s]
+  Vec3<T> w_WB_B;                                ///< body rates p q r [rad/s]
+  Vec3<T> v_WB;                                  ///< velocity over ground, world axes [m/s]
 };
 
 /// A target, world axes.
 template <class T>
 struct TargetState {
-  Vec3<T> p_WT;       ///< position [m]
-  Vec3<T> v_WT;       ///< velocity [m/s]
+  Vec3<T> p_WT;  ///< position [m]
+  Vec3<T> v_WT;  ///< velocity [m/s]
 };
 
 class VehicleModel;
@@ -48,8 +48,8 @@ class World {
 
   /// Starts an episode in one lane from given world positions and target
   /// velocities, vehicles at rest with zero attitude (golden traces, tests).
-  void Place(int lane, const std::vector<Vec3<double>>& p_WB,
-             const std::vector<Vec3<double>>& p_WT, const std::vector<Vec3<double>>& v_WT);
+  void Place(int lane, const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
+             const std::vector<Vec3<double>>& v_WT);
 
   /// Takes the present state of a swarm that moves elsewhere, in every lane; clocks stand still.
   void Follow(const std::vector<NavState>& vehicles,

@@ -25,7 +25,7 @@ struct EnvOptions {
   /// Episode r of all copies together (r = env + k * total_envs, k-th episode of
   /// environment env) is drawn from seed + r.
   std::uint64_t seed = 0;
-  int first_env = 0;    ///< index of lane 0
+  int first_env = 0;  ///< index of lane 0
   int total_envs = kLanes;
   bool curriculum = false;  ///< easy, medium, hard by r (scenario.reset); else the scenario's stage
   int first_episode_steps = 0;  ///< > 0: the first episode is this short, to spread episode ends
@@ -33,8 +33,8 @@ struct EnvOptions {
 
 /// True state of a swarm that moves elsewhere, and what led to it.
 struct FollowedSwarm {
-  std::vector<dynamics::NavState> vehicles;             ///< [agents]
-  std::vector<dynamics::TargetState<double>> targets;   ///< [targets]
+  std::vector<dynamics::NavState> vehicles;            ///< [agents]
+  std::vector<dynamics::TargetState<double>> targets;  ///< [targets]
   /// [agents]: tau / tau_max and executed action of the decision that led here.
   std::vector<std::array<double, 6>> fractions, actions;
   double link_quality = 0.0;  ///< mean over AUVs of the mean link quality each one knows, now
@@ -75,7 +75,9 @@ class EnvGroup {
   const float* final_observations() const { return final_observations_.data(); }
   const float* final_states() const { return final_states_.data(); }
   /// Valid while truncated().
-  const task::EpisodeMetrics& metrics(int lane) const { return finished_[static_cast<size_t>(lane)]; }
+  const task::EpisodeMetrics& metrics(int lane) const {
+    return finished_[static_cast<size_t>(lane)];
+  }
 
   /// Decisions made in the current episode, and k of the EnvOptions::seed rule.
   int step() const { return step_; }
@@ -85,8 +87,8 @@ class EnvGroup {
 
   // For built-in controllers, tests and traces.
   const dynamics::World& world() const { return world_; }
-  const agent::Agent& agent(int lane, int i) const;  ///< acoustic mode
-  const acoustics::Channel& channel(int lane) const;     ///< acoustic mode
+  const agent::Agent& agent(int lane, int i) const;   ///< acoustic mode
+  const acoustics::Channel& channel(int lane) const;  ///< acoustic mode
   const task::RewardTerms<Pack>& terms(int i) const { return terms_[static_cast<size_t>(i)]; }
   const agent::Knowledge<Pack>& truth(int i) const { return truth_[static_cast<size_t>(i)]; }
   /// Starts an episode of every lane from given states (golden traces).
@@ -130,7 +132,7 @@ class EnvGroup {
   bool truncated_ = false;
   std::optional<Pack> followed_quality_;
 
-  std::vector<agent::Knowledge<Pack>> truth_;          // what the truth mode lets each AUV know
+  std::vector<agent::Knowledge<Pack>> truth_;    // what the truth mode lets each AUV know
   std::vector<std::vector<Pack>> error_window_;  // [agent][k]
   std::vector<std::array<Pack, 6>> action_, previous_action_, tau_, previous_tau_;
   std::vector<dynamics::Wrench<Pack>> wrench_;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "marl_trainer/env/env.hpp"
-#include "stg_agent/policy/policy.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
+#include "stg_agent/policy/policy.hpp"
 
 namespace stg::env {
 
@@ -33,7 +33,7 @@ void Decide(const Controller& controller, const EnvGroup& env, double* actions);
 /// threads. The result does not depend on the number of workers.
 /// @param progress called with the number of finished episodes; may be empty.
 std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
-                                     int episodes, std::uint64_t seed, int workers,
-                                     const std::function<void(int)>& progress = {});
+                                           int episodes, std::uint64_t seed, int workers,
+                                           const std::function<void(int)>& progress = {});
 
 }  // namespace stg::env

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "auv_common/numbers/vector.hpp"
-
 #include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::env {

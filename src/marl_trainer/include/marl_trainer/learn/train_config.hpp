@@ -48,7 +48,7 @@ struct TrainConfig {
   double imitation_share = 1.0;
   double imitation_focus = 1.0;
   bool privileged_teacher = false;
-  std::string start_from;  ///< folder of another run; empty: untrained networks
+  std::string start_from;   ///< folder of another run; empty: untrained networks
   double wall_units = 0.0;  ///< margin [m] of ActorCritic::PlaceWallUnits; 0: none
 
   std::int64_t validation_interval = 32000;

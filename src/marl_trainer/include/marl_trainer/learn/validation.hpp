@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "marl_trainer/learn/nn/actor_critic.hpp"
-#include "marl_trainer/env/env.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/env/env.hpp"
+#include "marl_trainer/learn/nn/actor_critic.hpp"
 
 namespace stg::learn {
 

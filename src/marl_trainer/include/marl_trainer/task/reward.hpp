@@ -18,11 +18,11 @@ struct RewardTerms {
 template <class T>
 struct RewardInput {
   T distance = T(0.0), previous_distance = T(0.0);
-  T closing = T(0.0);         ///< [m/s]
-  T confidence = T(0.0);      ///< c, 0 when lost
-  T lost = T(0.0);            ///< l, 0 or 1
-  T crowding = T(0.0);        ///< sum over neighbours of SeparationPenalty
-  T tau[6], previous_tau[6];  ///< tau / tau_max of this and the previous step
+  T closing = T(0.0);               ///< [m/s]
+  T confidence = T(0.0);            ///< c, 0 when lost
+  T lost = T(0.0);                  ///< l, 0 or 1
+  T crowding = T(0.0);              ///< sum over neighbours of SeparationPenalty
+  T tau[6], previous_tau[6];        ///< tau / tau_max of this and the previous step
   T action[6], previous_action[6];  ///< executed action (paper's cost)
 };
 
@@ -110,8 +110,9 @@ inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const 
   const T stable = T(0.55) * in.confidence + T(0.45) * (one - U);
   if (c.kind == RewardKind::kReleaseRaw) {
     const T near_target = T(0.5) * (in.confidence + Select(in_band, one, zero));
-    r.semantic = Select(lost, P, Select(d <= T(s.observation.near_range_m), near_target,
-                                        T(0.70) * P + T(0.30) * C));
+    r.semantic =
+        Select(lost, P,
+               Select(d <= T(s.observation.near_range_m), near_target, T(0.70) * P + T(0.30) * C));
   } else {
     r.semantic = Select(lost, P, Select(holding, stable, seeking));
   }

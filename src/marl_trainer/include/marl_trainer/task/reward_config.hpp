@@ -18,10 +18,10 @@ struct RewardWeights {
 struct RewardConfig {
   RewardKind kind = RewardKind::kPaper;
   RewardWeights weights;
-  config::Interval band_m{0.010, 0.015};       ///< [d_l, d_u]
-  double error_max_m = 0.8;            ///< e_max
+  config::Interval band_m{0.010, 0.015};  ///< [d_l, d_u]
+  double error_max_m = 0.8;               ///< e_max
   double w_band = 0.35, w_progress = 0.30, w_closing = 0.15, w_reacquire = 0.20,
-         w_too_close = 0.20;           ///< Eq. 30
+         w_too_close = 0.20;             ///< Eq. 30
   double separation_distance_m = 0.024;  ///< separation reward: 0 beyond, -1 at contact centres
   double total_limit = 2.0;
 };

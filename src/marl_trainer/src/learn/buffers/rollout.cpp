@@ -172,8 +172,8 @@ void RolloutUnit::AskTeacher(int t) {
   const std::size_t per_group = Size(kLanes, agents_, networks_.action_size());
   std::vector<double> actions(per_group);
   buffer_.teacher.resize(buffer_.actions.size());
-  float* out = buffer_.teacher.data() + Size(t, envs_, agents_) *
-                                            static_cast<std::size_t>(networks_.action_size());
+  float* out = buffer_.teacher.data() +
+               Size(t, envs_, agents_) * static_cast<std::size_t>(networks_.action_size());
   for (const env::EnvGroup& group : groups_) {
     env::Decide(teachers_.front(), group, actions.data());
     for (const double a : actions) *out++ = static_cast<float>(a);

@@ -74,7 +74,7 @@ void ActorCritic::PlaceWallUnits(double margin_m, double half_extent_m,
 }
 
 agent::Policy ActorCritic::ToPolicy(const float* parameters, const Normaliser& observations,
-                             agent::PolicyMetadata metadata) const {
+                                    agent::PolicyMetadata metadata) const {
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   agent::Policy::Parameters p;
   const Eigen::Index size = actor.inputs();

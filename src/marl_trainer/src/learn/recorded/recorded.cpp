@@ -141,7 +141,8 @@ std::vector<RecordedEpisode> EpisodeAssembler::TakeAll() {
   return all;
 }
 
-EpisodeChecker::EpisodeChecker(const Scenario& scenario, int state_size, const agent::Policy& policy)
+EpisodeChecker::EpisodeChecker(const Scenario& scenario, int state_size,
+                               const agent::Policy& policy)
     : agents_(scenario.agents),
       episode_steps_(scenario.time.episode_steps),
       state_size_(state_size),
@@ -220,8 +221,8 @@ Finding EpisodeChecker::CheckStep(const AgentRecord& r) const {
 double EpisodeChecker::LogProbability(const AgentRecord& r) const {
   std::vector<float> mean(r.action.size());
   policy_.Mean(r.observation.data(), mean.data());
-  return agent::GaussianLogDensity(mean.data(), policy_.parameters().log_std.data(), r.action.data(),
-                            static_cast<int>(mean.size()));
+  return agent::GaussianLogDensity(mean.data(), policy_.parameters().log_std.data(),
+                                   r.action.data(), static_cast<int>(mean.size()));
 }
 
 std::uint32_t LayoutVersion(const Scenario& scenario) {

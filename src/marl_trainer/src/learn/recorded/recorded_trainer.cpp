@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "auv_common/error.hpp"
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
-#include "marl_trainer/learn/nn/blas.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithms/mappo/gae.hpp"
+#include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::learn {
 namespace {
@@ -95,7 +95,8 @@ RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainConfig& co
     : RecordedTrainer(scenario, config, options, LoadStart(options.policy, scenario)) {}
 
 RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainConfig& config,
-                                 const Options& options, const std::shared_ptr<const agent::Policy>& start)
+                                 const Options& options,
+                                 const std::shared_ptr<const agent::Policy>& start)
     : scenario_(scenario),
       config_(Fit(config, scenario, start.get())),
       options_(options),

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "stg_agent/packet/packet.hpp"
-#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 #include "stg_agent/agent/mind.hpp"
-#include "stg_agent/inbox/neighbour_table.hpp"
 #include "stg_agent/graph/observation.hpp"
+#include "stg_agent/inbox/neighbour_table.hpp"
 #include "stg_agent/inbox/target_track.hpp"
+#include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
 

@@ -13,19 +13,19 @@ enum class NeighbourOrder { kNearest, kIndex };
 
 /// The agents' target filter and their memory of neighbours.
 struct TrackConfig {
-  double process_accel_std_mps2 = 0.01;   ///< white acceleration of the target model
-  double measurement_std_m = 0.001;       ///< floor of a detection's standard deviation
+  double process_accel_std_mps2 = 0.01;  ///< white acceleration of the target model
+  double measurement_std_m = 0.001;      ///< floor of a detection's standard deviation
   double initial_speed_std_mps = 0.01;
-  double gate_sigma = 5.0;                ///< own detections beyond it are set aside, three in a row restart
-  double lost_std_m = 0.2;                ///< track no better than this counts as lost
-  double neighbour_max_age_s = 10.0;      ///< a neighbour is forgotten after this silence
+  double gate_sigma = 5.0;  ///< own detections beyond it are set aside, three in a row restart
+  double lost_std_m = 0.2;  ///< track no better than this counts as lost
+  double neighbour_max_age_s = 10.0;  ///< a neighbour is forgotten after this silence
 };
 
 /// Constants of the observation that the paper leaves open (release's values).
 struct ObservationConfig {
-  bool tracking = true;              ///< Eq. 14, 8 numbers
-  bool semantic = true;              ///< Eqs. 15-16, 9 numbers
-  bool graph = true;                 ///< Eq. 18, 6 numbers
+  bool tracking = true;  ///< Eq. 14, 8 numbers
+  bool semantic = true;  ///< Eqs. 15-16, 9 numbers
+  bool graph = true;     ///< Eq. 18, 6 numbers
   NeighbourOrder order = NeighbourOrder::kNearest;
   /// Truth mode only. As the release: the progress shown is always 0 (d(t-1) is
   /// overwritten first), so is the first P of an episode; mean_k(e) counts the
@@ -35,12 +35,12 @@ struct ObservationConfig {
   double error_scale_m = 0.8;
   double progress_scale_m = 0.04;
   double closing_scale_mps = 0.08;
-  int error_window = 5;              ///< k of mean_k(e)
+  int error_window = 5;  ///< k of mean_k(e)
   double lost_scale_steps = 25.0;
   double near_range_m = 0.10;
   double quality_high = 0.75;
   double quality_medium = 0.40;
-  double link_available = 0.10;      ///< q above this is an effective neighbour
+  double link_available = 0.10;  ///< q above this is an effective neighbour
   double role_confidence = 0.40;
 };
 

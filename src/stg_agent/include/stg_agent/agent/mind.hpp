@@ -121,8 +121,8 @@ class Mind {
     }
     dynamics::SmoothAction(s.control, size, wanted, action.data());
     const Vec3<T> v_des_W = dynamics::DesiredVelocity(s.vehicle, action.data());
-    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig), k.w_WB_B,
-                       k.tau);
+    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig),
+                                 k.w_WB_B, k.tau);
     return v_des_W;
   }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "stg_agent/agent/agent_config.hpp"
 #include "auv_common/numbers/vector.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 /// Built-in controllers: what a policy has to beat.
@@ -57,8 +57,8 @@ PursuitOptions BuiltinOptions(BuiltinKind kind);
 bool ParseBuiltin(const std::string& text, BuiltinKind* kind, PursuitOptions* options);
 const char* ToString(BuiltinKind kind);
 
-/// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than the
-/// repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
+/// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than
+/// the repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
 /// the part of the repulsion along the line of sight is left out: AUVs then spread over the
 /// sphere around the target and keep their distance to it. Capped per axis at the end.
 /// Writes the action v / v_max (Eq. 23 inverted), three numbers in [-cap, cap].
@@ -114,8 +114,8 @@ inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& 
 
 /// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
 template <class T>
-inline void PursuitAction(const PursuitOptions& o, const AgentConfig& scenario, const Knowledge<T>& k,
-                          const Vec3<T>* r_BN_W, int count, T* action) {
+inline void PursuitAction(const PursuitOptions& o, const AgentConfig& scenario,
+                          const Knowledge<T>& k, const Vec3<T>* r_BN_W, int count, T* action) {
   Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
   KeepFromWalls(scenario.workspace.half_extent_m, o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
   PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, r_BN_W, count, action);

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "acoustic_channel/link/link_quality.hpp"
-#include "stg_agent/packet/packet.hpp"
-#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
 
@@ -19,7 +19,7 @@ Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, doubl
 template <class T>
 T LinkQuality(const acoustics::ChannelConfig& c, const T& d, const T& age_s) {
   return c.model == acoustics::ChannelModel::kRange ? acoustics::RangeQuality(d, c.range_m)
-                                         : acoustics::ExtendedQuality(d, age_s, c);
+                                                    : acoustics::ExtendedQuality(d, age_s, c);
 }
 
 /// What one AUV knows of another: its newest packet, carried forward to now.

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "stg_agent/agent/agent_config.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "stg_agent/agent/agent_config.hpp"
 
 /// What one AUV tells its neighbours, and its 32-byte form on the acoustic link.
 namespace stg::agent {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/learn/nn/actor_critic.hpp"
 #include "marl_trainer/env/evaluation.hpp"
+#include "marl_trainer/learn/nn/actor_critic.hpp"
 
 namespace stg::learn {
 

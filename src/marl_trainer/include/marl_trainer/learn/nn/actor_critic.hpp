@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/learn/nn/mlp.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
 #include "marl_trainer/learn/train_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::learn {
@@ -45,7 +45,7 @@ struct ActorCritic {
 
   /// The policy that `parameters` and the observation normaliser make.
   agent::Policy ToPolicy(const float* parameters, const Normaliser& observations,
-                  agent::PolicyMetadata metadata) const;
+                         agent::PolicyMetadata metadata) const;
 };
 
 /// mean = scale * tanh(net) in place over count numbers.

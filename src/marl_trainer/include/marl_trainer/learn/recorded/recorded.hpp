@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "marl_trainer/scenario/scenario.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::learn {

@@ -9,7 +9,9 @@ namespace {
 /// Value targets that the value normaliser remembers [environment steps].
 constexpr double kValueMemory = 100000.0;
 
-int StateSize(const Scenario& scenario) { return env::EnvGroup(scenario, env::EnvOptions()).state_size(); }
+int StateSize(const Scenario& scenario) {
+  return env::EnvGroup(scenario, env::EnvOptions()).state_size();
+}
 
 }  // namespace
 

@@ -10,7 +10,8 @@
 namespace stg::nodes {
 
 /// `start` is the clock time of the episode's step 0 [ns]: the core counts from there.
-inline void SetReceivedPacket(const acoustics::Reception& r, TimeNs start, auv_msgs::ReceivedPacket* m) {
+inline void SetReceivedPacket(const acoustics::Reception& r, TimeNs start,
+                              auv_msgs::ReceivedPacket* m) {
   m->source = static_cast<std::uint32_t>(r.source);
   m->sequence = r.sequence;
   m->generation = TimeOf(start + r.generation);

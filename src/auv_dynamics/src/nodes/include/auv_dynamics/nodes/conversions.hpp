@@ -24,7 +24,7 @@ inline void SetOdometry(const dynamics::NavState& nav, TimeNs start, nav_msgs::O
 
 /// Pose in `world`, twist in body axes, at a time since the episode's step 0.
 inline dynamics::NavState NavOf(const geometry_msgs::Pose& pose, const geometry_msgs::Twist& twist,
-                      TimeNs stamp) {
+                                TimeNs stamp) {
   dynamics::NavState nav;
   nav.stamp = stamp;
   nav.p_WB = VectorOf(pose.position);

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/learn/checkpoint.hpp"
 #include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
+#include "marl_trainer/learn/checkpoint.hpp"
 
 namespace stg::learn {
 
