@@ -14,7 +14,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
   std::vector<task::EpisodeMetrics> metrics(static_cast<std::size_t>(blocks * options.block));
   std::mutex mutex;
   int finished = 0;
-  const auto fly = [&](int b) {
+  const auto fly = [&](int b, int worker) {
     VectorEnvOptions o;
     o.seed = options.seed;
     o.envs = options.block;
@@ -22,7 +22,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
     o.total_envs = blocks * options.block;
     VectorEnv env(scenario, o);
     EnvMemory memory = env.MakeMemory();
-    const ActFunction act = make_act(env);
+    const ActFunction act = make_act(env, worker);
     std::vector<double> actions(
         static_cast<std::size_t>(env.envs() * env.agents() * env.action_size()));
     env.Reset(memory.arrays());
@@ -38,9 +38,9 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
     if (progress) progress(finished);
   };
   if (pool != nullptr) {
-    pool->Run(blocks, [&](int b, int) { fly(b); });
+    pool->Run(blocks, fly);
   } else {
-    for (int b = 0; b < blocks; ++b) fly(b);
+    for (int b = 0; b < blocks; ++b) fly(b, 0);
   }
   metrics.resize(static_cast<std::size_t>(options.episodes));
   return metrics;
@@ -49,7 +49,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
 std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress) {
-  const ActFactory make_act = [&controller](const VectorEnv&) -> ActFunction {
+  const ActFactory make_act = [&controller](const VectorEnv&, int) -> ActFunction {
     return [&controller](const VectorEnv& env, const float* observations, double* actions) {
       Decide(controller, env, observations, actions);
     };

@@ -12,9 +12,9 @@ namespace stg::env {
 /// [envs, agents, observation_size].
 using ActFunction =
     std::function<void(const VectorEnv& env, const float* observations, double* actions)>;
-/// Makes the ActFunction of one block of environments, which one thread flies: what it needs of
-/// memory is its own.
-using ActFactory = std::function<ActFunction(const VectorEnv& env)>;
+/// Makes the ActFunction of one block of environments, which `worker` of the pool flies (0 without
+/// one): what it needs of memory is its own or that worker's.
+using ActFactory = std::function<ActFunction(const VectorEnv& env, int worker)>;
 
 /// Which episodes an evaluation flies.
 struct EvaluationOptions {
