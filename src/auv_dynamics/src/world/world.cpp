@@ -19,7 +19,7 @@ World::World(const WorldConfig& scenario) : scenario_(scenario), dt_ns_(scenario
   vehicles_.resize(n);
   contact_.resize(n);
   disturbance_.resize(n);
-  distances_.assign(n * n, Pack(0.0));
+  separations_ = Separations<Pack>(scenario.agents, 2.0 * scenario_.vehicle.radius_m);
   targets_.resize(m);
   waypoint_.assign(m * kLanes, 0);
   for (auto& v : vehicles_) {
@@ -84,7 +84,7 @@ void World::Step(const std::vector<Wrench<Pack>>& tau) {
   }
   MoveTargets();
   for (auto& step : step_) ++step;
-  MeasureDistances();
+  separations_.Measure(vehicles_);
 }
 
 void World::AddContacts() {
@@ -158,22 +158,6 @@ void World::ApplyWalls(VehicleState<Pack>* s) const {
   s->p_WB = Clip(s->p_WB, -c.half_extent_m, c.half_extent_m);
   s->v_WB_B = s->v_WB_B * Select(hit, Pack(c.body_velocity), one);
   s->w_WB_B = s->w_WB_B * Select(hit, Pack(c.body_rate), one);
-}
-
-void World::MeasureDistances() {
-  const int n = agents();
-  const Pack contact(2.0 * scenario_.vehicle.radius_m);
-  colliding_pairs_ = Pack(0.0);
-  smallest_separation_ = Pack(1e9);
-  for (int i = 0; i < n; ++i) {
-    for (int j = i + 1; j < n; ++j) {
-      const Pack d = Norm(vehicle(j).p_WB - vehicle(i).p_WB);
-      distances_[static_cast<size_t>(i * n + j)] = d;
-      distances_[static_cast<size_t>(j * n + i)] = d;
-      colliding_pairs_ += Select(d < contact, Pack(1.0), Pack(0.0));
-      smallest_separation_ = Min(smallest_separation_, d);
-    }
-  }
 }
 
 }  // namespace stg::dynamics

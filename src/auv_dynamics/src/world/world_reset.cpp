@@ -74,7 +74,7 @@ void World::Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStag
     }
     SetLane(&vehicles_[static_cast<size_t>(i)].p_WB, lane, p_WB);
   }
-  MeasureDistances();
+  separations_.Measure(vehicles_);
 }
 
 void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
@@ -87,40 +87,7 @@ void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
     SetLane(&targets_[k].p_WT, lane, p_WT[k]);
     SetLane(&targets_[k].v_WT, lane, v_WT[k]);
   }
-  MeasureDistances();
-}
-
-void World::Follow(const std::vector<NavState>& vehicles,
-                   const std::vector<TargetState<double>>& targets) {
-  assert(vehicles.size() == vehicles_.size() && targets.size() == targets_.size());
-  for (int lane = 0; lane < kLanes; ++lane) {
-    for (size_t i = 0; i < vehicles.size(); ++i) {
-      const NavState& nav = vehicles[i];
-      VehicleState<Pack>& v = vehicles_[i];
-      const Mat3<double> R = RotationOf(nav.q_WB);
-      const EulerTrig<double> trig = TrigOf(R);
-      SetLane(&v.p_WB, lane, nav.p_WB);
-      SetLane(&v.rpy, lane, RpyOf(trig));
-      for (int k = 0; k < 4; ++k) SetLane(&v.q_WB[k], lane, nav.q_WB[k]);
-      for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) SetLane(&v.R_WB.m[r][c], lane, R.m[r][c]);
-      }
-      SetLane(&v.trig.sin_phi, lane, trig.sin_phi);
-      SetLane(&v.trig.cos_phi, lane, trig.cos_phi);
-      SetLane(&v.trig.sin_theta, lane, trig.sin_theta);
-      SetLane(&v.trig.cos_theta, lane, trig.cos_theta);
-      SetLane(&v.trig.sin_psi, lane, trig.sin_psi);
-      SetLane(&v.trig.cos_psi, lane, trig.cos_psi);
-      SetLane(&v.v_WB_B, lane, nav.v_WB_B);
-      SetLane(&v.w_WB_B, lane, nav.w_WB_B);
-      SetLane(&v.v_WB, lane, R * nav.v_WB_B);
-    }
-    for (size_t k = 0; k < targets.size(); ++k) {
-      SetLane(&targets_[k].p_WT, lane, targets[k].p_WT);
-      SetLane(&targets_[k].v_WT, lane, targets[k].v_WT);
-    }
-  }
-  MeasureDistances();
+  separations_.Measure(vehicles_);
 }
 
 }  // namespace stg::dynamics

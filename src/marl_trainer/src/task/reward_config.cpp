@@ -1,5 +1,7 @@
 #include "marl_trainer/task/reward_config.hpp"
 
+#include "marl_trainer/task/reward_term.hpp"
+
 namespace stg::task {
 
 using config::Enum;
@@ -41,6 +43,11 @@ void Describe(RewardConfig* c, config::Table* t) {
          "separation penalty: none beyond this distance of two AUVs");
   t->Add("total_limit", &c->total_limit, config::Positive(1e6), "-",
          "an agent's total reward is clipped to +- this value");
+  t->Section("reward.terms");
+  for (const std::string& name : RewardTermsByName().Names()) {
+    t->AddOptional(name, &c->terms[name], "0.0", config::Within(-1e3, 1e3), "-",
+                   "weight of the registered term of this name");
+  }
 }
 
 }  // namespace stg::task

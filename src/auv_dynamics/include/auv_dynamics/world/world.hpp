@@ -6,6 +6,7 @@
 
 #include "auv_common/numbers/attitude.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/world/separations.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 
 namespace stg::dynamics {
@@ -51,10 +52,6 @@ class World {
   void Place(int lane, const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
              const std::vector<Vec3<double>>& v_WT);
 
-  /// Takes the present state of a swarm that moves elsewhere, in every lane; clocks stand still.
-  void Follow(const std::vector<NavState>& vehicles,
-              const std::vector<TargetState<double>>& targets);
-
   /// One physics step of dt under the commanded wrench of each vehicle (body
   /// axes). Adds contact forces, clips to the actuator limits, integrates,
   /// applies walls, moves targets. A non-finite wrench is a bug of the caller.
@@ -67,9 +64,10 @@ class World {
   VehicleState<Pack>& mutable_vehicle(int i) { return vehicles_[static_cast<size_t>(i)]; }
   const TargetState<Pack>& target(int k) const { return targets_[static_cast<size_t>(k)]; }
   /// Distance between vehicles i and j in the current state [m].
-  const Pack& distance(int i, int j) const {
-    return distances_[static_cast<size_t>(i * agents() + j)];
-  }
+  const Pack& distance(int i, int j) const { return separations_.distance(i, j); }
+  const Separations<Pack>& separations() const { return separations_; }
+  const std::vector<VehicleState<Pack>>& vehicle_states() const { return vehicles_; }
+  const std::vector<TargetState<Pack>>& target_states() const { return targets_; }
 
   /// Truth of one lane as the vehicle's own navigation gives it.
   NavState Nav(int lane, int i) const;
@@ -89,8 +87,8 @@ class World {
 
   /// Pairs of vehicles closer than two radii, and the smallest distance between
   /// any two vehicles [m], in the current state.
-  const Pack& colliding_pairs() const { return colliding_pairs_; }
-  const Pack& smallest_separation() const { return smallest_separation_; }
+  const Pack& colliding_pairs() const { return separations_.colliding_pairs(); }
+  const Pack& smallest_separation() const { return separations_.smallest(); }
 
  private:
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode);
@@ -99,7 +97,6 @@ class World {
   void ApplyWalls(VehicleState<Pack>* vehicle) const;
   void MoveTargets();
   void SteerTarget(int lane, int k);
-  void MeasureDistances();
 
   WorldConfig scenario_;
   TimeNs dt_ns_;
@@ -108,9 +105,8 @@ class World {
   std::vector<TargetState<Pack>> targets_;
   std::vector<Vec3<Pack>> contact_;        // world-frame contact force of each vehicle [N]
   std::vector<Wrench<Pack>> disturbance_;  // w of Eq. 3, body axes
-  std::vector<Pack> distances_;            // [agents, agents], symmetric
+  Separations<Pack> separations_;
   std::vector<std::uint32_t> waypoint_;    // [lane, target]
-  Pack colliding_pairs_ = Pack(0.0), smallest_separation_ = Pack(0.0);
   std::uint64_t seed_[kLanes] = {};
   std::uint32_t episode_[kLanes] = {};
   std::uint32_t step_[kLanes] = {};
