@@ -16,18 +16,18 @@ EpisodeTotals<T>::EpisodeTotals(const Scenario& s)
       entered_(static_cast<std::size_t>(s.agents), T(-1.0)) {}
 
 template <class T>
-void EpisodeTotals<T>::Start(const Mask<T>& lanes, int episode_steps) {
+void EpisodeTotals<T>::Start(const Mask<T>& lanes, const T& episode_steps) {
   const T zero(0.0);
   const auto restart = [&](T* value, const T& first) { *value = Select(lanes, first, *value); };
   restart(&steps_, zero);
   restart(&counted_tail_, zero);
-  restart(&length_, T(static_cast<double>(episode_steps)));
+  restart(&length_, episode_steps);
   restart(&separation_, T(1e9));
   Sums& s = sums_;
-  for (T* sum : {&s.episode_return, &s.norm,          &s.saturated,  &s.cost,      &s.track,
-                 &s.observation,    &s.coordination,  &s.communication, &s.semantic, &s.crowding,
-                 &s.error,          &s.lost,          &s.pairs,      &s.tail_distance,
-                 &s.tail_error,     &s.tail_lost,     &s.tail_band,  &s.tail_pairs}) {
+  for (T* sum :
+       {&s.episode_return, &s.norm, &s.saturated, &s.cost, &s.track, &s.observation,
+        &s.coordination, &s.communication, &s.semantic, &s.crowding, &s.error, &s.lost, &s.pairs,
+        &s.tail_distance, &s.tail_error, &s.tail_lost, &s.tail_band, &s.tail_pairs}) {
     restart(sum, zero);
   }
   for (T& entered : entered_) restart(&entered, T(-1.0));

@@ -18,7 +18,7 @@ Task<T>::Task(const Scenario& scenario)
 }
 
 template <class T>
-void Task<T>::Start(const Mask<T>& lanes, const SwarmState<T>& swarm, int episode_steps) {
+void Task<T>::Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& episode_steps) {
   Measure(swarm, &lanes);
   previous_tau_ = swarm.tau;
   previous_action_ = swarm.action;

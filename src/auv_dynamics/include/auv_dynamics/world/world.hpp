@@ -106,7 +106,7 @@ class World {
   std::vector<Vec3<Pack>> contact_;        // world-frame contact force of each vehicle [N]
   std::vector<Wrench<Pack>> disturbance_;  // w of Eq. 3, body axes
   Separations<Pack> separations_;
-  std::vector<std::uint32_t> waypoint_;    // [lane, target]
+  std::vector<std::uint32_t> waypoint_;  // [lane, target]
   std::uint64_t seed_[kLanes] = {};
   std::uint32_t episode_[kLanes] = {};
   std::uint32_t step_[kLanes] = {};

@@ -48,8 +48,8 @@ void WriteCriticState(const Scenario& s, const SwarmState<T>& swarm,
     put3(Scale(swarm.targets[target].v_WT - v.v_WB, inv_v));
     put3(Scale(v.w_WB_B, inv_w));
     put3({tau[0], tau[1], tau[2]});
-    block[n++] = Clip((k.distance - T(s.task.desired_distance_m)) * T(1.0 / kBandScale_m), T(-1.0),
-                      T(1.0));
+    block[n++] =
+        Clip((k.distance - T(s.task.desired_distance_m)) * T(1.0 / kBandScale_m), T(-1.0), T(1.0));
     block[n++] = agent::Progress(s.observation, k.previous_distance, k.distance);
     block[n++] = k.lost;
     block[n++] = v.trig.cos_phi * v.trig.cos_theta;

@@ -16,7 +16,7 @@ class EpisodeTotals {
   explicit EpisodeTotals(const Scenario& scenario);
 
   /// Starts an episode of `episode_steps` decisions in some lanes.
-  void Start(const Mask<T>& lanes, int episode_steps);
+  void Start(const Mask<T>& lanes, const T& episode_steps);
   /// Adds a decision, judged. @param tracking, terms [agents]
   void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
            const std::vector<RewardTerms<T>>& terms);

@@ -29,7 +29,8 @@ class RewardTerm {
   virtual Pack Evaluate(const TermInput<Pack>& in) const = 0;
 };
 
-/// Makes a RewardTerm of a class with a member `template <class T> T Of(const TermInput<T>&) const`.
+/// Makes a RewardTerm of a class with a member `template <class T> T Of(const TermInput<T>&)
+/// const`.
 template <class Term>
 class TermOf : public RewardTerm {
  public:

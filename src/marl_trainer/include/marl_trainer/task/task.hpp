@@ -24,7 +24,7 @@ class Task {
 
   /// An episode of `episode_steps` decisions begins in some lanes; `swarm` is its first state.
   /// Other lanes must stand as they stood at the last Start or Step.
-  void Start(const Mask<T>& lanes, const SwarmState<T>& swarm, int episode_steps);
+  void Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& episode_steps);
   /// Judges the decision that led to `swarm`.
   void Step(const SwarmState<T>& swarm);
 
