@@ -16,7 +16,7 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/env/env.hpp"
+#include "marl_trainer/env/vector_env.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "stg_agent/policy/policy.hpp"
 
