@@ -47,10 +47,13 @@ function(stg_core_tool target name)
   stg_optimise(${target} -O2)
 endfunction()
 
-# stg_test(TARGET SOURCES FILE ... LIBRARIES LIBRARY ... [DEFINITIONS DEFINITION ...]): one program
-# of GoogleTests. `./stg test PATTERN` finds it by its own name and by its files' names.
+# stg_test(TARGET SOURCES FILE ... LIBRARIES LIBRARY ... [DEFINITIONS DEFINITION ...]
+# [INCLUDE_DIRECTORIES FOLDER ...] [PROGRAMS TARGET ...]): one program of GoogleTests, which may run
+# the programs. `./stg test PATTERN` finds it by its own name and by its files' names.
 function(stg_test target)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS" ${ARGN})
+  cmake_parse_arguments(
+    ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS;INCLUDE_DIRECTORIES;PROGRAMS" ${ARGN}
+  )
   set(test _ctest_${PROJECT_NAME}_gtest_${target})
   if(STG_CORE_ONLY)
     if(NOT STG_TESTS)
@@ -68,6 +71,13 @@ function(stg_test target)
   endif()
   target_link_libraries(${target} ${ARG_LIBRARIES} GTest::gtest_main)
   target_compile_definitions(${target} PRIVATE ${ARG_DEFINITIONS})
+  target_include_directories(${target} PRIVATE ${ARG_INCLUDE_DIRECTORIES})
+  if(ARG_PROGRAMS)
+    add_dependencies(${target} ${ARG_PROGRAMS})
+  endif()
+  if(NOT STG_CORE_ONLY)
+    target_include_directories(${target} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+  endif()
   stg_unity(${target})
   stg_optimise(${target} -O1)
   set(labels)
@@ -81,6 +91,10 @@ endfunction()
 # stg_node_target(TARGET [LIBRARY ...]): a library or program with ROS in it, on top of libraries of
 # this repository.
 function(stg_node_target target)
+  set(headers ${CMAKE_CURRENT_SOURCE_DIR}/src/nodes/include)
+  if(EXISTS ${headers})
+    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${headers}>)
+  endif()
   target_include_directories(${target} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC ${ARGN} ${catkin_LIBRARIES})
   if(catkin_EXPORTED_TARGETS)
