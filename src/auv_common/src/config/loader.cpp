@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 #include "key_path.hpp"
 #include "yaml_files.hpp"
 
@@ -11,21 +12,6 @@ namespace stg::config {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::size_t EditDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
 
 std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";
