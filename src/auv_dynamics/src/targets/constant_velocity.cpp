@@ -8,7 +8,7 @@ namespace {
 class ConstantVelocity : public TargetMotion {
  public:
   explicit ConstantVelocity(const MotionSetup& setup)
-      : dt_(setup.dt_s), half_extent_(setup.workspace.half_extent_m) {}
+      : dt_(setup.dt_s), half_extent_(setup.half_extent_m) {}
 
   void Step(const EpisodeClocks&, const std::vector<VehicleState<Pack>>&,
             std::vector<TargetState<Pack>>* targets) override {

@@ -78,7 +78,7 @@ void Describe(VehicleConfig* c, config::Table* t) {
 }
 
 std::optional<config::Violation> FindConflict(const VehicleConfig& c) {
-  if (c.model == "fully_actuated" && !MassMatrixIsPositive(c)) {
+  if (!MassMatrixIsPositive(c)) {
     return config::Violation{{"vehicle.r_BG_m", "vehicle.inertia_kgm2"},
                              "the mass matrix is not positive definite"};
   }

@@ -6,7 +6,7 @@ Contacts::Contacts(const ContactConfig& config, int vehicles, double radius_m)
     : config_(config), radius_m_(radius_m), forces_(static_cast<size_t>(vehicles)) {}
 
 void Contacts::Update(const std::vector<VehicleState<Pack>>& vehicles,
-                      const Separations& separations) {
+                      const Separations<Pack>& separations) {
   const double reach = 2.0 * radius_m_;
   const double k = config_.softness_m;
   for (auto& f : forces_) f = {};

@@ -25,7 +25,7 @@ World::World(const WorldConfig& scenario)
       sensing_(scenario.sensing),
       model_(Vehicles().Make(scenario.vehicle.model, scenario.vehicle)),
       motion_(TargetMotions().Make(scenario.target.motion,
-                                   {scenario.target, scenario.workspace, dt_s_})),
+                                   {scenario.target, scenario.workspace.half_extent_m, dt_s_})),
       sensor_(TargetSensors().Make(scenario.sensing.sensor, scenario.sensing)),
       separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
       contacts_(scenario.contact, scenario.agents, scenario.vehicle.radius_m),

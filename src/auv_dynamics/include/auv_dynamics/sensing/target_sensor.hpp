@@ -6,7 +6,7 @@
 #include "auv_dynamics/episode_clock.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/sensing/sensing_config.hpp"
-#include "auv_dynamics/targets/target_motion.hpp"
+#include "auv_dynamics/targets/target_state.hpp"
 #include "auv_dynamics/vehicle/vehicle_state.hpp"
 
 namespace stg::dynamics {

@@ -2,27 +2,19 @@
 
 #include <vector>
 
-#include "auv_common/numbers/vector.hpp"
 #include "auv_common/registry.hpp"
 #include "auv_dynamics/episode_clock.hpp"
 #include "auv_dynamics/targets/target_config.hpp"
+#include "auv_dynamics/targets/target_state.hpp"
 #include "auv_dynamics/vehicle/vehicle_state.hpp"
-#include "auv_dynamics/world/surroundings_config.hpp"
 
 namespace stg::dynamics {
-
-/// A target, world axes.
-template <class T>
-struct TargetState {
-  Vec3<T> p_WT;  ///< position [m]
-  Vec3<T> v_WT;  ///< velocity [m/s]
-};
 
 /// What a motion is made from. It copies what it keeps.
 struct MotionSetup {
   const TargetConfig& target;
-  const WorkspaceConfig& workspace;
-  double dt_s;  ///< physics step
+  double half_extent_m;  ///< walls at +- this value on each axis
+  double dt_s;           ///< physics step
 };
 
 /// How the targets of one World move. One object moves all of them, in every lane; what it

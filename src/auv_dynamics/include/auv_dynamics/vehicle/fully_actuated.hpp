@@ -16,14 +16,14 @@ class FullyActuated : public Vehicle {
   explicit FullyActuated(const VehicleConfig& config);
 
   const Space& actuators() const override { return actuators_; }
-  Space ActionSpace(ActionInterface interface) const override;
+  const Space& actions() const override { return actions_; }
   void Step(const Pack* command, const Surroundings& around, double dt, VehicleState<Pack>* state,
             Pack* internal) const override;
   void Orientation(const VehicleState<Pack>& state, Pack (*q_WB)[4]) const override;
 
  private:
   VehicleModel model_;
-  Space actuators_;
+  Space actuators_, actions_;
 };
 
 }  // namespace stg::dynamics

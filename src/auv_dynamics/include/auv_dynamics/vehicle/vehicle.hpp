@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "auv_common/registry.hpp"
-#include "auv_dynamics/control/control_config.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/vehicle/vehicle_state.hpp"
@@ -33,13 +32,13 @@ class Vehicle {
  public:
   virtual ~Vehicle() = default;
 
-  /// What it can be told: the order, units and limits of a command. Fixed for the life of the
+  /// What it can be told directly: order, units and limits of a command. Fixed for the life of the
   /// object.
   virtual const Space& actuators() const = 0;
 
-  /// What a policy commands through this interface, each component in [-1, 1] of its limits.
-  /// Throws UserError for an interface that this vehicle does not have.
-  virtual Space ActionSpace(ActionInterface interface) const = 0;
+  /// What it can be told through its controller (control/), each component in [-1, 1] of its
+  /// limits; empty for a vehicle without one.
+  virtual const Space& actions() const = 0;
 
   /// State of the actuators and of whatever else VehicleState does not hold (shaft speed, fin
   /// angles), as a number of packs. They are zero when an episode starts.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "auv_dynamics/vehicle/vehicle_state.hpp"
 #include "auv_dynamics/world/separations.hpp"
 #include "auv_dynamics/world/surroundings_config.hpp"
 
@@ -14,7 +15,8 @@ class Contacts {
   Contacts(const ContactConfig& config, int vehicles, double radius_m);
 
   /// Forces in this state; `separations` must have been measured in it.
-  void Update(const std::vector<VehicleState<Pack>>& vehicles, const Separations& separations);
+  void Update(const std::vector<VehicleState<Pack>>& vehicles,
+              const Separations<Pack>& separations);
   /// On vehicle i, world axes [N].
   const Vec3<Pack>& force(int i) const { return forces_[static_cast<size_t>(i)]; }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "auv_dynamics/targets/target_motion.hpp"
+#include "auv_dynamics/targets/target_state.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
 
 namespace stg::dynamics {

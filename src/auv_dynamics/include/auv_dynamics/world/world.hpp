@@ -59,6 +59,9 @@ class World {
   const TargetState<Pack>& target(int k) const { return targets_[static_cast<size_t>(k)]; }
   /// Distance between vehicles i and j in the current state [m].
   const Pack& distance(int i, int j) const { return separations_.distance(i, j); }
+  const Separations<Pack>& separations() const { return separations_; }
+  const std::vector<VehicleState<Pack>>& vehicle_states() const { return vehicles_; }
+  const std::vector<TargetState<Pack>>& target_states() const { return targets_; }
 
   /// Truth of one lane as the vehicle's own navigation gives it.
   NavState Nav(int lane, int i) const;
@@ -93,7 +96,7 @@ class World {
   std::unique_ptr<const Vehicle> model_;
   std::unique_ptr<TargetMotion> motion_;
   std::unique_ptr<const TargetSensor> sensor_;
-  Separations separations_;
+  Separations<Pack> separations_;
   Contacts contacts_;
   Disturbance disturbance_;
   Walls walls_;
