@@ -39,13 +39,14 @@ class Sonar : public TargetSensor {
   SensingConfig config_;
 };
 
+std::unique_ptr<const TargetSensor> MakeSonar(const SensingConfig& config) {
+  return std::make_unique<Sonar>(config);
+}
+
 }  // namespace
 
 int main() {
-  TargetSensors().Add("sonar",
-                      [](const SensingConfig& config) -> std::unique_ptr<const TargetSensor> {
-                        return std::make_unique<Sonar>(config);
-                      });
+  TargetSensors().Add("sonar", MakeSonar);
 
   WorldConfig config;
   config.agents = 1;

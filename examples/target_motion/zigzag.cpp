@@ -27,12 +27,14 @@ class Zigzag : public SteeredMotion {
   }
 };
 
+std::unique_ptr<TargetMotion> MakeZigzag(const MotionSetup& setup) {
+  return std::make_unique<Zigzag>(setup);
+}
+
 }  // namespace
 
 int main() {
-  TargetMotions().Add("zigzag", [](const MotionSetup& setup) -> std::unique_ptr<TargetMotion> {
-    return std::make_unique<Zigzag>(setup);
-  });
+  TargetMotions().Add("zigzag", MakeZigzag);
 
   WorldConfig config;
   config.agents = 1;

@@ -48,12 +48,14 @@ class Unicycle : public Vehicle {
   Space actuators_, none_;
 };
 
+std::unique_ptr<const Vehicle> MakeUnicycle(const VehicleConfig& config) {
+  return std::make_unique<Unicycle>(config);
+}
+
 }  // namespace
 
 int main() {
-  Vehicles().Add("unicycle", [](const VehicleConfig& config) -> std::unique_ptr<const Vehicle> {
-    return std::make_unique<Unicycle>(config);
-  });
+  Vehicles().Add("unicycle", MakeUnicycle);
 
   WorldConfig config;  // or config::Load<WorldConfig>({file}), where the file says model: unicycle
   config.agents = 1;
