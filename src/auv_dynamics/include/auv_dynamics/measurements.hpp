@@ -19,8 +19,12 @@ struct Navigation {
 };
 using NavState = Navigation<double>;
 
+/// What a detection measures.
+enum class MeasurementKind { kPosition };
+
 /// One detection of a target by one vehicle's own sensor.
 struct Detection {
+  MeasurementKind kind = MeasurementKind::kPosition;
   TimeNs stamp = 0;
   int target = 0;
   Vec3<double> p_WT;   ///< measured target position in the world [m]
