@@ -83,10 +83,7 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
     std::copy(nav.q_WB, nav.q_WB + 4, v.q_WB);
     v.v_WB_B = nav.v_WB_B;
     v.w_WB_B = nav.w_WB_B;
-    v.R_WB = RotationOf(v.q_WB);
-    v.trig = TrigOf(v.R_WB);
-    v.rpy = RpyOf(v.trig);
-    v.v_WB = v.R_WB * v.v_WB_B;
+    dynamics::FollowQuaternion(&v);
   }
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     targets_[k].p_WT = VectorOf(truth.target_positions[k]);
