@@ -1,5 +1,3 @@
-#include "marl_trainer/env/vector_env.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <map>
 
 #include "env_fixture.hpp"
+#include "marl_trainer/env/vector_env.hpp"
 
 namespace stg::env {
 namespace {

@@ -45,7 +45,7 @@ void Describe(RewardConfig* c, config::Table* t) {
          "an agent's total reward is clipped to +- this value");
   t->Section("reward.terms");
   for (const std::string& name : RewardTermsByName().Names()) {
-    t->AddOptional(name, &c->terms[name], "0.0", config::Within(-1e3, 1e3), "-",
+    t->AddOptional(name, &c->terms[name], "0.0", config::NonNegative(1e3), "-",
                    "weight of the registered term of this name");
   }
 }
