@@ -28,7 +28,8 @@ struct Change : TermOf<Change> {
 
 void RegisterOnce() {
   if (RewardTermsByName().Has("test_index")) return;
-  RewardTermsByName().Add("test_index", [](const Scenario&) { return std::make_unique<Index>(); });
+  RewardTermsByName().Add("test_index",
+                          [](const JudgeConfig&) { return std::make_unique<Index>(); });
 }
 
 Scenario With(const std::vector<std::string>& overrides) {

@@ -18,7 +18,7 @@ struct Effort : TermOf<Effort> {
 
 }  // namespace
 
-std::unique_ptr<const RewardTerm> MakeEffortTerm(const Scenario&) {
+std::unique_ptr<const RewardTerm> MakeEffortTerm(const JudgeConfig&) {
   return std::make_unique<Effort>();
 }
 

@@ -6,7 +6,7 @@
 namespace stg::task {
 
 template <class T>
-EpisodeTotals<T>::EpisodeTotals(const Scenario& s)
+EpisodeTotals<T>::EpisodeTotals(const JudgeConfig& s)
     : agents_(s.agents),
       action_size_(s.action_size()),
       episode_steps_(s.time.episode_steps),

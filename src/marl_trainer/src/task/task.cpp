@@ -3,7 +3,7 @@
 namespace stg::task {
 
 template <class T>
-Task<T>::Task(const Scenario& scenario)
+Task<T>::Task(const JudgeConfig& scenario)
     : scenario_(scenario),
       tracking_(static_cast<std::size_t>(scenario.agents)),
       terms_(tracking_.size()),

@@ -7,6 +7,6 @@
 /// The suite's own reward terms, a file each.
 namespace stg::task {
 
-std::unique_ptr<const RewardTerm> MakeEffortTerm(const Scenario& scenario);
+std::unique_ptr<const RewardTerm> MakeEffortTerm(const JudgeConfig& scenario);
 
 }  // namespace stg::task

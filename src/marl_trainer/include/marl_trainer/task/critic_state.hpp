@@ -1,6 +1,6 @@
 #pragma once
 
-#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/judge_config.hpp"
 #include "marl_trainer/task/swarm_state.hpp"
 #include "stg_agent/graph/observation.hpp"
 
@@ -13,14 +13,14 @@ inline constexpr int kVehicleNumbers = 5 * 3 + 4;
 /// Numbers of one target: position, velocity.
 inline constexpr int kTargetNumbers = 2 * 3;
 
-inline int CriticStateSize(const Scenario& s) {
+inline int CriticStateSize(const JudgeConfig& s) {
   return kVehicleNumbers * s.agents + kTargetNumbers * s.target.count;
 }
 
 /// Calls emit(numbers, count) for the blocks of the state in order.
 /// @param tracking [agents]
 template <class T, class Emit>
-void WriteCriticState(const Scenario& s, const SwarmState<T>& swarm,
+void WriteCriticState(const JudgeConfig& s, const SwarmState<T>& swarm,
                       const std::vector<Tracking<T>>& tracking, Emit&& emit) {
   // The band is two hundredths of the workspace wide: give the critic the same offset at both
   // scales.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/judge_config.hpp"
 #include "marl_trainer/task/metrics.hpp"
 #include "marl_trainer/task/reward.hpp"
 #include "marl_trainer/task/swarm_state.hpp"
@@ -13,7 +13,7 @@ namespace stg::task {
 template <class T>
 class EpisodeTotals {
  public:
-  explicit EpisodeTotals(const Scenario& scenario);
+  explicit EpisodeTotals(const JudgeConfig& scenario);
 
   /// Starts an episode of `episode_steps` decisions in some lanes.
   void Start(const Mask<T>& lanes, const T& episode_steps);

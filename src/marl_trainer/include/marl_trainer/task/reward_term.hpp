@@ -3,11 +3,9 @@
 #include "auv_common/registry.hpp"
 #include "marl_trainer/task/swarm_state.hpp"
 
-namespace stg {
-struct Scenario;
-}
-
 namespace stg::task {
+
+struct JudgeConfig;
 
 /// What a reward term sees of one AUV after a decision.
 template <class T>
@@ -43,7 +41,7 @@ class TermOf : public RewardTerm {
 
 /// The names below `reward.terms`. A term is a new file and one line in src/task/reward_terms.cpp;
 /// a program adds terms of its own before it loads a scenario.
-using RewardTermRegistry = Registry<const RewardTerm, const Scenario&>;
+using RewardTermRegistry = Registry<const RewardTerm, const JudgeConfig&>;
 RewardTermRegistry& RewardTermsByName();
 
 }  // namespace stg::task

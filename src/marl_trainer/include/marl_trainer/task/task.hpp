@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/critic_state.hpp"
 #include "marl_trainer/task/episode_totals.hpp"
+#include "marl_trainer/task/judge_config.hpp"
 #include "marl_trainer/task/reward.hpp"
 #include "marl_trainer/task/reward_term.hpp"
 #include "marl_trainer/task/swarm_state.hpp"
@@ -20,7 +20,7 @@ namespace stg::task {
 template <class T>
 class Task {
  public:
-  explicit Task(const Scenario& scenario);
+  explicit Task(const JudgeConfig& scenario);
 
   /// An episode of `episode_steps` decisions begins in some lanes; `swarm` is its first state.
   /// Other lanes must stand as they stood at the last Start or Step.
@@ -56,7 +56,7 @@ class Task {
   void ShareReward(const SwarmState<T>& swarm, T* coordination, T* communication) const;
   RewardInput<T> InputOf(const SwarmState<T>& swarm, int i) const;
 
-  Scenario scenario_;
+  JudgeConfig scenario_;
   std::vector<Weighted> extra_;  // registered terms of a weight that is not 0
   std::vector<Tracking<T>> tracking_;
   std::vector<RewardTerms<T>> terms_;
