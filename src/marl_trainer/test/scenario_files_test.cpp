@@ -199,6 +199,7 @@ const char* const kSections[] = {
     "acoustic_channel/include/acoustic_channel/models/extended_config",
     "acoustic_channel/include/acoustic_channel/models/range_config",
     "stg_agent/include/stg_agent/agent/agent_config",
+    "marl_trainer/include/marl_trainer/task/judge_config",
     "marl_trainer/include/marl_trainer/task/reward_config",
     "marl_trainer/include/marl_trainer/scenario/scenario",
 };
