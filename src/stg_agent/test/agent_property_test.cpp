@@ -166,7 +166,7 @@ TEST(AgentProperty, AStepAllocatesNothing) {
     while (inputs[damaged].receptions.empty()) ++damaged;
     inputs[damaged].receptions[0].data[3] ^= 1;
     Agent agent(s, 0);
-    std::vector<float> observation(74);
+    std::vector<float> observation(static_cast<std::size_t>(s.observation_size()));
     for (int episode = 0; episode < 2; ++episode) {
       agent.Reset(static_cast<std::uint32_t>(episode), CueAt({}));
       for (const Input& in : inputs) {
@@ -176,7 +176,7 @@ TEST(AgentProperty, AStepAllocatesNothing) {
         counting = false;
       }
     }
-    EXPECT_EQ(agent.refused_packets(), 1U);
+    EXPECT_EQ(agent.view().refused_packets(), 1U);
   }
   EXPECT_EQ(allocations, 0);
 }
