@@ -124,7 +124,7 @@ TEST(Controllers, ALaneIsServedLikeAnAgentOfItsOwn) {
   for (const Input& in : RandomEpisode(s, 0, 60, 9, {}, 0.03)) {
     Drive(&alone, in, &observation);
     const int lane = kLanes - 1;
-    for (const acoustics::Reception& r : in.receptions) beside.Receive(lane, r);
+    for (const HeardPacket& r : in.receptions) beside.Receive(lane, r);
     for (const dynamics::Detection& d : in.detections) beside.Detect(lane, d);
     beside.Observe(InAllLanes(in.nav));
     float a[3], b[3];

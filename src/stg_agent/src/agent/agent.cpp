@@ -29,11 +29,6 @@ AgentOutput Agent::Act(const float* action) {
   out.cmd_vel_W = one_.Act(wanted);
   std::copy(knowledge().tau, knowledge().tau + dynamics::kWrenchSize, out.fraction);
   std::copy(one_.action().begin(), one_.action().end(), out.action);
-  out.transmit = one_.transmits(0);
-  if (out.transmit) {
-    out.packet = one_.MakePacket(0);
-    out.generation = one_.inbox(0).now();
-  }
   return out;
 }
 

@@ -30,6 +30,7 @@ T Nanoseconds(const PerLane<T, TimeNs>& stamp) {
 template <class T>
 LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
     : constants_(constants),
+      links_(acoustics::MakeLinkEstimator(constants->scenario.channel)),
       neighbours_(constants->scenario, id),
       mind_(constants->scenario),
       neighbours_before_(neighbours_),
@@ -41,12 +42,14 @@ LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
 template <class T>
 void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue) {
   At(lane).Reset(episode, cue);
+  links_->Reset(lane);
   neighbours_.Clear(lane);
   mind_.Reset(lane);
 }
 
 template <class T>
 void LanedAgent<T>::Receive(int lane, const acoustics::Reception& reception) {
+  links_->Learn(lane, reception);
   const NeighbourState* news = At(lane).Receive(reception);
   if (news != nullptr) neighbours_.Set(lane, *news);
 }
@@ -77,11 +80,11 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
     At(lane).Advance(OfLane(nav.stamp, lane));
-    SetLaneOf(&target, lane, inbox(lane).Target());
+    SetLaneOf(&target, lane, inbox(lane).Target(links_->freshness_s()));
   }
   mind_.SetNavigation(nav);
   mind_.SetTracking(scenario(), target);
-  neighbours_.Predict(nav.p_WB);
+  neighbours_.Predict(nav.p_WB, *links_);
   mind_.SetNeighbours(scenario(),
                       SeeNeighbours(scenario(), id(), neighbours_.sights(), target.p_WT));
 }

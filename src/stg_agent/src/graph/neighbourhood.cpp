@@ -1,23 +1,12 @@
 #include "stg_agent/graph/neighbourhood.hpp"
 
-#include "acoustic_channel/link/link_quality.hpp"
-#include "auv_common/numbers/lane_structs.hpp"
+#include <type_traits>
 
 namespace stg::agent {
-namespace {
-
-/// q of Eq. 5 or 6, by the channel model, at distance d [m] and age of information age_s [s].
-Pack LinkQuality(const acoustics::ChannelConfig& c, const Pack& d, const Pack& age_s) {
-  return c.model == acoustics::ChannelModel::kRange ? acoustics::RangeQuality(d, c.range_m)
-                                                    : acoustics::ExtendedQuality(d, age_s, c);
-}
-
-}  // namespace
 
 template <class T>
 Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario, int self)
-    : channel_(scenario.channel),
-      max_age_s_(scenario.track.neighbour_max_age_s),
+    : max_age_s_(scenario.track.neighbour_max_age_s),
       half_extent_m_(scenario.workspace.half_extent_m),
       self_(self),
       sights_(static_cast<std::size_t>(scenario.agents)) {
@@ -58,7 +47,7 @@ Mask<T> Neighbourhood<T>::Age(const T& now_ns) {
 }
 
 template <class T>
-void Neighbourhood<T>::Predict(const Vec3<T>& p_WB) {
+void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links) {
   for (std::size_t j = 0; j < sights_.size(); ++j) {
     if (static_cast<int>(j) == self_) continue;
     NeighbourSight<T>& n = sights_[j];
@@ -66,7 +55,7 @@ void Neighbourhood<T>::Predict(const Vec3<T>& p_WB) {
     n.r_BN_W = n.p_WN - p_WB;
     n.distance_m = Norm(n.r_BN_W);
     if constexpr (std::is_same_v<T, Pack>) {
-      n.link_quality = LinkQuality(channel_, n.distance_m, n.age_s);
+      n.link_quality = links.Quality(n.distance_m, n.age_s);
     } else {
       distance_[j] = n.distance_m;
       age_[j] = n.age_s;
@@ -77,7 +66,7 @@ void Neighbourhood<T>::Predict(const Vec3<T>& p_WB) {
     for (std::size_t j = 0; j < sights_.size(); j += static_cast<std::size_t>(kLanes)) {
       const Pack d = Pack::load_unaligned(&distance_[j]);
       const Pack age = Pack::load_unaligned(&age_[j]);
-      LinkQuality(channel_, d, age).store_unaligned(&quality_[j]);
+      links.Quality(d, age).store_unaligned(&quality_[j]);
     }
     for (std::size_t j = 0; j < sights_.size(); ++j) sights_[j].link_quality = quality_[j];
   }

@@ -51,7 +51,7 @@ void Inbox::Detect(const dynamics::Detection& detection) {
 const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
   try {
     const NeighbourState state =
-        constants_->codec.Decode(reception.data.data(), reception.data.size(), reception.arrival);
+        constants_->codec.Decode(reception.payload.data, reception.payload.size, reception.arrival);
     return neighbours_.Update(state) ? &neighbours_.state(state.source) : nullptr;
   } catch (const UserError&) {
     ++refused_packets_;  // what comes from the water may be damaged
@@ -85,10 +85,10 @@ void Inbox::TakeSharedEstimates() {
   neighbours_.MarkRead();
 }
 
-TargetView<double> Inbox::Target() const {
+TargetView<double> Inbox::Target(double freshness_s) const {
   const TargetEstimate& e = track_.estimate();
-  const bool current = track_.observed() && Seconds(now_ - track_.information_stamp()) <=
-                                                constants_->scenario.channel.freshness_s;
+  const bool current =
+      track_.observed() && Seconds(now_ - track_.information_stamp()) <= freshness_s;
   return {e.p_WT, e.v_WT, e.pp, track_.started() ? 1.0 : 0.0, current ? 1.0 : 0.0};
 }
 
@@ -114,11 +114,6 @@ Packet Inbox::MakePacket(const Knowledge<double>& k) const {
     state.target_std = shared.std_m;
   }
   return constants_->codec.Encode(state);
-}
-
-bool Inbox::MyTurn() const {
-  const TimeNs decision = now_ / constants_->period;
-  return decision % constants_->slots == id_ % constants_->slots;
 }
 
 }  // namespace stg::agent

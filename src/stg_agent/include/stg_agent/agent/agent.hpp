@@ -20,29 +20,22 @@ struct AgentOutput {
   /// Executed action in [-1, 1]: after rate limit and smoothing (velocity3), or clipped
   /// (tau6). The first action_size() entries count.
   double action[dynamics::kMaxActionSize] = {};
-  bool transmit = false;  ///< packet and generation mean something
-  Packet packet{};        ///< own state and target estimate
-  TimeNs generation = 0;  ///< time at which the packet's content was true
 };
 
 /// One AUV's mind in `acoustic` mode: from own navigation, own detections and received
-/// packets to the observation; from the policy's action to command and packet. Knows
-/// nothing else of the world.
+/// packets to the observation; from the policy's action to the command, and to the packet that it
+/// offers to its modem. Knows nothing else of the world.
 ///
 /// Use, for every decision k: Receive and Detect in any order (the result does not depend
-/// on it), Observe, Act. Deterministic; allocates nothing after construction. Copies share
-/// the scenario.
+/// on it), Observe, Act, MakePacket. Deterministic; allocates nothing after construction.
 ///
 /// Conventions that the paper leaves open:
 /// - Confidence (Eq. 13) is that of the estimated distance while the track is not lost and
-///   rests on an observation, own or shared, not older than channel.freshness_s; else 0.
+///   rests on an observation, own or shared, current as the link estimator says; else 0.
 ///   The cue is no observation.
 /// - Lost: position std above track.lost_std_m, or estimated distance above
 ///   task.lost_distance_m.
 /// - A neighbour not heard of counts as link quality 0 in the mean, and in no other average.
-/// - Agent i sends at decisions k with k mod P = i mod P, where P is transmit_period_s in
-///   decisions, rounded, at least 1. k comes from the stamp, not from counting: an agent
-///   that joins in the middle of an episode keeps to its slot.
 class Agent {
  public:
   /// Throws UserError when the scenario does not fit the packet layout.
@@ -70,6 +63,8 @@ class Agent {
   /// @param action [action_size()], clipped to [-1, 1] inside. Non-finite values throw
   /// std::invalid_argument.
   AgentOutput Act(const float* action);
+  /// Own state and target estimate at the last Observe: what it offers to its modem.
+  Packet MakePacket() const { return one_.MakePacket(0); }
 
   int id() const { return one_.id(); }
   const AgentConfig& scenario() const { return one_.scenario(); }

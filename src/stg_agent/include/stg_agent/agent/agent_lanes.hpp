@@ -46,8 +46,7 @@ class LanedAgent {
   /// Executed action of the last Act; action_size entries count.
   const std::array<T, dynamics::kMaxActionSize>& action() const { return mind_.action; }
 
-  /// This decision is the agent's turn to send, and its packet.
-  bool transmits(int lane) const { return inbox(lane).MyTurn(); }
+  /// Own state and target estimate at the last Observe: what a lane's agent offers to its modem.
   Packet MakePacket(int lane) const;
 
   int id() const { return inbox(0).id(); }
@@ -66,6 +65,7 @@ class LanedAgent {
 
   SharedConstants constants_;
   std::vector<Inbox> inboxes_;  // [lanes]
+  std::unique_ptr<acoustics::LinkEstimator> links_;
   Neighbourhood<T> neighbours_;
   Mind<T> mind_;
   // As before the present Observe, for lanes that do not take part in it.

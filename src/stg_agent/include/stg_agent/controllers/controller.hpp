@@ -7,8 +7,8 @@
 
 #include "auv_common/registry.hpp"
 #include "auv_dynamics/control/control.hpp"
-#include "stg_agent/agent/agent_config.hpp"
 #include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/agent_config.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/graph/neighbourhood.hpp"
 

@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "acoustic_channel/link/link_estimator.hpp"
 #include "auv_common/numbers/lane_structs.hpp"
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/packet/packet.hpp"
 
@@ -64,7 +65,7 @@ class Neighbourhood {
   /// Ages all reports to a time; true where one is older than track.neighbour_max_age_s.
   Mask<T> Age(const T& now_ns);
   /// Carries all reports forward by their age, seen from own position p_WB [m].
-  void Predict(const Vec3<T>& p_WB);
+  void Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links);
   /// Takes back the lanes outside the mask.
   void KeepOthers(const Mask<T>& lanes, const Neighbourhood& before);
 
@@ -72,9 +73,6 @@ class Neighbourhood {
   const std::vector<NeighbourSight<T>>& sights() const { return sights_; }
 
  private:
-  void RateLinks();
-
-  acoustics::ChannelConfig channel_;
   double max_age_s_, half_extent_m_;
   int self_;
   std::vector<NeighbourSight<T>> sights_;

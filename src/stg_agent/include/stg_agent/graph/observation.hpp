@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 #include "stg_agent/graph/features.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 

@@ -5,9 +5,9 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "auv_dynamics/measurements.hpp"
-#include "stg_agent/agent/agent_constants.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/graph/target_view.hpp"
+#include "stg_agent/inbox/agent_constants.hpp"
 #include "stg_agent/inbox/neighbour_table.hpp"
 #include "stg_agent/inbox/target_track.hpp"
 
@@ -40,13 +40,12 @@ class Inbox {
   void Advance(TimeNs now);
 
   /// The target as of the last Advance.
-  TargetView<double> Target() const;
+  /// @param freshness_s information older than this is not current
+  TargetView<double> Target(double freshness_s) const;
 
   /// What to tell the neighbours.
   /// @param knowledge of the same time as the last Advance
   Packet MakePacket(const Knowledge<double>& knowledge) const;
-  /// This AUV's turn to send.
-  bool MyTurn() const;
 
   int id() const { return id_; }
   /// Target this AUV is tasked with.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 #include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 #include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
@@ -10,12 +10,10 @@ namespace stg::agent {
 /// What all agents of a swarm have in common, shared by them and never changed.
 struct AgentConstants {
   /// Throws UserError when the scenario does not fit the packet layout.
-  explicit AgentConstants(const AgentConfig& s);
+  explicit AgentConstants(const AgentConfig& s) : scenario(s), codec(s) {}
 
   AgentConfig scenario;
   PacketCodec codec;
-  int slots;      ///< decisions per transmit period, P
-  TimeNs period;  ///< of decisions
 };
 using SharedConstants = std::shared_ptr<const AgentConstants>;
 

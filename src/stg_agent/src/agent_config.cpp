@@ -1,4 +1,4 @@
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 
 namespace stg::agent {
 
