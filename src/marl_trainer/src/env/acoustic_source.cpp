@@ -6,9 +6,9 @@ namespace stg::env {
 
 AcousticSource::AcousticSource(const Scenario& scenario) : scenario_(scenario) {
   const auto n = static_cast<std::size_t>(scenario.agents);
-  const agent::Agent first(scenario_, 0);
+  const auto constants = std::make_shared<const agent::AgentConstants>(scenario_);
   agents_.reserve(n);
-  for (int i = 0; i < scenario.agents; ++i) agents_.emplace_back(first, i);
+  for (int i = 0; i < scenario.agents; ++i) agents_.emplace_back(constants, i);
   for (int lane = 0; lane < kLanes; ++lane) {
     channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_));
   }
@@ -45,18 +45,22 @@ void AcousticSource::Observe(const dynamics::World& world, const LaneSet& lanes)
         if (world.Sense(lane, i, k, &detection)) agent.Detect(lane, detection);
       }
     }
-    agent.Observe(world.Nav(i));
+    if (lanes.all()) {
+      agent.Observe(world.Nav(i));
+    } else {
+      agent.Observe(world.Nav(i), lanes.mask());
+    }
   }
 }
 
 void AcousticSource::Act(const dynamics::World&, int i, const Pack* wanted,
-                         std::array<Pack, 6>* action, std::array<Pack, 6>* tau) {
-  Pack rounded[6];
+                         task::Effort<Pack>* action, task::Effort<Pack>* tau) {
+  Pack rounded[dynamics::kMaxActionSize];
   // What a policy says is float.
   for (int k = 0; k < scenario_.action_size(); ++k) rounded[k] = RoundToFloat(wanted[k]);
   agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
   agent.Act(rounded);
-  std::copy(agent.knowledge().tau, agent.knowledge().tau + 6, tau->begin());
+  std::copy(std::begin(agent.knowledge().tau), std::end(agent.knowledge().tau), tau->begin());
   std::copy(agent.action().begin(), agent.action().end(), action->begin());
 }
 

@@ -18,8 +18,8 @@ class AcousticSource : public InformationSource {
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;
   void Observe(const dynamics::World& world, const LaneSet& lanes) override;
-  void Act(const dynamics::World& world, int i, const Pack* wanted, std::array<Pack, 6>* action,
-           std::array<Pack, 6>* tau) override;
+  void Act(const dynamics::World& world, int i, const Pack* wanted, task::Effort<Pack>* action,
+           task::Effort<Pack>* tau) override;
   void Send(const dynamics::World& world) override;
   const agent::Knowledge<Pack>& knowledge(int i) const override {
     return agents_[static_cast<std::size_t>(i)].knowledge();
@@ -28,7 +28,7 @@ class AcousticSource : public InformationSource {
   /// it is 0.
   Pack LinkQuality(const dynamics::World& world) const override;
 
-  agent::AgentLanes& agent(int i) { return agents_[static_cast<std::size_t>(i)]; }
+  const agent::AgentLanes& agent(int i) const { return agents_[static_cast<std::size_t>(i)]; }
   const acoustics::Channel& channel(int lane) const {
     return *channels_[static_cast<std::size_t>(lane)];
   }

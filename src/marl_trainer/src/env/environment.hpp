@@ -39,6 +39,8 @@ class Environment {
   const dynamics::World& world() const { return world_; }
   const task::Task<Pack>& task() const { return task_; }
   const agent::Knowledge<Pack>& knowledge(int i) const { return source_->knowledge(i); }
+  /// What an AUV would know that saw its own state and its target truly; of neighbours nothing.
+  agent::Knowledge<Pack> Truth(int i) const;
   AcousticSource& acoustic() const;  ///< acoustic mode only
 
  private:

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "auv_dynamics/world/world.hpp"
+#include "marl_trainer/task/swarm_state.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 namespace stg::env {
@@ -22,6 +23,12 @@ struct LaneSet {
       if (b) return true;
     }
     return false;
+  }
+  bool all() const {
+    for (const bool b : in) {
+      if (!b) return false;
+    }
+    return true;
   }
   Mask<Pack> mask() const {
     Pack flags(0.0);
@@ -48,7 +55,7 @@ class InformationSource {
   /// @param wanted [action_size], finite; clipped to [-1, 1] inside
   /// @param action, tau executed action, and tau / tau_max
   virtual void Act(const dynamics::World& world, int i, const Pack* wanted,
-                   std::array<Pack, 6>* action, std::array<Pack, 6>* tau) = 0;
+                   task::Effort<Pack>* action, task::Effort<Pack>* tau) = 0;
   /// After all have acted: what they have to say goes out.
   virtual void Send(const dynamics::World& world) = 0;
 

@@ -4,34 +4,37 @@
 
 #include "information_source.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
+#include "stg_agent/agent/mind.hpp"
 
 namespace stg::env {
 
-/// Everybody knows the true states of all: the paper's formulas, as its release computes them.
+/// Everybody knows the true states of all: the paper's formulas, as its release computes them. The
+/// same minds as the agents', told by somebody who sees everything.
 class TruthSource : public InformationSource {
  public:
   explicit TruthSource(const Scenario& scenario);
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;
   void Observe(const dynamics::World& world, const LaneSet& lanes) override;
-  void Act(const dynamics::World& world, int i, const Pack* wanted, std::array<Pack, 6>* action,
-           std::array<Pack, 6>* tau) override;
+  void Act(const dynamics::World& world, int i, const Pack* wanted, task::Effort<Pack>* action,
+           task::Effort<Pack>* tau) override;
   void Send(const dynamics::World&) override {}
   const agent::Knowledge<Pack>& knowledge(int i) const override {
-    return truth_[static_cast<std::size_t>(i)];
+    return minds_[static_cast<std::size_t>(i)].knowledge;
   }
   Pack LinkQuality(const dynamics::World& world) const override;
 
  private:
-  void Measure(const dynamics::World& world, bool first);
-  Pack MeanError(size_t i, const Pack& error);
-  void NeighbourFeatures(const dynamics::World& world, int i, agent::Knowledge<Pack>* k) const;
+  void Think(const dynamics::World& world);
+  /// @param total_error, nearest over all AUVs: sum of errors, smallest target distance
+  agent::NeighbourSummary<Pack> Neighbours(const dynamics::World& world, int i,
+                                           const Pack& total_error, const Pack& nearest) const;
+  void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
 
   Scenario scenario_;
-  std::vector<agent::Knowledge<Pack>> truth_;
-  std::vector<std::vector<Pack>> error_window_;
-  int step_ = 0;
-  bool first_ = true;
+  bool exact_angles_;                      // the integrator keeps roll, pitch and yaw
+  std::vector<agent::Mind<Pack>> minds_;   // [agent]
+  std::vector<agent::Mind<Pack>> before_;  // as minds_ before the present Observe
 };
 
 }  // namespace stg::env
