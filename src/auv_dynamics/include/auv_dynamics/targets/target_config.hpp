@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "auv_common/config/field.hpp"
+
+namespace stg::dynamics {
+
+/// Targets and how they move.
+struct TargetConfig {
+  int count = 1;
+  std::string motion = "constant_velocity";  ///< name in the registry of target motions
+  double max_speed_mps = 0.05;
+  double max_turn_rate_radps = 0.5;
+  double turn_rate_radps = 0.1;     ///< coordinated_turn: mean magnitude
+  double turn_period_s = 10.0;      ///< coordinated_turn: time between new turn rates
+  double waypoint_radius_m = 0.05;  ///< random_waypoint: arrival radius
+  double evasion_range_m = 0.10;    ///< evasive: flees AUVs closer than this
+};
+
+/// Keys, units and ranges of the section.
+void Describe(TargetConfig* c, config::Table* t);
+
+}  // namespace stg::dynamics
