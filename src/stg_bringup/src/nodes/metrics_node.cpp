@@ -100,8 +100,9 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto& p = m.target_positions;
   const auto& v = m.target_velocities;
   return m.poses.size() == n && m.twists.size() == n && p.size() == targets &&
-         v.size() == targets && std::all_of(m.poses.begin(), m.poses.end(), FinitePose) &&
-         std::all_of(m.twists.begin(), m.twists.end(), FiniteTwist) &&
+         v.size() == targets &&
+         std::all_of(m.poses.begin(), m.poses.end(), FinitePose<geometry_msgs::Pose>) &&
+         std::all_of(m.twists.begin(), m.twists.end(), FiniteTwist<geometry_msgs::Twist>) &&
          std::all_of(p.begin(), p.end(), finite) && std::all_of(v.begin(), v.end(), finite);
 }
 
