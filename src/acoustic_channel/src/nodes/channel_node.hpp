@@ -13,6 +13,8 @@
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/channel/channel_config.hpp"
 #include "auv_common/nodes/health.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
+#include "auv_common/step/step_barrier.hpp"
 
 namespace stg::nodes {
 
@@ -31,8 +33,7 @@ class ChannelNode {
 
  private:
   struct Auv {
-    bool present = true;                              ///< its transmissions are waited for
-    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< newest one
+    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< of the open step, or an early one
     ros::Publisher reception;
     ros::Subscriber subscriber;
   };
@@ -40,8 +41,6 @@ class ChannelNode {
   double Work();
   void OnSwarm(const auv_msgs::SwarmState::ConstPtr& message);
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
-  bool Usable(int i, const auv_msgs::AcousticPacket& message);
-  bool Complete(bool wait_for_all) const;
   void CloseIfDue();
   void Close();
   void PublishReceptions(int i, TimeNs until);
@@ -52,11 +51,11 @@ class ChannelNode {
   std::unique_ptr<acoustics::Channel> channel_;
   TimeNs period_;  ///< of decisions [ns]
   double timeout_s_, display_period_s_;
-  bool open_ = false, started_ = false;
-  TimeNs stamp_ = -1;  ///< clock time of the open or last step [ns]
-  TimeNs start_ = -1;  ///< clock time of the episode's step 0 [ns]
+  StepBarrier barrier_;   ///< the AUVs
+  bool gave_up_ = false;  ///< on an AUV in the open step
+  TimeNs start_ = -1;     ///< clock time of the episode's step 0 [ns]
   std::uint32_t episode_ = 0, step_ = 0;
-  ros::WallTime opened_, links_sent_;
+  ros::WallTime links_sent_;
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_;
   std::vector<acoustics::Transmission> sent_;

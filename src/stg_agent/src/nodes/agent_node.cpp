@@ -8,7 +8,6 @@
 #include "agent_messages.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
-#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
@@ -71,7 +70,9 @@ void AgentNode::Spin() {
 double AgentNode::Work() {
   DecideIfDue();
   double wait_s = health_.TickWhenQuiet(busy_);
-  if (sync_) wait_s = std::min(wait_s, std::max(patience_s_, 0.001));
+  if (barrier_.open()) {
+    wait_s = std::min(wait_s, std::max(barrier_.deadline_s() - WallSeconds(), 0.001));
+  }
   if (unreported_) {
     const double left_s = report_delay_s_ - (ros::WallTime::now() - commanded_).toSec();
     if (left_s <= 0.0) {
@@ -104,6 +105,9 @@ void AgentNode::OnDetection(const auv_msgs::TargetDetection::ConstPtr& message) 
   } else if (message->target >= static_cast<std::uint32_t>(scenario_.target.count) ||
              detections_.size() >= kMaxPending) {
     refused_detections_.Add(Refusals::kMalformed);
+  } else if (const TimeNs stamp = NsOf(message->header.stamp);
+             !IsOpen(stamp) && barrier_.Hear(kSensors, stamp) == StepBarrier::Word::kForeign) {
+    refused_detections_.Add(Refusals::kStale);
   } else {
     detections_.push_back(message);
     DecideIfDue();
@@ -116,8 +120,12 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
   } else if (receptions_.size() >= kMaxPending) {
     refused_receptions_.Add(Refusals::kMalformed);
   } else {
-    window_ = NsOf(message->header.stamp);
-    modem_present_ = true;
+    const TimeNs stamp = NsOf(message->header.stamp);
+    if (barrier_.Hear(kModem, stamp) == StepBarrier::Word::kForeign) {
+      refused_receptions_.Add(Refusals::kStale);
+      return;
+    }
+    window_ = stamp;
     if (!message->packets.empty()) receptions_.push_back(message);
     DecideIfDue();
   }
@@ -128,14 +136,19 @@ void AgentNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
     refused_syncs_.Add(Refusals::kFrame);
     return;
   }
-  if (sync_) {
-    ++skipped_steps_;
-  } else {
-    waiting_since_ = ros::WallTime::now();
-  }
+  const TimeNs stamp = NsOf(message->header.stamp);
+  const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s_);
+  if (opening == StepBarrier::Opening::kRepeated) return;
+  if (opening == StepBarrier::Opening::kReplaced) ++skipped_steps_;
   sync_ = message;
+  // Step 0 has no window before it.
+  if (sync_->step == 0) barrier_.Excuse(kModem);
+  if (window_ == stamp) barrier_.Hear(kModem, stamp);
+  if (sync_->detections == 0) barrier_.Excuse(kSensors);
   DecideIfDue();
 }
+
+bool AgentNode::IsOpen(TimeNs stamp) const { return barrier_.open() && barrier_.stamp() == stamp; }
 
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                              auv_msgs::LoadPolicy::Response& response) {
@@ -154,20 +167,16 @@ bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
 
 void AgentNode::DecideIfDue() {
   if (!sync_ || !odometry_ || odometry_->header.stamp != sync_->header.stamp) return;
-  const auto detected =
-      std::count_if(detections_.begin(), detections_.end(),
-                    [this](const auto& d) { return d->header.stamp == sync_->header.stamp; });
-  const bool sensed = detected >= static_cast<std::ptrdiff_t>(sync_->detections);
-  const bool heard = sync_->step == 0 || !modem_present_ || window_ == NsOf(sync_->header.stamp);
-  if (!sensed || !heard) {
-    if ((ros::WallTime::now() - waiting_since_).toSec() < patience_s_) return;
-    if (!sensed) ++missing_detections_;
-    if (!heard) {
-      ++missing_windows_;
-      modem_present_ = false;
+  if (sync_->detections > 0) {
+    const auto detected =
+        std::count_if(detections_.begin(), detections_.end(),
+                      [this](const auto& d) { return d->header.stamp == sync_->header.stamp; });
+    if (detected >= static_cast<std::ptrdiff_t>(sync_->detections)) {
+      barrier_.Hear(kSensors, barrier_.stamp());
     }
   }
-  Decide();
+  barrier_.GiveUp(WallSeconds());
+  if (barrier_.Complete()) Decide();
 }
 
 void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
@@ -241,6 +250,7 @@ void AgentNode::Decide() {
   decisions_.Add();
   unreported_ = std::move(sync_);
   sync_.reset();
+  barrier_.Close();
   commanded_ = ros::WallTime::now();
   if (report_delay_s_ == 0.0) ReportDecision();
 }
@@ -300,8 +310,8 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("decisions", decisions_.total());
   status.add("decisions per second", rate);
   status.add("steps skipped", skipped_steps_);
-  status.add("reception windows missing", missing_windows_);
-  status.add("detections missing", missing_detections_);
+  status.add("reception windows missing", barrier_.losses(kModem));
+  status.add("detections missing", barrier_.misses(kSensors));
   status.add("packets that did not decode", agent_.refused_packets());
   double age = 0.0;
   for (const int id : agent_.neighbours().known()) {
@@ -316,7 +326,7 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (decisions_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no decision yet");
   }
-  if (!modem_present_) {
+  if (!barrier_.present(kModem)) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the modem is silent");
   }
 }

@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
+#include "auv_common/step/step_barrier.hpp"
 #include "decider.hpp"
 #include "stg_agent/agent/agent.hpp"
 
@@ -36,6 +38,9 @@ class AgentNode {
   void Spin();
 
  private:
+  /// What a step waits for beside odometry, without which nothing can be decided.
+  enum Party { kSensors, kModem, kParties };
+
   double Work();
   void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
   void OnDetection(const auv_msgs::TargetDetection::ConstPtr& message);
@@ -44,6 +49,7 @@ class AgentNode {
   bool OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                     auv_msgs::LoadPolicy::Response& response);
 
+  bool IsOpen(TimeNs stamp) const;
   void DecideIfDue();
   void StartEpisode(const auv_msgs::SensorSync& sync);
   void TakeDetections(TimeNs stamp);
@@ -70,12 +76,11 @@ class AgentNode {
 
   nav_msgs::Odometry::ConstPtr odometry_;  ///< newest
   auv_msgs::SensorSync::ConstPtr sync_;    ///< of the open step; null: none is open
-  ros::WallTime waiting_since_;            ///< of the oldest step that is open or was skipped
+  StepBarrier barrier_{kParties};
   std::vector<auv_msgs::TargetDetection::ConstPtr> detections_;    ///< not taken yet
   std::vector<auv_msgs::AcousticReception::ConstPtr> receptions_;  ///< not taken yet
   TimeNs window_ = -1;  ///< clock time at which the newest reception window ended [ns]
-  bool modem_present_ = true;
-  TimeNs start_ = -1;  ///< clock time of the episode's step 0 [ns]
+  TimeNs start_ = -1;   ///< clock time of the episode's step 0 [ns]
   bool in_episode_ = false;
   std::uint32_t episode_ = 0, sequence_ = 0;
   std::vector<float> observation_;
@@ -91,7 +96,7 @@ class AgentNode {
   ros::ServiceServer load_policy_;
 
   EventRate decisions_;
-  std::uint64_t skipped_steps_ = 0, missing_windows_ = 0, missing_detections_ = 0;
+  std::uint64_t skipped_steps_ = 0;
   Refusals refused_odometry_, refused_detections_, refused_receptions_, refused_syncs_;
   Health health_;
 };

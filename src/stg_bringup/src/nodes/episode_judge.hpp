@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marl_trainer/env/env.hpp"
-#include "swarm_frames.hpp"
+#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 

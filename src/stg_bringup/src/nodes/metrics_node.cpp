@@ -16,6 +16,8 @@ namespace {
 
 /// Without limit: in lockstep nobody waits for this node, and a lost message spoils an episode.
 constexpr std::uint32_t kUnlimited = 0;
+/// Memory for a run whose frames never get complete.
+constexpr std::size_t kMaxFrames = 5000;
 
 /// A text as one field of a CSV file.
 std::string Quoted(std::string text) {
@@ -35,7 +37,7 @@ MetricsNode::MetricsNode()
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
-      frames_(scenario_.agents),
+      frames_(kMaxFrames, SwarmFrame(scenario_.agents)),
       judge_(scenario_),
       table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       file_name_(TextParameter("summary_file", "")),
@@ -61,7 +63,7 @@ void MetricsNode::Subscribe() {
         [this, slot, usable](const boost::shared_ptr<const Message>& m) {
           if (!usable(*m)) {
             ++bad_messages_;
-          } else if (SwarmFrame* frame = frames_.At(m->header.stamp)) {
+          } else if (SwarmFrame* frame = frames_.At(NsOf(m->header.stamp), WallSeconds())) {
             Slot& place = slot(*frame);
             if (!place) place = m;
           }
@@ -71,7 +73,15 @@ void MetricsNode::Subscribe() {
   };
   into_frames(
       topics::kSwarmState, [](SwarmFrame & f) -> auto& { return f.truth; },
-      [this](const auto& m) { return Usable(m); });
+      [this](const auto& m) {
+        if (!Usable(m)) return false;
+        // Said once per run: the world was started anew, and with it the clock.
+        const bool first = m.episode == 0 && m.step == 0;
+        if (first && frames_.has_taken() && NsOf(m.header.stamp) <= frames_.taken()) {
+          frames_.Clear();
+        }
+        return true;
+      });
   for (int i = 0; i < scenario_.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
     into_frames(
@@ -121,8 +131,9 @@ void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
 }
 
 void MetricsNode::JudgeFrames() {
-  SwarmFrame frame;
-  while (frames_.Take(patience_s_, &frame)) {
+  SwarmFrame frame(scenario_.agents);
+  const auto complete = [](const SwarmFrame& f) { return f.Complete(); };
+  while (frames_.Take(WallSeconds(), patience_s_, complete, &frame)) {
     if (!frame.Complete()) {
       ++incomplete_frames_;
     } else if (!summary_) {
@@ -192,6 +203,8 @@ void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("steps per second", rate);
   status.add("steps with a message missing", incomplete_frames_);
   status.add("messages refused", bad_messages_);
+  status.add("messages too late", frames_.late());
+  status.add("steps without room", frames_.crowded());
   status.add("episodes complete", episodes_.size());
   if (reports_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing to judge yet");

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <ros/time.h>
+
 #include <functional>
 
 namespace stg::nodes {
+
+/// Wall time for barriers and pacers [s]: of a clock that no correction of the time of day moves.
+inline double WallSeconds() { return ros::SteadyTime::now().toSec(); }
 
 /// Wait time that ends a PollLoop.
 inline constexpr double kLoopDone = -1.0;
