@@ -19,7 +19,7 @@ import rosgraph
 LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "launch.py"
 STEPS = 60
 AGENTS = 4
-OF_EVERY_STEP = ("odom", "sensor_sync", "cmd_vel", "wrench", "acoustic/tx", "acoustic/rx",
+OF_EVERY_STEP = ("odom", "sensor_frame", "cmd_vel", "wrench", "acoustic/tx", "acoustic/rx",
                  "task_state", "agent_step")
 
 

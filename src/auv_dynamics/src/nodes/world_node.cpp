@@ -44,6 +44,8 @@ WorldNode::WorldNode()
       barrier_(scenario_.agents + 1),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       commands_(auvs_.size()),
+      fresh_(auvs_.size()),
+      wrenches_(auvs_.size()),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.agents);
   ros::NodeHandle node;
@@ -144,13 +146,15 @@ void WorldNode::StepWorld() {
   ShowStep();
   bool missed = false;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
-    if (!barrier_.answered(static_cast<int>(i))) missed = true;
-    const dynamics::Wrench<double>& c = auvs_[i].command;
-    commands_[i] = {{Pack(c.force.x), Pack(c.force.y), Pack(c.force.z)},
+    fresh_[i] = barrier_.answered(static_cast<int>(i)) ? 1 : 0;
+    if (!fresh_[i]) missed = true;
+    const dynamics::Wrench<double>& c = commands_[i];
+    wrenches_[i] = {{Pack(c.force.x), Pack(c.force.y), Pack(c.force.z)},
                     {Pack(c.moment.x), Pack(c.moment.y), Pack(c.moment.z)}};
   }
   if (missed) ++missed_steps_;
-  for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(commands_);
+  for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrenches_);
+  publisher_->SetWrenches(commands_, fresh_);
   ++step_;
   steps_.Add();
   barrier_.Close();
@@ -166,7 +170,9 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   for (int lane = 0; lane < kLanes; ++lane) {
     world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.reset.stage);
   }
-  for (Auv& auv : auvs_) auv.command = dynamics::Wrench<double>();
+  commands_.assign(auvs_.size(), dynamics::Wrench<double>());
+  fresh_.assign(auvs_.size(), 0);
+  publisher_->SetWrenches(commands_, fresh_);
   OpenStep();
 }
 
@@ -215,8 +221,8 @@ void WorldNode::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& me
       return;
   }
   KeepDelay();
-  auv.command.force = VectorOf(message->wrench.force);
-  auv.command.moment = VectorOf(message->wrench.torque);
+  commands_[static_cast<std::size_t>(i)] = {VectorOf(message->wrench.force),
+                                            VectorOf(message->wrench.torque)};
 }
 
 void WorldNode::KeepDelay() {

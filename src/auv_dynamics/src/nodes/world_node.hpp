@@ -42,7 +42,6 @@ class WorldNode {
 
  private:
   struct Auv {
-    dynamics::Wrench<double> command;  ///< for the present step if answered, else the last one
     Refusals refused;
     ros::Subscriber subscriber;
   };
@@ -95,7 +94,9 @@ class WorldNode {
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
   std::vector<Auv> auvs_;
-  std::vector<dynamics::Wrench<Pack>> commands_;
+  std::vector<dynamics::Wrench<double>> commands_;  ///< of each AUV, its newest
+  std::vector<std::uint8_t> fresh_;                 ///< the command was for the last step
+  std::vector<dynamics::Wrench<Pack>> wrenches_;    ///< the commands in all lanes
   std::unique_ptr<WorldPublisher> publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;

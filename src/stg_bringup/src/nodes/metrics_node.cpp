@@ -91,13 +91,6 @@ void MetricsNode::Subscribe() {
           return Finite(m.graph_summary[1]) &&
                  std::all_of(m.action.begin(), m.action.end(), Finite);
         });
-    into_frames(
-        topics::AuvTopic(i, topics::kWrench),
-        [u](SwarmFrame & f) -> auto& { return f.wrenches[u]; },
-        [i](const auto& m) {
-          return m.header.frame_id == frames::Body(i) && FiniteVector(m.wrench.force) &&
-                 FiniteVector(m.wrench.torque);
-        });
   }
   subscribers_.push_back(
       node.subscribe(topics::kLinks, 10, &MetricsNode::OnLinks, this, NoDelay()));
@@ -109,8 +102,13 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto finite = [](const auto& v) { return FiniteVector(v); };
   const auto& p = m.target_positions;
   const auto& v = m.target_velocities;
-  return m.poses.size() == n && m.twists.size() == n && p.size() == targets &&
-         v.size() == targets && std::all_of(m.poses.begin(), m.poses.end(), FinitePose) &&
+  const auto finite_wrench = [](const geometry_msgs::Wrench& w) {
+    return FiniteVector(w.force) && FiniteVector(w.torque);
+  };
+  return m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
+         m.fresh.size() == n && p.size() == targets && v.size() == targets &&
+         std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
+         std::all_of(m.poses.begin(), m.poses.end(), FinitePose) &&
          std::all_of(m.twists.begin(), m.twists.end(), FiniteTwist) &&
          std::all_of(p.begin(), p.end(), finite) && std::all_of(v.begin(), v.end(), finite);
 }

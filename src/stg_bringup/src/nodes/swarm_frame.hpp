@@ -2,7 +2,6 @@
 
 #include <auv_msgs/SwarmState.h>
 #include <auv_msgs/TaskState.h>
-#include <geometry_msgs/WrenchStamped.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -12,18 +11,15 @@ namespace stg::nodes {
 
 /// All messages of the swarm with one stamp. A null pointer: not here (yet).
 struct SwarmFrame {
-  explicit SwarmFrame(int agents)
-      : tasks(static_cast<std::size_t>(agents)), wrenches(static_cast<std::size_t>(agents)) {}
+  explicit SwarmFrame(int agents) : tasks(static_cast<std::size_t>(agents)) {}
 
   auv_msgs::SwarmState::ConstPtr truth;              ///< what no step can be judged without
   std::vector<auv_msgs::TaskState::ConstPtr> tasks;  ///< [agents]
-  std::vector<geometry_msgs::WrenchStamped::ConstPtr> wrenches;  ///< [agents]
 
   /// Everything is here.
   bool Complete() const {
     const auto here = [](const auto& message) { return message != nullptr; };
-    return truth && std::all_of(tasks.begin(), tasks.end(), here) &&
-           std::all_of(wrenches.begin(), wrenches.end(), here);
+    return truth && std::all_of(tasks.begin(), tasks.end(), here);
   }
 };
 
