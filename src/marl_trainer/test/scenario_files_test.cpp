@@ -94,7 +94,7 @@ TEST(ShippedScenarios, ReleaseProfileIsTheReleasesSimulator) {
   EXPECT_TRUE(s.vehicle.clip_velocity);
   EXPECT_EQ(s.reward.kind, task::RewardKind::kRelease);
   EXPECT_EQ(s.observation.order, agent::NeighbourOrder::kIndex);
-  EXPECT_EQ(s.channel.model, acoustics::ChannelModel::kRange);
+  EXPECT_EQ(s.channel.model, "range");
   EXPECT_EQ(s.observation_size(), 74);
 }
 

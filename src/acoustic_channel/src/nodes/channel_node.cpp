@@ -7,6 +7,7 @@
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/topics.hpp"
@@ -20,13 +21,14 @@ constexpr std::uint32_t kQueue = 50;
 
 ChannelNode::ChannelNode()
     : scenario_(LoadScenarioParameters<acoustics::NetworkConfig>()),
-      channel_(acoustics::MakeChannel(scenario_.channel, scenario_.agents)),
+      channel_(acoustics::MakeChannel(scenario_.channel, scenario_)),
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
       barrier_(scenario_.agents),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
+      velocities_(auvs_.size()),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
   done_ = node.advertise<std_msgs::Header>(topics::kChannelDone, kQueue, true);
@@ -55,16 +57,18 @@ double ChannelNode::Work() {
 }
 
 void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
-  const auto finite = [](const geometry_msgs::Pose& pose) { return FiniteVector(pose.position); };
   if (message->header.frame_id != frames::kWorld) {
     refused_swarm_.Add(Refusals::kFrame);
     return;
   }
-  if (message->poses.size() != auvs_.size()) {
+  if (message->poses.size() != auvs_.size() || message->twists.size() != auvs_.size()) {
     refused_swarm_.Add(Refusals::kMalformed);
     return;
   }
-  if (!std::all_of(message->poses.begin(), message->poses.end(), finite)) {
+  const auto finite_pose = [](const auto& pose) { return FinitePose(pose); };
+  const auto finite_twist = [](const auto& twist) { return FiniteTwist(twist); };
+  if (!std::all_of(message->poses.begin(), message->poses.end(), finite_pose) ||
+      !std::all_of(message->twists.begin(), message->twists.end(), finite_twist)) {
     refused_swarm_.Add(Refusals::kNotFinite);
     return;
   }
@@ -87,21 +91,28 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   step_ = message->step;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
-    const auto& early = auvs_[i].transmission;
-    if (early && NsOf(early->header.stamp) == stamp) barrier_.Hear(static_cast<int>(i), stamp);
+    velocities_[i] = WorldVelocity(message->poses[i], message->twists[i]);
   }
+  AskForTransmissions();
   CloseIfDue();
 }
 
+/// Only of those whose packet can leave in this step, though others may offer one, too.
+void ChannelNode::AskForTransmissions() {
+  const TimeNs stamp = barrier_.stamp();
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const auto& early = auvs_[static_cast<std::size_t>(i)].transmission;
+    if (early && NsOf(early->header.stamp) == stamp) barrier_.Hear(i, stamp);
+    if (!channel_->Due(i, stamp - start_)) barrier_.Excuse(i);
+  }
+}
+
 void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message) {
-  const bool silent = message->data.empty();
   if (message->header.frame_id != frames::Body(i)) {
     refused_transmissions_.Add(Refusals::kFrame);
     return;
   }
-  if (message->source != static_cast<std::uint32_t>(i) ||
-      (!silent && (message->data.size() != std::tuple_size<acoustics::Payload>::value ||
-                   message->generation > message->header.stamp))) {
+  if (message->source != static_cast<std::uint32_t>(i) || !Sendable(*message)) {
     refused_transmissions_.Add(Refusals::kMalformed);
     return;
   }
@@ -123,6 +134,27 @@ void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr
   CloseIfDue();
 }
 
+bool ChannelNode::Sendable(const auv_msgs::AcousticPacket& message) const {
+  if (message.data.empty()) return true;  // silent in this step
+  try {
+    channel_->CheckOrThrow(TransmissionOf(message));
+    return true;
+  } catch (const UserError& error) {
+    ROS_WARN_THROTTLE(5.0, "channel: %s", error.what());
+    return false;
+  }
+}
+
+acoustics::Transmission ChannelNode::TransmissionOf(const auv_msgs::AcousticPacket& message) const {
+  acoustics::Transmission t;
+  t.source = static_cast<int>(message.source);
+  t.destination = message.destination;
+  t.stamp = NsOf(message.header.stamp) - start_;
+  t.generation = NsOf(message.generation) - start_;
+  t.payload = acoustics::ViewOf(message.data);
+  return t;
+}
+
 void ChannelNode::CloseIfDue() {
   if (!barrier_.open()) return;
   if (!barrier_.GiveUp(WallSeconds()).empty()) gave_up_ = true;
@@ -134,19 +166,13 @@ void ChannelNode::CloseIfDue() {
 void ChannelNode::Close() {
   barrier_.Close();
   const TimeNs now = barrier_.stamp() - start_;
-  sent_.clear();
+  offered_.clear();
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     const auto& m = auvs_[i].transmission;
     if (!barrier_.answered(static_cast<int>(i)) || m->data.empty()) continue;
-    acoustics::Transmission t;
-    t.source = static_cast<int>(i);
-    t.sequence = m->sequence;
-    t.stamp = now;
-    t.generation = NsOf(m->generation) - start_;
-    std::copy(m->data.begin(), m->data.end(), t.data.begin());
-    sent_.push_back(t);
+    offered_.push_back(TransmissionOf(*m));
   }
-  channel_->Step(now, step_, positions_, sent_);
+  channel_->Step(now, step_, positions_, velocities_, offered_);
   for (int i = 0; i < scenario_.agents; ++i) PublishReceptions(i, now + period_);
   std_msgs::Header done;
   done.stamp = TimeOf(barrier_.stamp());

@@ -20,11 +20,11 @@ namespace stg::nodes {
 
 /// The acoustic channel of the whole swarm.
 ///
-/// Step k closes when the position and the transmission of every AUV at t_k are in; then each AUV
-/// gets its reception window (t_k, t_{k+1}], and the world its acknowledgement. An AUV that is
-/// silent for `timeout` seconds, or whose step the world has left behind, is gone for the channel
-/// and not waited for again before it transmits again. Positions, step, episode and
-/// seed come with /swarm_state.
+/// Step k closes when the positions at t_k are in and the transmissions of all AUVs whose packets
+/// can leave in it; then each AUV gets its reception window (t_k, t_{k+1}], and the world its
+/// acknowledgement. An AUV that is due and silent for `timeout` seconds, or whose step the world
+/// has left behind, is gone for the channel and not waited for again before it transmits again.
+/// Positions, velocities, step, episode and seed come with /swarm_state.
 class ChannelNode {
  public:
   /// Throws UserError.
@@ -40,7 +40,12 @@ class ChannelNode {
 
   double Work();
   void OnSwarm(const auv_msgs::SwarmState::ConstPtr& message);
+  void AskForTransmissions();
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
+  /// Says nothing, or something that the modem takes.
+  bool Sendable(const auv_msgs::AcousticPacket& message) const;
+  /// What the message offers.
+  acoustics::Transmission TransmissionOf(const auv_msgs::AcousticPacket& message) const;
   void CloseIfDue();
   void Close();
   void PublishReceptions(int i, TimeNs until);
@@ -57,8 +62,8 @@ class ChannelNode {
   std::uint32_t episode_ = 0, step_ = 0;
   ros::WallTime links_sent_;
   std::vector<Auv> auvs_;
-  std::vector<Vec3<double>> positions_;
-  std::vector<acoustics::Transmission> sent_;
+  std::vector<Vec3<double>> positions_, velocities_;
+  std::vector<acoustics::Transmission> offered_;
   std::vector<acoustics::Reception> received_;
   auv_msgs::AcousticReception reception_message_;
   auv_msgs::LinkStates links_message_;

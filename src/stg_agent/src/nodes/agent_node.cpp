@@ -37,6 +37,7 @@ AgentNode::AgentNode()
       id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
       body_frame_(frames::Body(id_)),
       agent_(scenario_, id_),
+      turns_(scenario_.channel, scenario_),
       decider_(
           std::make_unique<const Decider>(TextParameter("policy", "pursuit_separated"), scenario_)),
       period_(scenario_.decision_period()),
@@ -71,6 +72,7 @@ void AgentNode::Advertise() {
   }
   packet_message_.header.frame_id = body_frame_;
   packet_message_.source = static_cast<std::uint32_t>(id_);
+  packet_message_.destination = acoustics::kToAll;
   packet_ = node.advertise<auv_msgs::AcousticPacket>(own(topics::kAcousticTx), kQueue, true);
   task_.Advertise(own(topics::kTaskState), kQueue,
                   [this](auto* message) { return SetTask(message); });
@@ -117,8 +119,16 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   for (const auv_msgs::TargetDetection& detection : message->detections) Keep(detection);
   // Step 0 has no window before it.
   if (message->step == 0) barrier_.Excuse(kModem);
-  if (window_ == stamp) barrier_.Hear(kModem, stamp);
+  HearModem();
   DecideIfDue();
+}
+
+/// Windows come in order, and where no packet is due the next one comes before its step is opened.
+void AgentNode::HearModem() {
+  const TimeNs stamp = barrier_.stamp();
+  if (barrier_.open() && (window_ == stamp || window_ == stamp + period_)) {
+    barrier_.Hear(kModem, stamp);
+  }
 }
 
 void AgentNode::Keep(const auv_msgs::TargetDetection& message) {
@@ -152,6 +162,7 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
       return;
     }
     window_ = stamp;
+    HearModem();
     if (!message->packets.empty()) receptions_.push_back(message);
     DecideIfDue();
   }
@@ -188,6 +199,7 @@ void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
     cue.std_m = frame.cue_std;
   }
   agent_.Reset(frame.episode, cue);
+  turns_.Reset(frame.seed, 0);
   episode_ = frame.episode;
   sequence_ = 0;
   in_episode_ = true;
@@ -207,10 +219,8 @@ void AgentNode::TakeReceptions(TimeNs stamp) {
     const TimeNs end = NsOf(m->header.stamp);
     if (end <= start_ || end > stamp) continue;
     for (const auto& packet : m->packets) {
-      acoustics::Reception reception;
-      if (!ReceptionOf(packet, id_, start_, &reception)) {
-        refused_receptions_.Add(Refusals::kMalformed);
-      } else if (reception.arrival < 0 || reception.arrival > stamp - start_) {
+      const acoustics::Reception reception = ReceptionOf(packet, id_, start_);
+      if (reception.arrival < 0 || reception.arrival > stamp - start_) {
         refused_receptions_.Add(Refusals::kStale);
       } else {
         agent_.Receive(reception);
@@ -262,16 +272,14 @@ void AgentNode::Command() {
 
 void AgentNode::ReportDecision() {
   const ros::Time stamp = decided_->header.stamp;
-  packet_message_.header.stamp = stamp;
-  packet_message_.sequence = sequence_;
-  packet_message_.data.clear();
-  packet_message_.generation = ros::Time();
-  if (output_.transmit) {
-    packet_message_.data.assign(output_.packet.begin(), output_.packet.end());
-    packet_message_.generation = TimeOf(start_ + output_.generation);
-    ++sequence_;
+  // A packet that cannot leave in this step would only be replaced by the next one.
+  if (turns_.Due(id_, NsOf(stamp) - start_)) {
+    const agent::Packet packet = agent_.MakePacket();
+    packet_message_.header.stamp = packet_message_.generation = stamp;
+    packet_message_.sequence = sequence_++;
+    packet_message_.data.assign(packet.begin(), packet.end());
+    packet_.publish(packet_message_);
   }
-  packet_.publish(packet_message_);
   unreported_ = false;
   task_.Publish();
   step_.Publish();

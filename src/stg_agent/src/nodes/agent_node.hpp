@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/nodes/on_demand.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -48,6 +49,7 @@ class AgentNode {
                     auv_msgs::LoadPolicy::Response& response);
 
   void Keep(const auv_msgs::TargetDetection& message);
+  void HearModem();
   void DecideIfDue();
   void StartEpisode(const auv_msgs::SensorFrame& frame);
   void TakeDetections(TimeNs stamp);
@@ -67,6 +69,7 @@ class AgentNode {
   int id_;
   std::string body_frame_;
   agent::Agent agent_;
+  acoustics::Turns turns_;  ///< when the modem lets packets go
   std::unique_ptr<const Decider> decider_;
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_, report_delay_s_;

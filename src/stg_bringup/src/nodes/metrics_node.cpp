@@ -102,14 +102,16 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto finite = [](const auto& v) { return FiniteVector(v); };
   const auto& p = m.target_positions;
   const auto& v = m.target_velocities;
+  const auto finite_pose = [](const geometry_msgs::Pose& pose) { return FinitePose(pose); };
+  const auto finite_twist = [](const geometry_msgs::Twist& twist) { return FiniteTwist(twist); };
   const auto finite_wrench = [](const geometry_msgs::Wrench& w) {
     return FiniteVector(w.force) && FiniteVector(w.torque);
   };
   return m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
          m.fresh.size() == n && p.size() == targets && v.size() == targets &&
          std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
-         std::all_of(m.poses.begin(), m.poses.end(), FinitePose) &&
-         std::all_of(m.twists.begin(), m.twists.end(), FiniteTwist) &&
+         std::all_of(m.poses.begin(), m.poses.end(), finite_pose) &&
+         std::all_of(m.twists.begin(), m.twists.end(), finite_twist) &&
          std::all_of(p.begin(), p.end(), finite) && std::all_of(v.begin(), v.end(), finite);
 }
 
