@@ -83,6 +83,7 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   const double deadline_s =
       at_start ? std::numeric_limits<double>::infinity() : WallSeconds() + timeout_s_;
   if (barrier_.Open(stamp, deadline_s) == StepBarrier::Opening::kRepeated) return;
+  SetNodeTime(message->header.stamp);
   gave_up_ = false;
   const TimeNs start = stamp - static_cast<TimeNs>(message->step) * period_;
   if (start != start_ || message->episode != episode_) channel_->Reset(message->seed, 0);

@@ -115,6 +115,7 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s_);
   if (opening == StepBarrier::Opening::kRepeated) return;
   if (opening == StepBarrier::Opening::kReplaced) ++skipped_steps_;
+  SetNodeTime(message->header.stamp);
   frame_ = message;
   for (const auv_msgs::TargetDetection& detection : message->detections) Keep(detection);
   // Step 0 has no window before it.

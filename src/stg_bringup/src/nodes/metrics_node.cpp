@@ -146,6 +146,7 @@ void MetricsNode::JudgeFrames() {
       if (task) table_.SetPhase(i, task->phase);
     }
     if (frame.truth && !file_name_.empty() && !file_.is_open()) OpenSummary(frame.truth->episode);
+    if (frame.truth) SetNodeTime(frame.truth->header.stamp);
     if (frame.truth) now_s_ = Seconds(period_) * frame.truth->step;
     Publish(judge_.Judge(frame));
   }

@@ -30,6 +30,11 @@ inline constexpr double kLoopDone = -1.0;
 ///        once and runs as an ordinary one. 0: ordinary.
 void PollLoop(const std::function<double()>& work, int realtime_priority = 0);
 
+/// To be called before the first NodeHandle: what a PollLoop publishes is then written to its
+/// sockets in the same round. roscpp asks its listeners in the order in which they came, and one
+/// that came after its own has everything it publishes wait for another round.
+void ReservePollLoop();
+
 /// The parameter `realtime_priority` of a node or of the whole graph, default 0. Throws UserError.
 int RealtimePriorityParameter();
 
