@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "acoustic_channel/channel/channel.hpp"
+#include "channel_fixture.hpp"
 
 namespace {
 long g_allocations = 0;
@@ -26,8 +26,6 @@ TEST(Allocation, TheCounterCounts) {
   std::vector<int> v(10);
   EXPECT_EQ(g_allocations - before, 1);
 }
-
-constexpr TimeNs kDt = 100'000'000;
 
 /// Steps of an episode in which node i sends 1 to 200 bytes, another number every time.
 /// @param always every node offers a packet in every step, else only when it is due

@@ -9,52 +9,16 @@
 #include <random>
 
 #include "acoustic_channel/link/link_quality.hpp"
-#include "auv_common/error.hpp"
+#include "channel_fixture.hpp"
 
 namespace stg::acoustics {
 namespace {
 
-constexpr TimeNs kDt = 100'000'000;
-
 NetworkConfig ExtendedScenario(int agents) {
-  NetworkConfig s;
-  s.agents = agents;
-  s.channel.model = "extended";
-  s.channel.transmit_period_s = 0.1;  // whoever offers a packet sends it
-  s.channel.max_range_m = 3.5;
+  NetworkConfig s = LosslessNetwork(agents);
   s.channel.loss_probability = 0.1;
   s.channel.loss_distance_m = 2.0;
   return s;
-}
-
-NetworkConfig LosslessScenario(int agents) {
-  NetworkConfig s = ExtendedScenario(agents);
-  s.channel.loss_probability = 0.0;
-  s.channel.loss_distance_m = 1e12;
-  return s;
-}
-
-constexpr std::uint8_t kBytes[] = {17, 0, 255, 4};
-
-Transmission From(int source, TimeNs t) {
-  Transmission packet;
-  packet.source = source;
-  packet.stamp = t;
-  packet.generation = t;
-  packet.payload = {kBytes, sizeof(kBytes)};
-  return packet;
-}
-
-/// A step in which nobody moves.
-void StepAtRest(Channel* channel, TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>& p,
-                const std::vector<Transmission>& offered) {
-  channel->Step(t, step, p, std::vector<Vec3<double>>(p.size()), offered);
-}
-
-std::vector<Reception> DeliverAll(Channel* channel, int agents, TimeNs until) {
-  std::vector<Reception> out;
-  for (int j = 0; j < agents; ++j) channel->Deliver(j, until, &out);
-  return out;
 }
 
 std::vector<Vec3<double>> RandomPositions(int agents, std::uint64_t seed) {
@@ -102,7 +66,7 @@ std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std:
     }
     if (shuffle != 0) std::shuffle(sent.begin(), sent.end(), engine);
     StepAtRest(&channel, t, static_cast<std::uint32_t>(k), p, sent);
-    for (const Reception& r : DeliverAll(&channel, scenario.agents, t + kDt)) {
+    for (const Reception& r : DeliverAll(&channel, t + kDt)) {
       records.push_back({r.source, r.receiver, r.sequence, r.arrival});
     }
   }
@@ -119,7 +83,7 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
   channel->Reset(1, 0);
   // 0-1: 0.3 m; 0-2: exactly the range, so q = 0.
   StepAtRest(channel.get(), kDt, 1, {{0, 0, 0}, {0.3, 0, 0}, {0, 0.5, 0}}, {From(0, kDt)});
-  const std::vector<Reception> got = DeliverAll(channel.get(), 3, kDt);
+  const std::vector<Reception> got = DeliverAll(channel.get(), kDt);
   ASSERT_EQ(got.size(), 1u);
   EXPECT_EQ(got[0].source, 0);
   EXPECT_EQ(got[0].receiver, 1);
@@ -134,7 +98,7 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
 }
 
 TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
-  NetworkConfig s = LosslessScenario(2);
+  NetworkConfig s = LosslessNetwork(2);
   s.channel.sound_speed_mps = 1500.0;
   const auto channel = MakeChannel(s.channel, s);
   for (const double d : {0.0, 0.0015, 0.75, 1.5, 3.0, 3.5}) {
@@ -150,7 +114,7 @@ TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
 }
 
 TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
-  NetworkConfig s = LosslessScenario(2);
+  NetworkConfig s = LosslessNetwork(2);
   s.channel.sound_speed_mps = 2.0;
   const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
@@ -167,7 +131,7 @@ TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
 }
 
 TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
-  NetworkConfig s = LosslessScenario(2);
+  NetworkConfig s = LosslessNetwork(2);
   s.channel.loss_distance_m = 2.0;
   s.channel.sound_speed_mps = 10.0;
   const auto channel = MakeChannel(s.channel, s);
@@ -196,11 +160,11 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
 }
 
 TEST(ExtendedChannel, NothingArrivesBeyondMaxRangeAndTheDropSaysWhy) {
-  const NetworkConfig s = LosslessScenario(3);
+  const NetworkConfig s = LosslessNetwork(3);
   const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
   StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {3.5, 0, 0}, {0, 0, -3.5000001}}, {From(0, 0)});
-  const std::vector<Reception> got = DeliverAll(channel.get(), 3, kDt);
+  const std::vector<Reception> got = DeliverAll(channel.get(), kDt);
   ASSERT_EQ(got.size(), 1u);
   EXPECT_EQ(got[0].receiver, 1);
   const LinkStatistics link = channel->Link(0, 2, kDt);
@@ -233,7 +197,7 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
 }
 
 TEST(ExtendedChannel, LossesOfDifferentLinksAndStepsAreUncorrelated) {
-  NetworkConfig s = LosslessScenario(3);
+  NetworkConfig s = LosslessNetwork(3);
   s.channel.loss_probability = 0.5;
   const std::vector<Record> got = Play(s, 3, 0, 20000, {true, true, false}, 0);
   // +1 received, -1 lost, per step, of the links 0-1, 0-2, 1-0.
@@ -288,7 +252,7 @@ TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
 }
 
 TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
-  NetworkConfig s = LosslessScenario(9);
+  NetworkConfig s = LosslessNetwork(9);
   s.channel.sound_speed_mps = 1.0;
   const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
@@ -320,7 +284,7 @@ TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
   ASSERT_GT(used->totals().delivered, 0u);
   used->Reset(9, 1);
   EXPECT_EQ(used->totals().delivered + used->totals().dropped, 0u);
-  EXPECT_TRUE(DeliverAll(used.get(), 4, 1000 * kDt).empty());
+  EXPECT_TRUE(DeliverAll(used.get(), 1000 * kDt).empty());
   const LinkStatistics link = used->Link(0, 1, 0);
   EXPECT_EQ(link.delivered + link.dropped, 0u);
   EXPECT_EQ(link.last_drop, DropReason::kNone);

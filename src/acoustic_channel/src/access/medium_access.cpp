@@ -6,9 +6,11 @@
 namespace stg::acoustics {
 
 MediumAccessRegistry& MediumAccesses() {
+  // clang-format off
   static MediumAccessRegistry registry("medium access", {
-                                                            {"periodic", MakePeriodic},
-                                                        });
+      {"periodic", MakePeriodic},
+  });
+  // clang-format on
   return registry;
 }
 

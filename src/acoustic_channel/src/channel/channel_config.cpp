@@ -1,5 +1,6 @@
 #include "acoustic_channel/channel/channel_config.hpp"
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/models/propagation_model.hpp"
 
 namespace stg::acoustics {
@@ -7,7 +8,7 @@ namespace stg::acoustics {
 void Describe(ChannelConfig* c, config::Table* t) {
   t->Section("channel");
   t->Add("model", config::Name(&c->model, PropagationModels().Names()), config::kNone, "-",
-         "propagation model: Eq. 5, or Eq. 6");
+         "propagation model: range is Eq. 5, extended Eq. 6");
   t->Add("access", config::Name(&c->access, MediumAccesses().Names()), config::kNone, "-",
          "medium access: when a packet that waits in a modem leaves it");
   Describe(static_cast<RangeConfig*>(c), t);

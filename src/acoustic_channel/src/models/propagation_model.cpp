@@ -1,15 +1,18 @@
 #include "acoustic_channel/models/propagation_model.hpp"
 
+#include "acoustic_channel/models/extended.hpp"
 #include "acoustic_channel/models/independent_model.hpp"
+#include "acoustic_channel/models/range.hpp"
 
 namespace stg::acoustics {
 
 PropagationModelRegistry& PropagationModels() {
-  static PropagationModelRegistry registry("propagation model",
-                                           {
-                                               {"range", MakeIndependentModel<RangeModel>},
-                                               {"extended", MakeIndependentModel<ExtendedModel>},
-                                           });
+  // clang-format off
+  static PropagationModelRegistry registry("propagation model", {
+      {"range", MakeIndependentModel<RangeModel>},
+      {"extended", MakeIndependentModel<ExtendedModel>},
+  });
+  // clang-format on
   return registry;
 }
 

@@ -12,7 +12,7 @@
 namespace stg::nodes {
 namespace {
 
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kSentQueue = 100;
 
 geometry_msgs::TransformStamped TransformOf(const std::string& child,
                                             const geometry_msgs::Pose& pose) {
@@ -55,8 +55,8 @@ void WorldPublisher::Advertise() {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
     auv.frame_message.header.frame_id = frames::Body(i);
     auv.frame = node.advertise<auv_msgs::SensorFrame>(topics::AuvTopic(i, topics::kSensorFrame),
-                                                      kQueue, true);
-    auv.odometry.Advertise(topics::AuvTopic(i, topics::kOdom), kQueue,
+                                                      kSentQueue, true);
+    auv.odometry.Advertise(topics::AuvTopic(i, topics::kOdom), kSentQueue,
                            [&auv, i](nav_msgs::Odometry* m) {
                              m->header.stamp = auv.frame_message.header.stamp;
                              m->header.frame_id = frames::kWorld;
@@ -65,21 +65,21 @@ void WorldPublisher::Advertise() {
                              m->twist.twist = auv.frame_message.twist;
                              return !m->header.stamp.isZero();
                            });
-    auv.detection.Advertise(topics::AuvTopic(i, topics::kTargetDetection), kQueue,
+    auv.detection.Advertise(topics::AuvTopic(i, topics::kTargetDetection), kSentQueue,
                             [&auv](auv_msgs::TargetDetection* m) {
                               *m = auv.last_detection;
                               return !m->header.stamp.isZero();
                             });
   }
   // roscpp sends in the order of these lines: who decides is served first.
-  swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kQueue, true);
-  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kQueue, true);
+  swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
+  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
   for (int k = 0; k < scenario_.target.count; ++k) {
     nav_msgs::Odometry& message = target_messages_[static_cast<std::size_t>(k)];
     message.header.frame_id = frames::kWorld;
     message.child_frame_id = frames::Target(k);
     message.pose.pose.orientation.w = 1.0;
-    targets_[static_cast<std::size_t>(k)].Advertise(topics::TargetOdom(k), kQueue,
+    targets_[static_cast<std::size_t>(k)].Advertise(topics::TargetOdom(k), kSentQueue,
                                                     [&message](nav_msgs::Odometry* m) {
                                                       *m = message;
                                                       return !m->header.stamp.isZero();

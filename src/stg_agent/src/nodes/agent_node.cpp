@@ -18,8 +18,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-constexpr std::size_t kMaxPending = 100;     // messages kept for a step that may never come
-constexpr std::uint32_t kLayoutVersion = 1;  // "stg-1"
+constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may never come
 
 /// Whether the agent's process also turns velocities into wrenches.
 bool OnboardParameter() {
@@ -316,7 +315,7 @@ bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
   message->action.assign(action_, action_ + scenario_.action_size());
   message->log_probability = log_probability_;
   message->policy_id = policy_id_;
-  message->observation_layout = kLayoutVersion;
+  message->observation_layout = agent::kLayoutVersion;
   return true;
 }
 
@@ -328,12 +327,11 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("decisions per second", rate);
   status.add("steps skipped", skipped_steps_);
   status.add("reception windows missing", barrier_.losses(kModem));
-  status.add("packets that did not decode", agent_.refused_packets());
+  const agent::AgentView view = agent_.view();
+  status.add("packets that did not decode", view.refused_packets());
   double age = 0.0;
-  for (const int id : agent_.neighbours().known()) {
-    age = std::max(age, agent_.neighbours().at(id).age_s);
-  }
-  status.add("neighbours known", agent_.neighbours().known().size());
+  for (const int id : view.neighbours().known()) age = std::max(age, view.sight(id).age_s);
+  status.add("neighbours known", view.neighbours().known().size());
   status.add("age of information, largest [s]", age);
   refused_frames_.Report(topics::kSensorFrame, &status);
   refused_detections_.Report(topics::kTargetDetection, &status);

@@ -91,7 +91,7 @@ class AgentNode {
   bool in_episode_ = false;
   std::uint32_t episode_ = 0, sequence_ = 0;
   std::vector<float> observation_;
-  float action_[6] = {};
+  float action_[dynamics::kMaxActionSize] = {};
 
   geometry_msgs::WrenchStamped wrench_message_;
   auv_msgs::AcousticPacket packet_message_;

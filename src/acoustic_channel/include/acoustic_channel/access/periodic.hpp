@@ -1,18 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "acoustic_channel/access/medium_access.hpp"
+#include "acoustic_channel/access/periodic_config.hpp"
 
 namespace stg::acoustics {
-
-/// Keys of `channel` that `periodic` reads.
-struct PeriodicConfig {
-  double transmit_period_s = 0.5;  ///< every node sends one packet per period, staggered
-};
-void Describe(PeriodicConfig* c, config::Table* t);
-std::optional<config::Violation> FindConflict(const PeriodicConfig& c, const RunConfig& run);
 
 /// Staggered slots on an ideal channel: node i sends at decisions k with k mod P = i mod P, where P
 /// is the transmit period in decisions, rounded, at least 1. k comes from the time, not from

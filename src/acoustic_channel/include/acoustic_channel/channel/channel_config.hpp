@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "acoustic_channel/access/periodic.hpp"
-#include "acoustic_channel/models/extended.hpp"
-#include "acoustic_channel/models/range.hpp"
+#include "acoustic_channel/access/periodic_config.hpp"
+#include "acoustic_channel/models/extended_config.hpp"
+#include "acoustic_channel/models/range_config.hpp"
 #include "auv_common/config/field.hpp"
 #include "auv_common/config/run_config.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "acoustic_channel/models/extended_config.hpp"
 #include "auv_common/numbers/vector.hpp"
 
 /// Link quality of the paper, for one link (double) or kLanes links (Pack).
@@ -10,14 +11,6 @@ template <class T>
 struct LinkValues {
   T loss;     ///< probability that a packet is lost
   T quality;  ///< [0, 1]
-};
-
-/// Constants of Eq. 6.
-struct LinkQualityConfig {
-  double attenuation_per_m = 0.5;  ///< alpha
-  double loss_probability = 0.10;  ///< at zero distance
-  double loss_distance_m = 2.0;    ///< p_loss(d) = 1 - (1 - p0) exp(-(d / loss_distance)^2)
-  double freshness_s = 2.0;        ///< tau_f
 };
 
 /// Normalised link availability q of Eq. 5: 1 at zero distance, 0 at R_c [m] and beyond.
@@ -31,7 +24,7 @@ T RangeQuality(const T& d, double R_c) {
 /// The paper leaves p_loss of Eq. 6 open; this one is p0 at zero distance, grows monotonically
 /// and tends to 1.
 template <class T>
-T LossProbability(const T& d, const LinkQualityConfig& config) {
+T LossProbability(const T& d, const ExtendedConfig& config) {
   const T x = d * T(1.0 / config.loss_distance_m);
   return T(1.0) - T(1.0 - config.loss_probability) * Exp(-(x * x));
 }
@@ -39,7 +32,7 @@ T LossProbability(const T& d, const LinkQualityConfig& config) {
 /// Extended link quality of Eq. 6: attenuation, packet loss and freshness at distance d [m] and
 /// age of information age_s [s], whatever the range.
 template <class T>
-T ExtendedQuality(const T& d, const T& age_s, const LinkQualityConfig& config) {
+T ExtendedQuality(const T& d, const T& age_s, const ExtendedConfig& config) {
   return (T(1.0) - LossProbability(d, config)) *
          Exp(-(d * T(config.attenuation_per_m) + age_s * T(1.0 / config.freshness_s)));
 }

@@ -1,18 +1,11 @@
 #pragma once
 
 #include "acoustic_channel/link/link_quality.hpp"
-#include "auv_common/config/field.hpp"
+#include "acoustic_channel/models/extended_config.hpp"
 
 namespace stg::acoustics {
 
 struct ChannelConfig;
-
-/// Keys of `channel` that `extended` reads.
-struct ExtendedConfig : LinkQualityConfig {
-  double sound_speed_mps = 1500.0;
-  double max_range_m = 3.5;  ///< nothing arrives beyond
-};
-void Describe(ExtendedConfig* c, config::Table* t);
 
 /// Eq. 6: attenuation, random loss, propagation delay, freshness.
 class ExtendedModel {

@@ -89,6 +89,7 @@ class IndependentLinks : public Channel {
       table_.Deliver(r.source, receiver, r.generation, r.transmit, r.arrival);
       payloads_.Release(pending.payload);
       out->push_back(r);
+      out->back().payload = payloads_.at(pending.payload);
     }
     if (ripe_.size() == queue.size()) {
       queue.clear();
@@ -201,7 +202,6 @@ class IndependentLinks : public Channel {
       r.loss_probability = loss_[j];
       r.link_quality = quality_[j];
       r.doppler_mps = closing_[j];
-      r.payload = payloads_.at(payload);
     }
   }
 

@@ -1,17 +1,11 @@
 #pragma once
 
 #include "acoustic_channel/link/link_quality.hpp"
-#include "auv_common/config/field.hpp"
+#include "acoustic_channel/models/range_config.hpp"
 
 namespace stg::acoustics {
 
 struct ChannelConfig;
-
-/// Keys of `channel` that `range` reads.
-struct RangeConfig {
-  double range_m = 0.45;  ///< R_c of Eq. 5
-};
-void Describe(RangeConfig* c, config::Table* t);
 
 /// Eq. 5: everything arrives at once and nothing is lost where the quality is above zero.
 class RangeModel {

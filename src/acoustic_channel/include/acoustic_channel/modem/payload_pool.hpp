@@ -7,20 +7,21 @@
 
 namespace stg::acoustics {
 
-/// Payloads under way: one copy of each, however many receivers it is on its way to. A copy stays
-/// where it is until its last receiver has it and Recycle is called. Allocates only while the
-/// number or the size of payloads under way reaches a new maximum.
+/// Payloads under way: one copy of each, however many receivers it is on its way to. A slot is
+/// used again when its last receiver has the payload and Recycle was called. Allocates only while
+/// the number or the size of payloads under way reaches a new maximum.
 class PayloadPool {
  public:
   /// Copies a payload that nobody holds yet; the handle of the copy.
   int Store(const ByteView& payload);
+  /// Valid until the next Store.
   ByteView at(int handle) const { return ViewOf(slots_[static_cast<std::size_t>(handle)].bytes); }
 
   /// One more receiver to go.
   void Hold(int handle) { ++slots_[static_cast<std::size_t>(handle)].holders; }
-  /// One receiver has it; when it was the last, the bytes are there until Recycle.
+  /// One receiver has it; also the last one may read it until Recycle.
   void Release(int handle);
-  /// Views of payloads that nobody holds are void from here on.
+  /// Payloads that nobody holds are forgotten.
   void Recycle();
   /// Forgets all payloads.
   void Clear();

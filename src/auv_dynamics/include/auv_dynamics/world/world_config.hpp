@@ -5,10 +5,10 @@
 #include "auv_common/config/run_config.hpp"
 #include "auv_dynamics/control/control_config.hpp"
 #include "auv_dynamics/sensing/sensing_config.hpp"
+#include "auv_dynamics/targets/target_config.hpp"
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
 #include "auv_dynamics/world/surroundings_config.hpp"
-#include "auv_dynamics/world/target_config.hpp"
 
 namespace stg::dynamics {
 
@@ -26,7 +26,7 @@ struct WorldConfig : RunConfig {
 
   /// Target that agent i is tasked with: i modulo the number of targets.
   int target_of(int agent) const { return agent % target.count; }
-  int action_size() const { return control.interface == ActionInterface::kVelocity3 ? 3 : 6; }
+  int action_size() const { return ActionSize(control.interface); }
 };
 
 /// The sections besides those of RunConfig.
