@@ -36,7 +36,7 @@ class CorePurity(unittest.TestCase):
             (package / "src" / "nodes" / "main.cpp").write_text("#include <ros/ros.h>\n")
             (package / "src" / "core.cpp").write_text("#include <rosy/ros.h>\n#include <cmath>\n")
             self.assertEqual(check_purity(folder), (0, ""))
-            (package / "src" / "core.cpp").write_text('\n# include "auv_msgs/SensorSync.h"\n')
+            (package / "src" / "core.cpp").write_text('\n# include "auv_msgs/SensorFrame.h"\n')
             (package / "include" / "sample" / "a.hpp").write_text("#include <ros/time.h>\n")
             status, output = check_purity(folder)
             self.assertEqual(status, 1)

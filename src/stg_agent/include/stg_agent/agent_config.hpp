@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 #include "stg_agent/graph/observation_spec.hpp"
 #include "stg_agent/inbox/track_config.hpp"

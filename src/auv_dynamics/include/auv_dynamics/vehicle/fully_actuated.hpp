@@ -1,5 +1,6 @@
 #pragma once
 
+#include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/vehicle/vehicle.hpp"
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 
