@@ -7,7 +7,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCES = ROOT / "src"
 DOCS = ROOT / "docs"
-PACKAGES = ("acoustic_channel", "auv_dynamics", "marl_trainer", "stg_agent", "stg_bringup")
+PACKAGES = ("acoustic_channel", "auv_common", "auv_dynamics", "marl_trainer", "stg_agent", "stg_bringup")
 
 
 def equation_rows():
@@ -52,12 +52,11 @@ class PackagePages(unittest.TestCase):
     """Each package has a page, and the page tells what its nodes use."""
 
     def constants(self, package):
-        """Returns the topic and service names of a package, from the header that names them."""
-        header = SOURCES / package / "src/nodes/include" / package / "nodes/topics.hpp"
-        if not header.exists():
-            return set()
-        topics = header.read_text().split("namespace stg::frames")[0]
-        return set(re.findall(r'constexpr char k\w+\[\] = "([\w/]+)"', topics))
+        """Returns the topic and service names of a package, from the headers that name them."""
+        text = ""
+        for header in (SOURCES / package / "src" / "nodes").rglob("topics.hpp"):
+            text += header.read_text().partition("namespace stg::frames")[0]
+        return set(re.findall(r'constexpr char k\w+\[\] = "([\w/]+)"', text))
 
     def test_every_package_has_a_page_with_its_topics_and_services(self):
         self.assertGreater(len(set().union(*map(self.constants, PACKAGES))), 10)
@@ -77,7 +76,7 @@ class PackagePages(unittest.TestCase):
         found = 0
         for package in PACKAGES:
             text = (DOCS / "packages" / f"{package}.md").read_text()
-            for source in sorted((SOURCES / package / "src" / "nodes").glob("*.cpp")):
+            for source in sorted((SOURCES / package / "src" / "nodes").rglob("*.cpp")):
                 for match in pattern.finditer(source.read_text()):
                     name = match.group(1) or match.group(2)
                     found += 1
