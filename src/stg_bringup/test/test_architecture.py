@@ -1,6 +1,7 @@
 """Checks the rules of the house: the code keeps each of them, and each of them can be broken."""
 
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -253,6 +254,32 @@ class Registries(Rule):
             self.assert_found({**files, path: text}, f"src/{path}:1", "motions.cpp")
         self.assert_clean({**files, "auv_dynamics/test/a_test.cpp": 'EXPECT_TRUE(n == "evasive");'})
         self.assert_clean({**files, "marl_trainer/src/env/env.cpp": 'if (c.motion == "other") {\n'})
+
+
+class Picture(unittest.TestCase):
+    """The picture of the house shows the packages, folders and arrows that the code has."""
+
+    def check(self, *arguments):
+        """Compares the picture with the code; returns the exit status."""
+        program = ROOT / "scripts" / "draw_architecture.py"
+        done = subprocess.run(
+            ["/usr/bin/python3", str(program), "--check", *map(str, arguments)],
+            stdout=subprocess.DEVNULL,
+            check=False,
+        )
+        return done.returncode
+
+    def test_it_is_that_of_the_code(self):
+        self.assertEqual(self.check(), 0, "run scripts/draw_architecture.py")
+
+    def test_it_is_not_that_of_another_code(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for package in ("lower", "upper"):
+                file = pathlib.Path(folder, package, "src", "a", "b.cpp")
+                file.parent.mkdir(parents=True)
+                file.write_text('#include "lower/a/b.hpp"\n')
+                pathlib.Path(folder, package, "package.xml").write_text("<package/>")
+            self.assertEqual(self.check("--source", folder), 1)
 
 
 if __name__ == "__main__":
