@@ -2,12 +2,29 @@
 
 import pathlib
 import re
+import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCES = ROOT / "src"
 DOCS = ROOT / "docs"
-PACKAGES = ("acoustic_channel", "auv_common", "auv_dynamics", "marl_trainer", "stg_agent", "stg_bringup")
+PACKAGES = (
+    "acoustic_channel",
+    "auv_common",
+    "auv_dynamics",
+    "marl_trainer",
+    "stg_agent",
+    "stg_bringup",
+)
+sys.path.insert(0, str(ROOT / "scripts" / "lint"))
+
+import tree  # noqa: E402 pylint: disable=wrong-import-position,import-error
+
+
+def named_sources():
+    """Returns {name: path} of the C++ files; pages name them as an #include does, sources too:
+    `auv_dynamics/world/world.cpp`."""
+    return {str(tree.logical(path)): SOURCES / path for path in tree.cpp_files(SOURCES)}
 
 
 def equation_rows():
@@ -31,8 +48,8 @@ class Equations(unittest.TestCase):
     def test_every_file_exists_and_contains_the_name(self):
         for equation, path, name in equation_rows():
             with self.subTest(equation):
-                text = (SOURCES / path).read_text()
-                code = re.sub(r"//.*", "", text)
+                self.assertTrue(path in named_sources(), f"{path} does not exist")
+                code = re.sub(r"//.*", "", named_sources()[path].read_text())
                 self.assertRegex(code, rf"\b{re.escape(name)}\b", path)
 
 
@@ -46,6 +63,61 @@ class Links(unittest.TestCase):
             for target in re.findall(r"\]\(([^)#\s]+)", page.read_text()):
                 if not re.match(r"[a-z]+:", target):
                     self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
+
+
+class Sources(unittest.TestCase):
+    """Sources that the pages name exist."""
+
+    def test_every_source_named_on_a_page_exists(self):
+        sources = named_sources()
+        places = set(sources) | {str(path.relative_to(SOURCES)) for path in sources.values()}
+        pattern = re.compile(rf"`(?:src/)?((?:{'|'.join(PACKAGES)})/[\w/]+\.[ch]pp)`")
+        found = 0
+        for page in [*ROOT.glob("*.md"), *DOCS.rglob("*.md")]:
+            if page.name != "CHANGELOG.md":
+                for name in pattern.findall(page.read_text()):
+                    found += 1
+                    with self.subTest(name):
+                        self.assertTrue(name in places, f"{page.name}: {name} does not exist")
+        self.assertGreater(found, 30)
+
+
+class HowTo(unittest.TestCase):
+    """Each page on how to add something has an example that is compiled and tested."""
+
+    THINGS = (
+        "vehicle",
+        "propagation_model",
+        "medium_access",
+        "target_motion",
+        "sensor",
+        "controller",
+        "algorithm",
+        "reward_term",
+    )
+
+    def test_every_thing_has_a_page_an_example_and_a_place_in_the_build(self):
+        index = (DOCS / "how_to" / "README.md").read_text()
+        build = (ROOT / "examples" / "CMakeLists.txt").read_text()
+        for thing in self.THINGS:
+            with self.subTest(thing):
+                page = f"add_{'an' if thing[0] in 'aeiou' else 'a'}_{thing}.md"
+                example = f"{thing}.cpp"
+                self.assertIn(f"({page})", index)
+                self.assertIn(f"../../examples/{example})", index)
+                self.assertIn(f"../../examples/{example})", (DOCS / "how_to" / page).read_text())
+                self.assertIn(f"  {example}\n", build)
+                self.assertRegex((ROOT / "examples" / example).read_text(), r"\nTEST\(")
+
+    def test_what_a_page_quotes_stands_in_its_example(self):
+        for thing in self.THINGS:
+            page = f"add_{'an' if thing[0] in 'aeiou' else 'a'}_{thing}.md"
+            example = re.sub(r"\s+", " ", (ROOT / "examples" / f"{thing}.cpp").read_text())
+            blocks = re.findall(r"```cpp\n(.*?)```", (DOCS / "how_to" / page).read_text(), re.S)
+            self.assertTrue(blocks, page)
+            for part in re.split(r"\n *// ...\n|\n *\.\.\.\n", blocks[0]):
+                with self.subTest(page):
+                    self.assertIn(re.sub(r"\s+", " ", part).strip(), example)
 
 
 class PackagePages(unittest.TestCase):
