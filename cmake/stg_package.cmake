@@ -19,6 +19,8 @@ function(stg_optimise target option)
 endfunction()
 
 # stg_core_library(TARGET [PACKAGE ...]): a library of a core, on top of other packages' cores.
+# Plain CMake exports it with the set STG_EXPORT.
+set(STG_EXPORT stgTargets)
 function(stg_core_library target)
   add_library(stg::${target} ALIAS ${target})
   target_include_directories(${target} PUBLIC
@@ -36,7 +38,8 @@ function(stg_core_library target)
   endforeach()
   stg_unity(${target})
   if(STG_CORE_ONLY)
-    install(TARGETS ${target} EXPORT stgTargets)
+    add_dependencies(stg_cores ${target})
+    install(TARGETS ${target} EXPORT ${STG_EXPORT})
     install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.hpp")
   endif()
 endfunction()
