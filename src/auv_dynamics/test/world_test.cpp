@@ -195,14 +195,13 @@ TEST(World, DisturbanceIsNotLimitedByTheActuators) {
 
 TEST(World, StepAllocatesNothing) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    for (const TargetMotion motion :
-         {TargetMotion::kCoordinatedTurn, TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
+    for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
       WorldConfig scenario = QuietScenario(8);
       scenario.vehicle.integrator = integrator;
       scenario.vehicle.float32_tau = true;
       scenario.target.motion = motion;
       scenario.disturbance = {1.0, 0.1, 2.0};
-      scenario.sensing = {0.45, 0.01, 0.9, 0.1, 1.0, 0.05};
+      scenario.sensing = {"position", 0.45, 0.01, 0.9, 0.1, 1.0, 0.05};
       World world(scenario);
       for (int l = 0; l < kLanes; ++l) world.Reset(l, 3, 0, ResetStage::kEasy);
       std::vector<Wrench<Pack>> tau = NoForce(8);
