@@ -194,7 +194,7 @@ const char* const kSections[] = {
     "auv_dynamics/include/auv_dynamics/targets/target_config",
     "auv_dynamics/include/auv_dynamics/control/control_config",
     "acoustic_channel/include/acoustic_channel/access/periodic_config",
-    "acoustic_channel/include/acoustic_channel/channel/channel_config",
+    "acoustic_channel/include/acoustic_channel/channel_config",
     "acoustic_channel/include/acoustic_channel/models/extended_config",
     "acoustic_channel/include/acoustic_channel/models/range_config",
     "stg_agent/include/stg_agent/agent/agent_config",

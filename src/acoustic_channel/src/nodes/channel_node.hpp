@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 #include "auv_common/nodes/health.hpp"
 
 namespace stg::nodes {

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/range.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "env_internal.hpp"
 

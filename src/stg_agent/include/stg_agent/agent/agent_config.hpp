@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 
 namespace stg::agent {

@@ -1,4 +1,4 @@
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/models/propagation_model.hpp"
@@ -17,8 +17,7 @@ void Describe(ChannelConfig* c, config::Table* t) {
 }
 
 std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunConfig& run) {
-  if (c.access == "periodic") return FindConflict(static_cast<const PeriodicConfig&>(c), run);
-  return {};
+  return MakeMediumAccess(c, run)->FindConflict();
 }
 
 void Describe(NetworkConfig* c, config::Table* t) {
