@@ -82,12 +82,8 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
   for (const Reference& row : kTable) {
     const Scenario s = Shipped(row.scenario, row.condition);
     for (const bool tuned : {false, true}) {
-      Controller c = MakeController("pursuit", s);
-      if (!tuned) {
-        c.options.gain_per_s = 2.0;
-        c.options.standoff_m = 0.0125;
-        c.options.cap = 1.0;
-      }
+      const Controller c =
+          MakeController(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s);
       const task::MetricSummary m = task::Summarise(Evaluate(s, c, kEpisodes, 3000, 1));
       // Four standard errors of the difference of two means, and the table's rounding.
       const auto expect = [&](const std::string& name, double expected, double rounding) {

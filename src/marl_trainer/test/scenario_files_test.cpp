@@ -197,7 +197,9 @@ const char* const kSections[] = {
     "acoustic_channel/include/acoustic_channel/channel_config",
     "acoustic_channel/include/acoustic_channel/models/extended_config",
     "acoustic_channel/include/acoustic_channel/models/range_config",
-    "stg_agent/include/stg_agent/agent/agent_config",
+    "stg_agent/include/stg_agent/agent_config",
+    "stg_agent/include/stg_agent/graph/observation_config",
+    "stg_agent/include/stg_agent/inbox/track_config",
     "marl_trainer/include/marl_trainer/task/reward_config",
     "marl_trainer/include/marl_trainer/scenario/scenario",
 };

@@ -21,6 +21,17 @@ inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB,
   return nav;
 }
 
+/// The same navigation in every lane.
+inline dynamics::Navigation<Pack> InAllLanes(const dynamics::NavState& nav) {
+  dynamics::Navigation<Pack> all;
+  all.stamp.fill(nav.stamp);
+  all.p_WB = Broadcast(nav.p_WB);
+  all.v_WB_B = Broadcast(nav.v_WB_B);
+  all.w_WB_B = Broadcast(nav.w_WB_B);
+  for (int k = 0; k < 4; ++k) all.q_WB[k] = Pack(nav.q_WB[k]);
+  return all;
+}
+
 /// A reception with its payload.
 struct HeardPacket {
   acoustics::Reception reception;

@@ -163,7 +163,7 @@ TEST(AgentProperty, AStepAllocatesNothing) {
     while (inputs[damaged].receptions.empty()) ++damaged;
     inputs[damaged].receptions[0].data[3] ^= 1;
     Agent agent(s, 0);
-    std::vector<float> observation(74);
+    std::vector<float> observation(static_cast<std::size_t>(s.observation_size()));
     for (int episode = 0; episode < 2; ++episode) {
       agent.Reset(static_cast<std::uint32_t>(episode), CueAt({}));
       for (const Input& in : inputs) {
@@ -173,16 +173,17 @@ TEST(AgentProperty, AStepAllocatesNothing) {
         counting = false;
       }
     }
-    EXPECT_EQ(agent.refused_packets(), 1U);
+    EXPECT_EQ(agent.view().refused_packets(), 1U);
   }
   EXPECT_EQ(allocations, 0);
 }
 
-TEST(AgentProperty, CopiesThatShareTheScenarioActAlike) {
+TEST(AgentProperty, AgentsThatShareTheScenarioActAlike) {
   const AgentConfig s;
   const auto inputs = RandomEpisode(s, 3, 100, 61);
   Agent alone(s, 3);
-  Agent shared = MakeAgents(s)[3];
+  std::vector<Agent> agents = MakeAgents(s);
+  Agent& shared = agents[3];
   alone.Reset(0, CueAt({}));
   shared.Reset(0, CueAt({}));
   EXPECT_EQ(RunEpisode(&alone, inputs), RunEpisode(&shared, inputs));

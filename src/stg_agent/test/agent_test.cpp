@@ -6,7 +6,7 @@
 
 #include "agent_fixture.hpp"
 #include "auv_dynamics/control/control.hpp"
-#include "stg_agent/controllers/pursuit.hpp"
+#include "stg_agent/controllers/controller.hpp"
 
 namespace stg::agent {
 namespace {
@@ -127,7 +127,7 @@ TEST(Agent, GraphCountsUnheardNeighboursAsNoLink) {
   agent.Receive(Heard(s, n, 0));
   Look(&agent, Nav(0, {}));
   const Knowledge<double>& k = agent.knowledge();
-  const double q = agent.neighbours().at(2).link_quality;
+  const double q = agent.view().sight(2).link_quality;
   EXPECT_GT(q, 0.7);
   EXPECT_DOUBLE_EQ(k.best_quality, q);
   EXPECT_DOUBLE_EQ(k.mean_quality, q / 3.0);
@@ -268,7 +268,7 @@ TEST(Agent, DamagedPacketsAreCountedAndChangeNothing) {
   HeardPacket r = Heard(s, n, 0);
   r.data[5] ^= 4;
   agent.Receive(r);
-  EXPECT_EQ(agent.refused_packets(), 1U);
+  EXPECT_EQ(agent.view().refused_packets(), 1U);
   EXPECT_TRUE(agent.neighbours().known().empty());
 }
 
@@ -323,11 +323,10 @@ TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
     agent.Reset(0, CueAt({0.0, 0.0, 0.3}));
     Look(&agent, Nav(0, {}));
     float action[6];
-    const auto kind = BuiltinKind::kPursuit;
-    BuiltinAction(kind, BuiltinOptions(kind), agent, action);
+    MakeController("pursuit")->Act(agent.view(), action);
     EXPECT_FLOAT_EQ(action[2], 0.75F);  // tau6: gain 1, so the same fraction of the force
     EXPECT_NEAR(action[0], 0.0F, 1e-7F);
-    BuiltinAction(BuiltinKind::kIdle, {}, agent, action);
+    MakeController("idle")->Act(agent.view(), action);
     for (int k = 0; k < s.action_size(); ++k) EXPECT_EQ(action[k], 0.0F);
   }
 }

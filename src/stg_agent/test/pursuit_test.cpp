@@ -3,17 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "auv_common/error.hpp"
+#include <vector>
 
 namespace stg::agent {
 namespace {
 
 using V = Vec3<double>;
 
+/// Neighbours at these offsets.
+template <class T>
+std::vector<NeighbourSight<T>> At(const std::vector<Vec3<T>>& offsets) {
+  std::vector<NeighbourSight<T>> sights(offsets.size());
+  for (std::size_t j = 0; j < offsets.size(); ++j) sights[j].r_BN_W = offsets[j];
+  return sights;
+}
+
 TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
   const dynamics::VehicleConfig vehicle;
-  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  const PursuitOptions o = TunedPursuit();
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m, 0.0}, V{0.01, 0.0, -0.02}, nullptr, 0, a);
   EXPECT_NEAR(a[0] * vehicle.max_velocity_mps[0], 0.01, 1e-15);
@@ -23,7 +30,7 @@ TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
 
 TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
   const dynamics::VehicleConfig vehicle;
-  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  const PursuitOptions o = TunedPursuit();
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.03, 0.0, 0.04}, V{}, nullptr, 0, a);
   EXPECT_NEAR(a[0] * 1.5, 4.66 * (0.05 - 0.009) * 0.6, 1e-15);
@@ -35,84 +42,58 @@ TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
 
 TEST(Pursuit, NeighboursRepelWithinTheirRangeOnly) {
   const dynamics::VehicleConfig vehicle;
-  PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  PursuitOptions o = TunedPursuitSeparated();
   double a[3], b[3];
   const V target{0.5, 0.0, 0.0};
-  const V far[] = {{0.0, 0.030001, 0.0}};
+  const auto far = At<double>({{0.0, 0.030001, 0.0}});
   PursuitAction<double>(o, vehicle, target, V{}, nullptr, 0, a);
-  PursuitAction<double>(o, vehicle, target, V{}, far, 1, b);
+  PursuitAction<double>(o, vehicle, target, V{}, far.data(), 1, b);
   EXPECT_EQ(a[1], b[1]);
-  const V near[] = {{0.0, 0.01, 0.0}};
-  PursuitAction<double>(o, vehicle, target, V{}, near, 1, b);
+  const auto near = At<double>({{0.0, 0.01, 0.0}});
+  PursuitAction<double>(o, vehicle, target, V{}, near.data(), 1, b);
   EXPECT_NEAR((b[1] - a[1]) * 0.5, -2.0 * (0.03 - 0.01), 1e-15);
   EXPECT_EQ(a[0], b[0]);
 }
 
 TEST(Pursuit, CloseToTheTargetRepulsionLeavesTheDistanceAlone) {
   const dynamics::VehicleConfig vehicle;
-  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  const PursuitOptions o = TunedPursuitSeparated();
   const V target{o.standoff_m, 0.0, 0.0};
-  const V neighbours[] = {{0.01, 0.01, 0.0}, {-0.005, 0.0, 0.012}};
+  const auto neighbours = At<double>({{0.01, 0.01, 0.0}, {-0.005, 0.0, 0.012}});
   double a[3];
-  PursuitAction<double>(o, vehicle, target, V{}, neighbours, 2, a);
+  PursuitAction<double>(o, vehicle, target, V{}, neighbours.data(), 2, a);
   EXPECT_NEAR(a[0], 0.0, 1e-15);
   EXPECT_LT(a[1], -1e-3);
   EXPECT_LT(a[2], -1e-3);
 }
 
 TEST(Pursuit, ZeroOffsetsAreFiniteAndRepelNothing) {
-  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
-  const V zero[1];
+  const PursuitOptions o = TunedPursuitSeparated();
+  const auto zero = At<double>({{}});
   double a[3];
-  PursuitAction<double>(o, dynamics::VehicleConfig(), V{}, V{}, zero, 1, a);
+  PursuitAction<double>(o, dynamics::VehicleConfig(), V{}, V{}, zero.data(), 1, a);
   for (const double x : a) EXPECT_EQ(x, 0.0);
 }
 
 TEST(Pursuit, PacksAndScalarsAgreeBitForBit) {
-  const PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuitSeparated);
+  const PursuitOptions o = TunedPursuitSeparated();
   for (int n = 0; n < 200; ++n) {
     const double t = 0.01 * n;
     const V r{0.1 * std::sin(7 * t), 0.2 * t - 0.1, 0.03}, v{0.01, -t * 0.01, 0.0};
     const V near[] = {{0.01 * t, 0.005, -0.01}, {0.02, 0.0, 0.01 * t}};
-    const Vec3<Pack> near_pack[] = {Broadcast(near[0]), Broadcast(near[1])};
+    const auto one = At<double>({near[0], near[1]});
+    const auto packs = At<Pack>({Broadcast(near[0]), Broadcast(near[1])});
     double a[3];
     Pack b[3];
-    PursuitAction<double>(o, dynamics::VehicleConfig(), r, v, near, 2, a);
-    PursuitAction<Pack>(o, dynamics::VehicleConfig(), Broadcast(r), Broadcast(v), near_pack, 2, b);
+    PursuitAction<double>(o, dynamics::VehicleConfig(), r, v, one.data(), 2, a);
+    PursuitAction<Pack>(o, dynamics::VehicleConfig(), Broadcast(r), Broadcast(v), packs.data(), 2,
+                        b);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(a[k], Lane(b[k], kLanes - 1));
   }
 }
 
-TEST(Pursuit, NamesParseToTheirKindAndNothingElseDoes) {
-  for (const auto k : {BuiltinKind::kIdle, BuiltinKind::kPursuit, BuiltinKind::kPursuitSeparated}) {
-    BuiltinKind parsed;
-    PursuitOptions options;
-    ASSERT_TRUE(ParseBuiltin(ToString(k), &parsed, &options));
-    EXPECT_EQ(parsed, k);
-  }
-  BuiltinKind kind;
-  PursuitOptions options;
-  for (const char* name : {"", "Pursuit", "pursuit ", "pursuit.onnx"}) {
-    EXPECT_FALSE(ParseBuiltin(name, &kind, &options)) << name;
-  }
-}
-
-TEST(Pursuit, ANameMayCarryConstantsAndAWrongOneIsRefused) {
-  BuiltinKind kind;
-  PursuitOptions options;
-  ASSERT_TRUE(ParseBuiltin("pursuit_separated:gain=2.5,feedforward=1.2", &kind, &options));
-  EXPECT_EQ(kind, BuiltinKind::kPursuitSeparated);
-  EXPECT_EQ(options.gain_per_s, 2.5);
-  EXPECT_EQ(options.feedforward, 1.2);
-  EXPECT_EQ(options.standoff_m, BuiltinOptions(kind).standoff_m);
-  for (const char* bad : {"pursuit:gain", "pursuit:gain=", "pursuit:gain=2x", "pursuit:gain=nan",
-                          "pursuit:gain=-1", "pursuit:cap=1.1", "pursuit:speed=1"}) {
-    EXPECT_THROW(ParseBuiltin(bad, &kind, &options), UserError) << bad;
-  }
-}
-
 TEST(Pursuit, ApproachIsUnhurriedAndTheHoldStaysStiff) {
-  PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  PursuitOptions o = TunedPursuit();
   o.gain_per_s = 3.0;
   o.approach_speed_mps = 0.01;
   o.approach_gain_per_s = 0.5;
@@ -146,7 +127,7 @@ TEST(Pursuit, WithoutAMarginTheWallChangesNothing) {
 }
 
 TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
-  PursuitOptions o = BuiltinOptions(BuiltinKind::kPursuit);
+  PursuitOptions o = TunedPursuit();
   o.feedforward = 1.5;
   const dynamics::VehicleConfig vehicle;
   double a[3];

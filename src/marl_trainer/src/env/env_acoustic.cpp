@@ -7,9 +7,9 @@ namespace stg::env {
 
 EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   const auto n = static_cast<size_t>(s.agents);
-  const agent::Agent first(s, 0);
+  const auto constants = std::make_shared<const agent::AgentConstants>(s);
   agents.reserve(n);
-  for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
+  for (int i = 0; i < s.agents; ++i) agents.emplace_back(constants, i);
   for (int lane = 0; lane < kLanes; ++lane)
     channels.push_back(acoustics::MakeChannel(s.channel, s));
   packets.resize(n);
@@ -35,9 +35,9 @@ Pack EnvGroup::Acoustic::MeanLinkQuality() const {
   return sum / Pack(scenario.agents);
 }
 
-const agent::Agent& EnvGroup::agent(int lane, int i) const {
+agent::AgentView EnvGroup::agent(int lane, int i) const {
   assert(acoustic_);
-  return acoustic_->agents[static_cast<size_t>(i)].agent(lane);
+  return acoustic_->agents[static_cast<size_t>(i)].view(lane);
 }
 
 const acoustics::Channel& EnvGroup::channel(int lane) const {

@@ -5,9 +5,9 @@
 #include <mutex>
 #include <thread>
 
+#include "acoustic_channel/link/link_quality.hpp"
 #include "auv_common/error.hpp"
-#include "auv_dynamics/control/control.hpp"
-#include "stg_agent/agent/agent.hpp"
+#include "stg_agent/agent/agent_view.hpp"
 
 namespace stg::env {
 namespace {
@@ -15,27 +15,24 @@ namespace {
 void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
   const Scenario& s = env.scenario();
   const int n = env.agents(), size = env.action_size();
-  std::vector<Vec3<Pack>> neighbours(static_cast<size_t>(n));
+  std::vector<agent::NeighbourSight<Pack>> neighbours(static_cast<size_t>(n));
   for (int i = 0; i < n; ++i) {
     int count = 0;
     for (int j = 0; j < n; ++j) {
-      if (j != i) {
-        neighbours[static_cast<size_t>(count++)] =
-            env.world().vehicle(j).p_WB - env.world().vehicle(i).p_WB;
-      }
+      if (j == i) continue;
+      agent::NeighbourSight<Pack>& seen = neighbours[static_cast<size_t>(count++)];
+      seen.known = Pack(1.0);
+      seen.p_W = seen.p_WN = env.world().vehicle(j).p_WB;
+      seen.v_W = env.world().vehicle(j).v_WB;
+      seen.tracking_error = env.truth(j).error;
+      seen.r_BN_W = seen.p_WN - env.world().vehicle(i).p_WB;
+      seen.distance_m = env.world().distance(i, j);
+      seen.link_quality = acoustics::RangeQuality(seen.distance_m, s.channel.range_m);
     }
-    Pack a[6];
-    const agent::Knowledge<Pack>& k = env.truth(i);
-    agent::PursuitAction(c.options, s, k, neighbours.data(), count, a);
-    if (s.control.interface == dynamics::ActionInterface::kTau6) {
-      const dynamics::VehicleState<Pack>& v = env.world().vehicle(i);
-      Pack fraction[6];
-      dynamics::VelocityController(s.control, s.vehicle, dynamics::DesiredVelocity(s.vehicle, a),
-                                   v.R_WB, v.v_WB, RpyOf(v.trig), v.w_WB_B, fraction);
-      std::copy(fraction, fraction + 6, a);
-    }
+    Pack a[dynamics::kMaxActionSize];
+    c.builtin->Act({s, i, env.truth(i), neighbours.data(), count}, a);
     for (int lane = 0; lane < kLanes; ++lane) {
-      for (int k2 = 0; k2 < size; ++k2) actions[(lane * n + i) * size + k2] = Lane(a[k2], lane);
+      for (int k = 0; k < size; ++k) actions[(lane * n + i) * size + k] = Lane(a[k], lane);
     }
   }
 }
@@ -45,7 +42,8 @@ void DecideTruth(const Controller& c, const EnvGroup& env, double* actions) {
 Controller MakeController(const std::string& name, const Scenario& scenario) {
   Controller c;
   c.name = name;
-  if (agent::ParseBuiltin(name, &c.builtin, &c.options)) return c;
+  c.builtin = agent::MakeController(name);
+  if (c.builtin) return c;
   auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(name));
   policy->RequireFits(scenario);
   c.policy = policy;
@@ -55,22 +53,18 @@ Controller MakeController(const std::string& name, const Scenario& scenario) {
 void Decide(const Controller& c, const EnvGroup& env, double* actions) {
   const int n = env.agents(), size = env.action_size();
   const int rows = kLanes * n;
-  if (c.policy == nullptr && c.builtin == agent::BuiltinKind::kIdle) {
-    std::fill(actions, actions + rows * size, 0.0);
-    return;
-  }
   const bool truth = c.privileged || env.scenario().mode == InformationMode::kTruth;
   if (c.policy == nullptr && truth) {
     DecideTruth(c, env, actions);
     return;
   }
-  float a[6];
+  float a[dynamics::kMaxActionSize];
   for (int row = 0; row < rows; ++row) {
     if (c.policy != nullptr) {
       c.policy->Mean(env.observations() + static_cast<std::ptrdiff_t>(row) * env.observation_size(),
                      a);
     } else {
-      agent::BuiltinAction(c.builtin, c.options, env.agent(row / n, row % n), a);
+      c.builtin->Act(env.agent(row / n, row % n), a);
     }
     for (int k = 0; k < size; ++k) actions[row * size + k] = static_cast<double>(a[k]);
   }

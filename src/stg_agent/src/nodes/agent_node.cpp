@@ -18,8 +18,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-constexpr std::size_t kMaxPending = 100;     // messages kept for a step that may never come
-constexpr std::uint32_t kLayoutVersion = 1;  // "stg-1"
+constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may never come
 
 }  // namespace
 
@@ -52,7 +51,7 @@ AgentNode::AgentNode()
       step_message_.header.frame_id = body_frame_;
   packet_message_.source = step_message_.agent = static_cast<std::uint32_t>(id_);
   packet_message_.destination = acoustics::kToAll;
-  step_message_.observation_layout = kLayoutVersion;
+  step_message_.observation_layout = agent::kLayoutVersion;
 
   subscribers_.push_back(
       node.subscribe(own(topics::kOdom), kQueue, &AgentNode::OnOdometry, this, NoDelay()));
@@ -304,12 +303,11 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("steps skipped", skipped_steps_);
   status.add("reception windows missing", missing_windows_);
   status.add("detections missing", missing_detections_);
-  status.add("packets that did not decode", agent_.refused_packets());
+  const agent::AgentView view = agent_.view();
+  status.add("packets that did not decode", view.refused_packets());
   double age = 0.0;
-  for (const int id : agent_.neighbours().known()) {
-    age = std::max(age, agent_.neighbours().at(id).age_s);
-  }
-  status.add("neighbours known", agent_.neighbours().known().size());
+  for (const int id : view.neighbours().known()) age = std::max(age, view.sight(id).age_s);
+  status.add("neighbours known", view.neighbours().known().size());
   status.add("age of information, largest [s]", age);
   refused_odometry_.Report(topics::kOdom, &status);
   refused_detections_.Report(topics::kTargetDetection, &status);

@@ -12,7 +12,7 @@
 #include "stg_agent/graph/observation.hpp"
 
 namespace stg::agent {
-class Agent;
+class AgentView;
 }
 namespace stg::acoustics {
 class Channel;
@@ -87,7 +87,7 @@ class EnvGroup {
 
   // For built-in controllers, tests and traces.
   const dynamics::World& world() const { return world_; }
-  const agent::Agent& agent(int lane, int i) const;   ///< acoustic mode
+  agent::AgentView agent(int lane, int i) const;      ///< acoustic mode
   const acoustics::Channel& channel(int lane) const;  ///< acoustic mode
   const task::RewardTerms<Pack>& terms(int i) const { return terms_[static_cast<size_t>(i)]; }
   const agent::Knowledge<Pack>& truth(int i) const { return truth_[static_cast<size_t>(i)]; }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "marl_trainer/task/reward_config.hpp"
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 
 namespace stg {
 
