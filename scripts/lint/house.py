@@ -171,23 +171,32 @@ def check_topics(source=SOURCE):
     return f"{len(named)} names", findings
 
 
+FORWARD = re.compile(r"namespace \w[\w:]* \{(\s*(class|struct) \w+;)+\s*\}")
+
+
+def _outer_namespaces(lines):
+    """Yields (line number, name) of each namespace that is not within another and holds more than
+    forward declarations."""
+    depth = 0
+    for number, line in enumerate(lines, start=1):
+        match = re.match(r"namespace (\w[\w:]*) \{", line)
+        if match and depth == 0 and not FORWARD.match("\n".join(lines[number - 1 :])):
+            yield number, match.group(1)
+        braces = re.sub(r'"[^"]*"|\'.\'', "", line)
+        depth += braces.count("{") - braces.count("}")
+
+
 def check_namespaces(source=SOURCE):
     """Looks for code outside the namespaces of its package."""
     findings = []
     looked_at = 0
     for path, lines in _product(source):
-        opened = [
-            (number, match.group(1))
-            for number, line in enumerate(lines, start=1)
-            for match in [re.match(r"namespace (\w[\w:]*) \{", line)]
-            if match
-        ]
         ours = NODE_NAMESPACES
         if part_of(path) == "core":
             ours = CORE_NAMESPACES.get(path.parts[0], ())
         ours = SHARED_NAMESPACES.get(logical(path).parts[:2], ours)
         looked_at += 1
-        for number, name in opened:
+        for number, name in _outer_namespaces(lines):
             if not any(name == own or name.startswith(own + "::") for own in ours):
                 findings.append(f"src/{path}:{number}: namespace {name}: not one of {', '.join(ours)}")
     return f"{looked_at} files", findings

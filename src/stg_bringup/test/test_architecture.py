@@ -209,7 +209,7 @@ class Namespaces(Rule):
     def test_each_part_has_its_own(self):
         self.assert_clean(
             {
-                "auv_common/src/a.cpp": "namespace stg {\nnamespace {\n",
+                "auv_common/src/a.cpp": "namespace stg {\nnamespace inner {\n}\n}\n",
                 "auv_common/src/config/a.cpp": "namespace stg::config {\n",
                 "auv_dynamics/src/a.cpp": "namespace fs = std::filesystem;\nnamespace stg::dynamics {",
                 "auv_dynamics/src/nodes/a.cpp": "namespace stg::nodes {\n",
@@ -217,6 +217,11 @@ class Namespaces(Rule):
                 "marl_trainer/src/learn/nn/a.cpp": "namespace stg::learn::nn {\n",
             }
         )
+
+    def test_a_forward_declaration_of_another_is_no_code(self):
+        path = "marl_trainer/include/marl_trainer/env/env.hpp"
+        self.assert_clean({path: "namespace stg::agent {\nclass Agent;\nstruct Packet;\n}\n"})
+        self.assert_found({path: "namespace stg::agent {\nclass Agent;\nint f();\n}\n"}, "agent")
 
     def test_that_of_another_is_found(self):
         for path, name in (
