@@ -181,6 +181,20 @@ TEST(StepBarrier, AnExcusedPartyIsNotWaitedForAndMissesNothing) {
   EXPECT_EQ(barrier.deadline_s(), 7.0) << "what was not asked owes nothing";
 }
 
+TEST(StepBarrier, WhoIsAskedNowAndThenOwesAnAnswerInBetween) {
+  // Asked in each third step; every step is left behind before patience with it ends.
+  StepBarrier barrier(1);
+  for (int k = 0; k < 9; ++k) {
+    const double now = 1.0 * k;
+    barrier.Open(kFirst + k * kStep, now + 5.0);
+    if (k % 3 != 0) barrier.Excuse(0);
+    EXPECT_EQ(barrier.GiveUp(now), k == 6 ? Parties{0} : Parties{}) << "step " << k;
+    barrier.Close();
+  }
+  EXPECT_EQ(barrier.losses(0), 1u);
+  EXPECT_EQ(barrier.misses(0), 3u) << "of the steps that asked";
+}
+
 TEST(StepBarrier, ARepeatedOpeningChangesNothing) {
   StepBarrier barrier(2);
   barrier.Open(kFirst, 5.0);

@@ -54,6 +54,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   } else {
     complete_ = complete_ && frame.truth->step == step_ + 1;
     const std::vector<float> state(env_.states(), env_.states() + env_.state_size());
+    TakeWrenches(*frame.truth);
     env_.FollowStep(swarm_);
     FillReport(frame, state, &verdict);
     const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
@@ -66,7 +67,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   episode_ = frame.truth->episode;
   step_ = frame.truth->step;
   seed_ = frame.truth->seed;
-  if (started_) TakeAnswers(frame);
+  if (started_) TakeActions(frame);
   return verdict;
 }
 
@@ -86,26 +87,29 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
   swarm_.link_quality = sum / static_cast<double>(frame.tasks.size());
 }
 
-/// What the decision at this frame commands; it is judged with the next frame.
-void EpisodeJudge::TakeAnswers(const SwarmFrame& frame) {
-  bool missed = false;
+/// What acted on the AUVs until this frame.
+void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
   for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
-    if (!frame.wrenches[i]) {
-      missed = true;  // the world holds the last one, and so does this
-    } else {
-      const auto& w = frame.wrenches[i]->wrench;
-      const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
-      for (std::size_t k = 0; k < 6; ++k) {
-        swarm_.fractions[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
-      }
+    const auto& w = truth.wrenches[i];
+    const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
+    for (std::size_t k = 0; k < 6; ++k) {
+      swarm_.fractions[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
     }
+  }
+  const bool missed =
+      std::any_of(truth.fresh.begin(), truth.fresh.end(), [](const auto fresh) { return !fresh; });
+  if (missed) ++deadline_misses_;
+}
+
+/// What the decision at this frame wants; it is judged with the next frame.
+void EpisodeJudge::TakeActions(const SwarmFrame& frame) {
+  for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
     const auto& task = frame.tasks[i];
     if (!task) continue;
     std::copy_n(task->action.begin(), std::min<std::size_t>(6, task->action.size()),
                 swarm_.actions[i].begin());
     policy_id_ = task->policy_id;
   }
-  if (missed) ++deadline_misses_;
 }
 
 void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>& state,

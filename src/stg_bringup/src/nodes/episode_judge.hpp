@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marl_trainer/env/env.hpp"
-#include "swarm_frames.hpp"
+#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 
@@ -35,7 +35,8 @@ class EpisodeJudge {
 
  private:
   void SetTruth(const SwarmFrame& frame);
-  void TakeAnswers(const SwarmFrame& frame);
+  void TakeWrenches(const auv_msgs::SwarmState& truth);
+  void TakeActions(const SwarmFrame& frame);
   void FillReport(const SwarmFrame& frame, const std::vector<float>& state, Verdict* verdict) const;
   void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics,
                    Verdict* verdict) const;
