@@ -92,7 +92,7 @@ class Includes(Rule):
             self.assert_found({f"{ours}/src/a.cpp": f'# include "{theirs}/b.hpp"\n'}, theirs)
 
     def test_ros_and_messages_are_for_nodes_alone(self):
-        for header in ("<ros/time.h>", '"auv_msgs/SensorSync.h"', '"auv_common/nodes/health.hpp"'):
+        for header in ("<ros/time.h>", '"auv_msgs/SensorFrame.h"', '"auv_common/nodes/health.hpp"'):
             text = f"#include {header}\n"
             self.assert_found({"auv_dynamics/include/auv_dynamics/a.hpp": text}, "ROS")
             self.assert_clean({"auv_dynamics/src/nodes/main.cpp": text})

@@ -45,12 +45,34 @@ class Equations(unittest.TestCase):
         wanted = {f"({n})" for n in range(1, 45)} | {"Algorithm S1", "Algorithm S2"}
         self.assertEqual(named, wanted)
 
-    def test_every_file_exists_and_contains_the_name(self):
+    @staticmethod
+    def declaration(name):
+        """Returns a pattern of what declares `name`: a type, a function, a member, an enumerator."""
+        if re.match(r"k[A-Z]", name):
+            return rf"\b{name}\b *[,}}=]"
+        kind = rf"\b(?:class|struct|using|enum class) {name}\b"
+        typed = rf"^(?! *return\b)[^=(;\n]*[\w>&*] +(?:\w+::)*{name} *[(=;{{]"
+        return f"{kind}|{typed}"
+
+    def test_every_file_exists_and_declares_the_name(self):
         for equation, path, name in equation_rows():
             with self.subTest(equation):
                 self.assertTrue(path in named_sources(), f"{path} does not exist")
                 code = re.sub(r"//.*", "", named_sources()[path].read_text())
-                self.assertRegex(code, rf"\b{re.escape(name)}\b", path)
+                found = re.search(self.declaration(name), code, re.MULTILINE)
+                self.assertTrue(found, f"{path} does not declare {name}")
+
+    def test_a_use_is_no_declaration(self):
+        uses = "  Reward(k);\n  return Reward(k);\n  x = Reward(k);\n  if (Reward(k) > 0) {\n  Add(Reward)"
+        self.assertIsNone(re.search(self.declaration("Reward"), uses, re.MULTILINE))
+        for text in (
+            "class Reward {",
+            "inline T Reward(const T& x)",
+            "void World::Reward()",
+            "  double Reward = 0.9;",
+            "  std::vector<T> Reward(int n) const;",
+        ):
+            self.assertIsNotNone(re.search(self.declaration("Reward"), text, re.MULTILINE), text)
 
 
 class Links(unittest.TestCase):
