@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/range.hpp"
 #include "auv_common/error.hpp"
 #include "stg_agent/agent/agent_view.hpp"
 

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/extended.hpp"
+#include "acoustic_channel/models/range.hpp"
 #include "agent_fixture.hpp"
 
 namespace stg::agent {
