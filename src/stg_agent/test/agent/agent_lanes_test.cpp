@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "agent_fixture.hpp"
+#include "agent/agent_fixture.hpp"
 
 namespace stg::agent {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "agent_fixture.hpp"
+#include "agent/agent_fixture.hpp"
 
 namespace {
 bool counting = false;

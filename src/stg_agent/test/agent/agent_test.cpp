@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "agent_fixture.hpp"
+#include "agent/agent_fixture.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "stg_agent/controllers/controller.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "agent_fixture.hpp"
+#include "agent/agent_fixture.hpp"
 #include "auv_common/error.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 

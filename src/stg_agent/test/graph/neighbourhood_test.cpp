@@ -4,22 +4,10 @@
 
 #include "acoustic_channel/models/extended.hpp"
 #include "acoustic_channel/models/range.hpp"
-#include "agent_fixture.hpp"
+#include "agent/agent_fixture.hpp"
 
 namespace stg::agent {
 namespace {
-
-constexpr TimeNs kSecond = 1'000'000'000;
-
-NeighbourState State(int source, TimeNs generation, const Vec3<double>& p,
-                     const Vec3<double>& v = {}) {
-  NeighbourState s;
-  s.source = source;
-  s.generation = generation;
-  s.p_W = p;
-  s.v_W = v;
-  return s;
-}
 
 /// Carries one lane's neighbours to a time, seen from p_WB.
 void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& p_WB,
@@ -30,7 +18,7 @@ void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& 
 
 TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
   Neighbourhood<double> neighbours(AgentConfig(), 0);
-  neighbours.Set(0, State(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0}));
+  neighbours.Set(0, Report(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0}));
   Predict(&neighbours, 3 * kSecond, {0.3, 0.0, 0.0});
   const NeighbourSight<double>& n = neighbours.sights()[2];
   EXPECT_EQ(n.known, 1.0);
@@ -43,7 +31,7 @@ TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
 
 TEST(Neighbourhood, DeadReckoningStopsAtTheWalls) {
   Neighbourhood<double> neighbours(AgentConfig(), 0);
-  neighbours.Set(0, State(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
+  neighbours.Set(0, Report(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
   Predict(&neighbours, 5 * kSecond, {});
   EXPECT_DOUBLE_EQ(neighbours.sights()[1].p_WN.x, 1.0);
 }
@@ -51,7 +39,7 @@ TEST(Neighbourhood, DeadReckoningStopsAtTheWalls) {
 TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsDropped) {
   Neighbourhood<Pack> neighbours(AgentConfig(), 0);  // 10 s
   const int last = kLanes - 1;
-  neighbours.Set(last, State(1, 0, {}));
+  neighbours.Set(last, Report(1, 0, {}));
   const auto old = [&](TimeNs now) {
     return Select(neighbours.Age(Pack(static_cast<double>(now))), Pack(1.0), Pack(0.0));
   };
@@ -72,7 +60,7 @@ TEST(Neighbourhood, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
       s.channel.model = model;
       Neighbourhood<double> neighbours(s, 1);
       for (int i = agents - 1; i >= 0; --i) {
-        if (i != 1) neighbours.Set(0, State(i, i * kSecond / 10, {0.03 * i, 0.1, 0.0}));
+        if (i != 1) neighbours.Set(0, Report(i, i * kSecond / 10, {0.03 * i, 0.1, 0.0}));
       }
       Predict(&neighbours, 3 * kSecond, {}, s);
       for (int i = 0; i < agents; ++i) {
@@ -95,7 +83,7 @@ TEST(AgentView, NearestAreSortedAndTiesGoToTheLowerIndex) {
   agent.Reset(0, CueAt({}));
   const double x[] = {0.0, 0.5, 0.2, 0.9, 0.2, 0.1, 0.7, 0.4};
   for (int i = 1; i < 8; ++i) {
-    NeighbourState n = State(i, 0, {x[i], 0.0, 0.0});
+    NeighbourState n = Report(i, 0, {x[i], 0.0, 0.0});
     n.tracking_error = 0.01 * i;  // tells them apart
     agent.Receive(Heard(s, n, 0));
   }

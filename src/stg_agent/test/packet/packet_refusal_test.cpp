@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "auv_common/error.hpp"
-#include "packet_examples.hpp"
+#include "packet/packet_examples.hpp"
 
 namespace stg::agent {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "auv_common/error.hpp"
-#include "packet_examples.hpp"
+#include "packet/packet_examples.hpp"
 
 namespace stg::agent {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "auv_common/error.hpp"
-#include "policy_files.hpp"
+#include "policy/policy_files.hpp"
 
 namespace stg::agent {
 namespace {

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "auv_common/error.hpp"
-#include "policy_files.hpp"
+#include "policy/policy_files.hpp"
 
 namespace {
 std::atomic<long> allocations{0};

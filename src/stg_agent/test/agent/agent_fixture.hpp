@@ -5,11 +5,23 @@
 #include <vector>
 
 #include "auv_common/numbers/attitude.hpp"
+#include "packet/packet_examples.hpp"
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::agent {
 
 inline constexpr TimeNs kStep = 100'000'000;
+
+/// What a neighbour at a position says.
+inline NeighbourState Report(int source, TimeNs generation, const Vec3<double>& p_W,
+                             const Vec3<double>& v_W = {}) {
+  NeighbourState s;
+  s.source = source;
+  s.generation = generation;
+  s.p_W = p_W;
+  s.v_W = v_W;
+  return s;
+}
 
 /// A level, unturned AUV at a position with a world velocity.
 inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB,
