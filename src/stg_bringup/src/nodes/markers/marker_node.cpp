@@ -23,6 +23,7 @@
 #include "marker_builder.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "swarm_view.hpp"
+#include "topics.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -73,9 +74,9 @@ class MarkerNode {
     const double rate_hz = private_nh_.param("rate_hz", 20.0);
     if (!(rate_hz > 0.0)) throw std::invalid_argument("rate_hz must be positive");
 
-    overview_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>("overview", 1);
-    close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>("close", 1);
-    scenario_sub_ = nh_.subscribe("/scenario", 1, &MarkerNode::OnScenario, this);
+    overview_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kOverview, 1);
+    close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kClose, 1);
+    scenario_sub_ = nh_.subscribe(topics::kScenario, 1, &MarkerNode::OnScenario, this);
     links_sub_ = nh_.subscribe(topics::kLinks, 50, &MarkerNode::OnLinks, this);
     const std::string file = private_nh_.param("scenario_file", std::string());
     if (!file.empty()) ReadScenarioFile(file);
