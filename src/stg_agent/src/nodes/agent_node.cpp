@@ -37,8 +37,8 @@ AgentNode::AgentNode()
       body_frame_(frames::Body(id_)),
       agent_(scenario_, id_),
       turns_(scenario_.channel, scenario_),
-      decider_(
-          std::make_unique<const Decider>(TextParameter("policy", "pursuit_separated"), scenario_)),
+      decider_(std::make_unique<const Decider>(TextParameter("policy", agent::DefaultController()),
+                                               scenario_)),
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),

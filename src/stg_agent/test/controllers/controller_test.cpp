@@ -33,6 +33,7 @@ std::string ErrorOf(const std::string& text) {
 TEST(Controllers, AreFoundByNameAndNothingElseIs) {
   for (const std::string& name : kBuiltIn) EXPECT_NE(MakeController(name), nullptr) << name;
   EXPECT_EQ(Controllers().Names(), kBuiltIn);
+  EXPECT_TRUE(Controllers().Has(DefaultController()));
   for (const char* name : {"", "Pursuit", "pursuit ", "pursuit.onnx"}) {
     EXPECT_EQ(MakeController(name), nullptr) << name;
   }

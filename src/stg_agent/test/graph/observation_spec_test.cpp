@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "stg_agent/graph/observation.hpp"
@@ -104,6 +106,22 @@ TEST(ObservationSpec, EveryBlockIsDescribedByANameOfItsOwn) {
     names.insert(block.name);
   }
   EXPECT_EQ(static_cast<int>(names.size()), kBlockCount);
+}
+
+TEST(ObservationSpec, TheDocumentationsTableIsThisOne) {
+  std::ifstream file(STG_AGENT_PAGE);
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_FALSE(page.empty()) << STG_AGENT_PAGE;
+  const ObservationSpec spec{ObservationConfig()};
+  std::string table = "| block | numbers | content |\n|---|---|---|\n";
+  for (int b = 0; b < kBlockCount; ++b) {
+    const int first = spec.offset(static_cast<Block>(b));
+    const int last = first + spec.size(static_cast<Block>(b)) - 1;
+    table += std::string("| `") + kBlocks[b].name + "` | " + std::to_string(first);
+    if (last > first) table += ".." + std::to_string(last);
+    table += std::string(" | ") + kBlocks[b].content + " |\n";
+  }
+  EXPECT_NE(page.find(table + "\n"), std::string::npos) << "it should read\n" << table;
 }
 
 }  // namespace
