@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "auv_common/names.hpp"
+
 namespace stg::config {
 namespace {
 
@@ -47,15 +49,6 @@ std::string FormatWord(const std::string& word) {
     if (word == special) return "\"" + word + "\"";
   }
   return word;
-}
-
-bool IsName(const std::string& text) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  if (text.empty() || text.size() > 64 || !letter(text[0])) return false;
-  for (const char c : text) {
-    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-') return false;
-  }
-  return true;
 }
 
 std::optional<std::string> CheckNumbers(const Field& field, const double* values, int size) {
@@ -163,6 +156,14 @@ struct Assign {
 
 }  // namespace
 
+EnumRef Name(std::string* value, std::vector<std::string> names) {
+  const auto index = [value, names] {
+    const auto found = std::find(names.begin(), names.end(), *value);
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  };
+  return {names, index, [value, names](int i) { *value = names[static_cast<std::size_t>(i)]; }};
+}
+
 std::string KindName(const YamlTree& node) {
   switch (node.kind) {
     case YamlTree::Kind::kNull:
@@ -205,11 +206,7 @@ std::string FormatRange(const Field& field) {
                [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },
                [](bool*) { return std::string("true | false"); },
                [](std::string*) { return std::string("a letter, then letters, digits, _ or -"); },
-               [](const EnumRef& v) {
-                 std::string names;
-                 for (const auto& name : v.names) names += (names.empty() ? "" : " | ") + name;
-                 return names;
-               },
+               [](const EnumRef& v) { return JoinNames(v.names); },
                [&](const NumbersRef&) { return range; },
                [&](Interval*) { return range + ", low <= high"; }},
       field.value);

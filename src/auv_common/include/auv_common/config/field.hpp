@@ -41,10 +41,10 @@ inline Limits Within(double lo, double hi) { return {lo, hi, false}; }
 inline constexpr Limits kFraction{0.0, 1.0, false};
 inline constexpr Limits kNone{};  ///< of keys that are not numbers
 
-/// An enumeration by its names; an index is the enumerator's value.
+/// A choice among names; an index is the position of one, as in an enumeration.
 struct EnumRef {
   std::vector<std::string> names;
-  std::function<int()> get;
+  std::function<int()> get;  ///< -1: none of the names
   std::function<void(int)> set;
 };
 
@@ -53,6 +53,10 @@ EnumRef Enum(E* value, std::vector<std::string> names) {
   return {std::move(names), [value] { return static_cast<int>(*value); },
           [value](int index) { *value = static_cast<E>(index); }};
 }
+
+/// One of these names, kept as text: what a registry makes (auv_common/registry.hpp), for which the
+/// names are those registered when the section is described.
+EnumRef Name(std::string* value, std::vector<std::string> names);
 
 /// A fixed number of doubles, written as a sequence.
 struct NumbersRef {

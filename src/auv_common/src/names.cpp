@@ -1,0 +1,63 @@
+#include "auv_common/names.hpp"
+
+#include <algorithm>
+
+#include "auv_common/config/yaml_tree.hpp"
+
+namespace stg {
+
+bool IsName(const std::string& text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (text.empty() || text.size() > 64 || !letter(text[0])) return false;
+  for (const char c : text) {
+    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-') return false;
+  }
+  return true;
+}
+
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string NearestName(const std::string& text, const std::vector<std::string>& names) {
+  constexpr std::size_t kLongest = 200;  // what is longer is no slip of the pen
+  if (text.size() > kLongest) return "";
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, text.size() / 3) + 1;
+  for (const std::string& name : names) {
+    const std::size_t distance = EditDistance(text, name);
+    if (distance < least) {
+      least = distance;
+      best = name;
+    }
+  }
+  return best;
+}
+
+std::string JoinNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " | ") + name;
+  return text;
+}
+
+UserError UnknownName(const std::string& kind, const std::string& name,
+                      const std::vector<std::string>& names) {
+  std::string text =
+      "unknown " + kind + " " + config::Quoted(name) + ", expected one of " + JoinNames(names);
+  const std::string nearest = NearestName(name, names);
+  if (!nearest.empty()) text += "; did you mean " + nearest + "?";
+  return UserError(text);
+}
+
+}  // namespace stg
