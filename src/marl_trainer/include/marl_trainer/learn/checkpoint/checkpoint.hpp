@@ -4,9 +4,8 @@
 #include <optional>
 #include <ostream>
 #include <string>
-#include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
+#include "marl_trainer/learn/checkpoint/archive.hpp"
 
 namespace stg::learn {
 
@@ -15,33 +14,31 @@ namespace stg::learn {
 /// described by the number of that episode; random draws are counter-based and
 /// need no state.
 struct TrainState {
-  std::vector<float> parameters;
-  AdamState adam;
-  std::vector<double> observation_moments, state_moments, value_moments;
   std::int64_t env_steps = 0;
   std::int64_t collections = 0;
   std::uint64_t round = 0;  ///< episode that every environment starts
   double best_return = -1e300;
   double wall_seconds = 0.0;
-  std::string config;    ///< ToJson(TrainConfig), text
+  std::string config;    ///< ToJson(TrainSetup), text
   std::string scenario;  ///< ToYaml(Scenario)
   std::string log;       ///< TrainLog's state, JSON text
+  Archive algorithm;     ///< what Algorithm::Save wrote
 };
 
-/// Writes a temporary file, syncs it to disk and renames it: a crash leaves the
-/// old file or the new one. Versioned header, checksum, then a libtorch archive.
+/// See WriteArchive.
 void SaveCheckpoint(const TrainState& state, const std::string& path);
 
-/// Throws UserError that names the file when it is foreign, of another version,
-/// truncated or damaged.
+/// Throws UserError that names the file, see ReadArchive.
 TrainState LoadCheckpoint(const std::string& path);
 
-/// Folder/checkpoint_<steps>.pt.
+/// Folder/checkpoint_<steps>.ckpt.
 std::string CheckpointPath(const std::string& folder, std::int64_t env_steps);
 /// Removes all but the newest `keep` checkpoints of the folder.
 void PruneCheckpoints(const std::string& folder, int keep);
 /// The newest good checkpoint of the folder; bad ones are reported to `log` and
 /// passed over. Empty when there is none.
 std::optional<TrainState> LoadNewestCheckpoint(const std::string& folder, std::ostream* log);
+/// Whether the file is named as a checkpoint of this or an earlier version.
+bool IsCheckpointName(const std::string& file_name);
 
 }  // namespace stg::learn

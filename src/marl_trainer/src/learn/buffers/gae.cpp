@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/algorithms/mappo/gae.hpp"
+#include "marl_trainer/learn/buffers/gae.hpp"
 
 namespace stg::learn {
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "marl_trainer/learn/algorithm.hpp"
 #include "marl_trainer/task/metrics.hpp"
 
 namespace stg::learn {
@@ -15,15 +16,11 @@ namespace stg::learn {
 struct TrainRecord {
   std::int64_t env_steps = 0, collections = 0;
   double wall_seconds = 0.0;  ///< since the start of the run, interruptions left out
-  double learning_rate = 0.0;
   // Training episodes that ended in this collection, with exploration and the training reward.
   int episodes = 0;
   double train_return = 0.0, train_tail_distance = 0.0, train_lost_rate = 0.0;
-  double reward = 0.0;  ///< mean over steps of the team's reward
-  // Update.
-  double kl = 0.0, clip_fraction = 0.0, actor_loss = 0.0, value_loss = 0.0;
-  double entropy = 0.0, sigma = 0.0, explained_variance = 0.0;
-  double actor_norm = 0.0, critic_norm = 0.0;
+  double reward = 0.0;            ///< mean over steps of the team's reward
+  std::vector<double> algorithm;  ///< what the update reported, see Algorithm::Columns
   // Wall-clock seconds of this collection.
   double env_seconds = 0.0, inference_seconds = 0.0, update_seconds = 0.0, validation_seconds = 0.0;
   double update_flops = 0.0;
@@ -31,12 +28,16 @@ struct TrainRecord {
   task::MetricSummary validation;  ///< deterministic policy; the scenario's own reward
 };
 
+/// The labelled numbers of an update as people read them: "KL 0.0123 clip 0.100".
+std::string ReportText(const std::vector<ReportColumn>& columns, const std::vector<double>& values);
+
 /// Progress lines, progress.csv and the times to the return thresholds.
 class TrainLog {
  public:
-  /// @param out folder; @param resume_at >= 0: keep the CSV's rows up to this step.
-  TrainLog(const std::string& out, std::int64_t resume_at, std::int64_t total_steps,
-           std::ostream* lines);
+  /// @param out folder. @param columns of the algorithm.
+  /// @param resume_at >= 0: keep the CSV's rows up to this step.
+  TrainLog(const std::string& out, std::vector<ReportColumn> columns, std::int64_t resume_at,
+           std::int64_t total_steps, std::ostream* lines);
 
   void Add(const TrainRecord& record);
   /// Writes summary.json.
@@ -53,8 +54,10 @@ class TrainLog {
     std::int64_t steps;
   };
   void PrintLine(const TrainRecord& record);
+  std::string Header() const;
 
   const std::string out_;
+  const std::vector<ReportColumn> columns_;
   const std::int64_t total_steps_;
   std::ostream* lines_;
   std::ofstream csv_;

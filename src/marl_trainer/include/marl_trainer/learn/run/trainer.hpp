@@ -7,15 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/learner.hpp"
-#include "marl_trainer/learn/train_log.hpp"
-#include "marl_trainer/learn/validation.hpp"
+#include "marl_trainer/learn/clock.hpp"
+#include "marl_trainer/learn/collect/collector.hpp"
+#include "marl_trainer/learn/run/run_folder.hpp"
+#include "marl_trainer/learn/run/train_log.hpp"
 
 namespace stg::learn {
 
-/// MAPPO (Eqs. 37-44): collect, update, validate, save; one instance per run.
+/// Collect, update, validate, save: one instance per run, of any algorithm.
 ///
-/// Weights depend on scenario, configuration and seed only, not on the number
+/// Weights depend on scenario, setup and seed only, not on the number
 /// of workers. A run and one that was stopped and resumed are the same bit for
 /// bit: checkpoints are taken at boundaries where every environment starts an
 /// episode. With `stagger`, or a horizon that does not divide the episode, the
@@ -29,49 +30,51 @@ class Trainer {
     std::ostream* log = nullptr;
     /// Set non-zero (by a signal) to save at the next boundary and return.
     const std::atomic<int>* stop = nullptr;
-    /// Scenarios that the training environments cycle through (kLanes at a time), e.g.
+    /// Scenarios that the training environments cycle through, e.g.
     /// stress conditions; empty: the scenario alone. Validation is on the scenario.
     std::vector<Scenario> mix;
     std::int64_t halt_after = 0;  ///< > 0: as if `stop` were set after so many steps
   };
 
-  /// Throws UserError for a bad configuration, a folder that holds another run
+  /// Throws UserError for a bad setup, a folder that holds another run
   /// or, with `resume`, none.
-  Trainer(const Scenario& scenario, const TrainConfig& config, const Options& options);
-  ~Trainer();
+  Trainer(const Scenario& scenario, const TrainSetup& setup, const Options& options);
 
   /// True when all steps were made, false when stopped before.
   bool Run();
 
-  const TrainState& state() const { return state_; }
-  const ActorCritic& networks() const { return learner_.networks(); }
-  agent::Policy MakePolicy() const;
+  /// As of now, and what a checkpoint would hold of the algorithm.
+  TrainState state() const;
+  Algorithm& algorithm() { return *algorithm_; }
+  const Problem& problem() const { return problem_; }
 
  private:
-  void OpenFolder();
   void StartFrom(const std::string& folder);
-  void Restore();
+  void Resume();
+  void ScheduleNext();
   void Iterate(TrainRecord* record);
-  void Validate(TrainRecord* record);
+  void RunValidation(TrainRecord* record);
   /// Restarts what is not at the start of an episode; true at a boundary, or
   /// anywhere with `force` (the end of a run).
   bool AtBoundary(bool force);
+  bool Stopped() const;
   void Save();
   void SavePolicy(const std::string& name) const;
-  double Elapsed() const;
+  double Elapsed() const { return state_.wall_seconds + watch_.seconds(); }
 
   const Scenario scenario_, train_scenario_, validation_scenario_;
   const std::vector<Scenario> mix_;  // never empty; the scenarios trained in
-  const TrainConfig config_;
+  const TrainSetup setup_;
   const Options options_;
+  const Problem problem_;
   WorkerPool pool_;
-  Learner learner_;
-  std::vector<std::unique_ptr<RolloutUnit>> units_;
-  Validation validation_;
+  std::unique_ptr<Algorithm> algorithm_;
+  Collector collector_;
+  RunFolder folder_;
   std::unique_ptr<TrainLog> log_;
   TrainState state_;
   task::MetricSummary last_validation_;
-  double start_ = 0.0;
+  Stopwatch watch_;
   std::int64_t next_validation_ = 0, next_checkpoint_ = 0;
 };
 

@@ -1,6 +1,7 @@
-#include "marl_trainer/learn/train_log.hpp"
+#include "marl_trainer/learn/run/train_log.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cinttypes>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -15,26 +16,16 @@ constexpr double kLineInterval = 2.0;  // [s] between progress lines without a v
 const std::pair<const char*, double> kThresholds[] = {
     {"1000", 1000.0}, {"1020", 1020.0}, {"1030", 1030.0}, {"1040", 1040.0}};
 
-/// Name and value of every column but the validation's.
-std::vector<std::pair<const char*, double>> Columns(const TrainRecord& r) {
+/// Name and value of every column but the algorithm's and the validation's.
+std::vector<std::pair<const char*, double>> CommonColumns(const TrainRecord& r) {
   return {{"env_steps", static_cast<double>(r.env_steps)},
           {"collection", static_cast<double>(r.collections)},
           {"wall_seconds", r.wall_seconds},
-          {"learning_rate", r.learning_rate},
           {"episodes", r.episodes},
           {"train_return", r.train_return},
           {"train_tail_distance", r.train_tail_distance},
           {"train_lost_rate", r.train_lost_rate},
           {"reward", r.reward},
-          {"kl", r.kl},
-          {"clip_fraction", r.clip_fraction},
-          {"actor_loss", r.actor_loss},
-          {"value_loss", r.value_loss},
-          {"entropy", r.entropy},
-          {"sigma", r.sigma},
-          {"explained_variance", r.explained_variance},
-          {"actor_gradient_norm", r.actor_norm},
-          {"critic_gradient_norm", r.critic_norm},
           {"env_seconds", r.env_seconds},
           {"inference_seconds", r.inference_seconds},
           {"update_seconds", r.update_seconds},
@@ -45,15 +36,6 @@ std::string Number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
   return text;
-}
-
-std::string Header() {
-  std::string header;
-  for (const auto& column : Columns(TrainRecord())) header += std::string(column.first) + ",";
-  for (const auto& item : task::EpisodeMetrics().Items())
-    header += "validation_" + item.first + ",";
-  header.back() = '\n';
-  return header;
 }
 
 /// Rows from before an interruption that a resumed run does not repeat.
@@ -73,9 +55,21 @@ std::string KeptRows(const std::string& path, std::int64_t resume_at) {
 
 }  // namespace
 
-TrainLog::TrainLog(const std::string& out, std::int64_t resume_at, std::int64_t total_steps,
-                   std::ostream* lines)
-    : out_(out), total_steps_(total_steps), lines_(lines) {
+std::string ReportText(const std::vector<ReportColumn>& columns,
+                       const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].label.empty()) continue;
+    char number[48];
+    std::snprintf(number, sizeof number, " %.*f", columns[i].decimals, values[i]);
+    text += (text.empty() ? "" : " ") + columns[i].label + number;
+  }
+  return text;
+}
+
+TrainLog::TrainLog(const std::string& out, std::vector<ReportColumn> columns,
+                   std::int64_t resume_at, std::int64_t total_steps, std::ostream* lines)
+    : out_(out), columns_(std::move(columns)), total_steps_(total_steps), lines_(lines) {
   const std::string path = out + "/progress.csv";
   const std::string kept = resume_at >= 0 ? KeptRows(path, resume_at) : "";
   csv_.open(path, std::ios::trunc);
@@ -83,7 +77,19 @@ TrainLog::TrainLog(const std::string& out, std::int64_t resume_at, std::int64_t 
   if (!csv_) throw UserError(path + ": cannot write");
 }
 
+std::string TrainLog::Header() const {
+  std::string header;
+  for (const auto& column : CommonColumns(TrainRecord())) header += std::string(column.first) + ",";
+  for (const ReportColumn& column : columns_) header += column.name + ",";
+  for (const auto& item : task::EpisodeMetrics().Items()) {
+    header += "validation_" + item.first + ",";
+  }
+  header.back() = '\n';
+  return header;
+}
+
 void TrainLog::Add(const TrainRecord& r) {
+  assert(r.algorithm.size() == columns_.size());
   if (line_wall_ < 0.0) {
     line_wall_ = wall_seconds_;
     line_steps_ = env_steps_;
@@ -100,7 +106,8 @@ void TrainLog::Add(const TrainRecord& r) {
   line_update_ += r.update_seconds;
 
   std::string row;
-  for (const auto& column : Columns(r)) row += Number(column.second) + ",";
+  for (const auto& column : CommonColumns(r)) row += Number(column.second) + ",";
+  for (const double value : r.algorithm) row += Number(value) + ",";
   for (const auto& item : task::EpisodeMetrics().Items()) {
     row += (r.validated ? Number(r.validation.Mean(item.first)) : "") + ",";
   }
@@ -145,11 +152,11 @@ void TrainLog::PrintLine(const TrainRecord& r) {
     std::snprintf(text, sizeof text, " | reward %.4f", r.reward);
     *lines_ << text;
   }
-  std::snprintf(text, sizeof text,
-                " | KL %.4f clip %.3f H %.2f EV %.3f sigma %.3f | env %.0f%% inf %.0f%% upd %.0f%%",
-                r.kl, r.clip_fraction, r.entropy, r.explained_variance, r.sigma,
+  std::snprintf(text, sizeof text, " | env %.0f%% inf %.0f%% upd %.0f%%",
                 100.0 * line_env_ / elapsed, 100.0 * line_inference_ / elapsed,
                 100.0 * line_update_ / elapsed);
+  const std::string report = ReportText(columns_, r.algorithm);
+  *lines_ << (report.empty() ? "" : " | ") << report;
   *lines_ << text << std::endl;
   line_wall_ = r.wall_seconds;
   line_steps_ = r.env_steps;
