@@ -59,7 +59,7 @@ void Describe(ObservationConfig* c, config::Table* t) {
          "a link quality above this makes an effective neighbour");
   t->Add("role_confidence", &c->role_confidence, config::kFraction, "-",
          "confidence from which an AUV with an advantage takes the tracking role");
-  t->Moved("channel.range_m", "channel.range_m");
+  t->Moved("observation.link_radius_m", "channel.range_m");
 }
 
 void Describe(TaskConfig* c, config::Table* t) {
@@ -68,8 +68,8 @@ void Describe(TaskConfig* c, config::Table* t) {
          "desired distance d* from the target");
   t->Add("lost_distance_m", &c->lost_distance_m, config::Positive(1e5), "m",
          "farther from the target than this, it counts as lost");
-  t->Moved("task.desired_distance_m", "task.desired_distance_m");
-  t->Moved("task.lost_distance_m", "task.lost_distance_m");
+  t->Moved("reward.desired_distance_m", "task.desired_distance_m");
+  t->Moved("reward.lost_distance_m", "task.lost_distance_m");
 }
 
 void Describe(AgentConfig* c, config::Table* t) {
