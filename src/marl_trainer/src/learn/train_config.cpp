@@ -11,8 +11,7 @@ void TrainConfig::Describe(OptionTable* table) {
   table->Add("seed", &seed, "seed of weights, exploration and episodes");
   table->Add("steps", &steps, {1, 1e12}, "environment steps to train for");
   table->Add("envs", &envs, {1, 65536}, "parallel environments");
-  table->Add("horizon", &horizon, {1, 100000},
-             "decisions of each environment between two updates");
+  table->Add("horizon", &horizon, {1, 100000}, "decisions of each environment between two updates");
   table->Add("stagger", &stagger, "spread the ends of the first episodes");
   imitation.Describe(table);
   table->Add("start-from", &start_from,

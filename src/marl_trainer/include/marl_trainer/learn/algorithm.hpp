@@ -60,14 +60,14 @@ struct Actions {
 
 /// One step of the environments of a shard. A null pointer: unknown.
 struct Transition {
-  int shard = 0, step = 0, envs = 0;     ///< step in the collection
-  const float* observations = nullptr;   ///< [envs, agents, observation_size], decided on
-  const float* states = nullptr;         ///< [envs, state_size], before the step
-  const float* actions = nullptr;        ///< [envs, agents, action_size], before clipping
-  const float* log_prob = nullptr;       ///< [envs, agents], of these actions when they were drawn
-  const float* teacher = nullptr;        ///< [envs, agents, action_size], in a taught collection
-  const float* rewards = nullptr;        ///< [envs, agents]; unknown in recordings
-  const float* team_rewards = nullptr;   ///< [envs], their mean over agents
+  int shard = 0, step = 0, envs = 0;    ///< step in the collection
+  const float* observations = nullptr;  ///< [envs, agents, observation_size], decided on
+  const float* states = nullptr;        ///< [envs, state_size], before the step
+  const float* actions = nullptr;       ///< [envs, agents, action_size], before clipping
+  const float* log_prob = nullptr;      ///< [envs, agents], of these actions when they were drawn
+  const float* teacher = nullptr;       ///< [envs, agents, action_size], in a taught collection
+  const float* rewards = nullptr;       ///< [envs, agents]; unknown in recordings
+  const float* team_rewards = nullptr;  ///< [envs], their mean over agents
   /// [envs], 1 where the episode ended. It always ends by truncation: bootstrap with the final
   /// state, never mask it.
   const std::uint8_t* truncated = nullptr;
@@ -87,9 +87,9 @@ struct UpdateContext {
 
 /// A number that every update reports.
 struct ReportColumn {
-  std::string name;      ///< in progress.csv
-  std::string label;     ///< in the progress line; empty: not there
-  int decimals = 3;      ///< in the progress line
+  std::string name;   ///< in progress.csv
+  std::string label;  ///< in the progress line; empty: not there
+  int decimals = 3;   ///< in the progress line
 };
 
 /// What an update did: the numbers of Algorithm::Columns, in that order.

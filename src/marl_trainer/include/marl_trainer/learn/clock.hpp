@@ -7,9 +7,7 @@ namespace stg::learn {
 /// Wall-clock seconds, for what is reported and never for what is computed.
 class Stopwatch {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(Clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   /// Seconds since the start or the last lap.
   double Lap() {
     const Clock::time_point now = Clock::now();

@@ -1,6 +1,9 @@
 #include "marl_trainer/learn/checkpoint/archive.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "auv_common/error.hpp"
@@ -34,6 +37,21 @@ Archive Archive::Part(const std::string& prefix) const {
     part.Put(it->first.substr(start.size()), it->second);
   }
   return part;
+}
+
+bool Archive::operator==(const Archive& other) const {
+  const auto same = [](const auto& a, const auto& b) {
+    if (a.first != b.first || a.second.index() != b.second.index()) return false;
+    return std::visit(
+        [&b](const auto& x) {
+          const auto& y = std::get<std::decay_t<decltype(x)>>(b.second);
+          return x.size() == y.size() &&
+                 (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+        },
+        a.second);
+  };
+  return std::equal(arrays_.begin(), arrays_.end(), other.arrays_.begin(), other.arrays_.end(),
+                    same);
 }
 
 template <class T>

@@ -28,8 +28,8 @@ void ImitationConfig::ValidateOrThrow() const {
 
 double ImitationConfig::Weight(std::int64_t env_steps) const {
   if (controller.empty()) return 0.0;
-  const double left = 1.0 - static_cast<double>(env_steps) /
-                                static_cast<double>(std::max<std::int64_t>(1, steps));
+  const double left =
+      1.0 - static_cast<double>(env_steps) / static_cast<double>(std::max<std::int64_t>(1, steps));
   return share * std::min(std::max(2.0 * left, 0.0), 1.0);
 }
 

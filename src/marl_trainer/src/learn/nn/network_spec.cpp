@@ -27,8 +27,8 @@ int NetworkSpec::layer_outputs(int l) const {
 std::size_t NetworkSpec::parameters() const {
   std::size_t count = 0;
   for (int l = 0; l < layers(); ++l) {
-    count += static_cast<std::size_t>(layer_inputs(l) + 1) *
-             static_cast<std::size_t>(layer_outputs(l));
+    count +=
+        static_cast<std::size_t>(layer_inputs(l) + 1) * static_cast<std::size_t>(layer_outputs(l));
   }
   return count;
 }

@@ -17,7 +17,8 @@ void PlaceWallUnits(const Mlp& actor, double margin_m, double half_extent_m,
   const int inputs = actor.spec().layer_inputs(0), units = actor.spec().layer_outputs(0);
   Eigen::Map<RowMajor> in(parameters + actor.weight_offset(0), units, inputs);
   Eigen::Map<Eigen::VectorXf> bias(parameters + actor.bias_offset(0), units);
-  Eigen::Map<RowMajor> out(parameters + actor.weight_offset(1), actor.spec().layer_outputs(1), units);
+  Eigen::Map<RowMajor> out(parameters + actor.weight_offset(1), actor.spec().layer_outputs(1),
+                           units);
 
   const Eigen::VectorXf say =
       in.rowwise().norm().array() * out.colwise().norm().transpose().array();

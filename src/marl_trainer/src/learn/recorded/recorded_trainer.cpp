@@ -212,7 +212,8 @@ agent::Policy RecordedTrainer::MakePolicy() const {
   agent::PolicyMetadata m = MetadataOf(scenario_, id, state_.env_steps, setup_.common.seed);
   std::vector<agent::Policy> policies = algorithm_->Policies(m);
   if (policies.size() != 1) {
-    throw UserError(setup_.algorithm + " cannot learn from recordings: its AUVs fly with policies "
+    throw UserError(setup_.algorithm +
+                    " cannot learn from recordings: its AUVs fly with policies "
                     "of their own");
   }
   m.id += "-" + Hash(policies.front());

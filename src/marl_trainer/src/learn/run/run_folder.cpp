@@ -21,8 +21,7 @@ RunFolder::RunFolder(std::string path, std::ostream* log) : path_(std::move(path
 
 bool RunFolder::HoldsRun() const {
   for (const auto& entry : fs::directory_iterator(path_)) {
-    if (entry.path().extension() == ".onnx" ||
-        IsCheckpointName(entry.path().filename().string())) {
+    if (entry.path().extension() == ".onnx" || IsCheckpointName(entry.path().filename().string())) {
       return true;
     }
   }
@@ -42,8 +41,7 @@ void RunFolder::Save(const TrainState& state, int keep) const {
 void RunFolder::SavePolicies(const std::vector<agent::Policy>& policies,
                              const std::string& name) const {
   for (std::size_t i = 0; i < policies.size(); ++i) {
-    policies[i].SaveOnnx(
-        PolicyPath(policies.size() == 1 ? name : name + "_" + std::to_string(i)));
+    policies[i].SaveOnnx(PolicyPath(policies.size() == 1 ? name : name + "_" + std::to_string(i)));
   }
 }
 

@@ -181,8 +181,8 @@ void Trainer::Iterate(TrainRecord* record) {
 
 void Trainer::RunValidation(TrainRecord* record) {
   const Stopwatch watch;
-  last_validation_ = task::Summarise(Validate(
-      validation_scenario_, setup_.common.validation_episodes, algorithm_.get(), &pool_));
+  last_validation_ = task::Summarise(
+      Validate(validation_scenario_, setup_.common.validation_episodes, algorithm_.get(), &pool_));
   record->validated = true;
   record->validation = last_validation_;
   if (last_validation_.Mean("return") > state_.best_return) {

@@ -12,8 +12,8 @@ namespace stg::learn {
 /// the array, so that a file of something else is refused and never misread.
 class Archive {
  public:
-  using Array = std::variant<std::vector<float>, std::vector<double>, std::vector<std::int64_t>,
-                             std::string>;
+  using Array =
+      std::variant<std::vector<float>, std::vector<double>, std::vector<std::int64_t>, std::string>;
   static constexpr std::size_t kMaxName = 255;
 
   /// @param name unique in the archive, 1 to kMaxName bytes.
@@ -38,8 +38,8 @@ class Archive {
   const std::vector<double>& Doubles(const std::string& name, std::size_t size) const;
 
   const std::map<std::string, Array>& arrays() const { return arrays_; }
-  /// Bit for bit; numbers are never NaN.
-  bool operator==(const Archive& other) const { return arrays_ == other.arrays_; }
+  /// Bit for bit.
+  bool operator==(const Archive& other) const;
 
  private:
   template <class T>

@@ -9,8 +9,7 @@ namespace stg::learn {
 /// Adam's memory of one flat array of parameters; moments [parameters].
 struct AdamState {
   AdamState() = default;
-  explicit AdamState(std::size_t parameters)
-      : first(parameters, 0.0F), second(parameters, 0.0F) {}
+  explicit AdamState(std::size_t parameters) : first(parameters, 0.0F), second(parameters, 0.0F) {}
 
   std::vector<float> first, second;
   std::int64_t steps = 0;

@@ -61,7 +61,8 @@ void Mappo::Act(const Decision& decision, const Actions& out) {
   const int size = networks_.action_size(), rows = decision.envs * problem_.agents;
   if (s.actor.rows() < rows) {
     s.actor = Mlp::Workspace(actor, rows);
-    s.observations.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(actor.inputs()));
+    s.observations.resize(static_cast<std::size_t>(rows) *
+                          static_cast<std::size_t>(actor.inputs()));
   }
   scales().observations.Apply(decision.observations, rows, s.observations.data());
   actor.Forward(parameters_.data(), s.observations.data(), rows, &s.actor);
@@ -146,8 +147,8 @@ UpdateReport Mappo::Update(const UpdateContext& context) {
     samples += r.buffer.samples();
   }
   const double rate = 1.0 - (1.0 - config_.lr_final) * std::min(context.progress, 1.0);
-  const PpoReport ppo = update_.Run(buffers, scales(), collection_, rate, context.imitation,
-                                    &parameters_, &adam_);
+  const PpoReport ppo =
+      update_.Run(buffers, scales(), collection_, rate, context.imitation, &parameters_, &adam_);
   for (const Rollout& r : rollouts_) normalisers_.Add(r.observations, r.states);
   normalisers_.UpdateInputScales();
 
@@ -174,15 +175,9 @@ UpdateReport Mappo::Update(const UpdateContext& context) {
 }
 
 std::vector<ReportColumn> Mappo::Columns() const {
-  return {{"learning_rate", "", 0},
-          {"kl", "KL", 4},
-          {"clip_fraction", "clip", 3},
-          {"actor_loss", "", 0},
-          {"value_loss", "", 0},
-          {"entropy", "H", 2},
-          {"explained_variance", "EV", 3},
-          {"sigma", "sigma", 3},
-          {"actor_gradient_norm", "", 0},
+  return {{"learning_rate", "", 0},        {"kl", "KL", 4},       {"clip_fraction", "clip", 3},
+          {"actor_loss", "", 0},           {"value_loss", "", 0}, {"entropy", "H", 2},
+          {"explained_variance", "EV", 3}, {"sigma", "sigma", 3}, {"actor_gradient_norm", "", 0},
           {"critic_gradient_norm", "", 0}};
 }
 
@@ -223,8 +218,8 @@ void Mappo::StartFrom(const Archive& archive) {
 void Mappo::StartFrom(const agent::Policy& policy) {
   const agent::Policy::Parameters& p = policy.parameters();
   networks_.actor.FromPolicy(policy, parameters_.data());
-  const double count = std::max(
-      kStartCount, static_cast<double>(p.metadata.training_step) * problem_.agents);
+  const double count =
+      std::max(kStartCount, static_cast<double>(p.metadata.training_step) * problem_.agents);
   std::vector<double> moments{count};
   for (const float mean : p.input_mean) moments.push_back(static_cast<double>(mean));
   for (const float input_std : p.input_std) {

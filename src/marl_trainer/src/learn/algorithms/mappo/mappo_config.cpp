@@ -72,8 +72,8 @@ void MappoConfig::ValidateOrThrow(const TrainConfig& common) const {
   RequireOption(activation == "tanh" || activation == "relu", "activation",
                 "'" + activation + "' is not tanh or relu");
   RequireOption(min_log_std <= max_log_std, "max-log-std", "is below --min-log-std");
-  RequireOption(min_log_std <= initial_log_std && initial_log_std <= max_log_std,
-                "initial-log-std", "is not between --min-log-std and --max-log-std");
+  RequireOption(min_log_std <= initial_log_std && initial_log_std <= max_log_std, "initial-log-std",
+                "is not between --min-log-std and --max-log-std");
   RequireOption(wall_units == 0.0 || !common.start_from.empty(), "wall-units",
                 "needs the normalisers of another run: --start-from");
   RequireOption(wall_units == 0.0 || (activation == "relu" && actor_hidden[0] >= kWallUnits),

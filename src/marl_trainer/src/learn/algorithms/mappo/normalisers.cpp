@@ -57,8 +57,7 @@ void Normalisers::Save(Archive* archive) const {
 }
 
 void Normalisers::Load(const Archive& archive) {
-  const auto& observations =
-      archive.Doubles("observation_moments", observations_.Save().size());
+  const auto& observations = archive.Doubles("observation_moments", observations_.Save().size());
   const auto& states = archive.Doubles("state_moments", states_.Save().size());
   const auto& values = archive.Doubles("value_moments", values_.Save().size());
   observations_.Load(observations);

@@ -35,8 +35,7 @@ PpoUpdate::PpoUpdate(const ActorCritic& networks, const MappoConfig& config,
       gradients_(kSlices, std::vector<float>(networks.parameters())),
       gradient_(networks.parameters()) {
   for (int w = 0; w < pool->workers(); ++w) {
-    scratch_.push_back(
-        std::make_unique<Scratch>(networks, config, common.imitation.focus, agents));
+    scratch_.push_back(std::make_unique<Scratch>(networks, config, common.imitation.focus, agents));
   }
 }
 
@@ -197,10 +196,9 @@ PpoReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, cons
   }
   report.actor_norm /= steps;
   report.critic_norm /= steps;
-  report.flops =
-      2.0 * report.epochs * samples *
-      (agents_ * networks_.actor.mean().spec().training_products() +
-       networks_.critic.spec().training_products());
+  report.flops = 2.0 * report.epochs * samples *
+                 (agents_ * networks_.actor.mean().spec().training_products() +
+                  networks_.critic.spec().training_products());
   return report;
 }
 
