@@ -1,6 +1,11 @@
 # Compile settings shared by every package of this repository. Packages exchange SIMD types, so all
-# of them must be compiled for the same instruction set.
+# of them, and everything else that includes their headers, must be compiled for the same
+# instruction set: the target stg_abi carries what a user of the headers must share.
 include_guard(DIRECTORY)
+
+option(STG_WERROR "Treat warnings in this repository's own code as errors" OFF)
+set(STG_SANITIZE "" CACHE STRING "Sanitizer to build with: address, thread, undefined, or empty")
+set_property(CACHE STG_SANITIZE PROPERTY STRINGS "" address thread undefined)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -46,13 +51,33 @@ function(stg_resolve_march result)
 endfunction()
 
 stg_resolve_march(stg_march)
-if(stg_march)
-  add_compile_options(-march=${stg_march})
-endif()
-
 # Fused multiply-adds would round packs and scalars differently; results must not depend on which
 # of the two the compiler happened to contract.
-add_compile_options(-ffp-contract=off -Wall -Wextra)
+set(STG_ABI_OPTIONS -ffp-contract=off)
+if(stg_march)
+  list(PREPEND STG_ABI_OPTIONS -march=${stg_march})
+endif()
+if(NOT TARGET stg_abi)
+  add_library(stg_abi INTERFACE)
+  add_library(stg::abi ALIAS stg_abi)
+  target_compile_features(stg_abi INTERFACE cxx_std_17)
+  target_compile_options(stg_abi INTERFACE ${STG_ABI_OPTIONS})
+endif()
+
+add_compile_options(${STG_ABI_OPTIONS} -Wall -Wextra)
+if(STG_WERROR)
+  add_compile_options(-Werror)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-fno-semantic-interposition)
+endif()
+
+if(STG_SANITIZE)
+  if(NOT STG_SANITIZE MATCHES "^(address|thread|undefined)$")
+    message(FATAL_ERROR "STG_SANITIZE is '${STG_SANITIZE}', not address, thread or undefined")
+  endif()
+  # Optimised a little and with assertions, whatever the build type says.
+  set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")
+  add_compile_options(-fsanitize=${STG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${STG_SANITIZE})
 endif()

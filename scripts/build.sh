@@ -1,23 +1,35 @@
 #!/usr/bin/env bash
-# Configures the workspace when needed and builds the given targets (default: all).
+# Configures the workspace when needed and builds the given targets (default: all). With
+# STG_SANITIZE it is the cores alone, by plain CMake and in a folder of their own, that are built.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 base=${STG_BUILD_ROOT:-$root}
-build=$base/build
+sanitize=${STG_SANITIZE:-}
+build=$base/build${sanitize:+-$sanitize}
 
 # Catkin and ROS belong to Debian's Python, whatever else comes first on the PATH.
 export PATH="/usr/bin:$PATH"
 
 options=(
   -G Ninja
-  "-DCATKIN_DEVEL_PREFIX=$base/devel"
-  "-DCMAKE_INSTALL_PREFIX=$base/install"
   -DCMAKE_BUILD_TYPE=Release
-  -DCATKIN_ENABLE_TESTING=ON
-  -DPYTHON_EXECUTABLE=/usr/bin/python3
-  -DPython3_EXECUTABLE=/usr/bin/python3
+  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+  -DSTG_WERROR=ON
 )
+if [[ -n "$sanitize" ]]; then
+  source=$root
+  options+=("-DSTG_SANITIZE=$sanitize")
+else
+  source=$root/src
+  options+=(
+    "-DCATKIN_DEVEL_PREFIX=$base/devel"
+    "-DCMAKE_INSTALL_PREFIX=$base/install"
+    -DCATKIN_ENABLE_TESTING=ON
+    -DPYTHON_EXECUTABLE=/usr/bin/python3
+    -DPython3_EXECUTABLE=/usr/bin/python3
+  )
+fi
 if command -v ccache >/dev/null; then
   options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache)
 fi
@@ -35,7 +47,7 @@ if [[ ! -f "$build/build.ninja" || ! -f "$stamp" || "$(<"$stamp")" != "$wanted" 
   rm -f "$stamp"
   log=$build/configure.log
   echo "build: configuring (log: $log)"
-  if ! cmake -S "$root/src" -B "$build" "${options[@]}" >"$log" 2>&1; then
+  if ! cmake -S "$source" -B "$build" "${options[@]}" >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     echo "build: configuring failed" >&2
     exit 1

@@ -8,6 +8,7 @@ last line of the output is "N passed, M failed"; the exit status is 0 only if so
 nothing failed.
 """
 
+import argparse
 import glob
 import json
 import os
@@ -21,8 +22,22 @@ TIMEOUT_S = float(os.environ.get("STG_TEST_TIMEOUT_S", "900"))
 SHOWN_LINES = 80
 
 
+class Test:
+    """One program to run: its name, command, result file, and other names it goes by."""
+
+    def __init__(self, name, command, result_file, labels=()):
+        self.name = name
+        self.command = command
+        self.result_file = result_file
+        self.labels = labels
+
+    def matches(self, pattern):
+        """Whether the name, or that of a source file, contains `pattern`."""
+        return any(pattern in name for name in (self.name, *self.labels))
+
+
 def registered_tests(build_dir):
-    """Returns [(name, command, result_file)] of the tests that CTest knows in `build_dir`."""
+    """Returns the tests that CTest knows in `build_dir`."""
     listing = subprocess.run(
         ["ctest", "--show-only=json-v1"], cwd=build_dir, check=True, stdout=subprocess.PIPE
     ).stdout
@@ -30,9 +45,19 @@ def registered_tests(build_dir):
     for test in json.loads(listing)["tests"]:
         command = test.get("command", [])
         results = [a for a in command if a.endswith(".xml") and "test_results" in a]
+        result = results[0].replace("--gtest_output=xml:", "") if results else os.devnull + ".xml"
+        labels = [p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"]
         name = test["name"].replace("_ctest_", "", 1)
-        tests.append((name, command, results[0] if results else os.devnull + ".xml"))
+        tests.append(Test(name, command, result, labels[0] if labels else ()))
     return tests
+
+
+def lint_test(build_dir):
+    """Returns the checks of `./stg lint` as a test."""
+    lint = os.path.join(os.path.dirname(os.path.realpath(__file__)), "lint")
+    result_file = os.path.join(build_dir, "test_results", "lint.xml")
+    command = [sys.executable, lint, "--build", build_dir, "--junit", result_file]
+    return Test("lint", command, result_file)
 
 
 def session_members(session):
@@ -133,23 +158,36 @@ def show_log(log_path):
             print(f"    | {line}")
 
 
-def main(build_dir, pattern):
-    """Runs the tests of `build_dir` whose name contains `pattern`; returns the exit status."""
+def parse(argv):
+    """Reads the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build_dir", type=os.path.abspath, help="the build folder")
+    parser.add_argument("pattern", nargs="?", default="", help="part of a test's name (all)")
+    parser.add_argument("--lint", action="store_true", help="count the checks of lint as well")
+    return parser.parse_args(argv)
+
+
+def main(argv):
+    """Runs the tests that the command line asks for; returns the exit status."""
+    options = parse(argv)
+    build_dir = options.build_dir
     log_dir = os.path.join(build_dir, "test_logs")
     os.makedirs(log_dir, exist_ok=True)
     os.environ.setdefault("ROS_HOME", os.path.join(build_dir, "ros_home"))
+    tests = [lint_test(build_dir)] if options.lint else []
+    tests += registered_tests(build_dir)
     total_passed, total_failed = 0, 0
-    for name, command, result_file in registered_tests(build_dir):
-        if pattern not in name:
+    for test in tests:
+        if not test.matches(options.pattern):
             continue
-        remove_results(result_file)
-        log_path = os.path.join(log_dir, f"{name}.log")
+        remove_results(test.result_file)
+        log_path = os.path.join(log_dir, f"{test.name}.log")
         start = time.monotonic()
-        status = execute(command, log_path)
-        passed, failures = judge(status, result_file)
+        status = execute(test.command, log_path)
+        passed, failures = judge(status, test.result_file)
         seconds = time.monotonic() - start
         word = "FAIL" if failures else "ok"
-        print(f"{word:4} {name}: {passed} passed, {len(failures)} failed, {seconds:.1f} s")
+        print(f"{word:4} {test.name}: {passed} passed, {len(failures)} failed, {seconds:.1f} s")
         if failures:
             for failure in failures:
                 print(f"    failed: {failure}")
@@ -162,4 +200,4 @@ def main(build_dir, pattern):
 
 
 if __name__ == "__main__":
-    sys.exit(main(os.path.abspath(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""))
+    sys.exit(main(sys.argv[1:]))

@@ -9,21 +9,24 @@ namespace {
 
 constexpr TimeNs kDt = 100'000'000;
 
-void Step(benchmark::State& bench, ChannelModel model) {
+void Step(benchmark::State& bench, const char* model) {
   const int agents = static_cast<int>(bench.range(0));
   NetworkConfig s;
   s.agents = agents;
   s.channel.model = model;
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
   std::vector<Vec3<double>> p_W;
   for (int i = 0; i < agents; ++i) {
     p_W.push_back({0.02 * (i % 7), 0.02 * (i / 7), 0.01 * (i % 3)});
   }
+  const std::vector<Vec3<double>> v_W(p_W.size(), {0.1, 0.0, 0.0});
+  const std::vector<std::uint8_t> bytes(32, 1);
   std::vector<std::vector<Transmission>> sent(5);
   for (int i = 0; i < agents; ++i) {
     Transmission packet;
     packet.source = i;
+    packet.payload = ViewOf(bytes);
     sent[static_cast<std::size_t>(i % 5)].push_back(packet);
   }
   std::vector<Reception> got;
@@ -32,7 +35,7 @@ void Step(benchmark::State& bench, ChannelModel model) {
     const TimeNs t = k * kDt;
     auto& now = sent[k % 5];
     for (Transmission& packet : now) packet.stamp = packet.generation = t;
-    channel->Step(t, k, p_W, now);
+    channel->Step(t, k, p_W, v_W, now);
     for (int j = 0; j < agents; ++j) {
       got.clear();
       channel->Deliver(j, t + kDt, &got);
@@ -43,15 +46,17 @@ void Step(benchmark::State& bench, ChannelModel model) {
   bench.counters["receptions/step"] =
       static_cast<double>(channel->totals().delivered) / static_cast<double>(k);
 }
-void RangeStep(benchmark::State& bench) { Step(bench, ChannelModel::kRange); }
-void ExtendedStep(benchmark::State& bench) { Step(bench, ChannelModel::kExtended); }
+void RangeStep(benchmark::State& bench) { Step(bench, "range"); }
+void ExtendedStep(benchmark::State& bench) { Step(bench, "extended"); }
 BENCHMARK(RangeStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 
 void Link(benchmark::State& bench) {
-  const auto channel = MakeChannel(ChannelConfig{}, 4);
+  const NetworkConfig s;
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
-  channel->Step(0, 0, std::vector<Vec3<double>>(4), {});
+  const std::vector<Vec3<double>> origin(4);
+  channel->Step(0, 0, origin, origin, {});
   TimeNs now = 0;
   for (auto _ : bench) {
     LinkStatistics link = channel->Link(0, 1, ++now);

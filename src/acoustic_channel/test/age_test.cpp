@@ -70,13 +70,15 @@ void CheckPeriodic(double p, double delay_s, int frame_steps) {
   constexpr int kFrames = 100000;
   NetworkConfig s;
   s.agents = 2;
-  s.channel.model = ChannelModel::kExtended;
+  s.channel.model = "extended";
+  s.channel.transmit_period_s = 0.1;
   s.channel.loss_probability = p;
   s.channel.loss_distance_m = 1e12;
   s.channel.sound_speed_mps = 1.0 / delay_s;  // the AUVs are 1 m apart
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(17, 3);
-  const std::vector<Vec3<double>> p_W{{0, 0, 0}, {0.6, 0.8, 0}};
+  const std::vector<Vec3<double>> p_W{{0, 0, 0}, {0.6, 0.8, 0}}, at_rest(2);
+  const std::uint8_t byte = 7;
   std::vector<Reception> got;
   TimeNs t = 0;
   for (int k = 0; k < kFrames * frame_steps; ++k, t += kDt) {
@@ -84,8 +86,9 @@ void CheckPeriodic(double p, double delay_s, int frame_steps) {
     if (k % frame_steps == 0) {
       sent.resize(1);
       sent[0].stamp = sent[0].generation = t;
+      sent[0].payload = {&byte, 1};
     }
-    channel->Step(t, static_cast<std::uint32_t>(k), p_W, sent);
+    channel->Step(t, static_cast<std::uint32_t>(k), p_W, at_rest, sent);
     got.clear();
     channel->Deliver(1, t + kDt, &got);
   }

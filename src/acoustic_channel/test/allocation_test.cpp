@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "acoustic_channel/channel/channel.hpp"
+#include "channel_fixture.hpp"
 
 namespace {
 long g_allocations = 0;
@@ -27,51 +27,66 @@ TEST(Allocation, TheCounterCounts) {
   EXPECT_EQ(g_allocations - before, 1);
 }
 
-TEST(Allocation, ChannelAllocatesNothingAfterWarmUp) {
-  constexpr TimeNs kDt = 100'000'000;
-  for (const ChannelModel model : {ChannelModel::kRange, ChannelModel::kExtended}) {
-    for (const int agents : {4, 21}) {
-      NetworkConfig s;
-      s.agents = agents;
-      s.channel.model = model;
-      const auto channel = MakeChannel(s.channel, s.agents);
-      std::vector<Vec3<double>> p_W(static_cast<std::size_t>(agents));
-      std::vector<Transmission> sent;
-      std::vector<Reception> got;
-      double checksum = 0.0;
-      long before = 0;
-      std::uint64_t delivered = 0;
-      for (std::uint32_t episode = 0; episode < 4; ++episode) {
-        if (episode == 1) before = g_allocations;
-        channel->Reset(3, episode);
-        for (std::uint32_t k = 0; k < 100; ++k) {
-          const TimeNs t = k * kDt;
-          sent.clear();
-          for (int i = 0; i < agents; ++i) {
-            auto& p = p_W[static_cast<std::size_t>(i)];
-            p = {0.02 * i, 0.001 * k, 0.0};
-            if ((static_cast<std::uint32_t>(i) + k) % 5 != 0) continue;
-            Transmission packet;
-            packet.source = i;
-            packet.stamp = packet.generation = t;
-            packet.data.fill(static_cast<std::uint8_t>(i + 1));
-            sent.push_back(packet);
-          }
-          channel->Step(t, k, p_W, sent);
-          for (int j = 0; j < agents; ++j) {
-            got.clear();
-            channel->Deliver(j, t + kDt, &got);
-            for (const Reception& r : got) {
-              checksum += r.data[0];
-            }
-          }
-          checksum += channel->Link(0, 1, t + kDt).average_age_s;
-        }
-        delivered += channel->totals().delivered;
+/// Steps of an episode in which node i sends 1 to 200 bytes, another number every time.
+/// @param always every node offers a packet in every step, else only when it is due
+struct Traffic {
+  Traffic(Channel* channel, bool always)
+      : channel(channel),
+        always(always),
+        p_W(static_cast<std::size_t>(channel->nodes())),
+        v_W(p_W) {}
+
+  void Fly(std::uint32_t episode) {
+    channel->Reset(3, episode);
+    for (std::uint32_t k = 0; k < 100; ++k) {
+      const TimeNs t = k * kDt;
+      offered.clear();
+      for (int i = 0; i < channel->nodes(); ++i) {
+        p_W[static_cast<std::size_t>(i)] = {0.02 * i, 0.001 * k, 0.0};
+        if (!always && !channel->Due(i, t)) continue;
+        Transmission packet;
+        packet.source = i;
+        packet.stamp = packet.generation = t;
+        packet.payload = {bytes.data(), 1 + (31 * k + 17 * static_cast<std::uint32_t>(i)) % 200};
+        offered.push_back(packet);
       }
-      EXPECT_EQ(g_allocations, before) << agents << " agents";
-      EXPECT_GT(delivered, 0u);
-      EXPECT_GT(checksum, 0.0);
+      channel->Step(t, k, p_W, v_W, offered);
+      for (int j = 0; j < channel->nodes(); ++j) {
+        got.clear();
+        channel->Deliver(j, t + kDt, &got);
+        for (const Reception& r : got) checksum += r.payload.data[r.payload.size - 1];
+      }
+    }
+    delivered += channel->totals().delivered;
+  }
+
+  Channel* channel;
+  bool always;
+  std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(200, 1);
+  std::vector<Vec3<double>> p_W, v_W;
+  std::vector<Transmission> offered;
+  std::vector<Reception> got;
+  std::uint64_t delivered = 0, checksum = 0;
+};
+
+TEST(Allocation, ChannelAllocatesNothingAfterWarmUp) {
+  for (const char* model : {"range", "extended"}) {
+    for (const int agents : {4, 21}) {
+      for (const bool always : {false, true}) {
+        NetworkConfig s;
+        s.agents = agents;
+        s.channel.model = model;
+        const auto channel = MakeChannel(s.channel, s);
+        Traffic traffic(channel.get(), always);
+        traffic.Fly(0);
+        traffic.Fly(1);
+        const long before = g_allocations;
+        const std::uint64_t delivered = traffic.delivered;
+        for (std::uint32_t episode = 2; episode < 6; ++episode) traffic.Fly(episode);
+        EXPECT_EQ(g_allocations, before) << model << ", " << agents << " agents";
+        EXPECT_GT(traffic.delivered, delivered);
+        EXPECT_GT(traffic.checksum, 0u);
+      }
     }
   }
 }

@@ -9,45 +9,16 @@
 #include <random>
 
 #include "acoustic_channel/link/link_quality.hpp"
-#include "auv_common/error.hpp"
+#include "channel_fixture.hpp"
 
 namespace stg::acoustics {
 namespace {
 
-constexpr TimeNs kDt = 100'000'000;
-
 NetworkConfig ExtendedScenario(int agents) {
-  NetworkConfig s;
-  s.agents = agents;
-  s.channel.model = ChannelModel::kExtended;
-  s.channel.max_range_m = 3.5;
+  NetworkConfig s = LosslessNetwork(agents);
   s.channel.loss_probability = 0.1;
   s.channel.loss_distance_m = 2.0;
   return s;
-}
-
-NetworkConfig LosslessScenario(int agents) {
-  NetworkConfig s = ExtendedScenario(agents);
-  s.channel.loss_probability = 0.0;
-  s.channel.loss_distance_m = 1e12;
-  return s;
-}
-
-Transmission From(int source, TimeNs t, std::uint32_t sequence = 0) {
-  Transmission packet;
-  packet.source = source;
-  packet.sequence = sequence;
-  packet.stamp = t;
-  packet.generation = t;
-  packet.data[0] = static_cast<std::uint8_t>(source + 1);
-  packet.data[31] = static_cast<std::uint8_t>(sequence);
-  return packet;
-}
-
-std::vector<Reception> DeliverAll(Channel* channel, int agents, TimeNs until) {
-  std::vector<Reception> out;
-  for (int j = 0; j < agents; ++j) channel->Deliver(j, until, &out);
-  return out;
 }
 
 std::vector<Vec3<double>> RandomPositions(int agents, std::uint64_t seed) {
@@ -78,7 +49,7 @@ std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std:
                          int steps, const std::vector<bool>& sends, std::uint64_t shuffle,
                          Channel* reuse = nullptr, double spread = 1.0) {
   std::unique_ptr<Channel> own;
-  if (reuse == nullptr) own = MakeChannel(scenario.channel, scenario.agents);
+  if (reuse == nullptr) own = MakeChannel(scenario.channel, scenario);
   Channel& channel = reuse ? *reuse : *own;
   channel.Reset(seed, episode);
   std::vector<Vec3<double>> p = RandomPositions(scenario.agents, 5);
@@ -90,13 +61,13 @@ std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std:
     std::vector<Transmission> sent;
     for (int i = 0; i < scenario.agents; ++i) {
       if (sends[static_cast<std::size_t>(i)]) {
-        sent.push_back(From(i, t, static_cast<std::uint32_t>(k)));
+        sent.push_back(From(i, t));
       }
     }
     if (shuffle != 0) std::shuffle(sent.begin(), sent.end(), engine);
-    channel.Step(t, static_cast<std::uint32_t>(k), p, sent);
-    for (const Reception& r : DeliverAll(&channel, scenario.agents, t + kDt)) {
-      records.push_back({r.source, r.destination, r.sequence, r.arrival});
+    StepAtRest(&channel, t, static_cast<std::uint32_t>(k), p, sent);
+    for (const Reception& r : DeliverAll(&channel, t + kDt)) {
+      records.push_back({r.source, r.receiver, r.sequence, r.arrival});
     }
   }
   return records;
@@ -105,34 +76,34 @@ std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std:
 TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
   NetworkConfig s;
   s.agents = 3;
-  s.channel.model = ChannelModel::kRange;
+  s.channel.model = "range";
+  s.channel.transmit_period_s = 0.1;
   s.channel.range_m = 0.5;
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
   // 0-1: 0.3 m; 0-2: exactly the range, so q = 0.
-  channel->Step(kDt, 1, {{0, 0, 0}, {0.3, 0, 0}, {0, 0.5, 0}}, {From(0, kDt, 9)});
-  const std::vector<Reception> got = DeliverAll(channel.get(), 3, kDt);
+  StepAtRest(channel.get(), kDt, 1, {{0, 0, 0}, {0.3, 0, 0}, {0, 0.5, 0}}, {From(0, kDt)});
+  const std::vector<Reception> got = DeliverAll(channel.get(), kDt);
   ASSERT_EQ(got.size(), 1u);
   EXPECT_EQ(got[0].source, 0);
-  EXPECT_EQ(got[0].destination, 1);
-  EXPECT_EQ(got[0].sequence, 9u);
+  EXPECT_EQ(got[0].receiver, 1);
+  EXPECT_EQ(got[0].destination, kToAll);
+  EXPECT_EQ(got[0].sequence, 0u);
   EXPECT_EQ(got[0].arrival, kDt);
   EXPECT_EQ(got[0].transmit, kDt);
   EXPECT_EQ(got[0].loss_probability, 0.0);
   EXPECT_NEAR(got[0].link_quality, 0.4, 1e-15);
-  EXPECT_EQ(got[0].data[0], 1);
-  EXPECT_EQ(got[0].data[31], 9);
   EXPECT_EQ(channel->Link(0, 2, kDt).last_drop, DropReason::kRange);
   EXPECT_NEAR(channel->Link(1, 0, kDt).quality, 0.4, 1e-15) << "quality needs no packet in Eq. 5";
 }
 
 TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
-  NetworkConfig s = LosslessScenario(2);
+  NetworkConfig s = LosslessNetwork(2);
   s.channel.sound_speed_mps = 1500.0;
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   for (const double d : {0.0, 0.0015, 0.75, 1.5, 3.0, 3.5}) {
     channel->Reset(1, 0);
-    channel->Step(5 * kDt, 5, {{1, 2, 3}, {1, 2, 3 + d}}, {From(1, 5 * kDt)});
+    StepAtRest(channel.get(), 5 * kDt, 5, {{1, 2, 3}, {1, 2, 3 + d}}, {From(1, 5 * kDt)});
     std::vector<Reception> got;
     channel->Deliver(0, 6 * kDt, &got);
     ASSERT_EQ(got.size(), 1u) << d;
@@ -143,12 +114,12 @@ TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
 }
 
 TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
-  NetworkConfig s = LosslessScenario(2);
+  NetworkConfig s = LosslessNetwork(2);
   s.channel.sound_speed_mps = 2.0;
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
-  channel->Step(0, 0, {{0, 0, 0}, {1, 0, 0}}, {From(0, 0)});
-  channel->Step(kDt, 1, {{0, 0, 0}, {3, 0, 0}}, {});
+  StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {1, 0, 0}}, {From(0, 0)});
+  StepAtRest(channel.get(), kDt, 1, {{0, 0, 0}, {3, 0, 0}}, {});
   std::vector<Reception> got;
   channel->Deliver(1, 499'999'999, &got);
   EXPECT_TRUE(got.empty());
@@ -160,17 +131,17 @@ TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
 }
 
 TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
-  NetworkConfig s = LosslessScenario(2);
+  NetworkConfig s = LosslessNetwork(2);
   s.channel.loss_distance_m = 2.0;
   s.channel.sound_speed_mps = 10.0;
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   std::vector<Reception> got;
   Transmission packet = From(0, 3 * kDt);
   packet.generation = 2 * kDt;
   for (std::uint64_t seed = 0; got.empty(); ++seed) {  // until one is not lost
     channel->Reset(seed, 0);
     EXPECT_EQ(channel->Link(0, 1, 0).quality, 0.0);
-    channel->Step(3 * kDt, 3, {{0, 0, 0}, {1, 0, 0}}, {packet});
+    StepAtRest(channel.get(), 3 * kDt, 3, {{0, 0, 0}, {1, 0, 0}}, {packet});
     EXPECT_EQ(channel->Link(0, 1, 3 * kDt).quality, 0.0) << "nothing known yet";
     channel->Deliver(1, 4 * kDt, &got);
   }
@@ -189,13 +160,13 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
 }
 
 TEST(ExtendedChannel, NothingArrivesBeyondMaxRangeAndTheDropSaysWhy) {
-  const NetworkConfig s = LosslessScenario(3);
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const NetworkConfig s = LosslessNetwork(3);
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
-  channel->Step(0, 0, {{0, 0, 0}, {3.5, 0, 0}, {0, 0, -3.5000001}}, {From(0, 0)});
-  const std::vector<Reception> got = DeliverAll(channel.get(), 3, kDt);
+  StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {3.5, 0, 0}, {0, 0, -3.5000001}}, {From(0, 0)});
+  const std::vector<Reception> got = DeliverAll(channel.get(), kDt);
   ASSERT_EQ(got.size(), 1u);
-  EXPECT_EQ(got[0].destination, 1);
+  EXPECT_EQ(got[0].receiver, 1);
   const LinkStatistics link = channel->Link(0, 2, kDt);
   EXPECT_EQ(link.dropped, 1u);
   EXPECT_EQ(link.drops[static_cast<std::size_t>(DropReason::kRange)], 1u);
@@ -208,12 +179,12 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
   const NetworkConfig s = ExtendedScenario(2);
   const int n = 20000;
   for (const double d : {0.0, 0.3, 1.0, 2.0, 3.0}) {
-    const auto channel = MakeChannel(s.channel, s.agents);
+    const auto channel = MakeChannel(s.channel, s);
     channel->Reset(11, 2);
     std::vector<Reception> got;
     for (int k = 0; k < n; ++k) {
-      channel->Step(k * kDt, static_cast<std::uint32_t>(k), {{0, 0, 0}, {0, d, 0}},
-                    {From(0, k * kDt)});
+      StepAtRest(channel.get(), k * kDt, static_cast<std::uint32_t>(k), {{0, 0, 0}, {0, d, 0}},
+                 {From(0, k * kDt)});
       got.clear();
       channel->Deliver(1, (k + 1) * kDt, &got);
     }
@@ -226,7 +197,7 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
 }
 
 TEST(ExtendedChannel, LossesOfDifferentLinksAndStepsAreUncorrelated) {
-  NetworkConfig s = LosslessScenario(3);
+  NetworkConfig s = LosslessNetwork(3);
   s.channel.loss_probability = 0.5;
   const std::vector<Record> got = Play(s, 3, 0, 20000, {true, true, false}, 0);
   // +1 received, -1 lost, per step, of the links 0-1, 0-2, 1-0.
@@ -281,9 +252,9 @@ TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
 }
 
 TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
-  NetworkConfig s = LosslessScenario(9);
+  NetworkConfig s = LosslessNetwork(9);
   s.channel.sound_speed_mps = 1.0;
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
   // Sources 1..8 around receiver 0 at four distances, two each, farthest first.
   std::vector<Vec3<double>> p(9);
@@ -293,8 +264,8 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
     p[static_cast<std::size_t>(i)] = i % 2 ? Vec3<double>{d, 0, 0} : Vec3<double>{0, d, 0};
     sent.insert(sent.begin(), From(i, 0));
   }
-  channel->Step(0, 0, p, sent);
-  channel->Step(kDt, 1, p, {});
+  StepAtRest(channel.get(), 0, 0, p, sent);
+  StepAtRest(channel.get(), kDt, 1, p, {});
   std::vector<Reception> got;
   channel->Deliver(0, 10 * kDt, &got);
   ASSERT_EQ(got.size(), 0u);
@@ -308,12 +279,12 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
 TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
   NetworkConfig s = ExtendedScenario(4);
   s.channel.sound_speed_mps = 3.0;  // packets of the last steps are still under way
-  const auto used = MakeChannel(s.channel, s.agents);
+  const auto used = MakeChannel(s.channel, s);
   Play(s, 9, 0, 50, std::vector<bool>(4, true), 0, used.get());
   ASSERT_GT(used->totals().delivered, 0u);
   used->Reset(9, 1);
   EXPECT_EQ(used->totals().delivered + used->totals().dropped, 0u);
-  EXPECT_TRUE(DeliverAll(used.get(), 4, 1000 * kDt).empty());
+  EXPECT_TRUE(DeliverAll(used.get(), 1000 * kDt).empty());
   const LinkStatistics link = used->Link(0, 1, 0);
   EXPECT_EQ(link.delivered + link.dropped, 0u);
   EXPECT_EQ(link.last_drop, DropReason::kNone);
@@ -324,7 +295,7 @@ TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
 
 TEST(ExtendedChannel, EveryPacketIsDeliveredOrDroppedWithAReason) {
   const NetworkConfig s = ExtendedScenario(6);
-  const auto channel = MakeChannel(s.channel, s.agents);
+  const auto channel = MakeChannel(s.channel, s);
   Play(s, 4, 0, 300, std::vector<bool>(6, true), 0, channel.get(), 2.0);
   const ChannelTotals& t = channel->totals();
   EXPECT_EQ(t.delivered + t.dropped, 300u * 6u * 5u);
@@ -344,22 +315,18 @@ TEST(ExtendedChannel, EveryPacketIsDeliveredOrDroppedWithAReason) {
   EXPECT_EQ(dropped, t.dropped);
 }
 
-TEST(Channel, PhysicalModelIsRefusedUntilItExists) {
-  NetworkConfig s;
-  s.channel.model = ChannelModel::kPhysical;
-  EXPECT_THROW(MakeChannel(s.channel, s.agents), UserError);
-}
-
 TEST(Channel, NonFinitePositionsAreRefused) {
-  for (const ChannelModel model : {ChannelModel::kRange, ChannelModel::kExtended}) {
+  for (const char* model : {"range", "extended"}) {
     NetworkConfig s = ExtendedScenario(2);
     s.channel.model = model;
-    const auto channel = MakeChannel(s.channel, s.agents);
+    const auto channel = MakeChannel(s.channel, s);
     channel->Reset(0, 0);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
-    EXPECT_THROW(channel->Step(0, 0, {{0, 0, 0}, {0, nan, 0}}, {}), std::invalid_argument);
-    EXPECT_THROW(channel->Step(0, 0, {{inf, 0, 0}, {0, 0, 0}}, {}), std::invalid_argument);
+    EXPECT_THROW(StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {0, nan, 0}}, {}),
+                 std::invalid_argument);
+    EXPECT_THROW(StepAtRest(channel.get(), 0, 0, {{inf, 0, 0}, {0, 0, 0}}, {}),
+                 std::invalid_argument);
   }
 }
 

@@ -7,8 +7,8 @@
 namespace stg::acoustics {
 namespace {
 
-ChannelConfig Config() {
-  ChannelConfig c;
+ExtendedConfig Config() {
+  ExtendedConfig c;
   c.attenuation_per_m = 0.5;
   c.loss_probability = 0.1;
   c.loss_distance_m = 2.0;

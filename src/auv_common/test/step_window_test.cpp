@@ -8,7 +8,7 @@
 namespace stg {
 namespace {
 
-constexpr TimeNs kStep = 100'000'000;
+constexpr TimeNs kTick = 100'000'000;
 constexpr double kPatience_s = 1.0;
 
 /// Who has spoken of a step, of two that have something to say.
@@ -44,105 +44,105 @@ class StepWindowTest : public testing::Test {
 
 TEST_F(StepWindowTest, AStepIsTakenWhenItIsComplete) {
   EXPECT_FALSE(Take()) << "nothing was said";
-  Say(0, 5 * kStep);
+  Say(0, 5 * kTick);
   EXPECT_FALSE(Take());
-  Say(0, 5 * kStep);
+  Say(0, 5 * kTick);
   EXPECT_FALSE(Take()) << "the same voice again";
-  Say(1, 5 * kStep);
+  Say(1, 5 * kTick);
   EXPECT_FALSE(window_.has_taken());
   ASSERT_TRUE(Take());
   EXPECT_EQ(taken_, (Voices{0, 1}));
   EXPECT_TRUE(window_.has_taken());
-  EXPECT_EQ(window_.taken(), 5 * kStep);
+  EXPECT_EQ(window_.taken(), 5 * kTick);
   EXPECT_EQ(window_.size(), 0u);
 }
 
 TEST_F(StepWindowTest, StepsOutOfOrderAreTakenInOrder) {
-  SayAll(3 * kStep);
-  Say(0, 1 * kStep);
-  SayAll(2 * kStep);
+  SayAll(3 * kTick);
+  Say(0, 1 * kTick);
+  SayAll(2 * kTick);
   EXPECT_EQ(TakeAll(), std::vector<TimeNs>{}) << "the oldest is not complete";
-  Say(1, 1 * kStep);
-  EXPECT_EQ(TakeAll(), (std::vector<TimeNs>{1 * kStep, 2 * kStep, 3 * kStep}));
+  Say(1, 1 * kTick);
+  EXPECT_EQ(TakeAll(), (std::vector<TimeNs>{1 * kTick, 2 * kTick, 3 * kTick}));
 }
 
 TEST_F(StepWindowTest, TheOldestIsGivenUpAfterItsPatienceOnlyForALaterOne) {
-  Say(0, 1 * kStep);
+  Say(0, 1 * kTick);
   now_s_ += 100.0;
   EXPECT_FALSE(Take()) << "the run may stand still";
-  Say(0, 2 * kStep);
+  Say(0, 2 * kTick);
   ASSERT_TRUE(Take());
   EXPECT_EQ(taken_, Voices{0}) << "what there is of it";
   EXPECT_FALSE(Take());
   now_s_ += 0.5 * kPatience_s;
-  Say(0, 3 * kStep);
+  Say(0, 3 * kTick);
   now_s_ += 0.5 * kPatience_s;
   EXPECT_FALSE(Take()) << "not before its patience is over";
   now_s_ += 1e-3;
   EXPECT_TRUE(Take());
-  EXPECT_EQ(window_.taken(), 2 * kStep);
+  EXPECT_EQ(window_.taken(), 2 * kTick);
 }
 
 TEST_F(StepWindowTest, PatienceWithManyStepsRunsSideBySide) {
   // A voice that is missing for good delays what is said, by the same time for each step.
   for (int k = 1; k <= 50; ++k) {
-    Say(0, k * kStep);
+    Say(0, k * kTick);
     const std::vector<TimeNs> taken = TakeAll();
     if (k > 6) {
-      ASSERT_EQ(taken, std::vector<TimeNs>{(k - 5) * kStep}) << k;
+      ASSERT_EQ(taken, std::vector<TimeNs>{(k - 5) * kTick}) << k;
     }
     now_s_ += 0.24;
   }
 }
 
 TEST_F(StepWindowTest, WordsAboutStepsThatAreOverAreRefused) {
-  SayAll(2 * kStep);
+  SayAll(2 * kTick);
   ASSERT_TRUE(Take());
-  EXPECT_FALSE(Say(0, 2 * kStep));
-  EXPECT_FALSE(Say(0, 1 * kStep));
+  EXPECT_FALSE(Say(0, 2 * kTick));
+  EXPECT_FALSE(Say(0, 1 * kTick));
   EXPECT_EQ(window_.late(), 2u);
   EXPECT_EQ(window_.size(), 0u);
   // However old: one party that was asleep is not the beginning of another run.
-  EXPECT_FALSE(Say(0, -10000 * kStep));
-  SayAll(3 * kStep);
+  EXPECT_FALSE(Say(0, -10000 * kTick));
+  SayAll(3 * kTick);
   EXPECT_TRUE(Take());
 }
 
 TEST_F(StepWindowTest, ClearBeginsAnotherRunWithTheSameStamps) {
-  SayAll(1 * kStep);
-  Say(0, 2 * kStep);
+  SayAll(1 * kTick);
+  Say(0, 2 * kTick);
   ASSERT_TRUE(Take());
   window_.Clear();
   EXPECT_EQ(window_.size(), 0u);
   EXPECT_FALSE(window_.has_taken());
-  SayAll(1 * kStep);
+  SayAll(1 * kTick);
   ASSERT_TRUE(Take());
-  EXPECT_EQ(window_.taken(), 1 * kStep);
+  EXPECT_EQ(window_.taken(), 1 * kTick);
 }
 
 TEST_F(StepWindowTest, StepsFarAheadDoNotSilenceTheOnesBeforeThem) {
-  SayAll(1 * kStep);
+  SayAll(1 * kTick);
   ASSERT_TRUE(Take());
-  Say(0, 580 * kStep);
-  Say(0, 581 * kStep);
+  Say(0, 580 * kTick);
+  Say(0, 581 * kTick);
   for (int k = 2; k < 100; ++k) {
     now_s_ += 0.1;
     EXPECT_EQ(TakeAll(), std::vector<TimeNs>{}) << "between two steps";
-    SayAll(k * kStep);
-    ASSERT_EQ(TakeAll(), std::vector<TimeNs>{k * kStep});
+    SayAll(k * kTick);
+    ASSERT_EQ(TakeAll(), std::vector<TimeNs>{k * kTick});
   }
   EXPECT_EQ(window_.size(), 2u);
   // Where nothing is said about earlier steps any more, they are the present.
   now_s_ += kPatience_s + 0.1;
-  EXPECT_EQ(TakeAll(), std::vector<TimeNs>{580 * kStep});
+  EXPECT_EQ(TakeAll(), std::vector<TimeNs>{580 * kTick});
 }
 
 TEST_F(StepWindowTest, PatienceBeginsWithTheLastWordAboutAnEarlierStep) {
-  Say(0, 580 * kStep);
-  Say(0, 581 * kStep);
-  Say(0, 1 * kStep);
+  Say(0, 580 * kTick);
+  Say(0, 581 * kTick);
+  Say(0, 1 * kTick);
   now_s_ += 0.9;
-  Say(1, 1 * kStep);
+  Say(1, 1 * kTick);
   ASSERT_TRUE(Take());
   now_s_ += 0.9;
   EXPECT_FALSE(Take()) << "1.8 s after its own first word";
@@ -151,17 +151,17 @@ TEST_F(StepWindowTest, PatienceBeginsWithTheLastWordAboutAnEarlierStep) {
 }
 
 TEST_F(StepWindowTest, WithoutRoomTheLatestStepGoes) {
-  for (int k = 11; k <= 18; ++k) EXPECT_TRUE(Say(0, k * kStep));
+  for (int k = 11; k <= 18; ++k) EXPECT_TRUE(Say(0, k * kTick));
   EXPECT_EQ(window_.crowded(), 0u);
-  EXPECT_FALSE(Say(0, 19 * kStep)) << "later than all";
-  EXPECT_TRUE(Say(1, 18 * kStep)) << "what is open stays open";
+  EXPECT_FALSE(Say(0, 19 * kTick)) << "later than all";
+  EXPECT_TRUE(Say(1, 18 * kTick)) << "what is open stays open";
   EXPECT_EQ(window_.size(), 8u);
-  SayAll(1 * kStep);
+  SayAll(1 * kTick);
   EXPECT_EQ(window_.size(), 8u);
   EXPECT_EQ(window_.crowded(), 2u);
-  for (int k = 11; k <= 17; ++k) EXPECT_TRUE(Say(1, k * kStep));
-  EXPECT_EQ(TakeAll(), (std::vector<TimeNs>{1 * kStep, 11 * kStep, 12 * kStep, 13 * kStep,
-                                            14 * kStep, 15 * kStep, 16 * kStep, 17 * kStep}))
+  for (int k = 11; k <= 17; ++k) EXPECT_TRUE(Say(1, k * kTick));
+  EXPECT_EQ(TakeAll(), (std::vector<TimeNs>{1 * kTick, 11 * kTick, 12 * kTick, 13 * kTick,
+                                            14 * kTick, 15 * kTick, 16 * kTick, 17 * kTick}))
       << "18 was put out";
 }
 

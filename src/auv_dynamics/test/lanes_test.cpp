@@ -80,17 +80,16 @@ bool SameBits(const Record& a, const Record& b) {
 
 TEST(Lanes, EachLaneEqualsTheSameWorldAloneBitForBit) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    for (const TargetMotion motion :
-         {TargetMotion::kConstantVelocity, TargetMotion::kCoordinatedTurn,
-          TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
+    for (const std::string motion :
+         {"constant_velocity", "coordinated_turn", "random_waypoint", "evasive"}) {
       WorldConfig scenario = QuietScenario(4);
       scenario.vehicle.integrator = integrator;
-      scenario.vehicle.float32_tau = motion == TargetMotion::kEvasive;
-      if (motion == TargetMotion::kCoordinatedTurn) scenario.vehicle.r_BG_m = {0.0, 0.01, -0.02};
+      scenario.vehicle.float32_tau = motion == "evasive";
+      if (motion == "coordinated_turn") scenario.vehicle.r_BG_m = {0.0, 0.01, -0.02};
       scenario.target.motion = motion;
       scenario.current.velocity_mps = {0.02, -0.03, 0.01};
       scenario.disturbance = {2.0, 0.2, 1.0};
-      scenario.sensing = {0.45, 0.01, 0.8, 0.2, 1.0, 0.05};
+      scenario.sensing = {"position", 0.45, 0.01, 0.8, 0.2, 1.0, 0.05};
       std::vector<int> ids;
       for (int l = 0; l < kLanes; ++l) ids.push_back(l);
       const std::vector<Record> together = RunTogether(scenario, ids);
@@ -123,13 +122,14 @@ TEST(Lanes, ScalarIntegratorEqualsTheWorldBitForBit) {
     scenario.current.velocity_mps = {0.02, -0.03, 0.01};
     World world(scenario);
     world.Place(0, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
+    const VehicleModel model(scenario.vehicle);
     VehicleState<double> s = AtAttitude({});
     std::vector<Wrench<Pack>> tau = NoForce(1);
     for (int k = 0; k < 500; ++k) {
       const Wrench<double> command = Command(3, 0, k);
       tau[0] = {Broadcast(command.force), Broadcast(command.moment)};
       world.Step(tau);
-      Advance(world.model(), world.model().Limit(command), {0.02, -0.03, 0.01}, 0.1, 1, &s);
+      Advance(model, model.Limit(command), {0.02, -0.03, 0.01}, 0.1, 1, &s);
     }
     const NavState nav = world.Nav(0, 0);
     EXPECT_EQ(Norm(nav.p_WB - s.p_WB), 0.0);

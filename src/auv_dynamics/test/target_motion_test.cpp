@@ -9,7 +9,7 @@
 namespace stg::dynamics {
 namespace {
 
-WorldConfig TargetScenario(TargetMotion motion) {
+WorldConfig TargetScenario(const std::string& motion) {
   WorldConfig s = QuietScenario(1);
   s.target.motion = motion;
   s.vehicle = ReleaseVehicle();
@@ -21,7 +21,7 @@ double AngleBetween(const Vec3<double>& a, const Vec3<double>& b) {
 }
 
 TEST(TargetMotion, ConstantVelocityMovesByVelocityTimesTime) {
-  World world(TargetScenario(TargetMotion::kConstantVelocity));
+  World world(TargetScenario("constant_velocity"));
   world.Place(0, {{0.0, 0.0, 0.0}}, {{0.1, -0.2, 0.3}}, {{0.01, 0.004, -0.006}});
   for (int k = 0; k < 200; ++k) world.Step(NoForce(1));
   const Vec3<double> p = Lane(world.target(0).p_WT, 0);
@@ -31,7 +31,7 @@ TEST(TargetMotion, ConstantVelocityMovesByVelocityTimesTime) {
 }
 
 TEST(TargetMotion, ReflectionClampsAndFlipsThatComponentOnly) {
-  World world(TargetScenario(TargetMotion::kConstantVelocity));
+  World world(TargetScenario("constant_velocity"));
   world.Place(0, {{0.0, 0.0, 0.0}}, {{0.9995, -0.5, -0.9999}}, {{0.01, 0.02, -0.005}});
   world.Step(NoForce(1));
   const Vec3<double> p = Lane(world.target(0).p_WT, 0), v = Lane(world.target(0).v_WT, 0);
@@ -74,8 +74,7 @@ void CheckLimits(const WorldConfig& scenario, World* world, int steps) {
 }
 
 TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
-  for (const TargetMotion motion :
-       {TargetMotion::kCoordinatedTurn, TargetMotion::kRandomWaypoint, TargetMotion::kEvasive}) {
+  for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
     WorldConfig scenario = TargetScenario(motion);
     // As fast as the reset stage may start it: fast enough to meet every wall.
     scenario.reset.stages[2].target_speed_mps = {0.01, 0.05};
@@ -92,7 +91,7 @@ TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
 }
 
 TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
-  WorldConfig scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
+  WorldConfig scenario = TargetScenario("coordinated_turn");
   scenario.target.turn_period_s = 1.0;
   scenario.workspace.half_extent_m = 100.0;  // no wall interferes
   World world(scenario);
@@ -111,7 +110,7 @@ TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
 TEST(TargetMotion, EvasiveTargetTurnsAwayFromAnAuvInRange) {
   for (const Vec3<double>& auv : {Vec3<double>{0.06, 0.0, 0.0}, Vec3<double>{-0.03, 0.05, 0.0},
                                   Vec3<double>{0.01, -0.02, -0.06}}) {
-    WorldConfig scenario = TargetScenario(TargetMotion::kEvasive);
+    WorldConfig scenario = TargetScenario("evasive");
     World world(scenario);
     const Vec3<double> towards = auv * (0.01 / Norm(auv));
     world.Place(0, {auv}, {{0.0, 0.0, 0.0}}, {towards + Vec3<double>{0.0, 0.001, 0.001}});
@@ -125,7 +124,7 @@ TEST(TargetMotion, EvasiveTargetTurnsAwayFromAnAuvInRange) {
 }
 
 TEST(TargetMotion, EvasiveTargetEscapesEvenWhenHeadedStraightAtTheAuv) {
-  World world(TargetScenario(TargetMotion::kEvasive));
+  World world(TargetScenario("evasive"));
   world.Place(0, {{0.08, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.01, 0.0, 0.0}});
   for (int k = 0; k < 300; ++k) world.Step(NoForce(1));
   const Vec3<double> away = Lane(world.target(0).p_WT, 0) - Vec3<double>{0.08, 0.0, 0.0};
@@ -134,7 +133,7 @@ TEST(TargetMotion, EvasiveTargetEscapesEvenWhenHeadedStraightAtTheAuv) {
 }
 
 TEST(TargetMotion, EvasiveTargetOutOfRangeKeepsItsCourse) {
-  World world(TargetScenario(TargetMotion::kEvasive));
+  World world(TargetScenario("evasive"));
   world.Place(0, {{0.0, 0.5, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.01, 0.002, 0.0}});
   for (int k = 0; k < 100; ++k) world.Step(NoForce(1));
   EXPECT_EQ(Norm(Lane(world.target(0).v_WT, 0) - Vec3<double>{0.01, 0.002, 0.0}), 0.0);
@@ -175,7 +174,7 @@ Tour FollowTour(const WorldConfig& scenario, std::uint64_t seed, int steps) {
 }
 
 TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
-  WorldConfig scenario = TargetScenario(TargetMotion::kRandomWaypoint);
+  WorldConfig scenario = TargetScenario("random_waypoint");
   for (const double speed : {0.02, 0.05}) {
     scenario.reset.stages[2].target_speed_mps = {speed, speed};
     // Two ways along the diagonal of the waypoint cube, and a turn.
@@ -194,7 +193,7 @@ TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
 }
 
 TEST(TargetMotion, SeveralTargetsMoveIndependently) {
-  WorldConfig scenario = TargetScenario(TargetMotion::kCoordinatedTurn);
+  WorldConfig scenario = TargetScenario("coordinated_turn");
   scenario.agents = 2;
   scenario.target.count = 2;
   World world(scenario);

@@ -81,7 +81,7 @@ TEST(NoLeak, ATargetBeyondEverybodysRangeChangesNoObservation) {
 bool OthersNoticeTheFourth(InformationMode mode, double gap) {
   Scenario s = Short(Blind(), 200);
   s.mode = mode;
-  s.channel.model = acoustics::ChannelModel::kRange;
+  s.channel.model = "range";
   s.channel.range_m = 0.4;
   s.observation.graph = s.observation.semantic = true;
   const EnvOptions o;

@@ -18,7 +18,7 @@ Scenario Noisy(InformationMode mode, dynamics::ActionInterface interface) {
   s.control.interface = interface;
   s.agents = 5;
   s.target.count = 2;
-  s.target.motion = dynamics::TargetMotion::kCoordinatedTurn;
+  s.target.motion = "coordinated_turn";
   s.sensing.noise_std_m = 0.005;
   s.sensing.detection_probability = 0.7;
   s.sensing.dropout_rate_hz = 0.2;

@@ -94,7 +94,7 @@ TEST(ShippedScenarios, ReleaseProfileIsTheReleasesSimulator) {
   EXPECT_TRUE(s.vehicle.clip_velocity);
   EXPECT_EQ(s.reward.kind, task::RewardKind::kRelease);
   EXPECT_EQ(s.observation.order, agent::NeighbourOrder::kIndex);
-  EXPECT_EQ(s.channel.model, acoustics::ChannelModel::kRange);
+  EXPECT_EQ(s.channel.model, "range");
   EXPECT_EQ(s.observation_size(), 74);
 }
 
@@ -188,12 +188,15 @@ const char* const kSections[] = {
     "auv_common/include/auv_common/config/run_config",
     "auv_dynamics/include/auv_dynamics/vehicle/vehicle_config",
     "auv_dynamics/include/auv_dynamics/world/surroundings_config",
-    "auv_dynamics/include/auv_dynamics/world/target_config",
     "auv_dynamics/include/auv_dynamics/world/reset_config",
     "auv_dynamics/include/auv_dynamics/world/world_config",
     "auv_dynamics/include/auv_dynamics/sensing/sensing_config",
+    "auv_dynamics/include/auv_dynamics/targets/target_config",
     "auv_dynamics/include/auv_dynamics/control/control_config",
+    "acoustic_channel/include/acoustic_channel/access/periodic_config",
     "acoustic_channel/include/acoustic_channel/channel/channel_config",
+    "acoustic_channel/include/acoustic_channel/models/extended_config",
+    "acoustic_channel/include/acoustic_channel/models/range_config",
     "stg_agent/include/stg_agent/agent/agent_config",
     "marl_trainer/include/marl_trainer/task/reward_config",
     "marl_trainer/include/marl_trainer/scenario/scenario",

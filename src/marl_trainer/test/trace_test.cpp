@@ -63,7 +63,8 @@ TEST(GoldenTrace, AChangeInAnyColumnIsFound) {
     }
     const TraceError e = ReplayTrace(bad, 1e-5);
     for (const std::string& name : good.columns) {
-      if (!IsDriven(name)) EXPECT_NEAR(e.by_column.at(name), 1e-3, 2e-5) << name;
+      if (IsDriven(name)) continue;
+      EXPECT_NEAR(e.by_column.at(name), 1e-3, 2e-5) << name;
     }
   }
 }

@@ -17,8 +17,7 @@ void Step(benchmark::State& state) {
   std::vector<Agent> agents = MakeAgents(s);
   const std::size_t count = agents.size();
   std::vector<Vec3<double>> p(count);
-  std::vector<std::vector<acoustics::Reception>> air(kEpisode,
-                                                     std::vector<acoustics::Reception>(count));
+  std::vector<std::vector<HeardPacket>> air(kEpisode, std::vector<HeardPacket>(count));
   for (std::size_t j = 0; j < count; ++j) {
     const double phase = static_cast<double>(j);
     p[j] = {0.3 * std::sin(phase), 0.3 * std::cos(phase), 0.02 * std::sin(3.0 * phase)};

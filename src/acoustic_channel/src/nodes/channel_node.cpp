@@ -6,6 +6,7 @@
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -20,12 +21,13 @@ constexpr std::uint32_t kQueue = 50;
 
 ChannelNode::ChannelNode()
     : scenario_(LoadScenarioParameters<acoustics::NetworkConfig>()),
-      channel_(acoustics::MakeChannel(scenario_.channel, scenario_.agents)),
+      channel_(acoustics::MakeChannel(scenario_.channel, scenario_)),
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
+      velocities_(auvs_.size()),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
   done_ = node.advertise<std_msgs::Header>(topics::kChannelDone, kQueue, true);
@@ -54,16 +56,18 @@ double ChannelNode::Work() {
 }
 
 void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
-  const auto finite = [](const geometry_msgs::Pose& pose) { return FiniteVector(pose.position); };
   if (message->header.frame_id != frames::kWorld) {
     refused_swarm_.Add(Refusals::kFrame);
     return;
   }
-  if (message->poses.size() != auvs_.size()) {
+  if (message->poses.size() != auvs_.size() || message->twists.size() != auvs_.size()) {
     refused_swarm_.Add(Refusals::kMalformed);
     return;
   }
-  if (!std::all_of(message->poses.begin(), message->poses.end(), finite)) {
+  const auto finite_pose = [](const auto& pose) { return FinitePose(pose); };
+  const auto finite_twist = [](const auto& twist) { return FiniteTwist(twist); };
+  if (!std::all_of(message->poses.begin(), message->poses.end(), finite_pose) ||
+      !std::all_of(message->twists.begin(), message->twists.end(), finite_twist)) {
     refused_swarm_.Add(Refusals::kNotFinite);
     return;
   }
@@ -81,6 +85,7 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   step_ = message->step;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
+    velocities_[i] = WorldVelocity(message->poses[i], message->twists[i]);
   }
   open_ = true;
   opened_ = ros::WallTime::now();
@@ -96,12 +101,9 @@ void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr
 }
 
 bool ChannelNode::Usable(int i, const auv_msgs::AcousticPacket& message) {
-  const bool silent = message.data.empty();
   if (message.header.frame_id != frames::Body(i)) {
     refused_transmissions_.Add(Refusals::kFrame);
-  } else if (message.source != static_cast<std::uint32_t>(i) ||
-             (!silent && (message.data.size() != std::tuple_size<acoustics::Payload>::value ||
-                          message.generation > message.header.stamp))) {
+  } else if (message.source != static_cast<std::uint32_t>(i) || !Sendable(message)) {
     refused_transmissions_.Add(Refusals::kMalformed);
   } else if (NsOf(message.header.stamp) < stamp_ ||
              (!open_ && NsOf(message.header.stamp) == stamp_)) {
@@ -111,6 +113,27 @@ bool ChannelNode::Usable(int i, const auv_msgs::AcousticPacket& message) {
     return true;
   }
   return false;
+}
+
+bool ChannelNode::Sendable(const auv_msgs::AcousticPacket& message) const {
+  if (message.data.empty()) return true;  // silent in this step
+  try {
+    channel_->CheckOrThrow(TransmissionOf(message));
+    return true;
+  } catch (const UserError& error) {
+    ROS_WARN_THROTTLE(5.0, "channel: %s", error.what());
+    return false;
+  }
+}
+
+acoustics::Transmission ChannelNode::TransmissionOf(const auv_msgs::AcousticPacket& message) const {
+  acoustics::Transmission t;
+  t.source = static_cast<int>(message.source);
+  t.destination = message.destination;
+  t.stamp = NsOf(message.header.stamp) - start_;
+  t.generation = NsOf(message.generation) - start_;
+  t.payload = acoustics::ViewOf(message.data);
+  return t;
 }
 
 bool ChannelNode::Complete(bool wait_for_all) const {
@@ -138,19 +161,13 @@ void ChannelNode::CloseIfDue() {
 void ChannelNode::Close() {
   open_ = false;
   const TimeNs now = stamp_ - start_;
-  sent_.clear();
-  for (std::size_t i = 0; i < auvs_.size(); ++i) {
-    const auto& m = auvs_[i].transmission;
+  offered_.clear();
+  for (const Auv& auv : auvs_) {
+    const auto& m = auv.transmission;
     if (!m || NsOf(m->header.stamp) != stamp_ || m->data.empty()) continue;
-    acoustics::Transmission t;
-    t.source = static_cast<int>(i);
-    t.sequence = m->sequence;
-    t.stamp = now;
-    t.generation = NsOf(m->generation) - start_;
-    std::copy(m->data.begin(), m->data.end(), t.data.begin());
-    sent_.push_back(t);
+    offered_.push_back(TransmissionOf(*m));
   }
-  channel_->Step(now, step_, positions_, sent_);
+  channel_->Step(now, step_, positions_, velocities_, offered_);
   for (int i = 0; i < scenario_.agents; ++i) PublishReceptions(i, now + period_);
   std_msgs::Header done;
   done.stamp = TimeOf(stamp_);

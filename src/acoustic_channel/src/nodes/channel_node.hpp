@@ -21,8 +21,8 @@ namespace stg::nodes {
 /// Step k closes when the position and the transmission of every AUV at t_k are in; then each AUV
 /// gets its reception window (t_k, t_{k+1}], and the world its acknowledgement. An AUV that is
 /// silent for `timeout` seconds, or whose step the world has left behind, is gone for the channel
-/// and not waited for again before it transmits again. Positions, step, episode and
-/// seed come with /swarm_state.
+/// and not waited for again before it transmits again. Positions, velocities, step, episode
+/// and seed come with /swarm_state.
 class ChannelNode {
  public:
   /// Throws UserError.
@@ -41,6 +41,10 @@ class ChannelNode {
   void OnSwarm(const auv_msgs::SwarmState::ConstPtr& message);
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
   bool Usable(int i, const auv_msgs::AcousticPacket& message);
+  /// Says nothing, or something that the modem takes.
+  bool Sendable(const auv_msgs::AcousticPacket& message) const;
+  /// What the message offers.
+  acoustics::Transmission TransmissionOf(const auv_msgs::AcousticPacket& message) const;
   bool Complete(bool wait_for_all) const;
   void CloseIfDue();
   void Close();
@@ -58,8 +62,8 @@ class ChannelNode {
   std::uint32_t episode_ = 0, step_ = 0;
   ros::WallTime opened_, links_sent_;
   std::vector<Auv> auvs_;
-  std::vector<Vec3<double>> positions_;
-  std::vector<acoustics::Transmission> sent_;
+  std::vector<Vec3<double>> positions_, velocities_;
+  std::vector<acoustics::Transmission> offered_;
   std::vector<acoustics::Reception> received_;
   auv_msgs::AcousticReception reception_message_;
   auv_msgs::LinkStates links_message_;

@@ -5,20 +5,13 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/names.hpp"
+#include "key_path.hpp"
 #include "yaml_files.hpp"
 
 namespace stg::config {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMaxBases = 8;
-
-std::string Parent(const std::string& path) {
-  const auto dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
-}
-std::string Leaf(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";

@@ -9,8 +9,6 @@
 namespace stg::config {
 namespace {
 
-constexpr int kMaxBases = 8;
-
 YamlTree::Entry* FindEntry(YamlTree* map, const std::string& key) {
   const auto found = std::find_if(map->entries.begin(), map->entries.end(),
                                   [&](const auto& entry) { return entry.key == key; });
@@ -33,7 +31,7 @@ void Merge(const YamlTree& from, YamlTree* into) {
 }
 
 /// The file on top of its bases.
-YamlTree MergedFile(const std::string& path, int depth = 0) {
+YamlTree MergedFile(const std::string& path, std::size_t depth = 0) {
   YamlTree root = ReadMap(path);
   YamlTree merged;
   const YamlTree::Entry* base = FindEntry(&root, "base");

@@ -2,17 +2,9 @@
 #include <charconv>
 
 #include "auv_common/config/loader.hpp"
+#include "key_path.hpp"
 
 namespace stg::config {
-namespace {
-
-std::string Parent(const std::string& path) {
-  const auto dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
-}
-std::string Leaf(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-
-}  // namespace
 
 std::string ToYaml(const Table& table) {
   std::string text;

@@ -8,6 +8,9 @@
 /// What loading and resolving have in common.
 namespace stg::config {
 
+/// Files on top of each other.
+inline constexpr std::size_t kMaxBases = 8;
+
 /// The map that a text or file holds; UserError when it holds something else.
 YamlTree ParseMap(const std::string& text, const std::string& origin);
 YamlTree ReadMap(const std::string& path);

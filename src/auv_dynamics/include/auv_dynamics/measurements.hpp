@@ -19,12 +19,16 @@ struct Navigation {
 };
 using NavState = Navigation<double>;
 
+/// What a detection measures.
+enum class MeasurementKind { kPosition };
+
 /// One detection of a target by one vehicle's own sensor.
 struct Detection {
   TimeNs stamp = 0;
   int target = 0;
   Vec3<double> p_WT;   ///< measured target position in the world [m]
   double std_m = 0.0;  ///< standard deviation of each component [m]
+  MeasurementKind kind = MeasurementKind::kPosition;
 };
 
 /// Where a search starts: a datum of stated uncertainty.

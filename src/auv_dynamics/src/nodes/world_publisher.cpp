@@ -12,7 +12,7 @@
 namespace stg::nodes {
 namespace {
 
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kSentQueue = 100;
 
 geometry_msgs::TransformStamped TransformOf(const nav_msgs::Odometry& m) {
   geometry_msgs::TransformStamped t;
@@ -33,26 +33,26 @@ WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double dis
   for (int i = 0; i < scenario_.agents; ++i) {
     AuvTopics auv;
     auv.odometry =
-        node.advertise<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), kQueue, true);
+        node.advertise<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), kSentQueue, true);
     auv.detection = node.advertise<auv_msgs::TargetDetection>(
-        topics::AuvTopic(i, topics::kTargetDetection), kQueue, true);
+        topics::AuvTopic(i, topics::kTargetDetection), kSentQueue, true);
     auv.sync = node.advertise<auv_msgs::SensorSync>(topics::AuvTopic(i, topics::kSensorSync),
-                                                    kQueue, true);
+                                                    kSentQueue, true);
     auv.odometry_message.header.frame_id = frames::kWorld;
     auv.odometry_message.child_frame_id = frames::Body(i);
     auv.sync_message.header.frame_id = frames::Body(i);
     auvs_.push_back(auv);
   }
   // roscpp sends in the order of these lines: who decides is served first.
-  swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kQueue, true);
-  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kQueue, true);
+  swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
+  clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
   swarm_message_.header.frame_id = frames::kWorld;
   swarm_message_.poses.resize(auvs_.size());
   swarm_message_.twists.resize(auvs_.size());
   swarm_message_.target_positions.resize(static_cast<std::size_t>(scenario_.target.count));
   swarm_message_.target_velocities.resize(swarm_message_.target_positions.size());
   for (int k = 0; k < scenario_.target.count; ++k) {
-    targets_.push_back(node.advertise<nav_msgs::Odometry>(topics::TargetOdom(k), kQueue, true));
+    targets_.push_back(node.advertise<nav_msgs::Odometry>(topics::TargetOdom(k), kSentQueue, true));
     nav_msgs::Odometry m;
     m.header.frame_id = frames::kWorld;
     m.child_frame_id = frames::Target(k);

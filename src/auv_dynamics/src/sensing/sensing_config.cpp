@@ -1,5 +1,7 @@
 #include "auv_dynamics/sensing/sensing_config.hpp"
 
+#include "auv_dynamics/sensing/target_sensor.hpp"
+
 namespace stg::dynamics {
 
 using config::kFraction;
@@ -8,6 +10,8 @@ using config::Positive;
 
 void Describe(SensingConfig* c, config::Table* t) {
   t->Section("sensing");
+  t->Add("sensor", config::Name(&c->sensor, TargetSensors().Names()), config::kNone, "-",
+         "what an AUV's own sensor measures of a target");
   t->Add("range_m", &c->range_m, config::Positive(1e5), "m",
          "R_s: detection range, and scale of the confidence of Eq. 13");
   t->Add("noise_std_m", &c->noise_std_m, config::NonNegative(1e4), "m, world ENU",

@@ -1,6 +1,30 @@
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "auv_dynamics/vehicle/vehicle.hpp"
+
 namespace stg::dynamics {
+namespace {
+
+/// Fossen's M = M_RB + M_A about the body origin.
+bool MassMatrixIsPositive(const VehicleConfig& v) {
+  Eigen::Matrix<double, 6, 6> m = Eigen::Matrix<double, 6, 6>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    m(i, i) = v.mass_kg - v.added_mass[k];
+    m(i + 3, i + 3) = v.inertia_kgm2[k] - v.added_mass[k + 3];
+  }
+  const auto [x, y, z] = v.r_BG_m;
+  Eigen::Matrix3d s;
+  s << 0.0, -z, y, z, 0.0, -x, -y, x, 0.0;
+  m.topRightCorner<3, 3>() = -v.mass_kg * s;
+  m.bottomLeftCorner<3, 3>() = v.mass_kg * s;
+  return m.llt().info() == Eigen::Success;
+}
+
+}  // namespace
 
 using config::Enum;
 using config::kNone;
@@ -12,6 +36,8 @@ using config::Within;
 void Describe(VehicleConfig* c, config::Table* t) {
   const std::string axes = "surge sway heave roll pitch yaw";
   t->Section("vehicle");
+  t->Add("model", config::Name(&c->model, Vehicles().Names()), config::kNone, "-",
+         "what moves an AUV: its equations, actuators and action space");
   t->Add("profile", &c->profile, config::kNone, "-", "label of this set of vehicle constants");
   t->Add("mass_kg", &c->mass_kg, config::Positive(1e6), "kg", "mass m");
   t->Add("inertia_kgm2", config::Numbers(&c->inertia_kgm2), config::Positive(1e8), "kg m^2, body",
@@ -49,6 +75,14 @@ void Describe(VehicleConfig* c, config::Table* t) {
   t->Add("substeps", &c->substeps, config::Within(1, 1000), "-",
          "integrator steps per physics step");
   t->Add("radius_m", &c->radius_m, config::Positive(100), "m", "collision radius of one AUV");
+}
+
+std::optional<config::Violation> FindConflict(const VehicleConfig& c) {
+  if (!MassMatrixIsPositive(c)) {
+    return config::Violation{{"vehicle.r_BG_m", "vehicle.inertia_kgm2"},
+                             "the mass matrix is not positive definite"};
+  }
+  return {};
 }
 
 }  // namespace stg::dynamics

@@ -1,7 +1,5 @@
 #include "auv_dynamics/world/world_config.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -9,22 +7,6 @@ namespace stg::dynamics {
 namespace {
 
 using config::Violation;
-
-/// Fossen's M = M_RB + M_A about the body origin.
-bool MassMatrixIsPositive(const VehicleConfig& v) {
-  Eigen::Matrix<double, 6, 6> m = Eigen::Matrix<double, 6, 6>::Zero();
-  for (int i = 0; i < 3; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    m(i, i) = v.mass_kg - v.added_mass[k];
-    m(i + 3, i + 3) = v.inertia_kgm2[k] - v.added_mass[k + 3];
-  }
-  const auto [x, y, z] = v.r_BG_m;
-  Eigen::Matrix3d s;
-  s << 0.0, -z, y, z, 0.0, -x, -y, x, 0.0;
-  m.topRightCorner<3, 3>() = -v.mass_kg * s;
-  m.bottomLeftCorner<3, 3>() = v.mass_kg * s;
-  return m.llt().info() == Eigen::Success;
-}
 
 /// Can all AUVs be drawn one after the other with this separation around one
 /// point (targets may start together)? The share of the shell's volume that
@@ -84,10 +66,7 @@ void Describe(WorldConfig* c, config::Table* t) {
 
 std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   if (auto violation = FindConflict(static_cast<const RunConfig&>(s))) return violation;
-  if (!MassMatrixIsPositive(s.vehicle)) {
-    return Violation{{"vehicle.r_BG_m", "vehicle.inertia_kgm2"},
-                     "the mass matrix is not positive definite"};
-  }
+  if (auto violation = FindConflict(s.vehicle)) return violation;
   if (s.vehicle.radius_m >= s.workspace.half_extent_m) {
     return Violation{{"vehicle.radius_m", "workspace.half_extent_m"},
                      "an AUV does not fit between the walls"};

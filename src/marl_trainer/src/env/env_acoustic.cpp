@@ -11,16 +11,15 @@ EnvGroup::Acoustic::Acoustic(const Scenario& s) : scenario(s) {
   agents.reserve(n);
   for (int i = 0; i < s.agents; ++i) agents.emplace_back(first, i);
   for (int lane = 0; lane < kLanes; ++lane)
-    channels.push_back(acoustics::MakeChannel(s.channel, s.agents));
-  sequence.assign(n * kLanes, 0);
-  senders.reserve(n);
-  sent.reserve(n);
+    channels.push_back(acoustics::MakeChannel(s.channel, s));
+  packets.resize(n);
+  offered.reserve(n);
   received.reserve(8 * n);
   positions.resize(n);
+  velocities.resize(n);
 }
 
 void EnvGroup::Acoustic::Start(const dynamics::World& world) {
-  std::fill(sequence.begin(), sequence.end(), 0);
   for (int lane = 0; lane < kLanes; ++lane) {
     channels[static_cast<size_t>(lane)]->Reset(world.seed(lane), world.episode(lane));
     for (int i = 0; i < scenario.agents; ++i) {
@@ -69,7 +68,6 @@ void EnvGroup::AcousticActions() {
   Acoustic& a = *acoustic_;
   const int n = agents();
   const int size = action_size();
-  a.senders.clear();
   for (int i = 0; i < n; ++i) {
     const auto ui = static_cast<size_t>(i);
     Pack wanted[6];
@@ -83,23 +81,25 @@ void EnvGroup::AcousticActions() {
     }
     agent::AgentLanes& agent = a.agents[ui];
     agent.Act(wanted);
-    if (agent.transmits()) a.senders.push_back(i);
     std::copy(agent.knowledge().tau, agent.knowledge().tau + 6, tau_[ui].begin());
     std::copy(agent.action().begin(), agent.action().begin() + size, action_[ui].begin());
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     const TimeNs now = world_.time(lane);
-    a.sent.clear();
-    for (const int i : a.senders) {
-      std::uint32_t& sequence = a.sequence[static_cast<size_t>(lane * n + i)];
-      a.sent.push_back(
-          {i, sequence++, now, a.agents[static_cast<size_t>(i)].MakePacket(lane), now});
-    }
+    acoustics::Channel& channel = *a.channels[static_cast<size_t>(lane)];
+    a.offered.clear();
     for (int i = 0; i < n; ++i) {
-      a.positions[static_cast<size_t>(i)] = Lane(world_.vehicle(i).p_WB, lane);
+      const auto ui = static_cast<size_t>(i);
+      a.positions[ui] = Lane(world_.vehicle(i).p_WB, lane);
+      a.velocities[ui] = Lane(world_.vehicle(i).v_WB, lane);
+      if (!channel.Due(i, now)) continue;
+      a.packets[ui] = a.agents[ui].MakePacket(lane);
+      acoustics::Transmission& t = a.offered.emplace_back();
+      t.source = i;
+      t.stamp = t.generation = now;
+      t.payload = acoustics::ViewOf(a.packets[ui]);
     }
-    a.channels[static_cast<size_t>(lane)]->Step(now, static_cast<std::uint32_t>(step_), a.positions,
-                                                a.sent);
+    channel.Step(now, static_cast<std::uint32_t>(step_), a.positions, a.velocities, a.offered);
   }
 }
 

@@ -34,11 +34,10 @@ struct EnvGroup::Acoustic {
 
   std::vector<agent::AgentLanes> agents;                      // [agent]
   std::vector<std::unique_ptr<acoustics::Channel>> channels;  // [lane]
-  std::vector<std::uint32_t> sequence;                        // [lane, agent]
-  std::vector<int> senders;                                   // of the present decision, any lane
-  std::vector<acoustics::Transmission> sent;
+  std::vector<agent::Packet> packets;                         // [agent], scratch of one lane
+  std::vector<acoustics::Transmission> offered;
   std::vector<acoustics::Reception> received;
-  std::vector<Vec3<double>> positions;
+  std::vector<Vec3<double>> positions, velocities;
   Scenario scenario;
 };
 

@@ -34,4 +34,6 @@ AlgorithmRegistry& Algorithms() {
   return registry;
 }
 
+std::string DefaultAlgorithm() { return Algorithms().Names().front(); }
+
 }  // namespace stg::learn

@@ -49,7 +49,8 @@ TrainerNode::TrainerNode()
   options.policy = TextParameter("start_policy", "");
   options.workers = IntegerParameter("workers", 2, 1, 1024);
   options.log = &std::cout;
-  learn::TrainSetup setup = learn::RecordedSetup(scenario_, TextParameter("algorithm", "mappo"));
+  learn::TrainSetup setup =
+      learn::RecordedSetup(scenario_, TextParameter("algorithm", learn::DefaultAlgorithm()));
   LoadTrainParameters(&setup);
   trainer_ = std::make_unique<learn::RecordedTrainer>(scenario_, setup, options);
 }

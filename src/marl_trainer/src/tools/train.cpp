@@ -46,7 +46,7 @@ struct Declare {
 };
 
 int Train(int argc, char** argv) {
-  stg::learn::TrainSetup setup(Argument(argc, argv, "--algorithm", "mappo"),
+  stg::learn::TrainSetup setup(Argument(argc, argv, "--algorithm", stg::learn::DefaultAlgorithm()),
                                Argument(argc, argv, "--preset", "fast"));
   std::string scenario_name = "medium", condition = "nominal", out;
   std::vector<std::string> overrides, mix;

@@ -28,12 +28,7 @@ int IndexOfOne(const double (&one_hot)[4]) {
 
 }  // namespace
 
-Agent::Constants::Constants(const AgentConfig& s)
-    : scenario(s),
-      codec(s),
-      slots(
-          static_cast<int>(Max(1.0, std::round(s.channel.transmit_period_s / s.decision_dt_s())))),
-      period(s.decision_period()) {}
+Agent::Constants::Constants(const AgentConfig& s) : scenario(s), codec(s) {}
 
 Agent::Agent(const AgentConfig& scenario, int id)
     : Agent(std::make_shared<const Constants>(scenario), id) {}
@@ -93,7 +88,7 @@ void Agent::Detect(const dynamics::Detection& detection) {
 const NeighbourState* Agent::Take(const acoustics::Reception& reception) {
   try {
     const NeighbourState state =
-        constants_->codec.Decode(reception.data.data(), reception.data.size(), reception.arrival);
+        constants_->codec.Decode(reception.payload.data, reception.payload.size, reception.arrival);
     return neighbours_.Update(state) ? &neighbours_.at(state.source).state : nullptr;
   } catch (const UserError&) {
     ++refused_packets_;  // what comes from the water may be damaged
@@ -155,7 +150,7 @@ void Agent::UpdateTrack() {
 
 bool Agent::Current() const {
   return track_.observed() &&
-         Seconds(now_ - track_.information_stamp()) <= constants_->scenario.channel.freshness_s;
+         Seconds(now_ - track_.information_stamp()) <= neighbours_.links().freshness_s();
 }
 
 NeighbourView<double> Agent::SeeNeighbours() const {
@@ -206,17 +201,7 @@ AgentOutput Agent::Act(const float* action) {
   out.cmd_vel_W = mind_.Act(s, wanted);
   std::copy(mind_.knowledge.tau, mind_.knowledge.tau + 6, out.fraction);
   std::copy(mind_.action.begin(), mind_.action.end(), out.action);
-  out.transmit = MyTurn();
-  if (out.transmit) {
-    out.packet = MakePacket();
-    out.generation = now_;
-  }
   return out;
-}
-
-bool Agent::MyTurn() const {
-  const TimeNs decision = now_ / constants_->period;
-  return decision % constants_->slots == id_ % constants_->slots;
 }
 
 Packet Agent::MakePacket() const {

@@ -114,6 +114,7 @@ NeighbourView<Pack> AgentLanes::SeeNeighbours(const Vec3<Pack>& p_WT) const {
   const Pack zero(0.0), nowhere(1e9);
   const bool nearest = s.observation.order == NeighbourOrder::kNearest;
   const int self = agents_.front().id();
+  const acoustics::LinkEstimator& links = agents_.front().neighbours_.links();
   NeighbourView<Pack> view;
   int slot = 0;
   for (int j = 0; j < s.agents; ++j) {
@@ -124,8 +125,7 @@ NeighbourView<Pack> AgentLanes::SeeNeighbours(const Vec3<Pack>& p_WT) const {
     const Vec3<Pack> p_WN = DeadReckon(n.p_W, n.v_W, age_s_[uj], s.workspace.half_extent_m);
     const Vec3<Pack> r = p_WN - mind_.knowledge.p_WB;
     const Pack d = Norm(r);
-    view.Add(s.observation, known, p_WN, p_WT, LinkQuality(s.channel, d, age_s_[uj]),
-             n.tracking_error);
+    view.Add(s.observation, known, p_WN, p_WT, links.Quality(d, age_s_[uj]), n.tracking_error);
     if (nearest) {
       view.nearest.Offer(r, Select(known, d, nowhere));
     } else if (slot < kNeighbourSlots) {

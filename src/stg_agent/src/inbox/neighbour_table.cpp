@@ -5,7 +5,7 @@
 namespace stg::agent {
 
 NeighbourTable::NeighbourTable(const AgentConfig& scenario, int self)
-    : channel_(scenario.channel),
+    : links_(acoustics::MakeLinkEstimator(scenario.channel)),
       max_age_s_(scenario.track.neighbour_max_age_s),
       half_extent_m_(scenario.workspace.half_extent_m),
       self_(self),
@@ -66,7 +66,7 @@ void NeighbourTable::Predict(TimeNs now, const Vec3<double>& p_WB) {
   for (std::size_t k = 0; k < kept; k += static_cast<std::size_t>(kLanes)) {
     const Pack d = Pack::load_unaligned(&distance_[k]);
     const Pack age = Pack::load_unaligned(&age_[k]);
-    LinkQuality(channel_, d, age).store_unaligned(&quality_[k]);
+    links_->Quality(d, age).store_unaligned(&quality_[k]);
   }
   for (std::size_t k = 0; k < kept; ++k) {
     slots_[static_cast<std::size_t>(known_[k])].link_quality = quality_[k];

@@ -28,6 +28,7 @@ AgentNode::AgentNode()
       id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
       body_frame_(frames::Body(id_)),
       agent_(scenario_, id_),
+      turns_(scenario_.channel, scenario_),
       decider_(
           std::make_unique<const Decider>(TextParameter("policy", "pursuit_separated"), scenario_)),
       period_(scenario_.decision_period()),
@@ -50,6 +51,7 @@ AgentNode::AgentNode()
   wrench_message_.header.frame_id = packet_message_.header.frame_id =
       step_message_.header.frame_id = body_frame_;
   packet_message_.source = step_message_.agent = static_cast<std::uint32_t>(id_);
+  packet_message_.destination = acoustics::kToAll;
   step_message_.observation_layout = kLayoutVersion;
 
   subscribers_.push_back(
@@ -180,6 +182,7 @@ void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
     cue.std_m = sync.cue_std;
   }
   agent_.Reset(sync.episode, cue);
+  turns_.Reset(sync.seed, 0);
   episode_ = sync.episode;
   sequence_ = 0;
   in_episode_ = true;
@@ -207,10 +210,8 @@ void AgentNode::TakeReceptions(TimeNs stamp) {
     const TimeNs end = NsOf(m->header.stamp);
     if (end <= start_ || end > stamp) continue;
     for (const auto& packet : m->packets) {
-      acoustics::Reception reception;
-      if (!ReceptionOf(packet, id_, start_, &reception)) {
-        refused_receptions_.Add(Refusals::kMalformed);
-      } else if (reception.arrival < 0 || reception.arrival > stamp - start_) {
+      const acoustics::Reception reception = ReceptionOf(packet, id_, start_);
+      if (reception.arrival < 0 || reception.arrival > stamp - start_) {
         refused_receptions_.Add(Refusals::kStale);
       } else {
         agent_.Receive(reception);
@@ -270,9 +271,10 @@ void AgentNode::ReportDecision() {
   packet_message_.sequence = sequence_;
   packet_message_.data.clear();
   packet_message_.generation = ros::Time();
-  if (output.transmit) {
-    packet_message_.data.assign(output.packet.begin(), output.packet.end());
-    packet_message_.generation = TimeOf(start_ + output.generation);
+  if (turns_.Due(id_, NsOf(stamp) - start_)) {
+    const agent::Packet packet = agent_.MakePacket();
+    packet_message_.data.assign(packet.begin(), packet.end());
+    packet_message_.generation = stamp;
     ++sequence_;
   }
   packet_.publish(packet_message_);

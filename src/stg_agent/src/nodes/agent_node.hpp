@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "decider.hpp"
 #include "stg_agent/agent/agent.hpp"
@@ -59,6 +60,7 @@ class AgentNode {
   int id_;
   std::string body_frame_;
   agent::Agent agent_;
+  acoustics::Turns turns_;  ///< when the modem lets packets go
   std::unique_ptr<const Decider> decider_;
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_, report_delay_s_;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
-#include "auv_dynamics/world/world.hpp"
+#include "auv_dynamics/vehicle/vehicle_state.hpp"
 
 namespace stg::dynamics {
 
@@ -92,9 +92,7 @@ void Integrate(const VehicleModel& model, const Wrench<T>& tau, const Vec3<T>& v
     for (int k = 0; k < n; ++k) StepSemiImplicit(model, tau, v_WC, h, s);
   } else {
     for (int k = 0; k < n; ++k) StepRk4(model, tau, v_WC, h, s);
-    s->R_WB = RotationOf(s->q_WB);
-    s->trig = TrigOf(s->R_WB);
-    s->v_WB = s->R_WB * s->v_WB_B;
+    FollowQuaternion(s);
   }
 }
 

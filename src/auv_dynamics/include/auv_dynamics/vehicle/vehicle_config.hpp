@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "auv_common/config/field.hpp"
@@ -16,6 +17,7 @@ enum class AddedMassCoriolis { kFull, kNoMunk, kOff };
 /// Vehicle constants in Fossen's notation; Table S2. Six-component arrays are
 /// ordered surge, sway, heave, roll, pitch, yaw.
 struct VehicleConfig {
+  std::string model = "fully_actuated";  ///< name in the registry of vehicles
   std::string profile = "remus100";
   double mass_kg = 31.9;
   std::array<double, 3> inertia_kgm2{0.16, 4.10, 4.10};
@@ -41,5 +43,7 @@ struct VehicleConfig {
 
 /// Keys, units and ranges of the section.
 void Describe(VehicleConfig* c, config::Table* t);
+/// Contradictions between its keys.
+std::optional<config::Violation> FindConflict(const VehicleConfig& c);
 
 }  // namespace stg::dynamics

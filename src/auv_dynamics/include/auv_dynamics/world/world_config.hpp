@@ -5,10 +5,10 @@
 #include "auv_common/config/run_config.hpp"
 #include "auv_dynamics/control/control_config.hpp"
 #include "auv_dynamics/sensing/sensing_config.hpp"
+#include "auv_dynamics/targets/target_config.hpp"
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
 #include "auv_dynamics/world/surroundings_config.hpp"
-#include "auv_dynamics/world/target_config.hpp"
 
 namespace stg::dynamics {
 

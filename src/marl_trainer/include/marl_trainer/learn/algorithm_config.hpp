@@ -43,5 +43,7 @@ class AlgorithmConfig {
 /// Algorithms by the name that --algorithm takes.
 using AlgorithmRegistry = Registry<AlgorithmConfig>;
 AlgorithmRegistry& Algorithms();
+/// The one that is meant where none is named.
+std::string DefaultAlgorithm();
 
 }  // namespace stg::learn

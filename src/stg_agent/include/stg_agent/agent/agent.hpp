@@ -27,9 +27,6 @@ struct AgentOutput {
   /// Executed action in [-1, 1]: after rate limit and smoothing (velocity3), or clipped
   /// (tau6). The first action_size() entries count.
   double action[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  bool transmit = false;  ///< packet and generation mean something
-  Packet packet{};        ///< own state and target estimate
-  TimeNs generation = 0;  ///< time at which the packet's content was true
 };
 
 /// The semantic state of one decision, as the policy sees it (Eqs. 14-19).
@@ -42,8 +39,8 @@ struct TaskView {
 };
 
 /// One AUV's mind in `acoustic` mode: from own navigation, own detections and received
-/// packets to the observation; from the policy's action to command and packet. Knows
-/// nothing else of the world.
+/// packets to the observation; from the policy's action to the command, and to the packet that it
+/// offers to its modem. Knows nothing else of the world.
 ///
 /// Use, for every decision k: Receive and Detect in any order (the result does not depend
 /// on it), Observe, Act. Deterministic; allocates nothing after construction. Copies share
@@ -51,14 +48,11 @@ struct TaskView {
 ///
 /// Conventions that the paper leaves open:
 /// - Confidence (Eq. 13) is that of the estimated distance while the track is not lost and
-///   rests on an observation, own or shared, not older than channel.freshness_s; else 0.
+///   rests on an observation, own or shared, current as the link estimator says; else 0.
 ///   The cue is no observation.
 /// - Lost: position std above track.lost_std_m, or estimated distance above
 ///   task.lost_distance_m.
 /// - A neighbour not heard of counts as link quality 0 in the mean, and in no other average.
-/// - Agent i sends at decisions k with k mod P = i mod P, where P is transmit_period_s in
-///   decisions, rounded, at least 1. k comes from the stamp, not from counting: an agent
-///   that joins in the middle of an episode keeps to its slot.
 class Agent {
  public:
   /// Throws UserError when the scenario does not fit the packet layout.
@@ -86,6 +80,8 @@ class Agent {
   /// @param action [action_size()], clipped to [-1, 1] inside. Non-finite values throw
   /// std::invalid_argument.
   AgentOutput Act(const float* action);
+  /// Own state and target estimate at the last Observe, after Act: what it offers to its modem.
+  Packet MakePacket() const;
 
   int id() const { return id_; }
   const AgentConfig& scenario() const { return constants_->scenario; }
@@ -111,8 +107,6 @@ class Agent {
     explicit Constants(const AgentConfig& s);
     AgentConfig scenario;
     PacketCodec codec;
-    int slots;      // decisions per transmit period, P
-    TimeNs period;  // of decisions
   };
   Agent(std::shared_ptr<const Constants> constants, int id);
 
@@ -126,8 +120,6 @@ class Agent {
   /// The last Observe's information rests on an observation of late.
   bool Current() const;
   NeighbourView<double> SeeNeighbours() const;
-  bool MyTurn() const;
-  Packet MakePacket() const;
 
   std::shared_ptr<const Constants> constants_;
   int id_, target_;

@@ -31,8 +31,7 @@ class AgentLanes {
   void Act(const Pack* action);
   /// Executed action of the last Act; action_size entries count.
   const std::array<Pack, 6>& action() const { return mind_.action; }
-  /// This decision is the agent's turn to send (in all lanes): the packet of one lane.
-  bool transmits() const { return agents_.front().MyTurn(); }
+  /// What one lane's agent has to tell its neighbours after this decision.
   Packet MakePacket(int lane);
 
   /// One lane's agent, with all that it knows.

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/link/link_estimator.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "stg_agent/agent/agent_config.hpp"
 #include "stg_agent/packet/packet.hpp"
@@ -15,13 +16,6 @@ Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, doubl
   return Clip(p_W + v_W * age_s, -half_extent_m, half_extent_m);
 }
 
-/// q of Eq. 5 or 6, by the channel model, at distance d [m] and age of information age_s [s].
-template <class T>
-T LinkQuality(const acoustics::ChannelConfig& c, const T& d, const T& age_s) {
-  return c.model == acoustics::ChannelModel::kRange ? acoustics::RangeQuality(d, c.range_m)
-                                                    : acoustics::ExtendedQuality(d, age_s, c);
-}
-
 /// What one AUV knows of another: its newest packet, carried forward to now.
 struct Neighbour {
   NeighbourState state;        ///< as received; true at state.generation
@@ -31,7 +25,7 @@ struct Neighbour {
   Vec3<double> p_WN;           ///< dead-reckoned position p + v age, inside the walls [m]
   Vec3<double> r_BN_W;         ///< p_WN minus own position [m]
   double distance_m = 0.0;     ///< length of r_BN_W
-  double link_quality = 0.0;   ///< LinkQuality at distance and age
+  double link_quality = 0.0;   ///< the channel's estimate at distance and age
 };
 
 /// The neighbours of one AUV, fed by received packets only. Fixed capacity (the
@@ -62,13 +56,16 @@ class NeighbourTable {
   /// first (ties: lower index first); returns how many there were.
   int Nearest(int count, int* ids) const;
 
+  /// What the links to the neighbours are worth.
+  const acoustics::LinkEstimator& links() const { return *links_; }
+
   /// Some neighbour's target estimate is unread.
   bool unread() const { return unread_; }
   /// The track has taken all target estimates.
   void MarkRead();
 
  private:
-  acoustics::ChannelConfig channel_;
+  std::shared_ptr<const acoustics::LinkEstimator> links_;
   double max_age_s_;
   double half_extent_m_;
   int self_;

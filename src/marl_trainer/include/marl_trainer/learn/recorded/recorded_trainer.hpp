@@ -72,6 +72,7 @@ class RecordedTrainer {
 };
 
 /// Defaults for updates on few whole episodes: more passes over less data than the presets.
-TrainSetup RecordedSetup(const Scenario& scenario, const std::string& algorithm = "mappo");
+TrainSetup RecordedSetup(const Scenario& scenario,
+                         const std::string& algorithm = DefaultAlgorithm());
 
 }  // namespace stg::learn

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "auv_common/numbers/attitude.hpp"
 #include "auv_common/numbers/vector.hpp"
 #include "auv_common/time.hpp"
 
@@ -33,6 +34,26 @@ inline bool Finite(double x) { return std::abs(x) <= kLargestInput; }
 template <class Message>
 inline bool FiniteVector(const Message& m) {
   return Finite(m.x) && Finite(m.y) && Finite(m.z);
+}
+
+/// The orientation must be a rotation: a quaternion of length one.
+template <class Pose>
+inline bool FinitePose(const Pose& m) {
+  const auto& q = m.orientation;
+  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return FiniteVector(m.position) && std::abs(length - 1.0) <= 1e-3;
+}
+template <class Twist>
+inline bool FiniteTwist(const Twist& m) {
+  return FiniteVector(m.linear) && FiniteVector(m.angular);
+}
+
+/// Velocity in the world of a body whose twist is given in its own axes (REP 103).
+template <class Pose, class Twist>
+inline Vec3<double> WorldVelocity(const Pose& pose, const Twist& twist) {
+  const double q[4] = {pose.orientation.w, pose.orientation.x, pose.orientation.y,
+                       pose.orientation.z};
+  return RotationOf(q) * VectorOf(twist.linear);
 }
 
 }  // namespace stg::nodes

@@ -2,8 +2,6 @@
 
 #include <nav_msgs/Odometry.h>
 
-#include <cmath>
-
 #include "auv_common/nodes/conversions.hpp"
 #include "auv_dynamics/measurements.hpp"
 
@@ -42,15 +40,6 @@ inline dynamics::NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
   return NavOf(m.pose.pose, m.twist.twist, NsOf(m.header.stamp) - start);
 }
 
-/// The orientation must be a rotation: a quaternion of length one.
-inline bool FinitePose(const geometry_msgs::Pose& m) {
-  const auto& q = m.orientation;
-  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  return FiniteVector(m.position) && std::abs(length - 1.0) <= 1e-3;
-}
-inline bool FiniteTwist(const geometry_msgs::Twist& m) {
-  return FiniteVector(m.linear) && FiniteVector(m.angular);
-}
 inline bool FiniteOdometry(const nav_msgs::Odometry& m) {
   return FinitePose(m.pose.pose) && FiniteTwist(m.twist.twist);
 }

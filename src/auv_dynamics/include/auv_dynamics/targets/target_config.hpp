@@ -1,16 +1,15 @@
 #pragma once
 
+#include <string>
+
 #include "auv_common/config/field.hpp"
 
 namespace stg::dynamics {
 
-/// How a target moves on its own, before walls turn it back.
-enum class TargetMotion { kConstantVelocity, kCoordinatedTurn, kRandomWaypoint, kEvasive };
-
 /// Targets and how they move.
 struct TargetConfig {
   int count = 1;
-  TargetMotion motion = TargetMotion::kConstantVelocity;
+  std::string motion = "constant_velocity";  ///< name in the registry of target motions
   double max_speed_mps = 0.05;
   double max_turn_rate_radps = 0.5;
   double turn_rate_radps = 0.1;     ///< coordinated_turn: mean magnitude

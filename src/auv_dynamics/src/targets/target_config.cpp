@@ -1,8 +1,9 @@
-#include "auv_dynamics/world/target_config.hpp"
+#include "auv_dynamics/targets/target_config.hpp"
+
+#include "auv_dynamics/targets/target_motion.hpp"
 
 namespace stg::dynamics {
 
-using config::Enum;
 using config::kNone;
 using config::NonNegative;
 using config::Positive;
@@ -12,10 +13,8 @@ void Describe(TargetConfig* c, config::Table* t) {
   t->Section("target");
   t->Add("count", &c->count, config::Within(1, 16), "-",
          "number of targets; AUV i is tasked with target i modulo this");
-  t->Add("motion",
-         config::Enum(&c->motion,
-                      {"constant_velocity", "coordinated_turn", "random_waypoint", "evasive"}),
-         config::kNone, "-", "motion of the targets");
+  t->Add("motion", config::Name(&c->motion, TargetMotions().Names()), config::kNone, "-",
+         "motion of the targets");
   t->Add("max_speed_mps", &c->max_speed_mps, config::Positive(10), "m/s", "no target is faster");
   t->Add("max_turn_rate_radps", &c->max_turn_rate_radps, config::Positive(10), "rad/s",
          "no target turns faster, walls apart");

@@ -1,0 +1,119 @@
+# What the packages of this repository do alike, with catkin and without: call these functions on
+# targets that CMake's own commands made. STG_CORE_ONLY means a build of the cores alone, which the
+# CMakeLists.txt of the repository starts, and which needs neither catkin nor ROS.
+include_guard(DIRECTORY)
+include(${CMAKE_CURRENT_LIST_DIR}/stg_flags.cmake)
+
+option(STG_UNITY "Compile the sources of a target a dozen at a time, which halves the build" ON)
+
+# stg_unity(TARGET): names in the anonymous namespaces of its sources must then differ.
+function(stg_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${STG_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+endfunction()
+
+# stg_optimise(TARGET OPTION): -O1 or -O2 where the compiler's time matters more than the program's.
+function(stg_optimise target option)
+  if(NOT STG_SANITIZE)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${option}>)
+  endif()
+endfunction()
+
+# stg_core_library(TARGET [PACKAGE ...]): a library of a core, on top of other packages' cores.
+# Plain CMake exports it with the set STG_EXPORT.
+set(STG_EXPORT stgTargets)
+function(stg_core_library target)
+  add_library(stg::${target} ALIAS ${target})
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+  )
+  target_link_libraries(${target} PUBLIC stg_abi)
+  foreach(package IN LISTS ARGN)
+    if(TARGET ${package})
+      target_link_libraries(${target} PUBLIC ${package})
+    else()
+      # Built apart, as catkin_make_isolated does; catkin found it.
+      target_include_directories(${target} SYSTEM PUBLIC ${${package}_INCLUDE_DIRS})
+      target_link_libraries(${target} PUBLIC ${${package}_LIBRARIES})
+    endif()
+  endforeach()
+  stg_unity(${target})
+  if(STG_CORE_ONLY)
+    add_dependencies(stg_cores ${target})
+    install(TARGETS ${target} EXPORT ${STG_EXPORT})
+    install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.hpp")
+  endif()
+endfunction()
+
+# stg_core_tool(TARGET NAME): a command line of a core, called NAME.
+function(stg_core_tool target name)
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name})
+  stg_optimise(${target} -O2)
+endfunction()
+
+# stg_test(TARGET SOURCES FILE ... LIBRARIES LIBRARY ... [DEFINITIONS DEFINITION ...]
+# [INCLUDE_DIRECTORIES FOLDER ...] [PROGRAMS TARGET ...]): one program of GoogleTests, which may run
+# the programs. `./stg test PATTERN` finds it by its own name and by its files' names.
+function(stg_test target)
+  cmake_parse_arguments(
+    ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS;INCLUDE_DIRECTORIES;PROGRAMS" ${ARGN}
+  )
+  set(test _ctest_${PROJECT_NAME}_gtest_${target})
+  if(STG_CORE_ONLY)
+    if(NOT STG_TESTS)
+      return()
+    endif()
+    set(results ${CMAKE_BINARY_DIR}/test_results/${PROJECT_NAME}/gtest-${target}.xml)
+    add_executable(${target} EXCLUDE_FROM_ALL ${ARG_SOURCES})
+    target_link_libraries(${target} GTest::gtest)
+    add_test(NAME ${test} COMMAND ${target} --gtest_output=xml:${results})
+    add_dependencies(tests ${target})
+  elseif(CATKIN_ENABLE_TESTING)
+    catkin_add_gtest(${target} ${ARG_SOURCES})
+  else()
+    return()
+  endif()
+  target_link_libraries(${target} ${ARG_LIBRARIES} GTest::gtest_main)
+  target_compile_definitions(${target} PRIVATE ${ARG_DEFINITIONS})
+  target_include_directories(${target} PRIVATE ${ARG_INCLUDE_DIRECTORIES})
+  if(ARG_PROGRAMS)
+    add_dependencies(${target} ${ARG_PROGRAMS})
+  endif()
+  if(NOT STG_CORE_ONLY)
+    target_include_directories(${target} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+  endif()
+  stg_unity(${target})
+  stg_optimise(${target} -O1)
+  set(labels)
+  foreach(file IN LISTS ARG_SOURCES)
+    get_filename_component(label ${file} NAME_WE)
+    list(APPEND labels ${label})
+  endforeach()
+  set_tests_properties(${test} PROPERTIES LABELS "${labels}")
+endfunction()
+
+# stg_node_target(TARGET [LIBRARY ...]): a library or program with ROS in it, on top of libraries of
+# this repository.
+function(stg_node_target target)
+  set(headers ${CMAKE_CURRENT_SOURCE_DIR}/src/nodes/include)
+  if(EXISTS ${headers})
+    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${headers}>)
+  endif()
+  target_include_directories(${target} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+  target_link_libraries(${target} PUBLIC ${ARGN} ${catkin_LIBRARIES})
+  if(catkin_EXPORTED_TARGETS)
+    add_dependencies(${target} ${catkin_EXPORTED_TARGETS})
+  endif()
+  stg_unity(${target})
+  stg_optimise(${target} -O2)
+endfunction()
+
+# stg_graph_node(TARGET NAME [LIBRARY ...]): a program called NAME that `./stg run` starts, and
+# therefore builds.
+function(stg_graph_node target name)
+  stg_node_target(${target} ${ARGN})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name})
+  if(NOT TARGET stg_graph)
+    add_custom_target(stg_graph)
+  endif()
+  add_dependencies(stg_graph ${target})
+endfunction()

@@ -1,0 +1,60 @@
+// A target motion of your own: it turns one way for a while, then the other. See
+// docs/how_to/add_a_target_motion.md.
+
+#include <cmath>
+#include <cstdio>
+
+#include "auv_dynamics/targets/steered_motion.hpp"
+#include "auv_dynamics/world/world.hpp"
+
+namespace {
+
+using namespace stg;
+using namespace stg::dynamics;
+
+class Zigzag : public SteeredMotion {
+ public:
+  using SteeredMotion::SteeredMotion;
+
+ private:
+  Vec3<double> Steer(const Situation& now) override {
+    // A function of the clock, not of a counter of its own: nothing to reset, and every lane and
+    // every program agree.
+    const double time = dt() * now.clock.step;
+    const bool left = std::fmod(time / config().turn_period_s, 2.0) < 1.0;
+    const Vec3<double> up{0.0, 0.0, left ? 1.0 : -1.0};
+    return TurnTowards(now.v_WT, Cross(up, now.v_WT), config().turn_rate_radps * dt());
+  }
+};
+
+std::unique_ptr<TargetMotion> MakeZigzag(const MotionSetup& setup) {
+  return std::make_unique<Zigzag>(setup);
+}
+
+}  // namespace
+
+int main() {
+  TargetMotions().Add("zigzag", MakeZigzag);
+
+  WorldConfig config;
+  config.agents = 1;
+  config.target.motion = "zigzag";
+  config.target.turn_rate_radps = 0.1;
+  config.target.turn_period_s = 5.0;
+  World world(config);
+  world.Place(0, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.02, 0.0, 0.0}});
+
+  // One turn to the left and one to the right: the course comes back to where it was.
+  const std::vector<Wrench<Pack>> nothing(1);
+  double most = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    world.Step(nothing);
+    const Vec3<double> v = Lane(world.target(0).v_WT, 0);
+    most = std::max(most, std::atan2(v.y, v.x));
+  }
+  const Vec3<double> v = Lane(world.target(0).v_WT, 0);
+  const double course = std::atan2(v.y, v.x);
+  std::printf("largest course %.3f rad, at the end %.3f rad, speed %.3f m/s\n", most, course,
+              Norm(v));
+  return std::abs(most - 0.5) < 1e-9 && std::abs(course) < 1e-9 ? 0 : 1;
+}

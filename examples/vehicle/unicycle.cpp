@@ -1,0 +1,75 @@
+// A vehicle of your own, flown by World: it is told a speed and a turn rate, reaches them with a
+// first-order lag, and stays at its depth. See docs/how_to/add_a_vehicle.md.
+
+#include <cmath>
+#include <cstdio>
+
+#include "auv_dynamics/world/world.hpp"
+
+namespace {
+
+using namespace stg;
+using namespace stg::dynamics;
+
+class Unicycle : public Vehicle {
+ public:
+  explicit Unicycle(const VehicleConfig& config)
+      : actuators_{{"speed", "m/s", 0.0, config.max_velocity_mps[0]},
+                   {"turn_rate", "rad/s", -config.max_rate_radps[2], config.max_rate_radps[2]}} {}
+
+  const Space& actuators() const override { return actuators_; }
+  const Space& actions() const override { return none_; }
+  int internal_size() const override { return 1; }  // speed through the water
+
+  void Step(const Pack* command, const Surroundings& around, double dt, VehicleState<Pack>* state,
+            Pack* internal) const override {
+    const Pack share(1.0 - std::exp(-dt / kLag_s));
+    Pack& speed = internal[0];
+    Pack& rate = state->w_WB_B.z;
+    speed += (Within(0, command[0]) - speed) * share;
+    rate += (Within(1, command[1]) - rate) * share;
+
+    state->rpy.z = WrapAngle(state->rpy.z + rate * Pack(dt));
+    QuaternionOf(state->rpy, &state->q_WB);
+    const Mat3<Pack> R_WB = RotationOf(state->q_WB);
+    const Vec3<Pack> v_WB = R_WB * Vec3<Pack>{speed, Pack(0.0), Pack(0.0)} + around.v_WC;
+    state->p_WB += v_WB * Pack(dt);
+    state->v_WB_B = R_WB.TransposeTimes(v_WB);
+    FollowQuaternion(state);  // R_WB, trig and v_WB
+  }
+
+ private:
+  static constexpr double kLag_s = 2.0;
+
+  Pack Within(std::size_t k, const Pack& x) const {
+    return Clip(x, actuators_[k].lo, actuators_[k].hi);
+  }
+
+  Space actuators_, none_;
+};
+
+std::unique_ptr<const Vehicle> MakeUnicycle(const VehicleConfig& config) {
+  return std::make_unique<Unicycle>(config);
+}
+
+}  // namespace
+
+int main() {
+  Vehicles().Add("unicycle", MakeUnicycle);
+
+  WorldConfig config;  // or config::Load<WorldConfig>({file}), where the file says model: unicycle
+  config.agents = 1;
+  config.vehicle.model = "unicycle";
+  config.workspace.half_extent_m = 100.0;
+  World world(config);
+  world.Place(0, {{0.0, 0.0, -5.0}}, {{20.0, 0.0, -5.0}}, {{0.0, 0.0, 0.0}});
+
+  // At 1 m/s and 0.1 rad/s it ends on a circle of 10 m.
+  const std::vector<Pack> command{Pack(1.0), Pack(0.1)};
+  for (int k = 0; k < 600; ++k) world.Step(command);
+  const NavState nav = world.Nav(0, 0);
+  const double radius = Norm(nav.v_WB_B) / nav.w_WB_B.z;
+  std::printf("after %.0f s: at (%.2f, %.2f, %.2f) m, turning circle %.3f m\n",
+              1e-9 * static_cast<double>(nav.stamp), nav.p_WB.x, nav.p_WB.y, nav.p_WB.z, radius);
+  return std::abs(radius - 10.0) < 1e-6 && nav.p_WB.z == -5.0 ? 0 : 1;
+}

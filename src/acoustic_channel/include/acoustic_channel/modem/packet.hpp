@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "auv_common/time.hpp"
+
+/// What modems exchange. The channel carries bytes and does not read them.
+namespace stg::acoustics {
+
+/// Bytes that somebody else owns.
+struct ByteView {
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;
+};
+/// Of an array or vector of bytes that outlives the view.
+template <class Bytes>
+ByteView ViewOf(const Bytes& bytes) {
+  return {bytes.data(), bytes.size()};
+}
+
+inline constexpr int kToAll = -1;  ///< destination of a packet for everybody who hears it
+
+/// Longest payload of a modem without a profile of its own [bytes]: the largest frame set of the
+/// modems in use today (eight frames of 256 bytes).
+inline constexpr std::size_t kLargestFrame = 2048;
+
+/// A packet offered to the sender's modem.
+struct Transmission {
+  int source = 0;
+  int destination = kToAll;  ///< or the node that it is for; others do not see it
+  TimeNs stamp = 0;          ///< time of the step it is offered in
+  TimeNs generation = 0;     ///< time at which the payload was true, not after `stamp`
+  ByteView payload;          ///< not empty; the modem copies it
+};
+
+/// A packet as one receiver's modem gives it. Every number is finite.
+struct Reception {
+  int source = 0, receiver = 0;
+  int destination = kToAll;       ///< as addressed by the sender
+  std::uint32_t sequence = 0;     ///< of packets that left the source in this episode, from 0
+  TimeNs generation = 0;          ///< of the payload
+  TimeNs transmit = 0;            ///< the packet began to leave the sender
+  TimeNs arrival = 0;             ///< the packet was complete at the receiver
+  double distance_m = 0.0;        ///< between the two at transmission
+  double travel_time_s = 0.0;     ///< one-way travel time of sound
+  double loss_probability = 0.0;  ///< probability with which this packet could have been lost
+  double link_quality = 0.0;      ///< [0, 1], of the model, with the age at arrival
+  double received_level_db =
+      0.0;                      ///< re 1 uPa; this and the next two are 0 when the model has none
+  double noise_level_db = 0.0;  ///< re 1 uPa, in the modem's band
+  double sinr_db = 0.0;         ///< signal to interference and noise
+  double doppler_mps = 0.0;     ///< closing speed at transmission, positive closing
+  ByteView payload;             ///< valid until the channel's next Step or Reset
+};
+
+}  // namespace stg::acoustics

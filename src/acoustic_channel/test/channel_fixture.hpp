@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "acoustic_channel/channel/channel.hpp"
+
+namespace stg::acoustics {
+
+inline constexpr TimeNs kDt = 100'000'000;  ///< of the default clock
+
+/// A lossless network in which whoever offers a packet sends it at once.
+inline NetworkConfig LosslessNetwork(int nodes) {
+  NetworkConfig s;
+  s.agents = nodes;
+  s.channel.model = "extended";
+  s.channel.transmit_period_s = 0.1;
+  s.channel.max_range_m = 3.5;
+  s.channel.loss_probability = 0.0;
+  s.channel.loss_distance_m = 1e12;
+  return s;
+}
+
+inline constexpr std::uint8_t kAnyBytes[] = {17, 0, 255, 4};
+
+/// A packet for all, true when it is offered.
+inline Transmission From(int source, TimeNs t) {
+  Transmission packet;
+  packet.source = source;
+  packet.stamp = packet.generation = t;
+  packet.payload = {kAnyBytes, sizeof(kAnyBytes)};
+  return packet;
+}
+
+/// A step in which nobody moves.
+inline void StepAtRest(Channel* channel, TimeNs t, std::uint32_t step,
+                       const std::vector<Vec3<double>>& p,
+                       const std::vector<Transmission>& offered) {
+  channel->Step(t, step, p, std::vector<Vec3<double>>(p.size()), offered);
+}
+
+inline std::vector<Reception> DeliverAll(Channel* channel, TimeNs until) {
+  std::vector<Reception> out;
+  for (int j = 0; j < channel->nodes(); ++j) channel->Deliver(j, until, &out);
+  return out;
+}
+
+}  // namespace stg::acoustics

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "auv_common/registry.hpp"
+#include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
+#include "auv_dynamics/vehicle/vehicle_state.hpp"
+
+namespace stg::dynamics {
+
+/// One number of a command.
+struct Axis {
+  std::string name;  ///< "rudder"
+  std::string unit;  ///< "rad"
+  double lo = 0.0, hi = 0.0;
+};
+using Space = std::vector<Axis>;
+
+/// What acts on a vehicle during one step besides its own actuators.
+struct Surroundings {
+  const Vec3<Pack>& v_WC;           ///< current, world axes [m/s]
+  const Vec3<Pack>& contact_W;      ///< force of other vehicles that touch it, world axes [N]
+  const Wrench<Pack>& disturbance;  ///< w of Eq. 3, body axes [N, N m]
+};
+
+/// What moves a vehicle: one kind of vehicle, its constants and its equations. It holds no state,
+/// so one object serves a whole swarm in all lanes; the state is the caller's.
+class Vehicle {
+ public:
+  virtual ~Vehicle() = default;
+
+  /// What it can be told directly: order, units and limits of a command. Fixed for the life of the
+  /// object.
+  virtual const Space& actuators() const = 0;
+
+  /// What it can be told through its controller (control/), each component in [-1, 1] of its
+  /// limits; empty for a vehicle without one.
+  virtual const Space& actions() const = 0;
+
+  /// State of the actuators and of whatever else VehicleState does not hold (shaft speed, fin
+  /// angles), as a number of packs. They are zero when an episode starts.
+  virtual int internal_size() const { return 0; }
+
+  /// One physics step under a command that is held over it.
+  ///
+  /// @param command  [actuators().size()], any finite values: limits are applied here
+  /// @param dt       length of the step [s], positive
+  /// @param state    in and out; all of it but rpy consistent on return, see FollowQuaternion
+  /// @param internal [internal_size()], in and out
+  virtual void Step(const Pack* command, const Surroundings& around, double dt,
+                    VehicleState<Pack>* state, Pack* internal) const = 0;
+
+  /// The orientation of a state as a unit quaternion, w x y z.
+  virtual void Orientation(const VehicleState<Pack>& state, Pack (*q_WB)[4]) const {
+    std::copy(state.q_WB, state.q_WB + 4, *q_WB);
+  }
+};
+
+/// What `vehicle.model` may name. A new kind is a new file and one line in
+/// src/vehicle/vehicles.cpp; a kind of another program is added with Add before it loads a
+/// scenario.
+using VehicleRegistry = Registry<const Vehicle, const VehicleConfig&>;
+VehicleRegistry& Vehicles();
+
+}  // namespace stg::dynamics

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "auv_dynamics/targets/target_state.hpp"
+#include "auv_dynamics/world/reset_config.hpp"
+
+namespace stg::dynamics {
+
+/// Where an episode starts, world axes.
+struct Start {
+  std::vector<Vec3<double>> p_WB;  ///< positions of the vehicles [m]
+  std::vector<TargetState<double>> targets;
+};
+
+/// Draws the start of an episode (Table S2): targets around the origin, each vehicle around its
+/// target (vehicle i around target i modulo their number) at a distance from the others. Throws
+/// UserError when there is no room.
+///
+/// @param start in and out: its sizes say how many vehicles and targets there are
+void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
+               std::uint32_t episode, Start* start);
+
+}  // namespace stg::dynamics

@@ -1,0 +1,35 @@
+#include "motions.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// Straight on. At a wall the position is clamped and that component of the velocity flips: the
+/// paper's target.
+class ConstantVelocity : public TargetMotion {
+ public:
+  explicit ConstantVelocity(const MotionSetup& setup)
+      : dt_(setup.dt_s), half_extent_(setup.half_extent_m) {}
+
+  void Step(const EpisodeClocks&, const std::vector<VehicleState<Pack>>&,
+            std::vector<TargetState<Pack>>* targets) override {
+    const Pack h(dt_), limit(half_extent_);
+    for (TargetState<Pack>& t : *targets) {
+      t.p_WT += t.v_WT * h;
+      t.v_WT.x = Select(Abs(t.p_WT.x) > limit, -t.v_WT.x, t.v_WT.x);
+      t.v_WT.y = Select(Abs(t.p_WT.y) > limit, -t.v_WT.y, t.v_WT.y);
+      t.v_WT.z = Select(Abs(t.p_WT.z) > limit, -t.v_WT.z, t.v_WT.z);
+      t.p_WT = Clip(t.p_WT, -half_extent_, half_extent_);
+    }
+  }
+
+ private:
+  double dt_, half_extent_;
+};
+
+}  // namespace
+
+std::unique_ptr<TargetMotion> MakeConstantVelocity(const MotionSetup& setup) {
+  return std::make_unique<ConstantVelocity>(setup);
+}
+
+}  // namespace stg::dynamics

@@ -1,0 +1,36 @@
+#include <algorithm>
+
+#include "auv_dynamics/targets/steered_motion.hpp"
+#include "motions.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// Away from every vehicle in range, the closer the stronger; straight on while none is.
+class Evasive : public SteeredMotion {
+ public:
+  using SteeredMotion::SteeredMotion;
+
+ private:
+  Vec3<double> Steer(const Situation& now) override {
+    const double range = config().evasion_range_m;
+    Vec3<double> away;
+    double closest = range;
+    for (const VehicleState<Pack>& vehicle : now.vehicles) {
+      const Vec3<double> r = now.p_WT - Lane(vehicle.p_WB, now.lane);
+      const double d = std::max(Norm(r), 1e-6);
+      if (d >= range) continue;
+      away += r * (1.0 / (d * d));
+      closest = std::min(closest, d);
+    }
+    return closest < range ? TurnTowards(now.v_WT, away, largest_turn()) : now.v_WT;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<TargetMotion> MakeEvasive(const MotionSetup& setup) {
+  return std::make_unique<Evasive>(setup);
+}
+
+}  // namespace stg::dynamics

@@ -1,0 +1,59 @@
+#include "auv_dynamics/targets/steered_motion.hpp"
+#include "motions.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// Whether `to`, relative to a target of velocity v, lies inside the circle of
+/// its tightest turn: turning towards it would orbit it forever.
+bool InsideTurningCircle(const Vec3<double>& v, const Vec3<double>& to, double max_turn_rate) {
+  const double speed = Norm(v);
+  if (speed < 1e-12) return false;
+  const double radius = speed / max_turn_rate;
+  const double along = Dot(v, to) * (1.0 / speed);
+  const double aside = Norm(to - v * (along / speed)) - radius;
+  return along * along + aside * aside < radius * radius;
+}
+
+/// Towards points drawn within 0.8 of the workspace, one after the other.
+class RandomWaypoint : public SteeredMotion {
+ public:
+  explicit RandomWaypoint(const MotionSetup& setup)
+      : SteeredMotion(setup), index_(static_cast<size_t>(setup.target.count) * kLanes, 0) {}
+
+  void Reset(int lane) override {
+    for (int k = 0; k < config().count; ++k) index_[Slot(lane, k)] = 0;
+  }
+
+ private:
+  Vec3<double> Steer(const Situation& now) override {
+    std::uint32_t& index = index_[Slot(now.lane, now.target)];
+    const auto waypoint = [&] {
+      Random random =
+          now.clock.DrawAt(Stream::kTarget, index, static_cast<std::uint32_t>(now.target));
+      const double e = 0.8 * half_extent();
+      return Vec3<double>{random.Uniform(-e, e), random.Uniform(-e, e), random.Uniform(-e, e)};
+    };
+    const Vec3<double> to = waypoint() - now.p_WT;
+    // A point that cannot be reached by turning is given up for the next one.
+    if (Norm(to) < config().waypoint_radius_m ||
+        InsideTurningCircle(now.v_WT, to, config().max_turn_rate_radps)) {
+      ++index;
+    }
+    return TurnTowards(now.v_WT, waypoint() - now.p_WT, largest_turn());
+  }
+
+  size_t Slot(int lane, int target) const {
+    return static_cast<size_t>(lane * config().count + target);
+  }
+
+  std::vector<std::uint32_t> index_;  // [lane, target] points reached or given up
+};
+
+}  // namespace
+
+std::unique_ptr<TargetMotion> MakeRandomWaypoint(const MotionSetup& setup) {
+  return std::make_unique<RandomWaypoint>(setup);
+}
+
+}  // namespace stg::dynamics

@@ -1,0 +1,132 @@
+"""The cores without catkin and ROS: they compile, and their users get the right flags."""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+# Headers that only ROS has, wherever it is installed.
+ROS_HEADER = re.compile(
+    r"/(ros|rosbag|diagnostic_updater|tf2\w*|\w+_msgs|std_srvs|message_filters|xmlrpcpp)/[^/]+\.h"
+)
+USER = """
+cmake_minimum_required(VERSION 3.16)
+project(user LANGUAGES CXX)
+find_package(stg REQUIRED)
+add_executable(user user.cpp)
+target_link_libraries(user PRIVATE stg::auv_dynamics stg::acoustic_channel)
+"""
+CATKIN_USER = """
+cmake_minimum_required(VERSION 3.16)
+project(user LANGUAGES CXX)
+find_package(auv_common REQUIRED)
+get_directory_property(options COMPILE_OPTIONS)
+message(STATUS "flags: ${options}")
+"""
+USER_SOURCE = """
+#include "auv_common/names.hpp"
+#include "auv_common/numbers/lanes.hpp"
+
+int main() { return stg::IsName("auv_0") ? 0 : 1; }
+"""
+
+
+def environment(**changed):
+    """The environment without anything that leads to ROS, and then `changed`."""
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(("ROS", "CMAKE", "CATKIN"))}
+    kept["PATH"] = "/usr/bin:/bin"
+    kept.update(changed)
+    return kept
+
+
+def run(*command, **changed):
+    """Runs a command outside ROS; returns its output, or raises AssertionError with it."""
+    done = subprocess.run(
+        [str(word) for word in command],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        universal_newlines=True,
+        env=environment(**changed),
+        check=False,
+    )
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}:\n{done.stdout[-6000:]}")
+    return done.stdout
+
+
+def instruction_set(flags):
+    """The flags that decide about layout and rounding."""
+    return sorted(set(re.findall(r"-march=[\w.-]+|-ffp-contract=\w+", flags)))
+
+
+class PlainCMake(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.build = cls.folder / "build"
+        cls.prefix = cls.folder / "prefix"
+        # One by one, so that each source must include what it needs itself.
+        run(
+            "cmake",
+            "-S", ROOT,
+            "-B", cls.build,
+            "-G", "Ninja",
+            "-DCMAKE_BUILD_TYPE=None",
+            "-DCMAKE_CXX_FLAGS=-O0",
+            "-DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON",
+            "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+            f"-DCMAKE_INSTALL_PREFIX={cls.prefix}",
+            "-DSTG_TESTS=OFF",
+            "-DSTG_UNITY=OFF",
+            "-DSTG_WERROR=ON",
+        )  # fmt: skip
+
+    def test_1_cores_compile_without_catkin_and_ros(self):
+        run("ninja", "-C", self.build, "stg_cores", "marl_trainer_check_trace")
+        headers = run("ninja", "-C", self.build, "-t", "deps")
+        self.assertIn("auv_common/numbers/lanes.hpp", headers)
+        self.assertEqual(sorted({m.group(0) for m in ROS_HEADER.finditer(headers)}), [])
+        commands = (self.build / "compile_commands.json").read_text(encoding="utf-8")
+        self.assertNotIn("catkin", commands)
+        self.assertNotIn("/nodes/", commands)
+
+    def test_2_a_user_of_the_installed_libraries_is_compiled_alike(self):
+        run("cmake", "--install", self.build)
+        user = self.folder / "user"
+        user.mkdir()
+        (user / "CMakeLists.txt").write_text(USER, encoding="utf-8")
+        (user / "user.cpp").write_text(USER_SOURCE, encoding="utf-8")
+        run("cmake", "-S", user, "-B", user / "build", "-G", "Ninja",
+            f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")  # fmt: skip
+        run("cmake", "--build", user / "build")
+        run(user / "build" / "user")
+        commands = []
+        for build in (self.build, user / "build"):
+            entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+            commands.append({tuple(instruction_set(entry["command"])) for entry in entries})
+        self.assertEqual(commands[0], commands[1])
+        self.assertIn("-ffp-contract=off", commands[1].pop())
+
+    def test_3_a_user_with_catkin_is_compiled_alike(self):
+        prefixes = os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
+        workspace = [p for p in prefixes if os.path.isdir(f"{p}/share/auv_common/cmake")]
+        self.assertTrue(workspace, "this test runs in a sourced workspace")
+        user = self.folder / "catkin_user"
+        user.mkdir()
+        (user / "CMakeLists.txt").write_text(CATKIN_USER, encoding="utf-8")
+        output = run("cmake", "-S", user, "-B", user / "build",
+                     CMAKE_PREFIX_PATH=os.environ["CMAKE_PREFIX_PATH"])  # fmt: skip
+        flags = re.search(r"flags: (.*)", output).group(1)
+        entries = json.loads((self.build / "compile_commands.json").read_text(encoding="utf-8"))
+        self.assertEqual(instruction_set(flags), instruction_set(entries[0]["command"]))
+        self.assertIn("-ffp-contract=off", flags)
+
+
+if __name__ == "__main__":
+    unittest.main()
