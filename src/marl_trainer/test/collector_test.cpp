@@ -12,7 +12,7 @@
 namespace stg::learn {
 namespace {
 
-constexpr int kSteps = 30;  // decisions per collection; an episode has 40
+constexpr int kHorizon = 30;  // decisions per collection; an episode has 40
 
 /// Everything that one shard saw.
 struct Seen {
@@ -89,7 +89,7 @@ class CollectorTest : public ::testing::Test {
                                     {"time.episode_steps=40", "time.tail_steps=10"})),
         problem_(ProblemOf(scenario_)) {
     config_.envs = 22;  // a full shard and a part of one
-    config_.horizon = kSteps;
+    config_.horizon = kHorizon;
     config_.stagger = false;
   }
 
@@ -115,7 +115,7 @@ TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
   const std::vector<Seen> shards = SecondCollection(2, false);
   ASSERT_EQ(collection_.shards.size(), 2U);
   EXPECT_EQ(collection_.number, 1U);
-  EXPECT_EQ(collection_.steps, kSteps);
+  EXPECT_EQ(collection_.steps, kHorizon);
   EXPECT_EQ(collection_.shards[1].first_env, 16);
   EXPECT_EQ(collection_.shards[1].envs, 6);
   double reward = 0.0;
@@ -126,10 +126,10 @@ TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
     const std::size_t state = envs * static_cast<std::size_t>(problem_.state_size);
     const std::size_t observation =
         envs * agents * static_cast<std::size_t>(problem_.observation_size);
-    ASSERT_EQ(s.steps.size(), static_cast<std::size_t>(kSteps));
-    ASSERT_EQ(s.observations.size(), kSteps * observation);
+    ASSERT_EQ(s.steps.size(), static_cast<std::size_t>(kHorizon));
+    ASSERT_EQ(s.observations.size(), kHorizon * observation);
     EXPECT_TRUE(s.teacher.empty());
-    for (std::size_t t = 0; t < kSteps; ++t) {
+    for (std::size_t t = 0; t < kHorizon; ++t) {
       EXPECT_EQ(s.steps[t], static_cast<int>(t));
       for (std::size_t e = 0; e < envs; ++e) {
         // The first collection made 30 of an episode's 40 steps.
@@ -139,9 +139,9 @@ TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
           sum += static_cast<double>(s.rewards[(t * envs + e) * agents + i]);
         }
         EXPECT_NEAR(s.team_rewards[t * envs + e], sum / problem_.agents, 1e-6);
-        reward += static_cast<double>(s.team_rewards[t * envs + e]) / (22.0 * kSteps);
+        reward += static_cast<double>(s.team_rewards[t * envs + e]) / (22.0 * kHorizon);
       }
-      if (t + 1 == kSteps) break;
+      if (t + 1 == kHorizon) break;
       // What comes next is what is decided on next, across the end of an episode, too.
       EXPECT_TRUE(std::equal(s.next_states.begin() + static_cast<std::ptrdiff_t>(t * state),
                              s.next_states.begin() + static_cast<std::ptrdiff_t>((t + 1) * state),

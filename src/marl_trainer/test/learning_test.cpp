@@ -60,7 +60,8 @@ TEST(NetworkSpec, InitialWeightsAreOrthogonalWithTheStatedGain) {
     const int rows = spec.layer_outputs(l), cols = spec.layer_inputs(l);
     const Eigen::MatrixXd w =
         Eigen::Map<const RowMajor>(p.data() + mlp.weight_offset(l), rows, cols).cast<double>();
-    const Eigen::MatrixXd gram = rows <= cols ? w * w.transpose() : w.transpose() * w;
+    const Eigen::MatrixXd tall = rows <= cols ? Eigen::MatrixXd(w.transpose()) : w;
+    const Eigen::MatrixXd gram = tall.transpose() * tall;
     const int small = std::min(rows, cols);
     const double error = (gram - gains[l] * gains[l] * Eigen::MatrixXd::Identity(small, small))
                              .cwiseAbs()

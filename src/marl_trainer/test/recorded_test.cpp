@@ -12,7 +12,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "mappo_setup.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
@@ -31,12 +31,11 @@ class RecordedTest : public ::testing::Test {
     std::string name = (fs::temp_directory_path() / "recorded_test_XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
-    trainer_ = std::make_unique<RecordedTrainer>(scenario_, Setup(), Options("run"));
+    trainer_ = std::make_unique<RecordedTrainer>(scenario_, MakeSetup(), Options("run"));
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  static MappoConfig& Own(TrainSetup& setup) { return dynamic_cast<MappoConfig&>(*setup.own); }
-  static TrainSetup Setup() {
+  static TrainSetup MakeSetup() {
     TrainSetup setup = RecordedSetup(Short());
     MappoConfig& own = Own(setup);
     own.actor_hidden = {8};
@@ -244,7 +243,7 @@ TEST_F(RecordedTest, GoesOnFromItsFolderAsIfItHadNeverStopped) {
   const std::string id = trainer_->policy_id();
   fs::copy(folder_ / "run", folder_ / "copy");
   trainer_->Update({second});
-  RecordedTrainer resumed(scenario_, Setup(), Options("copy"));
+  RecordedTrainer resumed(scenario_, MakeSetup(), Options("copy"));
   EXPECT_EQ(resumed.policy_id(), id);
   EXPECT_EQ(resumed.Check(second).flaw, Flaw::kNone);
   resumed.Update({second});
@@ -253,18 +252,18 @@ TEST_F(RecordedTest, GoesOnFromItsFolderAsIfItHadNeverStopped) {
 }
 
 TEST_F(RecordedTest, StartsFromAPolicyAndKeepsItsFunction) {
-  TrainSetup scaled = Setup();
+  TrainSetup scaled = MakeSetup();
   Own(scaled).std_scale = 0.3;  // known to the policy file only by what it did
   trainer_ = std::make_unique<RecordedTrainer>(scenario_, scaled, Options("scaled"));
   trainer_->Update({Episode(0), Episode(1)});
   const RecordedEpisode episode = Episode(2);
-  TrainSetup setup = Setup();
+  TrainSetup setup = MakeSetup();
   Own(setup).actor_hidden = {32, 32};  // the policy's own shape counts
   RecordedTrainer other(scenario_, setup, Options("other", trainer_->policy_path()));
   EXPECT_EQ(other.policy_id(), trainer_->policy_id());
   ASSERT_EQ(other.Check(episode).flaw, Flaw::kNone);
   other.Update({episode});
-  EXPECT_THROW(RecordedTrainer(scenario_, Setup(), Options("other", trainer_->policy_path())),
+  EXPECT_THROW(RecordedTrainer(scenario_, MakeSetup(), Options("other", trainer_->policy_path())),
                UserError)
       << "the folder holds another policy's training by now";
 }
@@ -273,8 +272,8 @@ TEST_F(RecordedTest, RefusesAFolderOfAnotherScenarioAndABadMinibatch) {
   trainer_->Update({Episode(0)});
   Scenario other = scenario_;
   other.reward.weights.tracking *= 2.0;
-  EXPECT_THROW(RecordedTrainer(other, Setup(), Options("run")), UserError);
-  TrainSetup setup = Setup();
+  EXPECT_THROW(RecordedTrainer(other, MakeSetup(), Options("run")), UserError);
+  TrainSetup setup = MakeSetup();
   Own(setup).minibatch = 7;
   EXPECT_THROW(RecordedTrainer(scenario_, setup, Options("new")), UserError);
 }

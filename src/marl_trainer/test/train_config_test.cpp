@@ -5,13 +5,11 @@
 #include <string>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "mappo_setup.hpp"
 #include "marl_trainer/learn/variants.hpp"
 
 namespace stg::learn {
 namespace {
-
-MappoConfig& Own(TrainSetup& setup) { return dynamic_cast<MappoConfig&>(*setup.own); }
 
 /// What the refusal of a setup says; fails when there is none.
 std::string Refusal(const TrainSetup& setup) {

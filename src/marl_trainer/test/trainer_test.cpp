@@ -10,6 +10,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "mappo_setup.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
 #include "marl_trainer/learn/variants.hpp"
@@ -19,8 +20,6 @@ namespace stg::learn {
 namespace {
 
 namespace fs = std::filesystem;
-
-MappoConfig& Own(TrainSetup& setup) { return dynamic_cast<MappoConfig&>(*setup.own); }
 
 /// Two small collections per episode of 40 decisions.
 TrainSetup SmallSetup() {
