@@ -27,40 +27,6 @@ std::vector<float> ActionOf(const Scenario& s, int env, std::uint64_t round, int
   return a;
 }
 
-/// Environment e alone, in lane 0 of a group of its own.
-Story Alone(const Scenario& s, const VectorEnvOptions& o, int e, int steps) {
-  EnvOptions g;
-  g.seed = o.seed;
-  g.first_env = e;
-  g.total_envs = o.total_envs;
-  EnvGroup env(s, g);
-  env.Reset();
-  Story story;
-  const auto rows = static_cast<std::size_t>(s.agents * env.observation_size());
-  for (int k = 0; k < steps; ++k) {
-    std::vector<float> actions(static_cast<std::size_t>(kLanes * s.agents * s.action_size()));
-    const auto mine = ActionOf(s, e, env.round(), env.step());
-    std::copy(mine.begin(), mine.end(), actions.begin());
-    env.Step(actions.data());
-    std::vector<float> row(env.observations(), env.observations() + rows);
-    row.insert(row.end(), env.states(), env.states() + env.state_size());
-    for (int i = 0; i < s.agents; ++i) {
-      row.push_back(static_cast<float>(Lane(env.terms(i).total, 0)));
-    }
-    row.push_back(env.rewards()[0]);
-    row.push_back(env.truncated() ? 1.0F : 0.0F);
-    if (env.truncated()) {
-      row.insert(row.end(), env.final_observations(), env.final_observations() + rows);
-      row.insert(row.end(), env.final_states(), env.final_states() + env.state_size());
-      for (const auto& item : env.metrics(0).Items()) {
-        row.push_back(static_cast<float>(item.second));
-      }
-    }
-    story.push_back(row);
-  }
-  return story;
-}
-
 /// All environments of a VectorEnv.
 std::vector<Story> Together(const std::vector<Scenario>& mix, const VectorEnvOptions& o,
                             int steps) {
@@ -99,6 +65,13 @@ std::vector<Story> Together(const std::vector<Scenario>& mix, const VectorEnvOpt
     }
   }
   return stories;
+}
+
+/// Environment e of a run, alone in an object of its own.
+Story Alone(const Scenario& s, VectorEnvOptions o, int e, int steps) {
+  o.envs = 1;
+  o.first_env = e;
+  return Together({s}, o, steps).front();
 }
 
 TEST(VectorEnv, AnEnvironmentIsTheSameInAnyCompany) {

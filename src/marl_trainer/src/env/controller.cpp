@@ -2,17 +2,18 @@
 
 #include <algorithm>
 
+#include "acoustic_source.hpp"
 #include "auv_dynamics/control/control.hpp"
-#include "marl_trainer/env/env.hpp"
+#include "environment.hpp"
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::env {
 namespace {
 
 void DecideTruth(const Controller& c, const VectorEnv::Slice& slice, double* actions) {
-  const EnvGroup& env = *slice.group;
+  const Environment& env = *slice.lanes;
   const Scenario& s = env.scenario();
-  const int n = env.agents(), size = env.action_size();
+  const int n = s.agents, size = s.action_size();
   std::vector<Vec3<Pack>> neighbours(static_cast<size_t>(n));
   for (int i = 0; i < n; ++i) {
     int count = 0;
@@ -23,7 +24,10 @@ void DecideTruth(const Controller& c, const VectorEnv::Slice& slice, double* act
       }
     }
     Pack a[6];
-    const agent::Knowledge<Pack>& k = env.truth(i);
+    agent::Knowledge<Pack> k;  // what the law reads of it
+    k.p_WB = env.world().vehicle(i).p_WB;
+    k.r_BT_W = env.task().tracking(i).r_BT_W;
+    k.v_WT = env.world().target(s.target_of(i)).v_WT;
     agent::PursuitAction(c.options, s, k, neighbours.data(), count, a);
     if (s.control.interface == dynamics::ActionInterface::kTau6) {
       const dynamics::VehicleState<Pack>& v = env.world().vehicle(i);
@@ -41,7 +45,7 @@ void DecideTruth(const Controller& c, const VectorEnv::Slice& slice, double* act
 
 void Decide(const Controller& c, const VectorEnv::Slice& slice, const float* observations,
             double* actions) {
-  const Scenario& s = slice.group->scenario();
+  const Scenario& s = slice.lanes->scenario();
   const int n = s.agents, size = s.action_size(), width = s.observation_size();
   const bool truth = c.privileged || s.mode == InformationMode::kTruth;
   if (c.policy == nullptr && c.builtin != agent::BuiltinKind::kIdle && truth) {
@@ -53,7 +57,8 @@ void Decide(const Controller& c, const VectorEnv::Slice& slice, const float* obs
     if (c.policy != nullptr) {
       c.policy->Mean(observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
     } else if (c.builtin != agent::BuiltinKind::kIdle) {
-      agent::BuiltinAction(c.builtin, c.options, slice.group->agent(row / n, row % n), a);
+      agent::BuiltinAction(c.builtin, c.options,
+                           slice.lanes->acoustic().agent(row % n).agent(row / n), a);
     }
     double* out = actions + (slice.first * n + row) * size;
     for (int k = 0; k < size; ++k) out[k] = static_cast<double>(a[k]);
@@ -74,10 +79,6 @@ Controller MakeController(const std::string& name, const Scenario& scenario) {
 
 void Decide(const Controller& c, const VectorEnv& env, const float* observations, double* actions) {
   for (const VectorEnv::Slice& slice : env.slices()) Decide(c, slice, observations, actions);
-}
-
-void Decide(const Controller& c, const EnvGroup& env, double* actions) {
-  Decide(c, {&env, 0, kLanes}, env.observations(), actions);
 }
 
 }  // namespace stg::env

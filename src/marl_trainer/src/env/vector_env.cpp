@@ -1,20 +1,16 @@
 #include "marl_trainer/env/vector_env.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/env/env.hpp"
+#include "environment.hpp"
 
 namespace stg::env {
 namespace {
 
 std::size_t Size(int a, int b = 1, int c = 1) {
   return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * static_cast<std::size_t>(c);
-}
-
-/// Copies `rows` rows of `width` numbers to the rows from `first` on; to null: nothing.
-void CopyRows(const float* from, int rows, int width, int first, float* to) {
-  if (to != nullptr) std::copy_n(from, Size(rows, width), to + Size(first, width));
 }
 
 void RequireOneLayout(const std::vector<Scenario>& mix) {
@@ -40,105 +36,173 @@ VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& o
   if (options_.envs < 1 || options_.first_env < 0 || options_.total_envs < options_.envs) {
     throw UserError("environments must be at least one, and no more than all together");
   }
-  EnvOptions o;
-  o.seed = options_.seed;
-  o.total_envs = options_.total_envs;
   slice_of_.resize(Size(options_.envs));
   for (int env = 0; env < options_.envs;) {
     int count = 1;
-    const Scenario* s = &scenario(env);
-    // Lanes share a scenario and the length of a first episode.
-    while (count < kLanes && env + count < options_.envs && &scenario(env + count) == s &&
-           stagger(env + count) == stagger(env)) {
+    // Lanes share a scenario.
+    while (count < kLanes && env + count < options_.envs &&
+           &scenario(env + count) == &scenario(env)) {
       ++count;
     }
-    o.first_env = options_.first_env + env;
-    o.curriculum = options_.curriculum && s->reset.curriculum;
-    groups_.emplace_back(*s, o);
-    slices_.push_back({nullptr, env, count});
-    std::fill_n(slice_of_.begin() + env, count, static_cast<int>(slices_.size()) - 1);
+    std::fill_n(slice_of_.begin() + env, count, static_cast<int>(slices_.size()));
+    slices_.push_back({std::make_unique<Environment>(scenario(env)), env, count});
     env += count;
   }
-  for (std::size_t g = 0; g < slices_.size(); ++g) slices_[g].group = &groups_[g];
-  actions_.assign(Size(kLanes, agents(), action_size()), 0.0);
+  round_.assign(slice_of_.size(), 0);
+  finished_.resize(slice_of_.size());
+  wanted_.assign(Size(agents(), action_size()), Pack(0.0));
+  rows_.resize(Size(kLanes, std::max(agents() * observation_size(), state_size())));
 }
 
 VectorEnv::~VectorEnv() = default;
 VectorEnv::VectorEnv(VectorEnv&&) noexcept = default;
 
-int VectorEnv::state_size() const { return groups_.front().state_size(); }
+int VectorEnv::state_size() const { return task::CriticStateSize(mix_.front()); }
 
 const Scenario& VectorEnv::scenario(int env) const {
   const auto block = Size(options_.first_env + env) / kMixBlock;
   return mix_[block % mix_.size()];
 }
 
-int VectorEnv::stagger(int env) const {
-  if (!options_.stagger) return 0;
-  const int blocks = (options_.total_envs + kMixBlock - 1) / kMixBlock;
-  const int block = (options_.first_env + env) / kMixBlock;
-  return std::max(1, scenario(env).time.episode_steps * (block + 1) / blocks);
-}
-
 const VectorEnv::Slice& VectorEnv::SliceOf(int env) const {
   return slices_[static_cast<std::size_t>(slice_of_[static_cast<std::size_t>(env)])];
 }
 
-int VectorEnv::step(int env) const { return SliceOf(env).group->step(); }
-std::uint64_t VectorEnv::round(int env) const { return SliceOf(env).group->round(); }
-
-std::uint64_t VectorEnv::seed(int env) const {
-  const Slice& slice = SliceOf(env);
-  return slice.group->world().seed(env - slice.first);
+int VectorEnv::FirstLength(int env) const {
+  const int whole = scenario(env).time.episode_steps;
+  if (!options_.stagger) return whole;
+  const int blocks = (options_.total_envs + kMixBlock - 1) / kMixBlock;
+  const int block = (options_.first_env + env) / kMixBlock;
+  return std::max(1, whole * (block + 1) / blocks);
 }
 
-const task::EpisodeMetrics& VectorEnv::metrics(int env) const {
-  const Slice& slice = SliceOf(env);
-  return slice.group->metrics(env - slice.first);
+void VectorEnv::Restart(const Slice& slice, int lane, bool first) {
+  // Lanes beyond the last environment do what the first one does.
+  const int env = slice.first + (lane < slice.count ? lane : 0);
+  const Scenario& s = scenario(env);
+  const std::uint64_t r =
+      static_cast<std::uint64_t>(options_.first_env + env) +
+      round_[static_cast<std::size_t>(env)] * static_cast<std::uint64_t>(options_.total_envs);
+  dynamics::ResetStage stage = s.reset.stage;
+  if (options_.curriculum && s.reset.curriculum) {
+    stage = r < static_cast<std::uint64_t>(s.reset.curriculum_easy_resets)
+                ? dynamics::ResetStage::kEasy
+            : r < static_cast<std::uint64_t>(s.reset.curriculum_medium_resets)
+                ? dynamics::ResetStage::kMedium
+                : dynamics::ResetStage::kHard;
+  }
+  slice.lanes->Reset(lane, options_.seed + r, stage,
+                     first ? FirstLength(env) : s.time.episode_steps);
 }
 
 void VectorEnv::RestartAt(std::uint64_t k, const EnvArrays& out) {
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    groups_[g].RestartAt(k, stagger(slices_[g].first));
-    WriteStart(slices_[g], out);
+  std::fill(round_.begin(), round_.end(), k);
+  for (const Slice& slice : slices_) {
+    for (int lane = 0; lane < kLanes; ++lane) Restart(slice, lane, true);
+    slice.lanes->Begin(LaneSet::All());
+    WriteStart(slice, out);
   }
 }
 
-void VectorEnv::WriteStart(const Slice& slice, const EnvArrays& out) const {
-  const EnvGroup& group = *slice.group;
-  CopyRows(group.observations(), slice.count, agents() * observation_size(), slice.first,
-           out.observations);
-  CopyRows(group.states(), slice.count, state_size(), slice.first, out.states);
+void VectorEnv::ResetEnv(int env, std::uint64_t seed, const EnvArrays& out) {
+  const Slice& slice = SliceOf(env);
+  const Scenario& s = scenario(env);
+  LaneSet lanes;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const bool follows = env == slice.first && lane >= slice.count;
+    if (lane != env - slice.first && !follows) continue;
+    slice.lanes->Reset(lane, seed, s.reset.stage, s.time.episode_steps);
+    lanes.in[static_cast<std::size_t>(lane)] = true;
+  }
+  slice.lanes->Begin(lanes);
+  WriteStart(slice, out);
+}
+
+void VectorEnv::Place(const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
+                      const std::vector<Vec3<double>>& v_WT, const EnvArrays& out) {
+  std::fill(round_.begin(), round_.end(), 0);
+  for (const Slice& slice : slices_) {
+    for (int lane = 0; lane < kLanes; ++lane) slice.lanes->Place(lane, p_WB, p_WT, v_WT);
+    slice.lanes->Begin(LaneSet::All());
+    WriteStart(slice, out);
+  }
 }
 
 void VectorEnv::Step(const float* actions, const EnvArrays& out) { StepAll(actions, out); }
 void VectorEnv::Step(const double* actions, const EnvArrays& out) { StepAll(actions, out); }
 
 template <class Number>
-void VectorEnv::StepAll(const Number* actions, const EnvArrays& out) {
-  const int per_env = agents() * action_size();
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const Slice& slice = slices_[g];
-    EnvGroup& group = groups_[g];
-    const Number* own = actions + Size(slice.first, per_env);
-    std::copy_n(own, Size(slice.count, per_env), actions_.begin());
-    std::fill(actions_.begin() + static_cast<std::ptrdiff_t>(Size(slice.count, per_env)),
-              actions_.end(), 0.0);
-    group.Step(actions_.data());
-    WriteStart(slice, out);
-    CopyRows(group.rewards(), slice.count, 1, slice.first, out.team_rewards);
+void VectorEnv::Gather(const Slice& slice, const Number* actions) {
+  const std::size_t per_env = wanted_.size();
+  const Number* first = actions + Size(slice.first) * per_env;
+  Pack finite(0.0);
+  for (std::size_t k = 0; k < per_env; ++k) {
+    alignas(Pack) double lanes[kLanes] = {};
     for (int lane = 0; lane < slice.count; ++lane) {
-      const auto env = Size(slice.first + lane);
-      for (int i = 0; i < agents() && out.rewards != nullptr; ++i) {
-        out.rewards[env * Size(agents()) + Size(i)] =
-            static_cast<float>(Lane(group.terms(i).total, lane));
-      }
-      if (out.truncated != nullptr) out.truncated[env] = group.truncated() ? 1 : 0;
+      lanes[lane] = static_cast<double>(first[Size(lane) * per_env + k]);
     }
-    if (!group.truncated()) continue;
-    CopyRows(group.final_observations(), slice.count, agents() * observation_size(), slice.first,
-             out.final_observations);
-    CopyRows(group.final_states(), slice.count, state_size(), slice.first, out.final_states);
+    wanted_[k] = Pack::load_aligned(lanes);
+    finite += wanted_[k] - wanted_[k];
+  }
+  if (Any(!(finite == Pack(0.0)))) throw std::invalid_argument("non-finite action");
+}
+
+template <class Number>
+void VectorEnv::StepAll(const Number* actions, const EnvArrays& out) {
+  for (const Slice& slice : slices_) {
+    Environment& lanes = *slice.lanes;
+    Gather(slice, actions);
+    lanes.Step(wanted_.data());
+    if (out.rewards != nullptr) {
+      lanes.WriteRewards(slice.count, out.rewards + Size(slice.first, agents()));
+    }
+    LaneSet done;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      done.in[static_cast<std::size_t>(lane)] = lanes.Done(lane);
+      if (lane >= slice.count) continue;
+      const std::size_t env = Size(slice.first + lane);
+      if (out.team_rewards != nullptr) {
+        out.team_rewards[env] = static_cast<float>(Lane(lanes.task().team_reward(), lane));
+      }
+      if (out.truncated != nullptr) out.truncated[env] = done[lane] ? 1 : 0;
+    }
+    if (done.any()) Finish(slice, done, out);
+    WriteStart(slice, out);
+  }
+}
+
+void VectorEnv::Finish(const Slice& slice, const LaneSet& done, const EnvArrays& out) {
+  Environment& lanes = *slice.lanes;
+  // Only the rows of what has ended are written: the others' final rows stay what they are.
+  const auto copy = [&](float* to, int width) {
+    for (int lane = 0; lane < slice.count && to != nullptr; ++lane) {
+      if (!done[lane]) continue;
+      std::copy_n(rows_.begin() + lane * width, width, to + Size(slice.first + lane, width));
+    }
+  };
+  lanes.WriteObservations(slice.count, rows_.data());
+  copy(out.final_observations, agents() * observation_size());
+  lanes.WriteStates(slice.count, rows_.data());
+  copy(out.final_states, state_size());
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!done[lane]) continue;
+    if (lane < slice.count) {
+      const std::size_t env = Size(slice.first + lane);
+      finished_[env] = lanes.task().Metrics(lane);
+      ++round_[env];
+    }
+    Restart(slice, lane, false);
+  }
+  lanes.Begin(done);
+}
+
+void VectorEnv::WriteStart(const Slice& slice, const EnvArrays& out) const {
+  if (out.observations != nullptr) {
+    slice.lanes->WriteObservations(
+        slice.count, out.observations + Size(slice.first, agents(), observation_size()));
+  }
+  if (out.states != nullptr) {
+    slice.lanes->WriteStates(slice.count, out.states + Size(slice.first, state_size()));
   }
 }
 

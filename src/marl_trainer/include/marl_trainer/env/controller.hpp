@@ -28,7 +28,5 @@ Controller MakeController(const std::string& name_or_file, const Scenario& scena
 /// @param observations [envs, agents, observation_size], as `env` wrote them
 void Decide(const Controller& controller, const VectorEnv& env, const float* observations,
             double* actions);
-/// Of all lanes of a group, [kLanes, agents, action_size].
-void Decide(const Controller& controller, const EnvGroup& env, double* actions);
 
 }  // namespace stg::env

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/judge_config.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 /// The task's reward (Eqs. 28-36) and the release's two variants, on true
@@ -75,9 +75,10 @@ inline T ControlCost(const RewardConfig& c, int action_size, const RewardInput<T
 }
 
 /// Reward of one AUV; coordination and communication are shared by the swarm.
+/// @param extra weighted sum of registered terms, added before the total is clipped; null: none
 template <class T>
-inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const T& coordination,
-                             const T& communication) {
+inline RewardTerms<T> Reward(const JudgeConfig& s, const RewardInput<T>& in, const T& coordination,
+                             const T& communication, const T* extra = nullptr) {
   const RewardConfig& c = s.reward;
   const T zero(0.0), one(1.0);
   const T& d = in.distance;
@@ -123,6 +124,7 @@ inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const 
             T(w.coordination) * r.coordination + T(w.communication) * r.communication +
             T(w.semantic) * r.semantic + T(w.separation) * r.separation -
             T(w.control_cost) * r.cost;
+  if (extra != nullptr) r.total += *extra;
   r.total = Clip(r.total, T(-c.total_limit), T(c.total_limit));
   return r;
 }
