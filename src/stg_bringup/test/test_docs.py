@@ -138,6 +138,14 @@ class HowTo(unittest.TestCase):
                 self.assertTrue(f"({example})" in (DOCS / "how_to" / page).read_text(), page)
                 self.assertTrue(f"  {example.partition('examples/')[2]}\n" in build, example)
 
+    def test_the_pages_are_alike(self):
+        for _, page, _ in self.pages():
+            text = (DOCS / "how_to" / page).read_text()
+            heads = re.findall(r"^## (\d\. \w+ \w+)", text, re.MULTILINE)
+            heads = [re.sub("constants", "keys", head) for head in heads]
+            wanted = ["1. The interface", "2. The file", "3. The line", "4. Its keys", "5. What to"]
+            self.assertEqual(heads, wanted, page)
+
     @staticmethod
     def words(code):
         """Returns C++ text without comments, its white space folded."""
