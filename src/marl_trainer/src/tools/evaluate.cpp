@@ -9,7 +9,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/env/evaluation.hpp"
-#include "marl_trainer/learn/train_config.hpp"
+#include "marl_trainer/learn/variants.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 

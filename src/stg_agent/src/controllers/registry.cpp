@@ -13,4 +13,6 @@ ControllerRegistry& Controllers() {
   return registry;
 }
 
+std::string DefaultController() { return "pursuit_separated"; }
+
 }  // namespace stg::agent

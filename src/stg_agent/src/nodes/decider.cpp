@@ -14,7 +14,7 @@ namespace {
 std::string Resolve(const std::string& name, const agent::AgentConfig& scenario) {
   if (name != "auto") return name;
   const std::string shipped = config::ScenarioFolder() + "/../policies/" + scenario.name + ".onnx";
-  return std::ifstream(shipped).good() ? shipped : "pursuit_separated";
+  return std::ifstream(shipped).good() ? shipped : agent::DefaultController();
 }
 
 }  // namespace

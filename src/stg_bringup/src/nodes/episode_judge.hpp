@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marl_trainer/task/task.hpp"
-#include "swarm_frames.hpp"
+#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 
@@ -36,7 +36,8 @@ class EpisodeJudge {
 
  private:
   void SetTruth(const SwarmFrame& frame);
-  void TakeAnswers(const SwarmFrame& frame);
+  void TakeWrenches(const auv_msgs::SwarmState& truth);
+  void TakeActions(const SwarmFrame& frame);
   task::SwarmState<double> Swarm() const;
   bool Truncated() const { return task_.steps(0) >= scenario_.time.episode_steps; }
   std::vector<float> CriticState() const;

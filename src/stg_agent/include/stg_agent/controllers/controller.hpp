@@ -98,6 +98,8 @@ class ControllerConstants {
 /// All controllers by name; a program may add its own at its start.
 using ControllerRegistry = Registry<Controller, ControllerConstants&>;
 ControllerRegistry& Controllers();
+/// The name of the one that flies where neither policy nor controller is named.
+std::string DefaultController();
 
 /// The controller of a name alone or with constants that differ from the tuned ones, as in
 /// "pursuit_separated:gain=2,cap=0.5"; null when no controller has that name. Throws UserError for
