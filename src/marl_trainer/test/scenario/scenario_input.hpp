@@ -28,7 +28,7 @@ std::string ErrorOf(F call) {
 }
 
 /// A folder for each test with files that the test writes.
-class ScenarioInput : public ::testing::Test {
+class ScenarioFolder : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "scenario_XXXXXX").string();
@@ -42,6 +42,12 @@ class ScenarioInput : public ::testing::Test {
     return (folder_ / name).string();
   }
 
+  fs::path folder_;
+};
+
+/// Scenarios with one line replaced.
+class ScenarioInput : public ScenarioFolder {
+ protected:
   /// The whole file with the line of `key` (its leaf) replaced; `line` is told.
   static std::string WithLine(const std::string& key, const std::string& replacement, int* line) {
     std::istringstream in(ToYaml(Scenario{}));
@@ -72,8 +78,6 @@ class ScenarioInput : public ::testing::Test {
     EXPECT_EQ(message.substr(0, start.size()), start) << replacement;
     EXPECT_NE(message.find(what), std::string::npos) << message << "\nexpected: " << what;
   }
-
-  fs::path folder_;
 };
 
 }  // namespace stg::scenario_test
