@@ -20,7 +20,7 @@ stage() {
   shift
   if grep -qs '"finished"' "$folder/summary.json"; then return; fi
   local resume=()
-  if compgen -G "$folder/checkpoint_*.pt" >/dev/null; then resume=(--resume); fi
+  if compgen -G "$folder/checkpoint_*.ckpt" >/dev/null; then resume=(--resume); fi
   rosrun marl_trainer train --scenario "$scenario" --out "$folder" --train-on "$conditions" \
     --envs 96 --actor-hidden 192,192 --activation relu --std-scale 0.3 --min-log-std -8 \
     --max-log-std -2 --lr-final 0.01 --validation-interval 480000 \

@@ -117,5 +117,20 @@ TEST(Contact, PushesOverlappingVehiclesApart) {
   EXPECT_EQ(Lane(world.colliding_pairs(), 0), 0.0);
 }
 
+TEST(Contact, APairInContactDoesNotMoveTheFarPairOfAnotherLane) {
+  World alone(ContactScenario(2)), mixed(ContactScenario(2));
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double gap = lane == 1 ? 0.02 : 0.07;
+    alone.Place(lane, {{0.0, 0.0, 0.0}, {0.07, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{}});
+    mixed.Place(lane, {{0.0, 0.0, 0.0}, {gap, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{}});
+  }
+  for (int k = 0; k < 10; ++k) {
+    alone.Step(NoForce(2));
+    mixed.Step(NoForce(2));
+  }
+  EXPECT_EQ(Lane(mixed.vehicle(0).v_WB.x, 0), Lane(alone.vehicle(0).v_WB.x, 0));
+  EXPECT_LT(Lane(mixed.vehicle(0).v_WB.x, 1), -1e-4);
+}
+
 }  // namespace
 }  // namespace stg::dynamics

@@ -42,18 +42,18 @@ TEST(Allocation, TheCounterCountsPlainAndAlignedMemory) {
 
 /// Allocations of three episodes, restarts included, after a first one.
 long AllocationsAfterWarmUp(Scenario s) {
-  EnvOptions o;
-  EnvGroup env(Short(std::move(s), 60), o);
+  VectorEnvOptions o;
+  TestEnv env(Short(std::move(s), 60), o);
   env.Reset();
   std::vector<std::vector<float>> actions;
   for (int k = 0; k < 60; ++k) {
     actions.push_back(ActionsOf(env, o));
-    env.Step(actions.back().data());
+    env.Step(actions.back());
   }
   const long before = g_allocations;
-  for (int k = 0; k < 180; ++k) env.Step(actions[static_cast<size_t>(k) % 60].data());
-  env.RestartAt(7, 0);
-  EXPECT_EQ(env.round(), 7u);
+  for (int k = 0; k < 180; ++k) env.Step(actions[static_cast<size_t>(k) % 60]);
+  env.RestartAt(7);
+  EXPECT_EQ(env.round(0), 7u);
   return g_allocations - before;
 }
 

@@ -17,23 +17,25 @@ TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
   const Scenario s = Blind();
   double square = 0.0;
   int count = 0;
-  EnvGroup env(s, EnvOptions{});
+  TestEnv env(s);
+  dynamics::World world(s);
   for (std::uint64_t round = 0; round < 100; ++round) {
-    env.RestartAt(round, 0);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const dynamics::Cue cue = env.world().InitialCue(lane, 0, 0);
-      const Vec3<double> noise = cue.p_WT - Lane(env.world().target(0).p_WT, lane);
+    env.RestartAt(round);
+    for (int e = 0; e < kEnvs; ++e) {
+      world.Reset(0, env.seed(e), 0, s.reset.stage);
+      const dynamics::Cue cue = world.InitialCue(0, 0, 0);
+      const Vec3<double> noise = cue.p_WT - env.target(e, 0).p_WT;
       square += Dot(noise, noise);
       count += 3;
       for (int i = 0; i < 4; ++i) {
-        const Vec3<double> r = cue.p_WT - Lane(env.world().vehicle(i).p_WB, lane);
-        const float* x = Row(env, lane, i) + kTargetOffset;
+        const Vec3<double> r = cue.p_WT - env.vehicle(e, i).p_WB;
+        const float* x = Row(env, e, i) + kTargetOffset;
         EXPECT_NEAR(x[0], r.x, 1e-6);
         EXPECT_NEAR(x[1], r.y, 1e-6);
         EXPECT_NEAR(x[2], r.z, 1e-6);
-        EXPECT_EQ(Row(env, lane, i)[kShownConfidence], 0.0F);
+        EXPECT_EQ(Row(env, e, i)[kShownConfidence], 0.0F);
         // A cue says nothing of the target's velocity.
-        for (int k = 0; k < 3; ++k) EXPECT_EQ(Row(env, lane, i)[kTargetVelocity + k], 0.0F);
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(Row(env, e, i)[kTargetVelocity + k], 0.0F);
       }
     }
   }
@@ -48,20 +50,20 @@ const std::vector<Vec3<double>> kSquare = {
 /// Two swarms with the same start, cue and actions, and targets of different velocity; true if
 /// all observations agree, bit for bit, while the targets part by 0.4 m.
 bool SameForBothTargets(const Scenario& s) {
-  const EnvOptions o;
-  EnvGroup a(s, o), b(s, o);
+  const VectorEnvOptions o;
+  TestEnv a(s, o), b(s, o);
   a.Place(kSquare, {{0.3, 0.0, 0.0}}, {{0.02, 0.0, 0.0}});
   b.Place(kSquare, {{0.3, 0.0, 0.0}}, {{0.0, 0.03, 0.02}});
   bool same = true;
   for (int k = 0; k < 120; ++k) {
     auto actions = ActionsOf(a, o);
     for (float& v : actions) v *= 0.2F;
-    a.Step(actions.data());
-    b.Step(actions.data());
-    const auto x = Observations(a), y = Observations(b);
+    a.Step(actions);
+    b.Step(actions);
+    const auto x = a.memory.observations, y = b.memory.observations;
     same = same && std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0;
   }
-  EXPECT_GT(Norm(Lane(a.world().target(0).p_WT - b.world().target(0).p_WT, 0)), 0.4);
+  EXPECT_GT(Norm(a.target(0, 0).p_WT - b.target(0, 0).p_WT), 0.4);
   return same;
 }
 
@@ -84,20 +86,20 @@ bool OthersNoticeTheFourth(InformationMode mode, double gap) {
   s.channel.model = "range";
   s.channel.range_m = 0.4;
   s.observation.graph = s.observation.semantic = true;
-  const EnvOptions o;
-  EnvGroup a(s, o), b(s, o);
+  const VectorEnvOptions o;
+  TestEnv a(s, o), b(s, o);
   std::vector<Vec3<double>> p = kSquare;
   p[3] = p[0] + Vec3<double>{gap, 0.0, 0.0};
-  for (EnvGroup* env : {&a, &b}) env->Place(p, {{0.0, 0.9, 0.9}}, {{0.0, 0.0, 0.0}});
+  for (TestEnv* env : {&a, &b}) env->Place(p, {{0.0, 0.9, 0.9}}, {{0.0, 0.0, 0.0}});
   bool noticed = false;
   for (int k = 0; k < 40; ++k) {
     auto actions = ActionsOf(a, o);
     for (float& v : actions) v *= 0.05F;
-    a.Step(actions.data());
-    for (int lane = 0; lane < kLanes; ++lane) {
-      for (int c = 0; c < 3; ++c) actions[static_cast<size_t>((lane * 4 + 3) * 3 + c)] = 0.05F;
+    a.Step(actions);
+    for (int e = 0; e < kEnvs; ++e) {
+      for (int c = 0; c < 3; ++c) actions[static_cast<size_t>((e * 4 + 3) * 3 + c)] = 0.05F;
     }
-    b.Step(actions.data());
+    b.Step(actions);
     for (int i = 0; i < 3; ++i) {
       noticed = noticed || std::memcmp(Row(a, 0, i), Row(b, 0, i), 74 * sizeof(float)) != 0;
     }
@@ -115,20 +117,19 @@ TEST(Sharing, AnAgentOutOfSightLearnsTheTargetFromItsNeighbours) {
   Scenario s = Short(Shipped("medium"), 200);
   s.sensing.range_m = 0.3;
   s.channel.loss_probability = 0.0;
-  const EnvOptions o;
+  const VectorEnvOptions o;
   std::vector<Vec3<double>> p = kSquare;
   p[0] = {0.1, 0.0, 0.0};  // 0.2 m from the target; the others more than 0.9 m
-  EnvGroup env(s, o), alone(s, o);
+  TestEnv env(s, o), alone(s, o);
   env.Place(p, {{0.3, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
   alone.Place(kSquare, {{0.3, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
   for (int k = 0; k < 30; ++k) {
-    env.Step(Idle(env).data());
-    alone.Step(Idle(alone).data());
+    env.Step(Idle(env));
+    alone.Step(Idle(alone));
   }
   for (int i = 1; i < 4; ++i) {
-    const auto error = [&](const EnvGroup& e) {
-      return Norm(e.agent(0, i).knowledge().r_BT_W -
-                  (Lane(e.world().target(0).p_WT, 0) - Lane(e.world().vehicle(i).p_WB, 0)));
+    const auto error = [&](const TestEnv& e) {
+      return Norm(e.agent(0, i).knowledge().r_BT_W - (e.target(0, 0).p_WT - e.vehicle(0, i).p_WB));
     };
     EXPECT_LT(error(env), 0.005) << i;
     EXPECT_GT(error(alone), 0.01) << i;
@@ -143,23 +144,22 @@ struct Links {
 
 Links Fly(const std::string& scenario, const std::string& condition) {
   const Scenario s = Shipped(scenario, condition);
-  EnvOptions o;
+  VectorEnvOptions o;
   Links links;
-  EnvGroup env(s, o);
+  TestEnv env(s, o);
   env.Reset();
   double sent = 0.0;
   for (int k = 0; k < 300; ++k) {
-    env.Step(Idle(env).data());
-    for (int lane = 0; lane < kLanes; ++lane) {
+    env.Step(Idle(env));
+    for (int e = 0; e < kEnvs; ++e) {
       for (int i = 0; i < s.agents; ++i) {
-        links.quality += env.agent(lane, i).knowledge().mean_quality / (300.0 * kLanes * s.agents);
-        links.shown +=
-            static_cast<double>(Row(env, lane, i)[kGraph + 1]) / (300.0 * kLanes * s.agents);
+        links.quality += env.agent(e, i).knowledge().mean_quality / (300.0 * kEnvs * s.agents);
+        links.shown += static_cast<double>(Row(env, e, i)[kGraph + 1]) / (300.0 * kEnvs * s.agents);
       }
     }
   }
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const acoustics::ChannelTotals& t = env.channel(lane).totals();
+  for (int e = 0; e < kEnvs; ++e) {
+    const acoustics::ChannelTotals& t = env.channel(e).totals();
     links.delivered += static_cast<double>(t.delivered);
     sent += static_cast<double>(t.delivered + t.dropped);
   }
@@ -184,17 +184,17 @@ TEST(DegradedCommunication, ReallyDegradesTheLinks) {
 }
 
 TEST(AcousticReward, CommunicationIsTheQualityThatTheAgentsKnow) {
-  EnvOptions o;
-  EnvGroup env(Short(Shipped("medium"), 100), o);
+  VectorEnvOptions o;
+  TestEnv env(Short(Shipped("medium"), 100), o);
   env.Reset();
-  env.Step(Idle(env).data());
-  for (int k = 0; k < 30; ++k) env.Step(Idle(env).data());
-  for (int lane = 0; lane < kLanes; ++lane) {
+  env.Step(Idle(env));
+  for (int k = 0; k < 30; ++k) env.Step(Idle(env));
+  for (int e = 0; e < kEnvs; ++e) {
     double mean = 0.0;
-    for (int i = 0; i < 4; ++i) mean += env.agent(lane, i).knowledge().mean_quality / 4.0;
+    for (int i = 0; i < 4; ++i) mean += env.agent(e, i).knowledge().mean_quality / 4.0;
     EXPECT_GT(mean, 0.0);
     EXPECT_LE(mean, 1.0);
-    EXPECT_NEAR(Lane(env.terms(2).communication, lane), mean, 1e-12);
+    EXPECT_NEAR(env.terms(e, 2).communication, mean, 1e-12);
   }
 }
 
@@ -203,20 +203,20 @@ TEST(AcousticMode, RewardAndCriticStateComeFromTheTruth) {
   Scenario s = Short(Shipped("medium", "nominal", {"control.interface=tau6"}), 60);
   Scenario t = s;
   t.mode = InformationMode::kTruth;
-  const EnvOptions o;
-  EnvGroup a(s, o), b(t, o);
+  const VectorEnvOptions o;
+  TestEnv a(s, o), b(t, o);
   a.Reset();
   b.Reset();
   for (int k = 0; k < 40; ++k) {
-    EXPECT_EQ(States(a), States(b)) << k;
-    a.Step(ActionsOf(a, o).data());
-    b.Step(ActionsOf(b, o).data());
+    EXPECT_EQ(a.memory.states, b.memory.states) << k;
+    a.Step(ActionsOf(a, o));
+    b.Step(ActionsOf(b, o));
     for (int i = 0; i < 4; ++i) {
-      EXPECT_EQ(Lane(a.terms(i).track, 0), Lane(b.terms(i).track, 0)) << k;
-      EXPECT_EQ(Lane(a.terms(i).observation, 0), Lane(b.terms(i).observation, 0)) << k;
+      EXPECT_EQ(a.terms(0, i).track, b.terms(0, i).track) << k;
+      EXPECT_EQ(a.terms(0, i).observation, b.terms(0, i).observation) << k;
     }
   }
-  EXPECT_NE(Observations(a), Observations(b));
+  EXPECT_NE(a.memory.observations, b.memory.observations);
 }
 
 }  // namespace

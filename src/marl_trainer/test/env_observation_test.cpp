@@ -15,13 +15,13 @@ TEST(Observation, EveryCombinationOfBlocksIsThatPartOfTheFullOne) {
   for (const auto mode : kModes) {
     Scenario full = Short(Shipped("medium"), 50);
     full.mode = mode;
-    const EnvOptions o;
+    const VectorEnvOptions o;
     for (int options = 0; options < 8; ++options) {
       Scenario s = full;
       s.observation.tracking = (options & 1) != 0;
       s.observation.semantic = (options & 2) != 0;
       s.observation.graph = (options & 4) != 0;
-      EnvGroup a(full, o), b(s, o);
+      TestEnv a(full, o), b(s, o);
       ASSERT_EQ(a.observation_size(), 74);
       ASSERT_EQ(b.observation_size(), 51 + ((options & 1) != 0 ? 8 : 0) +
                                           ((options & 2) != 0 ? 9 : 0) +
@@ -29,17 +29,17 @@ TEST(Observation, EveryCombinationOfBlocksIsThatPartOfTheFullOne) {
       a.Reset();
       b.Reset();
       for (int k = 0; k < 15; ++k) {
-        a.Step(ActionsOf(a, o).data());
-        b.Step(ActionsOf(b, o).data());
+        a.Step(ActionsOf(a, o));
+        b.Step(ActionsOf(b, o));
       }
-      for (int lane = 0; lane < kLanes; ++lane) {
+      for (int e = 0; e < kEnvs; ++e) {
         for (int i = 0; i < 4; ++i) {
-          const float* x = Row(a, lane, i);
+          const float* x = Row(a, e, i);
           std::vector<float> expected(x, x + kTracking);
           if (s.observation.tracking) expected.insert(expected.end(), x + kTracking, x + kSemantic);
           if (s.observation.semantic) expected.insert(expected.end(), x + kSemantic, x + kGraph);
           if (s.observation.graph) expected.insert(expected.end(), x + kGraph, x + 74);
-          const float* y = Row(b, lane, i);
+          const float* y = Row(b, e, i);
           EXPECT_EQ(expected, std::vector<float>(y, y + b.observation_size())) << options;
         }
       }
@@ -61,17 +61,17 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
         s.agents = c.agents;
         s.target.count = c.targets;
         s.reset.min_separation_m = 0.03;
-        const EnvOptions o;
-        EnvGroup env(s, o);
+        const VectorEnvOptions o;
+        TestEnv env(s, o);
         EXPECT_EQ(env.observation_size(), 74);
         EXPECT_EQ(env.state_size(), 19 * c.agents + 6 * c.targets);
         EXPECT_EQ(env.action_size(), interface == dynamics::ActionInterface::kTau6 ? 6 : 3);
         env.Reset();
         for (int k = 0; k < 60; ++k) {  // over two truncations
-          env.Step(ActionsOf(env, o).data());
-          for (const float v : Observations(env)) ASSERT_LE(std::abs(v), 2.0F + 1e-6F);
-          for (const float v : States(env)) ASSERT_LE(std::abs(v), 4.0F);
-          for (int lane = 0; lane < kLanes; ++lane) ASSERT_LE(std::abs(env.rewards()[lane]), 2.0F);
+          env.Step(ActionsOf(env, o));
+          for (const float v : env.memory.observations) ASSERT_LE(std::abs(v), 2.0F + 1e-6F);
+          for (const float v : env.memory.states) ASSERT_LE(std::abs(v), 4.0F);
+          for (const float r : env.memory.team_rewards) ASSERT_LE(std::abs(r), 2.0F);
         }
         for (const auto& item : env.metrics(0).Items()) {
           EXPECT_TRUE(std::isfinite(item.second)) << item.first;
@@ -81,12 +81,12 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
   }
 }
 
-/// Offsets of the neighbours of AUV i in one lane, in the order of `closer`.
-std::vector<Vec3<double>> Offsets(const EnvGroup& env, int lane, int i, bool by_distance) {
+/// Offsets of the neighbours of AUV i in one environment, in the order of `closer`.
+std::vector<Vec3<double>> Offsets(const TestEnv& env, int e, int i, bool by_distance) {
   std::vector<Vec3<double>> offsets;
   for (int j = 0; j < env.agents(); ++j) {
     if (j == i) continue;
-    offsets.push_back(Lane(env.world().vehicle(j).p_WB - env.world().vehicle(i).p_WB, lane));
+    offsets.push_back(env.vehicle(e, j).p_WB - env.vehicle(e, i).p_WB);
   }
   if (by_distance) {
     std::sort(offsets.begin(), offsets.end(),
@@ -95,11 +95,11 @@ std::vector<Vec3<double>> Offsets(const EnvGroup& env, int lane, int i, bool by_
   return offsets;
 }
 
-void ExpectNeighbours(const EnvGroup& env, bool by_distance) {
-  for (int lane = 0; lane < kLanes; ++lane) {
+void ExpectNeighbours(const TestEnv& env, bool by_distance) {
+  for (int e = 0; e < kEnvs; ++e) {
     for (int i = 0; i < env.agents(); ++i) {
-      const auto offsets = Offsets(env, lane, i, by_distance);
-      const float* shown = Row(env, lane, i) + kNeighbours;
+      const auto offsets = Offsets(env, e, i, by_distance);
+      const float* shown = Row(env, e, i) + kNeighbours;
       for (size_t slot = 0; slot < 3; ++slot, shown += 3) {
         const Vec3<double> r = slot < offsets.size() ? offsets[slot] : Vec3<double>{};
         EXPECT_NEAR(shown[0], r.x, 1e-6) << "AUV " << i << ", slot " << slot;
@@ -116,12 +116,12 @@ TEST(Neighbours, TheThreeNearestInOrderEqualBruteForce) {
     s.mode = InformationMode::kTruth;
     s.agents = agents;
     s.reset.min_separation_m = 0.03;
-    const EnvOptions o;
-    EnvGroup env(s, o);
+    const VectorEnvOptions o;
+    TestEnv env(s, o);
     env.Reset();
     for (int k = 0; k < 30; ++k) {
       ExpectNeighbours(env, true);
-      env.Step(ActionsOf(env, o).data());
+      env.Step(ActionsOf(env, o));
     }
   }
 }
@@ -131,17 +131,17 @@ TEST(Neighbours, IndexOrderShowsTheFirstThreeOthers) {
     Scenario s = Short(Shipped("medium_release"), 50);
     s.agents = agents;
     s.reset.min_separation_m = 0.03;
-    const EnvOptions o;
-    EnvGroup env(s, o);
+    const VectorEnvOptions o;
+    TestEnv env(s, o);
     env.Reset();
-    for (int k = 0; k < 5; ++k) env.Step(ActionsOf(env, o).data());
+    for (int k = 0; k < 5; ++k) env.Step(ActionsOf(env, o));
     ExpectNeighbours(env, false);
   }
 }
 
 TEST(Observation, InTruthModeStatesGeometryInItsDocumentedPlaces) {
   Scenario s = Short(Shipped("medium", "nominal", {"mode=truth", "agents=2"}), 50);
-  EnvGroup env(s, EnvOptions{});
+  TestEnv env(s, VectorEnvOptions{});
   env.Place({{0.1, 0.2, -0.3}, {0.1, 0.2, 0.0}}, {{0.4, 0.2, -0.3}}, {{0.02, -0.01, 0.03}});
   const float* x = Row(env, 0, 0);
   const auto expect = [&](int first, const std::vector<double>& values) {
@@ -174,11 +174,11 @@ TEST(Observation, LostStepsCountUpAndTheReleaseCountsOneTooMany) {
   for (const bool release : {false, true}) {
     Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 50);
     s.observation.release_bookkeeping = release;
-    EnvGroup env(s, EnvOptions{});
+    TestEnv env(s, VectorEnvOptions{});
     // At 1 mm a step the target is lost, beyond 0.65 m, from decision 5 on.
     env.Place({{0.0, 0.0, 0.0}}, {{0.6455, 0.0, 0.0}}, {{0.01, 0.0, 0.0}});
     for (int k = 1; k <= 40; ++k) {
-      env.Step(Idle(env).data());
+      env.Step(Idle(env));
       const int lost = std::max(0, k - 4);
       const int shown = release && lost > 0 ? lost + 1 : lost;
       EXPECT_NEAR(Row(env, 0, 0)[kTracking + 7], std::min(25, shown) / 25.0, 1e-6) << k;
@@ -191,10 +191,10 @@ TEST(Observation, ReleaseBookkeepingHidesProgress) {
   for (const bool release : {false, true}) {
     Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 50);
     s.observation.release_bookkeeping = release;
-    EnvGroup env(s, EnvOptions{});
+    TestEnv env(s, VectorEnvOptions{});
     env.Place({{0.0, 0.0, 0.0}}, {{0.4, 0.0, 0.0}}, {{-0.04, 0.0, 0.0}});
     for (int k = 1; k <= 3; ++k) {
-      env.Step(Idle(env).data());
+      env.Step(Idle(env));
       // The target comes 4 mm a step: a tenth of the progress scale.
       EXPECT_NEAR(Row(env, 0, 0)[kTracking + 2], release ? 0.0 : 0.1, 1e-5);
       EXPECT_EQ(Row(env, 0, 0)[kSemantic + agent::kApproach], release ? 0.0F : 1.0F);
@@ -204,10 +204,10 @@ TEST(Observation, ReleaseBookkeepingHidesProgress) {
 
 TEST(CriticState, HoldsEveryAuvThenEveryTarget) {
   Scenario s = Short(Shipped("medium", "nominal", {"agents=3", "target.count=2"}), 50);
-  EnvGroup env(s, EnvOptions{});
+  TestEnv env(s, VectorEnvOptions{});
   env.Place({{0.1, 0.0, 0.0}, {0.0, 0.2, 0.0}, {0.0, 0.0, 0.3}},
             {{0.4, 0.1, 0.0}, {0.0, 0.21, 0.0}}, {{0.03, 0.0, 0.0}, {0.0, 0.02, 0.0}});
-  const float* x = env.states() + static_cast<size_t>(kLanes - 1) * 69;
+  const float* x = env.memory.state(kEnvs - 1);
   ASSERT_EQ(env.state_size(), 69);
   const auto expect = [&](int first, const std::vector<double>& values) {
     for (size_t k = 0; k < values.size(); ++k) {
@@ -228,15 +228,15 @@ TEST(Tau6, ASurgeForceMovesTheBowAndIsNotSmoothed) {
     Scenario s = Short(Shipped("medium"), 50);
     s.mode = mode;
     s.control.interface = dynamics::ActionInterface::kTau6;
-    EnvGroup env(s, EnvOptions{});
+    TestEnv env(s, VectorEnvOptions{});
     env.Reset();
     std::vector<float> actions = Idle(env);
     for (size_t k = 0; k < actions.size(); k += 6) actions[k] = 0.5F;
-    env.Step(actions.data());
+    env.Step(actions);
     for (int i = 0; i < 4; ++i) {
       EXPECT_EQ(Row(env, 0, i)[kPreviousTau], 0.5F);
-      EXPECT_GT(Lane(env.world().vehicle(i).v_WB_B.x, 0), 0.0);
-      EXPECT_NEAR(Lane(env.world().vehicle(i).v_WB_B.y, 0), 0.0, 1e-6);
+      EXPECT_GT(env.vehicle(0, i).v_WB_B.x, 0.0);
+      EXPECT_NEAR(env.vehicle(0, i).v_WB_B.y, 0.0, 1e-6);
     }
   }
 }

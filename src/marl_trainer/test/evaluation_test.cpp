@@ -11,6 +11,13 @@
 namespace stg::env {
 namespace {
 
+/// `episodes` episodes from `seed` on `workers` threads.
+std::vector<task::EpisodeMetrics> Fly(const Scenario& s, const Controller& c, int episodes,
+                                      std::uint64_t seed, int workers = 1) {
+  WorkerPool pool(workers);
+  return Evaluate(s, c, {episodes, seed, kMixBlock}, &pool);
+}
+
 double Value(const task::EpisodeMetrics& m, const std::string& name) {
   for (const auto& item : m.Items()) {
     if (item.first == name) return item.second;
@@ -23,10 +30,10 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
   for (const char* mode : {"mode=truth", "mode=acoustic"}) {
     const Scenario s = Short(Shipped("medium", "nominal", {mode, "sensing.noise_std_m=0.002"}), 60);
     const Controller c = MakeController("pursuit_separated", s);
-    const auto one = Evaluate(s, c, 11, 3000, 1);
+    const auto one = Fly(s, c, 11, 3000);
     ASSERT_EQ(one.size(), 11u);
     for (const int workers : {2, 5}) {
-      const auto many = Evaluate(s, c, 11, 3000, workers);
+      const auto many = Fly(s, c, 11, 3000, workers);
       ASSERT_EQ(many.size(), one.size());
       for (size_t e = 0; e < one.size(); ++e) {
         EXPECT_EQ(one[e].Items(), many[e].Items()) << mode << " " << workers << " " << e;
@@ -39,15 +46,15 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
 TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
   const Scenario s = Short(Shipped("medium_release"), 40);
   const Controller c = MakeController("pursuit", s);
-  const auto many = Evaluate(s, c, 9, 3000, 1);
-  EXPECT_EQ(many[7].Items(), Evaluate(s, c, 1, 3007, 1)[0].Items());
-  EXPECT_EQ(many[2].Items(), Evaluate(s, c, 3, 3000, 1)[2].Items());
+  const auto many = Fly(s, c, 9, 3000);
+  EXPECT_EQ(many[7].Items(), Fly(s, c, 1, 3007)[0].Items());
+  EXPECT_EQ(many[2].Items(), Fly(s, c, 3, 3000)[2].Items());
 }
 
 TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
   const Scenario s = Short(Shipped("medium_release"), 5);
   int last = 0;
-  Evaluate(s, MakeController("idle", s), 6, 1, 1, [&](int done) {
+  Evaluate(s, MakeController("idle", s), {6, 1, kMixBlock}, nullptr, [&](int done) {
     EXPECT_GT(done, last);
     last = done;
   });
@@ -84,7 +91,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
     for (const bool tuned : {false, true}) {
       const Controller c =
           MakeController(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s);
-      const task::MetricSummary m = task::Summarise(Evaluate(s, c, kEpisodes, 3000, 1));
+      const task::MetricSummary m = task::Summarise(Fly(s, c, kEpisodes, 3000));
       // Four standard errors of the difference of two means, and the table's rounding.
       const auto expect = [&](const std::string& name, double expected, double rounding) {
         const auto k =
@@ -103,7 +110,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
 
 TEST(PursuitSeparated, HoldsTheBandWithoutContactOnTrueStates) {
   const Scenario s = Shipped("medium_release");
-  const auto separated = Evaluate(s, MakeController("pursuit_separated", s), 28, 3000, 1);
+  const auto separated = Fly(s, MakeController("pursuit_separated", s), 28, 3000);
   const task::MetricSummary m = task::Summarise(separated);
   const auto mean = [&](const std::string& name) {
     double sum = 0.0;
@@ -123,8 +130,8 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
   const Scenario acoustic = Short(Shipped("medium", "nominal", blind), 150);
   Scenario truth = acoustic;
   truth.mode = InformationMode::kTruth;
-  const auto a = Evaluate(acoustic, MakeController("pursuit", acoustic), 16, 1, 1);
-  const auto t = Evaluate(truth, MakeController("pursuit", truth), 16, 1, 1);
+  const auto a = Fly(acoustic, MakeController("pursuit", acoustic), 16, 1);
+  const auto t = Fly(truth, MakeController("pursuit", truth), 16, 1);
   double error_a = 0.0, error_t = 0.0;
   for (size_t e = 0; e < a.size(); ++e) {
     error_a += a[e].tracking_error / 16.0;
@@ -137,8 +144,7 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
 TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
   for (const char* name : {"medium", "hard"}) {
     const Scenario s = Shipped(name);
-    const task::MetricSummary m =
-        task::Summarise(Evaluate(s, MakeController("pursuit", s), 12, 3000, 1));
+    const task::MetricSummary m = task::Summarise(Fly(s, MakeController("pursuit", s), 12, 3000));
     const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
                                        m.names.begin());
     EXPECT_LT(m.mean[k], 0.05) << name;
@@ -147,7 +153,7 @@ TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
 
 TEST(Idle, DoesNotMove) {
   const Scenario s = Short(Shipped("medium"), 50);
-  for (const auto& e : Evaluate(s, MakeController("idle", s), 4, 3000, 1)) {
+  for (const auto& e : Fly(s, MakeController("idle", s), 4, 3000)) {
     EXPECT_EQ(e.action_norm, 0.0);
     EXPECT_EQ(e.control_cost, 0.0);
     EXPECT_NEAR(e.time_to_band, 5.0, 1e-9);
@@ -159,12 +165,13 @@ TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
   const auto actions = [](const char* mode, bool privileged) {
     const Scenario s = LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal",
                                          {std::string("mode=") + mode});
-    EnvGroup env(s, EnvOptions());
-    env.Reset();
+    VectorEnv env(s, VectorEnvOptions());
+    EnvMemory memory = env.MakeMemory();
+    env.Reset(memory.arrays());
     Controller controller = MakeController("pursuit_separated", s);
     controller.privileged = privileged;
-    std::vector<double> a(static_cast<size_t>(kLanes * env.agents() * env.action_size()));
-    Decide(controller, env, a.data());
+    std::vector<double> a(static_cast<size_t>(env.envs() * env.agents() * env.action_size()));
+    Decide(controller, env, memory.observations.data(), a.data());
     return a;
   };
   EXPECT_EQ(actions("acoustic", true), actions("truth", false));

@@ -12,6 +12,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "mappo_setup.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
@@ -30,17 +31,18 @@ class RecordedTest : public ::testing::Test {
     std::string name = (fs::temp_directory_path() / "recorded_test_XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
-    trainer_ = std::make_unique<RecordedTrainer>(scenario_, Config(), Options("run"));
+    trainer_ = std::make_unique<RecordedTrainer>(scenario_, MakeSetup(), Options("run"));
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  static TrainConfig Config() {
-    TrainConfig config = RecordedConfig(Short());
-    config.actor_hidden = {8};
-    config.critic_hidden = {8};
-    config.lr = config.critic_lr = 1e-2;
-    config.gamma = 0.0;  // each action is rewarded at once
-    return config;
+  static TrainSetup MakeSetup() {
+    TrainSetup setup = RecordedSetup(Short());
+    MappoConfig& own = Own(setup);
+    own.actor_hidden = {8};
+    own.critic_hidden = {8};
+    own.lr = own.critic_lr = 1e-2;
+    own.gamma = 0.0;  // each action is rewarded at once
+    return setup;
   }
   static Scenario Short() {
     return LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal",
@@ -103,6 +105,12 @@ class RecordedTest : public ::testing::Test {
       if (reward.truncated) reward.final_state.assign(size, 0.5F);
       assembler->Add(number, start, t, std::move(reward));
     }
+  }
+
+  static Archive State(const RecordedTrainer& trainer) {
+    Archive archive;
+    trainer.algorithm().Save(&archive);
+    return archive;
   }
 
   const Scenario scenario_ = Short();
@@ -235,27 +243,27 @@ TEST_F(RecordedTest, GoesOnFromItsFolderAsIfItHadNeverStopped) {
   const std::string id = trainer_->policy_id();
   fs::copy(folder_ / "run", folder_ / "copy");
   trainer_->Update({second});
-  RecordedTrainer resumed(scenario_, Config(), Options("copy"));
+  RecordedTrainer resumed(scenario_, MakeSetup(), Options("copy"));
   EXPECT_EQ(resumed.policy_id(), id);
   EXPECT_EQ(resumed.Check(second).flaw, Flaw::kNone);
   resumed.Update({second});
   EXPECT_EQ(resumed.policy_id(), trainer_->policy_id());
-  EXPECT_EQ(resumed.state().parameters, trainer_->state().parameters);
+  EXPECT_TRUE(State(resumed) == State(*trainer_));
 }
 
 TEST_F(RecordedTest, StartsFromAPolicyAndKeepsItsFunction) {
-  TrainConfig scaled = Config();
-  scaled.std_scale = 0.3;  // known to the policy file only by what it did
+  TrainSetup scaled = MakeSetup();
+  Own(scaled).std_scale = 0.3;  // known to the policy file only by what it did
   trainer_ = std::make_unique<RecordedTrainer>(scenario_, scaled, Options("scaled"));
   trainer_->Update({Episode(0), Episode(1)});
   const RecordedEpisode episode = Episode(2);
-  TrainConfig config = Config();
-  config.actor_hidden = {32, 32};  // the policy's own shape counts
-  RecordedTrainer other(scenario_, config, Options("other", trainer_->policy_path()));
+  TrainSetup setup = MakeSetup();
+  Own(setup).actor_hidden = {32, 32};  // the policy's own shape counts
+  RecordedTrainer other(scenario_, setup, Options("other", trainer_->policy_path()));
   EXPECT_EQ(other.policy_id(), trainer_->policy_id());
   ASSERT_EQ(other.Check(episode).flaw, Flaw::kNone);
   other.Update({episode});
-  EXPECT_THROW(RecordedTrainer(scenario_, Config(), Options("other", trainer_->policy_path())),
+  EXPECT_THROW(RecordedTrainer(scenario_, MakeSetup(), Options("other", trainer_->policy_path())),
                UserError)
       << "the folder holds another policy's training by now";
 }
@@ -264,10 +272,10 @@ TEST_F(RecordedTest, RefusesAFolderOfAnotherScenarioAndABadMinibatch) {
   trainer_->Update({Episode(0)});
   Scenario other = scenario_;
   other.reward.weights.tracking *= 2.0;
-  EXPECT_THROW(RecordedTrainer(other, Config(), Options("run")), UserError);
-  TrainConfig config = Config();
-  config.minibatch = 7;
-  EXPECT_THROW(RecordedTrainer(scenario_, config, Options("new")), UserError);
+  EXPECT_THROW(RecordedTrainer(other, MakeSetup(), Options("run")), UserError);
+  TrainSetup setup = MakeSetup();
+  Own(setup).minibatch = 7;
+  EXPECT_THROW(RecordedTrainer(scenario_, setup, Options("new")), UserError);
 }
 
 TEST(RecordingReport, CountsByReason) {

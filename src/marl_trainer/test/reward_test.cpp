@@ -176,18 +176,18 @@ TEST(Reward, PacksAndScalarsGiveTheSameBits) {
 }
 
 /// Four AUVs on a line at 0, 0.09, 0.27 and 0.87 m, at rest, far from the target.
-env::EnvGroup Line(const Scenario& s) {
-  env::EnvGroup env(s, env::EnvOptions{});
+env::TestEnv Line(const Scenario& s) {
+  env::TestEnv env(s, env::VectorEnvOptions{});
   env.Place({{0.0, 0.0, 0.0}, {0.09, 0.0, 0.0}, {0.27, 0.0, 0.0}, {0.87, 0.0, 0.0}},
             {{0.0, 0.5, 0.0}}, {{0.0, 0.0, 0.0}});
-  env.Step(Idle(env).data());
+  env.Step(Idle(env));
   return env;
 }
 
 TEST(SwarmReward, CommunicationIsTheMeanOverExistingLinksOnly) {
-  const env::EnvGroup env = Line(env::Shipped("medium", "nominal", {"mode=truth"}));
+  const env::TestEnv env = Line(env::Shipped("medium", "nominal", {"mode=truth"}));
   // q of the three pairs within 0.45 m: 0.8, 0.4, 0.6. The fourth AUV has no link.
-  for (int i = 0; i < 4; ++i) EXPECT_NEAR(Lane(env.terms(i).communication, 0), 0.6, 1e-9);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(env.terms(0, i).communication, 0.6, 1e-9);
 }
 
 TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
@@ -197,43 +197,43 @@ TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
     deviation += (d - 0.015) / 4.0;
     error += std::abs(d - 0.015) / 4.0;
   }
-  const env::EnvGroup paper = Line(env::Shipped("medium", "nominal", {"mode=truth"}));
-  const env::EnvGroup release = Line(env::Shipped("medium_release"));
-  EXPECT_NEAR(Lane(paper.terms(0).coordination, 0), 1.0 - deviation / 0.8, 1e-9);
-  EXPECT_NEAR(Lane(release.terms(3).coordination, 0), 1.0 - deviation / 0.8, 1e-9);
+  const env::TestEnv paper = Line(env::Shipped("medium", "nominal", {"mode=truth"}));
+  const env::TestEnv release = Line(env::Shipped("medium_release"));
+  EXPECT_NEAR(paper.terms(0, 0).coordination, 1.0 - deviation / 0.8, 1e-9);
+  EXPECT_NEAR(release.terms(0, 3).coordination, 1.0 - deviation / 0.8, 1e-9);
   // The release's "communication" is a function of target distance, here out of range.
-  EXPECT_EQ(Lane(release.terms(0).communication, 0), 0.0);
+  EXPECT_EQ(release.terms(0, 0).communication, 0.0);
   EXPECT_NEAR(ReleaseCommunication(0.09, 0.45), 0.8, 1e-12);
 }
 
 /// Two AUVs 0.012 m apart, which is half the separation distance, and one away.
-env::EnvGroup Crowd(const std::vector<std::string>& overrides) {
+env::TestEnv Crowd(const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {"mode=truth", "agents=3", "contact.stiffness=0"};
   all.insert(all.end(), overrides.begin(), overrides.end());
-  env::EnvGroup env(env::Shipped("medium", "nominal", all), env::EnvOptions{});
+  env::TestEnv env(env::Shipped("medium", "nominal", all), env::VectorEnvOptions{});
   env.Place({{0.0, 0.0, 0.0}, {0.012, 0.0, 0.0}, {0.5, 0.0, 0.0}}, {{0.0, 0.3, 0.0}},
             {{0.0, 0.0, 0.0}});
-  env.Step(Idle(env).data());
+  env.Step(Idle(env));
   return env;
 }
 
 TEST(SeparationReward, IsNothingByDefaultHoweverCrowded) {
-  const env::EnvGroup env = Crowd({});
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(Lane(env.terms(i).separation, 0), 0.0);
+  const env::TestEnv env = Crowd({});
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(env.terms(0, i).separation, 0.0);
   for (const char* name : {"medium", "hard", "medium_release", "hard_release"}) {
     EXPECT_EQ(env::Shipped(name).reward.weights.separation, 0.0) << name;
   }
 }
 
 TEST(SeparationReward, CostsTheCrowdedAndOnlyThem) {
-  const env::EnvGroup off = Crowd({});
-  const env::EnvGroup on = Crowd({"reward.weights.separation=0.4"});
+  const env::TestEnv off = Crowd({});
+  const env::TestEnv on = Crowd({"reward.weights.separation=0.4"});
   for (int i = 0; i < 2; ++i) {
-    EXPECT_NEAR(Lane(on.terms(i).separation, 0), -0.5, 1e-9);
-    EXPECT_NEAR(Lane(on.terms(i).total, 0) - Lane(off.terms(i).total, 0), -0.2, 1e-9);
+    EXPECT_NEAR(on.terms(0, i).separation, -0.5, 1e-9);
+    EXPECT_NEAR(on.terms(0, i).total - off.terms(0, i).total, -0.2, 1e-9);
   }
-  EXPECT_EQ(Lane(on.terms(2).separation, 0), 0.0);
-  EXPECT_EQ(Lane(on.terms(2).total, 0), Lane(off.terms(2).total, 0));
+  EXPECT_EQ(on.terms(0, 2).separation, 0.0);
+  EXPECT_EQ(on.terms(0, 2).total, off.terms(0, 2).total);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -200,6 +201,7 @@ const char* const kSections[] = {
     "stg_agent/include/stg_agent/agent_config",
     "stg_agent/include/stg_agent/graph/observation_config",
     "stg_agent/include/stg_agent/inbox/track_config",
+    "marl_trainer/include/marl_trainer/task/judge_config",
     "marl_trainer/include/marl_trainer/task/reward_config",
     "marl_trainer/include/marl_trainer/scenario/scenario",
 };
@@ -209,6 +211,7 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
   std::set<std::string> keys;
   Scenario scenario;
   for (const config::Field& field : ScenarioFields(&scenario)) {
+    if (field.fallback) continue;  // of something that is registered
     std::istringstream parts(field.path);
     for (std::string part; std::getline(parts, part, '.');) keys.insert(part);
   }
@@ -245,7 +248,10 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
 
 TEST(ShippedScenarios, MediumStatesEveryKeyWithItsUnit) {
   Scenario scenario;
-  const auto fields = ScenarioFields(&scenario);
+  auto fields = ScenarioFields(&scenario);
+  fields.erase(std::remove_if(fields.begin(), fields.end(),
+                              [](const config::Field& f) { return f.fallback.has_value(); }),
+               fields.end());
   std::istringstream file(ReadText(kFolder + "/medium.yaml"));
   std::string comment;
   std::size_t next = 0;

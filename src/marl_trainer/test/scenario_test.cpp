@@ -141,6 +141,7 @@ TEST(Scenario, HashAndFileChangeWithEveryKey) {
 TEST_F(ScenarioInput, EveryMissingKeyIsNamedWithTheLineOfItsSection) {
   Scenario scenario;
   for (const config::Field& field : ScenarioFields(&scenario)) {
+    if (field.fallback) continue;  // need not be stated
     const std::string yaml = ToYaml(scenario);
     std::istringstream in(yaml);
     std::string without, section;

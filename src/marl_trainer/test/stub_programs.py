@@ -50,7 +50,7 @@ if os.environ.get("STUB_FAIL", "none") in out:
     sys.exit("this stub fails")
 
 def stop(number, frame):
-    open(os.path.join(out, "checkpoint_000000000001.pt"), "w").write("x")
+    open(os.path.join(out, "checkpoint_000000000001.ckpt"), "w").write("x")
     sys.exit(130)
 
 signal.signal(signal.SIGINT, stop)

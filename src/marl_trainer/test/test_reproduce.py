@@ -177,7 +177,7 @@ class Reproduce(unittest.TestCase):
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, output)
         self.assertIn("the same command goes on", output)
-        self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.pt")))
+        self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.ckpt")))
         stub_programs.calls(self.folder)
         status, output, calls = self.reproduce("--methods", "stg", "--seeds", "0")
         self.assertEqual(status, 0, output)

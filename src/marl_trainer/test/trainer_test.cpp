@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/trainer.hpp"
+#include "marl_trainer/learn/run/trainer.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,6 +10,10 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "mappo_setup.hpp"
+#include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
+#include "marl_trainer/learn/run/validation.hpp"
+#include "marl_trainer/learn/variants.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::learn {
@@ -18,20 +22,22 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Two small collections per episode of 40 decisions.
-TrainConfig SmallConfig() {
-  TrainConfig c;
-  c.envs = 32;
-  c.horizon = 20;
-  c.minibatch = 160;
-  c.epochs = 2;
-  c.stagger = false;
-  c.actor_hidden = {16, 16};
-  c.critic_hidden = {16};
-  c.validation_episodes = 4;
-  c.validation_interval = 2560;
-  c.checkpoint_interval = 1280;
-  c.steps = 5120;
-  return c;
+TrainSetup SmallSetup() {
+  TrainSetup setup("mappo", "fast");
+  MappoConfig& own = Own(setup);
+  own.minibatch = 160;
+  own.epochs = 2;
+  own.actor_hidden = {16, 16};
+  own.critic_hidden = {16};
+  TrainConfig& common = setup.common;
+  common.envs = 32;
+  common.horizon = 20;
+  common.stagger = false;
+  common.validation_episodes = 4;
+  common.validation_interval = 2560;
+  common.checkpoint_interval = 1280;
+  common.steps = 5120;
+  return setup;
 }
 
 Scenario ShortScenario(const std::string& name = "medium_release") {
@@ -68,60 +74,57 @@ class TrainerTest : public ::testing::Test {
 };
 
 void ExpectSameBits(const TrainState& a, const TrainState& b) {
-  const auto same = [](const auto& x, const auto& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
-  };
-  EXPECT_TRUE(same(a.parameters, b.parameters));
-  EXPECT_TRUE(same(a.adam.first, b.adam.first));
-  EXPECT_TRUE(same(a.adam.second, b.adam.second));
-  EXPECT_EQ(a.adam.steps, b.adam.steps);
+  EXPECT_TRUE(a.algorithm == b.algorithm);
   EXPECT_EQ(a.env_steps, b.env_steps);
   EXPECT_EQ(a.round, b.round);
   EXPECT_EQ(a.best_return, b.best_return);
 }
 
+const std::vector<float>& Parameters(Trainer& trainer) {
+  return dynamic_cast<Mappo&>(trainer.algorithm()).parameters();
+}
+
 TEST_F(TrainerTest, WeightsDoNotDependOnTheNumberOfWorkers) {
   for (const char* name : {"medium_release", "medium"}) {
     const Scenario scenario = ShortScenario(name);
-    Trainer one(scenario, SmallConfig(), Options(std::string(name) + "1", 1));
-    Trainer two(scenario, SmallConfig(), Options(std::string(name) + "2", 2));
-    Trainer three(scenario, SmallConfig(), Options(std::string(name) + "3", 3));
+    Trainer one(scenario, SmallSetup(), Options(std::string(name) + "1", 1));
+    Trainer two(scenario, SmallSetup(), Options(std::string(name) + "2", 2));
+    Trainer three(scenario, SmallSetup(), Options(std::string(name) + "3", 3));
     EXPECT_TRUE(one.Run());
     EXPECT_TRUE(two.Run());
     EXPECT_TRUE(three.Run());
-    EXPECT_EQ(one.state().adam.steps, 8 * 2 * 4);
+    EXPECT_EQ(one.state().algorithm.Integer("adam_steps"), 8 * 2 * 4);
     ExpectSameBits(one.state(), two.state());
     ExpectSameBits(one.state(), three.state());
-    TrainConfig other = SmallConfig();
-    other.seed = 1;
+    TrainSetup other = SmallSetup();
+    other.common.seed = 1;
     Trainer seeded(scenario, other, Options(std::string(name) + "4", 1));
     seeded.Run();
-    EXPECT_NE(seeded.state().parameters, one.state().parameters);
+    EXPECT_NE(Parameters(seeded), Parameters(one));
   }
 }
 
 TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
   // Aligned episodes, a horizon that does not divide the episode, and staggered ends.
   for (int kind = 0; kind < 3; ++kind) {
-    TrainConfig config = SmallConfig();
-    if (kind == 1) config.horizon = 15;
-    if (kind == 1) config.minibatch = 160;
-    if (kind == 2) config.stagger = true;
+    TrainSetup setup = SmallSetup();
+    if (kind == 1) setup.common.horizon = 15;
+    if (kind == 2) setup.common.stagger = true;
     const std::string name = std::to_string(kind);
     const Scenario scenario = ShortScenario();
-    Trainer whole(scenario, config, Options("whole" + name));
+    Trainer whole(scenario, setup, Options("whole" + name));
     EXPECT_TRUE(whole.Run());
     {
       Trainer::Options options = Options("halves" + name);
-      options.halt_after = config.steps / 2;
-      Trainer first(scenario, config, options);
+      options.halt_after = setup.common.steps / 2;
+      Trainer first(scenario, setup, options);
       EXPECT_FALSE(first.Run());
-      EXPECT_LT(first.state().env_steps, config.steps);
+      EXPECT_LT(first.state().env_steps, setup.common.steps);
     }
     Trainer::Options options = Options("halves" + name, 2);
     options.resume = true;
-    Trainer second(scenario, config, options);
-    EXPECT_GE(second.state().env_steps, config.steps / 2);
+    Trainer second(scenario, setup, options);
+    EXPECT_GE(second.state().env_steps, setup.common.steps / 2);
     EXPECT_TRUE(second.Run());
     ExpectSameBits(whole.state(), second.state());
     EXPECT_EQ(Bytes(folder_ / ("whole" + name) / "policy_last.onnx"),
@@ -133,7 +136,7 @@ TEST_F(TrainerTest, StopSavesAtTheNextBoundaryAndLeavesALoadablePolicy) {
   const std::atomic<int> stop{2};
   Trainer::Options options = Options("run");
   options.stop = &stop;
-  Trainer trainer(ShortScenario(), SmallConfig(), options);
+  Trainer trainer(ShortScenario(), SmallSetup(), options);
   EXPECT_FALSE(trainer.Run());
   EXPECT_EQ(trainer.state().env_steps, 2 * 640);
   const agent::Policy policy =
@@ -144,9 +147,9 @@ TEST_F(TrainerTest, StopSavesAtTheNextBoundaryAndLeavesALoadablePolicy) {
 }
 
 TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {
-  const TrainConfig config = SmallConfig();
+  const TrainSetup setup = SmallSetup();
   const Scenario scenario = ShortScenario();
-  Trainer trainer(scenario, config, Options("run"));
+  Trainer trainer(scenario, setup, Options("run"));
   trainer.Run();
   const std::string folder = (folder_ / "run").string();
   const std::string newest = CheckpointPath(folder, 5120);
@@ -168,7 +171,9 @@ TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {
   refused(good + "x", "truncated");
   std::string version = good;
   version[8] = 9;
-  refused(version, "version");
+  refused(version, "version 9");
+  version[8] = 1;
+  refused(version, "version 1 (a libtorch archive)");
   std::string flipped = good;
   flipped[good.size() / 2] = static_cast<char>(flipped[good.size() / 2] ^ 1);
   refused(flipped, "checksum");
@@ -180,51 +185,51 @@ TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {
   EXPECT_NE(log.str().find(newest), std::string::npos);
   Trainer::Options options = Options("run");
   options.resume = true;
-  Trainer resumed(scenario, config, options);
+  Trainer resumed(scenario, setup, options);
   EXPECT_EQ(resumed.state().env_steps, 3840);
   EXPECT_TRUE(resumed.Run());
   ExpectSameBits(resumed.state(), trainer.state());
 }
 
 TEST_F(TrainerTest, KeepsTheLastCheckpointsOnlyAndNoTemporaryFile) {
-  TrainConfig config = SmallConfig();
-  config.keep_checkpoints = 2;
-  Trainer(ShortScenario(), config, Options("run")).Run();
+  TrainSetup setup = SmallSetup();
+  setup.common.keep_checkpoints = 2;
+  Trainer(ShortScenario(), setup, Options("run")).Run();
   int checkpoints = 0;
   for (const auto& entry : fs::directory_iterator(folder_ / "run")) {
     EXPECT_NE(entry.path().extension(), ".tmp");
-    if (entry.path().extension() == ".pt") ++checkpoints;
+    if (entry.path().extension() == ".ckpt") ++checkpoints;
   }
   EXPECT_EQ(checkpoints, 2);
 }
 
 TEST_F(TrainerTest, RefusesToMixRuns) {
-  const TrainConfig config = SmallConfig();
+  const TrainSetup setup = SmallSetup();
   const Scenario scenario = ShortScenario();
-  Trainer(scenario, config, Options("run")).Run();
-  EXPECT_THROW(Trainer(scenario, config, Options("run")), UserError);
+  Trainer(scenario, setup, Options("run")).Run();
+  EXPECT_THROW(Trainer(scenario, setup, Options("run")), UserError);
   Trainer::Options resume = Options("run");
   resume.resume = true;
-  TrainConfig other = config;
-  other.gamma = 0.8;
+  TrainSetup other = setup;
+  Own(other).gamma = 0.8;
   EXPECT_THROW(Trainer(scenario, other, resume), UserError);
-  EXPECT_THROW(Trainer(ShortScenario("hard_release"), config, resume), UserError);
+  EXPECT_THROW(Trainer(ShortScenario("hard_release"), setup, resume), UserError);
   resume.out = (folder_ / "empty").string();
-  EXPECT_THROW(Trainer(scenario, config, resume), UserError);
+  EXPECT_THROW(Trainer(scenario, setup, resume), UserError);
   // A run that ended before its first checkpoint is no obstacle.
   fs::create_directories(folder_ / "early");
   std::ofstream(folder_ / "early" / "config.json") << "{}";
-  EXPECT_NO_THROW(Trainer(scenario, config, Options("early")));
+  EXPECT_NO_THROW(Trainer(scenario, setup, Options("early")));
 }
 
 TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {
-  const TrainConfig config = SmallConfig();
+  const TrainSetup setup = SmallSetup();
   Trainer::Options options = Options("run");
   options.halt_after = 2560;
-  Trainer(ShortScenario(), config, options).Run();
+  Trainer(ShortScenario(), setup, options).Run();
   options.halt_after = 0;
   options.resume = true;
-  Trainer(ShortScenario(), config, options).Run();
+  Trainer(ShortScenario(), setup, options).Run();
   std::istringstream csv(Bytes(folder_ / "run" / "progress.csv"));
   std::string line;
   std::getline(csv, line);
@@ -239,36 +244,38 @@ TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {
 
 TEST_F(TrainerTest, ARunCanStartFromTheNetworksOfAnother) {
   const Scenario scenario = ShortScenario();
-  TrainConfig config = SmallConfig();
-  Trainer first(scenario, config, Options("first"));
+  TrainSetup setup = SmallSetup();
+  Trainer first(scenario, setup, Options("first"));
   ASSERT_TRUE(first.Run());
 
-  config.start_from = (folder_ / "first").string();
-  config.lr = config.critic_lr = 1e-8;  // no step to speak of: what it starts with is what remains
-  config.seed = 1;
-  config.steps = 2560;
-  Trainer second(scenario, config, Options("second"));
-  const std::size_t actor = second.networks().log_std_offset();
+  setup.common.start_from = (folder_ / "first").string();
+  Own(setup).lr = Own(setup).critic_lr =
+      1e-8;  // no step to speak of: what it starts with is what remains
+  setup.common.seed = 1;
+  setup.common.steps = 2560;
+  Trainer second(scenario, setup, Options("second"));
+  const std::size_t actor =
+      dynamic_cast<Mappo&>(second.algorithm()).networks().actor.log_std_offset();
   for (std::size_t i = 0; i < actor; ++i) {
-    ASSERT_EQ(second.state().parameters[i], first.state().parameters[i]);
+    ASSERT_EQ(Parameters(second)[i], Parameters(first)[i]);
   }
-  EXPECT_EQ(second.state().parameters[actor], static_cast<float>(config.initial_log_std));
+  EXPECT_EQ(Parameters(second)[actor], static_cast<float>(Own(setup).initial_log_std));
   EXPECT_EQ(second.state().env_steps, 0);
   ASSERT_TRUE(second.Run());
-  EXPECT_NEAR(second.state().parameters[0], first.state().parameters[0], 1e-5);
+  EXPECT_NEAR(Parameters(second)[0], Parameters(first)[0], 1e-5);
 
-  config.actor_hidden = {8};
-  EXPECT_THROW(Trainer(scenario, config, Options("third")), UserError);
-  config.start_from = (folder_ / "nowhere").string();
-  EXPECT_THROW(Trainer(scenario, config, Options("fourth")), UserError);
+  Own(setup).actor_hidden = {8};
+  EXPECT_THROW(Trainer(scenario, setup, Options("third")), UserError);
+  setup.common.start_from = (folder_ / "nowhere").string();
+  EXPECT_THROW(Trainer(scenario, setup, Options("fourth")), UserError);
 }
 
 TEST_F(TrainerTest, EveryVariantTrains) {
   for (const char* variant : {"stg", "semantic", "velocity3", "tau6"}) {
-    TrainConfig config = SmallConfig();
-    config.variant = variant;
-    config.steps = 640;
-    Trainer trainer(ShortScenario(), config, Options(variant));
+    TrainSetup setup = SmallSetup();
+    setup.common.variant = variant;
+    setup.common.steps = 640;
+    Trainer trainer(ShortScenario(), setup, Options(variant));
     EXPECT_TRUE(trainer.Run());
     const agent::Policy policy =
         agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
@@ -277,18 +284,15 @@ TEST_F(TrainerTest, EveryVariantTrains) {
 }
 
 TEST_F(TrainerTest, AShortRunImprovesTheReturn) {
-  TrainConfig config = Preset("fast");
-  config.steps = 128000;
-  config.validation_interval = 1000000;
-  config.validation_episodes = 16;
+  TrainSetup setup("mappo", "fast");
+  setup.common.steps = 128000;
+  setup.common.validation_interval = 1000000;
+  setup.common.validation_episodes = 16;
   const Scenario scenario = LoadNamedScenario(config::ScenarioFolder(), "medium_release");
-  Trainer trainer(scenario, config, Options("run", 2));
+  Trainer trainer(scenario, setup, Options("run", 2));
   WorkerPool pool(2);
-  const ActorCritic& networks = trainer.networks();
-  Validation validation(scenario, networks, 16, &pool);
-  const RunningMoments nothing(networks.actor.inputs());
-  const task::MetricSummary before = task::Summarise(
-      validation.Run(trainer.state().parameters.data(), Normaliser::From(nothing, 1.0F, 10.0F)));
+  const task::MetricSummary before =
+      task::Summarise(Validate(scenario, 16, &trainer.algorithm(), &pool));
   EXPECT_TRUE(trainer.Run());
   const double untrained = before.mean[0];
   ASSERT_EQ(before.names[0], "return");

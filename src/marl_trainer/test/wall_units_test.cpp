@@ -1,3 +1,5 @@
+#include "marl_trainer/learn/nn/wall_units.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/numbers/attitude.hpp"
-#include "marl_trainer/learn/nn/actor_critic.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/graph/observation.hpp"
 
@@ -18,8 +19,7 @@ constexpr double kMargin = 0.015;
 
 class WallUnits : public ::testing::Test {
  protected:
-  WallUnits()
-      : scenario_(LoadNamedScenario(config::ScenarioFolder(), "hard")), networks_(Networks()) {
+  WallUnits() : scenario_(LoadNamedScenario(config::ScenarioFolder(), "hard")), actor_(Actor()) {
     scenario_.workspace.half_extent_m = 2.0;
     std::mt19937 rng(5);
     std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -28,23 +28,26 @@ class WallUnits : public ::testing::Test {
       normaliser_.std.push_back(0.05F + 0.3F * uniform(rng));
     }
     normaliser_.clip = 1e3F;
-    untouched_ = networks_.Initialise(3, -1.0);
+    untouched_.resize(actor_.parameters());
+    InitialiseOrthogonally(actor_.spec(), 3, 0, untouched_.data());
     placed_ = untouched_;
-    networks_.PlaceWallUnits(kMargin, 2.0, normaliser_, placed_.data());
+    PlaceWallUnits(actor_, kMargin, 2.0, normaliser_, placed_.data());
   }
 
-  ActorCritic Networks() const {
-    TrainConfig config;
-    config.actor_hidden = {kUnits, 8};
-    config.activation = "relu";
-    return ActorCritic(scenario_, 10, config);
+  Mlp Actor() const {
+    NetworkSpec spec;
+    spec.inputs = scenario_.observation_size();
+    spec.hidden = {kUnits, 8};
+    spec.activation = HiddenActivation::kRelu;
+    spec.outputs = scenario_.action_size();
+    return Mlp(spec);
   }
 
   /// First-layer units that the placement changed.
   std::vector<int> Placed() const {
     std::vector<int> units;
     for (int u = 0; u < kUnits; ++u) {
-      const std::size_t w = networks_.actor.weight_offset(0) + Row(u);
+      const std::size_t w = actor_.weight_offset(0) + Row(u);
       if (!std::equal(placed_.begin() + w, placed_.begin() + w + Inputs(),
                       untouched_.begin() + w)) {
         units.push_back(u);
@@ -67,9 +70,9 @@ class WallUnits : public ::testing::Test {
     normaliser_.Apply(x.data(), 1, x.data());
     std::vector<double> y;
     for (const int u : Placed()) {
-      double sum = placed_[networks_.actor.bias_offset(0) + static_cast<std::size_t>(u)];
+      double sum = placed_[actor_.bias_offset(0) + static_cast<std::size_t>(u)];
       for (std::size_t i = 0; i < x.size(); ++i) {
-        sum += static_cast<double>(placed_[networks_.actor.weight_offset(0) + Row(u) + i] * x[i]);
+        sum += static_cast<double>(placed_[actor_.weight_offset(0) + Row(u) + i] * x[i]);
       }
       y.push_back(std::max(sum, 0.0));
     }
@@ -77,20 +80,20 @@ class WallUnits : public ::testing::Test {
     return y;
   }
 
-  std::ptrdiff_t Inputs() const { return networks_.actor.inputs(); }
+  std::ptrdiff_t Inputs() const { return actor_.inputs(); }
   std::size_t Row(int unit) const { return static_cast<std::size_t>(unit * Inputs()); }
 
   Scenario scenario_;
-  ActorCritic networks_;
+  Mlp actor_;
   Normaliser normaliser_;
   std::vector<float> untouched_, placed_;
 };
 
 TEST_F(WallUnits, RiseWithTheTargetsRoomToEachWall) {
-  ASSERT_EQ(Placed().size(), static_cast<std::size_t>(ActorCritic::kWallUnits));
+  ASSERT_EQ(Placed().size(), static_cast<std::size_t>(kWallUnits));
   // A target 1 cm off the wall +x, 2 m off its opposite and 5 cm off the wall -z.
   const std::vector<double> y = Activations({1.95, 0.3, -1.9}, {0.04, -0.1, -0.05});
-  std::vector<double> expected(ActorCritic::kWallUnits, 0.0);
+  std::vector<double> expected(kWallUnits, 0.0);
   std::size_t n = 0;
   for (const double room : {0.01, 0.05}) {
     for (const double multiple : {0.5, 1.0, 2.0, 4.0}) {
@@ -109,8 +112,8 @@ TEST_F(WallUnits, AreSilentFarFromWallsWhereverTheAuvIs) {
 }
 
 TEST_F(WallUnits, TakeThePlaceOfTheUnitsThatSayLeastAndStartUnheard) {
-  const Mlp& actor = networks_.actor;
-  const int next = actor.layer_outputs(1);
+  const Mlp& actor = actor_;
+  const int next = actor.spec().layer_outputs(1);
   const std::vector<int> units = Placed();
   const auto says = [&](int unit) {
     double in = 0.0, out = 0.0;

@@ -16,7 +16,7 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/env/env.hpp"
+#include "marl_trainer/env/vector_env.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "stg_agent/policy/policy.hpp"
 
@@ -149,29 +149,31 @@ TEST_F(Explore, LogProbabilityIsThatOfThePolicysGaussian) {
 }
 
 TEST_F(Explore, TheRecordedActionsFlyTheRecordedEpisode) {
-  env::EnvOptions options;
+  env::VectorEnvOptions options;
   options.seed = seed_;
-  env::EnvGroup env(*scenario_, options);
-  env.Reset();
+  options.envs = 1;
+  env::VectorEnv env(*scenario_, options);
+  env::EnvMemory memory = env.MakeMemory();
+  env.Reset(memory.arrays());
   const auto size = static_cast<std::size_t>(env.action_size());
   const auto width = static_cast<std::size_t>(env.observation_size());
   const auto agents = static_cast<std::size_t>(env.agents());
-  std::vector<float> actions(static_cast<std::size_t>(kLanes) * agents * size);
+  std::vector<float> actions(agents * size);
   for (int k = 0; k < scenario_->time.episode_steps; ++k) {
     const auto& row = first_->records.at(static_cast<std::uint32_t>(k));
     for (std::size_t i = 0; i < agents; ++i) {
-      const dynamics::NavState truth = env.world().Nav(0, static_cast<int>(i));
+      const dynamics::NavState truth = env.nav(0, static_cast<int>(i));
       const dynamics::NavState& flown = first_->states.at(static_cast<std::uint32_t>(k))[i];
       ASSERT_LE(Norm(truth.p_WB - flown.p_WB), kTolerance) << "step " << k << ", AUV " << i;
       ASSERT_LE(Norm(truth.v_WB_B - flown.v_WB_B), kTolerance) << "step " << k << ", AUV " << i;
-      const float* observation = env.observations() + i * width;
+      const float* observation = memory.observation(0, static_cast<int>(i));
       ASSERT_TRUE(std::equal(row[i].observation.begin(), row[i].observation.end(), observation,
                              observation + width))
           << "step " << k << ", AUV " << i;
       std::copy(row[i].action.begin(), row[i].action.end(),
                 actions.begin() + static_cast<std::ptrdiff_t>(i * size));
     }
-    env.Step(actions.data());
+    env.Step(actions.data(), memory.arrays());
   }
 }
 

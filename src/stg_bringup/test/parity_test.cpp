@@ -88,36 +88,37 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
 
   const int steps = s.time.episode_steps;
   for (int e = 0; e < kEpisodes; ++e) {
-    env::EnvOptions env_options;
+    env::VectorEnvOptions env_options;
     env_options.seed = seed + static_cast<std::uint64_t>(e);
-    env::EnvGroup env(s, env_options);
-    env.Reset();
-    const int size = env.action_size();
-    std::vector<double> actions(static_cast<std::size_t>(kLanes * s.agents * size));
+    env_options.envs = 1;
+    env::VectorEnv env(s, env_options);
+    env::EnvMemory memory = env.MakeMemory();
+    env.Reset(memory.arrays());
+    std::vector<double> actions(static_cast<std::size_t>(s.agents * env.action_size()));
     double worst = 0.0;
     for (int k = 0; k < steps; ++k) {
       const int index = e * (steps + 1) + k;
       const auto found = flight.states.find(index);
       ASSERT_NE(found, flight.states.end()) << "episode " << e << ", step " << k;
       for (int i = 0; i < s.agents; ++i) {
-        const dynamics::NavState truth = env.world().Nav(0, i);
+        const dynamics::NavState truth = env.nav(0, i);
         const dynamics::NavState& flown = found->second[static_cast<std::size_t>(i)];
         worst = std::max(worst, Distance(truth.p_WB, flown.p_WB));
         worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));
         ASSERT_EQ(worst, 0.0) << "episode " << e << ", step " << k << ", AUV " << i;
       }
-      env::Decide(controller, env, actions.data());
-      const std::vector<float> state(env.states(), env.states() + env.state_size());
-      env.Step(actions.data());
+      env::Decide(controller, env, memory.observations.data(), actions.data());
+      const std::vector<float> state = memory.states;
+      env.Step(actions.data(), memory.arrays());
       const auto report = flight.reports.find(index + 1);
       ASSERT_NE(report, flight.reports.end()) << "episode " << e << ", step " << k;
-      EXPECT_NEAR(report->second.reward, env.rewards()[0], 1e-6);
+      EXPECT_NEAR(report->second.reward, memory.team_rewards[0], 1e-6);
       ASSERT_EQ(report->second.global_state.size(), state.size());
       for (std::size_t f = 0; f < state.size(); ++f) {
         ASSERT_NEAR(report->second.global_state[f], state[f], 1e-5) << "feature " << f;
       }
     }
-    ASSERT_TRUE(env.truncated());
+    ASSERT_TRUE(memory.truncated[0]);
     const task::EpisodeMetrics& m = env.metrics(0);
     const auv_msgs::EpisodeSummary& summary = flight.summaries.at(static_cast<std::uint32_t>(e));
     EXPECT_TRUE(summary.complete);

@@ -104,7 +104,7 @@ class TrainOnline(unittest.TestCase):
         """Runs the trainer over bags, in a copy of the run's folder."""
         folder = self.out / name
         folder.mkdir()
-        for path in [*self.out.glob("checkpoint_*.pt"), self.out / "policy_last.onnx"]:
+        for path in [*self.out.glob("checkpoint_*.ckpt"), self.out / "policy_last.onnx"]:
             shutil.copy(path, folder)
         program = roslib.packages.find_node("marl_trainer", "trainer_node")[0]
         done = subprocess.run(
@@ -206,7 +206,7 @@ class TrainOnline(unittest.TestCase):
             limit.cancel()
         self.assertEqual(trainer.returncode, 0, text)
         self.assertRegex(text, r"trainer: stopped after [1-9]\d* updates")
-        self.assertTrue(list(folder.glob("checkpoint_*.pt")))
+        self.assertTrue(list(folder.glob("checkpoint_*.ckpt")))
         self.assertTrue((folder / "policy_last.onnx").exists())
 
 

@@ -143,7 +143,7 @@ void Loader::Set(const Field& field, const YamlTree& value, const std::string& w
 void Loader::RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const {
   std::vector<std::string> missing;
   for (const Field& field : table_.fields()) {
-    if (given.count(field.path) == 0) missing.push_back(field.path);
+    if (given.count(field.path) == 0 && !field.fallback) missing.push_back(field.path);
   }
   if (missing.empty()) return;
   int line = root.line;

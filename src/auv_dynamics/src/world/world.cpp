@@ -110,23 +110,6 @@ void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
   StartLane(lane, 0, 0, start_);
 }
 
-void World::Follow(const std::vector<NavState>& vehicles,
-                   const std::vector<TargetState<double>>& targets) {
-  assert(vehicles.size() == vehicles_.size() && targets.size() == targets_.size());
-  for (int lane = 0; lane < kLanes; ++lane) {
-    for (size_t i = 0; i < vehicles.size(); ++i) {
-      const NavState& nav = vehicles[i];
-      const Mat3<double> R_WB = RotationOf(nav.q_WB);
-      SetState(&vehicles_[i], lane, nav.p_WB, nav.q_WB, TrigOf(R_WB), R_WB, nav.v_WB_B, nav.w_WB_B);
-    }
-    for (size_t k = 0; k < targets.size(); ++k) {
-      SetLane(&targets_[k].p_WT, lane, targets[k].p_WT);
-      SetLane(&targets_[k].v_WT, lane, targets[k].v_WT);
-    }
-  }
-  separations_.Measure(vehicles_);
-}
-
 Navigation<Pack> World::Nav(int i) const {
   const VehicleState<Pack>& v = vehicle(i);
   Navigation<Pack> nav;

@@ -90,7 +90,7 @@ class Training:
 
     def prepare(self):
         """Command to start or continue the run. A run without a checkpoint starts afresh."""
-        resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.pt")))
+        resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.ckpt")))
         if not resume and os.path.isdir(self.folder):
             shutil.rmtree(self.folder)
         os.makedirs(self.folder, exist_ok=True)

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/env/env.hpp"
+#include "marl_trainer/env/vector_env.hpp"
 
 namespace stg::env {
 namespace {
@@ -159,7 +159,7 @@ void ReadSteps(const std::string& file, Trace* trace) {
 /// Our value of every column we know, by name.
 using Columns = std::map<std::string, std::pair<std::string, std::function<double(int)>>>;
 
-Columns OurColumns(const EnvGroup& env, const Scenario& s) {
+Columns OurColumns(const VectorEnv& env, const EnvMemory& memory, const Scenario& s) {
   Columns c;
   const auto add = [&](const std::string& group, const std::string& name,
                        std::function<double(int)> f) {
@@ -171,39 +171,34 @@ Columns OurColumns(const EnvGroup& env, const Scenario& s) {
     add(group, names[1], [f](int i) { return f(i).y; });
     add(group, names[2], [f](int i) { return f(i).z; });
   };
-  const EnvGroup* e = &env;
-  const auto v = [e](int i) -> const dynamics::VehicleState<Pack>& {
-    return e->world().vehicle(i);
-  };
-  vec("state", {"px", "py", "pz"}, [v](int i) { return Lane(v(i).p_WB, 0); });
-  vec("state", {"vx", "vy", "vz"}, [v](int i) { return Lane(v(i).v_WB, 0); });
-  vec("state", {"u", "v", "w"}, [v](int i) { return Lane(v(i).v_WB_B, 0); });
-  vec("state", {"p", "q", "r"}, [v](int i) { return Lane(v(i).w_WB_B, 0); });
-  vec("angle", {"phi", "theta", "psi"}, [v](int i) { return Lane(v(i).rpy, 0); });
-  vec("target", {"tpx", "tpy", "tpz"},
-      [e, &s](int i) { return Lane(e->world().target(s.target_of(i)).p_WT, 0); });
-  vec("target", {"tvx", "tvy", "tvz"},
-      [e, &s](int i) { return Lane(e->world().target(s.target_of(i)).v_WT, 0); });
+  const auto v = [&env](int i) { return env.vehicle(0, i); };
+  vec("state", {"px", "py", "pz"}, [v](int i) { return v(i).p_WB; });
+  vec("state", {"vx", "vy", "vz"}, [v](int i) { return v(i).v_WB; });
+  vec("state", {"u", "v", "w"}, [v](int i) { return v(i).v_WB_B; });
+  vec("state", {"p", "q", "r"}, [v](int i) { return v(i).w_WB_B; });
+  vec("angle", {"phi", "theta", "psi"}, [v](int i) { return v(i).rpy; });
+  const auto target = [&env, &s](int i) { return env.target(0, s.target_of(i)); };
+  vec("target", {"tpx", "tpy", "tpz"}, [target](int i) { return target(i).p_WT; });
+  vec("target", {"tvx", "tvy", "tvz"}, [target](int i) { return target(i).v_WT; });
   for (int k = 0; k < 6; ++k) {
     const double max = s.vehicle.max_tau[static_cast<size_t>(k)];
     add("tau", "tau" + std::to_string(k),
-        [e, k, max](int i) { return Lane(e->truth(i).tau[k], 0) * max; });
+        [&env, k, max](int i) { return env.knowledge(0, i).tau[k] * max; });
   }
   for (int k = 0; k < env.observation_size(); ++k) {
-    add("observation", "obs" + std::to_string(k), [e, k](int i) {
-      return static_cast<double>(e->observations()[i * e->observation_size() + k]);
-    });
+    add("observation", "obs" + std::to_string(k),
+        [&memory, k](int i) { return static_cast<double>(memory.observation(0, i)[k]); });
   }
-  const auto term = [e](int i) -> const task::RewardTerms<Pack>& { return e->terms(i); };
-  add("reward", "reward", [term](int i) { return Lane(term(i).total, 0); });
-  add("reward", "r_track", [term](int i) { return Lane(term(i).track, 0); });
-  add("reward", "r_obs", [term](int i) { return Lane(term(i).observation, 0); });
-  add("reward", "r_coord", [term](int i) { return Lane(term(i).coordination, 0); });
-  add("reward", "r_comm", [term](int i) { return Lane(term(i).communication, 0); });
-  add("reward", "r_sem", [term](int i) { return Lane(term(i).semantic, 0); });
-  add("reward", "cost", [term](int i) { return Lane(term(i).cost, 0); });
-  add("state", "distance", [e](int i) { return Lane(e->truth(i).distance, 0); });
-  add("state", "lost", [e](int i) { return Lane(e->truth(i).lost, 0); });
+  const auto term = [&env](int i) { return env.terms(0, i); };
+  add("reward", "reward", [term](int i) { return term(i).total; });
+  add("reward", "r_track", [term](int i) { return term(i).track; });
+  add("reward", "r_obs", [term](int i) { return term(i).observation; });
+  add("reward", "r_coord", [term](int i) { return term(i).coordination; });
+  add("reward", "r_comm", [term](int i) { return term(i).communication; });
+  add("reward", "r_sem", [term](int i) { return term(i).semantic; });
+  add("reward", "cost", [term](int i) { return term(i).cost; });
+  add("state", "distance", [&env](int i) { return env.tracking(0, i).distance; });
+  add("state", "lost", [&env](int i) { return env.tracking(0, i).lost; });
   return c;
 }
 
@@ -264,9 +259,12 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
 
 TraceError ReplayTrace(const Trace& trace, double tolerance) {
   const Scenario& s = trace.scenario;
-  EnvGroup env(s, EnvOptions{});
-  env.Place(trace.p_WB, trace.p_WT, trace.v_WT);
-  const Columns ours = OurColumns(env, s);
+  VectorEnvOptions options;
+  options.envs = 1;
+  VectorEnv env(s, options);
+  EnvMemory memory = env.MakeMemory();
+  env.Place(trace.p_WB, trace.p_WT, trace.v_WT, memory.arrays());
+  const Columns ours = OurColumns(env, memory, s);
   const int n = s.agents, size = s.action_size();
   std::map<std::string, size_t> column;
   for (size_t c = 0; c < trace.columns.size(); ++c) column[trace.columns[c]] = c;
@@ -276,7 +274,7 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
     }
   }
   TraceError result;
-  std::vector<double> actions(static_cast<size_t>(kLanes * n * size));
+  std::vector<double> actions(static_cast<size_t>(n * size));
   const int steps = static_cast<int>(trace.rows.size()) / n;
   result.steps = steps;
   for (int step = 0; step < steps; ++step) {
@@ -284,15 +282,12 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
       return trace.rows[static_cast<size_t>(step * n + i)];
     };
     if (step > 0) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        for (int i = 0; i < n; ++i) {
-          for (int k = 0; k < size; ++k) {
-            actions[static_cast<size_t>((lane * n + i) * size + k)] =
-                row(i)[column["a" + std::to_string(k)]];
-          }
+      for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < size; ++k) {
+          actions[static_cast<size_t>(i * size + k)] = row(i)[column["a" + std::to_string(k)]];
         }
       }
-      env.Step(actions.data());
+      env.Step(actions.data(), memory.arrays());
     }
     for (const auto& [name, source] : ours) {
       const auto found = column.find(name);

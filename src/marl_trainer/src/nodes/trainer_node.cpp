@@ -49,8 +49,10 @@ TrainerNode::TrainerNode()
   options.policy = TextParameter("start_policy", "");
   options.workers = IntegerParameter("workers", 2, 1, 1024);
   options.log = &std::cout;
-  trainer_ = std::make_unique<learn::RecordedTrainer>(
-      scenario_, LoadTrainParameters(learn::RecordedConfig(scenario_)), options);
+  learn::TrainSetup setup =
+      learn::RecordedSetup(scenario_, TextParameter("algorithm", learn::DefaultAlgorithm()));
+  LoadTrainParameters(&setup);
+  trainer_ = std::make_unique<learn::RecordedTrainer>(scenario_, setup, options);
 }
 
 void TrainerNode::Spin() {
@@ -239,8 +241,7 @@ void TrainerNode::Print(const learn::RecordedTrainer::Progress& p) const {
               static_cast<long long>(p.env_steps), (ros::WallTime::now() - began_).toSec(),
               p.episode_return);
   if (!summaries_.empty()) std::printf("  tail %.4f m  lost %.3f", tail, lost);
-  std::printf("  KL %.4f clip %.3f EV %.3f sigma %.3f  %d episodes, %llu dropped, update %.1f s\n",
-              p.kl, p.clip_fraction, p.explained_variance, p.sigma, p.episodes,
+  std::printf("  %s  %d episodes, %llu dropped, update %.1f s\n", p.report.c_str(), p.episodes,
               static_cast<unsigned long long>(recording_.total_dropped()), p.seconds);
   std::fflush(stdout);
 }
@@ -249,8 +250,8 @@ void TrainerNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
   if (trainer_) {
     status.add("policy", trainer_->policy_id());
-    status.add("updates", trainer_->state().collections);
-    status.add("environment steps", trainer_->state().env_steps);
+    status.add("updates", trainer_->updates());
+    status.add("environment steps", trainer_->env_steps());
   }
   status.add("episodes in this collection", collection_.size());
   status.add("episodes used", recording_.used);

@@ -17,7 +17,7 @@
 
 namespace stg::nodes {
 
-/// MAPPO over recorded episodes: from bags, one update; or live, update after update, with each
+/// Learning over recorded episodes: from bags, one update; or live, update after update, with each
 /// new policy loaded into the agents.
 ///
 /// Live, the world stands still during an update and starts an episode after it, so that no step

@@ -33,16 +33,16 @@ std::enable_if_t<std::is_integral_v<Integer>> Load(const std::string& name, Inte
 
 }  // namespace
 
-learn::TrainConfig LoadTrainParameters(const learn::TrainConfig& defaults) {
-  learn::TrainConfig config = defaults;
+void LoadTrainParameters(learn::TrainSetup* setup) {
   const ros::NodeHandle node("~");
-  learn::VisitTrainConfig(config, [&node](const char* option, auto& field, const char*) {
-    std::string name = option;
+  const learn::OptionTable table = setup->Options();
+  for (const learn::Option& option : table.options()) {
+    std::string name = option.name;
     std::replace(name.begin(), name.end(), '-', '_');
     // Private ones only: `seed` of the world, say, is another one.
-    if (node.hasParam(name)) Load(name, &field);
-  });
-  return config;
+    if (!node.hasParam(name)) continue;
+    std::visit([&name](auto* field) { Load(name, field); }, option.value);
+  }
 }
 
 std::vector<std::string> LoadBagNames() {

@@ -21,17 +21,7 @@ void Describe(Scenario* s, config::Table* t) {
 }
 
 std::optional<config::Violation> FindConflict(const Scenario& s) {
-  if (auto violation = FindConflict(static_cast<const agent::AgentConfig&>(s))) return violation;
-  if (s.task.lost_distance_m <= s.reward.band_m.hi) {
-    return config::Violation{{"task.lost_distance_m", "reward.band_m"},
-                             "a target inside the tracking band would count as lost"};
-  }
-  if (s.reward.weights.separation > 0.0 &&
-      s.reward.separation_distance_m <= 2.0 * s.vehicle.radius_m) {
-    return config::Violation{{"reward.separation_distance_m", "vehicle.radius_m"},
-                             "the penalty must set in before contact, at two radii"};
-  }
-  return {};
+  return FindConflict(static_cast<const task::JudgeConfig&>(s));
 }
 
 Scenario LoadScenario(const std::string& file, const std::vector<std::string>& overlays,

@@ -1,5 +1,8 @@
 #include "marl_trainer/task/reward_config.hpp"
 
+#include "marl_trainer/task/judge_config.hpp"
+#include "marl_trainer/task/reward_term.hpp"
+
 namespace stg::task {
 
 using config::Enum;
@@ -41,6 +44,25 @@ void Describe(RewardConfig* c, config::Table* t) {
          "separation penalty: none beyond this distance of two AUVs");
   t->Add("total_limit", &c->total_limit, config::Positive(1e6), "-",
          "an agent's total reward is clipped to +- this value");
+  t->Section("reward.terms");
+  for (const std::string& name : RewardTermsByName().Names()) {
+    t->AddOptional(name, &c->terms[name], "0.0", config::NonNegative(1e3), "-",
+                   "weight of the registered term of this name");
+  }
+}
+
+std::optional<config::Violation> FindConflict(const JudgeConfig& s) {
+  if (auto violation = FindConflict(static_cast<const agent::AgentConfig&>(s))) return violation;
+  if (s.task.lost_distance_m <= s.reward.band_m.hi) {
+    return config::Violation{{"task.lost_distance_m", "reward.band_m"},
+                             "a target inside the tracking band would count as lost"};
+  }
+  if (s.reward.weights.separation > 0.0 &&
+      s.reward.separation_distance_m <= 2.0 * s.vehicle.radius_m) {
+    return config::Violation{{"reward.separation_distance_m", "vehicle.radius_m"},
+                             "the penalty must set in before contact, at two radii"};
+  }
+  return {};
 }
 
 }  // namespace stg::task

@@ -2,35 +2,35 @@
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/env/env.hpp"
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/env/vector_env.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Environment steps per second of `groups` on one thread for about `seconds`.
-double Run(std::vector<stg::env::EnvGroup>* groups, double seconds) {
-  const stg::env::EnvGroup& first = groups->front();
-  const size_t size = static_cast<size_t>(stg::kLanes * first.agents() * first.action_size());
+/// Environment steps per second of `env` on one thread for about `seconds`.
+double Run(stg::env::VectorEnv* env, double seconds) {
+  const auto size = static_cast<size_t>(env->envs() * env->agents() * env->action_size());
   // Random actions, drawn beforehand: the bench is of the environment.
   std::vector<std::vector<float>> actions(64, std::vector<float>(size));
   stg::Random random(1, stg::Stream::kPolicy, 0, 0, 0);
   for (auto& a : actions) {
     for (float& v : a) v = static_cast<float>(random.Uniform(-1.0, 1.0));
   }
-  for (auto& g : *groups) g.Reset();
+  stg::env::EnvMemory memory = env->MakeMemory();
+  env->Reset(memory.arrays());
   const auto start = Clock::now();
   double elapsed = 0.0;
   long steps = 0;
   for (size_t k = 0; elapsed < seconds; ++k) {
-    for (auto& g : *groups) g.Step(actions[k % actions.size()].data());
-    steps += static_cast<long>(groups->size()) * stg::kLanes;
+    env->Step(actions[k % actions.size()].data(), memory.arrays());
+    steps += env->envs();
     if (k % 16 == 15) elapsed = std::chrono::duration<double>(Clock::now() - start).count();
   }
   return static_cast<double>(steps) / elapsed;
@@ -38,21 +38,15 @@ double Run(std::vector<stg::env::EnvGroup>* groups, double seconds) {
 
 double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
   std::vector<double> rates(static_cast<size_t>(workers));
-  std::vector<std::thread> threads;
-  for (int w = 0; w < workers; ++w) {
-    threads.emplace_back([&, w] {
-      std::vector<stg::env::EnvGroup> groups;
-      const int count = std::max(1, envs / stg::kLanes / workers);
-      for (int g = 0; g < count; ++g) {
-        stg::env::EnvOptions o;
-        o.first_env = (w * count + g) * stg::kLanes;
-        o.total_envs = count * workers * stg::kLanes;
-        groups.emplace_back(s, o);
-      }
-      rates[static_cast<size_t>(w)] = Run(&groups, seconds);
-    });
-  }
-  for (auto& t : threads) t.join();
+  stg::WorkerPool pool(workers);
+  pool.Run(workers, [&](int w, int) {
+    stg::env::VectorEnvOptions o;
+    o.envs = std::max(1, envs / workers);
+    o.first_env = w * o.envs;
+    o.total_envs = workers * o.envs;
+    stg::env::VectorEnv env(s, o);
+    rates[static_cast<size_t>(w)] = Run(&env, seconds);
+  });
   double total = 0.0;
   for (const double r : rates) total += r;
   return total;

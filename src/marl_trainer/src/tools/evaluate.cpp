@@ -9,7 +9,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/env/evaluation.hpp"
-#include "marl_trainer/learn/train_config.hpp"
+#include "marl_trainer/learn/variants.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
@@ -80,7 +80,11 @@ int main(int argc, char** argv) {
     }
     stg::env::Controller controller = stg::env::MakeController(full, s);
     controller.privileged = privileged;
-    const auto metrics = stg::env::Evaluate(s, controller, episodes, seed, workers, [&](int done) {
+    stg::WorkerPool pool(std::min(workers, episodes));
+    stg::env::EvaluationOptions options;
+    options.episodes = episodes;
+    options.seed = seed;
+    const auto metrics = stg::env::Evaluate(s, controller, options, &pool, [&](int done) {
       std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
     });
     std::fprintf(stderr, "\n");

@@ -7,7 +7,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/trainer.hpp"
+#include "marl_trainer/learn/run/trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
 namespace {
@@ -21,23 +21,39 @@ extern "C" void OnSignal(int signal) {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-/// Value of --preset before the other options are declared with its defaults.
-std::string PresetArgument(int argc, char** argv) {
+/// Value of an option before the others are declared with defaults that depend on it.
+std::string Argument(int argc, char** argv, const std::string& option,
+                     const std::string& fallback) {
+  const std::string start = option + "=";
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--preset") == 0 && i + 1 < argc) return argv[i + 1];
-    if (std::strncmp(argv[i], "--preset=", 9) == 0) return argv[i] + 9;
+    if (option == argv[i] && i + 1 < argc) return argv[i + 1];
+    if (std::strncmp(argv[i], start.c_str(), start.size()) == 0) return argv[i] + start.size();
   }
-  return "fast";
+  return fallback;
 }
 
+/// Declares one option of the table.
+struct Declare {
+  CLI::App& app;
+  const stg::learn::Option& option;
+
+  template <class T>
+  void operator()(T* field) const {
+    CLI::Option* added = app.add_option("--" + option.name, *field, option.meaning);
+    if constexpr (std::is_same_v<T, std::vector<int>>) added->delimiter(',');
+    added->capture_default_str();
+  }
+};
+
 int Train(int argc, char** argv) {
-  stg::learn::TrainConfig config = stg::learn::Preset(PresetArgument(argc, argv));
+  stg::learn::TrainSetup setup(Argument(argc, argv, "--algorithm", stg::learn::DefaultAlgorithm()),
+                               Argument(argc, argv, "--preset", "fast"));
   std::string scenario_name = "medium", condition = "nominal", out;
   std::vector<std::string> overrides, mix;
   bool resume = false;
   int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 
-  CLI::App app("Trains a policy with MAPPO and writes it as ONNX.");
+  CLI::App app("Trains a policy and writes it as ONNX.");
   app.add_option("--scenario", scenario_name, "shipped name or file")->capture_default_str();
   app.add_option("--condition", condition, "stress condition of a shipped scenario")
       ->capture_default_str();
@@ -45,10 +61,13 @@ int Train(int argc, char** argv) {
                  "conditions that the training environments cycle through, e.g. "
                  "nominal,combined_stress; default: --condition alone")
       ->delimiter(',');
-  app.add_option("--preset", config.preset,
+  app.add_option("--algorithm", setup.algorithm,
+                 "one of " + stg::JoinNames(stg::learn::Algorithms().Names()))
+      ->capture_default_str();
+  app.add_option("--preset", setup.common.preset,
                  "fast (ours) or paper (Table S2); the defaults of the options below")
       ->capture_default_str();
-  app.add_option("--variant", config.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
+  app.add_option("--variant", setup.common.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
       ->capture_default_str();
   app.add_option("--out", out, "folder for checkpoints, policies and logs")->required();
   app.add_flag("--resume", resume, "go on from the folder's newest good checkpoint");
@@ -58,13 +77,10 @@ int Train(int argc, char** argv) {
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  stg::learn::VisitTrainConfig(config, [&](const char* name, auto& field, const char* text) {
-    CLI::Option* option = app.add_option(std::string("--") + name, field, text);
-    if constexpr (std::is_same_v<std::decay_t<decltype(field)>, std::vector<int>>) {
-      option->delimiter(',');
-    }
-    option->capture_default_str();
-  });
+  const stg::learn::OptionTable table = setup.Options();
+  for (const stg::learn::Option& option : table.options()) {
+    std::visit(Declare{app, option}, option.value);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -85,7 +101,7 @@ int Train(int argc, char** argv) {
   options.stop = &stop_signal;
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
-  stg::learn::Trainer trainer(scenario, config, options);
+  stg::learn::Trainer trainer(scenario, setup, options);
   if (trainer.Run()) return 0;
   std::cout << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
             << std::endl;

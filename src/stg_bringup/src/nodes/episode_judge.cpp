@@ -1,28 +1,32 @@
 #include "episode_judge.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg::nodes {
-namespace {
-
-/// The environment in the mode without agents: they run elsewhere.
-Scenario WithoutAgents(Scenario scenario) {
-  scenario.mode = InformationMode::kTruth;
-  return scenario;
-}
-
-}  // namespace
 
 EpisodeJudge::EpisodeJudge(const Scenario& scenario)
-    : scenario_(WithoutAgents(scenario)), env_(scenario_, env::EnvOptions()) {
-  const auto n = static_cast<std::size_t>(scenario_.agents);
-  swarm_.vehicles.resize(n);
-  swarm_.targets.resize(static_cast<std::size_t>(scenario_.target.count));
-  swarm_.fractions.assign(n, {});
-  swarm_.actions.assign(n, {});
+    : scenario_(scenario),
+      task_(scenario),
+      vehicles_(static_cast<std::size_t>(scenario.agents)),
+      targets_(static_cast<std::size_t>(scenario.target.count)),
+      separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
+      tau_(vehicles_.size()),
+      action_(vehicles_.size()) {}
+
+task::SwarmState<double> EpisodeJudge::Swarm() const {
+  return {vehicles_, targets_, separations_, tau_, action_, link_quality_};
+}
+
+std::vector<float> EpisodeJudge::CriticState() const {
+  std::vector<float> state;
+  task_.WriteCriticState(Swarm(), [&state](const double* numbers, int count) {
+    for (int k = 0; k < count; ++k) state.push_back(static_cast<float>(numbers[k]));
+  });
+  return state;
 }
 
 EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
@@ -34,7 +38,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
     // Cut short by a reset: what there is still counts as an incomplete episode.
     complete_ = false;
     started_ = false;
-    if (env_.step() > 0) FillSummary(frame.truth->header.stamp, env_.MetricsSoFar(0), &verdict);
+    if (task_.steps(0) > 0) FillSummary(frame.truth->header.stamp, task_.Metrics(0), &verdict);
   }
   if (!truth) {
     complete_ = false;
@@ -45,23 +49,23 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
     if (frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps)) {
       return verdict;  // the end of an episode that was not watched
     }
-    for (auto* v : {&swarm_.fractions, &swarm_.actions})
-      std::fill(v->begin(), v->end(), std::array<double, 6>{});
+    for (auto* v : {&tau_, &action_}) std::fill(v->begin(), v->end(), std::array<double, 6>{});
     deadline_misses_ = 0;
     started_ = true;
     complete_ = frame.truth->step == 0;
-    env_.FollowStart(swarm_);
+    task_.Start(true, Swarm(), scenario_.time.episode_steps);
+    state_ = CriticState();
   } else {
     complete_ = complete_ && frame.truth->step == step_ + 1;
-    const std::vector<float> state(env_.states(), env_.states() + env_.state_size());
     TakeWrenches(*frame.truth);
-    env_.FollowStep(swarm_);
-    FillReport(frame, state, &verdict);
+    task_.Step(Swarm());
+    std::vector<float> before = std::exchange(state_, CriticState());
+    FillReport(frame, std::move(before), &verdict);
     const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
     if (last) {
       started_ = false;
-      complete_ = complete_ && env_.truncated();
-      FillSummary(frame.truth->header.stamp, env_.MetricsSoFar(0), &verdict);
+      complete_ = complete_ && Truncated();
+      FillSummary(frame.truth->header.stamp, task_.Metrics(0), &verdict);
     }
   }
   episode_ = frame.truth->episode;
@@ -73,27 +77,34 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
 
 void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
   const auv_msgs::SwarmState& truth = *frame.truth;
-  for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
-    swarm_.vehicles[i] = NavOf(truth.poses[i], truth.twists[i], NsOf(truth.header.stamp));
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    const dynamics::NavState nav = NavOf(truth.poses[i], truth.twists[i], NsOf(truth.header.stamp));
+    dynamics::VehicleState<double>& v = vehicles_[i];
+    v.p_WB = nav.p_WB;
+    std::copy(nav.q_WB, nav.q_WB + 4, v.q_WB);
+    v.v_WB_B = nav.v_WB_B;
+    v.w_WB_B = nav.w_WB_B;
+    dynamics::FollowQuaternion(&v);
   }
-  for (std::size_t k = 0; k < swarm_.targets.size(); ++k) {
-    swarm_.targets[k].p_WT = VectorOf(truth.target_positions[k]);
-    swarm_.targets[k].v_WT = VectorOf(truth.target_velocities[k]);
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    targets_[k].p_WT = VectorOf(truth.target_positions[k]);
+    targets_[k].v_WT = VectorOf(truth.target_velocities[k]);
   }
+  separations_.Measure(vehicles_);
   double sum = 0.0;
   for (const auto& task : frame.tasks) {
     if (task) sum += task->graph_summary[1];
   }
-  swarm_.link_quality = sum / static_cast<double>(frame.tasks.size());
+  link_quality_ = sum / static_cast<double>(frame.tasks.size());
 }
 
 /// What acted on the AUVs until this frame.
 void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
-  for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const auto& w = truth.wrenches[i];
     const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
     for (std::size_t k = 0; k < 6; ++k) {
-      swarm_.fractions[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
+      tau_[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
     }
   }
   const bool missed =
@@ -103,16 +114,16 @@ void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
 
 /// What the decision at this frame wants; it is judged with the next frame.
 void EpisodeJudge::TakeActions(const SwarmFrame& frame) {
-  for (std::size_t i = 0; i < swarm_.vehicles.size(); ++i) {
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const auto& task = frame.tasks[i];
     if (!task) continue;
     std::copy_n(task->action.begin(), std::min<std::size_t>(6, task->action.size()),
-                swarm_.actions[i].begin());
+                action_[i].begin());
     policy_id_ = task->policy_id;
   }
 }
 
-void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>& state,
+void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
                               Verdict* verdict) const {
   verdict->has_report = true;
   auv_msgs::StepReport& m = verdict->report;
@@ -120,24 +131,24 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, const std::vector<float>&
   m.header.frame_id = frames::kWorld;
   m.episode = episode_;
   m.step = frame.truth->step - 1;
-  m.global_state = state;
-  m.truncated = env_.truncated();
-  if (m.truncated) m.final_state.assign(env_.states(), env_.states() + env_.state_size());
+  m.global_state = std::move(state);
+  m.truncated = Truncated();
+  if (m.truncated) m.final_state = state_;
   for (int i = 0; i < scenario_.agents; ++i) {
-    const task::RewardTerms<Pack>& r = env_.terms(i);
-    m.agent_rewards.push_back(Lane(r.total, 0));
-    m.r_track.push_back(Lane(r.track, 0));
-    m.r_obs.push_back(Lane(r.observation, 0));
-    m.r_coord.push_back(Lane(r.coordination, 0));
-    m.r_comm.push_back(Lane(r.communication, 0));
-    m.r_sem.push_back(Lane(r.semantic, 0));
-    m.r_sep.push_back(Lane(r.separation, 0));
-    m.cost.push_back(Lane(r.cost, 0));
-    m.distances.push_back(Lane(env_.truth(i).distance, 0));
+    const task::RewardTerms<double>& r = task_.terms(i);
+    m.agent_rewards.push_back(r.total);
+    m.r_track.push_back(r.track);
+    m.r_obs.push_back(r.observation);
+    m.r_coord.push_back(r.coordination);
+    m.r_comm.push_back(r.communication);
+    m.r_sem.push_back(r.semantic);
+    m.r_sep.push_back(r.separation);
+    m.cost.push_back(r.cost);
+    m.distances.push_back(task_.tracking(i).distance);
     m.reward += m.agent_rewards.back() / scenario_.agents;
   }
-  m.colliding_pairs = static_cast<std::uint32_t>(Lane(env_.world().colliding_pairs(), 0));
-  m.smallest_separation = scenario_.agents > 1 ? Lane(env_.world().smallest_separation(), 0) : 0.0;
+  m.colliding_pairs = static_cast<std::uint32_t>(separations_.colliding_pairs());
+  m.smallest_separation = scenario_.agents > 1 ? separations_.smallest() : 0.0;
 }
 
 void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& e,

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/env/env.hpp"
+#include "marl_trainer/task/task.hpp"
 #include "swarm_frame.hpp"
 
 namespace stg::nodes {
 
-/// Judges the run frame by frame with the environment's own reward and metrics.
+/// Judges the run frame by frame: the task of the training environment, on the true states that the
+/// world publishes.
 class EpisodeJudge {
  public:
   explicit EpisodeJudge(const Scenario& scenario);
@@ -27,7 +28,7 @@ class EpisodeJudge {
   Verdict Judge(const SwarmFrame& frame);
 
   /// Present truth, for display.
-  const env::EnvGroup& env() const { return env_; }
+  const task::Tracking<double>& tracking(int i) const { return task_.tracking(i); }
   std::uint32_t episode() const { return episode_; }
   std::uint32_t step() const { return step_; }
   bool started() const { return started_; }
@@ -37,15 +38,24 @@ class EpisodeJudge {
   void SetTruth(const SwarmFrame& frame);
   void TakeWrenches(const auv_msgs::SwarmState& truth);
   void TakeActions(const SwarmFrame& frame);
-  void FillReport(const SwarmFrame& frame, const std::vector<float>& state, Verdict* verdict) const;
+  task::SwarmState<double> Swarm() const;
+  bool Truncated() const { return task_.steps(0) >= scenario_.time.episode_steps; }
+  std::vector<float> CriticState() const;
+  void FillReport(const SwarmFrame& frame, std::vector<float> state, Verdict* verdict) const;
   void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics,
                    Verdict* verdict) const;
 
   Scenario scenario_;
-  env::EnvGroup env_;
-  env::FollowedSwarm swarm_;
-  bool started_ = false;  ///< an episode is being judged
-  bool complete_ = true;  ///< no step of it is missing
+  task::Task<double> task_;
+  // The swarm at the present frame, and the decision that led there.
+  std::vector<dynamics::VehicleState<double>> vehicles_;
+  std::vector<dynamics::TargetState<double>> targets_;
+  dynamics::Separations<double> separations_;
+  task::Efforts<double> tau_, action_;
+  double link_quality_ = 0.0;
+  std::vector<float> state_;  // the critic's, at the present frame
+  bool started_ = false;      ///< an episode is being judged
+  bool complete_ = true;      ///< no step of it is missing
   std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0;
   std::uint64_t seed_ = 0;
   std::string policy_id_;

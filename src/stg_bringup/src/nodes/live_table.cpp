@@ -79,10 +79,9 @@ std::string LiveTable::Table(const EpisodeJudge& judge, double now_s) const {
   const int rows = std::min(scenario_.agents, kMaxRows);
   for (int i = 0; i < rows; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    const auto& k = judge.env().truth(i);
+    const auto& k = judge.tracking(i);
     text += Format(" %3d  %-8s  %12.4f  %9.4f  %2d/%-2d  %7.2f  %7.2f\n", i, PhaseName(phases_[u]),
-                   Lane(k.distance, 0), Lane(k.error, 0), live_links_[u], scenario_.agents - 1,
-                   quality_[u], age_[u]);
+                   k.distance, k.error, live_links_[u], scenario_.agents - 1, quality_[u], age_[u]);
   }
   if (rows < scenario_.agents) text += Format(" ... and %d more\n", scenario_.agents - rows);
   return text;
@@ -93,8 +92,8 @@ std::string LiveTable::Line(const EpisodeJudge& judge, double now_s) const {
   int count[4] = {}, links = 0;
   for (int i = 0; i < scenario_.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    distance += Lane(judge.env().truth(i).distance, 0) / scenario_.agents;
-    error += Lane(judge.env().truth(i).error, 0) / scenario_.agents;
+    distance += judge.tracking(i).distance / scenario_.agents;
+    error += judge.tracking(i).error / scenario_.agents;
     if (phases_[u] >= 0 && phases_[u] < 4) ++count[phases_[u]];
     links += live_links_[u];
   }

@@ -79,6 +79,8 @@ struct Field {
   Limits limits;        ///< of numbers; unused for other types
   std::string unit;     ///< unit and, where it matters, frame
   std::string meaning;  ///< one sentence
+  /// The value, as text, of a key that a file need not state; saving leaves it out, too.
+  std::optional<std::string> fallback = {};
 };
 
 /// All keys of a configuration in file order; keys of one section are adjacent. The references
@@ -90,6 +92,13 @@ class Table {
   void Add(const std::string& key, ValueRef value, Limits limits, const std::string& unit,
            const std::string& meaning) {
     fields_.push_back({prefix_ + key, std::move(value), limits, unit, meaning});
+  }
+  /// A key that a file need not state: of things that are registered, for which the files of others
+  /// shall not change. The member must have the value `fallback` by default.
+  void AddOptional(const std::string& key, ValueRef value, const std::string& fallback,
+                   Limits limits, const std::string& unit, const std::string& meaning) {
+    Add(key, std::move(value), limits, unit, meaning);
+    fields_.back().fallback = fallback;
   }
   /// A key that files of earlier versions may have, and the one that replaces it: the refusal
   /// names it.

@@ -14,8 +14,8 @@
 ///
 /// A file either states every key or names another one with `base: <file>` (relative to itself)
 /// and states the difference; overlays (files with a subset of the keys) and `key.path=value`
-/// overrides follow in order. An unknown or missing key, a wrong type, a non-finite or
-/// out-of-range value throws UserError with file, line and key.
+/// overrides follow in order. An unknown or missing key (Table::AddOptional apart), a wrong type, a
+/// non-finite or out-of-range value throws UserError with file, line and key.
 namespace stg::config {
 
 /// Where a configuration comes from.
@@ -112,7 +112,8 @@ void ValidateOrThrow(const Config& config, const std::string& what = "scenario")
   if (const auto violation = FindViolation(config)) ThrowViolation(what, *violation);
 }
 
-/// Every key with its value; loading the result gives the same struct.
+/// Every key with its value, but optional ones at their fallback; loading the result gives the same
+/// struct.
 std::string ToYaml(const Table& table);
 template <class Config>
 std::string ToYaml(const Config& config) {

@@ -51,8 +51,8 @@ class StepBarrier {
   /// Takes a party's word about the step at `stamp`.
   Word Hear(int party, TimeNs stamp);
 
-  /// Asks nothing of a party in the open step: not waited for, no miss, no sign of presence. What it
-  /// owed before it goes on owing.
+  /// Asks nothing of a party in the open step: not waited for, no miss, no sign of presence. What
+  /// it owed before it goes on owing.
   void Excuse(int party);
 
   /// Marks absent who is out of patience, and says who that is: valid until the next call.

@@ -37,10 +37,6 @@ class World {
   void Place(int lane, const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
              const std::vector<Vec3<double>>& v_WT);
 
-  /// Takes the present state of a swarm that moves elsewhere, in every lane; clocks stand still.
-  void Follow(const std::vector<NavState>& vehicles,
-              const std::vector<TargetState<double>>& targets);
-
   /// One physics step of dt: steps each vehicle under its command, contacts, current and
   /// disturbance, applies walls, moves targets. A non-finite command is a bug of the caller.
   ///

@@ -1,38 +1,38 @@
 #pragma once
 
 #include <functional>
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "marl_trainer/env/env.hpp"
-#include "stg_agent/controllers/controller.hpp"
-#include "stg_agent/policy/policy.hpp"
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/env/controller.hpp"
 
 namespace stg::env {
 
-/// Who flies in an evaluation: a policy file or a built-in controller.
-struct Controller {
-  std::string name;
-  std::shared_ptr<const agent::Policy> policy;       ///< null: built-in
-  std::shared_ptr<const agent::Controller> builtin;  ///< null: policy
-  bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
+/// Chooses the actions [envs, agents, action_size] of all AUVs of `env` from its observations
+/// [envs, agents, observation_size].
+using ActFunction =
+    std::function<void(const VectorEnv& env, const float* observations, double* actions)>;
+/// Makes the ActFunction of one block of environments, which `worker` of the pool flies (0 without
+/// one): what it needs of memory is its own or that worker's.
+using ActFactory = std::function<ActFunction(const VectorEnv& env, int worker)>;
+
+/// Which episodes an evaluation flies.
+struct EvaluationOptions {
+  int episodes = 30;
+  std::uint64_t seed = 3000;  ///< episode e is drawn from world seed `seed` + e
+  /// Environments that fly together, a multiple of kMixBlock. Every block is full: what an
+  /// ActFunction computes for whole blocks does not depend on the number of episodes.
+  int block = kMixBlock;
 };
 
-/// A built-in controller (see agent::MakeController), or the path of an ONNX file, which
-/// must fit the scenario. Throws UserError.
-Controller MakeController(const std::string& name_or_file, const Scenario& scenario);
-
-/// Deterministic actions of every AUV of every lane, [kLanes, agents, action_size].
-/// In truth mode a built-in controller reads true states, in acoustic mode each
-/// agent's own estimates unless it is privileged.
-void Decide(const Controller& controller, const EnvGroup& env, double* actions);
-
-/// Runs `episodes` episodes, episode e from world seed `seed` + e, on `workers`
-/// threads. The result does not depend on the number of workers.
+/// Runs whole episodes on the threads of `pool`; null: on this one. The result does not depend on
+/// the number of threads.
 /// @param progress called with the number of finished episodes; may be empty.
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFactory& make_act,
+                                           const EvaluationOptions& options, WorkerPool* pool,
+                                           const std::function<void(int)>& progress = {});
 std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
-                                           int episodes, std::uint64_t seed, int workers,
+                                           const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress = {});
 
 }  // namespace stg::env

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/task/reward_config.hpp"
-#include "stg_agent/agent_config.hpp"
+#include "marl_trainer/task/judge_config.hpp"
 
 namespace stg {
 
@@ -14,9 +13,8 @@ namespace stg {
 enum class InformationMode { kTruth, kAcoustic };
 
 /// All of a scenario: everything a run depends on besides a seed and a policy.
-struct Scenario : agent::AgentConfig {
+struct Scenario : task::JudgeConfig {
   InformationMode mode = InformationMode::kAcoustic;
-  task::RewardConfig reward;
 
   /// Throws UserError naming the key when a value is out of range or two keys
   /// contradict each other.

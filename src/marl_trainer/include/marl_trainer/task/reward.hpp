@@ -1,6 +1,6 @@
 #pragma once
 
-#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/judge_config.hpp"
 #include "stg_agent/graph/observation.hpp"
 
 /// The task's reward (Eqs. 28-36) and the release's two variants, on true
@@ -18,12 +18,14 @@ struct RewardTerms {
 template <class T>
 struct RewardInput {
   T distance = T(0.0), previous_distance = T(0.0);
-  T closing = T(0.0);               ///< [m/s]
-  T confidence = T(0.0);            ///< c, 0 when lost
-  T lost = T(0.0);                  ///< l, 0 or 1
-  T crowding = T(0.0);              ///< sum over neighbours of SeparationPenalty
-  T tau[6], previous_tau[6];        ///< tau / tau_max of this and the previous step
-  T action[6], previous_action[6];  ///< executed action (paper's cost)
+  T closing = T(0.0);     ///< [m/s]
+  T confidence = T(0.0);  ///< c, 0 when lost
+  T lost = T(0.0);        ///< l, 0 or 1
+  T crowding = T(0.0);    ///< sum over neighbours of SeparationPenalty
+  T tau[dynamics::kWrenchSize],
+      previous_tau[dynamics::kWrenchSize];  ///< tau / tau_max of this and the previous step
+  T action[dynamics::kWrenchSize],
+      previous_action[dynamics::kWrenchSize];  ///< executed action (paper's cost)
 };
 
 /// b of Eq. 28 [m].
@@ -64,7 +66,7 @@ inline T ControlCost(const RewardConfig& c, int action_size, const RewardInput<T
     }
     return Clip(T(0.6) * level + T(0.4) * change, T(0.0), T(1.0));
   }
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < dynamics::kWrenchSize; ++k) {
     const T delta = in.tau[k] - in.previous_tau[k];
     level += in.tau[k] * in.tau[k];
     change += delta * delta;
@@ -75,9 +77,10 @@ inline T ControlCost(const RewardConfig& c, int action_size, const RewardInput<T
 }
 
 /// Reward of one AUV; coordination and communication are shared by the swarm.
+/// @param extra weighted sum of registered terms, added before the total is clipped; null: none
 template <class T>
-inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const T& coordination,
-                             const T& communication) {
+inline RewardTerms<T> Reward(const JudgeConfig& s, const RewardInput<T>& in, const T& coordination,
+                             const T& communication, const T* extra = nullptr) {
   const RewardConfig& c = s.reward;
   const T zero(0.0), one(1.0);
   const T& d = in.distance;
@@ -123,6 +126,7 @@ inline RewardTerms<T> Reward(const Scenario& s, const RewardInput<T>& in, const 
             T(w.coordination) * r.coordination + T(w.communication) * r.communication +
             T(w.semantic) * r.semantic + T(w.separation) * r.separation -
             T(w.control_cost) * r.cost;
+  if (extra != nullptr) r.total += *extra;
   r.total = Clip(r.total, T(-c.total_limit), T(c.total_limit));
   return r;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "auv_common/config/field.hpp"
 
 namespace stg::task {
@@ -23,6 +26,8 @@ struct RewardConfig {
   double w_band = 0.35, w_progress = 0.30, w_closing = 0.15, w_reacquire = 0.20,
          w_too_close = 0.20;             ///< Eq. 30
   double separation_distance_m = 0.024;  ///< separation reward: 0 beyond, -1 at contact centres
+  /// Weights of registered terms by name (reward_term.hpp); one of weight 0 is not evaluated.
+  std::map<std::string, double> terms;
   double total_limit = 2.0;
 };
 

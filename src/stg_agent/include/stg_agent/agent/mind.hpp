@@ -5,12 +5,17 @@
 
 #include "auv_common/numbers/lane_structs.hpp"
 #include "auv_dynamics/control/control.hpp"
+#include "auv_dynamics/vehicle/vehicle_state.hpp"
 #include "stg_agent/agent/error_window.hpp"
 #include "stg_agent/graph/features.hpp"
 #include "stg_agent/graph/neighbour_view.hpp"
 #include "stg_agent/graph/target_view.hpp"
 
 namespace stg::agent {
+
+/// Who keeps the books of an AUV's knowledge: its agent, or the truth mode, which rounds one mean
+/// differently (ErrorMean) and may follow the release (observation.release_bookkeeping).
+enum class Bookkeeping { kAgent, kTruth };
 
 /// What an AUV makes of its inputs, the same at every decision: SetNavigation, SetTracking,
 /// SetNeighbours, from what it was told to what the policy sees; then Act, from the policy's action
@@ -19,7 +24,12 @@ namespace stg::agent {
 template <class T>
 class Mind {
  public:
-  explicit Mind(const AgentConfig& s) : errors_(std::max(1, s.observation.error_window)) {
+  explicit Mind(const AgentConfig& s, Bookkeeping books = Bookkeeping::kAgent)
+      : release_(books == Bookkeeping::kTruth && s.observation.release_bookkeeping),
+        errors_(std::max(1, s.observation.error_window), release_ ? ErrorMean::kRelease
+                                                         : books == Bookkeeping::kTruth
+                                                             ? ErrorMean::kTruth
+                                                             : ErrorMean::kAgent) {
     for (int lane = 0; lane < kLanesOf<T>; ++lane) Reset(lane);
   }
 
@@ -41,6 +51,17 @@ class Mind {
     k.v_WB = k.R_WB * nav.v_WB_B;
   }
 
+  /// The same from the true state, exact.
+  void SetNavigation(const dynamics::VehicleState<T>& state) {
+    Knowledge<T>& k = knowledge;
+    k.p_WB = state.p_WB;
+    k.v_WB_B = state.v_WB_B;
+    k.w_WB_B = state.w_WB_B;
+    k.R_WB = state.R_WB;
+    k.trig = state.trig;
+    k.v_WB = state.v_WB;
+  }
+
   /// Starts a decision; after SetNavigation.
   void SetTracking(const AgentConfig& s, const TargetView<T>& target) {
     const T zero(0.0), one(1.0), half(0.5);
@@ -59,31 +80,49 @@ class Mind {
     const T seen = Select(target.current > half, Confidence(distance, s.sensing.range_m), zero);
     k.confidence = Select(lost, zero, seen);
     k.lost = Select(lost, one, zero);
-    k.lost_steps = Select(lost, k.lost_steps + one, zero);
+    T lost_steps = k.lost_steps + one;
+    // The release counts a lost decision in the reward and once more for show.
+    if (release_) lost_steps = Select(decisions_ == zero, lost_steps, Max(lost_steps, T(2.0)));
+    k.lost_steps = Select(lost, lost_steps, zero);
     decisions_ += one;
   }
 
   /// After SetTracking. The slots of `view.nearest` are as they are to be shown.
   void SetNeighbours(const AgentConfig& s, const NeighbourView<T>& view) {
     const T zero(0.0), one(1.0);
+    const Knowledge<T>& k = knowledge;
+    NeighbourSummary<T> n;
+    std::copy(view.nearest.offset, view.nearest.offset + kNeighbourSlots, n.offset);
+    n.effective = view.effective;
+    n.quality = view.quality;
+    n.best = view.best;
+    n.mean_error = Select(view.count > zero, view.error / Max(view.count, one), k.error);
+    n.closest = Select(Dot(k.r_BT_W, k.r_BT_W) <= view.closest_sq, one, zero);
+    SetNeighbours(s, n);
+  }
+  void SetNeighbours(const AgentConfig& s, const NeighbourSummary<T>& n) {
     const T others(1.0 / std::max(1.0, static_cast<double>(s.agents - 1)));
     Knowledge<T>& k = knowledge;
-    std::copy(view.nearest.offset, view.nearest.offset + kNeighbourSlots, k.neighbour);
-    k.effective_fraction = view.effective * others;
-    k.mean_quality = view.quality * others;
-    k.best_quality = view.best;
-    k.mean_neighbour_error = Select(view.count > zero, view.error / Max(view.count, one), k.error);
-    k.closest = Select(Dot(k.r_BT_W, k.r_BT_W) <= view.closest_sq, one, zero);
+    std::copy(n.offset, n.offset + kNeighbourSlots, k.neighbour);
+    k.effective_fraction = n.effective * others;
+    k.mean_quality = n.quality * others;
+    k.best_quality = n.best;
+    k.mean_neighbour_error = n.mean_error;
+    k.closest = n.closest;
   }
 
   /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed.
   /// Returns the desired velocity, world axes [m/s]; zero for tau6.
   /// @param wanted [action_size], clipped to [-1, 1]
   Vec3<T> Act(const AgentConfig& s, const T* wanted) {
+    return Act(s, wanted, [this] { return RpyOf(knowledge.trig); });
+  }
+  /// The same by given angles. @param rpy called for velocity3 only: roll, pitch, yaw [rad]
+  template <class Rpy>
+  Vec3<T> Act(const AgentConfig& s, const T* wanted, const Rpy& rpy) {
     Knowledge<T>& k = knowledge;
-    return dynamics::ExecuteAction(
-        s.control, s.vehicle, wanted, k.R_WB, k.v_WB, [&k] { return RpyOf(k.trig); }, k.w_WB_B,
-        action.data(), k.tau);
+    return dynamics::ExecuteAction(s.control, s.vehicle, wanted, k.R_WB, k.v_WB, rpy, k.w_WB_B,
+                                   action.data(), k.tau);
   }
 
   /// Takes back the lanes outside the mask.
@@ -104,6 +143,7 @@ class Mind {
   std::array<T, dynamics::kMaxActionSize> action{};
 
  private:
+  bool release_;
   ErrorWindow<T> errors_;
   T decisions_ = T(0.0);
 };

@@ -51,6 +51,18 @@ struct NeighbourView {
   }
 };
 
+/// What of an AUV's neighbours its knowledge takes, whoever put it together: an agent from what it
+/// has heard (NeighbourView), or somebody who sees them all.
+template <class T>
+struct NeighbourSummary {
+  Vec3<T> offset[kNeighbourSlots];  ///< as they are to be shown; zero where there is none
+  T effective = T(0.0);             ///< number of effective neighbours
+  T quality = T(0.0);               ///< sum of the link qualities
+  T best = T(0.0);                  ///< largest link quality
+  T mean_error = T(0.0);            ///< mean tracking error of the neighbours [m]
+  T closest = T(0.0);               ///< 1: none of them is closer to the target, else 0
+};
+
 /// All neighbours that AUV `self` knows of, seen by one whose target is at p_WT [m].
 /// @param sights [agents]
 template <class T>

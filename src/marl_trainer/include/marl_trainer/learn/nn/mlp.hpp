@@ -1,49 +1,29 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "auv_common/numbers/random.hpp"
+#include "marl_trainer/learn/nn/network_spec.hpp"
 
 namespace stg::learn {
 
-/// Nonlinearity of the hidden layers.
-enum class HiddenActivation { kTanh, kRelu };
-
-/// Shape of a multilayer perceptron whose parameters lie in one flat array:
-/// for every layer the weight [outputs, inputs], row-major, then the bias.
-/// Hidden layers have an activation, the last one is linear.
-///
-/// Forward and backward are written out on flat arrays: at these sizes
-/// automatic differentiation costs more than the products themselves. A test
+/// The kernels' back end of a network: forward and backward written out on flat arrays. At these
+/// sizes automatic differentiation costs more than the products themselves (docs/adr/009); a test
 /// holds the gradient against libtorch's.
 class Mlp {
  public:
-  /// @param sizes inputs, hidden widths, outputs; at least two.
-  Mlp(std::vector<int> sizes, HiddenActivation activation);
+  explicit Mlp(NetworkSpec spec);
 
-  int layers() const { return static_cast<int>(sizes_.size()) - 1; }
-  int inputs() const { return sizes_.front(); }
-  int outputs() const { return sizes_.back(); }
-  int layer_inputs(int l) const { return sizes_[static_cast<std::size_t>(l)]; }
-  int layer_outputs(int l) const { return sizes_[static_cast<std::size_t>(l) + 1]; }
-  HiddenActivation activation() const { return activation_; }
+  const NetworkSpec& spec() const { return spec_; }
+  int layers() const { return spec_.layers(); }
+  int inputs() const { return spec_.inputs; }
+  int outputs() const { return spec_.outputs; }
+  /// Where a layer's weight [outputs, inputs] and bias [outputs] begin in the flat array.
   std::size_t weight_offset(int l) const { return offsets_[static_cast<std::size_t>(l)]; }
   std::size_t bias_offset(int l) const;
   std::size_t parameters() const { return offsets_.back(); }
 
-  /// Multiply-adds of one row, forward; and of one row, forward and backward
-  /// without the gradient of the input.
-  double forward_products() const;
-  double training_products() const;
-
-  /// Orthogonal weights with gain sqrt(2) (ReLU) or 1 (tanh) in the hidden
-  /// layers and `output_gain` in the last; zero biases.
-  void Initialise(std::uint64_t seed, std::uint32_t network, float output_gain,
-                  float* parameters) const;
-
-  /// Activations of up to `rows` rows; allocated once.
+  /// Activations of up to `rows` rows; allocated once. One per thread.
   class Workspace {
    public:
     Workspace(const Mlp& mlp, int rows);
@@ -66,9 +46,8 @@ class Mlp {
                 Workspace* workspace, float* gradient) const;
 
  private:
-  std::vector<int> sizes_;
+  NetworkSpec spec_;
   std::vector<std::size_t> offsets_;
-  HiddenActivation activation_;
 };
 
 }  // namespace stg::learn

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/learner.hpp"
 #include "marl_trainer/learn/recorded/recorded.hpp"
+#include "marl_trainer/learn/run/run_folder.hpp"
+#include "marl_trainer/learn/train_config.hpp"
 
 namespace stg::learn {
 
-/// MAPPO on recorded episodes. Each update makes a new policy with an id of its own; episodes of
-/// any other policy are refused.
+/// An on-policy algorithm on recorded episodes. Each update makes a new policy with an id of its
+/// own; episodes of any other policy are refused.
 ///
 /// The folder holds the policy to fly with next, policy_last.onnx, and checkpoints. Where it holds
 /// a checkpoint, training goes on from there.
@@ -31,13 +32,13 @@ class RecordedTrainer {
     std::int64_t updates = 0, env_steps = 0;
     int episodes = 0;
     double episode_return = 0.0;  ///< summed over steps and AUVs, mean over episodes
-    double kl = 0.0, clip_fraction = 0.0, explained_variance = 0.0, sigma = 0.0;
+    std::string report;           ///< the algorithm's numbers, see ReportText
     double seconds = 0.0;
   };
 
-  /// Throws UserError for a policy or folder that does not fit scenario and configuration.
-  /// @param config its envs and horizon are not used: a collection is a number of whole episodes.
-  RecordedTrainer(const Scenario& scenario, const TrainConfig& config, const Options& options);
+  /// Throws UserError for a policy or folder that does not fit scenario and setup.
+  /// @param setup its envs and horizon are not used: a collection is a number of whole episodes.
+  RecordedTrainer(const Scenario& scenario, const TrainSetup& setup, const Options& options);
 
   Finding Check(const RecordedEpisode& episode) const;
   /// One update on episodes that passed Check; at least one. Writes policy and checkpoint.
@@ -45,31 +46,33 @@ class RecordedTrainer {
 
   const agent::Policy& policy() const { return *policy_; }
   const std::string& policy_id() const { return policy_->metadata().id; }
-  std::string policy_path() const;
-  const TrainState& state() const { return state_; }
-  int state_size() const { return learner_.networks().critic.inputs(); }
+  std::string policy_path() const { return folder_.PolicyPath("policy_last"); }
+  std::int64_t updates() const { return state_.collections; }
+  std::int64_t env_steps() const { return state_.env_steps; }
+  int state_size() const { return problem_.state_size; }
+  const Algorithm& algorithm() const { return *algorithm_; }
 
  private:
-  RecordedTrainer(const Scenario& scenario, const TrainConfig& config, const Options& options,
+  RecordedTrainer(const Scenario& scenario, const TrainSetup& setup, const Options& options,
                   const std::shared_ptr<const agent::Policy>& start);
   void Restore(const TrainState& state, const agent::Policy* start);
-  void StartFrom(const agent::Policy& policy);
-  RolloutBuffer Rollout(const RecordedEpisode& episode);
+  /// Hands an episode to the algorithm; returns the sum of its rewards.
+  double Observe(const RecordedEpisode& episode, int shard);
   agent::Policy MakePolicy() const;
 
   const Scenario scenario_;
-  const TrainConfig config_;
+  const TrainSetup setup_;
   const Options options_;
+  const Problem problem_;
   WorkerPool pool_;
-  Learner learner_;
+  std::unique_ptr<Algorithm> algorithm_;
+  RunFolder folder_;
   TrainState state_;
-  Mlp::Workspace critic_;
-  RunningMoments observation_moments_, state_moments_;  ///< raw, of the present collection
   std::shared_ptr<const agent::Policy> policy_;
 };
 
 /// Defaults for updates on few whole episodes: more passes over less data than the presets.
-/// The minibatch is the largest divisor of the episode up to 500 steps.
-TrainConfig RecordedConfig(const Scenario& scenario);
+TrainSetup RecordedSetup(const Scenario& scenario,
+                         const std::string& algorithm = DefaultAlgorithm());
 
 }  // namespace stg::learn

@@ -1,7 +1,8 @@
+#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::learn {
@@ -16,17 +17,20 @@ void PpoSums::Add(const PpoSums& other) {
   samples += other.samples;
 }
 
-PpoLoss::PpoLoss(const ActorCritic& networks, const TrainConfig& config, int max_samples,
-                 int agents)
+PpoLoss::PpoLoss(const ActorCritic& networks, const MappoConfig& config, double imitation_focus,
+                 int max_samples, int agents)
     : networks_(networks),
       clip_(static_cast<float>(config.clip)),
-      focus_(static_cast<float>(-0.5 * config.imitation_focus)),
+      focus_(static_cast<float>(-0.5 * imitation_focus)),
       entropy_(static_cast<float>(config.entropy)),
       value_weight_(static_cast<float>(config.value_weight)),
-      actor_(networks.actor, max_samples * agents),
+      actor_(networks.actor.mean(), max_samples * agents),
       critic_(networks.critic, max_samples),
       d_actor_(static_cast<std::size_t>(max_samples * agents * networks.action_size())),
-      d_critic_(static_cast<std::size_t>(max_samples)) {}
+      d_critic_(static_cast<std::size_t>(max_samples)),
+      z_(static_cast<std::size_t>(networks.action_size())),
+      inverse_std_(z_.size()),
+      d_sigma_(z_.size()) {}
 
 PpoSums PpoLoss::AddGradient(const float* parameters, const PpoBatch& batch, int minibatch,
                              float* gradient) {
@@ -39,27 +43,27 @@ PpoSums PpoLoss::AddGradient(const float* parameters, const PpoBatch& batch, int
 void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minibatch,
                        float* gradient, PpoSums* sums) {
   const int rows = batch.count * batch.agents, size = networks_.action_size();
-  const float scale = networks_.action_scale;
   const float weight = 1.0F / static_cast<float>(minibatch * batch.agents);
-  const float* log_std = parameters + networks_.log_std_offset();
-  float* d_log_std = gradient + networks_.log_std_offset();
-  networks_.actor.Forward(parameters, batch.observations, rows, &actor_);
-  float* mean = actor_.output();
-  SquashMean(scale, rows * size, mean);
+  const float* log_std = parameters + networks_.actor.log_std_offset();
+  float* d_log_std = gradient + networks_.actor.log_std_offset();
+  networks_.actor.mean().Forward(parameters, batch.observations, rows, &actor_);
+  const float* mean = actor_.output();
 
-  constexpr int kMaxActions = 6;
-  float inverse_std[kMaxActions], sum_log_std = 0.0F;
+  float* inverse_std = inverse_std_.data();
+  float sum_log_std = 0.0F;
   for (int a = 0; a < size; ++a) {
     inverse_std[a] = std::exp(-log_std[a]);
     sum_log_std += log_std[a] + agent::kHalfLogTwoPi;
   }
-  double d_sigma[kMaxActions] = {};
+  double* d_sigma = d_sigma_.data();
+  std::fill_n(d_sigma, size, 0.0);
+  float* z = z_.data();
   const float* action = batch.actions;
   const float* teacher = batch.imitation > 0.0F ? batch.teacher : nullptr;
   const float share = 1.0F - batch.imitation;
   float* d = d_actor_.data();
   for (int r = 0; r < rows; ++r, action += size, mean += size, d += size) {
-    float z[kMaxActions], log_prob = -sum_log_std;
+    float log_prob = -sum_log_std;
     for (int a = 0; a < size; ++a) {
       z[a] = (action[a] - mean[a]) * inverse_std[a];
       log_prob -= 0.5F * z[a] * z[a];
@@ -86,14 +90,13 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
       shrink = batch.imitation * weight * std::pow(1.0F + squares, focus_);
     }
     for (int a = 0; a < size; ++a) {
-      // d mean / d net = scale (1 - tanh^2) = scale - mean^2 / scale.
       float d_mean = d_log_prob * z[a] * inverse_std[a];
       if (teacher != nullptr) {
         const float miss = mean[a] - teacher[a];
         d_mean += shrink * miss * inverse_std[a] * inverse_std[a];
         sums->imitation_error += static_cast<double>(miss) * miss;
       }
-      d[a] = d_mean * (scale - mean[a] * mean[a] / scale);
+      d[a] = d_mean;
       d_sigma[a] += d_log_prob * (z[a] * z[a] - 1.0F);
     }
     if (teacher != nullptr) teacher += size;
@@ -102,8 +105,8 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
     // The entropy's derivative by log sigma is 1 a row.
     d_log_std[a] += static_cast<float>(d_sigma[a]) - entropy_ * weight * static_cast<float>(rows);
   }
-  networks_.actor.Backward(parameters, batch.observations, d_actor_.data(), rows, &actor_,
-                           gradient);
+  networks_.actor.mean().Backward(parameters, batch.observations, d_actor_.data(), rows, &actor_,
+                                  gradient);
   sums->rows += rows;
 }
 

@@ -1,17 +1,17 @@
+#include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <functional>
 
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo.hpp"
 
 namespace stg::learn {
 
 /// Gathered rows of one block, and the networks' scratch memory.
 struct PpoUpdate::Scratch {
-  Scratch(const ActorCritic& networks, const TrainConfig& config, int agents)
-      : loss(networks, config, kBlock, agents) {
+  Scratch(const ActorCritic& networks, const MappoConfig& config, double focus, int agents)
+      : loss(networks, config, focus, kBlock, agents) {
     const auto rows = static_cast<std::size_t>(kBlock * agents);
     observations.resize(rows * static_cast<std::size_t>(networks.actor.inputs()));
     actions.resize(rows * static_cast<std::size_t>(networks.action_size()));
@@ -25,16 +25,17 @@ struct PpoUpdate::Scratch {
   std::vector<float> observations, actions, teacher, log_prob, states, advantages, targets;
 };
 
-PpoUpdate::PpoUpdate(const ActorCritic& networks, const TrainConfig& config, int agents,
-                     WorkerPool* pool)
+PpoUpdate::PpoUpdate(const ActorCritic& networks, const MappoConfig& config,
+                     const TrainConfig& common, int agents, WorkerPool* pool)
     : networks_(networks),
       config_(config),
+      seed_(common.seed),
       agents_(agents),
       pool_(pool),
       gradients_(kSlices, std::vector<float>(networks.parameters())),
       gradient_(networks.parameters()) {
   for (int w = 0; w < pool->workers(); ++w) {
-    scratch_.push_back(std::make_unique<Scratch>(networks, config, agents));
+    scratch_.push_back(std::make_unique<Scratch>(networks, config, common.imitation.focus, agents));
   }
 }
 
@@ -68,7 +69,7 @@ void PpoUpdate::Prepare(const std::vector<const RolloutBuffer*>& rollouts, const
 void PpoUpdate::Shuffle(std::uint32_t collection, int epoch) {
   order_.resize(advantages_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);
-  Random random(config_.seed, Stream::kShuffle, collection, static_cast<std::uint32_t>(epoch), 0);
+  Random random(seed_, Stream::kShuffle, collection, static_cast<std::uint32_t>(epoch), 0);
   for (std::size_t i = order_.size() - 1; i > 0; --i) {
     const auto j = static_cast<std::size_t>(random.Uniform() * static_cast<double>(i + 1));
     std::swap(order_[i], order_[j]);
@@ -137,7 +138,7 @@ void PpoUpdate::ForRanges(std::size_t count,
 }
 
 void PpoUpdate::Step(double learning_rate_scale, std::vector<float>* parameters, AdamState* adam,
-                     UpdateReport* report) {
+                     PpoReport* report) {
   const std::size_t count = gradient_.size(), split = networks_.critic_offset();
   ForRanges(count, [&](std::size_t begin, std::size_t end) {
     std::copy(gradients_[0].begin() + static_cast<std::ptrdiff_t>(begin),
@@ -148,54 +149,34 @@ void PpoUpdate::Step(double learning_rate_scale, std::vector<float>* parameters,
       for (std::size_t i = begin; i < end; ++i) gradient_[i] += g[i];
     }
   });
-  const auto norm = [&](std::size_t begin, std::size_t end) {
-    double sums[4] = {};
-    for (std::size_t i = begin; i < end; ++i) {
-      sums[i % 4] += static_cast<double>(gradient_[i]) * static_cast<double>(gradient_[i]);
-    }
-    return std::sqrt((sums[0] + sums[1]) + (sums[2] + sums[3]));
-  };
-  const double actor_norm = norm(0, split), critic_norm = norm(split, count);
+  const double actor_norm = GradientNorm(gradient_.data(), 0, split);
+  const double critic_norm = GradientNorm(gradient_.data(), split, count);
   report->actor_norm += actor_norm;
   report->critic_norm += critic_norm;
   assert(std::isfinite(actor_norm) && std::isfinite(critic_norm));
 
-  ++adam->steps;
-  constexpr double kBeta1 = 0.9, kBeta2 = 0.999;
-  const double correction1 = 1.0 - std::pow(kBeta1, static_cast<double>(adam->steps));
-  const double correction2 = 1.0 - std::pow(kBeta2, static_cast<double>(adam->steps));
-  const auto eps = static_cast<float>(config_.adam_eps);
-  const auto root2 = static_cast<float>(1.0 / std::sqrt(correction2));
-  const auto apply = [&](std::size_t begin, std::size_t end, double lr, double total) {
-    const auto rate = static_cast<float>(lr * learning_rate_scale / correction1);
-    const auto shrink = static_cast<float>(std::min(1.0, config_.grad_clip / (total + 1e-12)));
-    float* p = parameters->data();
-    float* m = adam->first.data();
-    float* v = adam->second.data();
-    for (std::size_t i = begin; i < end; ++i) {
-      const float g = gradient_[i] * shrink;
-      m[i] = 0.9F * m[i] + 0.1F * g;
-      v[i] = 0.999F * v[i] + 0.001F * g * g;
-      p[i] -= rate * m[i] / (std::sqrt(v[i]) * root2 + eps);
-    }
-  };
+  const Adam step(config_.adam_eps, adam);
+  const float actor_shrink = ShrinkTo(config_.grad_clip, actor_norm);
+  const float critic_shrink = ShrinkTo(config_.grad_clip, critic_norm);
   ForRanges(count, [&](std::size_t begin, std::size_t end) {
-    apply(begin, std::min(end, split), config_.lr, actor_norm);
-    apply(std::max(begin, split), end, config_.critic_lr, critic_norm);
+    step.Apply(begin, std::min(end, split), config_.lr * learning_rate_scale, actor_shrink,
+               gradient_.data(), parameters->data());
+    step.Apply(std::max(begin, split), end, config_.critic_lr * learning_rate_scale, critic_shrink,
+               gradient_.data(), parameters->data());
   });
   for (int a = 0; a < networks_.action_size(); ++a) {
-    float& log_std = (*parameters)[networks_.log_std_offset() + static_cast<std::size_t>(a)];
+    float& log_std = (*parameters)[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)];
     log_std = std::min(std::max(log_std, static_cast<float>(config_.min_log_std)),
                        static_cast<float>(config_.max_log_std));
   }
 }
 
-UpdateReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
-                            std::uint32_t collection, double learning_rate_scale,
-                            std::vector<float>* parameters, AdamState* adam, double imitation) {
+PpoReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
+                         std::uint32_t collection, double learning_rate_scale, double imitation,
+                         std::vector<float>* parameters, AdamState* adam) {
   imitation_ = static_cast<float>(imitation);
   Prepare(rollouts, scales);
-  UpdateReport report;
+  PpoReport report;
   const int samples = static_cast<int>(advantages_.size());
   assert(samples % config_.minibatch == 0);
   int steps = 0;
@@ -215,9 +196,9 @@ UpdateReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, c
   }
   report.actor_norm /= steps;
   report.critic_norm /= steps;
-  report.flops =
-      2.0 * report.epochs * samples *
-      (agents_ * networks_.actor.training_products() + networks_.critic.training_products());
+  report.flops = 2.0 * report.epochs * samples *
+                 (agents_ * networks_.actor.mean().spec().training_products() +
+                  networks_.critic.spec().training_products());
   return report;
 }
 

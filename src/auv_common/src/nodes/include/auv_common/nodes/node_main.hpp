@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "auv_common/error.hpp"
+#include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 
 namespace stg::nodes {
@@ -50,7 +51,8 @@ inline void SetNodeTime(const ros::Time& stamp) {
 template <class Node>
 int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic) {
   std::vector<char*> arguments(argv, argv + argc);
-  char no_clock[] = "/clock:=/not_heard/clock";
+  // roscpp listens to /clock if it finds this parameter.
+  char no_clock[] = "/use_sim_time:=/not_asked/use_sim_time";
   if (clock == NodeClock::kMessages) arguments.push_back(no_clock);
   int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
@@ -59,6 +61,7 @@ int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = No
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
   ros::NodeHandle keeps_ros_running;
+  if (clock == NodeClock::kMessages && SimulatedTimeParameter()) ros::Time::setNow(ros::Time());
   try {
     Node node;
     node.Spin();

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "marl_trainer/env/vector_env.hpp"
+#include "stg_agent/controllers/controller.hpp"
+#include "stg_agent/policy/policy.hpp"
+
+namespace stg::env {
+
+/// Who flies: a policy file or a built-in controller.
+struct Controller {
+  std::string name;
+  std::shared_ptr<const agent::Policy> policy;       ///< null: built-in
+  std::shared_ptr<const agent::Controller> builtin;  ///< null: policy
+  bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
+};
+
+/// A built-in controller (see agent::MakeController), or the path of an ONNX file, which
+/// must fit the scenario. Throws UserError.
+Controller MakeController(const std::string& name_or_file, const Scenario& scenario);
+
+/// Deterministic actions of every AUV of every environment, [envs, agents, action_size]. In truth
+/// mode a built-in controller reads true states, in acoustic mode each agent's own estimates unless
+/// it is privileged.
+/// @param observations [envs, agents, observation_size], as `env` wrote them
+void Decide(const Controller& controller, const VectorEnv& env, const float* observations,
+            double* actions);
+
+}  // namespace stg::env

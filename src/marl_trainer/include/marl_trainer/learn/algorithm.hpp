@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/learn/checkpoint/archive.hpp"
+#include "stg_agent/policy/policy.hpp"
+
+namespace stg::learn {
+
+/// What an algorithm controls: equal AUVs that each see an observation, and a critic's state of
+/// the whole swarm.
+struct Problem {
+  int agents = 1;
+  int observation_size = 1;
+  int state_size = 1;
+  int action_size = 1;
+  double action_scale = 1.0;             ///< actions of a policy lie in +-action_scale
+  double workspace_half_extent_m = 0.0;  ///< [m], for units that see walls; 0: none
+};
+
+/// Environments that one worker steps through a collection on its own.
+struct Shard {
+  int first_env = 0;  ///< index of its first environment among all
+  int envs = 0;
+};
+
+/// One collection: every environment makes `steps` decisions. Episodes go on in the next one.
+struct Collection {
+  std::uint32_t number = 0;
+  int steps = 0;
+  std::vector<Shard> shards;
+  bool taught = false;  ///< transitions bring a teacher's actions
+};
+
+/// Keys of the counter-based draws of one decision: an AUV's draw depends on them and on its index
+/// among all, (first_env + env) * agents + agent, so neither on workers nor on shards.
+struct DrawKeys {
+  std::uint64_t seed = 0;
+  std::uint32_t collection = 0, step = 0;
+  int first_env = 0;
+};
+
+/// One decision of every AUV of some environments.
+struct Decision {
+  int envs = 0;
+  const float* observations = nullptr;  ///< [envs, agents, observation_size], raw
+  const DrawKeys* explore = nullptr;    ///< null: the deterministic policy
+  int worker = 0;                       ///< whose scratch memory to use
+};
+
+/// Where a decision is written.
+struct Actions {
+  float* actions = nullptr;  ///< [envs, agents, action_size]; the environment clips to +-1
+  /// [envs, agents], natural log of the density of an explored action; algorithms without one
+  /// leave it, and the caller may not want it (null).
+  float* log_prob = nullptr;
+};
+
+/// One step of the environments of a shard. A null pointer: unknown.
+struct Transition {
+  int shard = 0, step = 0, envs = 0;    ///< step in the collection
+  const float* observations = nullptr;  ///< [envs, agents, observation_size], decided on
+  const float* states = nullptr;        ///< [envs, state_size], before the step
+  const float* actions = nullptr;       ///< [envs, agents, action_size], before clipping
+  const float* log_prob = nullptr;      ///< [envs, agents], of these actions when they were drawn
+  const float* teacher = nullptr;       ///< [envs, agents, action_size], in a taught collection
+  const float* rewards = nullptr;       ///< [envs, agents]; unknown in recordings
+  const float* team_rewards = nullptr;  ///< [envs], their mean over agents
+  /// [envs], 1 where the episode ended. It always ends by truncation: bootstrap with the final
+  /// state, never mask it.
+  const std::uint8_t* truncated = nullptr;
+  /// As observations and states, of the decision to come; where truncated, of the next episode.
+  const float* next_observations = nullptr;
+  const float* next_states = nullptr;
+  /// Of the episode that ended; rows are valid where truncated.
+  const float* final_observations = nullptr;
+  const float* final_states = nullptr;
+};
+
+/// What an update gets to know besides the transitions.
+struct UpdateContext {
+  double progress = 0.0;   ///< share of the run's steps that are made, in [0, 1]
+  double imitation = 0.0;  ///< share of the actor's loss that is imitation, in [0, 1]
+};
+
+/// A number that every update reports.
+struct ReportColumn {
+  std::string name;   ///< in progress.csv
+  std::string label;  ///< in the progress line; empty: not there
+  int decimals = 3;   ///< in the progress line
+};
+
+/// What an update did: the numbers of Algorithm::Columns, in that order.
+struct UpdateReport {
+  std::vector<double> values;
+  double flops = 0.0;  ///< floating-point operations in matrix products
+};
+
+/// A learning algorithm. Collection, evaluation, logging, checkpoints and export know this
+/// interface only.
+///
+///   Begin, { Act, Observe } for every step of every shard, Update, Begin, ...
+///
+/// Act may run concurrently for different workers, Observe for different shards; a shard's steps
+/// come in order, and nothing else runs meanwhile. Recorded episodes come through Observe alone.
+/// Results must depend neither on the number of workers nor on which one does what.
+class Algorithm {
+ public:
+  virtual ~Algorithm() = default;
+
+  /// Gets ready for the transitions of a collection.
+  virtual void Begin(const Collection& collection) = 0;
+  virtual void Act(const Decision& decision, const Actions& out) = 0;
+  virtual void Observe(const Transition& transition) = 0;
+  /// Learns from what it observed since Begin, and whatever it keeps.
+  virtual UpdateReport Update(const UpdateContext& context) = 0;
+
+  /// Everything that an uninterrupted run would have and a fresh object has not, weights,
+  /// optimiser, normalisers, replayed transitions; called between Update and Begin.
+  virtual void Save(Archive* archive) const = 0;
+  /// Throws UserError for the archive of another algorithm or of other sizes.
+  virtual void Load(const Archive& archive) = 0;
+  /// Takes networks and normalisers of another run, not optimiser or exploration. Throws UserError.
+  virtual void StartFrom(const Archive& archive);
+  /// Takes the actor and its normaliser from a policy file of the same shape. Throws UserError.
+  virtual void StartFrom(const agent::Policy& policy);
+
+  /// What the AUVs are to fly with: one policy for all or one for each.
+  virtual std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const = 0;
+  virtual std::vector<ReportColumn> Columns() const = 0;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "auv_common/registry.hpp"
+#include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/learn/options.hpp"
+
+namespace stg::learn {
+
+struct TrainConfig;
+
+/// Configuration of one algorithm, default-initialised to the `fast` preset, and the way to make
+/// it.
+class AlgorithmConfig {
+ public:
+  virtual ~AlgorithmConfig() = default;
+  virtual std::unique_ptr<AlgorithmConfig> Clone() const = 0;
+
+  /// Adds its options, whose names differ from the common ones (TrainConfig::Describe).
+  virtual void Describe(OptionTable* table) = 0;
+  /// Turns the defaults into those of a preset, of this configuration and of the common one. There
+  /// is at least `fast`. Throws UserError that lists the presets for another name.
+  virtual void ApplyPreset(const std::string& preset, TrainConfig* common);
+  /// Throws UserError, naming the option, for values that contradict each other; ranges have been
+  /// checked.
+  virtual void ValidateOrThrow(const TrainConfig& common) const;
+
+  /// Turns the defaults into those for updates on few whole recorded episodes, common.horizon
+  /// steps each. Throws UserError for an algorithm that cannot learn from recordings.
+  virtual void ApplyRecordings(const TrainConfig& common);
+  /// Takes the shape of the networks from the policy file to start from. Throws UserError for an
+  /// algorithm that cannot.
+  virtual void FitPolicy(const agent::Policy& policy);
+
+  /// @param common, problem are copied. @param pool threads of the update; outlives the algorithm.
+  virtual std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
+                                          WorkerPool* pool) const = 0;
+};
+
+/// Algorithms by the name that --algorithm takes.
+using AlgorithmRegistry = Registry<AlgorithmConfig>;
+AlgorithmRegistry& Algorithms();
+/// The one that is meant where none is named.
+std::string DefaultAlgorithm();
+
+}  // namespace stg::learn

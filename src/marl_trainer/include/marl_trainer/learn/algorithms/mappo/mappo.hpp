@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
+
+namespace stg::learn {
+
+/// MAPPO (Eqs. 37-44): the clipped ratio of an actor that all AUVs share, and one value of the
+/// swarm's true state per environment step.
+class Mappo : public Algorithm {
+ public:
+  Mappo(const MappoConfig& config, const TrainConfig& common, const Problem& problem,
+        WorkerPool* pool);
+  ~Mappo() override;
+
+  void Begin(const Collection& collection) override;
+  void Act(const Decision& decision, const Actions& out) override;
+  void Observe(const Transition& transition) override;
+  UpdateReport Update(const UpdateContext& context) override;
+
+  void Save(Archive* archive) const override;
+  void Load(const Archive& archive) override;
+  void StartFrom(const Archive& archive) override;
+  void StartFrom(const agent::Policy& policy) override;
+
+  std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
+  std::vector<ReportColumn> Columns() const override;
+
+  const ActorCritic& networks() const { return networks_; }
+  const std::vector<float>& parameters() const { return parameters_; }
+  const Scales& scales() const { return normalisers_.scales(); }
+
+ private:
+  struct Scratch;  // per worker
+  /// What one shard collects.
+  struct Rollout {
+    RolloutBuffer buffer;
+    RunningMoments observations, states;  ///< raw
+  };
+
+  void EstimateAdvantages(int shard, int worker);
+  /// Values in units of reward of normalised states [rows, S].
+  void EstimateValues(const float* states, int rows, int worker, float* values);
+  double UpdateValueScale();
+
+  const MappoConfig config_;
+  const Problem problem_;
+  const std::uint64_t seed_;
+  WorkerPool* pool_;
+  const ActorCritic networks_;
+  PpoUpdate update_;
+  Normalisers normalisers_;
+  std::vector<float> parameters_;
+  AdamState adam_;
+  std::vector<std::unique_ptr<Scratch>> scratch_;
+  std::uint32_t collection_ = 0;
+  std::vector<Rollout> rollouts_;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "marl_trainer/learn/algorithms/mappo/actor_critic.hpp"
+
+namespace stg::learn {
+
+/// Sums over rows of what an update reports.
+struct PpoSums {
+  double actor_loss = 0.0, value_loss = 0.0, kl = 0.0, clipped = 0.0;
+  double imitation_error = 0.0;  ///< squared distance to the teacher's action
+  double rows = 0.0, samples = 0.0;
+  void Add(const PpoSums& other);
+};
+
+/// Minibatch rows, gathered; [count] environment steps of `agents` rows each.
+struct PpoBatch {
+  int count = 0, agents = 0;
+  const float* observations = nullptr;  ///< [count, agents, F]
+  const float* actions = nullptr;       ///< [count, agents, A]
+  const float* log_prob = nullptr;      ///< [count, agents]
+  const float* teacher = nullptr;       ///< [count, agents, A]; read where imitation > 0
+  const float* states = nullptr;        ///< [count, S]
+  const float* advantages = nullptr;    ///< [count], normalised
+  const float* targets = nullptr;       ///< [count], normalised value targets
+  /// In [0, 1]: share of the actor's loss that is, instead of Eq. 41, half the squared miss of
+  /// the teacher's action a, in sigmas, over (1 + |a / sigma|^2)^(f/2), f = imitation_focus.
+  /// Sigma is not fitted to it.
+  float imitation = 0.0F;
+};
+
+/// Loss of Eqs. 41-44 and its gradient, on one worker's scratch memory.
+class PpoLoss {
+ public:
+  /// @param networks must outlive this object. @param max_samples of a batch, `agents` rows each.
+  PpoLoss(const ActorCritic& networks, const MappoConfig& config, double imitation_focus,
+          int max_samples, int agents);
+
+  /// Adds the gradient of the loss to gradient [parameters]. Every term is
+  /// weighted as one of `minibatch` environment steps.
+  PpoSums AddGradient(const float* parameters, const PpoBatch& batch, int minibatch,
+                      float* gradient);
+
+ private:
+  void AddActor(const float* parameters, const PpoBatch& batch, int minibatch, float* gradient,
+                PpoSums* sums);
+  void AddCritic(const float* parameters, const PpoBatch& batch, int minibatch, float* gradient,
+                 PpoSums* sums);
+
+  const ActorCritic& networks_;
+  const float clip_, focus_, entropy_, value_weight_;
+  Mlp::Workspace actor_, critic_;
+  std::vector<float> d_actor_, d_critic_;
+  std::vector<float> z_, inverse_std_;  // [A]
+  std::vector<double> d_sigma_;         // [A]
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/metrics.hpp"
+
+namespace stg::learn {
+
+/// What one collection saw.
+struct CollectionReport {
+  std::vector<task::EpisodeMetrics> finished;  ///< episodes that ended in it
+  double reward = 0.0;                         ///< mean over steps of the team's reward
+  /// Wall-clock time, split by where the workers spent theirs.
+  double env_seconds = 0.0, inference_seconds = 0.0;
+};
+
+/// Sizes that an algorithm needs of a scenario.
+Problem ProblemOf(const Scenario& scenario);
+
+/// Brings environments and algorithm together: the one collection loop. The environments are cut
+/// into fixed shards that a worker steps through a whole collection without waiting for others, so
+/// results do not depend on the number of workers.
+class Collector {
+ public:
+  static constexpr int kShardEnvs = 16;  ///< of a full shard; the last one may be smaller
+
+  /// @param mix scenarios that the environments cycle through, see env::VectorEnv; of one layout.
+  Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool);
+  ~Collector();
+
+  /// `config.horizon` decisions of every environment with exploration, after algorithm->Begin.
+  /// @param number keys the draws of the exploration.
+  /// @param teach also ask the controller to imitate, at every state visited.
+  CollectionReport Collect(std::uint32_t number, bool teach, Algorithm* algorithm);
+
+  /// Starts the k-th episode of every environment.
+  void RestartAt(std::uint64_t k);
+  /// The largest k of an episode that runs.
+  std::uint64_t round() const;
+  /// True when every environment stands at the start of an episode.
+  bool at_episode_start() const;
+
+ private:
+  class Unit;
+
+  const int horizon_;
+  WorkerPool* pool_;
+  std::vector<std::unique_ptr<Unit>> units_;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "marl_trainer/learn/nn/mlp.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
+#include "stg_agent/policy/policy.hpp"
+
+namespace stg::learn {
+
+/// The actor of Eq. 37: a Gaussian whose mean is a network of one AUV's normalised observation,
+/// squashed to the action's scale, with a standard deviation that does not depend on the state.
+/// Parameters in one flat array: the network, then log sigma [action_size].
+class GaussianActor {
+ public:
+  /// @param mean its squash is the action's scale, and positive.
+  explicit GaussianActor(NetworkSpec mean);
+
+  const Mlp& mean() const { return mean_; }
+  int inputs() const { return mean_.inputs(); }
+  int action_size() const { return mean_.outputs(); }
+  float action_scale() const { return mean_.spec().squash; }
+  std::size_t log_std_offset() const { return mean_.parameters(); }
+  std::size_t parameters() const {
+    return log_std_offset() + static_cast<std::size_t>(action_size());
+  }
+
+  void Initialise(std::uint64_t seed, std::uint32_t network, double log_std,
+                  float* parameters) const;
+
+  /// The policy that `parameters` and the observation normaliser make.
+  agent::Policy ToPolicy(const float* parameters, const Normaliser& observations,
+                         agent::PolicyMetadata metadata) const;
+  /// Writes the parameters of a policy of the same shape.
+  void FromPolicy(const agent::Policy& policy, float* parameters) const;
+
+ private:
+  Mlp mean_;
+};
+
+}  // namespace stg::learn

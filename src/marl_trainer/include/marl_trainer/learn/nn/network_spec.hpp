@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace stg::learn {
+
+/// Nonlinearity of the hidden layers.
+enum class HiddenActivation { kTanh, kRelu };
+
+/// "tanh" or "relu"; UserError for another name.
+HiddenActivation ActivationNamed(const std::string& name);
+
+/// A multilayer perceptron, described once for both back ends: the hand-written kernels (Mlp) and
+/// libtorch's modules (torch/).
+///
+/// Either keeps its parameters in one flat array: for every layer the weight [outputs, inputs],
+/// row-major, then the bias [outputs]. So an optimiser, a checkpoint or an exporter does not know
+/// which one computes.
+struct NetworkSpec {
+  int inputs = 1;
+  std::vector<int> hidden;  ///< widths of the hidden layers; may be empty
+  HiddenActivation activation = HiddenActivation::kTanh;
+  int outputs = 1;
+  /// > 0: the outputs are squash * tanh of the last layer's; 0: the last layer is linear.
+  float squash = 0.0F;
+  float output_gain = 1.0F;  ///< of the last layer's initial weights
+
+  int layers() const { return static_cast<int>(hidden.size()) + 1; }
+  int layer_inputs(int l) const;
+  int layer_outputs(int l) const;
+  std::size_t parameters() const;
+
+  /// Multiply-adds of one row, forward; and of one row, forward and backward without the gradient
+  /// of the input.
+  double forward_products() const;
+  double training_products() const;
+};
+
+/// Orthogonal weights with gain sqrt(2) (ReLU) or 1 (tanh) in the hidden layers and output_gain in
+/// the last; zero biases.
+/// @param network tells the networks of one seed apart.
+/// @param parameters [spec.parameters()], written.
+void InitialiseOrthogonally(const NetworkSpec& spec, std::uint64_t seed, std::uint32_t network,
+                            float* parameters);
+
+}  // namespace stg::learn

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <torch/nn/module.h>
+#include <torch/nn/pimpl.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "marl_trainer/learn/nn/network_spec.hpp"
+
+/// The libtorch back end of networks: modules of any architecture with automatic differentiation,
+/// and the reference that the kernels (Mlp) are tested against. A library of its own, marl_torch:
+/// nothing that flies or trains with the kernels needs libtorch.
+namespace stg::learn {
+
+/// The network that a spec describes, as a module.
+class TorchNetworkImpl : public torch::nn::Module {
+ public:
+  explicit TorchNetworkImpl(const NetworkSpec& spec);
+
+  /// [rows, outputs] from [rows, inputs].
+  torch::Tensor forward(torch::Tensor x);
+
+ private:
+  const NetworkSpec spec_;
+  std::vector<torch::Tensor> weights_, biases_;
+};
+TORCH_MODULE(TorchNetwork);
+
+/// Any module's parameters as one flat array, in the order in which they were registered: what
+/// optimiser, checkpoint and exporter work on, whichever back end computes. A TorchNetwork's is
+/// laid out as NetworkSpec says, so the two back ends exchange parameters.
+std::size_t CountParameters(const torch::nn::Module& module);
+void SetParameters(const float* flat, torch::nn::Module* module);
+void GetParameters(const torch::nn::Module& module, float* flat);
+/// Adds the gradients that backward() left, and clears them.
+void AddGradients(torch::nn::Module* module, float* flat);
+
+}  // namespace stg::learn

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "marl_trainer/learn/nn/mlp.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
+
+namespace stg::learn {
+
+inline constexpr int kWallUnits = 24;  ///< 6 walls, 4 distances
+
+/// Turns the kWallUnits units of a ReLU actor's first layer that say least into hinges that rise
+/// where the target is closer to a wall than 1/2, 1, 2 and 4 times the margin, and that nothing
+/// listens to yet. On the way to a wall the best action changes within the margin; from inputs
+/// that span the workspace, training finds so sharp a kink late or never.
+/// @param margin_m       of the kink that matters [m]
+/// @param half_extent_m  of the workspace [m]
+/// @param observations   the normaliser that the inputs of the hinges pass
+void PlaceWallUnits(const Mlp& actor, double margin_m, double half_extent_m,
+                    const Normaliser& observations, float* parameters);
+
+}  // namespace stg::learn

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/learn/checkpoint/checkpoint.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_agent/policy/policy.hpp"
+
+namespace stg::learn {
+
+/// The folder of a training: checkpoints, policies, and what it was started with.
+class RunFolder {
+ public:
+  /// Creates the folder; UserError when that fails. @param log where refused checkpoints are told.
+  RunFolder(std::string path, std::ostream* log);
+
+  const std::string& path() const { return path_; }
+  /// Whether it has a checkpoint or a policy: a run that was ended before its first checkpoint
+  /// leaves nothing worth keeping.
+  bool HoldsRun() const;
+
+  /// Writes config.json and scenario.yaml.
+  void WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario) const;
+
+  std::optional<TrainState> Newest() const { return LoadNewestCheckpoint(path_, log_); }
+  /// Writes a checkpoint and removes all but the newest `keep`.
+  void Save(const TrainState& state, int keep) const;
+
+  /// Writes name.onnx, or name_<i>.onnx where each AUV has a policy of its own.
+  void SavePolicies(const std::vector<agent::Policy>& policies, const std::string& name) const;
+  /// Absolute path of SavePolicies' file for all AUVs.
+  std::string PolicyPath(const std::string& name) const;
+
+ private:
+  const std::string path_;
+  std::ostream* log_;
+};
+
+/// Throws UserError, beginning with `where`, unless the checkpoint's run has the configuration
+/// `ours`, except for more or fewer steps, and the same scenario.
+void RequireSameRun(const TrainState& theirs, const nlohmann::ordered_json& ours,
+                    const std::string& scenario, const std::string& where);
+
+/// What every exported policy tells about itself.
+agent::PolicyMetadata MetadataOf(const Scenario& scenario, const std::string& id,
+                                 std::int64_t training_step, std::uint64_t seed);
+
+}  // namespace stg::learn

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/task/metrics.hpp"
+
+namespace stg::learn {
+
+/// What one collection and its update measured.
+struct TrainRecord {
+  std::int64_t env_steps = 0, collections = 0;
+  double wall_seconds = 0.0;  ///< since the start of the run, interruptions left out
+  // Training episodes that ended in this collection, with exploration and the training reward.
+  int episodes = 0;
+  double train_return = 0.0, train_tail_distance = 0.0, train_lost_rate = 0.0;
+  double reward = 0.0;            ///< mean over steps of the team's reward
+  std::vector<double> algorithm;  ///< what the update reported, see Algorithm::Columns
+  // Wall-clock seconds of this collection.
+  double env_seconds = 0.0, inference_seconds = 0.0, update_seconds = 0.0, validation_seconds = 0.0;
+  double update_flops = 0.0;
+  bool validated = false;
+  task::MetricSummary validation;  ///< deterministic policy; the scenario's own reward
+};
+
+/// The labelled numbers of an update as people read them: "KL 0.0123 clip 0.100".
+std::string ReportText(const std::vector<ReportColumn>& columns, const std::vector<double>& values);
+
+/// Progress lines, progress.csv and the times to the return thresholds.
+class TrainLog {
+ public:
+  /// @param out folder. @param columns of the algorithm.
+  /// @param resume_at >= 0: keep the CSV's rows up to this step.
+  TrainLog(const std::string& out, std::vector<ReportColumn> columns, std::int64_t resume_at,
+           std::int64_t total_steps, std::ostream* lines);
+
+  void Add(const TrainRecord& record);
+  /// Writes summary.json.
+  /// @param peak_flops measured rate of the matrix product on all workers.
+  void WriteSummary(int workers, double peak_flops, const std::string& stopped) const;
+
+  /// State for checkpoints, as JSON text.
+  std::string Save() const;
+  void Load(const std::string& text);
+
+ private:
+  struct Moment {
+    double seconds;
+    std::int64_t steps;
+  };
+  void PrintLine(const TrainRecord& record);
+  std::string Header() const;
+
+  const std::string out_;
+  const std::vector<ReportColumn> columns_;
+  const std::int64_t total_steps_;
+  std::ostream* lines_;
+  std::ofstream csv_;
+  std::map<std::string, Moment> reached_;
+  std::map<std::string, double> last_validation_, best_validation_;
+  double env_seconds_ = 0.0, inference_seconds_ = 0.0, update_seconds_ = 0.0,
+         validation_seconds_ = 0.0, update_flops_ = 0.0, wall_seconds_ = 0.0;
+  std::int64_t env_steps_ = 0;
+  // Since the last printed line; not part of the state.
+  double line_wall_ = -1.0, line_env_ = 0.0, line_inference_ = 0.0, line_update_ = 0.0;
+  std::int64_t line_steps_ = 0;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/metrics.hpp"
+
+namespace stg::learn {
+
+/// Flies the deterministic policy of an algorithm on the same held-out episodes every time
+/// (seeds kValidationSeed + r, the scenario's own stage and reward).
+/// @return one entry per episode, in order.
+std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
+                                           Algorithm* algorithm, WorkerPool* pool);
+
+}  // namespace stg::learn

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "auv_dynamics/world/separations.hpp"
+#include "auv_dynamics/world/world.hpp"
+
+namespace stg::task {
+
+/// Of one AUV: tau / tau_max, or an executed action (the first action_size numbers count).
+template <class T>
+using Effort = std::array<T, dynamics::kWrenchSize>;
+template <class T>
+using Efforts = std::vector<Effort<T>>;
+static_assert(dynamics::kMaxActionSize <= dynamics::kWrenchSize, "an action is an Effort");
+
+/// The true state of a swarm when a decision is due, and what the decision before led to it with:
+/// all that a task judges. A view; it says nothing of who moved the swarm. T = double: one swarm.
+/// T = Pack: kLanes swarms.
+template <class T>
+struct SwarmState {
+  const std::vector<dynamics::VehicleState<T>>& vehicles;  ///< [agents]
+  const std::vector<dynamics::TargetState<T>>& targets;    ///< [targets]
+  const dynamics::Separations<T>& separations;
+  const Efforts<T>& tau;     ///< [agents], tau / tau_max; zero when an episode starts
+  const Efforts<T>& action;  ///< [agents], executed action in [-1, 1]; zero when an episode starts
+  /// Mean link quality of the swarm now, in [0, 1]: what the communication term rewards (Eq. 33).
+  T link_quality = T(0.0);
+};
+
+/// How one AUV stands to its target, truly.
+template <class T>
+struct Tracking {
+  Vec3<T> r_BT_W;                ///< target minus own position [m]
+  T distance = T(0.0);           ///< d of Eq. 1 [m]
+  T previous_distance = T(0.0);  ///< d of the previous decision; d itself when an episode starts
+  T error = T(0.0);              ///< e = |d - d*| [m]
+  T closing = T(0.0);            ///< closing speed [m/s], positive when approaching
+  T confidence = T(0.0);         ///< c of Eq. 13
+  T lost = T(0.0);               ///< 1: farther than task.lost_distance_m, else 0
+};
+
+}  // namespace stg::task

@@ -1,0 +1,136 @@
+#include "environment.hpp"
+
+#include <cassert>
+
+#include "acoustic_source.hpp"
+#include "auv_dynamics/control/control.hpp"
+#include "scatter.hpp"
+#include "truth_source.hpp"
+
+namespace stg::env {
+namespace {
+
+std::unique_ptr<InformationSource> MakeSource(const Scenario& s) {
+  if (s.mode == InformationMode::kAcoustic) return std::make_unique<AcousticSource>(s);
+  return std::make_unique<TruthSource>(s);
+}
+
+}  // namespace
+
+Environment::Environment(const Scenario& scenario)
+    : scenario_(scenario), world_(scenario), source_(MakeSource(scenario)), task_(scenario) {
+  task::Effort<Pack> zero;
+  zero.fill(Pack(0.0));
+  tau_.assign(static_cast<std::size_t>(scenario.agents), zero);
+  action_ = tau_;
+  wrench_.resize(tau_.size());
+}
+
+Environment::~Environment() = default;
+Environment::Environment(Environment&&) noexcept = default;
+
+AcousticSource& Environment::acoustic() const {
+  assert(scenario_.mode == InformationMode::kAcoustic);
+  return static_cast<AcousticSource&>(*source_);
+}
+
+void Environment::Zero(int lane, int episode_steps) {
+  SetLane(&length_, lane, static_cast<double>(episode_steps));
+  for (std::size_t i = 0; i < tau_.size(); ++i) {
+    for (Pack& x : tau_[i]) SetLane(&x, lane, 0.0);
+    for (Pack& x : action_[i]) SetLane(&x, lane, 0.0);
+  }
+}
+
+void Environment::Reset(int lane, std::uint64_t seed, dynamics::ResetStage stage,
+                        int episode_steps) {
+  world_.Reset(lane, seed, 0, stage);
+  Zero(lane, episode_steps);
+}
+
+void Environment::Place(int lane, const std::vector<Vec3<double>>& p_WB,
+                        const std::vector<Vec3<double>>& p_WT,
+                        const std::vector<Vec3<double>>& v_WT) {
+  world_.Place(lane, p_WB, p_WT, v_WT);
+  Zero(lane, scenario_.time.episode_steps);
+}
+
+void Environment::Begin(const LaneSet& lanes) {
+  source_->Start(world_, lanes);
+  source_->Observe(world_, lanes);
+  task_.Start(lanes.mask(), Swarm(), length_);
+}
+
+void Environment::Step(const Pack* wanted) {
+  for (std::size_t i = 0; i < tau_.size(); ++i) {
+    source_->Act(world_, static_cast<int>(i), wanted, &action_[i], &tau_[i]);
+    wrench_[i] = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
+    wanted += scenario_.action_size();
+  }
+  source_->Send(world_);
+  for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
+  source_->Observe(world_, LaneSet::All());
+  // The link quality that is rewarded is the one after the step.
+  if (scenario_.reward.kind == task::RewardKind::kPaper) {
+    link_quality_ = source_->LinkQuality(world_);
+  }
+  task_.Step(Swarm());
+}
+
+agent::Knowledge<Pack> Environment::Truth(int i) const {
+  const dynamics::VehicleState<Pack>& v = world_.vehicle(i);
+  const task::Tracking<Pack>& t = task_.tracking(i);
+  agent::Knowledge<Pack> k;
+  k.p_WB = v.p_WB;
+  k.v_WB = v.v_WB;
+  k.v_WB_B = v.v_WB_B;
+  k.w_WB_B = v.w_WB_B;
+  k.R_WB = v.R_WB;
+  k.trig = v.trig;
+  k.r_BT_W = t.r_BT_W;
+  k.v_WT = world_.target(scenario_.target_of(i)).v_WT;
+  k.distance = t.distance;
+  k.previous_distance = t.previous_distance;
+  k.error = t.error;
+  k.closing = t.closing;
+  k.confidence = t.confidence;
+  k.lost = t.lost;
+  return k;
+}
+
+task::SwarmState<Pack> Environment::Swarm() const {
+  return {world_.vehicle_states(),
+          world_.target_states(),
+          world_.separations(),
+          tau_,
+          action_,
+          link_quality_};
+}
+
+void Environment::WriteObservations(int lanes, float* rows) const {
+  const auto size = static_cast<std::size_t>(scenario_.observation_size());
+  const std::size_t stride = tau_.size() * size;
+  Pack columns[agent::kMaxObservationSize];
+  for (std::size_t i = 0; i < tau_.size(); ++i) {
+    agent::BuildObservation(scenario_, source_->knowledge(static_cast<int>(i)),
+                            [&](int index, const Pack& value) { columns[index] = value; });
+    Scatter(columns, static_cast<int>(size), lanes, rows + i * size, stride);
+  }
+}
+
+void Environment::WriteStates(int lanes, float* rows) const {
+  const auto stride = static_cast<std::size_t>(task::CriticStateSize(scenario_));
+  task_.WriteCriticState(Swarm(), [&](const Pack* numbers, int count) {
+    Scatter(numbers, count, lanes, rows, stride);
+    rows += count;
+  });
+}
+
+void Environment::WriteRewards(int lanes, float* rows) const {
+  const auto stride = tau_.size();
+  for (std::size_t i = 0; i < stride; ++i) {
+    Scatter(&task_.terms(static_cast<int>(i)).total, 1, lanes, rows + i, stride);
+  }
+}
+
+}  // namespace stg::env

@@ -1,0 +1,39 @@
+#include "marl_trainer/learn/algorithm_config.hpp"
+
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+
+namespace stg::learn {
+
+void Algorithm::StartFrom(const Archive&) {
+  throw UserError("this algorithm cannot start from the networks of another run");
+}
+
+void Algorithm::StartFrom(const agent::Policy&) {
+  throw UserError("this algorithm cannot start from a policy file");
+}
+
+void AlgorithmConfig::ApplyPreset(const std::string& preset, TrainConfig*) {
+  if (preset != "fast") throw UserError("--preset: '" + preset + "' is not fast");
+}
+
+void AlgorithmConfig::ValidateOrThrow(const TrainConfig&) const {}
+
+void AlgorithmConfig::ApplyRecordings(const TrainConfig&) {
+  throw UserError("this algorithm does not learn from recordings");
+}
+
+void AlgorithmConfig::FitPolicy(const agent::Policy&) {
+  throw UserError("this algorithm cannot start from a policy file");
+}
+
+AlgorithmRegistry& Algorithms() {
+  static AlgorithmRegistry registry("algorithm", {
+                                                     {"mappo", std::make_unique<MappoConfig>},
+                                                 });
+  return registry;
+}
+
+std::string DefaultAlgorithm() { return Algorithms().Names().front(); }
+
+}  // namespace stg::learn

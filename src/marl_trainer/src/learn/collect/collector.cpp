@@ -1,0 +1,187 @@
+#include "marl_trainer/learn/collect/collector.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "marl_trainer/env/controller.hpp"
+#include "marl_trainer/env/vector_env.hpp"
+#include "marl_trainer/learn/clock.hpp"
+
+namespace stg::learn {
+
+Problem ProblemOf(const Scenario& scenario) {
+  const env::VectorEnv env(scenario, env::VectorEnvOptions());
+  Problem problem;
+  problem.agents = env.agents();
+  problem.observation_size = env.observation_size();
+  problem.state_size = env.state_size();
+  problem.action_size = env.action_size();
+  problem.action_scale = scenario.control.action_scale;
+  problem.workspace_half_extent_m = scenario.workspace.half_extent_m;
+  return problem;
+}
+
+/// The environments of one shard, and memory for one step.
+class Collector::Unit {
+ public:
+  Unit(const std::vector<Scenario>& mix, const TrainConfig& config, const Shard& shard)
+      : seed_(TrainingSeed(config.seed)),
+        shard_(shard),
+        env_(mix, EnvOptions(config, shard)),
+        now_(env_.MakeMemory()),
+        next_(env_.MakeMemory()) {
+    const auto rows = static_cast<std::size_t>(shard.envs * env_.agents());
+    actions_.resize(rows * static_cast<std::size_t>(env_.action_size()));
+    log_prob_.resize(rows);
+    if (!config.imitation.controller.empty()) {
+      teacher_ = env::MakeController(config.imitation.controller, mix.front());
+      teacher_->privileged = config.imitation.privileged;
+      teacher_actions_.resize(actions_.size());
+      taught_.resize(actions_.size());
+    }
+    RestartAt(0);
+  }
+
+  /// @param index of this shard. @param worker that runs it.
+  void Collect(std::uint32_t number, int steps, bool teach, int index, int worker,
+               Algorithm* algorithm);
+
+  void RestartAt(std::uint64_t k) { env_.RestartAt(k, now_.arrays()); }
+  const env::VectorEnv& env() const { return env_; }
+  const Shard& shard() const { return shard_; }
+  const CollectionReport& report() const { return report_; }
+
+ private:
+  static env::VectorEnvOptions EnvOptions(const TrainConfig& config, const Shard& shard) {
+    env::VectorEnvOptions options;
+    options.seed = TrainingSeed(config.seed);
+    options.envs = shard.envs;
+    options.first_env = shard.first_env;
+    options.total_envs = config.envs;
+    options.curriculum = true;  // where the scenario says so
+    options.stagger = config.stagger;
+    return options;
+  }
+  void AskTeacher();
+
+  const std::uint64_t seed_;
+  const Shard shard_;
+  env::VectorEnv env_;
+  env::EnvMemory now_, next_;
+  std::vector<float> actions_, log_prob_, taught_;
+  std::optional<env::Controller> teacher_;
+  std::vector<double> teacher_actions_;
+  CollectionReport report_;  // its reward is the sum
+};
+
+void Collector::Unit::Collect(std::uint32_t number, int steps, bool teach, int index, int worker,
+                              Algorithm* algorithm) {
+  report_ = CollectionReport();
+  Stopwatch watch;
+  for (int t = 0; t < steps; ++t) {
+    const DrawKeys keys{seed_, number, static_cast<std::uint32_t>(t), shard_.first_env};
+    Decision decision;
+    decision.envs = shard_.envs;
+    decision.observations = now_.observations.data();
+    decision.explore = &keys;
+    decision.worker = worker;
+    algorithm->Act(decision, {actions_.data(), log_prob_.data()});
+    if (teach) AskTeacher();
+    report_.inference_seconds += watch.Lap();
+
+    env_.Step(actions_.data(), next_.arrays());
+    for (int e = 0; e < shard_.envs; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      report_.reward += static_cast<double>(next_.team_rewards[i]);
+      if (next_.truncated[i] != 0) report_.finished.push_back(env_.metrics(e));
+    }
+    Transition transition;
+    transition.shard = index;
+    transition.step = t;
+    transition.envs = shard_.envs;
+    transition.observations = now_.observations.data();
+    transition.states = now_.states.data();
+    transition.actions = actions_.data();
+    transition.log_prob = log_prob_.data();
+    transition.teacher = teach ? taught_.data() : nullptr;
+    transition.rewards = next_.rewards.data();
+    transition.team_rewards = next_.team_rewards.data();
+    transition.truncated = next_.truncated.data();
+    transition.next_observations = next_.observations.data();
+    transition.next_states = next_.states.data();
+    transition.final_observations = next_.final_observations.data();
+    transition.final_states = next_.final_states.data();
+    algorithm->Observe(transition);
+    std::swap(now_, next_);
+    report_.env_seconds += watch.Lap();
+  }
+}
+
+void Collector::Unit::AskTeacher() {
+  env::Decide(*teacher_, env_, now_.observations.data(), teacher_actions_.data());
+  std::transform(teacher_actions_.begin(), teacher_actions_.end(), taught_.begin(),
+                 [](double a) { return static_cast<float>(a); });
+}
+
+Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool)
+    : horizon_(config.horizon), pool_(pool) {
+  for (int first = 0; first < config.envs; first += kShardEnvs) {
+    const Shard shard{first, std::min(kShardEnvs, config.envs - first)};
+    units_.push_back(std::make_unique<Unit>(mix, config, shard));
+  }
+}
+
+Collector::~Collector() = default;
+
+CollectionReport Collector::Collect(std::uint32_t number, bool teach, Algorithm* algorithm) {
+  const Stopwatch watch;
+  Collection collection;
+  collection.number = number;
+  collection.steps = horizon_;
+  collection.taught = teach;
+  for (const auto& unit : units_) collection.shards.push_back(unit->shard());
+  algorithm->Begin(collection);
+  pool_->Run(static_cast<int>(units_.size()), [&](int u, int worker) {
+    units_[static_cast<std::size_t>(u)]->Collect(number, horizon_, teach, u, worker, algorithm);
+  });
+
+  CollectionReport report;
+  double steps = 0.0;
+  for (const auto& unit : units_) {
+    const CollectionReport& part = unit->report();
+    report.finished.insert(report.finished.end(), part.finished.begin(), part.finished.end());
+    report.reward += part.reward;
+    report.env_seconds += part.env_seconds;
+    report.inference_seconds += part.inference_seconds;
+    steps += static_cast<double>(unit->shard().envs) * horizon_;
+  }
+  report.reward /= steps;
+  const double wall = watch.seconds();
+  const double share = report.env_seconds / (report.env_seconds + report.inference_seconds);
+  report.env_seconds = wall * share;
+  report.inference_seconds = wall * (1.0 - share);
+  return report;
+}
+
+void Collector::RestartAt(std::uint64_t k) {
+  for (auto& unit : units_) unit->RestartAt(k);
+}
+
+std::uint64_t Collector::round() const {
+  std::uint64_t round = 0;
+  for (const auto& unit : units_) {
+    for (int e = 0; e < unit->shard().envs; ++e) round = std::max(round, unit->env().round(e));
+  }
+  return round;
+}
+
+bool Collector::at_episode_start() const {
+  for (const auto& unit : units_) {
+    for (int e = 0; e < unit->shard().envs; ++e) {
+      if (unit->env().step(e) != 0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace stg::learn

@@ -1,0 +1,64 @@
+#include "marl_trainer/learn/options.hpp"
+
+#include <cmath>
+#include <type_traits>
+
+#include "auv_common/error.hpp"
+
+namespace stg::learn {
+namespace {
+
+constexpr std::size_t kMaxList = 7;  // as many hidden layers as a policy file may have
+
+void RequireRange(const Option& option, double value) {
+  RequireOption(std::isfinite(value) && value >= option.range.lo && value <= option.range.hi,
+                option.name,
+                std::to_string(value) + " is not in [" + std::to_string(option.range.lo) + ", " +
+                    std::to_string(option.range.hi) + "]");
+}
+
+struct RangeCheck {
+  const Option& option;
+
+  void operator()(const double* value) const { RequireRange(option, *value); }
+  void operator()(const int* value) const { RequireRange(option, *value); }
+  void operator()(const std::int64_t* value) const {
+    RequireRange(option, static_cast<double>(*value));
+  }
+  void operator()(const std::vector<int>* values) const {
+    RequireOption(!values->empty() && values->size() <= kMaxList, option.name,
+                  "needs 1 to " + std::to_string(kMaxList) + " numbers");
+    for (const int value : *values) RequireRange(option, value);
+  }
+  void operator()(const std::uint64_t*) const {}
+  void operator()(const bool*) const {}
+  void operator()(const std::string*) const {}
+};
+
+}  // namespace
+
+void RequireOption(bool ok, const std::string& option, const std::string& what) {
+  if (!ok) throw UserError("--" + option + ": " + what);
+}
+
+void OptionTable::RequireRanges() const {
+  for (const Option& option : options_) std::visit(RangeCheck{option}, option.value);
+}
+
+void OptionTable::Dump(nlohmann::ordered_json* json) const {
+  for (const Option& option : options_) {
+    std::visit([&](const auto* value) { (*json)[option.name] = *value; }, option.value);
+  }
+}
+
+void OptionTable::Read(const nlohmann::ordered_json& json) const {
+  for (const Option& option : options_) {
+    try {
+      std::visit([&](auto* value) { json.at(option.name).get_to(*value); }, option.value);
+    } catch (const nlohmann::json::exception& error) {
+      throw UserError("training configuration: " + option.name + ": " + error.what());
+    }
+  }
+}
+
+}  // namespace stg::learn

@@ -1,0 +1,81 @@
+#include "marl_trainer/learn/run/run_folder.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "auv_common/error.hpp"
+
+namespace stg::learn {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+RunFolder::RunFolder(std::string path, std::ostream* log) : path_(std::move(path)), log_(log) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (!fs::is_directory(path_)) throw UserError(path_ + ": cannot create the folder");
+}
+
+bool RunFolder::HoldsRun() const {
+  for (const auto& entry : fs::directory_iterator(path_)) {
+    if (entry.path().extension() == ".onnx" || IsCheckpointName(entry.path().filename().string())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario) const {
+  std::ofstream(fs::path(path_) / "config.json") << config.dump(2) << "\n";
+  std::ofstream(fs::path(path_) / "scenario.yaml") << ToYaml(scenario);
+}
+
+void RunFolder::Save(const TrainState& state, int keep) const {
+  SaveCheckpoint(state, CheckpointPath(path_, state.env_steps));
+  PruneCheckpoints(path_, keep);
+}
+
+void RunFolder::SavePolicies(const std::vector<agent::Policy>& policies,
+                             const std::string& name) const {
+  for (std::size_t i = 0; i < policies.size(); ++i) {
+    policies[i].SaveOnnx(PolicyPath(policies.size() == 1 ? name : name + "_" + std::to_string(i)));
+  }
+}
+
+std::string RunFolder::PolicyPath(const std::string& name) const {
+  return fs::absolute(fs::path(path_) / (name + ".onnx")).string();
+}
+
+void RequireSameRun(const TrainState& state, const nlohmann::ordered_json& ours,
+                    const std::string& scenario, const std::string& where) {
+  const auto theirs = nlohmann::ordered_json::parse(state.config, nullptr, false);
+  for (const auto& [key, value] : ours.items()) {
+    // More steps than planned are welcome; nothing else may change on the way.
+    if (key == "steps") continue;
+    const bool known = theirs.is_object() && theirs.contains(key);
+    if (known && theirs[key] == value) continue;
+    throw UserError(where + ": --" + key + " is " + value.dump() +
+                    ", the checkpoint was made with " +
+                    (known ? theirs[key].dump() : "no such option"));
+  }
+  if (state.scenario != scenario) {
+    throw UserError(where + ": the scenario is not the checkpoint's");
+  }
+}
+
+agent::PolicyMetadata MetadataOf(const Scenario& scenario, const std::string& id,
+                                 std::int64_t training_step, std::uint64_t seed) {
+  agent::PolicyMetadata m;
+  m.id = id;
+  m.observation_layout = agent::ObservationLayout(scenario);
+  m.action_interface = agent::ActionInterfaceName(scenario.control.interface);
+  m.scenario_hash = ScenarioHash(scenario);
+  m.training_step = training_step;
+  m.seed = seed;
+  return m;
+}
+
+}  // namespace stg::learn

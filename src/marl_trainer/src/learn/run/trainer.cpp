@@ -1,0 +1,231 @@
+#include "marl_trainer/learn/run/trainer.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/learn/run/validation.hpp"
+#include "marl_trainer/learn/variants.hpp"
+
+namespace stg::learn {
+namespace {
+
+Scenario Valid(const Scenario& scenario, const TrainSetup& setup) {
+  setup.ValidateOrThrow();
+  scenario.ValidateOrThrow();
+  return scenario;
+}
+
+/// The scenarios to train in, all with the observation and episode of the first.
+std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>& mix,
+                          const TrainSetup& setup) {
+  const Scenario base = VariantScenario(scenario, setup.common.variant);
+  std::vector<Scenario> all;
+  for (const Scenario& s : mix) {
+    all.push_back(VariantScenario(Valid(s, setup), setup.common.variant));
+  }
+  if (all.empty()) all.push_back(base);
+  for (const Scenario& s : all) {
+    if (s.agents != base.agents || s.target.count != base.target.count ||
+        s.time.episode_steps != base.time.episode_steps ||
+        s.control.interface != base.control.interface ||
+        agent::ObservationLayout(s) != agent::ObservationLayout(base)) {
+      throw UserError("the scenarios to train in differ in swarm, episode or observation");
+    }
+  }
+  return all;
+}
+
+/// The first multiple of `interval` past `steps`.
+std::int64_t NextMultiple(std::int64_t steps, std::int64_t interval) {
+  return (steps / interval + 1) * interval;
+}
+
+double PeakFlops(WorkerPool* pool) {
+  std::vector<double> rates(static_cast<std::size_t>(pool->workers()));
+  pool->Run(pool->workers(),
+            [&](int w, int) { rates[static_cast<std::size_t>(w)] = MeasurePeakFlops(); });
+  double peak = 0.0;
+  for (const double rate : rates) peak += rate;
+  return peak;
+}
+
+}  // namespace
+
+Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Options& options)
+    : scenario_(Valid(scenario, setup)),
+      train_scenario_(VariantScenario(scenario, setup.common.variant)),
+      validation_scenario_(ValidationScenario(scenario, setup.common.variant)),
+      mix_(Mix(scenario, options.mix, setup)),
+      setup_(setup),
+      options_(options),
+      problem_(ProblemOf(train_scenario_)),
+      pool_(options.workers),
+      algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
+      collector_(mix_, setup_.common, &pool_),
+      folder_(options.out, options.log) {
+  UseOneBlasThread();
+  state_.config = ToJson(setup_).dump();
+  for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
+  if (options_.resume) {
+    Resume();
+  } else if (folder_.HoldsRun()) {
+    throw UserError(options_.out + ": holds another run; use --resume or another folder");
+  } else if (!setup_.common.start_from.empty()) {
+    StartFrom(setup_.common.start_from);
+  }
+  ScheduleNext();
+  folder_.WriteSetup(ToJson(setup_), scenario_);
+  log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
+                                    options_.resume ? state_.env_steps : -1, setup_.common.steps,
+                                    options_.log);
+  if (!state_.log.empty()) log_->Load(state_.log);
+}
+
+void Trainer::StartFrom(const std::string& folder) {
+  const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, options_.log);
+  if (!theirs) throw UserError("--start-from: no checkpoint in " + folder);
+  const auto config = nlohmann::json::parse(theirs->config, nullptr, false);
+  if (!config.is_object() || config.value("algorithm", "") != setup_.algorithm) {
+    throw UserError("--start-from: " + folder + " was not trained with " + setup_.algorithm);
+  }
+  try {
+    algorithm_->StartFrom(theirs->algorithm);
+  } catch (const UserError& error) {
+    throw UserError("--start-from: " + folder + ": " + error.what());
+  }
+}
+
+void Trainer::Resume() {
+  const std::optional<TrainState> loaded = folder_.Newest();
+  if (!loaded) throw UserError(options_.out + ": no checkpoint to resume from");
+  const std::string where = options_.out + ": cannot resume";
+  RequireSameRun(*loaded, ToJson(setup_), state_.scenario, where);
+  try {
+    algorithm_->Load(loaded->algorithm);
+  } catch (const UserError& error) {
+    throw UserError(where + ": " + error.what());
+  }
+  const std::string config = state_.config;
+  state_ = *loaded;
+  state_.config = config;
+  state_.algorithm = Archive();
+  collector_.RestartAt(state_.round);
+}
+
+void Trainer::ScheduleNext() {
+  next_validation_ = NextMultiple(state_.env_steps, setup_.common.validation_interval);
+  next_checkpoint_ = NextMultiple(state_.env_steps, setup_.common.checkpoint_interval);
+}
+
+TrainState Trainer::state() const {
+  TrainState state = state_;
+  state.wall_seconds = Elapsed();
+  state.log = log_->Save();
+  algorithm_->Save(&state.algorithm);
+  return state;
+}
+
+bool Trainer::Run() {
+  bool finished = state_.env_steps >= setup_.common.steps;
+  bool stopped = false;
+  while (!finished && !stopped) {
+    TrainRecord record;
+    Iterate(&record);
+    finished = state_.env_steps >= setup_.common.steps;
+    if (finished || state_.env_steps >= next_validation_) RunValidation(&record);
+    record.wall_seconds = Elapsed();
+    log_->Add(record);
+    if (!AtBoundary(finished)) continue;
+    stopped = Stopped();
+    if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
+  }
+  log_->WriteSummary(pool_.workers(), PeakFlops(&pool_), finished ? "finished" : "signal");
+  return finished;
+}
+
+bool Trainer::Stopped() const {
+  return (options_.stop != nullptr && *options_.stop != 0) ||
+         (options_.halt_after > 0 && state_.env_steps >= options_.halt_after);
+}
+
+void Trainer::Iterate(TrainRecord* record) {
+  const TrainConfig& config = setup_.common;
+  UpdateContext context;
+  context.imitation = config.imitation.Weight(state_.env_steps);
+  context.progress = static_cast<double>(state_.env_steps) / static_cast<double>(config.steps);
+  const CollectionReport collected = collector_.Collect(
+      static_cast<std::uint32_t>(state_.collections), context.imitation > 0.0, algorithm_.get());
+  const Stopwatch watch;
+  UpdateReport report = algorithm_->Update(context);
+  record->update_seconds = watch.seconds();
+  ++state_.collections;
+  state_.env_steps += static_cast<std::int64_t>(config.envs) * config.horizon;
+
+  record->env_steps = state_.env_steps;
+  record->collections = state_.collections;
+  record->env_seconds = collected.env_seconds;
+  record->inference_seconds = collected.inference_seconds;
+  record->reward = collected.reward;
+  record->update_flops = report.flops;
+  record->algorithm = std::move(report.values);
+  record->episodes = static_cast<int>(collected.finished.size());
+  if (!collected.finished.empty()) {
+    const task::MetricSummary summary = task::Summarise(collected.finished);
+    record->train_return = summary.Mean("return");
+    record->train_tail_distance = summary.Mean("tail_distance");
+    record->train_lost_rate = summary.Mean("lost_rate");
+  }
+}
+
+void Trainer::RunValidation(TrainRecord* record) {
+  const Stopwatch watch;
+  last_validation_ = task::Summarise(
+      Validate(validation_scenario_, setup_.common.validation_episodes, algorithm_.get(), &pool_));
+  record->validated = true;
+  record->validation = last_validation_;
+  if (last_validation_.Mean("return") > state_.best_return) {
+    state_.best_return = last_validation_.Mean("return");
+    SavePolicy("policy_best");
+  }
+  next_validation_ = NextMultiple(state_.env_steps, setup_.common.validation_interval);
+  record->validation_seconds = watch.seconds();
+}
+
+bool Trainer::AtBoundary(bool force) {
+  const TrainConfig& config = setup_.common;
+  const int episode = std::max(1, scenario_.time.episode_steps / config.horizon);
+  // Cutting staggered episodes at every boundary would undo the staggering.
+  const int every = config.stagger ? 2 * episode : episode;
+  if (state_.collections % every != 0 && !force) return false;
+  state_.round = collector_.round();
+  if (config.stagger || !collector_.at_episode_start()) {
+    ++state_.round;
+    collector_.RestartAt(state_.round);
+  }
+  return true;
+}
+
+void Trainer::Save() {
+  folder_.Save(state(), setup_.common.keep_checkpoints);
+  SavePolicy("policy_last");
+  next_checkpoint_ = NextMultiple(state_.env_steps, setup_.common.checkpoint_interval);
+}
+
+void Trainer::SavePolicy(const std::string& name) const {
+  const TrainConfig& config = setup_.common;
+  const std::string id = scenario_.name + "-" + config.variant + "-" + config.preset + "-seed" +
+                         std::to_string(config.seed) + "-" + std::to_string(state_.env_steps);
+  agent::PolicyMetadata m = MetadataOf(train_scenario_, id, state_.env_steps, config.seed);
+  for (const char* metric :
+       {"return", "tail_distance", "tracking_error", "lost_rate", "tail_colliding_pairs"}) {
+    if (last_validation_.names.empty()) break;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", last_validation_.Mean(metric));
+    m.metrics[std::string("validation_") + metric] = text;
+  }
+  folder_.SavePolicies(algorithm_->Policies(m), name);
+}
+
+}  // namespace stg::learn

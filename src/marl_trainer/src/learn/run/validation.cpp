@@ -1,0 +1,36 @@
+#include "marl_trainer/learn/run/validation.hpp"
+
+#include "marl_trainer/env/evaluation.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+
+namespace stg::learn {
+namespace {
+
+constexpr int kBlock = 16;  // environments whose actions one pass through the network decides
+
+}  // namespace
+
+std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
+                                           Algorithm* algorithm, WorkerPool* pool) {
+  const env::ActFactory make_act = [algorithm](const env::VectorEnv& env,
+                                               int worker) -> env::ActFunction {
+    std::vector<float> chosen(
+        static_cast<std::size_t>(env.envs() * env.agents() * env.action_size()));
+    return [algorithm, worker, chosen](const env::VectorEnv& flown, const float* observations,
+                                       double* actions) mutable {
+      Decision decision;
+      decision.envs = flown.envs();
+      decision.observations = observations;
+      decision.worker = worker;
+      algorithm->Act(decision, {chosen.data(), nullptr});
+      for (const float a : chosen) *actions++ = static_cast<double>(a);
+    };
+  };
+  env::EvaluationOptions options;
+  options.episodes = episodes;
+  options.seed = kValidationSeed;
+  options.block = kBlock;
+  return env::Evaluate(scenario, make_act, options, pool);
+}
+
+}  // namespace stg::learn

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "marl_trainer/task/reward_term.hpp"
+
+/// The suite's own reward terms, a file each.
+namespace stg::task {
+
+std::unique_ptr<const RewardTerm> MakeEffortTerm(const JudgeConfig& scenario);
+
+}  // namespace stg::task

@@ -1,0 +1,199 @@
+#include "marl_trainer/learn/checkpoint/archive.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "auv_common/error.hpp"
+
+namespace stg::learn {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ArchiveTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "archive_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    path_ = (folder_ / "file").string();
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string Bytes() const {
+    std::ifstream in(path_, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  /// Writes a payload under a header that fits it.
+  void Write(const std::string& payload, std::uint32_t version = 2) const {
+    std::uint64_t checksum = 14695981039346656037ULL;
+    for (const char c : payload) {
+      checksum = (checksum ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    }
+    std::string bytes = "STGTRAIN";
+    const std::uint32_t reserved = 0;
+    const std::uint64_t size = payload.size();
+    bytes.append(reinterpret_cast<const char*>(&version), 4);
+    bytes.append(reinterpret_cast<const char*>(&reserved), 4);
+    bytes.append(reinterpret_cast<const char*>(&size), 8);
+    bytes.append(reinterpret_cast<const char*>(&checksum), 8);
+    std::ofstream(path_, std::ios::binary) << bytes << payload;
+  }
+
+  /// What the refusal of the file says.
+  std::string Refusal() const {
+    try {
+      ReadArchive(path_);
+    } catch (const UserError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(path_, 0), 0U) << error.what();
+      return error.what();
+    }
+    ADD_FAILURE() << "accepted";
+    return "";
+  }
+
+  fs::path folder_;
+  std::string path_;
+};
+
+/// One array as it stands in a file.
+std::string Entry(char type, const std::string& name, std::uint64_t count,
+                  const std::string& data) {
+  std::string bytes(1, type);
+  bytes += static_cast<char>(name.size());
+  bytes += name;
+  bytes.append(reinterpret_cast<const char*>(&count), 8);
+  return bytes + data;
+}
+
+std::string Count(std::uint32_t arrays) {
+  return std::string(reinterpret_cast<const char*>(&arrays), 4);
+}
+
+Archive Example() {
+  Archive archive;
+  archive.Put("floats", std::vector<float>{1.5F, -0.0F, 1e-45F});
+  archive.Put("none", std::vector<float>());
+  archive.Put("text", std::string("two\nlines\0and a zero", 20));
+  archive.PutInteger("count", -7);
+  archive.PutNumber("best", -1e300);
+  Archive part;
+  part.Put("doubles", std::vector<double>{3.0, 1e-320});
+  archive.PutPart("part", part);
+  return archive;
+}
+
+TEST_F(ArchiveTest, WhatIsReadIsWhatWasWritten) {
+  WriteArchive(Example(), path_);
+  const Archive read = ReadArchive(path_);
+  EXPECT_TRUE(read == Example());
+  Archive other = Example();
+  other.PutInteger("more", 0);
+  EXPECT_FALSE(read == other);
+  EXPECT_TRUE(std::signbit(read.Floats("floats")[1]));
+  EXPECT_EQ(read.Floats("floats")[2], 1e-45F);
+  EXPECT_EQ(read.Text("text").size(), 20U);
+  EXPECT_EQ(read.Integer("count"), -7);
+  EXPECT_EQ(read.Number("best"), -1e300);
+  EXPECT_EQ(read.Part("part").Doubles("doubles", 2)[0], 3.0);
+  EXPECT_FALSE(read.Part("part").Has("best"));
+  EXPECT_FALSE(fs::exists(path_ + ".tmp"));
+}
+
+TEST_F(ArchiveTest, TheFormatIsTheDocumentedOne) {
+  Archive archive;
+  archive.Put("a", std::vector<float>{2.0F});
+  WriteArchive(archive, path_);
+  const float two = 2.0F;
+  const std::string written = Bytes();
+  Write(Count(1) + Entry('f', "a", 1, std::string(reinterpret_cast<const char*>(&two), 4)));
+  EXPECT_EQ(written, Bytes());
+}
+
+TEST_F(ArchiveTest, AnArrayOfAnotherNameTypeOrSizeIsNamed) {
+  const Archive archive = Example();
+  const auto message = [](const auto& read) {
+    try {
+      read();
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(message([&] { archive.Floats("other"); }), "'other' is missing");
+  EXPECT_EQ(message([&] { archive.Doubles("floats"); }), "'floats' has another type");
+  EXPECT_EQ(message([&] { archive.Floats("floats", 4); }), "'floats' has another size");
+  EXPECT_EQ(message([&] { archive.Number("count"); }), "'count' has another type");
+}
+
+TEST_F(ArchiveTest, ForeignTruncatedAndDamagedFilesAreRefused) {
+  EXPECT_NE(Refusal().find("no such checkpoint"), std::string::npos);
+  WriteArchive(Example(), path_);
+  const std::string good = Bytes();
+  const auto write = [this](const std::string& bytes) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+  };
+  write("");
+  EXPECT_NE(Refusal().find("not a checkpoint"), std::string::npos);
+  write("PK\x03\x04" + good);
+  EXPECT_NE(Refusal().find("not a checkpoint"), std::string::npos);
+  write(good.substr(0, good.size() - 1));
+  EXPECT_NE(Refusal().find("truncated"), std::string::npos);
+  for (std::size_t at = 32; at < good.size(); ++at) {
+    std::string flipped = good;
+    flipped[at] = static_cast<char>(flipped[at] ^ 64);
+    write(flipped);
+    EXPECT_NE(Refusal().find("checksum"), std::string::npos) << at;
+  }
+  Write("whatever", 1);
+  EXPECT_NE(Refusal().find("version 1 (a libtorch archive), this trainer reads 2"),
+            std::string::npos);
+}
+
+TEST_F(ArchiveTest, LyingSizesWithARightChecksumAreRefusedWithoutAllocating) {
+  const std::uint64_t huge = std::numeric_limits<std::uint64_t>::max();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const struct {
+    std::string payload;
+    const char* reason;
+  } cases[] = {
+      {"", "past the end"},
+      {Count(1), "past the end"},
+      {Count(0xFFFFFFFFU), "too many arrays"},
+      {Count(1) + Entry('f', "a", huge, ""), "past the end"},
+      {Count(1) + Entry('d', "a", huge / 8 + 2, "12345678"), "past the end"},
+      {Count(1) + Entry('t', "a", 9, "12345678"), "past the end"},
+      {Count(1) + Entry('x', "a", 1, "12345678"), "unknown type"},
+      {Count(1) + Entry('t', "", 1, "1"), "name"},
+      {Count(2) + Entry('t', "a", 1, "1") + Entry('t', "a", 1, "1"), "name"},
+      {Count(1) + Entry('t', "a", 1, "1") + "rest", "after the last array"},
+      {Count(1) + Entry('f', "a", 1, std::string(reinterpret_cast<const char*>(&nan), 4)),
+       "not finite"},
+  };
+  for (const auto& c : cases) {
+    Write(c.payload);
+    EXPECT_NE(Refusal().find(c.reason), std::string::npos) << c.reason;
+  }
+}
+
+TEST_F(ArchiveTest, AFileThatCannotBeWrittenIsNamed) {
+  path_ = (folder_ / "no such folder" / "file").string();
+  try {
+    WriteArchive(Example(), path_);
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(path_ + ": cannot write", 0), 0U) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace stg::learn
