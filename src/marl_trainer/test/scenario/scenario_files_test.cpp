@@ -10,7 +10,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "scenario_fields.hpp"
+#include "scenario/scenario_fields.hpp"
 
 /// The shipped scenario files and the reference of their keys.
 namespace stg {

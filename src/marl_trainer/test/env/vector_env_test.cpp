@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "auv_common/error.hpp"
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace stg::env {
 namespace {
