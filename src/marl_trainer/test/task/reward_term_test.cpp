@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../env/env_fixture.hpp"
 #include "auv_common/error.hpp"
-#include "env_fixture.hpp"
 #include "marl_trainer/task/task.hpp"
 
 namespace stg::task {
