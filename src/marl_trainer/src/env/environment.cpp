@@ -18,7 +18,11 @@ std::unique_ptr<InformationSource> MakeSource(const Scenario& s) {
 }  // namespace
 
 Environment::Environment(const Scenario& scenario)
-    : scenario_(scenario), world_(scenario), source_(MakeSource(scenario)), task_(scenario) {
+    : scenario_(scenario),
+      world_(scenario),
+      source_(MakeSource(scenario)),
+      task_(scenario),
+      observation_size_(scenario.observation_size()) {
   task::Effort<Pack> zero;
   zero.fill(Pack(0.0));
   tau_.assign(static_cast<std::size_t>(scenario.agents), zero);
@@ -108,7 +112,7 @@ task::SwarmState<Pack> Environment::Swarm() const {
 }
 
 void Environment::WriteObservations(int lanes, float* rows) const {
-  const auto size = static_cast<std::size_t>(scenario_.observation_size());
+  const auto size = static_cast<std::size_t>(observation_size_);
   const std::size_t stride = tau_.size() * size;
   Pack columns[agent::kMaxObservationSize];
   for (std::size_t i = 0; i < tau_.size(); ++i) {

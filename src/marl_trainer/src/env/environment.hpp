@@ -51,6 +51,7 @@ class Environment {
   dynamics::World world_;
   std::unique_ptr<InformationSource> source_;
   task::Task<Pack> task_;
+  int observation_size_;
   Pack length_ = Pack(0.0);  // decisions of the episode of each lane
   Pack link_quality_ = Pack(0.0);
   task::Efforts<Pack> tau_, action_;

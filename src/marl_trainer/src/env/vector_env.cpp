@@ -5,6 +5,7 @@
 
 #include "auv_common/error.hpp"
 #include "environment.hpp"
+#include "scatter.hpp"
 
 namespace stg::env {
 namespace {
@@ -32,6 +33,8 @@ VectorEnv::VectorEnv(const Scenario& scenario, const VectorEnvOptions& options)
 VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& options)
     : mix_(mix), options_(options) {
   RequireOneLayout(mix_);
+  observation_size_ = mix_.front().observation_size();
+  state_size_ = task::CriticStateSize(mix_.front());
   if (options_.total_envs == 0) options_.total_envs = options_.envs;
   if (options_.envs < 1 || options_.first_env < 0 || options_.total_envs < options_.envs) {
     throw UserError("environments must be at least one, and no more than all together");
@@ -56,8 +59,6 @@ VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& o
 
 VectorEnv::~VectorEnv() = default;
 VectorEnv::VectorEnv(VectorEnv&&) noexcept = default;
-
-int VectorEnv::state_size() const { return task::CriticStateSize(mix_.front()); }
 
 const Scenario& VectorEnv::scenario(int env) const {
   const auto block = Size(options_.first_env + env) / kMixBlock;
@@ -132,18 +133,11 @@ void VectorEnv::Step(const float* actions, const EnvArrays& out) { StepAll(actio
 void VectorEnv::Step(const double* actions, const EnvArrays& out) { StepAll(actions, out); }
 
 template <class Number>
-void VectorEnv::Gather(const Slice& slice, const Number* actions) {
-  const std::size_t per_env = wanted_.size();
-  const Number* first = actions + Size(slice.first) * per_env;
+void VectorEnv::TakeActions(const Slice& slice, const Number* actions) {
+  const int size = static_cast<int>(wanted_.size());
+  Gather(actions + Size(slice.first, size), wanted_.size(), slice.count, size, wanted_.data());
   Pack finite(0.0);
-  for (std::size_t k = 0; k < per_env; ++k) {
-    alignas(Pack) double lanes[kLanes] = {};
-    for (int lane = 0; lane < slice.count; ++lane) {
-      lanes[lane] = static_cast<double>(first[Size(lane) * per_env + k]);
-    }
-    wanted_[k] = Pack::load_aligned(lanes);
-    finite += wanted_[k] - wanted_[k];
-  }
+  for (const Pack& a : wanted_) finite += a - a;
   if (Any(!(finite == Pack(0.0)))) throw std::invalid_argument("non-finite action");
 }
 
@@ -151,7 +145,7 @@ template <class Number>
 void VectorEnv::StepAll(const Number* actions, const EnvArrays& out) {
   for (const Slice& slice : slices_) {
     Environment& lanes = *slice.lanes;
-    Gather(slice, actions);
+    TakeActions(slice, actions);
     lanes.Step(wanted_.data());
     if (out.rewards != nullptr) {
       lanes.WriteRewards(slice.count, out.rewards + Size(slice.first, agents()));

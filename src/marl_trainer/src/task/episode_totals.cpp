@@ -37,7 +37,7 @@ template <class T>
 void EpisodeTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
                            const std::vector<RewardTerms<T>>& terms) {
   const T zero(0.0), one(1.0);
-  Sums s = sums_;
+  Sums& s = sums_;
   steps_ += one;
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const Tracking<T>& k = tracking[i];
@@ -64,7 +64,6 @@ void EpisodeTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Trackin
   }
   s.pairs += swarm.separations.colliding_pairs();
   separation_ = Min(separation_, swarm.separations.smallest());
-  sums_ = s;
   const auto tail = steps_ > length_ - T(static_cast<double>(tail_steps_));
   if (Any(tail)) AddTail(tail, swarm, tracking);
 }

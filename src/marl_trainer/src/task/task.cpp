@@ -1,5 +1,7 @@
 #include "marl_trainer/task/task.hpp"
 
+#include <algorithm>
+
 namespace stg::task {
 
 template <class T>
@@ -20,8 +22,7 @@ Task<T>::Task(const JudgeConfig& scenario)
 template <class T>
 void Task<T>::Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& episode_steps) {
   Measure(swarm, &lanes);
-  previous_tau_ = swarm.tau;
-  previous_action_ = swarm.action;
+  Remember(swarm);
   totals_.Start(lanes, episode_steps);
 }
 
@@ -43,8 +44,15 @@ void Task<T>::Step(const SwarmState<T>& swarm) {
   }
   team_reward_ = team * T(1.0 / scenario_.agents);
   totals_.Add(swarm, tracking_, terms_);
-  previous_tau_ = swarm.tau;
-  previous_action_ = swarm.action;
+  Remember(swarm);
+}
+
+template <class T>
+void Task<T>::Remember(const SwarmState<T>& swarm) {
+  // The paper's cost is of actions, the release's of forces; a registered term may ask for either.
+  const bool paper = scenario_.reward.kind == RewardKind::kPaper;
+  if (paper || !extra_.empty()) previous_action_ = swarm.action;
+  if (!paper || !extra_.empty()) previous_tau_ = swarm.tau;
 }
 
 template <class T>
@@ -101,11 +109,12 @@ RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
       in.crowding += SeparationPenalty(scenario_.reward, swarm.separations.distance(i, j));
     }
   }
-  for (std::size_t a = 0; a < dynamics::kWrenchSize; ++a) {
-    in.tau[a] = swarm.tau[u][a];
-    in.previous_tau[a] = previous_tau_[u][a];
-    in.action[a] = swarm.action[u][a];
-    in.previous_action[a] = previous_action_[u][a];
+  if (scenario_.reward.kind == RewardKind::kPaper) {
+    std::copy(swarm.action[u].begin(), swarm.action[u].end(), in.action);
+    std::copy(previous_action_[u].begin(), previous_action_[u].end(), in.previous_action);
+  } else {
+    std::copy(swarm.tau[u].begin(), swarm.tau[u].end(), in.tau);
+    std::copy(previous_tau_[u].begin(), previous_tau_[u].end(), in.previous_tau);
   }
   return in;
 }

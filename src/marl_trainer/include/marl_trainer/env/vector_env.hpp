@@ -71,8 +71,8 @@ class VectorEnv {
   int envs() const { return options_.envs; }
   int agents() const { return mix_.front().agents; }
   int action_size() const { return mix_.front().action_size(); }
-  int observation_size() const { return mix_.front().observation_size(); }
-  int state_size() const;
+  int observation_size() const { return observation_size_; }
+  int state_size() const { return state_size_; }
   /// The scenario that an environment of this object flies.
   const Scenario& scenario(int env = 0) const;
   /// Arrays of the right sizes.
@@ -111,7 +111,7 @@ class VectorEnv {
   template <class Number>
   void StepAll(const Number* actions, const EnvArrays& out);
   template <class Number>
-  void Gather(const Slice& slice, const Number* actions);
+  void TakeActions(const Slice& slice, const Number* actions);
   void Restart(const Slice& slice, int lane, bool first);
   void WriteStart(const Slice& slice, const EnvArrays& out) const;
   /// Ends the episodes of some lanes and starts their next ones.
@@ -122,6 +122,7 @@ class VectorEnv {
 
   std::vector<Scenario> mix_;
   VectorEnvOptions options_;
+  int observation_size_ = 0, state_size_ = 0;
   std::vector<Slice> slices_;
   std::vector<int> slice_of_;                   // [envs]
   std::vector<std::uint64_t> round_;            // [envs], k of the running episode

@@ -22,10 +22,11 @@ struct RewardInput {
   T confidence = T(0.0);  ///< c, 0 when lost
   T lost = T(0.0);        ///< l, 0 or 1
   T crowding = T(0.0);    ///< sum over neighbours of SeparationPenalty
-  T tau[dynamics::kWrenchSize],
-      previous_tau[dynamics::kWrenchSize];  ///< tau / tau_max of this and the previous step
-  T action[dynamics::kWrenchSize],
-      previous_action[dynamics::kWrenchSize];  ///< executed action (paper's cost)
+  // What the cost is of; only those that it reads need be set.
+  T tau[dynamics::kWrenchSize];  ///< release: tau / tau_max of this and the previous step
+  T previous_tau[dynamics::kWrenchSize];
+  T action[dynamics::kWrenchSize];  ///< paper: executed action [action_size]
+  T previous_action[dynamics::kWrenchSize];
 };
 
 /// b of Eq. 28 [m].

@@ -54,6 +54,8 @@ class Task {
   void Measure(const SwarmState<T>& swarm, const Mask<T>* starting);
   /// Coordination and communication, which the swarm shares.
   void ShareReward(const SwarmState<T>& swarm, T* coordination, T* communication) const;
+  /// Keeps what the next decision is compared with.
+  void Remember(const SwarmState<T>& swarm);
   RewardInput<T> InputOf(const SwarmState<T>& swarm, int i) const;
 
   JudgeConfig scenario_;

@@ -79,16 +79,15 @@ agent::NeighbourSummary<Pack> TruthSource::Neighbours(const dynamics::World& wor
 
 void TruthSource::Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const {
   const Vec3<Pack>& p_WB = world.vehicle(i).p_WB;
-  const bool by_index = scenario_.observation.order == agent::NeighbourOrder::kIndex;
-  agent::NearestSlots<Pack> nearest;
-  for (int j = 0, slot = 0; j < scenario_.agents && slot < agent::kNeighbourSlots; ++j) {
-    if (j == i) continue;
-    const Vec3<Pack> r = world.vehicle(j).p_WB - p_WB;
-    if (by_index) {
-      nearest.offset[slot++] = r;
-    } else {
-      nearest.Offer(r, world.distance(i, j));
+  if (scenario_.observation.order == agent::NeighbourOrder::kIndex) {
+    for (int j = 0, slot = 0; j < scenario_.agents && slot < agent::kNeighbourSlots; ++j) {
+      if (j != i) slots[slot++] = world.vehicle(j).p_WB - p_WB;
     }
+    return;
+  }
+  agent::NearestSlots<Pack> nearest;
+  for (int j = 0; j < scenario_.agents; ++j) {
+    if (j != i) nearest.Offer(world.vehicle(j).p_WB - p_WB, world.distance(i, j));
   }
   std::copy(nearest.offset, nearest.offset + agent::kNeighbourSlots, slots);
 }

@@ -33,7 +33,7 @@ inline void BuildObservation(const AgentConfig& scenario, const Knowledge<T>& k,
     assert(n == spec.offset(block));
     (void)block;
   };
-  const auto put3 = [&](const Vec3<T>& v) {
+  const auto put3 = [&](const Vec3<T>& v) __attribute__((always_inline)) {
     put(n, v.x);
     put(n + 1, v.y);
     put(n + 2, v.z);
