@@ -11,7 +11,7 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 
-from house import check_includes, check_sizes
+import house
 from tidy import check_tidy
 from tools import check_catkin, check_format, check_python, check_shell
 
@@ -50,8 +50,12 @@ def main(argv):
         "shell": check_shell,
         "python": check_python,
         "catkin": check_catkin,
-        "includes": check_includes,
-        "sizes": check_sizes,
+        "includes": house.check_includes,
+        "circles": house.check_circles,
+        "sizes": house.check_sizes,
+        "topics": house.check_topics,
+        "namespaces": house.check_namespaces,
+        "registries": house.check_registries,
         "tidy": lambda: check_tidy(options.build),
     }
     options = parse(argv, list(checkers))

@@ -1,14 +1,19 @@
-"""The rules of the house that no other program knows: sizes, and who may include whom."""
+"""The rules of the house that no other program knows: who may include whom, sizes and names.
+
+Each rule takes the folder of the packages and returns (what was looked at, list of findings).
+"""
 
 import collections
 import re
 
-from files import CPP, ROOT, all_files
+from files import ROOT
+from tree import cpp_files, included, includes, logical, read
 
+SOURCE = ROOT / "src"
 LONGEST_FILE = 350  # lines
 FULLEST_FOLDER = 12  # sources and headers
-LONG_FOR_A_REASON = "Over 350 lines: "  # then the reason, in the first lines of the file
-HEAD = 12  # lines
+REASON = re.compile(r"(//|#) Long because: \w")
+HEAD = 5  # lines, in which the reason stands
 
 # What a package may include besides itself.
 MAY_INCLUDE = {
@@ -19,63 +24,207 @@ MAY_INCLUDE = {
     "marl_trainer": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent"},
     "stg_bringup": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "marl_trainer"},
 }
+# The namespaces of a package's core, and of all nodes; each may have namespaces within.
+CORE_NAMESPACES = {
+    "auv_common": ("stg",),
+    "auv_dynamics": ("stg::dynamics",),
+    "acoustic_channel": ("stg::acoustics",),
+    "stg_agent": ("stg::agent",),
+    "marl_trainer": ("stg::task", "stg::env", "stg::learn"),
+}
+# What composes the sections of all packages belongs to all of them.
+SHARED_NAMESPACES = {("marl_trainer", "scenario"): ("stg",)}
+NODE_NAMESPACES = ("stg::nodes", "stg::topics", "stg::frames")
 # Headers that a core must not see.
 ROS = re.compile(
     r"(ros|rosbag|rosgraph_msgs|diagnostic_updater|tf2|tf2_\w+|std_srvs|\w+_msgs)/|.*/nodes/"
 )
-INCLUDE = re.compile(r"\s*#\s*include\s*[<\"]([^>\"]+)[>\"]")
 
 
-def is_core(path):
-    """Whether a file, as a path from src/, belongs to the core of its package."""
-    parts = path.parts
-    return (
-        len(parts) > 2
-        and parts[1] in ("include", "src")
-        and parts[2] != "nodes"
-        and parts[0] != "stg_bringup"
-    )
+def part_of(file):
+    """Returns "core", "nodes", "test" or "bench": the part of its package that a file, as a path
+    from the folder of the packages, belongs to."""
+    parts = file.parts
+    if parts[1] in ("test", "bench"):
+        return parts[1]
+    return "nodes" if "nodes" in logical(file).parts[1:-1] else "core"
 
 
-def forbidden(path, header, packages):
-    """Returns why the file at `path` (from src/) may not include `header`, or None."""
-    package = path.parts[0]
-    other = header.split("/")[0]
-    if is_core(path) and ROS.match(header):
-        return "the core needs neither ROS nor messages"
-    if other in packages and other != package and other not in MAY_INCLUDE.get(package, packages):
-        return f"{package} does not build on {other}"
-    return None
-
-
-def check_includes(source=ROOT / "src"):
-    """Looks for includes against the order of the packages, or of ROS by a core, below `source`."""
-    packages = set(MAY_INCLUDE)
+def check_includes(source=SOURCE):
+    """Looks for includes against the order of the packages, and of ROS or messages by a core."""
     findings = []
-    files = [p for p in sorted(source.rglob("*")) if p.suffix in CPP and p.is_file()]
-    for file in files:
-        path = file.relative_to(source)
-        text = file.read_text(encoding="utf-8", errors="replace")
-        for number, line in enumerate(text.splitlines(), start=1):
-            match = INCLUDE.match(line)
-            reason = match and forbidden(path, match.group(1), packages)
-            if reason:
-                findings.append(f"src/{path}:{number}: {match.group(1)}: {reason}")
-    return f"{len(files)} files", findings
+    for include in includes(source):
+        package, other = include.file.parts[0], include.header.split("/")[0]
+        reason = None
+        if part_of(include.file) == "core" and ROS.match(include.header):
+            reason = "the core needs neither ROS nor messages"
+        elif other in MAY_INCLUDE and other not in {package} | MAY_INCLUDE.get(package, set()):
+            reason = f"{package} does not build on {other}"
+        if reason:
+            findings.append(f"src/{include.file}:{include.line}: {include.header}: {reason}")
+    return f"{len(cpp_files(source))} files", findings
 
 
-def check_sizes():
+def _circles(graph):
+    """Returns one path [a, b, ..., a] for each circle that a walk through {node: nodes} meets."""
+    found, state, path = [], {}, []
+
+    def visit(node):
+        state[node] = "open"
+        path.append(node)
+        for other in sorted(graph.get(node, ())):
+            if state.get(other) == "open":
+                found.append([*path[path.index(other) :], other])
+            elif other not in state:
+                visit(other)
+        path.pop()
+        state[node] = "done"
+
+    for node in sorted(graph):
+        if node not in state:
+            visit(node)
+    return found
+
+
+def check_circles(source=SOURCE):
+    """Looks for folders of one parent that include each other in circles.
+
+    What lies directly in the parent is common ground: it ties the folders together.
+    """
+    graphs = collections.defaultdict(lambda: collections.defaultdict(set))
+    where = {}
+    for include in includes(source):
+        if part_of(include.file) in ("test", "bench"):
+            continue
+        ours, theirs = logical(include.file).parts, included(include, source).parts
+        depth = 0
+        while depth < min(len(ours), len(theirs)) and ours[depth] == theirs[depth]:
+            depth += 1
+        # The first step at which the two part ways must be a folder for both.
+        if 0 < depth < min(len(ours), len(theirs)) - 1:
+            graphs[ours[:depth]][ours[depth]].add(theirs[depth])
+            place = f"src/{include.file}:{include.line}"
+            where.setdefault((ours[:depth], ours[depth], theirs[depth]), place)
+    findings = []
+    for parent, graph in sorted(graphs.items()):
+        for circle in _circles(graph):
+            places = ", ".join(where[parent, a, b] for a, b in zip(circle, circle[1:]))
+            findings.append(f"{'/'.join(parent)}: {' -> '.join(circle)}: {places}")
+    return f"{sum(map(len, graphs.values()))} folders", findings
+
+
+def check_sizes(source=SOURCE):
     """Looks for files that are too long without a reason, and folders that are too full."""
     findings = []
-    folders = collections.Counter()
-    files = [p for p in all_files() if p.parts[0] == "src" and p.suffix in CPP | {".py"}]
+    folders = collections.Counter(path.parent for path in cpp_files(source))
+    scripts = [p.relative_to(source) for p in source.rglob("*.py")]
+    files = sorted([*cpp_files(source), *scripts])
     for path in files:
-        lines = (ROOT / path).read_text(encoding="utf-8", errors="replace").splitlines()
-        if len(lines) > LONGEST_FILE and LONG_FOR_A_REASON not in "\n".join(lines[:HEAD]):
-            findings.append(f"{path}: {len(lines)} lines, and no '{LONG_FOR_A_REASON}' in its head")
-        if path.suffix in CPP:
-            folders[path.parent] += 1
+        lines = read(source / path).splitlines()
+        if len(lines) > LONGEST_FILE and not REASON.search("\n".join(lines[:HEAD])):
+            findings.append(f"src/{path}: {len(lines)} lines, and no 'Long because: ...' in its head")
     for folder, count in sorted(folders.items()):
         if count > FULLEST_FOLDER:
-            findings.append(f"{folder}: {count} sources and headers, more than {FULLEST_FOLDER}")
+            findings.append(f"src/{folder}: {count} sources and headers, more than {FULLEST_FOLDER}")
     return f"{len(files)} files in {len(folders)} folders", findings
+
+
+def _code(text):
+    """Returns C++ text without its comments, line by line; strings stay."""
+    pattern = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+    keep = lambda m: m.group(0) if m.group(0)[0] == '"' else "\n" * m.group(0).count("\n")
+    return pattern.sub(keep, text).splitlines()
+
+
+def _product(source):
+    """Yields (path, lines of code) of everything but tests and benchmarks."""
+    for path in cpp_files(source):
+        if part_of(path) not in ("test", "bench"):
+            yield path, _code(read(source / path))
+
+
+CONNECT = re.compile(
+    r"\b(?:advertise|subscribe|advertiseService|serviceClient)\s*(?:<[^;(]*>)?\s*\(\s*\""
+)
+CONSTANT = re.compile(r'constexpr char k\w+\[\] = "([^"]+)"')
+
+
+def check_topics(source=SOURCE):
+    """Looks for names of topics and services outside the headers called topics.hpp."""
+    product = list(_product(source))
+    named = set()
+    for path, lines in product:
+        if path.name == "topics.hpp":
+            named |= {name for line in lines for name in CONSTANT.findall(line)}
+    absolute = {name for name in named if name.startswith("/")}
+    findings = []
+    for path, lines in product:
+        if path.name == "topics.hpp":
+            continue
+        for number, line in enumerate(lines, start=1):
+            # The name may stand on the line after the call.
+            call = CONNECT.search(line + (lines[number].strip() if number < len(lines) else ""))
+            if call and call.start() < len(line):
+                findings.append(f"src/{path}:{number}: {call.group(0)}...: a name is not in topics.hpp")
+            for name in absolute & set(re.findall(r'"([^"]*)"', line)):
+                findings.append(f'src/{path}:{number}: "{name}": topics.hpp has a name for it')
+    return f"{len(named)} names", findings
+
+
+FORWARD = re.compile(r"namespace \w[\w:]* \{(\s*(class|struct) \w+;)+\s*\}")
+
+
+def _outer_namespaces(lines):
+    """Yields (line number, name) of each namespace that is not within another and holds more than
+    forward declarations."""
+    depth = 0
+    for number, line in enumerate(lines, start=1):
+        match = re.match(r"namespace (\w[\w:]*) \{", line)
+        if match and depth == 0 and not FORWARD.match("\n".join(lines[number - 1 :])):
+            yield number, match.group(1)
+        braces = re.sub(r'"[^"]*"|\'.\'', "", line)
+        depth += braces.count("{") - braces.count("}")
+
+
+def check_namespaces(source=SOURCE):
+    """Looks for code outside the namespaces of its package."""
+    findings = []
+    looked_at = 0
+    for path, lines in _product(source):
+        ours = NODE_NAMESPACES
+        if part_of(path) == "core":
+            ours = CORE_NAMESPACES.get(path.parts[0], ())
+        ours = SHARED_NAMESPACES.get(logical(path).parts[:2], ours)
+        looked_at += 1
+        for number, name in _outer_namespaces(lines):
+            if not any(name == own or name.startswith(own + "::") for own in ours):
+                findings.append(f"src/{path}:{number}: namespace {name}: not one of {', '.join(ours)}")
+    return f"{looked_at} files", findings
+
+
+ENTRY = re.compile(r'\{\s*"(\w+)",\s*(?:&?[A-Z]\w*|\[)')
+
+
+def registered(source=SOURCE):
+    """Returns {name: the file whose registry lists it}."""
+    names = {}
+    for path, lines in _product(source):
+        text = "\n".join(lines)
+        for body in re.findall(r"static \w*Registry\w*(?:<[^;{]*>)?\s+\w+[({](.*?)\);", text, re.S):
+            names.update({name: path for name in ENTRY.findall(body)})
+    return names
+
+
+def check_registries(source=SOURCE):
+    """Looks for comparisons with a name that a registry lists: what it stands for is made by the
+    registry, and decided nowhere else."""
+    names = registered(source)
+    compared = re.compile(r'[!=]=\s*"(\w+)"|"(\w+)"\s*[!=]=')
+    findings = []
+    for path, lines in _product(source):
+        for number, line in enumerate(lines, start=1):
+            for match in compared.finditer(line):
+                name = match.group(1) or match.group(2)
+                if name in names and path != names[name]:
+                    findings.append(f'src/{path}:{number}: "{name}" is for {names[name]} to know')
+    return f"{len(names)} names", findings

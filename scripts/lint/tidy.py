@@ -50,10 +50,11 @@ class Unit:
         return [p for p in paths if p.suffix == ".cpp" and ROOT / "src" in p.parents]
 
     def name(self):
-        """Returns the target's name and the file's, such as auv_dynamics.unity_0_cxx."""
+        """Returns a name for a file: auv_dynamics.unity_0_cxx, or the source with dots."""
         match = re.search(r"CMakeFiles/([^/]+)\.dir/", str(self.file))
-        target = match.group(1) if match else self.file.parent.name
-        return f"{target}.{self.file.stem}"
+        if match:
+            return f"{match.group(1)}.{self.file.stem}"
+        return ".".join(self.file.relative_to(ROOT / "src").parts)
 
 
 def wanted_units(build):

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/extended.hpp"
 #include "channel_fixture.hpp"
 
 namespace stg::acoustics {

@@ -1,8 +1,9 @@
-#include "acoustic_channel/link/link_quality.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "acoustic_channel/models/extended.hpp"
+#include "acoustic_channel/models/range.hpp"
 
 namespace stg::acoustics {
 namespace {

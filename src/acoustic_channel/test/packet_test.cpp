@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/extended.hpp"
 #include "acoustic_channel/modem/payload_pool.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"

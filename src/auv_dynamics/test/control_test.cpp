@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "physics.hpp"
 
 namespace stg::dynamics {
@@ -145,6 +148,42 @@ TEST(Control, HeadingModeWithoutACommandOnlyDampsYaw) {
                              {0.0, 0.0, 0.6}, fraction);
   EXPECT_NEAR(fraction[5], -0.05, 1e-15);
   EXPECT_NEAR(fraction[4], 0.0, 1e-15);
+}
+
+TEST(ExecuteAction, AForceInterfaceClipsAndAVelocityInterfaceGoesThroughItsController) {
+  ControlConfig c;
+  const VehicleConfig v;
+  const Mat3<double> R_WB = RotationOf(TrigOf(Vec3<double>{0.1, -0.2, 0.7}));
+  const Vec3<double> v_WB{0.1, -0.05, 0.02}, w_WB_B{0.1, 0.2, -0.1}, rpy{0.1, -0.2, 0.7};
+  const double wanted[] = {0.5, -2.0, 0.25, -0.125, 3.0, 0.0};
+  double executed[kMaxActionSize] = {}, fraction[kWrenchSize];
+  c.interface = ActionInterface::kTau6;
+  const auto never = []() -> Vec3<double> { throw std::logic_error("tau6 needs no angles"); };
+  const Vec3<double> none =
+      ExecuteAction(c, v, wanted, R_WB, v_WB, never, w_WB_B, executed, fraction);
+  EXPECT_EQ(Norm(none), 0.0);
+  const double clipped[] = {0.5, -1.0, 0.25, -0.125, 1.0, 0.0};
+  for (int k = 0; k < kWrenchSize; ++k) {
+    EXPECT_EQ(fraction[k], clipped[k]);
+    EXPECT_EQ(executed[k], clipped[k]);
+  }
+  c.interface = ActionInterface::kVelocity3;
+  double smooth[3] = {0.1, 0.2, 0.3}, expected[kWrenchSize];
+  std::copy(smooth, smooth + 3, executed);
+  SmoothAction(c, 3, wanted, smooth);
+  const auto angles = [&rpy] { return rpy; };
+  const Vec3<double> v_des_W =
+      ExecuteAction(c, v, wanted, R_WB, v_WB, angles, w_WB_B, executed, fraction);
+  VelocityController(c, v, DesiredVelocity(v, smooth), R_WB, v_WB, rpy, w_WB_B, expected);
+  EXPECT_EQ(v_des_W.y, DesiredVelocity(v, smooth).y);
+  for (int k = 0; k < kWrenchSize; ++k) EXPECT_EQ(fraction[k], expected[k]);
+  // Asking for that velocity: itself, or the same force.
+  double action[kMaxActionSize];
+  ActionForVelocity(c, v, smooth, R_WB, v_WB, never, w_WB_B, action);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(action[k], smooth[k]);
+  c.interface = ActionInterface::kTau6;
+  ActionForVelocity(c, v, smooth, R_WB, v_WB, angles, w_WB_B, action);
+  for (int k = 0; k < kWrenchSize; ++k) EXPECT_EQ(action[k], expected[k]);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace {
 std::size_t allocations = 0;
 }
 
-// Counts every allocation of this test program. Not inlined: the compiler would otherwise see malloc
-// paired with delete and warn.
+// Counts every allocation of this test program. Not inlined: the compiler would otherwise see
+// malloc paired with delete and warn.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size)) return p;
@@ -29,7 +29,9 @@ std::size_t allocations = 0;
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
 
 namespace stg::dynamics {
 namespace {

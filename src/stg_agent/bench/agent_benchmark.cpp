@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "../test/agent_fixture.hpp"
+#include "agent/agent_fixture.hpp"
 
 /// Nanoseconds per agent and decision: Observe, Act, a detection, and as many packets as
 /// arrive on average.

@@ -11,7 +11,7 @@ import unittest
 import rospkg
 import rospy
 import rostest
-from auv_msgs.msg import AcousticReception, EpisodeSummary, SensorSync, TaskState
+from auv_msgs.msg import AcousticReception, EpisodeSummary, SensorFrame, TaskState
 from auv_msgs.srv import LoadPolicy, Pause, Reset
 from geometry_msgs.msg import TwistStamped, WrenchStamped
 from graph_listener import Diagnostics, Latest, kill, rosnode_pid, wait_for, wait_for_restart
@@ -26,7 +26,7 @@ class Faults(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.diagnostics = Diagnostics()
-        cls.sync = Latest("/auv_0/sensor_sync", SensorSync)
+        cls.frame = Latest("/auv_0/sensor_frame", SensorFrame)
         cls.odom = Latest("/auv_0/odom", Odometry)
         cls.task = Latest("/auv_0/task_state", TaskState)
         cls.wrench = Latest("/auv_0/wrench", WrenchStamped)
@@ -87,20 +87,19 @@ class Faults(unittest.TestCase):
             "auv_0/controller", "/auv_0/cmd_vel", TwistStamped, ("world", "auv_0/base_link"), spoil)
 
     def test_agent_refuses_finite_numbers_that_would_break_it(self):
-        publisher = rospy.Publisher("/auv_0/odom", Odometry, queue_size=10)
-        wait_for(lambda: publisher.get_num_connections() > 0, 20.0, "the agent on /auv_0/odom")
-        wait_for(lambda: self.refused("auv_0/agent", "odom", "not finite") is not None, 20.0,
-                 "diagnostics")
+        publisher = rospy.Publisher("/auv_0/sensor_frame", SensorFrame, queue_size=10)
+        wait_for(lambda: publisher.get_num_connections() > 0, 20.0, "the agent hears this test")
+        wait_for(lambda: self.refused("auv_0/agent", "sensor_frame", "not finite") is not None,
+                 20.0, "diagnostics")
         pid = rosnode_pid("/auv_0/agent")
-        before = self.refused("auv_0/agent", "odom", "not finite")
+        before = self.refused("auv_0/agent", "sensor_frame", "not finite")
 
         def sent_and_refused():
-            message = self.odom.message
-            huge = Odometry(header=message.header, child_frame_id=message.child_frame_id)
-            huge.pose.pose.position.x = 1e200
-            huge.pose.pose.orientation.w = 1.0
+            huge = SensorFrame(header=self.frame.message.header, step=self.frame.message.step)
+            huge.pose.position.x = 1e200
+            huge.pose.orientation.w = 1.0
             publisher.publish(huge)
-            return self.refused("auv_0/agent", "odom", "not finite") > before
+            return self.refused("auv_0/agent", "sensor_frame", "not finite") > before
 
         wait_for(sent_and_refused, 10.0, "the agent refuses a position of 1e200 m")
         publisher.unregister()
@@ -135,32 +134,32 @@ class Faults(unittest.TestCase):
         wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours known again")
 
     def test_reset_starts_the_asked_episode_and_its_seed(self):
-        before = self.sync.message
+        before = self.frame.message
         reset = rospy.ServiceProxy("/reset", Reset)
         response = reset(seed=4242, use_seed=True)
         self.assertTrue(response.success)
         self.assertEqual(response.episode, before.episode + 1)
-        wait_for(lambda: self.sync.message.episode == response.episode, 10.0, "the new episode")
-        self.assertEqual(self.sync.message.seed, 4242)
-        self.assertGreater(self.sync.message.header.stamp, before.header.stamp)
+        wait_for(lambda: self.frame.message.episode == response.episode, 10.0, "the new episode")
+        self.assertEqual(self.frame.message.seed, 4242)
+        self.assertGreater(self.frame.message.header.stamp, before.header.stamp)
         wait_for(lambda: self.summary.message and self.summary.message.episode == before.episode,
                  10.0, "a summary of the episode cut short")
         self.assertFalse(self.summary.message.complete)
         self.task.wait_for_more(5)
         self.assertEqual(self.task.message.episode, response.episode)
         self.assertEqual(reset(use_seed=False).episode, response.episode + 1)
-        wait_for(lambda: self.sync.message.episode == response.episode + 1, 10.0, "the next one")
-        self.assertEqual(self.sync.message.seed, 4243)
+        wait_for(lambda: self.frame.message.episode == response.episode + 1, 10.0, "the next one")
+        self.assertEqual(self.frame.message.seed, 4243)
 
     def test_pause_stops_time_and_resume_goes_on(self):
         pause = rospy.ServiceProxy("/pause", Pause)
         self.assertTrue(pause(pause=True).success)
         time.sleep(0.3)
-        stopped = self.sync.message
+        stopped = self.frame.message
         time.sleep(1.0)
-        self.assertEqual(self.sync.message.header.stamp, stopped.header.stamp)
+        self.assertEqual(self.frame.message.header.stamp, stopped.header.stamp)
         self.assertTrue(pause(pause=False).success)
-        wait_for(lambda: self.sync.message.step >= stopped.step + 3, 10.0, "steps after the pause")
+        wait_for(lambda: self.frame.message.step >= stopped.step + 3, 10.0, "steps after the pause")
 
     def test_policy_is_replaced_while_running_and_a_bad_one_refused(self):
         load = rospy.ServiceProxy("/auv_0/agent/load_policy", LoadPolicy)

@@ -24,7 +24,7 @@ def foreign_subscriptions(subscribers):
                 continue
             own = node[: -len("agent")]
             allowed = {own + name for name in
-                       ("odom", "target_detection", "sensor_sync", "acoustic/rx")}
+                       ("sensor_frame", "acoustic/rx")}
             if topic not in allowed | {"/clock"}:
                 foreign.append((node, topic))
     return foreign
@@ -60,9 +60,9 @@ class Medium(unittest.TestCase):
 
     def test_check_of_subscriptions_finds_ground_truth_and_neighbours(self):
         truth = [["/target_0/odom", ["/auv_1/agent"]]]
-        neighbour = [["/auv_0/odom", ["/auv_0/agent", "/auv_1/agent"]]]
+        neighbour = [["/auv_0/sensor_frame", ["/auv_0/agent", "/auv_1/agent"]]]
         self.assertEqual(foreign_subscriptions(truth), [("/auv_1/agent", "/target_0/odom")])
-        self.assertEqual(foreign_subscriptions(neighbour), [("/auv_1/agent", "/auv_0/odom")])
+        self.assertEqual(foreign_subscriptions(neighbour), [("/auv_1/agent", "/auv_0/sensor_frame")])
 
     def test_every_node_reports_its_health(self):
         nodes = {"world", "acoustic_channel", "metrics"}

@@ -5,7 +5,7 @@ import unittest
 
 import rospy
 import rostest
-from auv_msgs.msg import AcousticPacket, SensorSync, TaskState
+from auv_msgs.msg import AcousticPacket, SensorFrame, TaskState
 from graph_listener import Latest, kill, wait_for, wait_for_restart
 
 PERIOD = 5  # decisions between two packets of an AUV
@@ -30,7 +30,7 @@ class Restart(unittest.TestCase):
     def setUpClass(cls):
         cls.tasks = {i: All(f"/auv_{i}/task_state", TaskState) for i in (KILLED, UNTOUCHED)}
         cls.packets = All(f"/auv_{KILLED}/acoustic/tx", AcousticPacket)
-        cls.steps = All(f"/auv_{KILLED}/sensor_sync", SensorSync)
+        cls.steps = All(f"/auv_{KILLED}/sensor_frame", SensorFrame)
         cls.task = Latest(f"/auv_{KILLED}/task_state", TaskState)
         cls.lives = []  # [(first step of a life, last one)]
         cls.task.wait_for_more(12, 30.0)

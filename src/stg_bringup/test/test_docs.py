@@ -2,12 +2,29 @@
 
 import pathlib
 import re
+import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCES = ROOT / "src"
 DOCS = ROOT / "docs"
-PACKAGES = ("acoustic_channel", "auv_dynamics", "marl_trainer", "stg_agent", "stg_bringup")
+PACKAGES = (
+    "acoustic_channel",
+    "auv_common",
+    "auv_dynamics",
+    "marl_trainer",
+    "stg_agent",
+    "stg_bringup",
+)
+sys.path.insert(0, str(ROOT / "scripts" / "lint"))
+
+import tree  # noqa: E402 pylint: disable=wrong-import-position,import-error
+
+
+def named_sources():
+    """Returns {name: path} of the C++ files; pages name them as an #include does, sources too:
+    `auv_dynamics/world/world.cpp`."""
+    return {str(tree.logical(path)): SOURCES / path for path in tree.cpp_files(SOURCES)}
 
 
 def equation_rows():
@@ -28,12 +45,34 @@ class Equations(unittest.TestCase):
         wanted = {f"({n})" for n in range(1, 45)} | {"Algorithm S1", "Algorithm S2"}
         self.assertEqual(named, wanted)
 
-    def test_every_file_exists_and_contains_the_name(self):
+    @staticmethod
+    def declaration(name):
+        """Returns a pattern of what declares `name`: a type, a function, a member, an enumerator."""
+        if re.match(r"k[A-Z]", name):
+            return rf"\b{name}\b *[,}}=]"
+        kind = rf"\b(?:class|struct|using|enum class) {name}\b"
+        typed = rf"^(?! *return\b)[^=(;\n]*[\w>&*] +(?:[\w<>]+::)*{name} *[(=;{{]"
+        return f"{kind}|{typed}"
+
+    def test_every_file_exists_and_declares_the_name(self):
         for equation, path, name in equation_rows():
             with self.subTest(equation):
-                text = (SOURCES / path).read_text()
-                code = re.sub(r"//.*", "", text)
-                self.assertRegex(code, rf"\b{re.escape(name)}\b", path)
+                self.assertTrue(path in named_sources(), f"{path} does not exist")
+                code = re.sub(r"//.*", "", named_sources()[path].read_text())
+                found = re.search(self.declaration(name), code, re.MULTILINE)
+                self.assertTrue(found, f"{path} does not declare {name}")
+
+    def test_a_use_is_no_declaration(self):
+        uses = "  Reward(k);\n  return Reward(k);\n  x = Reward(k);\n  if (Reward(k) > 0) {\n  Add(Reward)"
+        self.assertIsNone(re.search(self.declaration("Reward"), uses, re.MULTILINE))
+        for text in (
+            "class Reward {",
+            "inline T Reward(const T& x)",
+            "void World<T>::Reward()",
+            "  double Reward = 0.9;",
+            "  std::vector<T> Reward(int n) const;",
+        ):
+            self.assertIsNotNone(re.search(self.declaration("Reward"), text, re.MULTILINE), text)
 
 
 class Links(unittest.TestCase):
@@ -48,16 +87,89 @@ class Links(unittest.TestCase):
                     self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
 
 
+class Sources(unittest.TestCase):
+    """Sources that the pages name exist."""
+
+    def test_every_source_named_on_a_page_exists(self):
+        sources = named_sources()
+        places = set(sources) | {str(path.relative_to(SOURCES)) for path in sources.values()}
+        # Tables name the files of one package by their end.
+        ends = {"/".join(place.split("/")[-n:]) for place in places for n in (1, 2, 3)}
+        examples = {str(path.relative_to(ROOT)) for path in (ROOT / "examples").rglob("*.cpp")}
+        found = 0
+        for page in [*ROOT.glob("*.md"), *DOCS.rglob("*.md")]:
+            if page.name != "CHANGELOG.md":
+                for name in re.findall(r"`(?:src/)?((?:\w+/)*\w+\.[ch]pp)`", page.read_text()):
+                    found += 1
+                    known = places if name.split("/")[0] in PACKAGES else ends | examples
+                    with self.subTest(name):
+                        self.assertTrue(name in known, f"{page.name}: {name} does not exist")
+        self.assertGreater(found, 100)
+
+
+class HowTo(unittest.TestCase):
+    """Each page on how to add something has an example that is compiled and tested."""
+
+    THINGS = (
+        "vehicle",
+        "propagation_model",
+        "medium_access",
+        "target_motion",
+        "sensor",
+        "controller",
+        "algorithm",
+        "reward_term",
+    )
+
+    def pages(self):
+        """Yields (thing, its page, the path of its example from docs/how_to)."""
+        for thing in self.THINGS:
+            article = "an" if thing[0] in "aeiou" else "a"
+            (example,) = (ROOT / "examples" / thing).glob("*.cpp")
+            yield thing, f"add_{article}_{thing}.md", f"../../examples/{thing}/{example.name}"
+
+    def test_every_thing_is_in_the_index_and_its_example_in_the_build(self):
+        index = (DOCS / "how_to" / "README.md").read_text()
+        build = (ROOT / "examples" / "CMakeLists.txt").read_text()
+        for thing, page, example in self.pages():
+            with self.subTest(thing):
+                self.assertTrue(f"({page})" in index, page)
+                self.assertTrue(f"({example})" in index, example)
+                self.assertTrue(f"({example})" in (DOCS / "how_to" / page).read_text(), page)
+                self.assertTrue(f"  {example.partition('examples/')[2]}\n" in build, example)
+
+    def test_the_pages_are_alike(self):
+        for _, page, _ in self.pages():
+            text = (DOCS / "how_to" / page).read_text()
+            heads = re.findall(r"^## (\d\. \w+ \w+)", text, re.MULTILINE)
+            heads = [re.sub("constants", "keys", head) for head in heads]
+            wanted = ["1. The interface", "2. The file", "3. The line", "4. Its keys", "5. What to"]
+            self.assertEqual(heads, wanted, page)
+
+    @staticmethod
+    def words(code):
+        """Returns C++ text without comments, its white space folded."""
+        return " ".join(re.sub(r"//.*", "", code).split())
+
+    def test_what_a_page_quotes_first_stands_in_its_example(self):
+        for _, page, example in self.pages():
+            code = self.words((DOCS / "how_to" / example).read_text())
+            blocks = re.findall(r"```cpp\n(.*?)```", (DOCS / "how_to" / page).read_text(), re.S)
+            self.assertTrue(blocks, page)
+            for part in re.split(r"\n\s*(?:// ?)?\.\.\.\n", blocks[0]):
+                with self.subTest(page):
+                    self.assertTrue(self.words(part) in code, f"{page}: {part}")
+
+
 class PackagePages(unittest.TestCase):
     """Each package has a page, and the page tells what its nodes use."""
 
     def constants(self, package):
-        """Returns the topic and service names of a package, from the header that names them."""
-        header = SOURCES / package / "src/nodes/include" / package / "nodes/topics.hpp"
-        if not header.exists():
-            return set()
-        topics = header.read_text().split("namespace stg::frames")[0]
-        return set(re.findall(r'constexpr char k\w+\[\] = "([\w/]+)"', topics))
+        """Returns the topic and service names of a package, from the headers that name them."""
+        text = ""
+        for header in (SOURCES / package / "src" / "nodes").rglob("topics.hpp"):
+            text += header.read_text().partition("namespace stg::frames")[0]
+        return set(re.findall(r'constexpr char k\w+\[\] = "([\w/]+)"', text))
 
     def test_every_package_has_a_page_with_its_topics_and_services(self):
         self.assertGreater(len(set().union(*map(self.constants, PACKAGES))), 10)
@@ -77,7 +189,7 @@ class PackagePages(unittest.TestCase):
         found = 0
         for package in PACKAGES:
             text = (DOCS / "packages" / f"{package}.md").read_text()
-            for source in sorted((SOURCES / package / "src" / "nodes").glob("*.cpp")):
+            for source in sorted((SOURCES / package / "src" / "nodes").rglob("*.cpp")):
                 for match in pattern.finditer(source.read_text()):
                     name = match.group(1) or match.group(2)
                     found += 1

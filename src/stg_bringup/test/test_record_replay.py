@@ -19,8 +19,9 @@ import rosgraph
 LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "launch.py"
 STEPS = 60
 AGENTS = 4
-OF_EVERY_STEP = ("odom", "sensor_sync", "cmd_vel", "wrench", "acoustic/tx", "acoustic/rx",
-                 "task_state", "agent_step")
+OF_EVERY_STEP = ("odom", "sensor_frame", "cmd_vel", "wrench", "acoustic/rx", "task_state",
+                 "agent_step")
+SLOTS = 5  # decisions between two packets of an AUV
 
 
 def free_port():
@@ -127,6 +128,7 @@ class RecordReplay(unittest.TestCase):
         for i in range(AGENTS):
             for name in OF_EVERY_STEP:
                 self.assertEqual(len(stamps[f"/auv_{i}/{name}"]), STEPS + 1, f"/auv_{i}/{name}")
+            self.assertEqual(sorted(stamps[f"/auv_{i}/acoustic/tx"]), clock[i % SLOTS::SLOTS])
         self.assertEqual([r.step for r in reports], list(range(STEPS)))
         self.assertTrue(reports[-1].truncated)
         self.assertEqual(len(reports[-1].final_state), len(reports[-1].global_state))

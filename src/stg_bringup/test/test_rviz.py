@@ -29,29 +29,33 @@ def displays(node):
 
 def published_markers():
     """Returns the marker topics: `markers` is the node's name in view.launch, and its private
-    topics are those it advertises."""
+    topics are those that its header names."""
     (node,) = [
         node
         for node in ElementTree.parse(PACKAGE / "launch" / "view.launch").getroot().iter("node")
         if node.get("type") == "marker_node"
     ]
-    source = (PACKAGE / "src" / "nodes" / "marker_node.cpp").read_text()
-    names = re.findall(r'private_nh_\.advertise<visualization_msgs::MarkerArray>\("(\w+)"', source)
+    header = (PACKAGE / "src" / "nodes" / "markers" / "topics.hpp").read_text()
+    names = re.findall(r'constexpr char k\w+\[\] = "(\w+)"', header)
     return {f"/{node.get('name')}/{name}" for name in names}
 
 
 def marker_namespaces():
     """Returns the namespaces that the markers are built with."""
-    source = (PACKAGE / "src" / "nodes" / "marker_builder.cpp").read_text()
+    source = (PACKAGE / "src" / "nodes" / "markers" / "marker_builder.cpp").read_text()
     return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail)\("(\w+)"', source))
 
 
 def published_frames():
-    """Returns patterns of the frames that the world publishes, from the header that names them."""
-    header = SOURCES / "auv_dynamics/src/nodes/include/auv_dynamics/nodes/topics.hpp"
-    text = header.read_text()
-    frames = set(re.findall(r'inline constexpr char kWorld\w*\[\] = "(\w+)"', text))
-    return frames | {r"target_\d+"} if '"target_" + std::to_string' in text else frames
+    """Returns patterns of the frames that the world publishes, from the headers that name them."""
+    patterns = set()
+    for header in SOURCES.rglob("topics.hpp"):
+        frames = header.read_text().partition("namespace stg::frames {")[2]
+        patterns |= set(re.findall(r'constexpr char k\w+\[\] = "(\w+)"', frames))
+        for text in re.findall(r"return (.+std::to_string.+);", frames):
+            parts = [part.strip('"') for part in text.split(" + ")]
+            patterns.add("".join(r"\d+" if "to_string" in part else part for part in parts))
+    return patterns
 
 
 class RvizFiles(unittest.TestCase):
@@ -93,6 +97,7 @@ class RvizFiles(unittest.TestCase):
 
     def test_every_frame_is_published(self):
         known = published_frames()
+        self.assertEqual(known, {"world", "world_ned", r"auv_\d+/base_link", r"target_\d+"})
         for name, view in rviz_files().items():
             manager = view["Visualization Manager"]
             frames = [manager["Global Options"]["Fixed Frame"]]

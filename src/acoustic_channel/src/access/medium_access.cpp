@@ -1,7 +1,7 @@
 #include "acoustic_channel/access/medium_access.hpp"
 
 #include "acoustic_channel/access/periodic.hpp"
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 
 namespace stg::acoustics {
 

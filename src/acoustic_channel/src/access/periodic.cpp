@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 
 namespace stg::acoustics {
 
@@ -12,18 +12,17 @@ void Describe(PeriodicConfig* c, config::Table* t) {
          "periodic: every AUV sends one packet per period, staggered; at least one decision");
 }
 
-std::optional<config::Violation> FindConflict(const PeriodicConfig& c, const RunConfig& run) {
-  if (c.transmit_period_s < run.decision_dt_s() * (1.0 - 1e-9)) {
-    return config::Violation{{"channel.transmit_period_s", "time.dt_s", "time.decision_steps"},
-                             "an AUV sends at most one packet per decision"};
-  }
-  return {};
-}
-
 Periodic::Periodic(const PeriodicConfig& config, const RunConfig& run)
-    : period_(run.decision_period()),
-      slots_(static_cast<TimeNs>(
-          std::max(1.0, std::round(config.transmit_period_s / run.decision_dt_s())))) {}
+    : transmit_period_s_(config.transmit_period_s),
+      decision_s_(run.decision_dt_s()),
+      period_(run.decision_period()),
+      slots_(static_cast<TimeNs>(std::max(1.0, std::round(transmit_period_s_ / decision_s_)))) {}
+
+std::optional<config::Violation> Periodic::FindConflict() const {
+  if (transmit_period_s_ >= decision_s_ * (1.0 - 1e-9)) return {};
+  return config::Violation{{"channel.transmit_period_s", "time.dt_s", "time.decision_steps"},
+                           "an AUV sends at most one packet per decision"};
+}
 
 void Periodic::Plan(TimeNs from, TimeNs /*until*/, std::vector<TimeNs>* start) const {
   std::fill(start->begin(), start->end(), kNever);

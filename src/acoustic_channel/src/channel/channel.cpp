@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/error.hpp"
 
 namespace stg::acoustics {
@@ -22,10 +21,6 @@ void Channel::CheckOrThrow(const Transmission& packet) const {
            std::to_string(max_payload()));
   }
   if (packet.generation > packet.stamp) refuse("generated after it was offered");
-}
-
-std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run) {
-  return PropagationModels().Make(config.model, config)->MakeChannel(config, run);
 }
 
 }  // namespace stg::acoustics

@@ -16,6 +16,10 @@ PropagationModelRegistry& PropagationModels() {
   return registry;
 }
 
+std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run) {
+  return PropagationModels().Make(config.model, config)->MakeChannel(config, run);
+}
+
 std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& config) {
   return PropagationModels().Make(config.model, config)->MakeLinkEstimator();
 }

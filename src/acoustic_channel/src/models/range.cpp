@@ -1,6 +1,6 @@
 #include "acoustic_channel/models/range.hpp"
 
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 
 namespace stg::acoustics {
 

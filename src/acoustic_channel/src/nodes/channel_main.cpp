@@ -2,5 +2,6 @@
 #include "channel_node.hpp"
 
 int main(int argc, char** argv) {
-  return stg::nodes::RunNode<stg::nodes::ChannelNode>(argc, argv, "channel");
+  return stg::nodes::RunNode<stg::nodes::ChannelNode>(argc, argv, "channel",
+                                                      stg::nodes::NodeClock::kMessages);
 }

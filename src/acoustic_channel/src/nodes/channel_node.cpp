@@ -3,13 +3,13 @@
 #include <std_msgs/Header.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
-#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -25,6 +25,7 @@ ChannelNode::ChannelNode()
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
+      barrier_(scenario_.agents),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
       velocities_(auvs_.size()),
@@ -52,7 +53,7 @@ void ChannelNode::Spin() {
 double ChannelNode::Work() {
   CloseIfDue();
   health_.Tick();
-  return open_ && started_ ? std::min(0.2, timeout_s_) : 0.2;
+  return std::clamp(barrier_.deadline_s() - WallSeconds(), 0.0, 0.2);
 }
 
 void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
@@ -72,47 +73,66 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     return;
   }
   const TimeNs stamp = NsOf(message->header.stamp);
-  if (open_ && stamp > stamp_) {
+  if (barrier_.open() && stamp > barrier_.stamp()) {
     // The world has gone on without this channel.
     Close();
     ++incomplete_steps_;
   }
+  // Nodes need time to start, and the world waits with its first step until they have.
+  const bool at_start = !barrier_.started() && message->step == 0;
+  const double deadline_s =
+      at_start ? std::numeric_limits<double>::infinity() : WallSeconds() + timeout_s_;
+  if (barrier_.Open(stamp, deadline_s) == StepBarrier::Opening::kRepeated) return;
+  SetNodeTime(message->header.stamp);
+  gave_up_ = false;
   const TimeNs start = stamp - static_cast<TimeNs>(message->step) * period_;
   if (start != start_ || message->episode != episode_) channel_->Reset(message->seed, 0);
   start_ = start;
-  stamp_ = stamp;
   episode_ = message->episode;
   step_ = message->step;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
     velocities_[i] = WorldVelocity(message->poses[i], message->twists[i]);
   }
-  open_ = true;
-  opened_ = ros::WallTime::now();
+  AskForTransmissions();
   CloseIfDue();
+}
+
+/// Only of those whose packet can leave in this step, though others may offer one, too.
+void ChannelNode::AskForTransmissions() {
+  const TimeNs stamp = barrier_.stamp();
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const auto& early = auvs_[static_cast<std::size_t>(i)].transmission;
+    if (early && NsOf(early->header.stamp) == stamp) barrier_.Hear(i, stamp);
+    if (!channel_->Due(i, stamp - start_)) barrier_.Excuse(i);
+  }
 }
 
 void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message) {
-  if (!Usable(i, *message)) return;
-  Auv& auv = auvs_[static_cast<std::size_t>(i)];
-  auv.present = true;
-  auv.transmission = message;
-  CloseIfDue();
-}
-
-bool ChannelNode::Usable(int i, const auv_msgs::AcousticPacket& message) {
-  if (message.header.frame_id != frames::Body(i)) {
+  if (message->header.frame_id != frames::Body(i)) {
     refused_transmissions_.Add(Refusals::kFrame);
-  } else if (message.source != static_cast<std::uint32_t>(i) || !Sendable(message)) {
-    refused_transmissions_.Add(Refusals::kMalformed);
-  } else if (NsOf(message.header.stamp) < stamp_ ||
-             (!open_ && NsOf(message.header.stamp) == stamp_)) {
-    refused_transmissions_.Add(Refusals::kStale);
-    auvs_[static_cast<std::size_t>(i)].present = true;  // late, but alive
-  } else {
-    return true;
+    return;
   }
-  return false;
+  if (message->source != static_cast<std::uint32_t>(i) || !Sendable(*message)) {
+    refused_transmissions_.Add(Refusals::kMalformed);
+    return;
+  }
+  auto& kept = auvs_[static_cast<std::size_t>(i)].transmission;
+  switch (barrier_.Hear(i, NsOf(message->header.stamp))) {
+    case StepBarrier::Word::kCounts:
+      kept = message;
+      break;
+    case StepBarrier::Word::kEarly:
+      if (!kept || kept->header.stamp != message->header.stamp) kept = message;
+      break;
+    case StepBarrier::Word::kDuplicate:
+      break;
+    case StepBarrier::Word::kLate:
+    case StepBarrier::Word::kForeign:
+      refused_transmissions_.Add(Refusals::kStale);
+      break;
+  }
+  CloseIfDue();
 }
 
 bool ChannelNode::Sendable(const auv_msgs::AcousticPacket& message) const {
@@ -136,41 +156,27 @@ acoustics::Transmission ChannelNode::TransmissionOf(const auv_msgs::AcousticPack
   return t;
 }
 
-bool ChannelNode::Complete(bool wait_for_all) const {
-  for (const Auv& auv : auvs_) {
-    const bool sent = auv.transmission && NsOf(auv.transmission->header.stamp) == stamp_;
-    if (!sent && (auv.present || wait_for_all)) return false;
-  }
-  return true;
-}
-
 void ChannelNode::CloseIfDue() {
-  if (!open_) return;
-  if (Complete(!started_)) {
-    started_ = true;
-    Close();
-  } else if (started_ && (ros::WallTime::now() - opened_).toSec() > timeout_s_) {
-    for (Auv& auv : auvs_) {
-      auv.present = auv.transmission && NsOf(auv.transmission->header.stamp) == stamp_;
-    }
-    ++incomplete_steps_;
-    Close();
-  }
+  if (!barrier_.open()) return;
+  if (!barrier_.GiveUp(WallSeconds()).empty()) gave_up_ = true;
+  if (!barrier_.Complete()) return;
+  if (gave_up_) ++incomplete_steps_;
+  Close();
 }
 
 void ChannelNode::Close() {
-  open_ = false;
-  const TimeNs now = stamp_ - start_;
+  barrier_.Close();
+  const TimeNs now = barrier_.stamp() - start_;
   offered_.clear();
-  for (const Auv& auv : auvs_) {
-    const auto& m = auv.transmission;
-    if (!m || NsOf(m->header.stamp) != stamp_ || m->data.empty()) continue;
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    const auto& m = auvs_[i].transmission;
+    if (!barrier_.answered(static_cast<int>(i)) || m->data.empty()) continue;
     offered_.push_back(TransmissionOf(*m));
   }
   channel_->Step(now, step_, positions_, velocities_, offered_);
   for (int i = 0; i < scenario_.agents; ++i) PublishReceptions(i, now + period_);
   std_msgs::Header done;
-  done.stamp = TimeOf(stamp_);
+  done.stamp = TimeOf(barrier_.stamp());
   done.frame_id = frames::kWorld;
   done_.publish(done);
   steps_.Add();
@@ -195,7 +201,7 @@ void ChannelNode::PublishLinks(TimeNs now) {
   if ((wall - links_sent_).toSec() < display_period_s_) return;
   links_sent_ = wall;
   auto& m = links_message_;
-  m.header.stamp = TimeOf(stamp_);
+  m.header.stamp = TimeOf(barrier_.stamp());
   m.header.frame_id = frames::kWorld;
   m.links.clear();
   for (int i = 0; i < scenario_.agents; ++i) {
@@ -243,7 +249,7 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   for (int i = 0; i < scenario_.agents; ++i) {
     for (int j = 0; j < scenario_.agents; ++j) {
       if (i == j) continue;
-      const double age = channel_->Link(i, j, std::max<TimeNs>(0, stamp_ - start_)).age_s;
+      const double age = channel_->Link(i, j, std::max<TimeNs>(0, barrier_.stamp() - start_)).age_s;
       largest = std::max(largest, age);
       sum += age;
       ++links;
@@ -251,8 +257,8 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
   status.add("age of information, mean [s]", links > 0 ? sum / links : 0.0);
   status.add("age of information, largest [s]", largest);
-  for (std::size_t i = 0; i < auvs_.size(); ++i) {
-    if (!auvs_[i].present) {
+  for (int i = 0; i < scenario_.agents; ++i) {
+    if (!barrier_.present(i)) {
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
                           "AUV " + std::to_string(i) + " does not transmit");
     }

@@ -11,18 +11,20 @@
 #include <vector>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 #include "auv_common/nodes/health.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
+#include "auv_common/step/step_barrier.hpp"
 
 namespace stg::nodes {
 
 /// The acoustic channel of the whole swarm.
 ///
-/// Step k closes when the position and the transmission of every AUV at t_k are in; then each AUV
-/// gets its reception window (t_k, t_{k+1}], and the world its acknowledgement. An AUV that is
-/// silent for `timeout` seconds, or whose step the world has left behind, is gone for the channel
-/// and not waited for again before it transmits again. Positions, velocities, step, episode
-/// and seed come with /swarm_state.
+/// Step k closes when the positions at t_k are in and the transmissions of all AUVs whose packets
+/// can leave in it; then each AUV gets its reception window (t_k, t_{k+1}], and the world its
+/// acknowledgement. An AUV that is due and silent for `timeout` seconds, or whose step the world
+/// has left behind, is gone for the channel and not waited for again before it transmits again.
+/// Positions, velocities, step, episode and seed come with /swarm_state.
 class ChannelNode {
  public:
   /// Throws UserError.
@@ -31,21 +33,19 @@ class ChannelNode {
 
  private:
   struct Auv {
-    bool present = true;                              ///< its transmissions are waited for
-    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< newest one
+    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< of the open step, or an early one
     ros::Publisher reception;
     ros::Subscriber subscriber;
   };
 
   double Work();
   void OnSwarm(const auv_msgs::SwarmState::ConstPtr& message);
+  void AskForTransmissions();
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
-  bool Usable(int i, const auv_msgs::AcousticPacket& message);
   /// Says nothing, or something that the modem takes.
   bool Sendable(const auv_msgs::AcousticPacket& message) const;
   /// What the message offers.
   acoustics::Transmission TransmissionOf(const auv_msgs::AcousticPacket& message) const;
-  bool Complete(bool wait_for_all) const;
   void CloseIfDue();
   void Close();
   void PublishReceptions(int i, TimeNs until);
@@ -56,11 +56,11 @@ class ChannelNode {
   std::unique_ptr<acoustics::Channel> channel_;
   TimeNs period_;  ///< of decisions [ns]
   double timeout_s_, display_period_s_;
-  bool open_ = false, started_ = false;
-  TimeNs stamp_ = -1;  ///< clock time of the open or last step [ns]
-  TimeNs start_ = -1;  ///< clock time of the episode's step 0 [ns]
+  StepBarrier barrier_;   ///< the AUVs
+  bool gave_up_ = false;  ///< on an AUV in the open step
+  TimeNs start_ = -1;     ///< clock time of the episode's step 0 [ns]
   std::uint32_t episode_ = 0, step_ = 0;
-  ros::WallTime opened_, links_sent_;
+  ros::WallTime links_sent_;
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_, velocities_;
   std::vector<acoustics::Transmission> offered_;

@@ -1,7 +1,9 @@
 #include "auv_common/nodes/parameters.hpp"
 
 #include <ros/console.h>
+#include <ros/master.h>
 #include <ros/param.h>
+#include <ros/this_node.h>
 
 #include <cmath>
 #include <sstream>
@@ -82,6 +84,15 @@ int IntegerParameter(const std::string& name, int fallback, int lo, int hi) {
   const double number = NumberParameter(name, fallback, lo, hi);
   if (number != std::floor(number)) Refuse(name, "a whole number");
   return static_cast<int>(number);
+}
+
+bool SimulatedTimeParameter() {
+  XmlRpc::XmlRpcValue request, response, value;
+  request[0] = ros::this_node::getName();
+  request[1] = std::string("/use_sim_time");
+  // Fails where nobody has set it.
+  return ros::master::execute("getParam", request, response, value, true) &&
+         value.getType() == XmlRpc::XmlRpcValue::TypeBoolean && static_cast<bool>(value);
 }
 
 config::Source ScenarioSource() {

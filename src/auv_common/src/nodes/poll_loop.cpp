@@ -71,6 +71,32 @@ class Alarm {
   std::shared_ptr<State> state_;
 };
 
+/// What roscpp's thread does in each round, beside its own work; empty: nothing.
+class RoundSlot {
+ public:
+  static RoundSlot& Get() {
+    static RoundSlot* const slot = new RoundSlot;  // roscpp's thread may outlive main()
+    return *slot;
+  }
+
+  /// Afterwards no round runs that was set before.
+  void Set(std::function<void()> round) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    round_ = std::move(round);
+  }
+
+ private:
+  RoundSlot() {
+    ros::PollManager::instance()->addPollThreadListener([this] {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (round_) round_();
+    });
+  }
+
+  std::mutex mutex_;
+  std::function<void()> round_;
+};
+
 /// Gives the calling thread a real-time priority. Threads that it starts are ordinary again.
 void RunInRealTime(int priority) {
   sched_param parameters{};
@@ -84,6 +110,8 @@ void RunInRealTime(int priority) {
 }  // namespace
 
 int RealtimePriorityParameter() { return IntegerParameter("realtime_priority", 0, 0, 99); }
+
+void ReservePollLoop() { RoundSlot::Get(); }
 
 void PollLoop(const std::function<double()>& work, int realtime_priority) {
   std::mutex mutex;
@@ -112,14 +140,14 @@ void PollLoop(const std::function<double()>& work, int realtime_priority) {
     done = true;
     changed.notify_one();
   };
-  const auto connection = ros::PollManager::instance()->addPollThreadListener(round);
+  RoundSlot::Get().Set(round);
   ros::PollManager::instance()->getPollSet().signal();
   {
     std::unique_lock<std::mutex> lock(mutex);
     // A shutdown by a signal ends roscpp's thread without a word to this one.
     while (!done && ros::ok()) changed.wait_for(lock, std::chrono::milliseconds(200));
   }
-  ros::PollManager::instance()->removePollThreadListener(connection);
+  RoundSlot::Get().Set(nullptr);
   if (failure) std::rethrow_exception(failure);
 }
 

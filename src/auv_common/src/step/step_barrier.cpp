@@ -34,6 +34,7 @@ StepBarrier::Opening StepBarrier::Open(TimeNs stamp, double deadline_s) {
     party.answered = party.excused = false;
     // Who still owes an answer has no more time than it had.
     party.deadline_s = party.owes ? std::min(party.deadline_s, deadline_s) : deadline_s;
+    party.owed = party.owes;
     party.owes = true;
   }
   return replaced ? Opening::kReplaced : Opening::kOpened;
@@ -45,7 +46,7 @@ StepBarrier::Word StepBarrier::Hear(int index, TimeNs stamp) {
     return Word::kForeign;
   }
   party.present = true;
-  party.owes = false;
+  party.owes = party.owed = false;
   party.deadline_s = deadline_s_;
   if (!has_stamp_ || stamp > stamp_) return Word::kEarly;
   if (stamp < stamp_) return Word::kLate;
@@ -59,7 +60,7 @@ void StepBarrier::Excuse(int index) {
   assert(open_);
   Party& party = At(index);
   party.excused = true;
-  party.owes = false;
+  party.owes = party.owes && party.owed;
 }
 
 const std::vector<int>& StepBarrier::GiveUp(double now_s) {
@@ -101,7 +102,7 @@ void StepBarrier::Restart() {
   open_ = started_ = has_stamp_ = false;
   for (Party& party : parties_) {
     party.present = true;
-    party.answered = party.excused = party.owes = false;
+    party.answered = party.excused = party.owes = party.owed = false;
   }
 }
 

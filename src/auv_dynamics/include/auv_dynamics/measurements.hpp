@@ -7,11 +7,11 @@
 /// a ROS message unchanged (doubles and integer nanoseconds only).
 namespace stg::dynamics {
 
-/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU). T = Pack: kLanes
-/// vehicles at the same time.
+/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU). T = Pack: one vehicle of
+/// each of kLanes worlds, which have clocks of their own.
 template <class T>
 struct Navigation {
-  TimeNs stamp = 0;
+  PerLane<T, TimeNs> stamp{};
   Vec3<T> p_WB;                                  ///< position [m]
   T q_WB[4] = {T(1.0), T(0.0), T(0.0), T(0.0)};  ///< orientation, w x y z, unit norm
   Vec3<T> v_WB_B;                                ///< velocity over ground in body axes [m/s]
@@ -37,6 +37,9 @@ struct Cue {
   Vec3<double> p_WT;   ///< stated target position in the world [m]
   double std_m = 0.0;  ///< standard deviation of each component [m]
 };
+
+/// Numbers of a generalised force.
+inline constexpr int kWrenchSize = 6;
 
 /// Generalised force tau = [X Y Z K M N] at the body origin, body axes [N, N m].
 template <class T>

@@ -2,5 +2,6 @@
 #include "controller_node.hpp"
 
 int main(int argc, char** argv) {
-  return stg::nodes::RunNode<stg::nodes::ControllerNode>(argc, argv, "controller");
+  return stg::nodes::RunNode<stg::nodes::ControllerNode>(argc, argv, "controller",
+                                                         stg::nodes::NodeClock::kMessages);
 }

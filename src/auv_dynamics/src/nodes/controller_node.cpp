@@ -49,6 +49,7 @@ void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
   } else if (!FiniteOdometry(*message)) {
     refused_odometry_.Add(Refusals::kNotFinite);
   } else {
+    SetNodeTime(message->header.stamp);
     nav_ = NavOf(*message, 0);
     has_nav_ = true;
     Answer();

@@ -8,10 +8,14 @@
 #include <std_msgs/Header.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
+#include "auv_common/step/pacer.hpp"
+#include "auv_common/step/step_barrier.hpp"
 #include "auv_dynamics/world/world.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 #include "world_publisher.hpp"
@@ -38,10 +42,6 @@ class WorldNode {
 
  private:
   struct Auv {
-    dynamics::Wrench<double> command;  ///< for the present step if answered, else the last one
-    bool answered = false;             ///< the command is for the present step
-    bool present = true;               ///< waited for
-    std::uint64_t misses = 0;
     Refusals refused;
     ros::Subscriber subscriber;
   };
@@ -53,13 +53,12 @@ class WorldNode {
   bool OnPause(auv_msgs::Pause::Request& request, auv_msgs::Pause::Response& response);
 
   double Work();
-  double OpenFor() const { return (ros::WallTime::now() - opened_).toSec(); }
+  int Channel() const { return scenario_.agents; }
+  double OpenFor() const { return WallSeconds() - opened_; }
   double WaitTime() const;
   void Advance();
-  bool ListenersReady();
-  bool Answered() const;  ///< by all AUVs that are present
-  bool Complete() const;
-  void CountMisses();
+  bool ListenersReady(double now);
+  void WarnOfLoss(int party) const;
   void StepWorld();
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
@@ -74,26 +73,30 @@ class WorldNode {
   dynamics::WorldConfig scenario_;
   dynamics::World world_;
   TimeNs period_;  ///< of decisions [ns]
-  double real_time_factor_, deadline_s_, start_timeout_s_, summary_timeout_s_;
+  Pacer pacer_;
+  double summary_timeout_s_;
   int episodes_;         ///< to run; 0: until stopped
   std::string awaited_;  ///< node that must be up before the run starts, or empty
   bool wait_for_metrics_;
   std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
   std::uint32_t seed_episode_ = 0;
   std::uint32_t episode_ = 0, step_ = 0;
-  TimeNs start_;          ///< clock time of the present episode's step 0
-  bool running_ = false;  ///< everybody has answered the very first step, or is given up
-  bool paused_ = false, finishing_ = false, done_ = false;
-  bool channel_answered_ = false, channel_present_ = true;
-  std::uint64_t channel_misses_ = 0, missed_steps_ = 0;
+  TimeNs start_;         ///< clock time of the present episode's step 0
+  StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
+  bool finishing_ = false, done_ = false;
+  std::uint64_t missed_steps_ = 0;
   bool shown_ = true;  ///< observers have the present step
   EventRate steps_;
-  ros::WallTime opened_;          ///< the present step's sensor data began to go out
+  double began_ = 0.0;      ///< WallSeconds() when the run began
+  double opened_ = 0.0;     ///< when the present step's sensor data began to go out
+  double give_up_s_ = 0.0;  ///< until when the last summary is waited for
+  std::optional<double> awaited_seen_;
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
-  ros::WallTime began_, due_, deadline_, awaited_seen_;
   std::vector<Auv> auvs_;
-  std::vector<dynamics::Wrench<Pack>> commands_;
+  std::vector<dynamics::Wrench<double>> commands_;  ///< of each AUV, its newest
+  std::vector<std::uint8_t> fresh_;                 ///< the command was for the last step
+  std::vector<dynamics::Wrench<Pack>> wrenches_;    ///< the commands in all lanes
   std::unique_ptr<WorldPublisher> publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;

@@ -14,57 +14,77 @@ namespace {
 
 constexpr std::uint32_t kSentQueue = 100;
 
-geometry_msgs::TransformStamped TransformOf(const nav_msgs::Odometry& m) {
+geometry_msgs::TransformStamped TransformOf(const std::string& child,
+                                            const geometry_msgs::Pose& pose) {
   geometry_msgs::TransformStamped t;
-  t.header = m.header;
-  t.child_frame_id = m.child_frame_id;
-  t.transform.translation.x = m.pose.pose.position.x;
-  t.transform.translation.y = m.pose.pose.position.y;
-  t.transform.translation.z = m.pose.pose.position.z;
-  t.transform.rotation = m.pose.pose.orientation;
+  t.header.frame_id = frames::kWorld;
+  t.child_frame_id = child;
+  t.transform.translation.x = pose.position.x;
+  t.transform.translation.y = pose.position.y;
+  t.transform.translation.z = pose.position.z;
+  t.transform.rotation = pose.orientation;
   return t;
 }
 
 }  // namespace
 
 WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz)
-    : scenario_(scenario), display_period_s_(1.0 / display_rate_hz) {
+    : scenario_(scenario),
+      display_period_s_(1.0 / display_rate_hz),
+      auvs_(static_cast<std::size_t>(scenario.agents)),
+      targets_(static_cast<std::size_t>(scenario.target.count)),
+      target_messages_(targets_.size()) {
+  Advertise();
+  swarm_message_.header.frame_id = frames::kWorld;
+  swarm_message_.poses.resize(auvs_.size());
+  swarm_message_.twists.resize(auvs_.size());
+  swarm_message_.wrenches.resize(auvs_.size());
+  swarm_message_.fresh.resize(auvs_.size());
+  swarm_message_.target_positions.resize(targets_.size());
+  swarm_message_.target_velocities.resize(targets_.size());
+  SendWorldNed();
+  std_msgs::String resolved;
+  resolved.data = config::ResolvedText(ScenarioSource());
+  scenario_topic_ = ros::NodeHandle().advertise<std_msgs::String>(topics::kScenario, 1, true);
+  scenario_topic_.publish(resolved);
+}
+
+void WorldPublisher::Advertise() {
   ros::NodeHandle node;
   for (int i = 0; i < scenario_.agents; ++i) {
-    AuvTopics auv;
-    auv.odometry =
-        node.advertise<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), kSentQueue, true);
-    auv.detection = node.advertise<auv_msgs::TargetDetection>(
-        topics::AuvTopic(i, topics::kTargetDetection), kSentQueue, true);
-    auv.sync = node.advertise<auv_msgs::SensorSync>(topics::AuvTopic(i, topics::kSensorSync),
-                                                    kSentQueue, true);
-    auv.odometry_message.header.frame_id = frames::kWorld;
-    auv.odometry_message.child_frame_id = frames::Body(i);
-    auv.sync_message.header.frame_id = frames::Body(i);
-    auvs_.push_back(auv);
+    AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
+    auv.frame_message.header.frame_id = frames::Body(i);
+    auv.frame = node.advertise<auv_msgs::SensorFrame>(topics::AuvTopic(i, topics::kSensorFrame),
+                                                      kSentQueue, true);
+    auv.odometry.Advertise(topics::AuvTopic(i, topics::kOdom), kSentQueue,
+                           [&auv, i](nav_msgs::Odometry* m) {
+                             m->header.stamp = auv.frame_message.header.stamp;
+                             m->header.frame_id = frames::kWorld;
+                             m->child_frame_id = frames::Body(i);
+                             m->pose.pose = auv.frame_message.pose;
+                             m->twist.twist = auv.frame_message.twist;
+                             return !m->header.stamp.isZero();
+                           });
+    auv.detection.Advertise(topics::AuvTopic(i, topics::kTargetDetection), kSentQueue,
+                            [&auv](auv_msgs::TargetDetection* m) {
+                              *m = auv.last_detection;
+                              return !m->header.stamp.isZero();
+                            });
   }
   // roscpp sends in the order of these lines: who decides is served first.
   swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
-  swarm_message_.header.frame_id = frames::kWorld;
-  swarm_message_.poses.resize(auvs_.size());
-  swarm_message_.twists.resize(auvs_.size());
-  swarm_message_.target_positions.resize(static_cast<std::size_t>(scenario_.target.count));
-  swarm_message_.target_velocities.resize(swarm_message_.target_positions.size());
   for (int k = 0; k < scenario_.target.count; ++k) {
-    targets_.push_back(node.advertise<nav_msgs::Odometry>(topics::TargetOdom(k), kSentQueue, true));
-    nav_msgs::Odometry m;
-    m.header.frame_id = frames::kWorld;
-    m.child_frame_id = frames::Target(k);
-    m.pose.pose.orientation.w = 1.0;
-    target_messages_.push_back(m);
+    nav_msgs::Odometry& message = target_messages_[static_cast<std::size_t>(k)];
+    message.header.frame_id = frames::kWorld;
+    message.child_frame_id = frames::Target(k);
+    message.pose.pose.orientation.w = 1.0;
+    targets_[static_cast<std::size_t>(k)].Advertise(topics::TargetOdom(k), kSentQueue,
+                                                    [&message](nav_msgs::Odometry* m) {
+                                                      *m = message;
+                                                      return !m->header.stamp.isZero();
+                                                    });
   }
-  detection_message_.header.frame_id = frames::kWorld;
-  SendWorldNed();
-  std_msgs::String resolved;
-  resolved.data = config::ResolvedText(ScenarioSource());
-  scenario_topic_ = node.advertise<std_msgs::String>(topics::kScenario, 1, true);
-  scenario_topic_.publish(resolved);
 }
 
 void WorldPublisher::SendWorldNed() {
@@ -85,28 +105,34 @@ void WorldPublisher::PublishClock(TimeNs now) {
   clock_.publish(clock);
 }
 
+void WorldPublisher::SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
+                                 const std::vector<std::uint8_t>& fresh) {
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    SetVector(wrenches[i].force, &swarm_message_.wrenches[i].force);
+    SetVector(wrenches[i].moment, &swarm_message_.wrenches[i].torque);
+  }
+  swarm_message_.fresh = fresh;
+}
+
 void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
                                     std::uint32_t episode, std::uint32_t step) {
   const TimeNs now = start + world.time(0);
   for (int i = 0; i < world.agents(); ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
-    auv_msgs::SensorSync& sync = auv.sync_message;
-    sync.detections = static_cast<std::uint32_t>(PublishDetections(world, now, i));
-    SetOdometry(world.Nav(0, i), start, &auv.odometry_message);
-    auv.odometry.publish(auv.odometry_message);
-    sync.header.stamp = TimeOf(now);
-    sync.episode = episode;
-    sync.step = step;
-    sync.seed = world.seed(0);
-    if (step == 0) {
-      sync.cue_valid = true;  // and stays in the message, for an agent that comes late
-      const dynamics::Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
-      SetVector(cue.p_WT, &sync.cue_position);
-      sync.cue_std = cue.std_m;
+    auv_msgs::SensorFrame& frame = auv.frame_message;
+    frame.episode = episode;
+    frame.step = step;
+    SetFrame(world, start, i, &auv);
+    auv.frame.publish(frame);
+    swarm_message_.poses[static_cast<std::size_t>(i)] = frame.pose;
+    swarm_message_.twists[static_cast<std::size_t>(i)] = frame.twist;
+  }
+  for (AuvTopics& auv : auvs_) {
+    auv.odometry.Publish();
+    for (const auv_msgs::TargetDetection& detection : auv.frame_message.detections) {
+      auv.last_detection = detection;
+      auv.detection.Publish();
     }
-    auv.sync.publish(sync);
-    swarm_message_.poses[static_cast<std::size_t>(i)] = auv.odometry_message.pose.pose;
-    swarm_message_.twists[static_cast<std::size_t>(i)] = auv.odometry_message.twist.twist;
   }
   for (int k = 0; k < world.targets(); ++k) {
     const auto u = static_cast<std::size_t>(k);
@@ -119,6 +145,42 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
   swarm_message_.seed = world.seed(0);
 }
 
+void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
+                              AuvTopics* auv) const {
+  auv_msgs::SensorFrame& m = auv->frame_message;
+  const dynamics::NavState nav = world.Nav(0, i);
+  m.header.stamp = TimeOf(start + nav.stamp);
+  m.seed = world.seed(0);
+  SetNavigation(nav, &m.pose, &m.twist);
+  SetDetections(world, start + nav.stamp, i, &m);
+  if (m.step == 0) {
+    m.cue_valid = true;  // and stays in the message, for an agent that comes late
+    const dynamics::Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
+    SetVector(cue.p_WT, &m.cue_position);
+    m.cue_std = cue.std_m;
+  }
+}
+
+void WorldPublisher::SetDetections(const dynamics::World& world, TimeNs now, int i,
+                                   auv_msgs::SensorFrame* frame) const {
+  frame->detections.clear();
+  for (int k = 0; k < world.targets(); ++k) {
+    dynamics::Detection detection;
+    if (!world.Sense(0, i, k, &detection)) continue;
+    frame->detections.emplace_back();
+    auv_msgs::TargetDetection& m = frame->detections.back();
+    const Vec3<double> r = detection.p_WT - Lane(world.vehicle(i).p_WB, 0);
+    const double variance = detection.std_m * detection.std_m;
+    m.header.stamp = TimeOf(now);
+    m.header.frame_id = frames::kWorld;
+    m.target = static_cast<std::uint32_t>(k);
+    SetVector(r, &m.relative_position);
+    SetVector(detection.p_WT, &m.position);
+    SetVector({variance, variance, variance}, &m.variance);
+    m.range = Norm(r);
+  }
+}
+
 void WorldPublisher::PublishSwarm() { swarm_.publish(swarm_message_); }
 
 void WorldPublisher::PublishViews(const dynamics::World& world, TimeNs start) {
@@ -128,30 +190,10 @@ void WorldPublisher::PublishViews(const dynamics::World& world, TimeNs start) {
     m.header.stamp = TimeOf(now);
     SetVector(Lane(world.target(k).p_WT, 0), &m.pose.pose.position);
     SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
-    targets_[static_cast<std::size_t>(k)].publish(m);
+    targets_[static_cast<std::size_t>(k)].Publish();
   }
   PublishFrames(now);
   PublishClock(now);
-}
-
-int WorldPublisher::PublishDetections(const dynamics::World& world, TimeNs now, int i) {
-  int count = 0;
-  for (int k = 0; k < world.targets(); ++k) {
-    dynamics::Detection detection;
-    if (!world.Sense(0, i, k, &detection)) continue;
-    auv_msgs::TargetDetection& m = detection_message_;
-    const Vec3<double> r = detection.p_WT - Lane(world.vehicle(i).p_WB, 0);
-    const double variance = detection.std_m * detection.std_m;
-    m.header.stamp = TimeOf(now);
-    m.target = static_cast<std::uint32_t>(k);
-    SetVector(r, &m.relative_position);
-    SetVector(detection.p_WT, &m.position);
-    SetVector({variance, variance, variance}, &m.variance);
-    m.range = Norm(r);
-    auvs_[static_cast<std::size_t>(i)].detection.publish(m);
-    ++count;
-  }
-  return count;
 }
 
 void WorldPublisher::PublishFrames(TimeNs now) {
@@ -159,8 +201,12 @@ void WorldPublisher::PublishFrames(TimeNs now) {
   if ((wall - frames_sent_).toSec() < display_period_s_) return;
   frames_sent_ = wall;
   transforms_.clear();
-  for (const AuvTopics& auv : auvs_) transforms_.push_back(TransformOf(auv.odometry_message));
-  for (const auto& target : target_messages_) transforms_.push_back(TransformOf(target));
+  for (const AuvTopics& auv : auvs_) {
+    transforms_.push_back(TransformOf(auv.frame_message.header.frame_id, auv.frame_message.pose));
+  }
+  for (const auto& target : target_messages_) {
+    transforms_.push_back(TransformOf(target.child_frame_id, target.pose.pose));
+  }
   for (auto& t : transforms_) t.header.stamp = TimeOf(now);
   frames_.sendTransform(transforms_);
 }

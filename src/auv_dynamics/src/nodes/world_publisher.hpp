@@ -1,6 +1,6 @@
 #pragma once
 
-#include <auv_msgs/SensorSync.h>
+#include <auv_msgs/SensorFrame.h>
 #include <auv_msgs/SwarmState.h>
 #include <auv_msgs/TargetDetection.h>
 #include <nav_msgs/Odometry.h>
@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "auv_common/nodes/on_demand.hpp"
 #include "auv_dynamics/world/world.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 
@@ -21,6 +22,11 @@ class WorldPublisher {
   /// @param display_rate_hz largest rate of transforms per second of wall time, and a tenth of the
   ///                        largest rate of /clock: no step waits for either
   WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz);
+
+  /// What acted on the AUVs in the step that ends at the next PublishSensors: wrenches, and which
+  /// of them were commanded for it.
+  void SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
+                   const std::vector<std::uint8_t>& fresh);
 
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
   /// [ns].
@@ -35,11 +41,16 @@ class WorldPublisher {
 
  private:
   struct AuvTopics {
-    ros::Publisher odometry, detection, sync;
-    nav_msgs::Odometry odometry_message;
-    auv_msgs::SensorSync sync_message;
+    ros::Publisher frame;
+    auv_msgs::SensorFrame frame_message;
+    auv_msgs::TargetDetection last_detection;
+    OnDemand<nav_msgs::Odometry> odometry;
+    OnDemand<auv_msgs::TargetDetection> detection;
   };
-  int PublishDetections(const dynamics::World& world, TimeNs now, int i);
+  void Advertise();
+  void SetFrame(const dynamics::World& world, TimeNs start, int i, AuvTopics* auv) const;
+  void SetDetections(const dynamics::World& world, TimeNs now, int i,
+                     auv_msgs::SensorFrame* m) const;
   void PublishClock(TimeNs now);
   void PublishFrames(TimeNs now);
   void SendWorldNed();
@@ -48,9 +59,8 @@ class WorldPublisher {
   double display_period_s_;
   ros::WallTime clock_sent_, frames_sent_;
   std::vector<AuvTopics> auvs_;
-  std::vector<ros::Publisher> targets_;
+  std::vector<OnDemand<nav_msgs::Odometry>> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;
-  auv_msgs::TargetDetection detection_message_;
   auv_msgs::SwarmState swarm_message_;
   ros::Publisher swarm_, clock_, scenario_topic_;
   tf2_ros::TransformBroadcaster frames_;

@@ -113,7 +113,7 @@ void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
 Navigation<Pack> World::Nav(int i) const {
   const VehicleState<Pack>& v = vehicle(i);
   Navigation<Pack> nav;
-  nav.stamp = time(0);
+  for (int lane = 0; lane < kLanes; ++lane) nav.stamp[static_cast<size_t>(lane)] = time(lane);
   nav.p_WB = v.p_WB;
   nav.v_WB_B = v.v_WB_B;
   nav.w_WB_B = v.w_WB_B;

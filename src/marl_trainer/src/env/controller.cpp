@@ -1,64 +1,56 @@
 #include "marl_trainer/env/controller.hpp"
 
-#include <algorithm>
-
-#include "acoustic_source.hpp"
-#include "auv_dynamics/control/control.hpp"
+#include "acoustic_channel/models/range.hpp"
 #include "environment.hpp"
-#include "stg_agent/agent/agent.hpp"
+#include "sources/acoustic_source.hpp"
+#include "stg_agent/agent/agent_view.hpp"
 
 namespace stg::env {
 namespace {
 
-void DecideTruth(const Controller& c, const VectorEnv::Slice& slice, double* actions) {
+/// From true states, all lanes of a slice at once.
+void DecideTruly(const agent::Controller& c, const VectorEnv::Slice& slice, double* actions) {
   const Environment& env = *slice.lanes;
+  const dynamics::World& world = env.world();
   const Scenario& s = env.scenario();
   const int n = s.agents, size = s.action_size();
-  std::vector<Vec3<Pack>> neighbours(static_cast<size_t>(n));
+  std::vector<agent::NeighbourSight<Pack>> neighbours(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     int count = 0;
     for (int j = 0; j < n; ++j) {
-      if (j != i) {
-        neighbours[static_cast<size_t>(count++)] =
-            env.world().vehicle(j).p_WB - env.world().vehicle(i).p_WB;
-      }
+      if (j == i) continue;
+      agent::NeighbourSight<Pack>& seen = neighbours[static_cast<std::size_t>(count++)];
+      seen.known = Pack(1.0);
+      seen.p_W = seen.p_WN = world.vehicle(j).p_WB;
+      seen.v_W = world.vehicle(j).v_WB;
+      seen.tracking_error = env.task().tracking(j).error;
+      seen.r_BN_W = seen.p_WN - world.vehicle(i).p_WB;
+      seen.distance_m = world.distance(i, j);
+      seen.link_quality = acoustics::RangeQuality(seen.distance_m, s.channel.range_m);
     }
-    Pack a[6];
-    agent::Knowledge<Pack> k;  // what the law reads of it
-    k.p_WB = env.world().vehicle(i).p_WB;
-    k.r_BT_W = env.task().tracking(i).r_BT_W;
-    k.v_WT = env.world().target(s.target_of(i)).v_WT;
-    agent::PursuitAction(c.options, s, k, neighbours.data(), count, a);
-    if (s.control.interface == dynamics::ActionInterface::kTau6) {
-      const dynamics::VehicleState<Pack>& v = env.world().vehicle(i);
-      Pack fraction[6];
-      dynamics::VelocityController(s.control, s.vehicle, dynamics::DesiredVelocity(s.vehicle, a),
-                                   v.R_WB, v.v_WB, RpyOf(v.trig), v.w_WB_B, fraction);
-      std::copy(fraction, fraction + 6, a);
-    }
+    Pack a[dynamics::kMaxActionSize];
+    c.Act({s, i, env.Truth(i), neighbours.data(), count}, a);
     for (int lane = 0; lane < slice.count; ++lane) {
       double* out = actions + ((slice.first + lane) * n + i) * size;
-      for (int k2 = 0; k2 < size; ++k2) out[k2] = Lane(a[k2], lane);
+      for (int k = 0; k < size; ++k) out[k] = Lane(a[k], lane);
     }
   }
 }
 
-void Decide(const Controller& c, const VectorEnv::Slice& slice, const float* observations,
-            double* actions) {
+void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float* observations,
+                 double* actions) {
   const Scenario& s = slice.lanes->scenario();
   const int n = s.agents, size = s.action_size(), width = s.observation_size();
-  const bool truth = c.privileged || s.mode == InformationMode::kTruth;
-  if (c.policy == nullptr && c.builtin != agent::BuiltinKind::kIdle && truth) {
-    DecideTruth(c, slice, actions);
+  if (c.builtin != nullptr && (c.privileged || s.mode == InformationMode::kTruth)) {
+    DecideTruly(*c.builtin, slice, actions);
     return;
   }
-  float a[6] = {};
+  float a[dynamics::kMaxActionSize];
   for (int row = 0; row < slice.count * n; ++row) {
     if (c.policy != nullptr) {
       c.policy->Mean(observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
-    } else if (c.builtin != agent::BuiltinKind::kIdle) {
-      agent::BuiltinAction(c.builtin, c.options,
-                           slice.lanes->acoustic().agent(row % n).agent(row / n), a);
+    } else {
+      c.builtin->Act(slice.lanes->acoustic().agent(row % n).view(row / n), a);
     }
     double* out = actions + (slice.first * n + row) * size;
     for (int k = 0; k < size; ++k) out[k] = static_cast<double>(a[k]);
@@ -70,7 +62,8 @@ void Decide(const Controller& c, const VectorEnv::Slice& slice, const float* obs
 Controller MakeController(const std::string& name, const Scenario& scenario) {
   Controller c;
   c.name = name;
-  if (agent::ParseBuiltin(name, &c.builtin, &c.options)) return c;
+  c.builtin = agent::MakeController(name);
+  if (c.builtin) return c;
   auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(name));
   policy->RequireFits(scenario);
   c.policy = policy;
@@ -78,7 +71,7 @@ Controller MakeController(const std::string& name, const Scenario& scenario) {
 }
 
 void Decide(const Controller& c, const VectorEnv& env, const float* observations, double* actions) {
-  for (const VectorEnv::Slice& slice : env.slices()) Decide(c, slice, observations, actions);
+  for (const VectorEnv::Slice& slice : env.slices()) DecideSlice(c, slice, observations, actions);
 }
 
 }  // namespace stg::env

@@ -2,10 +2,10 @@
 
 #include <cassert>
 
-#include "acoustic_source.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "scatter.hpp"
-#include "truth_source.hpp"
+#include "sources/acoustic_source.hpp"
+#include "sources/truth_source.hpp"
 
 namespace stg::env {
 namespace {
@@ -19,7 +19,7 @@ std::unique_ptr<InformationSource> MakeSource(const Scenario& s) {
 
 Environment::Environment(const Scenario& scenario)
     : scenario_(scenario), world_(scenario), source_(MakeSource(scenario)), task_(scenario) {
-  std::array<Pack, 6> zero;
+  task::Effort<Pack> zero;
   zero.fill(Pack(0.0));
   tau_.assign(static_cast<std::size_t>(scenario.agents), zero);
   action_ = tau_;
@@ -77,6 +77,27 @@ void Environment::Step(const Pack* wanted) {
   task_.Step(Swarm());
 }
 
+agent::Knowledge<Pack> Environment::Truth(int i) const {
+  const dynamics::VehicleState<Pack>& v = world_.vehicle(i);
+  const task::Tracking<Pack>& t = task_.tracking(i);
+  agent::Knowledge<Pack> k;
+  k.p_WB = v.p_WB;
+  k.v_WB = v.v_WB;
+  k.v_WB_B = v.v_WB_B;
+  k.w_WB_B = v.w_WB_B;
+  k.R_WB = v.R_WB;
+  k.trig = v.trig;
+  k.r_BT_W = t.r_BT_W;
+  k.v_WT = world_.target(scenario_.target_of(i)).v_WT;
+  k.distance = t.distance;
+  k.previous_distance = t.previous_distance;
+  k.error = t.error;
+  k.closing = t.closing;
+  k.confidence = t.confidence;
+  k.lost = t.lost;
+  return k;
+}
+
 task::SwarmState<Pack> Environment::Swarm() const {
   return {world_.vehicle_states(),
           world_.target_states(),
@@ -89,8 +110,7 @@ task::SwarmState<Pack> Environment::Swarm() const {
 void Environment::WriteObservations(int lanes, float* rows) const {
   const auto size = static_cast<std::size_t>(scenario_.observation_size());
   const std::size_t stride = tau_.size() * size;
-  constexpr int kMaxObservationSize = 74;
-  Pack columns[kMaxObservationSize];
+  Pack columns[agent::kMaxObservationSize];
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     agent::BuildObservation(scenario_, source_->knowledge(static_cast<int>(i)),
                             [&](int index, const Pack& value) { columns[index] = value; });

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "information_source.hpp"
 #include "marl_trainer/task/task.hpp"
+#include "sources/information_source.hpp"
 
 namespace stg::env {
 
@@ -39,6 +39,8 @@ class Environment {
   const dynamics::World& world() const { return world_; }
   const task::Task<Pack>& task() const { return task_; }
   const agent::Knowledge<Pack>& knowledge(int i) const { return source_->knowledge(i); }
+  /// What an AUV would know that saw its own state and its target truly; of neighbours nothing.
+  agent::Knowledge<Pack> Truth(int i) const;
   AcousticSource& acoustic() const;  ///< acoustic mode only
 
  private:

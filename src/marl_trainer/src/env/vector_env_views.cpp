@@ -1,7 +1,7 @@
-#include "acoustic_source.hpp"
 #include "auv_common/numbers/lane_structs.hpp"
 #include "environment.hpp"
 #include "marl_trainer/env/vector_env.hpp"
+#include "sources/acoustic_source.hpp"
 
 namespace stg::env {
 
@@ -37,8 +37,8 @@ agent::Knowledge<double> VectorEnv::knowledge(int env, int i) const {
   return LaneOf(SliceOf(env).lanes->knowledge(i), lane_of(env));
 }
 
-const agent::Agent& VectorEnv::agent(int env, int i) const {
-  return SliceOf(env).lanes->acoustic().agent(i).agent(lane_of(env));
+agent::AgentView VectorEnv::agent(int env, int i) const {
+  return SliceOf(env).lanes->acoustic().agent(i).view(lane_of(env));
 }
 
 const acoustics::Channel& VectorEnv::channel(int env) const {

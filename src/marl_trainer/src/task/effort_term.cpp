@@ -5,21 +5,21 @@ namespace {
 
 /// Minus the mean square of the six tau / tau_max: what a decision costs in force, whatever the
 /// action interface. In [-1, 0].
-struct Effort : TermOf<Effort> {
+struct EffortTerm : TermOf<EffortTerm> {
   template <class T>
   T Of(const TermInput<T>& in) const {
     T sum(0.0);
     for (const T& fraction : in.swarm.tau[static_cast<std::size_t>(in.agent)]) {
       sum += fraction * fraction;
     }
-    return sum * T(-1.0 / 6.0);
+    return sum * T(-1.0 / dynamics::kWrenchSize);
   }
 };
 
 }  // namespace
 
 std::unique_ptr<const RewardTerm> MakeEffortTerm(const JudgeConfig&) {
-  return std::make_unique<Effort>();
+  return std::make_unique<EffortTerm>();
 }
 
 }  // namespace stg::task

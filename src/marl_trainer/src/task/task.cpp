@@ -8,7 +8,7 @@ Task<T>::Task(const JudgeConfig& scenario)
       tracking_(static_cast<std::size_t>(scenario.agents)),
       terms_(tracking_.size()),
       totals_(scenario) {
-  std::array<T, 6> zero;
+  Effort<T> zero;
   zero.fill(T(0.0));
   previous_tau_.assign(tracking_.size(), zero);
   previous_action_ = previous_tau_;
@@ -101,7 +101,7 @@ RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
       in.crowding += SeparationPenalty(scenario_.reward, swarm.separations.distance(i, j));
     }
   }
-  for (std::size_t a = 0; a < 6; ++a) {
+  for (std::size_t a = 0; a < dynamics::kWrenchSize; ++a) {
     in.tau[a] = swarm.tau[u][a];
     in.previous_tau[a] = previous_tau_[u][a];
     in.action[a] = swarm.action[u][a];

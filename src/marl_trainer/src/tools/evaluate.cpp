@@ -11,6 +11,7 @@
 #include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/learn/variants.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
+#include "stg_agent/controllers/pursuit.hpp"
 
 namespace {
 

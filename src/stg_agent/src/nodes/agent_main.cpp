@@ -2,5 +2,6 @@
 #include "auv_common/nodes/node_main.hpp"
 
 int main(int argc, char** argv) {
-  return stg::nodes::RunNode<stg::nodes::AgentNode>(argc, argv, "agent");
+  return stg::nodes::RunNode<stg::nodes::AgentNode>(argc, argv, "agent",
+                                                    stg::nodes::NodeClock::kMessages);
 }

@@ -26,8 +26,9 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   m->confidence = k.confidence;
   m->neighbours.clear();
   m->neighbour_age = 0.0;
-  for (const int id : agent.neighbours().known()) {
-    const double age = agent.neighbours().at(id).age_s;
+  const agent::AgentView view = agent.view();
+  for (const int id : view.neighbours().known()) {
+    const double age = view.sight(id).age_s;
     m->neighbour_age = m->neighbours.empty() ? age : std::min(m->neighbour_age, age);
     m->neighbours.push_back(static_cast<std::uint32_t>(id));
   }

@@ -6,9 +6,9 @@
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
 #include "agent_messages.hpp"
+#include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
-#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
@@ -18,8 +18,16 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-constexpr std::size_t kMaxPending = 100;     // messages kept for a step that may never come
-constexpr std::uint32_t kLayoutVersion = 1;  // "stg-1"
+constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may never come
+
+/// Whether the agent's process also turns velocities into wrenches.
+bool OnboardParameter() {
+  const std::string autopilot = TextParameter("autopilot", "external");
+  if (autopilot != "external" && autopilot != "onboard") {
+    throw UserError("parameter autopilot: must be external or onboard");
+  }
+  return autopilot == "onboard";
+}
 
 }  // namespace
 
@@ -29,41 +37,46 @@ AgentNode::AgentNode()
       body_frame_(frames::Body(id_)),
       agent_(scenario_, id_),
       turns_(scenario_.channel, scenario_),
-      decider_(
-          std::make_unique<const Decider>(TextParameter("policy", "pursuit_separated"), scenario_)),
+      decider_(std::make_unique<const Decider>(TextParameter("policy", agent::DefaultController()),
+                                               scenario_)),
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
+      commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
+      commands_wrench_(!commands_velocity_ || OnboardParameter()),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
+  Advertise();
   ros::NodeHandle node;
   const auto own = [this](const char* name) { return topics::AuvTopic(id_, name); };
-  if (scenario_.control.interface == dynamics::ActionInterface::kVelocity3) {
-    command_ = node.advertise<geometry_msgs::TwistStamped>(own(topics::kCmdVel), kQueue, true);
-  } else {
-    command_ = node.advertise<geometry_msgs::WrenchStamped>(own(topics::kWrench), kQueue, true);
-  }
-  packet_ = node.advertise<auv_msgs::AcousticPacket>(own(topics::kAcousticTx), kQueue, true);
-  task_ = node.advertise<auv_msgs::TaskState>(own(topics::kTaskState), kQueue, true);
-  step_ = node.advertise<auv_msgs::AgentStep>(own(topics::kAgentStep), kQueue, true);
-  command_message_.header.frame_id = task_message_.header.frame_id = frames::kWorld;
-  wrench_message_.header.frame_id = packet_message_.header.frame_id =
-      step_message_.header.frame_id = body_frame_;
-  packet_message_.source = step_message_.agent = static_cast<std::uint32_t>(id_);
-  packet_message_.destination = acoustics::kToAll;
-  step_message_.observation_layout = kLayoutVersion;
-
   subscribers_.push_back(
-      node.subscribe(own(topics::kOdom), kQueue, &AgentNode::OnOdometry, this, NoDelay()));
-  subscribers_.push_back(node.subscribe(own(topics::kTargetDetection), kQueue,
-                                        &AgentNode::OnDetection, this, NoDelay()));
+      node.subscribe(own(topics::kSensorFrame), kQueue, &AgentNode::OnFrame, this, NoDelay()));
   subscribers_.push_back(
       node.subscribe(own(topics::kAcousticRx), kQueue, &AgentNode::OnReception, this, NoDelay()));
-  subscribers_.push_back(
-      node.subscribe(own(topics::kSensorSync), kQueue, &AgentNode::OnSync, this, NoDelay()));
   load_policy_ =
       ros::NodeHandle("~").advertiseService(topics::kLoadPolicy, &AgentNode::OnLoadPolicy, this);
+}
+
+void AgentNode::Advertise() {
+  ros::NodeHandle node;
+  const auto own = [this](const char* name) { return topics::AuvTopic(id_, name); };
+  if (commands_wrench_) {
+    wrench_message_.header.frame_id = body_frame_;
+    wrench_ = node.advertise<geometry_msgs::WrenchStamped>(own(topics::kWrench), kQueue, true);
+  }
+  if (commands_velocity_) {
+    velocity_.Advertise(own(topics::kCmdVel), kQueue,
+                        [this](auto* message) { return SetVelocity(message); });
+  }
+  packet_message_.header.frame_id = body_frame_;
+  packet_message_.source = static_cast<std::uint32_t>(id_);
+  packet_message_.destination = acoustics::kToAll;
+  packet_ = node.advertise<auv_msgs::AcousticPacket>(own(topics::kAcousticTx), kQueue, true);
+  task_.Advertise(own(topics::kTaskState), kQueue,
+                  [this](auto* message) { return SetTask(message); });
+  step_.Advertise(own(topics::kAgentStep), kQueue,
+                  [this](auto* message) { return SetStep(message); });
 }
 
 void AgentNode::Spin() {
@@ -73,7 +86,9 @@ void AgentNode::Spin() {
 double AgentNode::Work() {
   DecideIfDue();
   double wait_s = health_.TickWhenQuiet(busy_);
-  if (sync_) wait_s = std::min(wait_s, std::max(patience_s_, 0.001));
+  if (barrier_.open()) {
+    wait_s = std::min(wait_s, std::max(barrier_.deadline_s() - WallSeconds(), 0.001));
+  }
   if (unreported_) {
     const double left_s = report_delay_s_ - (ros::WallTime::now() - commanded_).toSec();
     if (left_s <= 0.0) {
@@ -85,30 +100,53 @@ double AgentNode::Work() {
   return wait_s;
 }
 
-void AgentNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
+void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   busy_ = ros::WallTime::now();
-  if (message->header.frame_id != frames::kWorld || message->child_frame_id != body_frame_) {
-    refused_odometry_.Add(Refusals::kFrame);
-  } else if (!FiniteOdometry(*message)) {
-    refused_odometry_.Add(Refusals::kNotFinite);
-  } else {
-    odometry_ = message;
-    DecideIfDue();
+  if (message->header.frame_id != body_frame_) {
+    refused_frames_.Add(Refusals::kFrame);
+    return;
+  }
+  if (!FinitePose(message->pose) || !FiniteTwist(message->twist)) {
+    refused_frames_.Add(Refusals::kNotFinite);
+    return;
+  }
+  const TimeNs stamp = NsOf(message->header.stamp);
+  const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s_);
+  if (opening == StepBarrier::Opening::kRepeated) return;
+  if (opening == StepBarrier::Opening::kReplaced) ++skipped_steps_;
+  SetNodeTime(message->header.stamp);
+  frame_ = message;
+  for (const auv_msgs::TargetDetection& detection : message->detections) Keep(detection);
+  // Step 0 has no window before it.
+  if (message->step == 0) barrier_.Excuse(kModem);
+  HearModem();
+  DecideIfDue();
+}
+
+/// Windows come in order, and where no packet is due the next one comes before its step is opened.
+void AgentNode::HearModem() {
+  const TimeNs stamp = barrier_.stamp();
+  if (barrier_.open() && (window_ == stamp || window_ == stamp + period_)) {
+    barrier_.Hear(kModem, stamp);
   }
 }
 
-void AgentNode::OnDetection(const auv_msgs::TargetDetection::ConstPtr& message) {
-  if (message->header.frame_id != frames::kWorld) {
+void AgentNode::Keep(const auv_msgs::TargetDetection& message) {
+  if (message.header.frame_id != frames::kWorld) {
     refused_detections_.Add(Refusals::kFrame);
-  } else if (!FiniteVector(message->position) || !FiniteVector(message->variance) ||
-             message->variance.x < 0.0) {
+  } else if (!FiniteVector(message.position) || !FiniteVector(message.variance) ||
+             message.variance.x < 0.0) {
     refused_detections_.Add(Refusals::kNotFinite);
-  } else if (message->target >= static_cast<std::uint32_t>(scenario_.target.count) ||
+  } else if (message.target >= static_cast<std::uint32_t>(scenario_.target.count) ||
              detections_.size() >= kMaxPending) {
     refused_detections_.Add(Refusals::kMalformed);
   } else {
-    detections_.push_back(message);
-    DecideIfDue();
+    dynamics::Detection detection;
+    detection.stamp = NsOf(message.header.stamp);
+    detection.target = static_cast<int>(message.target);
+    detection.p_WT = VectorOf(message.position);
+    detection.std_m = std::sqrt(message.variance.x);
+    detections_.push_back(detection);
   }
 }
 
@@ -118,25 +156,16 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
   } else if (receptions_.size() >= kMaxPending) {
     refused_receptions_.Add(Refusals::kMalformed);
   } else {
-    window_ = NsOf(message->header.stamp);
-    modem_present_ = true;
+    const TimeNs stamp = NsOf(message->header.stamp);
+    if (barrier_.Hear(kModem, stamp) == StepBarrier::Word::kForeign) {
+      refused_receptions_.Add(Refusals::kStale);
+      return;
+    }
+    window_ = stamp;
+    HearModem();
     if (!message->packets.empty()) receptions_.push_back(message);
     DecideIfDue();
   }
-}
-
-void AgentNode::OnSync(const auv_msgs::SensorSync::ConstPtr& message) {
-  if (message->header.frame_id != body_frame_) {
-    refused_syncs_.Add(Refusals::kFrame);
-    return;
-  }
-  if (sync_) {
-    ++skipped_steps_;
-  } else {
-    waiting_since_ = ros::WallTime::now();
-  }
-  sync_ = message;
-  DecideIfDue();
 }
 
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
@@ -155,54 +184,34 @@ bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
 }
 
 void AgentNode::DecideIfDue() {
-  if (!sync_ || !odometry_ || odometry_->header.stamp != sync_->header.stamp) return;
-  const auto detected =
-      std::count_if(detections_.begin(), detections_.end(),
-                    [this](const auto& d) { return d->header.stamp == sync_->header.stamp; });
-  const bool sensed = detected >= static_cast<std::ptrdiff_t>(sync_->detections);
-  const bool heard = sync_->step == 0 || !modem_present_ || window_ == NsOf(sync_->header.stamp);
-  if (!sensed || !heard) {
-    if ((ros::WallTime::now() - waiting_since_).toSec() < patience_s_) return;
-    if (!sensed) ++missing_detections_;
-    if (!heard) {
-      ++missing_windows_;
-      modem_present_ = false;
-    }
-  }
-  Decide();
+  if (!barrier_.open()) return;
+  barrier_.GiveUp(WallSeconds());
+  if (barrier_.Complete()) Decide();
 }
 
-void AgentNode::StartEpisode(const auv_msgs::SensorSync& sync) {
+void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
   dynamics::Cue cue;
   cue.target = -1;  // none
-  if (sync.cue_valid && FiniteVector(sync.cue_position) && Finite(sync.cue_std) &&
-      sync.cue_std >= 0.0) {
+  if (frame.cue_valid && FiniteVector(frame.cue_position) && Finite(frame.cue_std) &&
+      frame.cue_std >= 0.0) {
     cue.target = agent_.target();
-    cue.p_WT = VectorOf(sync.cue_position);
-    cue.std_m = sync.cue_std;
+    cue.p_WT = VectorOf(frame.cue_position);
+    cue.std_m = frame.cue_std;
   }
-  agent_.Reset(sync.episode, cue);
-  turns_.Reset(sync.seed, 0);
-  episode_ = sync.episode;
+  agent_.Reset(frame.episode, cue);
+  turns_.Reset(frame.seed, 0);
+  episode_ = frame.episode;
   sequence_ = 0;
   in_episode_ = true;
 }
 
 void AgentNode::TakeDetections(TimeNs stamp) {
-  for (const auto& m : detections_) {
-    const TimeNs t = NsOf(m->header.stamp);
-    if (t < start_ || t > stamp) continue;
-    dynamics::Detection detection;
-    detection.stamp = t - start_;
-    detection.target = static_cast<int>(m->target);
-    detection.p_WT = VectorOf(m->position);
-    detection.std_m = std::sqrt(m->variance.x);
+  for (dynamics::Detection& detection : detections_) {
+    if (detection.stamp < start_ || detection.stamp > stamp) continue;
+    detection.stamp -= start_;
     agent_.Detect(detection);
   }
-  detections_.erase(
-      std::remove_if(detections_.begin(), detections_.end(),
-                     [stamp](const auto& m) { return NsOf(m->header.stamp) <= stamp; }),
-      detections_.end());
+  detections_.clear();
 }
 
 void AgentNode::TakeReceptions(TimeNs stamp) {
@@ -226,73 +235,88 @@ void AgentNode::TakeReceptions(TimeNs stamp) {
 
 void AgentNode::Decide() {
   if (unreported_) ReportDecision();
-  const TimeNs stamp = NsOf(sync_->header.stamp);
-  const TimeNs start = stamp - static_cast<TimeNs>(sync_->step) * period_;
-  if (!in_episode_ || start != start_ || sync_->episode != episode_) {
+  const TimeNs stamp = NsOf(frame_->header.stamp);
+  const TimeNs start = stamp - static_cast<TimeNs>(frame_->step) * period_;
+  if (!in_episode_ || start != start_ || frame_->episode != episode_) {
     start_ = start;
-    StartEpisode(*sync_);
+    StartEpisode(*frame_);
   }
   TakeReceptions(stamp);
   TakeDetections(stamp);
-  agent_.Observe(NavOf(*odometry_, start_), observation_.data());
+  agent_.Observe(NavOf(frame_->pose, frame_->twist, stamp - start_), observation_.data());
   decider_->Mean(agent_, observation_.data(), action_);
-  log_probability_ = explore_ ? decider_->Explore(sync_->seed, sync_->step, id_, action_) : 0.0F;
+  log_probability_ = explore_ ? decider_->Explore(frame_->seed, frame_->step, id_, action_) : 0.0F;
+  policy_id_ = decider_->id();
   output_ = agent_.Act(action_);
+  decided_ = std::move(frame_);
+  frame_.reset();
+  barrier_.Close();
   Command();
   decisions_.Add();
-  unreported_ = std::move(sync_);
-  sync_.reset();
+  unreported_ = true;
   commanded_ = ros::WallTime::now();
   if (report_delay_s_ == 0.0) ReportDecision();
 }
 
 void AgentNode::Command() {
-  const agent::AgentOutput& output = output_;
-  const ros::Time stamp = sync_->header.stamp;
-  if (scenario_.control.interface == dynamics::ActionInterface::kVelocity3) {
-    command_message_.header.stamp = stamp;
-    SetVector(output.cmd_vel_W, &command_message_.twist.linear);
-    command_.publish(command_message_);
-  } else {
+  if (commands_wrench_) {
     const dynamics::Wrench<double> wrench =
-        dynamics::ScaleWrench(scenario_.vehicle, output.fraction);
-    wrench_message_.header.stamp = stamp;
+        dynamics::ScaleWrench(scenario_.vehicle, output_.fraction);
+    wrench_message_.header.stamp = decided_->header.stamp;
     SetVector(wrench.force, &wrench_message_.wrench.force);
     SetVector(wrench.moment, &wrench_message_.wrench.torque);
-    command_.publish(wrench_message_);
+    wrench_.publish(wrench_message_);
   }
+  if (commands_velocity_) velocity_.Publish();
 }
 
 void AgentNode::ReportDecision() {
-  const agent::AgentOutput& output = output_;
-  const auv_msgs::SensorSync& sync = *unreported_;
-  const ros::Time stamp = sync.header.stamp;
-  packet_message_.header.stamp = stamp;
-  packet_message_.sequence = sequence_;
-  packet_message_.data.clear();
-  packet_message_.generation = ros::Time();
+  const ros::Time stamp = decided_->header.stamp;
+  // A packet that cannot leave in this step would only be replaced by the next one.
   if (turns_.Due(id_, NsOf(stamp) - start_)) {
     const agent::Packet packet = agent_.MakePacket();
+    packet_message_.header.stamp = packet_message_.generation = stamp;
+    packet_message_.sequence = sequence_++;
     packet_message_.data.assign(packet.begin(), packet.end());
-    packet_message_.generation = stamp;
-    ++sequence_;
+    packet_.publish(packet_message_);
   }
-  packet_.publish(packet_message_);
-  task_message_.header.stamp = stamp;
-  task_message_.episode = sync.episode;
-  task_message_.step = sync.step;
-  task_message_.policy_id = decider_->id();
-  SetTaskState(agent_, output, &task_message_);
-  task_.publish(task_message_);
-  step_message_.header.stamp = stamp;
-  step_message_.episode = sync.episode;
-  step_message_.step = sync.step;
-  step_message_.observation = observation_;
-  step_message_.action.assign(action_, action_ + scenario_.action_size());
-  step_message_.log_probability = log_probability_;
-  step_message_.policy_id = decider_->id();
-  step_.publish(step_message_);
-  unreported_.reset();
+  unreported_ = false;
+  task_.Publish();
+  step_.Publish();
+}
+
+bool AgentNode::SetVelocity(geometry_msgs::TwistStamped* message) const {
+  if (!decided_) return false;
+  message->header.stamp = decided_->header.stamp;
+  message->header.frame_id = frames::kWorld;
+  SetVector(output_.cmd_vel_W, &message->twist.linear);
+  return true;
+}
+
+bool AgentNode::SetTask(auv_msgs::TaskState* message) const {
+  if (!decided_ || unreported_) return false;
+  message->header.stamp = decided_->header.stamp;
+  message->header.frame_id = frames::kWorld;
+  message->episode = decided_->episode;
+  message->step = decided_->step;
+  message->policy_id = policy_id_;
+  SetTaskState(agent_, output_, message);
+  return true;
+}
+
+bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
+  if (!decided_ || unreported_) return false;
+  message->header.stamp = decided_->header.stamp;
+  message->header.frame_id = body_frame_;
+  message->episode = decided_->episode;
+  message->step = decided_->step;
+  message->agent = static_cast<std::uint32_t>(id_);
+  message->observation = observation_;
+  message->action.assign(action_, action_ + scenario_.action_size());
+  message->log_probability = log_probability_;
+  message->policy_id = policy_id_;
+  message->observation_layout = agent::kLayoutVersion;
+  return true;
 }
 
 void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -302,23 +326,20 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("decisions", decisions_.total());
   status.add("decisions per second", rate);
   status.add("steps skipped", skipped_steps_);
-  status.add("reception windows missing", missing_windows_);
-  status.add("detections missing", missing_detections_);
-  status.add("packets that did not decode", agent_.refused_packets());
+  status.add("reception windows missing", barrier_.losses(kModem));
+  const agent::AgentView view = agent_.view();
+  status.add("packets that did not decode", view.refused_packets());
   double age = 0.0;
-  for (const int id : agent_.neighbours().known()) {
-    age = std::max(age, agent_.neighbours().at(id).age_s);
-  }
-  status.add("neighbours known", agent_.neighbours().known().size());
+  for (const int id : view.neighbours().known()) age = std::max(age, view.sight(id).age_s);
+  status.add("neighbours known", view.neighbours().known().size());
   status.add("age of information, largest [s]", age);
-  refused_odometry_.Report(topics::kOdom, &status);
+  refused_frames_.Report(topics::kSensorFrame, &status);
   refused_detections_.Report(topics::kTargetDetection, &status);
   refused_receptions_.Report(topics::kAcousticRx, &status);
-  refused_syncs_.Report(topics::kSensorSync, &status);
   if (decisions_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no decision yet");
   }
-  if (!modem_present_) {
+  if (!barrier_.present(kModem)) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the modem is silent");
   }
 }

@@ -14,20 +14,22 @@ namespace {
 std::string Resolve(const std::string& name, const agent::AgentConfig& scenario) {
   if (name != "auto") return name;
   const std::string shipped = config::ScenarioFolder() + "/../policies/" + scenario.name + ".onnx";
-  return std::ifstream(shipped).good() ? shipped : ToString(agent::BuiltinKind::kPursuitSeparated);
+  return std::ifstream(shipped).good() ? shipped : agent::DefaultController();
 }
 
 }  // namespace
 
 Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario) {
   const std::string name = Resolve(wanted, scenario);
-  if (agent::ParseBuiltin(name, &builtin_, &options_)) {
+  builtin_ = agent::MakeController(name);
+  if (builtin_) {
     id_ = name;
     return;
   }
   if (name.size() < 5 || name.substr(name.size() - 5) != ".onnx") {
-    throw UserError("policy '" + name +
-                    "': neither idle, pursuit, pursuit_separated nor an .onnx file");
+    std::string names;
+    for (const std::string& builtin : agent::Controllers().Names()) names += builtin + ", ";
+    throw UserError("policy '" + name + "': neither of " + names + "nor an .onnx file");
   }
   policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(name));
   policy_->RequireFits(scenario);
@@ -38,7 +40,7 @@ void Decider::Mean(const agent::Agent& agent, const float* observation, float* a
   if (policy_) {
     policy_->Mean(observation, action);
   } else {
-    agent::BuiltinAction(builtin_, options_, agent, action);
+    builtin_->Act(agent.view(), action);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stg_agent/agent/agent.hpp"
-#include "stg_agent/controllers/pursuit.hpp"
+#include "stg_agent/controllers/controller.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::nodes {
@@ -14,9 +14,8 @@ namespace stg::nodes {
 /// What turns an observation into an action: a policy file or a built-in controller.
 class Decider {
  public:
-  /// @param name "idle", "pursuit", "pursuit_separated", an ONNX file, or "auto": the policy
-  /// shipped
-  ///             for the scenario's name where there is one, else pursuit_separated
+  /// @param name a built-in controller, an ONNX file, or "auto": the policy shipped for the
+  ///             scenario's name where there is one, else pursuit_separated
   /// Throws UserError when the file is not a policy for this scenario.
   Decider(const std::string& name, const agent::AgentConfig& scenario);
 
@@ -33,9 +32,8 @@ class Decider {
 
  private:
   std::string id_;
-  std::unique_ptr<const agent::Policy> policy_;  // null: built-in
-  agent::BuiltinKind builtin_ = agent::BuiltinKind::kIdle;
-  agent::PursuitOptions options_;
+  std::unique_ptr<const agent::Policy> policy_;  // null: builtin_
+  std::shared_ptr<const agent::Controller> builtin_;
 };
 
 }  // namespace stg::nodes

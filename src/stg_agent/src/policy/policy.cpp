@@ -60,11 +60,7 @@ void Validate(const Policy::Parameters& p) {
 }  // namespace
 
 std::string ObservationLayout(const AgentConfig& scenario) {
-  std::string layout = "stg-1:raw";
-  if (scenario.observation.tracking) layout += "+tracking";
-  if (scenario.observation.semantic) layout += "+semantic";
-  if (scenario.observation.graph) layout += "+graph";
-  return layout + (scenario.observation.order == NeighbourOrder::kNearest ? ":nearest" : ":index");
+  return ObservationSpec(scenario.observation).name();
 }
 
 std::string ActionInterfaceName(dynamics::ActionInterface interface) {

@@ -57,6 +57,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
     state_ = CriticState();
   } else {
     complete_ = complete_ && frame.truth->step == step_ + 1;
+    TakeWrenches(*frame.truth);
     task_.Step(Swarm());
     std::vector<float> before = std::exchange(state_, CriticState());
     FillReport(frame, std::move(before), &verdict);
@@ -70,7 +71,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   episode_ = frame.truth->episode;
   step_ = frame.truth->step;
   seed_ = frame.truth->seed;
-  if (started_) TakeAnswers(frame);
+  if (started_) TakeActions(frame);
   return verdict;
 }
 
@@ -97,26 +98,29 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
   link_quality_ = sum / static_cast<double>(frame.tasks.size());
 }
 
-/// What the decision at this frame commands; it is judged with the next frame.
-void EpisodeJudge::TakeAnswers(const SwarmFrame& frame) {
-  bool missed = false;
+/// What acted on the AUVs until this frame.
+void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    if (!frame.wrenches[i]) {
-      missed = true;  // the world holds the last one, and so does this
-    } else {
-      const auto& w = frame.wrenches[i]->wrench;
-      const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
-      for (std::size_t k = 0; k < 6; ++k) {
-        tau_[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
-      }
+    const auto& w = truth.wrenches[i];
+    const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
+    for (std::size_t k = 0; k < 6; ++k) {
+      tau_[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
     }
+  }
+  const bool missed =
+      std::any_of(truth.fresh.begin(), truth.fresh.end(), [](const auto fresh) { return !fresh; });
+  if (missed) ++deadline_misses_;
+}
+
+/// What the decision at this frame wants; it is judged with the next frame.
+void EpisodeJudge::TakeActions(const SwarmFrame& frame) {
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const auto& task = frame.tasks[i];
     if (!task) continue;
     std::copy_n(task->action.begin(), std::min<std::size_t>(6, task->action.size()),
                 action_[i].begin());
     policy_id_ = task->policy_id;
   }
-  if (missed) ++deadline_misses_;
 }
 
 void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/task.hpp"
-#include "swarm_frames.hpp"
+#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 
@@ -36,7 +37,8 @@ class EpisodeJudge {
 
  private:
   void SetTruth(const SwarmFrame& frame);
-  void TakeAnswers(const SwarmFrame& frame);
+  void TakeWrenches(const auv_msgs::SwarmState& truth);
+  void TakeActions(const SwarmFrame& frame);
   task::SwarmState<double> Swarm() const;
   bool Truncated() const { return task_.steps(0) >= scenario_.time.episode_steps; }
   std::vector<float> CriticState() const;

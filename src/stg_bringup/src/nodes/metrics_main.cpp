@@ -3,5 +3,6 @@
 
 int main(int argc, char** argv) {
   stg::nodes::WatchOnly();
-  return stg::nodes::RunNode<stg::nodes::MetricsNode>(argc, argv, "metrics");
+  return stg::nodes::RunNode<stg::nodes::MetricsNode>(argc, argv, "metrics",
+                                                      stg::nodes::NodeClock::kMessages);
 }

@@ -16,6 +16,8 @@ namespace {
 
 /// Without limit: in lockstep nobody waits for this node, and a lost message spoils an episode.
 constexpr std::uint32_t kUnlimited = 0;
+/// Memory for a run whose frames never get complete.
+constexpr std::size_t kMaxFrames = 5000;
 
 /// A text as one field of a CSV file.
 std::string Quoted(std::string text) {
@@ -35,7 +37,7 @@ MetricsNode::MetricsNode()
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
-      frames_(scenario_.agents),
+      frames_(kMaxFrames, SwarmFrame(scenario_.agents)),
       judge_(scenario_),
       table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       file_name_(TextParameter("summary_file", "")),
@@ -61,7 +63,7 @@ void MetricsNode::Subscribe() {
         [this, slot, usable](const boost::shared_ptr<const Message>& m) {
           if (!usable(*m)) {
             ++bad_messages_;
-          } else if (SwarmFrame* frame = frames_.At(m->header.stamp)) {
+          } else if (SwarmFrame* frame = frames_.At(NsOf(m->header.stamp), WallSeconds())) {
             Slot& place = slot(*frame);
             if (!place) place = m;
           }
@@ -71,7 +73,15 @@ void MetricsNode::Subscribe() {
   };
   into_frames(
       topics::kSwarmState, [](SwarmFrame & f) -> auto& { return f.truth; },
-      [this](const auto& m) { return Usable(m); });
+      [this](const auto& m) {
+        if (!Usable(m)) return false;
+        // Said once per run: the world was started anew, and with it the clock.
+        const bool first = m.episode == 0 && m.step == 0;
+        if (first && frames_.has_taken() && NsOf(m.header.stamp) <= frames_.taken()) {
+          frames_.Clear();
+        }
+        return true;
+      });
   for (int i = 0; i < scenario_.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
     into_frames(
@@ -80,13 +90,6 @@ void MetricsNode::Subscribe() {
         [](const auto& m) {
           return Finite(m.graph_summary[1]) &&
                  std::all_of(m.action.begin(), m.action.end(), Finite);
-        });
-    into_frames(
-        topics::AuvTopic(i, topics::kWrench),
-        [u](SwarmFrame & f) -> auto& { return f.wrenches[u]; },
-        [i](const auto& m) {
-          return m.header.frame_id == frames::Body(i) && FiniteVector(m.wrench.force) &&
-                 FiniteVector(m.wrench.torque);
         });
   }
   subscribers_.push_back(
@@ -99,9 +102,16 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto finite = [](const auto& v) { return FiniteVector(v); };
   const auto& p = m.target_positions;
   const auto& v = m.target_velocities;
-  return m.poses.size() == n && m.twists.size() == n && p.size() == targets &&
-         v.size() == targets && std::all_of(m.poses.begin(), m.poses.end(), FinitePose) &&
-         std::all_of(m.twists.begin(), m.twists.end(), FiniteTwist) &&
+  const auto finite_pose = [](const geometry_msgs::Pose& pose) { return FinitePose(pose); };
+  const auto finite_twist = [](const geometry_msgs::Twist& twist) { return FiniteTwist(twist); };
+  const auto finite_wrench = [](const geometry_msgs::Wrench& w) {
+    return FiniteVector(w.force) && FiniteVector(w.torque);
+  };
+  return m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
+         m.fresh.size() == n && p.size() == targets && v.size() == targets &&
+         std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
+         std::all_of(m.poses.begin(), m.poses.end(), finite_pose) &&
+         std::all_of(m.twists.begin(), m.twists.end(), finite_twist) &&
          std::all_of(p.begin(), p.end(), finite) && std::all_of(v.begin(), v.end(), finite);
 }
 
@@ -121,8 +131,9 @@ void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
 }
 
 void MetricsNode::JudgeFrames() {
-  SwarmFrame frame;
-  while (frames_.Take(patience_s_, &frame)) {
+  SwarmFrame frame(scenario_.agents);
+  const auto complete = [](const SwarmFrame& f) { return f.Complete(); };
+  while (frames_.Take(WallSeconds(), patience_s_, complete, &frame)) {
     if (!frame.Complete()) {
       ++incomplete_frames_;
     } else if (!summary_) {
@@ -135,6 +146,7 @@ void MetricsNode::JudgeFrames() {
       if (task) table_.SetPhase(i, task->phase);
     }
     if (frame.truth && !file_name_.empty() && !file_.is_open()) OpenSummary(frame.truth->episode);
+    if (frame.truth) SetNodeTime(frame.truth->header.stamp);
     if (frame.truth) now_s_ = Seconds(period_) * frame.truth->step;
     Publish(judge_.Judge(frame));
   }
@@ -192,6 +204,8 @@ void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("steps per second", rate);
   status.add("steps with a message missing", incomplete_frames_);
   status.add("messages refused", bad_messages_);
+  status.add("messages too late", frames_.late());
+  status.add("steps without room", frames_.crowded());
   status.add("episodes complete", episodes_.size());
   if (reports_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing to judge yet");

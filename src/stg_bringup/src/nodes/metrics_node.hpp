@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
+#include "auv_common/step/step_window.hpp"
 #include "live_table.hpp"
-#include "swarm_frames.hpp"
+#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 
@@ -38,7 +39,7 @@ class MetricsNode {
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_;
   bool show_table_;
-  SwarmFrames frames_;
+  StepWindow<SwarmFrame> frames_;
   EpisodeJudge judge_;
   LiveTable table_;
   double now_s_ = 0.0;

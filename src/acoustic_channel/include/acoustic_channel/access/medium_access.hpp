@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "auv_common/config/field.hpp"
 #include "auv_common/config/run_config.hpp"
 #include "auv_common/registry.hpp"
 
@@ -29,6 +31,9 @@ class MediumAccess {
   /// leave; kNever: it goes on waiting.
   /// @param start one entry per node, overwritten.
   virtual void Plan(TimeNs from, TimeNs until, std::vector<TimeNs>* start) const = 0;
+
+  /// Why the rule cannot work with the section and the clock of the run; nothing: it can.
+  virtual std::optional<config::Violation> FindConflict() const { return {}; }
 };
 
 /// All rules, by the name that `channel.access` takes.

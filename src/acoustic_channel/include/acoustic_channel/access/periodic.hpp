@@ -14,8 +14,11 @@ class Periodic : public MediumAccess {
  public:
   Periodic(const PeriodicConfig& config, const RunConfig& run);
   void Plan(TimeNs from, TimeNs until, std::vector<TimeNs>* start) const override;
+  /// A period shorter than a decision cannot be kept.
+  std::optional<config::Violation> FindConflict() const override;
 
  private:
+  double transmit_period_s_, decision_s_;
   TimeNs period_;  ///< of decisions
   TimeNs slots_;   ///< decisions per transmit period, P
 };

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/link/link_statistics.hpp"
 #include "acoustic_channel/modem/packet.hpp"
 #include "auv_common/config/run_config.hpp"

@@ -1,11 +1,30 @@
 #pragma once
 
-#include "acoustic_channel/link/link_quality.hpp"
 #include "acoustic_channel/models/extended_config.hpp"
+#include "acoustic_channel/models/link_values.hpp"
+#include "auv_common/numbers/lanes.hpp"
 
 namespace stg::acoustics {
 
 struct ChannelConfig;
+
+/// Packet loss probability at distance d [m]: 1 - (1 - p0) exp(-(d / d_loss)^2).
+///
+/// The paper leaves p_loss of Eq. 6 open; this one is p0 at zero distance, grows monotonically
+/// and tends to 1.
+template <class T>
+T LossProbability(const T& d, const ExtendedConfig& config) {
+  const T x = d * T(1.0 / config.loss_distance_m);
+  return T(1.0) - T(1.0 - config.loss_probability) * Exp(-(x * x));
+}
+
+/// Extended link quality of Eq. 6: attenuation, packet loss and freshness at distance d [m] and
+/// age of information age_s [s], whatever the range.
+template <class T>
+T ExtendedQuality(const T& d, const T& age_s, const ExtendedConfig& config) {
+  return (T(1.0) - LossProbability(d, config)) *
+         Exp(-(d * T(config.attenuation_per_m) + age_s * T(1.0 / config.freshness_s)));
+}
 
 /// Eq. 6: attenuation, random loss, propagation delay, freshness.
 class ExtendedModel {

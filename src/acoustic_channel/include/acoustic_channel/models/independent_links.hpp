@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/link_values.hpp"
 #include "acoustic_channel/modem/outbox.hpp"
 #include "acoustic_channel/modem/payload_pool.hpp"
 #include "auv_common/numbers/random.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "acoustic_channel/channel/channel_config.hpp"
+#include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/link/link_estimator.hpp"
 #include "auv_common/registry.hpp"
 

@@ -1,11 +1,18 @@
 #pragma once
 
-#include "acoustic_channel/link/link_quality.hpp"
+#include "acoustic_channel/models/link_values.hpp"
 #include "acoustic_channel/models/range_config.hpp"
+#include "auv_common/numbers/lanes.hpp"
 
 namespace stg::acoustics {
 
 struct ChannelConfig;
+
+/// Normalised link availability q of Eq. 5: 1 at zero distance, 0 at R_c [m] and beyond.
+template <class T>
+T RangeQuality(const T& d, double R_c) {
+  return Clip(T(1.0) - d / T(R_c), 0.0, 1.0);
+}
 
 /// Eq. 5: everything arrives at once and nothing is lost where the quality is above zero.
 class RangeModel {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 #include <xsimd/xsimd.hpp>
 
 /// Scalar and SIMD arithmetic behind one set of names.
@@ -17,6 +19,22 @@ namespace stg {
 
 using Pack = xsimd::batch<double>;
 inline constexpr int kLanes = static_cast<int>(Pack::size);
+
+/// How many lanes a T has.
+template <class T>
+inline constexpr int kLanesOf = std::is_same_v<T, Pack> ? kLanes : 1;
+
+/// One V for every lane of a T that is no number of the core: a time, a count. Read by OfLane.
+template <class T, class V>
+using PerLane = std::conditional_t<std::is_same_v<T, Pack>, std::array<V, kLanes>, V>;
+template <class V>
+inline const V& OfLane(const V& value, int) {
+  return value;
+}
+template <class V>
+inline const V& OfLane(const std::array<V, kLanes>& values, int lane) {
+  return values[static_cast<std::size_t>(lane)];
+}
 
 /// What comparing two T gives: Mask<double> is bool, Mask<Pack> one truth per lane.
 template <class T>

@@ -22,6 +22,7 @@ enum class Stream : std::uint32_t {
   kPolicy = 7,
   kShuffle = 8,
   kInit = 9,
+  kMediumAccess = 10,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

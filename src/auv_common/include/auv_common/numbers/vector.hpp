@@ -42,6 +42,21 @@ template <class T>
 inline Vec3<T> Select(const Mask<T>& m, const Vec3<T>& a, const Vec3<T>& b) {
   return {Select(m, a.x, b.x), Select(m, a.y, b.y), Select(m, a.z, b.z)};
 }
+/// Zero in every lane where the number is finite, NaN in the others: sums of it tell of many
+/// numbers in one comparison.
+template <class T>
+inline T NonFiniteness(const T& a) {
+  return a - a;
+}
+template <class T>
+inline T NonFiniteness(const Vec3<T>& a) {
+  return (a.x - a.x) + (a.y - a.y) + (a.z - a.z);
+}
+/// In all lanes.
+template <class T>
+inline bool Finite(const Vec3<T>& a) {
+  return !Any(!(NonFiniteness(a) == T(0.0)));
+}
 template <class T>
 inline Vec3<double> Lane(const Vec3<T>& a, int lane) {
   return {Lane(a.x, lane), Lane(a.y, lane), Lane(a.z, lane)};

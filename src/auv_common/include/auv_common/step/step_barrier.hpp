@@ -51,7 +51,8 @@ class StepBarrier {
   /// Takes a party's word about the step at `stamp`.
   Word Hear(int party, TimeNs stamp);
 
-  /// Asks nothing of a party in the open step: not waited for, no miss, no sign of presence.
+  /// Asks nothing of a party in the open step: not waited for, no miss, no sign of presence. What
+  /// it owed before it goes on owing.
   void Excuse(int party);
 
   /// Marks absent who is out of patience, and says who that is: valid until the next call.
@@ -93,6 +94,7 @@ class StepBarrier {
     bool answered = false;
     bool excused = false;
     bool owes = false;        ///< was asked and has not said a word since
+    bool owed = false;        ///< the same before the open step
     double deadline_s = 0.0;  ///< if it is waited for
     std::uint64_t misses = 0, losses = 0;
   };

@@ -69,7 +69,48 @@ inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
   fraction[5] = Clip(attitude.z - w_WB_B.z * T(c.rate_gain / wmax[2]), lo, hi);
 }
 
-/// The same from a navigation state: what a controller node runs.
+/// Executes an action (Eqs. 23-27), from what was wanted to the force: the one place where both
+/// interfaces meet. velocity3: rate limit, smoothing, desired velocity, velocity controller. tau6:
+/// the action, clipped, is the force.
+///
+/// @param wanted   [action size] what the policy says
+/// @param rpy      called for velocity3 only: roll, pitch, yaw [rad]; angles cost arc tangents
+/// @param executed [action size] holds the action executed last, becomes the one executed now
+/// @param fraction [kWrenchSize] becomes tau / tau_max; other parameters as VelocityController
+/// @return the desired velocity, world axes [m/s]; zero for tau6
+template <class T, class Rpy>
+inline Vec3<T> ExecuteAction(const ControlConfig& c, const VehicleConfig& v, const T* wanted,
+                             const Mat3<T>& R_WB, const Vec3<T>& v_WB, const Rpy& rpy,
+                             const Vec3<T>& w_WB_B, T* executed, T* fraction) {
+  const int size = ActionSize(c.interface);
+  if (c.interface == ActionInterface::kTau6) {
+    for (int k = 0; k < size; ++k) {
+      fraction[k] = executed[k] = Clip(wanted[k], T(-1.0), T(1.0));
+    }
+    return {};
+  }
+  SmoothAction(c, size, wanted, executed);
+  const Vec3<T> v_des_W = DesiredVelocity(v, executed);
+  VelocityController(c, v, v_des_W, R_WB, v_WB, rpy(), w_WB_B, fraction);
+  return v_des_W;
+}
+
+/// The action that asks for a desired velocity, given as an action of velocity3: itself, or for
+/// tau6 what the velocity controller makes of it. May be in place.
+/// @param velocity [3] v / v_max, world axes
+/// @param action   [action size]
+template <class T, class Rpy>
+inline void ActionForVelocity(const ControlConfig& c, const VehicleConfig& v, const T* velocity,
+                              const Mat3<T>& R_WB, const Vec3<T>& v_WB, const Rpy& rpy,
+                              const Vec3<T>& w_WB_B, T* action) {
+  if (c.interface == ActionInterface::kTau6) {
+    VelocityController(c, v, DesiredVelocity(v, velocity), R_WB, v_WB, rpy(), w_WB_B, action);
+    return;
+  }
+  for (int k = 0; k < ActionSize(c.interface); ++k) action[k] = velocity[k];
+}
+
+/// VelocityController from a navigation state: what a controller node runs.
 inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
                                const Vec3<double>& v_des_W, const NavState& nav, double* fraction) {
   const Mat3<double> R_WB = RotationOf(nav.q_WB);

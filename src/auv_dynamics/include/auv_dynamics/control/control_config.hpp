@@ -7,6 +7,12 @@ namespace stg::dynamics {
 /// What a policy commands: velocity per world axis, or force and torque per body axis.
 enum class ActionInterface { kVelocity3, kTau6 };
 
+/// Numbers of an action, and the most that any interface takes.
+constexpr int ActionSize(ActionInterface interface) {
+  return interface == ActionInterface::kVelocity3 ? 3 : 6;
+}
+inline constexpr int kMaxActionSize = 6;
+
 /// Desired yaw: none, or along the desired velocity.
 enum class HeadingMode { kFree, kAlongVelocity };
 

@@ -1,12 +1,10 @@
 #pragma once
 
+#include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/vehicle/vehicle.hpp"
 #include "auv_dynamics/vehicle/vehicle_model.hpp"
 
 namespace stg::dynamics {
-
-/// Number of components of a generalised force tau = [X Y Z K M N].
-inline constexpr int kWrenchSize = 6;
 
 /// A hull that is given its generalised force directly: the paper's vehicle, Eqs. 2 and 3. Any
 /// force within the limits is there at once.

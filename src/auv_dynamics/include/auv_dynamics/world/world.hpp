@@ -61,7 +61,7 @@ class World {
 
   /// Truth of one lane as the vehicle's own navigation gives it.
   NavState Nav(int lane, int i) const;
-  /// The same of all lanes; the stamp is that of lane 0.
+  /// The same of all lanes.
   Navigation<Pack> Nav(int i) const;
   /// Simulated time since the start of the episode: physics steps times dt.
   TimeNs time(int lane) const { return dt_ns_ * static_cast<TimeNs>(step(lane)); }

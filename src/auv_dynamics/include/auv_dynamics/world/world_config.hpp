@@ -26,7 +26,7 @@ struct WorldConfig : RunConfig {
 
   /// Target that agent i is tasked with: i modulo the number of targets.
   int target_of(int agent) const { return agent % target.count; }
-  int action_size() const { return control.interface == ActionInterface::kVelocity3 ? 3 : 6; }
+  int action_size() const { return ActionSize(control.interface); }
 };
 
 /// The sections besides those of RunConfig.

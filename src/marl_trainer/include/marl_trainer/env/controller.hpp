@@ -4,7 +4,7 @@
 #include <string>
 
 #include "marl_trainer/env/vector_env.hpp"
-#include "stg_agent/controllers/pursuit.hpp"
+#include "stg_agent/controllers/controller.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::env {
@@ -12,13 +12,12 @@ namespace stg::env {
 /// Who flies: a policy file or a built-in controller.
 struct Controller {
   std::string name;
-  std::shared_ptr<const agent::Policy> policy;  ///< null: built-in
-  agent::BuiltinKind builtin = agent::BuiltinKind::kIdle;
-  agent::PursuitOptions options;
+  std::shared_ptr<const agent::Policy> policy;       ///< null: built-in
+  std::shared_ptr<const agent::Controller> builtin;  ///< null: policy
   bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
 };
 
-/// A built-in controller (see ParseBuiltin), or the path of an ONNX file, which
+/// A built-in controller (see agent::MakeController), or the path of an ONNX file, which
 /// must fit the scenario. Throws UserError.
 Controller MakeController(const std::string& name_or_file, const Scenario& scenario);
 

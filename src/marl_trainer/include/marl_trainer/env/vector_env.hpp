@@ -9,10 +9,8 @@
 #include "marl_trainer/task/metrics.hpp"
 #include "marl_trainer/task/reward.hpp"
 #include "marl_trainer/task/swarm_state.hpp"
+#include "stg_agent/agent/agent_view.hpp"
 
-namespace stg::agent {
-class Agent;
-}
 namespace stg::acoustics {
 class Channel;
 }
@@ -99,7 +97,7 @@ class VectorEnv {
   /// What an AUV decides on.
   agent::Knowledge<double> knowledge(int env, int i) const;
   /// Acoustic mode only: what an AUV's agent holds, and the network.
-  const agent::Agent& agent(int env, int i) const;
+  agent::AgentView agent(int env, int i) const;
   const acoustics::Channel& channel(int env) const;
 
   /// The environments by SIMD register, for code that computes on registers, too.

@@ -41,7 +41,7 @@ void WriteCriticState(const JudgeConfig& s, const SwarmState<T>& swarm,
     const Tracking<T>& k = tracking[i];
     const dynamics::VehicleState<T>& v = swarm.vehicles[i];
     const auto target = static_cast<std::size_t>(s.target_of(static_cast<int>(i)));
-    const std::array<T, 6>& tau = swarm.tau[i];
+    const Effort<T>& tau = swarm.tau[i];
     n = 0;
     put3(k.r_BT_W);
     put3(Clip(k.r_BT_W * T(1.0 / kBandScale_m), -1.0, 1.0));

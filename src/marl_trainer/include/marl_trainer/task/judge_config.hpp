@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "marl_trainer/task/reward_config.hpp"
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 
 namespace stg::task {
 

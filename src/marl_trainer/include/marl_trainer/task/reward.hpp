@@ -18,12 +18,14 @@ struct RewardTerms {
 template <class T>
 struct RewardInput {
   T distance = T(0.0), previous_distance = T(0.0);
-  T closing = T(0.0);               ///< [m/s]
-  T confidence = T(0.0);            ///< c, 0 when lost
-  T lost = T(0.0);                  ///< l, 0 or 1
-  T crowding = T(0.0);              ///< sum over neighbours of SeparationPenalty
-  T tau[6], previous_tau[6];        ///< tau / tau_max of this and the previous step
-  T action[6], previous_action[6];  ///< executed action (paper's cost)
+  T closing = T(0.0);     ///< [m/s]
+  T confidence = T(0.0);  ///< c, 0 when lost
+  T lost = T(0.0);        ///< l, 0 or 1
+  T crowding = T(0.0);    ///< sum over neighbours of SeparationPenalty
+  T tau[dynamics::kWrenchSize],
+      previous_tau[dynamics::kWrenchSize];  ///< tau / tau_max of this and the previous step
+  T action[dynamics::kWrenchSize],
+      previous_action[dynamics::kWrenchSize];  ///< executed action (paper's cost)
 };
 
 /// b of Eq. 28 [m].
@@ -64,7 +66,7 @@ inline T ControlCost(const RewardConfig& c, int action_size, const RewardInput<T
     }
     return Clip(T(0.6) * level + T(0.4) * change, T(0.0), T(1.0));
   }
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < dynamics::kWrenchSize; ++k) {
     const T delta = in.tau[k] - in.previous_tau[k];
     level += in.tau[k] * in.tau[k];
     change += delta * delta;

@@ -12,9 +12,9 @@ template <class T>
 struct TermInput {
   const SwarmState<T>& swarm;
   int agent;
-  const Tracking<T>& tracking;           ///< of this AUV
-  const std::array<T, 6>& previous_tau;  ///< of this AUV, the decision before
-  const std::array<T, 6>& previous_action;
+  const Tracking<T>& tracking;    ///< of this AUV
+  const Effort<T>& previous_tau;  ///< of this AUV, the decision before
+  const Effort<T>& previous_action;
 };
 
 /// A term that is added to the paper's reward, times its weight (`reward.terms.<name>`). It is

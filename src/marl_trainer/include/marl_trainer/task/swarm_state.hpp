@@ -8,9 +8,12 @@
 
 namespace stg::task {
 
-/// Six numbers per AUV: tau / tau_max, or an executed action (the first action_size count).
+/// Of one AUV: tau / tau_max, or an executed action (the first action_size numbers count).
 template <class T>
-using Efforts = std::vector<std::array<T, 6>>;
+using Effort = std::array<T, dynamics::kWrenchSize>;
+template <class T>
+using Efforts = std::vector<Effort<T>>;
+static_assert(dynamics::kMaxActionSize <= dynamics::kWrenchSize, "an action is an Effort");
 
 /// The true state of a swarm when a decision is due, and what the decision before led to it with:
 /// all that a task judges. A view; it says nothing of who moved the swarm. T = double: one swarm.

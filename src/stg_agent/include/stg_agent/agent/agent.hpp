@@ -2,17 +2,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "acoustic_channel/channel/channel.hpp"
-#include "auv_dynamics/measurements.hpp"
-#include "stg_agent/agent/agent_config.hpp"
-#include "stg_agent/agent/mind.hpp"
+#include "stg_agent/agent/agent_lanes.hpp"
 #include "stg_agent/graph/observation.hpp"
-#include "stg_agent/inbox/neighbour_table.hpp"
-#include "stg_agent/inbox/target_track.hpp"
-#include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
 
@@ -23,19 +16,10 @@ struct AgentOutput {
   /// tau / tau_max. tau6: the command itself. velocity3: what the velocity controller
   /// makes of cmd_vel_W and the same NavState, bit for bit; a runner that has no
   /// controller of its own may apply it through ScaleWrench.
-  double fraction[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  double fraction[dynamics::kWrenchSize] = {};
   /// Executed action in [-1, 1]: after rate limit and smoothing (velocity3), or clipped
   /// (tau6). The first action_size() entries count.
-  double action[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-};
-
-/// The semantic state of one decision, as the policy sees it (Eqs. 14-19).
-struct TaskView {
-  std::array<double, 8> z_track;
-  int phase;    ///< Phase
-  int quality;  ///< Quality
-  std::array<double, 6> graph;
-  bool role;
+  double action[dynamics::kMaxActionSize] = {};
 };
 
 /// One AUV's mind in `acoustic` mode: from own navigation, own detections and received
@@ -43,8 +27,7 @@ struct TaskView {
 /// offers to its modem. Knows nothing else of the world.
 ///
 /// Use, for every decision k: Receive and Detect in any order (the result does not depend
-/// on it), Observe, Act. Deterministic; allocates nothing after construction. Copies share
-/// the scenario.
+/// on it), Observe, Act, MakePacket. Deterministic; allocates nothing after construction.
 ///
 /// Conventions that the paper leaves open:
 /// - Confidence (Eq. 13) is that of the estimated distance while the track is not lost and
@@ -57,19 +40,19 @@ class Agent {
  public:
   /// Throws UserError when the scenario does not fit the packet layout.
   Agent(const AgentConfig& scenario, int id);
-  /// The same mind for AUV `id`, sharing the scenario and tables of `other`; starts reset.
-  Agent(const Agent& other, int id);
+  /// An agent that shares scenario and tables with others.
+  Agent(const SharedConstants& constants, int id) : one_(constants, id) {}
 
   /// Starts an episode: forgets everything. The cue was true at time 0, whenever the first
   /// Observe is: one that comes late finds it as uncertain as it has become.
-  void Reset(std::uint32_t episode, const dynamics::Cue& cue);
+  void Reset(std::uint32_t episode, const dynamics::Cue& cue) { one_.Reset(0, episode, cue); }
 
   /// Own detection; of another target than this agent's: ignored. The newest before the
   /// next Observe counts.
-  void Detect(const dynamics::Detection& detection);
+  void Detect(const dynamics::Detection& detection) { one_.Detect(0, detection); }
 
   /// A packet that the modem gave. One that does not decode is counted and ignored.
-  void Receive(const acoustics::Reception& reception);
+  void Receive(const acoustics::Reception& reception) { one_.Receive(0, reception); }
 
   /// Brings all knowledge to nav.stamp and writes the observation.
   /// @param observation [observation_size()], finite.
@@ -80,58 +63,28 @@ class Agent {
   /// @param action [action_size()], clipped to [-1, 1] inside. Non-finite values throw
   /// std::invalid_argument.
   AgentOutput Act(const float* action);
-  /// Own state and target estimate at the last Observe, after Act: what it offers to its modem.
-  Packet MakePacket() const;
+  /// Own state and target estimate at the last Observe: what it offers to its modem.
+  Packet MakePacket() const { return one_.MakePacket(0); }
 
-  int id() const { return id_; }
-  const AgentConfig& scenario() const { return constants_->scenario; }
-  std::uint32_t episode() const { return episode_; }
+  int id() const { return one_.id(); }
+  const AgentConfig& scenario() const { return one_.scenario(); }
+  std::uint32_t episode() const { return one_.inbox(0).episode(); }
   /// Number of the last Observe, counted from 0 since Reset.
-  std::uint32_t step() const { return step_; }
+  std::uint32_t step() const { return static_cast<std::uint32_t>(one_.decisions(0) - 1); }
 
   /// State of knowledge of the last Observe.
-  const Knowledge<double>& knowledge() const { return mind_.knowledge; }
-  TaskView task() const;
-  const NeighbourTable& neighbours() const { return neighbours_; }
-  const TargetTrack& track() const { return track_; }
+  const Knowledge<double>& knowledge() const { return one_.knowledge(); }
+  TaskView task() const { return TaskOf(scenario().observation, knowledge()); }
+  const NeighbourTable& neighbours() const { return one_.inbox(0).neighbours(); }
+  const TargetTrack& track() const { return one_.inbox(0).track(); }
   /// Target this agent is tasked with.
-  int target() const { return target_; }
+  int target() const { return one_.inbox(0).target(); }
   bool lost() const { return knowledge().lost > 0.5; }
-  /// Smoothed action of the last Act; action_size() entries count.
-  const std::array<double, 6>& action() const { return mind_.action; }
-  /// Packets of this episode that did not decode.
-  std::uint64_t refused_packets() const { return refused_packets_; }
+  /// All that it knows.
+  AgentView view() const { return one_.view(0); }
 
  private:
-  struct Constants {
-    explicit Constants(const AgentConfig& s);
-    AgentConfig scenario;
-    PacketCodec codec;
-  };
-  Agent(std::shared_ptr<const Constants> constants, int id);
-
-  friend class AgentLanes;
-
-  /// The state a packet holds when it is news of a neighbour, else null.
-  const NeighbourState* Take(const acoustics::Reception& reception);
-  /// Starts the next decision.
-  void Begin(TimeNs now);
-  void UpdateTrack();
-  /// The last Observe's information rests on an observation of late.
-  bool Current() const;
-  NeighbourView<double> SeeNeighbours() const;
-
-  std::shared_ptr<const Constants> constants_;
-  int id_, target_;
-  NeighbourTable neighbours_;
-  TargetTrack track_;
-  Mind<double> mind_;
-  dynamics::Cue cue_;
-  dynamics::Detection detection_;
-  bool cue_pending_ = false, detection_pending_ = false;
-  TimeNs now_ = 0;
-  std::uint32_t episode_ = 0, step_ = 0, decisions_ = 0;
-  std::uint64_t refused_packets_ = 0;
+  LanedAgent<double> one_;
 };
 
 /// Agents 0 .. scenario.agents - 1, sharing one copy of the scenario.

@@ -1,61 +1,81 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include "stg_agent/agent/agent.hpp"
+#include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/agent/mind.hpp"
+#include "stg_agent/graph/neighbourhood.hpp"
+#include "stg_agent/inbox/inbox.hpp"
 
 namespace stg::agent {
 
-/// The same AUV's agent in kLanes environments that run in lockstep: same time, same decision
-/// count. Does what kLanes objects of class Agent do, bit for bit, with the arithmetic of all
-/// lanes side by side; what happens at different times in different lanes (packets, target
-/// tracks) stays with one Agent per lane.
+/// One AUV's agent in every lane of T: an inbox for each lane, and one mind that does the
+/// arithmetic of all lanes side by side. T = double is what class Agent is made of; T = Pack is
+/// the same AUV in kLanes environments, bit for bit what as many separate agents do.
 ///
-/// Use as Agent. Allocates nothing after construction.
-class AgentLanes {
+/// Lanes have clocks of their own: one may start an episode while the others go on.
+///
+/// Use, for every decision: Receive and Detect in any order (the result does not depend on it),
+/// Observe, Act, MakePacket. Deterministic; allocates nothing after construction.
+template <class T>
+class LanedAgent {
  public:
-  /// Shares scenario and tables with `first`.
-  AgentLanes(const Agent& first, int id);
+  /// Throws std::invalid_argument for an index outside the swarm.
+  LanedAgent(const SharedConstants& constants, int id);
 
-  /// Starts an episode in one lane. Lanes run in lockstep: reset all of them, then Observe.
+  /// Starts an episode in one lane, which forgets everything. The cue was true at time 0, whenever
+  /// the first Observe is: one that comes late finds it as uncertain as it has become.
   void Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue);
   void Detect(int lane, const dynamics::Detection& detection) { At(lane).Detect(detection); }
   void Receive(int lane, const acoustics::Reception& reception);
 
   /// Brings all knowledge to nav.stamp; the observation is BuildObservation of knowledge().
   /// Throws std::invalid_argument for a non-finite navigation state: a bug of the caller.
-  void Observe(const dynamics::Navigation<Pack>& nav);
-  const Knowledge<Pack>& knowledge() const { return mind_.knowledge; }
+  void Observe(const dynamics::Navigation<T>& nav);
+  /// The same in the lanes of the mask only, such as those that start an episode: the others keep
+  /// what they know. The navigation of all lanes is finite.
+  void Observe(const dynamics::Navigation<T>& nav, const Mask<T>& lanes);
+  const Knowledge<T>& knowledge() const { return mind_.knowledge; }
 
-  /// Executes an action [action_size] as Agent::Act; knowledge().tau is then the command.
-  void Act(const Pack* action);
+  /// Executes an action (Eqs. 23-27), once after each Observe; knowledge().tau is then the command.
+  /// Throws std::invalid_argument for an action that is not finite.
+  /// @param action [action_size], clipped to [-1, 1] inside
+  /// @return desired velocity, world axes [m/s]; zero for tau6
+  Vec3<T> Act(const T* action);
   /// Executed action of the last Act; action_size entries count.
-  const std::array<Pack, 6>& action() const { return mind_.action; }
-  /// What one lane's agent has to tell its neighbours after this decision.
-  Packet MakePacket(int lane);
+  const std::array<T, dynamics::kMaxActionSize>& action() const { return mind_.action; }
 
-  /// One lane's agent, with all that it knows.
-  const Agent& agent(int lane);
+  /// Own state and target estimate at the last Observe: what a lane's agent offers to its modem.
+  Packet MakePacket(int lane) const;
+
+  int id() const { return inbox(0).id(); }
+  const AgentConfig& scenario() const { return constants_->scenario; }
+  const Inbox& inbox(int lane) const { return inboxes_[static_cast<std::size_t>(lane)]; }
+  /// Decisions begun in the episode of a lane.
+  int decisions(int lane) const { return static_cast<int>(Lane(mind_.decisions(), lane)); }
+  /// All that one lane's agent knows after Observe.
+  AgentView view(int lane) const;
 
  private:
-  /// The newest state of one neighbour, as received.
-  struct Report {
-    Vec3<Pack> p_W, v_W;
-    Pack generation_ns = Pack(0.0), tracking_error = Pack(0.0);
-    Pack known = Pack(0.0);  ///< 1: the numbers above mean something
-  };
+  Inbox& At(int lane) { return inboxes_[static_cast<std::size_t>(lane)]; }
+  void Think(const dynamics::Navigation<T>& nav, const Mask<T>& lanes);
+  /// Drops the neighbours that are too old in the lanes of the mask.
+  void Forget(const Mask<T>& lanes, const PerLane<T, TimeNs>& now);
 
-  Agent& At(int lane) { return agents_[static_cast<std::size_t>(lane)]; }
-  const AgentConfig& scenario() const { return agents_.front().scenario(); }
-  /// Drops what is too old in the lanes of the mask.
-  void Forget(const Mask<Pack>& past, const dynamics::Navigation<Pack>& nav);
-  TargetView<Pack> SeeTarget() const;
-  NeighbourView<Pack> SeeNeighbours(const Vec3<Pack>& p_WT) const;
-
-  std::vector<Agent> agents_;    // [kLanes]
-  std::vector<Report> reports_;  // [agents]; the own one is never known
-  std::vector<Pack> age_s_;      // [agents], scratch of Observe
-  Mind<Pack> mind_;
+  SharedConstants constants_;
+  std::vector<Inbox> inboxes_;  // [lanes]
+  std::unique_ptr<acoustics::LinkEstimator> links_;
+  Neighbourhood<T> neighbours_;
+  Mind<T> mind_;
+  // As before the present Observe, for lanes that do not take part in it.
+  Neighbourhood<T> neighbours_before_;
+  Mind<T> mind_before_;
 };
+
+using AgentLanes = LanedAgent<Pack>;
+
+extern template class LanedAgent<double>;
+extern template class LanedAgent<Pack>;
 
 }  // namespace stg::agent

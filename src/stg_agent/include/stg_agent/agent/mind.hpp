@@ -2,62 +2,43 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <vector>
 
+#include "auv_common/numbers/lane_structs.hpp"
 #include "auv_dynamics/control/control.hpp"
-#include "stg_agent/graph/observation.hpp"
+#include "auv_dynamics/vehicle/vehicle_state.hpp"
+#include "stg_agent/agent/error_window.hpp"
+#include "stg_agent/graph/features.hpp"
+#include "stg_agent/graph/neighbour_view.hpp"
+#include "stg_agent/graph/target_view.hpp"
 
-/// The part of an agent that does the same at every decision, from what it was told to what the
-/// policy sees, and from the policy's action to the command. T = double: one agent. T = Pack: the
-/// same agent of kLanes environments, bit for bit.
 namespace stg::agent {
 
-/// Lets the neighbours into an agent's knowledge, in the order of their indices.
-template <class T>
-struct NeighbourView {
-  NearestSlots<T> nearest;
-  T count = T(0.0), effective = T(0.0), quality = T(0.0), best = T(0.0), error = T(0.0);
-  T closest_sq = T(1e300);  ///< to the target [m^2]
+/// Who keeps the books of an AUV's knowledge: its agent, or the truth mode, which rounds one mean
+/// differently (ErrorMean) and may follow the release (observation.release_bookkeeping).
+enum class Bookkeeping { kAgent, kTruth };
 
-  /// @param known where false the other parameters mean nothing
-  /// @param p_WN position of the neighbour, p_WT of the target as this agent believes [m]
-  /// @param tracking_error as the neighbour reports it [m]
-  void Add(const ObservationConfig& c, const Mask<T>& known, const Vec3<T>& p_WN,
-           const Vec3<T>& p_WT, const T& link_quality, const T& tracking_error) {
-    const T zero(0.0), one(1.0);
-    const T q = Select(known, link_quality, zero);
-    count += Select(known, one, zero);
-    effective += Select(known && (q > T(c.link_available)), one, zero);
-    quality += q;
-    best = Max(best, q);
-    error += Select(known, tracking_error, zero);
-    const Vec3<T> r = p_WT - p_WN;
-    closest_sq = Min(closest_sq, Select(known, Dot(r, r), T(1e300)));
-  }
-};
-
-/// The target estimate as an agent's knowledge takes it.
-template <class T>
-struct TargetView {
-  Vec3<T> p_WT, v_WT;   ///< [m], [m/s]
-  T variance = T(0.0);  ///< of each position component [m^2]
-  T started = T(0.0);   ///< 1: there is an estimate
-  T current = T(0.0);   ///< 1: it rests on a recent observation
-};
-
-/// What an agent makes of its inputs, per decision: SetNavigation, SetTracking, SetNeighbours, then
-/// Act. T is double for one agent, Pack for the same agent of kLanes worlds.
+/// What an AUV makes of its inputs, the same at every decision: SetNavigation, SetTracking,
+/// SetNeighbours, from what it was told to what the policy sees; then Act, from the policy's action
+/// to the force. T = double: one AUV. T = Pack: the same AUV of kLanes environments, bit for bit,
+/// each lane with a clock of its own.
 template <class T>
 class Mind {
  public:
-  explicit Mind(const AgentConfig& s)
-      : window_(static_cast<std::size_t>(std::max(1, s.observation.error_window)), T(0.0)) {}
+  explicit Mind(const AgentConfig& s, Bookkeeping books = Bookkeeping::kAgent)
+      : release_(books == Bookkeeping::kTruth && s.observation.release_bookkeeping),
+        errors_(std::max(1, s.observation.error_window), release_ ? ErrorMean::kRelease
+                                                         : books == Bookkeeping::kTruth
+                                                             ? ErrorMean::kTruth
+                                                             : ErrorMean::kAgent) {
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) Reset(lane);
+  }
 
-  void Reset() {
-    knowledge = Knowledge<T>();
-    action.fill(T(0.0));
-    std::fill(window_.begin(), window_.end(), T(0.0));
+  /// Starts an episode in one lane.
+  void Reset(int lane) {
+    SetLaneOf(&knowledge, lane, Knowledge<double>());
+    for (T& a : action) SetLane(&a, lane, 0.0);
+    errors_.Reset(lane);
+    SetLane(&decisions_, lane, 0.0);
   }
 
   void SetNavigation(const dynamics::Navigation<T>& nav) {
@@ -70,67 +51,101 @@ class Mind {
     k.v_WB = k.R_WB * nav.v_WB_B;
   }
 
-  /// After SetNavigation, at decision `step` of the episode.
-  void SetTracking(const AgentConfig& s, const TargetView<T>& target, std::uint32_t step) {
+  /// The same from the true state, exact.
+  void SetNavigation(const dynamics::VehicleState<T>& state) {
+    Knowledge<T>& k = knowledge;
+    k.p_WB = state.p_WB;
+    k.v_WB_B = state.v_WB_B;
+    k.w_WB_B = state.w_WB_B;
+    k.R_WB = state.R_WB;
+    k.trig = state.trig;
+    k.v_WB = state.v_WB;
+  }
+
+  /// Starts a decision; after SetNavigation.
+  void SetTracking(const AgentConfig& s, const TargetView<T>& target) {
     const T zero(0.0), one(1.0), half(0.5);
     Knowledge<T>& k = knowledge;
     k.r_BT_W = target.p_WT - k.p_WB;
     k.v_WT = target.v_WT;
     const T distance = Norm(k.r_BT_W);
-    k.previous_distance = step == 0 ? distance : k.distance;
+    k.previous_distance = Select(decisions_ == zero, distance, k.distance);
     k.distance = distance;
     k.closing = ClosingSpeed(k.r_BT_W, distance, k.v_WB, k.v_WT);
     k.error = Abs(distance - T(s.task.desired_distance_m));
-    window_[step % window_.size()] = k.error;
-    T sum(0.0);
-    for (const T& e : window_) sum += e;  // zeros where there is no history yet
-    k.mean_error = sum / T(static_cast<double>(std::min<std::size_t>(step + 1, window_.size())));
+    k.mean_error = errors_.Add(k.error);
     const Mask<T> lost = (target.started < half) ||
                          (Sqrt(target.variance) > T(s.track.lost_std_m)) ||
                          (distance > T(s.task.lost_distance_m));
     const T seen = Select(target.current > half, Confidence(distance, s.sensing.range_m), zero);
     k.confidence = Select(lost, zero, seen);
     k.lost = Select(lost, one, zero);
-    k.lost_steps = Select(lost, k.lost_steps + one, zero);
+    T lost_steps = k.lost_steps + one;
+    // The release counts a lost decision in the reward and once more for show.
+    if (release_) lost_steps = Select(decisions_ == zero, lost_steps, Max(lost_steps, T(2.0)));
+    k.lost_steps = Select(lost, lost_steps, zero);
+    decisions_ += one;
   }
 
   /// After SetTracking. The slots of `view.nearest` are as they are to be shown.
   void SetNeighbours(const AgentConfig& s, const NeighbourView<T>& view) {
     const T zero(0.0), one(1.0);
+    const Knowledge<T>& k = knowledge;
+    NeighbourSummary<T> n;
+    std::copy(view.nearest.offset, view.nearest.offset + kNeighbourSlots, n.offset);
+    n.effective = view.effective;
+    n.quality = view.quality;
+    n.best = view.best;
+    n.mean_error = Select(view.count > zero, view.error / Max(view.count, one), k.error);
+    n.closest = Select(Dot(k.r_BT_W, k.r_BT_W) <= view.closest_sq, one, zero);
+    SetNeighbours(s, n);
+  }
+  void SetNeighbours(const AgentConfig& s, const NeighbourSummary<T>& n) {
     const T others(1.0 / std::max(1.0, static_cast<double>(s.agents - 1)));
     Knowledge<T>& k = knowledge;
-    std::copy(view.nearest.offset, view.nearest.offset + kNeighbourSlots, k.neighbour);
-    k.effective_fraction = view.effective * others;
-    k.mean_quality = view.quality * others;
-    k.best_quality = view.best;
-    k.mean_neighbour_error = Select(view.count > zero, view.error / Max(view.count, one), k.error);
-    k.closest = Select(Dot(k.r_BT_W, k.r_BT_W) <= view.closest_sq, one, zero);
+    std::copy(n.offset, n.offset + kNeighbourSlots, k.neighbour);
+    k.effective_fraction = n.effective * others;
+    k.mean_quality = n.quality * others;
+    k.best_quality = n.best;
+    k.mean_neighbour_error = n.mean_error;
+    k.closest = n.closest;
   }
 
   /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed.
   /// Returns the desired velocity, world axes [m/s]; zero for tau6.
   /// @param wanted [action_size], clipped to [-1, 1]
   Vec3<T> Act(const AgentConfig& s, const T* wanted) {
+    return Act(s, wanted, [this] { return RpyOf(knowledge.trig); });
+  }
+  /// The same by given angles. @param rpy called for velocity3 only: roll, pitch, yaw [rad]
+  template <class Rpy>
+  Vec3<T> Act(const AgentConfig& s, const T* wanted, const Rpy& rpy) {
     Knowledge<T>& k = knowledge;
-    const int size = s.action_size();
-    if (s.control.interface == dynamics::ActionInterface::kTau6) {
-      for (int a = 0; a < size; ++a) {
-        k.tau[a] = action[static_cast<std::size_t>(a)] = Clip(wanted[a], T(-1.0), T(1.0));
-      }
-      return {};
-    }
-    dynamics::SmoothAction(s.control, size, wanted, action.data());
-    const Vec3<T> v_des_W = dynamics::DesiredVelocity(s.vehicle, action.data());
-    dynamics::VelocityController(s.control, s.vehicle, v_des_W, k.R_WB, k.v_WB, RpyOf(k.trig),
-                                 k.w_WB_B, k.tau);
-    return v_des_W;
+    return dynamics::ExecuteAction(s.control, s.vehicle, wanted, k.R_WB, k.v_WB, rpy, k.w_WB_B,
+                                   action.data(), k.tau);
   }
 
-  Knowledge<T> knowledge;
-  std::array<T, 6> action{};  ///< executed by the last Act; action_size entries count
+  /// Takes back the lanes outside the mask.
+  void KeepOthers(const Mask<T>& lanes, const Mind& before) {
+    stg::KeepOthers(lanes, before.knowledge, &knowledge);
+    for (std::size_t a = 0; a < action.size(); ++a) {
+      action[a] = Select(lanes, action[a], before.action[a]);
+    }
+    errors_.KeepOthers(lanes, before.errors_);
+    decisions_ = Select(lanes, decisions_, before.decisions_);
+  }
+
+  /// Decisions begun since the start of the episode.
+  const T& decisions() const { return decisions_; }
+
+  Knowledge<T> knowledge{};
+  /// Executed by the last Act; action_size entries count.
+  std::array<T, dynamics::kMaxActionSize> action{};
 
  private:
-  std::vector<T> window_;  // ring of the last error_window tracking errors
+  bool release_;
+  ErrorWindow<T> errors_;
+  T decisions_ = T(0.0);
 };
 
 }  // namespace stg::agent

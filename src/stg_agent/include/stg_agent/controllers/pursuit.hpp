@@ -1,17 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <string>
+#include <memory>
 
 #include "auv_common/numbers/vector.hpp"
-#include "stg_agent/agent/agent_config.hpp"
-#include "stg_agent/graph/observation.hpp"
+#include "stg_agent/controllers/controller.hpp"
 
-/// Built-in controllers: what a policy has to beat.
+/// Controllers that fly at the target: `pursuit`, and `pursuit_separated`, whose AUVs keep apart.
 namespace stg::agent {
-
-/// The built-in controllers by name: `idle`, `pursuit`, `pursuit_separated`.
-enum class BuiltinKind { kIdle, kPursuit, kPursuitSeparated };
 
 /// Constants of the pursuit law; the defaults are those of `pursuit`.
 struct PursuitOptions {
@@ -34,7 +30,7 @@ struct PursuitOptions {
 };
 
 /// Calls visit(name, field, description) for every constant that a user may set; one list for
-/// command lines and for names such as "pursuit:gain=2".
+/// command lines and for names such as "pursuit:gain=2". Values are from 0 to 1000, the cap to 1.
 template <class Options, class Visitor>
 void VisitPursuitOptions(Options& o, Visitor&& visit) {
   visit("gain", o.gain_per_s, "pursuit: gain [1/s]");
@@ -48,14 +44,9 @@ void VisitPursuitOptions(Options& o, Visitor&& visit) {
   visit("wall-margin", o.wall_margin_m, "pursuit: targets are kept this far from the walls [m]");
 }
 
-/// The tuned constants of a controller.
-PursuitOptions BuiltinOptions(BuiltinKind kind);
-
-/// "idle", "pursuit" or "pursuit_separated", alone or with constants that differ from the tuned
-/// ones, as in "pursuit_separated:gain=2,cap=0.5"; false for any other name. UserError on an
-/// unknown constant, or one that is not a number in range.
-bool ParseBuiltin(const std::string& text, BuiltinKind* kind, PursuitOptions* options);
-const char* ToString(BuiltinKind kind);
+/// The tuned constants of `pursuit` and of `pursuit_separated`.
+PursuitOptions TunedPursuit();
+PursuitOptions TunedPursuitSeparated();
 
 /// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than
 /// the repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
@@ -65,11 +56,11 @@ const char* ToString(BuiltinKind kind);
 ///
 /// @param r_BT_W target position minus own [m], world axes
 /// @param v_WT   target velocity [m/s], world axes
-/// @param r_BN_W [count] neighbour positions minus own [m]; a zero offset repels nothing
+/// @param neighbours [count], of which the offset counts; a zero offset repels nothing
 template <class T>
 inline void PursuitAction(const PursuitOptions& o, const dynamics::VehicleConfig& vehicle,
-                          const Vec3<T>& r_BT_W, const Vec3<T>& v_WT, const Vec3<T>* r_BN_W,
-                          int count, T* action) {
+                          const Vec3<T>& r_BT_W, const Vec3<T>& v_WT,
+                          const NeighbourSight<T>* neighbours, int count, T* action) {
   const T zero(0.0), tiny(1e-9);
   const T d = Norm(r_BT_W);
   const Vec3<T> los = r_BT_W * (T(1.0) / Max(d, tiny));
@@ -82,9 +73,10 @@ inline void PursuitAction(const PursuitOptions& o, const dynamics::VehicleConfig
   if (o.repulsion_gain_per_s > 0.0) {
     Vec3<T> push;
     for (int j = 0; j < count; ++j) {
-      const T s = Norm(r_BN_W[j]);
+      const Vec3<T>& r_BN_W = neighbours[j].r_BN_W;
+      const T s = Norm(r_BN_W);
       const T strength = T(o.repulsion_gain_per_s) * Max(T(o.repulsion_range_m) - s, zero);
-      push += r_BN_W[j] * (-strength / Max(s, tiny));
+      push += r_BN_W * (-strength / Max(s, tiny));
     }
     const Vec3<T> tangential = push - los * Dot(push, los);
     v += Select<T>(d < T(o.tangential_range_m), tangential, push);
@@ -115,18 +107,26 @@ inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& 
 /// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
 template <class T>
 inline void PursuitAction(const PursuitOptions& o, const AgentConfig& scenario,
-                          const Knowledge<T>& k, const Vec3<T>* r_BN_W, int count, T* action) {
+                          const Knowledge<T>& k, const NeighbourSight<T>* neighbours, int count,
+                          T* action) {
   Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
   KeepFromWalls(scenario.workspace.half_extent_m, o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
-  PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, r_BN_W, count, action);
+  PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, neighbours, count, action);
 }
 
-class Agent;
+/// The pursuit law, from any knowledge.
+struct Pursuit {
+  PursuitOptions options;
 
-/// The action of a built-in controller from what an agent knows after Observe: its target
-/// estimate and the neighbours it has heard of. For tau6 the velocity goes through the
-/// velocity controller. Writes action_size() numbers; allocates nothing.
-void BuiltinAction(BuiltinKind kind, const PursuitOptions& options, const Agent& agent,
-                   float* action);
+  template <class T>
+  void Act(const ControllerInput<T>& in, T* action) const {
+    T velocity[3];
+    PursuitAction(options, in.scenario, in.knowledge, in.neighbours, in.neighbour_count, velocity);
+    AskForVelocity(in, velocity, action);
+  }
+};
+
+std::unique_ptr<Controller> MakePursuit(ControllerConstants& constants);
+std::unique_ptr<Controller> MakePursuitSeparated(ControllerConstants& constants);
 
 }  // namespace stg::agent

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "auv_dynamics/measurements.hpp"
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 
 namespace stg::agent {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "auv_dynamics/measurements.hpp"
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 
 /// What one AUV tells its neighbours, and its 32-byte form on the acoustic link.
 namespace stg::agent {

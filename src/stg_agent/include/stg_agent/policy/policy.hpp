@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stg_agent/agent/agent_config.hpp"
+#include "stg_agent/agent_config.hpp"
 
 namespace stg::agent {
 

@@ -7,8 +7,11 @@
 #include <csignal>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "auv_common/error.hpp"
+#include "auv_common/nodes/parameters.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
 
 namespace stg::nodes {
 
@@ -30,15 +33,35 @@ inline void WatchOnly() {
   sched_setscheduler(0, SCHED_BATCH, &parameters);  // fails: it watches as any other process
 }
 
+/// Where a node has its simulated time from.
+enum class NodeClock {
+  kTopic,     ///< /clock, as every node of ROS
+  kMessages,  ///< the stamps of the messages that it answers, told by SetNodeTime(): each message
+              ///< on /clock would wake two of its threads, just when it has to decide
+};
+
+/// For nodes with NodeClock::kMessages: what a diagnostic or a log message will be stamped with.
+inline void SetNodeTime(const ros::Time& stamp) {
+  if (ros::Time::isSimTime()) ros::Time::setNow(stamp);
+}
+
 /// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
 /// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
 /// a UserError, 3 after any other exception.
 template <class Node>
-int RunNode(int argc, char** argv, const std::string& name) {
-  ros::init(argc, argv, name);
+int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic) {
+  std::vector<char*> arguments(argv, argv + argc);
+  // roscpp listens to /clock if it finds this parameter.
+  char no_clock[] = "/use_sim_time:=/not_asked/use_sim_time";
+  if (clock == NodeClock::kMessages) arguments.push_back(no_clock);
+  int count = static_cast<int>(arguments.size());
+  arguments.push_back(nullptr);
+  ros::init(count, arguments.data(), name);
+  ReservePollLoop();
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
   ros::NodeHandle keeps_ros_running;
+  if (clock == NodeClock::kMessages && SimulatedTimeParameter()) ros::Time::setNow(ros::Time());
   try {
     Node node;
     node.Spin();

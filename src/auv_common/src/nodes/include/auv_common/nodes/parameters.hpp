@@ -38,4 +38,7 @@ int IntegerParameter(const std::string& name, int fallback, int lo, int hi);
 bool FlagParameter(const std::string& name, bool fallback);
 std::string TextParameter(const std::string& name, const std::string& fallback);
 
+/// The parameter /use_sim_time of the graph, whatever name this node has for it.
+bool SimulatedTimeParameter();
+
 }  // namespace stg::nodes

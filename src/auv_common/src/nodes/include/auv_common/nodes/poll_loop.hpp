@@ -1,8 +1,13 @@
 #pragma once
 
+#include <ros/time.h>
+
 #include <functional>
 
 namespace stg::nodes {
+
+/// Wall time for barriers and pacers [s]: of a clock that no correction of the time of day moves.
+inline double WallSeconds() { return ros::SteadyTime::now().toSec(); }
 
 /// Wait time that ends a PollLoop.
 inline constexpr double kLoopDone = -1.0;
@@ -24,6 +29,11 @@ inline constexpr double kLoopDone = -1.0;
 ///        all ordinary threads of the machine; where the system does not permit it the node says so
 ///        once and runs as an ordinary one. 0: ordinary.
 void PollLoop(const std::function<double()>& work, int realtime_priority = 0);
+
+/// To be called before the first NodeHandle: what a PollLoop publishes is then written to its
+/// sockets in the same round. roscpp asks its listeners in the order in which they came, and one
+/// that came after its own has everything it publishes wait for another round.
+void ReservePollLoop();
 
 /// The parameter `realtime_priority` of a node or of the whole graph, default 0. Throws UserError.
 int RealtimePriorityParameter();

@@ -8,19 +8,19 @@
 /// Between the vehicles' plain data and messages.
 namespace stg::nodes {
 
-/// Pose in `world`, twist in body axes (REP 103); the message's stamp is nav.stamp + start.
-inline void SetOdometry(const dynamics::NavState& nav, TimeNs start, nav_msgs::Odometry* m) {
-  m->header.stamp = TimeOf(start + nav.stamp);
-  SetVector(nav.p_WB, &m->pose.pose.position);
-  m->pose.pose.orientation.w = nav.q_WB[0];
-  m->pose.pose.orientation.x = nav.q_WB[1];
-  m->pose.pose.orientation.y = nav.q_WB[2];
-  m->pose.pose.orientation.z = nav.q_WB[3];
-  SetVector(nav.v_WB_B, &m->twist.twist.linear);
-  SetVector(nav.w_WB_B, &m->twist.twist.angular);
+/// Pose in `world`, twist in body axes (REP 103).
+inline void SetNavigation(const dynamics::NavState& nav, geometry_msgs::Pose* pose,
+                          geometry_msgs::Twist* twist) {
+  SetVector(nav.p_WB, &pose->position);
+  pose->orientation.w = nav.q_WB[0];
+  pose->orientation.x = nav.q_WB[1];
+  pose->orientation.y = nav.q_WB[2];
+  pose->orientation.z = nav.q_WB[3];
+  SetVector(nav.v_WB_B, &twist->linear);
+  SetVector(nav.w_WB_B, &twist->angular);
 }
 
-/// Pose in `world`, twist in body axes, at a time since the episode's step 0.
+/// The inverse of SetNavigation, at a time since the episode's step 0.
 inline dynamics::NavState NavOf(const geometry_msgs::Pose& pose, const geometry_msgs::Twist& twist,
                                 TimeNs stamp) {
   dynamics::NavState nav;
@@ -35,7 +35,7 @@ inline dynamics::NavState NavOf(const geometry_msgs::Pose& pose, const geometry_
   return nav;
 }
 
-/// The inverse of SetOdometry.
+/// The same of an odometry message, whose stamp is the clock time.
 inline dynamics::NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
   return NavOf(m.pose.pose, m.twist.twist, NsOf(m.header.stamp) - start);
 }

@@ -6,9 +6,9 @@
 namespace stg::topics {
 
 // Of each AUV, below Auv(i).
+inline constexpr char kSensorFrame[] = "sensor_frame";
 inline constexpr char kOdom[] = "odom";
 inline constexpr char kTargetDetection[] = "target_detection";
-inline constexpr char kSensorSync[] = "sensor_sync";
 inline constexpr char kCmdVel[] = "cmd_vel";
 inline constexpr char kWrench[] = "wrench";
 

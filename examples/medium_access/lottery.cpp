@@ -1,0 +1,86 @@
+// A medium access of your own: in every decision each node draws whether it sends. See
+// docs/how_to/add_a_medium_access.md.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "acoustic_channel/access/medium_access.hpp"
+#include "acoustic_channel/channel/channel.hpp"
+#include "auv_common/numbers/random.hpp"
+
+namespace {
+
+using namespace stg;
+using namespace stg::acoustics;
+
+class Lottery : public MediumAccess {
+ public:
+  Lottery(const ChannelConfig& config, const RunConfig& run)
+      : period_(run.decision_period()),
+        probability_(run.decision_dt_s() / config.transmit_period_s) {}
+
+  void Reset(std::uint64_t seed, std::uint32_t episode) override {
+    seed_ = seed;
+    episode_ = episode;
+  }
+
+  void Plan(TimeNs from, TimeNs /*until*/, std::vector<TimeNs>* start) const override {
+    const auto decision = static_cast<std::uint32_t>(from / period_);
+    for (std::uint32_t node = 0; node < start->size(); ++node) {
+      Random random(seed_, Stream::kMediumAccess, episode_, decision, node);
+      (*start)[node] = random.Uniform() < probability_ ? from : kNever;
+    }
+  }
+
+ private:
+  TimeNs period_;
+  double probability_;
+  std::uint64_t seed_ = 0;
+  std::uint32_t episode_ = 0;
+};
+
+std::unique_ptr<MediumAccess> MakeLottery(const ChannelConfig& config, const RunConfig& run) {
+  return std::make_unique<Lottery>(config, run);
+}
+
+}  // namespace
+
+int main() {
+  MediumAccesses().Add("lottery", MakeLottery);
+
+  NetworkConfig network;
+  network.agents = 2;
+  network.channel.model = "range";
+  network.channel.access = "lottery";
+  network.channel.transmit_period_s = 0.5;  // every fifth decision, on average
+  const TimeNs period = network.decision_period();
+  constexpr int kDecisions = 20000;
+
+  const auto channel = MakeChannel(network.channel, network);
+  Turns turns(network.channel, network);  // what a node with a modem elsewhere asks
+  channel->Reset(/*seed=*/1, /*episode=*/0);
+  turns.Reset(1, 0);
+  const std::uint8_t bytes[] = {1, 2, 3};
+  const std::vector<Vec3<double>> nowhere(2);
+  std::vector<Reception> received;
+  double wait_s = 0.0;
+  bool agree = true;
+  for (int k = 0; k < kDecisions; ++k) {
+    const TimeNs t = k * period;
+    Transmission packet;
+    packet.stamp = packet.generation = t;
+    packet.payload = {bytes, sizeof(bytes)};
+    // A packet is offered in every decision; the one that waits is replaced until the node's turn.
+    channel->Step(t, static_cast<std::uint32_t>(k), nowhere, nowhere, {packet});
+    const std::size_t before = received.size();
+    channel->Deliver(1, t + period, &received);
+    agree = agree && turns.Due(0, t) == (received.size() > before);
+  }
+  for (const Reception& r : received) wait_s += Seconds(r.transmit - r.generation);
+
+  const double share = static_cast<double>(received.size()) / kDecisions;
+  std::printf("sent in %.3f of the decisions, after %.3f s on average\n", share, wait_s);
+  const double error = std::sqrt(0.2 * 0.8 / kDecisions);  // of a share of 0.2
+  return agree && std::abs(share - 0.2) < 4.0 * error && wait_s == 0.0 ? 0 : 1;
+}

@@ -1,0 +1,79 @@
+// A propagation model of your own: packets get lost gradually around a range. See
+// docs/how_to/add_a_propagation_model.md.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "acoustic_channel/models/independent_model.hpp"
+
+namespace {
+
+using namespace stg;
+using namespace stg::acoustics;
+
+class SoftRange {
+ public:
+  explicit SoftRange(const ChannelConfig& config)
+      : range_m_(config.range_m),
+        sound_speed_mps_(config.sound_speed_mps),
+        freshness_s_(config.freshness_s) {}
+
+  template <class T>
+  T DelayS(const T& d) const {
+    return d / T(sound_speed_mps_);
+  }
+  template <class T>
+  LinkValues<T> At(const T& d, const T& age_s) const {
+    const T arrives = T(1.0) / (T(1.0) + Exp((d / T(range_m_) - T(1.0)) * T(kSteepness)));
+    return {T(1.0) - arrives, arrives * Exp(-age_s / T(freshness_s_))};
+  }
+  bool Reaches(double d) const { return d < 3.0 * range_m_; }
+  bool ages() const { return true; }
+  double freshness_s() const { return freshness_s_; }
+
+ private:
+  static constexpr double kSteepness = 8.0;
+
+  double range_m_, sound_speed_mps_, freshness_s_;
+};
+
+/// Share of the packets that node 1 receives of node 0 at distance d [m].
+double ShareAt(double d, const NetworkConfig& network) {
+  constexpr int kPackets = 4000;
+  const auto channel = MakeChannel(network.channel, network);
+  channel->Reset(/*seed=*/1, /*episode=*/0);
+  const std::uint8_t bytes[] = {1, 2, 3};
+  std::vector<Reception> received;
+  for (int k = 0; k < kPackets; ++k) {
+    const TimeNs t = k * network.decision_period();
+    Transmission packet;
+    packet.stamp = packet.generation = t;
+    packet.payload = {bytes, sizeof(bytes)};
+    channel->Step(t, static_cast<std::uint32_t>(k), {{}, {d, 0.0, 0.0}}, {{}, {}}, {packet});
+    channel->Deliver(1, t + network.decision_period(), &received);
+  }
+  return static_cast<double>(received.size()) / kPackets;
+}
+
+}  // namespace
+
+int main() {
+  PropagationModels().Add("soft_range", MakeIndependentModel<SoftRange>);
+
+  NetworkConfig network;
+  network.agents = 2;
+  network.channel.model = "soft_range";
+  network.channel.range_m = 100.0;
+  network.channel.transmit_period_s = network.decision_dt_s();  // a packet in every decision
+
+  // Half of the packets arrive at the range itself, and what an agent thinks of a link agrees.
+  const double near = ShareAt(60.0, network), at = ShareAt(100.0, network);
+  const double quality = MakeLinkEstimator(network.channel)->Quality(100.0, 0.0);
+  std::printf("arrived: %.3f at 60 m, %.3f at 100 m, %.3f at 301 m; quality at 100 m %.3f\n", near,
+              at, ShareAt(301.0, network), quality);
+  const double expected = 1.0 / (1.0 + std::exp(-0.4 * 8.0));
+  const bool good = std::abs(near - expected) < 0.02 && std::abs(at - 0.5) < 0.04 &&
+                    ShareAt(301.0, network) == 0.0 && std::abs(quality - 0.5) < 1e-12;
+  return good ? 0 : 1;
+}

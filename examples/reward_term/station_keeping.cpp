@@ -1,0 +1,68 @@
+// A reward term of your own: an AUV is to move as its target does. See
+// docs/how_to/add_a_reward_term.md.
+
+#include <cmath>
+#include <cstdio>
+
+#include "marl_trainer/task/task.hpp"
+
+namespace {
+
+using namespace stg;
+using namespace stg::task;
+
+/// Minus the speed relative to the target, as a share of the vehicle's largest, at most 1: in
+/// [-1, 0], and 0 for an AUV that moves as its target does.
+class StationKeeping : public TermOf<StationKeeping> {
+ public:
+  explicit StationKeeping(const JudgeConfig& config) : config_(config) {}
+
+  template <class T>
+  T Of(const TermInput<T>& in) const {
+    const auto i = static_cast<std::size_t>(in.agent);
+    const auto k = static_cast<std::size_t>(config_.target_of(in.agent));
+    const T speed = Norm(in.swarm.vehicles[i].v_WB - in.swarm.targets[k].v_WT);
+    return -Min(speed * T(1.0 / config_.vehicle.max_velocity_mps[0]), T(1.0));
+  }
+
+ private:
+  JudgeConfig config_;
+};
+
+std::unique_ptr<const RewardTerm> MakeStationKeeping(const JudgeConfig& config) {
+  return std::make_unique<StationKeeping>(config);
+}
+
+/// What one AUV earns that stands beside a target of this speed, as a share of the largest.
+double Earned(double share, double weight) {
+  JudgeConfig config;
+  config.agents = 1;
+  config.reward.terms["station_keeping"] = weight;
+
+  std::vector<dynamics::VehicleState<double>> vehicles(1);
+  std::vector<dynamics::TargetState<double>> targets(1);
+  targets[0].p_WT = {config.task.desired_distance_m, 0.0, 0.0};
+  targets[0].v_WT = {0.0, share * config.vehicle.max_velocity_mps[0], 0.0};
+  dynamics::Separations<double> separations(1, 0.0);
+  separations.Measure(vehicles);
+  const Efforts<double> idle(1);
+  const SwarmState<double> swarm{vehicles, targets, separations, idle, idle};
+
+  Task<double> task(config);
+  task.Start(true, swarm, 500.0);
+  task.Step(swarm);
+  return task.terms(0).total;
+}
+
+}  // namespace
+
+int main() {
+  RewardTermsByName().Add("station_keeping", MakeStationKeeping);
+
+  // A quarter of the largest speed costs a quarter of the weight; beyond the largest it is all.
+  const double quarter = Earned(0.25, 0.5) - Earned(0.25, 0.0);
+  const double most = Earned(3.0, 0.5) - Earned(3.0, 0.0);
+  std::printf("of a weight of 0.5, a quarter of the speed costs %.4f, three times it %.4f\n",
+              -quarter, -most);
+  return std::abs(quarter + 0.125) < 1e-9 && std::abs(most + 0.5) < 1e-9 ? 0 : 1;
+}

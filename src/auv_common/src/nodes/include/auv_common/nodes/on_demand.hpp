@@ -1,0 +1,43 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace stg::nodes {
+
+/// A topic that costs nothing while nobody listens. Whoever subscribes gets the newest message at
+/// once, as from a latched topic, but roscpp serialises what it latches also for nobody.
+template <class Message>
+class OnDemand {
+ public:
+  /// Makes the newest message; false: there is none yet. Called in the node's own thread.
+  using Make = std::function<bool(Message*)>;
+
+  OnDemand() = default;
+  OnDemand(const OnDemand&) = delete;
+  OnDemand& operator=(const OnDemand&) = delete;
+
+  /// To be called once. @param make is called as long as this object lives.
+  void Advertise(const std::string& topic, std::uint32_t queue, Make make) {
+    make_ = std::move(make);
+    publisher_ = ros::NodeHandle().advertise<Message>(
+        topic, queue, [this](const ros::SingleSubscriberPublisher& listener) {
+          if (make_(&message_)) listener.publish(message_);
+        });
+  }
+
+  /// Sends the newest message to those who listen.
+  void Publish() {
+    if (publisher_.getNumSubscribers() > 0 && make_(&message_)) publisher_.publish(message_);
+  }
+
+ private:
+  Make make_;
+  Message message_;
+  ros::Publisher publisher_;
+};
+
+}  // namespace stg::nodes

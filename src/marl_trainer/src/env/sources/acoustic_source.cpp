@@ -1,0 +1,95 @@
+#include "acoustic_source.hpp"
+
+#include <algorithm>
+
+namespace stg::env {
+
+AcousticSource::AcousticSource(const Scenario& scenario) : scenario_(scenario) {
+  const auto n = static_cast<std::size_t>(scenario.agents);
+  const auto constants = std::make_shared<const agent::AgentConstants>(scenario_);
+  agents_.reserve(n);
+  for (int i = 0; i < scenario.agents; ++i) agents_.emplace_back(constants, i);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_));
+  }
+  packets_.resize(n);
+  offered_.reserve(n);
+  received_.reserve(8 * n);
+  positions_.resize(n);
+  velocities_.resize(n);
+}
+
+void AcousticSource::Start(const dynamics::World& world, const LaneSet& lanes) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!lanes[lane]) continue;
+    channels_[static_cast<std::size_t>(lane)]->Reset(world.seed(lane), world.episode(lane));
+    for (int i = 0; i < scenario_.agents; ++i) {
+      agents_[static_cast<std::size_t>(i)].Reset(lane, world.episode(lane),
+                                                 world.InitialCue(lane, i, scenario_.target_of(i)));
+    }
+  }
+}
+
+void AcousticSource::Observe(const dynamics::World& world, const LaneSet& lanes) {
+  for (int i = 0; i < scenario_.agents; ++i) {
+    agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!lanes[lane]) continue;
+      if (world.step(lane) > 0) {
+        received_.clear();
+        channels_[static_cast<std::size_t>(lane)]->Deliver(i, world.time(lane), &received_);
+        for (const acoustics::Reception& r : received_) agent.Receive(lane, r);
+      }
+      for (int k = 0; k < scenario_.target.count; ++k) {
+        dynamics::Detection detection;
+        if (world.Sense(lane, i, k, &detection)) agent.Detect(lane, detection);
+      }
+    }
+    if (lanes.all()) {
+      agent.Observe(world.Nav(i));
+    } else {
+      agent.Observe(world.Nav(i), lanes.mask());
+    }
+  }
+}
+
+void AcousticSource::Act(const dynamics::World&, int i, const Pack* wanted,
+                         task::Effort<Pack>* action, task::Effort<Pack>* tau) {
+  Pack rounded[dynamics::kMaxActionSize];
+  // What a policy says is float.
+  for (int k = 0; k < scenario_.action_size(); ++k) rounded[k] = RoundToFloat(wanted[k]);
+  agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
+  agent.Act(rounded);
+  std::copy(std::begin(agent.knowledge().tau), std::end(agent.knowledge().tau), tau->begin());
+  std::copy(agent.action().begin(), agent.action().end(), action->begin());
+}
+
+void AcousticSource::Send(const dynamics::World& world) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const TimeNs now = world.time(lane);
+    acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
+    offered_.clear();
+    for (int i = 0; i < scenario_.agents; ++i) {
+      const auto u = static_cast<std::size_t>(i);
+      positions_[u] = Lane(world.vehicle(i).p_WB, lane);
+      velocities_[u] = Lane(world.vehicle(i).v_WB, lane);
+      if (!channel.Due(i, now)) continue;
+      packets_[u] = agents_[u].MakePacket(lane);
+      acoustics::Transmission& t = offered_.emplace_back();
+      t.source = i;
+      t.stamp = t.generation = now;
+      t.payload = acoustics::ViewOf(packets_[u]);
+    }
+    const auto decision =
+        world.step(lane) / static_cast<std::uint32_t>(scenario_.time.decision_steps);
+    channel.Step(now, decision, positions_, velocities_, offered_);
+  }
+}
+
+Pack AcousticSource::LinkQuality(const dynamics::World&) const {
+  Pack sum(0.0);
+  for (const agent::AgentLanes& a : agents_) sum += a.knowledge().mean_quality;
+  return sum / Pack(scenario_.agents);
+}
+
+}  // namespace stg::env

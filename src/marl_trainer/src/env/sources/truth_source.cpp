@@ -1,0 +1,110 @@
+#include "truth_source.hpp"
+
+#include <algorithm>
+
+#include "acoustic_channel/models/range.hpp"
+
+namespace stg::env {
+
+TruthSource::TruthSource(const Scenario& scenario)
+    : scenario_(scenario),
+      exact_angles_(scenario.vehicle.integrator == dynamics::Integrator::kSemiImplicit),
+      minds_(static_cast<std::size_t>(scenario.agents),
+             agent::Mind<Pack>(scenario, agent::Bookkeeping::kTruth)),
+      before_(minds_) {}
+
+void TruthSource::Start(const dynamics::World&, const LaneSet& lanes) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!lanes[lane]) continue;
+    for (agent::Mind<Pack>& mind : minds_) mind.Reset(lane);
+  }
+}
+
+void TruthSource::Observe(const dynamics::World& world, const LaneSet& lanes) {
+  if (lanes.all()) {
+    Think(world);
+    return;
+  }
+  before_ = minds_;
+  Think(world);
+  const Mask<Pack> mask = lanes.mask();
+  for (std::size_t i = 0; i < minds_.size(); ++i) minds_[i].KeepOthers(mask, before_[i]);
+}
+
+void TruthSource::Act(const dynamics::World& world, int i, const Pack* wanted,
+                      task::Effort<Pack>* action, task::Effort<Pack>* tau) {
+  agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
+  const dynamics::VehicleState<Pack>& v = world.vehicle(i);
+  mind.Act(scenario_, wanted, [&] { return exact_angles_ ? v.rpy : RpyOf(v.trig); });
+  *action = mind.action;
+  std::copy(std::begin(mind.knowledge.tau), std::end(mind.knowledge.tau), tau->begin());
+}
+
+void TruthSource::Think(const dynamics::World& world) {
+  const Pack zero(0.0), one(1.0);
+  Pack total_error = zero, nearest(1e9);
+  for (int i = 0; i < scenario_.agents; ++i) {
+    agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
+    const dynamics::TargetState<Pack>& t = world.target(scenario_.target_of(i));
+    mind.SetNavigation(world.vehicle(i));
+    mind.SetTracking(scenario_, {t.p_WT, t.v_WT, zero, one, one});
+    total_error += mind.knowledge.error;
+    nearest = Min(nearest, mind.knowledge.distance);
+  }
+  for (int i = 0; i < scenario_.agents; ++i) {
+    minds_[static_cast<std::size_t>(i)].SetNeighbours(scenario_,
+                                                      Neighbours(world, i, total_error, nearest));
+  }
+}
+
+agent::NeighbourSummary<Pack> TruthSource::Neighbours(const dynamics::World& world, int i,
+                                                      const Pack& total_error,
+                                                      const Pack& nearest) const {
+  const agent::Knowledge<Pack>& k = knowledge(i);
+  const int n = scenario_.agents;
+  const Pack zero(0.0), one(1.0), available(scenario_.observation.link_available);
+  agent::NeighbourSummary<Pack> s;
+  for (int j = 0; j < n; ++j) {
+    if (j == i) continue;
+    const Pack q = acoustics::RangeQuality(world.distance(i, j), scenario_.channel.range_m);
+    s.quality += q;
+    s.best = Max(s.best, q);
+    s.effective += Select(q > available, one, zero);
+  }
+  s.mean_error = n > 1 ? (total_error - k.error) * Pack(1.0 / (n - 1)) : k.error;
+  s.closest = Select(k.distance <= nearest, one, zero);
+  Show(world, i, s.offset);
+  return s;
+}
+
+void TruthSource::Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const {
+  const Vec3<Pack>& p_WB = world.vehicle(i).p_WB;
+  const bool by_index = scenario_.observation.order == agent::NeighbourOrder::kIndex;
+  agent::NearestSlots<Pack> nearest;
+  for (int j = 0, slot = 0; j < scenario_.agents && slot < agent::kNeighbourSlots; ++j) {
+    if (j == i) continue;
+    const Vec3<Pack> r = world.vehicle(j).p_WB - p_WB;
+    if (by_index) {
+      nearest.offset[slot++] = r;
+    } else {
+      nearest.Offer(r, world.distance(i, j));
+    }
+  }
+  std::copy(nearest.offset, nearest.offset + agent::kNeighbourSlots, slots);
+}
+
+Pack TruthSource::LinkQuality(const dynamics::World& world) const {
+  // Mean of q (Eq. 5) over the edges that exist.
+  const Pack zero(0.0), one(1.0);
+  Pack sum = zero, edges = zero;
+  for (int i = 0; i < scenario_.agents; ++i) {
+    for (int j = i + 1; j < scenario_.agents; ++j) {
+      const Pack q = acoustics::RangeQuality(world.distance(i, j), scenario_.channel.range_m);
+      sum += q;
+      edges += Select(q > zero, one, zero);
+    }
+  }
+  return sum / Max(edges, one);
+}
+
+}  // namespace stg::env

@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "env/env_fixture.hpp"
+
+namespace {
+long g_allocations = 0;
+
+void* Allocate(std::size_t size, std::size_t alignment) {
+  ++g_allocations;
+  // aligned_alloc wants a multiple of the alignment.
+  if (void* p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)) {
+    return p;
+  }
+  throw std::bad_alloc();
+}
+}  // namespace
+
+// Not inlined: the compiler would otherwise see malloc paired with delete and warn.
+[[gnu::noinline]] void* operator new(std::size_t size) { return Allocate(size, 16); }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  return Allocate(size, static_cast<std::size_t>(alignment));
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace stg::env {
+namespace {
+
+TEST(Allocation, TheCounterCountsPlainAndAlignedMemory) {
+  const long before = g_allocations;
+  std::vector<int> v(10);
+  std::vector<Pack> p(10);
+  EXPECT_EQ(g_allocations - before, 2);
+}
+
+/// Allocations of three episodes, restarts included, after a first one.
+long AllocationsAfterWarmUp(Scenario s) {
+  VectorEnvOptions o;
+  TestEnv env(Short(std::move(s), 60), o);
+  env.Reset();
+  std::vector<std::vector<float>> actions;
+  for (int k = 0; k < 60; ++k) {
+    actions.push_back(ActionsOf(env, o));
+    env.Step(actions.back());
+  }
+  const long before = g_allocations;
+  for (int k = 0; k < 180; ++k) env.Step(actions[static_cast<size_t>(k) % 60]);
+  env.RestartAt(7);
+  EXPECT_EQ(env.round(0), 7u);
+  return g_allocations - before;
+}
+
+TEST(Allocation, StepsAndRestartsAllocateNothingInEitherMode) {
+  for (const char* scenario : {"medium", "medium_release"}) {
+    for (const char* mode : {"mode=truth", "mode=acoustic"}) {
+      for (const char* interface : {"control.interface=velocity3", "control.interface=tau6"}) {
+        EXPECT_EQ(AllocationsAfterWarmUp(Shipped(scenario, "nominal", {mode, interface})), 0)
+            << scenario << " " << mode << " " << interface;
+      }
+    }
+  }
+}
+
+TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
+  for (const char* mode : {"mode=truth", "mode=acoustic"}) {
+    EXPECT_EQ(AllocationsAfterWarmUp(
+                  Shipped("hard", "nominal",
+                          {mode, "agents=20", "target.count=3", "target.motion=evasive",
+                           "reset.min_separation_m=0.03", "sensing.noise_std_m=0.01",
+                           "sensing.detection_probability=0.8", "sensing.dropout_rate_hz=0.1",
+                           "disturbance.force_std_n=1.0", "reward.weights.separation=0.1"})),
+              0)
+        << mode;
+  }
+}
+
+}  // namespace
+}  // namespace stg::env

@@ -1,0 +1,151 @@
+#include "marl_trainer/learn/train_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "auv_common/error.hpp"
+#include "learn/mappo_setup.hpp"
+#include "marl_trainer/learn/variants.hpp"
+
+namespace stg::learn {
+namespace {
+
+/// What the refusal of a setup says; fails when there is none.
+std::string Refusal(const TrainSetup& setup) {
+  try {
+    setup.ValidateOrThrow();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "accepted";
+  return "";
+}
+
+TEST(TrainSetup, EveryFieldSurvivesJson) {
+  TrainSetup setup("mappo", "paper");
+  setup.common.seed = 5;
+  setup.common.stagger = false;
+  setup.common.imitation.controller = "pursuit";
+  setup.common.imitation.steps = 1000000000000;
+  Own(setup).lr = 0.125;
+  Own(setup).actor_hidden = {7, 8};
+  const auto json = ToJson(setup);
+  EXPECT_EQ(json.at("algorithm"), "mappo");
+  EXPECT_EQ(json.at("imitate"), "pursuit");
+  EXPECT_EQ(json.at("lr"), 0.125);
+  EXPECT_EQ(ToJson(TrainSetupFromJson(json)), json);
+  auto other = json;
+  other["unknown"] = 1;
+  EXPECT_THROW(TrainSetupFromJson(other), UserError);
+  other = json;
+  other.erase("lr");
+  EXPECT_THROW(TrainSetupFromJson(other), UserError);
+  other = json;
+  other["lr"] = "fast";
+  EXPECT_THROW(TrainSetupFromJson(other), UserError);
+}
+
+TEST(TrainSetup, IsAValue) {
+  const TrainSetup setup("mappo", "fast");
+  TrainSetup copy = setup;
+  Own(copy).lr = 0.5;
+  EXPECT_NE(ToJson(copy), ToJson(setup));
+  copy = setup;
+  EXPECT_EQ(ToJson(copy), ToJson(setup));
+}
+
+TEST(TrainSetup, NamesTheOptionWithABadValue) {
+  for (const char* preset : {"fast", "paper"}) {
+    EXPECT_NO_THROW(TrainSetup("mappo", preset).ValidateOrThrow());
+  }
+  TrainSetup setup("mappo", "fast");
+  Own(setup).lr = -1.0;
+  EXPECT_NE(Refusal(setup).find("--lr:"), std::string::npos);
+  setup = TrainSetup("mappo", "fast");
+  Own(setup).minibatch = 1601;
+  EXPECT_NE(Refusal(setup).find("--minibatch"), std::string::npos);
+  setup = TrainSetup("mappo", "fast");
+  Own(setup).critic_hidden = {};
+  EXPECT_NE(Refusal(setup).find("--critic-hidden"), std::string::npos);
+  setup = TrainSetup("mappo", "fast");
+  Own(setup).initial_log_std = -5.0;  // below the lower bound
+  EXPECT_NE(Refusal(setup).find("--initial-log-std"), std::string::npos);
+  setup = TrainSetup("mappo", "fast");
+  setup.common.imitation.steps = 100;
+  EXPECT_NE(Refusal(setup).find("--imitation-steps"), std::string::npos);
+  setup = TrainSetup("mappo", "fast");
+  Own(setup).wall_units = 0.015;
+  Own(setup).activation = "relu";
+  EXPECT_NE(Refusal(setup).find("--start-from"), std::string::npos);
+  setup.common.start_from = "there";
+  EXPECT_NO_THROW(setup.ValidateOrThrow());
+  Own(setup).actor_hidden = {16, 64};
+  EXPECT_NE(Refusal(setup).find("--wall-units"), std::string::npos);
+}
+
+TEST(TrainSetup, AnUnknownAlgorithmOrPresetIsToldWhatThereIs) {
+  try {
+    TrainSetup("mapo", "fast");
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("mappo"), std::string::npos) << error.what();
+  }
+  try {
+    TrainSetup("mappo", "slow");
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("fast or paper"), std::string::npos) << error.what();
+  }
+}
+
+TEST(TrainSetup, PaperPresetHasTheNumbersOfTableS2) {
+  TrainSetup setup("mappo", "paper");
+  const MappoConfig& c = Own(setup);
+  EXPECT_EQ(c.gamma, 0.95);
+  EXPECT_EQ(c.lambda, 0.95);
+  EXPECT_EQ(c.lr, 3e-4);
+  EXPECT_EQ(c.minibatch, 800);
+  EXPECT_EQ(setup.common.envs * setup.common.horizon, 6400);
+  EXPECT_EQ(c.epochs, 10);
+  EXPECT_EQ(c.clip, 0.2);
+  EXPECT_EQ(c.entropy, 0.001);
+  EXPECT_EQ(c.grad_clip, 5.0);
+  EXPECT_EQ(c.value_weight, 0.5);
+  EXPECT_EQ(setup.common.steps, 2000000);
+}
+
+TEST(Imitation, IsInFullForTheFirstHalfAndThenFades) {
+  ImitationConfig imitation;
+  EXPECT_EQ(imitation.Weight(0), 0.0);
+  imitation.controller = "pursuit";
+  imitation.steps = 1000;
+  imitation.share = 0.8;
+  EXPECT_EQ(imitation.Weight(0), 0.8);
+  EXPECT_EQ(imitation.Weight(500), 0.8);
+  EXPECT_DOUBLE_EQ(imitation.Weight(750), 0.4);
+  EXPECT_EQ(imitation.Weight(1000), 0.0);
+  EXPECT_EQ(imitation.Weight(2000), 0.0);
+}
+
+TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
+  Scenario scenario;
+  EXPECT_EQ(VariantScenario(scenario, "stg").observation_size(), 74);
+  EXPECT_EQ(VariantScenario(scenario, "semantic").observation_size(), 68);
+  EXPECT_EQ(VariantScenario(scenario, "velocity3").observation_size(), 51);
+  const Scenario tau6 = VariantScenario(scenario, "tau6");
+  EXPECT_EQ(tau6.observation_size(), 51);
+  EXPECT_EQ(tau6.action_size(), 6);
+  EXPECT_EQ(tau6.control.action_scale, 0.18);
+  EXPECT_EQ(tau6.control.smoothing, 0.0);
+  EXPECT_EQ(tau6.control.max_delta, 0.0);
+  EXPECT_EQ(tau6.reward.kind, task::RewardKind::kReleaseRaw);
+  EXPECT_EQ(tau6.reward.weights.coordination, 0.10);
+  EXPECT_EQ(ValidationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
+  EXPECT_EQ(ValidationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
+  EXPECT_EQ(ValidationScenario(scenario, "tau6").action_size(), 6);
+  EXPECT_THROW(VariantScenario(scenario, "other"), UserError);
+}
+
+}  // namespace
+}  // namespace stg::learn

@@ -1,0 +1,303 @@
+#include "marl_trainer/learn/run/trainer.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "auv_common/config/files.hpp"
+#include "auv_common/error.hpp"
+#include "learn/mappo_setup.hpp"
+#include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
+#include "marl_trainer/learn/run/validation.hpp"
+#include "marl_trainer/learn/variants.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
+
+namespace stg::learn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Two small collections per episode of 40 decisions.
+TrainSetup SmallSetup() {
+  TrainSetup setup("mappo", "fast");
+  MappoConfig& own = Own(setup);
+  own.minibatch = 160;
+  own.epochs = 2;
+  own.actor_hidden = {16, 16};
+  own.critic_hidden = {16};
+  TrainConfig& common = setup.common;
+  common.envs = 32;
+  common.horizon = 20;
+  common.stagger = false;
+  common.validation_episodes = 4;
+  common.validation_interval = 2560;
+  common.checkpoint_interval = 1280;
+  common.steps = 5120;
+  return setup;
+}
+
+Scenario ShortScenario(const std::string& name = "medium_release") {
+  return LoadNamedScenario(config::ScenarioFolder(), name, "nominal",
+                           {"time.episode_steps=40", "time.tail_steps=10"});
+}
+
+std::string Bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class TrainerTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "trainer_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Trainer::Options Options(const std::string& name, int workers = 1) {
+    Trainer::Options options;
+    options.out = (folder_ / name).string();
+    options.workers = workers;
+    options.log = &log_;
+    return options;
+  }
+
+  fs::path folder_;
+  std::ostringstream log_;
+};
+
+void ExpectSameBits(const TrainState& a, const TrainState& b) {
+  EXPECT_TRUE(a.algorithm == b.algorithm);
+  EXPECT_EQ(a.env_steps, b.env_steps);
+  EXPECT_EQ(a.round, b.round);
+  EXPECT_EQ(a.best_return, b.best_return);
+}
+
+const std::vector<float>& Parameters(Trainer& trainer) {
+  return dynamic_cast<Mappo&>(trainer.algorithm()).parameters();
+}
+
+TEST_F(TrainerTest, WeightsDoNotDependOnTheNumberOfWorkers) {
+  for (const char* name : {"medium_release", "medium"}) {
+    const Scenario scenario = ShortScenario(name);
+    Trainer one(scenario, SmallSetup(), Options(std::string(name) + "1", 1));
+    Trainer two(scenario, SmallSetup(), Options(std::string(name) + "2", 2));
+    Trainer three(scenario, SmallSetup(), Options(std::string(name) + "3", 3));
+    EXPECT_TRUE(one.Run());
+    EXPECT_TRUE(two.Run());
+    EXPECT_TRUE(three.Run());
+    EXPECT_EQ(one.state().algorithm.Integer("adam_steps"), 8 * 2 * 4);
+    ExpectSameBits(one.state(), two.state());
+    ExpectSameBits(one.state(), three.state());
+    TrainSetup other = SmallSetup();
+    other.common.seed = 1;
+    Trainer seeded(scenario, other, Options(std::string(name) + "4", 1));
+    seeded.Run();
+    EXPECT_NE(Parameters(seeded), Parameters(one));
+  }
+}
+
+TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
+  // Aligned episodes, a horizon that does not divide the episode, and staggered ends.
+  for (int kind = 0; kind < 3; ++kind) {
+    TrainSetup setup = SmallSetup();
+    if (kind == 1) setup.common.horizon = 15;
+    if (kind == 2) setup.common.stagger = true;
+    const std::string name = std::to_string(kind);
+    const Scenario scenario = ShortScenario();
+    Trainer whole(scenario, setup, Options("whole" + name));
+    EXPECT_TRUE(whole.Run());
+    {
+      Trainer::Options options = Options("halves" + name);
+      options.halt_after = setup.common.steps / 2;
+      Trainer first(scenario, setup, options);
+      EXPECT_FALSE(first.Run());
+      EXPECT_LT(first.state().env_steps, setup.common.steps);
+    }
+    Trainer::Options options = Options("halves" + name, 2);
+    options.resume = true;
+    Trainer second(scenario, setup, options);
+    EXPECT_GE(second.state().env_steps, setup.common.steps / 2);
+    EXPECT_TRUE(second.Run());
+    ExpectSameBits(whole.state(), second.state());
+    EXPECT_EQ(Bytes(folder_ / ("whole" + name) / "policy_last.onnx"),
+              Bytes(folder_ / ("halves" + name) / "policy_last.onnx"));
+  }
+}
+
+TEST_F(TrainerTest, StopSavesAtTheNextBoundaryAndLeavesALoadablePolicy) {
+  const std::atomic<int> stop{2};
+  Trainer::Options options = Options("run");
+  options.stop = &stop;
+  Trainer trainer(ShortScenario(), SmallSetup(), options);
+  EXPECT_FALSE(trainer.Run());
+  EXPECT_EQ(trainer.state().env_steps, 2 * 640);
+  const agent::Policy policy =
+      agent::Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
+  EXPECT_NO_THROW(policy.RequireFits(ShortScenario()));
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "summary.json"));
+  EXPECT_NO_THROW(LoadCheckpoint(CheckpointPath((folder_ / "run").string(), 1280)));
+}
+
+TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {
+  const TrainSetup setup = SmallSetup();
+  const Scenario scenario = ShortScenario();
+  Trainer trainer(scenario, setup, Options("run"));
+  trainer.Run();
+  const std::string folder = (folder_ / "run").string();
+  const std::string newest = CheckpointPath(folder, 5120);
+  const std::string good = Bytes(newest);
+  const auto refused = [&](const std::string& bytes, const std::string& reason) {
+    std::ofstream(newest, std::ios::binary) << bytes;
+    try {
+      LoadCheckpoint(newest);
+      ADD_FAILURE() << "accepted; expected: " << reason;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(newest), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  };
+  refused("", "not a checkpoint");
+  refused("{\"a\": 1}", "not a checkpoint");
+  refused(good.substr(0, 20), "not a checkpoint");
+  refused(good.substr(0, good.size() - 1), "truncated");
+  refused(good + "x", "truncated");
+  std::string version = good;
+  version[8] = 9;
+  refused(version, "version 9");
+  version[8] = 1;
+  refused(version, "version 1 (a libtorch archive)");
+  std::string flipped = good;
+  flipped[good.size() / 2] = static_cast<char>(flipped[good.size() / 2] ^ 1);
+  refused(flipped, "checksum");
+
+  std::ostringstream log;
+  const std::optional<TrainState> previous = LoadNewestCheckpoint(folder, &log);
+  ASSERT_TRUE(previous.has_value());
+  EXPECT_EQ(previous->env_steps, 3840);
+  EXPECT_NE(log.str().find(newest), std::string::npos);
+  Trainer::Options options = Options("run");
+  options.resume = true;
+  Trainer resumed(scenario, setup, options);
+  EXPECT_EQ(resumed.state().env_steps, 3840);
+  EXPECT_TRUE(resumed.Run());
+  ExpectSameBits(resumed.state(), trainer.state());
+}
+
+TEST_F(TrainerTest, KeepsTheLastCheckpointsOnlyAndNoTemporaryFile) {
+  TrainSetup setup = SmallSetup();
+  setup.common.keep_checkpoints = 2;
+  Trainer(ShortScenario(), setup, Options("run")).Run();
+  int checkpoints = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "run")) {
+    EXPECT_NE(entry.path().extension(), ".tmp");
+    if (entry.path().extension() == ".ckpt") ++checkpoints;
+  }
+  EXPECT_EQ(checkpoints, 2);
+}
+
+TEST_F(TrainerTest, RefusesToMixRuns) {
+  const TrainSetup setup = SmallSetup();
+  const Scenario scenario = ShortScenario();
+  Trainer(scenario, setup, Options("run")).Run();
+  EXPECT_THROW(Trainer(scenario, setup, Options("run")), UserError);
+  Trainer::Options resume = Options("run");
+  resume.resume = true;
+  TrainSetup other = setup;
+  Own(other).gamma = 0.8;
+  EXPECT_THROW(Trainer(scenario, other, resume), UserError);
+  EXPECT_THROW(Trainer(ShortScenario("hard_release"), setup, resume), UserError);
+  resume.out = (folder_ / "empty").string();
+  EXPECT_THROW(Trainer(scenario, setup, resume), UserError);
+  // A run that ended before its first checkpoint is no obstacle.
+  fs::create_directories(folder_ / "early");
+  std::ofstream(folder_ / "early" / "config.json") << "{}";
+  EXPECT_NO_THROW(Trainer(scenario, setup, Options("early")));
+}
+
+TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {
+  const TrainSetup setup = SmallSetup();
+  Trainer::Options options = Options("run");
+  options.halt_after = 2560;
+  Trainer(ShortScenario(), setup, options).Run();
+  options.halt_after = 0;
+  options.resume = true;
+  Trainer(ShortScenario(), setup, options).Run();
+  std::istringstream csv(Bytes(folder_ / "run" / "progress.csv"));
+  std::string line;
+  std::getline(csv, line);
+  const auto columns = std::count(line.begin(), line.end(), ',');
+  int row = 0;
+  while (std::getline(csv, line)) {
+    EXPECT_EQ(std::stoi(line), 640 * ++row);
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns);
+  }
+  EXPECT_EQ(row, 8);
+}
+
+TEST_F(TrainerTest, ARunCanStartFromTheNetworksOfAnother) {
+  const Scenario scenario = ShortScenario();
+  TrainSetup setup = SmallSetup();
+  Trainer first(scenario, setup, Options("first"));
+  ASSERT_TRUE(first.Run());
+
+  setup.common.start_from = (folder_ / "first").string();
+  Own(setup).lr = Own(setup).critic_lr =
+      1e-8;  // no step to speak of: what it starts with is what remains
+  setup.common.seed = 1;
+  setup.common.steps = 2560;
+  Trainer second(scenario, setup, Options("second"));
+  const std::size_t actor =
+      dynamic_cast<Mappo&>(second.algorithm()).networks().actor.log_std_offset();
+  for (std::size_t i = 0; i < actor; ++i) {
+    ASSERT_EQ(Parameters(second)[i], Parameters(first)[i]);
+  }
+  EXPECT_EQ(Parameters(second)[actor], static_cast<float>(Own(setup).initial_log_std));
+  EXPECT_EQ(second.state().env_steps, 0);
+  ASSERT_TRUE(second.Run());
+  EXPECT_NEAR(Parameters(second)[0], Parameters(first)[0], 1e-5);
+
+  Own(setup).actor_hidden = {8};
+  EXPECT_THROW(Trainer(scenario, setup, Options("third")), UserError);
+  setup.common.start_from = (folder_ / "nowhere").string();
+  EXPECT_THROW(Trainer(scenario, setup, Options("fourth")), UserError);
+}
+
+TEST_F(TrainerTest, EveryVariantTrains) {
+  for (const char* variant : {"stg", "semantic", "velocity3", "tau6"}) {
+    TrainSetup setup = SmallSetup();
+    setup.common.variant = variant;
+    setup.common.steps = 640;
+    Trainer trainer(ShortScenario(), setup, Options(variant));
+    EXPECT_TRUE(trainer.Run());
+    const agent::Policy policy =
+        agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
+    EXPECT_NO_THROW(policy.RequireFits(VariantScenario(ShortScenario(), variant)));
+  }
+}
+
+TEST_F(TrainerTest, AShortRunImprovesTheReturn) {
+  TrainSetup setup("mappo", "fast");
+  setup.common.steps = 128000;
+  setup.common.validation_interval = 1000000;
+  setup.common.validation_episodes = 16;
+  const Scenario scenario = LoadNamedScenario(config::ScenarioFolder(), "medium_release");
+  Trainer trainer(scenario, setup, Options("run", 2));
+  WorkerPool pool(2);
+  const task::MetricSummary before =
+      task::Summarise(Validate(scenario, 16, &trainer.algorithm(), &pool));
+  EXPECT_TRUE(trainer.Run());
+  const double untrained = before.mean[0];
+  ASSERT_EQ(before.names[0], "return");
+  EXPECT_GT(trainer.state().best_return, untrained + 200.0);
+}
+
+}  // namespace
+}  // namespace stg::learn

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "auv_dynamics/control/control_config.hpp"
+#include "stg_agent/graph/knowledge.hpp"
+#include "stg_agent/graph/neighbourhood.hpp"
+#include "stg_agent/graph/task_view.hpp"
+#include "stg_agent/inbox/inbox.hpp"
+
+namespace stg::agent {
+
+/// Everything that one AUV knows and does, read-only: of an Agent, or of one lane of AgentLanes.
+/// Holds numbers of its own and refers to the agent, which must not change meanwhile.
+class AgentView {
+ public:
+  using Action = std::array<double, dynamics::kMaxActionSize>;
+
+  AgentView(const AgentConfig& scenario, const Inbox& inbox, const Knowledge<double>& knowledge,
+            const Action& action, const SightReader& sights)
+      : scenario_(scenario),
+        inbox_(inbox),
+        knowledge_(knowledge),
+        action_(action),
+        sights_(sights) {}
+
+  const AgentConfig& scenario() const { return scenario_; }
+  int id() const { return inbox_.id(); }
+  int target() const { return inbox_.target(); }
+  std::uint32_t episode() const { return inbox_.episode(); }
+
+  /// State of knowledge of the last Observe.
+  const Knowledge<double>& knowledge() const { return knowledge_; }
+  bool lost() const { return knowledge_.lost > 0.5; }
+  TaskView task() const { return TaskOf(scenario_.observation, knowledge_); }
+  /// Executed action of the last Act; action_size entries count.
+  const Action& action() const { return action_; }
+
+  const TargetTrack& track() const { return inbox_.track(); }
+  /// The neighbours' packets, as received.
+  const NeighbourTable& neighbours() const { return inbox_.neighbours(); }
+  /// A known neighbour as of the last Observe.
+  NeighbourSight<double> sight(int id) const { return sights_.at(id); }
+  /// Writes the `count` known neighbours nearest to this AUV, nearest first (ties: lower index
+  /// first); returns how many there were.
+  int Nearest(int count, NeighbourSight<double>* sights) const;
+
+  /// Packets of this episode that did not decode.
+  std::uint64_t refused_packets() const { return inbox_.refused_packets(); }
+
+ private:
+  const AgentConfig& scenario_;
+  const Inbox& inbox_;
+  Knowledge<double> knowledge_;
+  Action action_;
+  SightReader sights_;
+};
+
+}  // namespace stg::agent

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "auv_common/registry.hpp"
+#include "auv_dynamics/control/control.hpp"
+#include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/agent_config.hpp"
+#include "stg_agent/graph/knowledge.hpp"
+#include "stg_agent/graph/neighbourhood.hpp"
+
+/// Built-in controllers: what a policy has to beat. Each one is a file of its own and a line in
+/// the registry (controllers/registry.cpp).
+namespace stg::agent {
+
+/// What a controller may read of one AUV (T = double), or of the same AUV in kLanes environments
+/// (T = Pack). Whether it is what the AUV found out by itself or the truth is the maker's affair.
+template <class T>
+struct ControllerInput {
+  const AgentConfig& scenario;
+  int id;
+  const Knowledge<T>& knowledge;
+  const NeighbourSight<T>* neighbours;  ///< [neighbour_count], known ones, in the maker's order
+  int neighbour_count;
+};
+
+/// A rule from what one AUV knows to its action. Has no memory: one object serves all AUVs, and any
+/// number of threads.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+
+  /// Writes the action, [action_size] numbers in [-1, 1]. Allocates nothing.
+  virtual void Act(const ControllerInput<double>& input, double* action) const = 0;
+  virtual void Act(const ControllerInput<Pack>& input, Pack* action) const = 0;
+
+  /// The same from an agent's own knowledge after Observe, with its kNearestKnown nearest
+  /// neighbours, nearest first; rounded to float, as a policy's action is.
+  void Act(const AgentView& agent, float* action) const;
+
+  static constexpr int kNearestKnown = 16;
+};
+
+/// The controller that a law makes: a copyable class with
+///   template <class T> void Act(const ControllerInput<T>& input, T* action) const;
+template <class Law>
+class ControllerOf final : public Controller {
+ public:
+  explicit ControllerOf(Law law) : law_(std::move(law)) {}
+  void Act(const ControllerInput<double>& input, double* action) const override {
+    law_.Act(input, action);
+  }
+  void Act(const ControllerInput<Pack>& input, Pack* action) const override {
+    law_.Act(input, action);
+  }
+  using Controller::Act;
+
+ private:
+  Law law_;
+};
+
+/// Writes the action that asks for a desired velocity v, in the scenario's interface: v / v_max, or
+/// the force that the velocity controller would use.
+/// @param velocity [3] v / v_max, world axes, each in [-1, 1]
+template <class T>
+inline void AskForVelocity(const ControllerInput<T>& input, const T* velocity, T* action) {
+  const AgentConfig& s = input.scenario;
+  const Knowledge<T>& k = input.knowledge;
+  dynamics::ActionForVelocity(
+      s.control, s.vehicle, velocity, k.R_WB, k.v_WB, [&k] { return RpyOf(k.trig); }, k.w_WB_B,
+      action);
+}
+
+/// What follows a controller's name, as in "pursuit:gain=2,cap=0.5".
+class ControllerConstants {
+ public:
+  /// @param text name and constants; messages quote it
+  explicit ControllerConstants(const std::string& text);
+
+  /// Replaces the value by the given one, if there is one. Throws UserError unless it is a number
+  /// from 0 to `largest`.
+  void Read(const std::string& name, double largest, double* value);
+  /// Throws UserError when a constant was given that nobody read.
+  void RequireAllRead() const;
+
+ private:
+  struct Item {
+    std::string name, value;
+    bool read = false;
+  };
+  std::string text_;
+  std::vector<Item> items_;
+};
+
+/// All controllers by name; a program may add its own at its start.
+using ControllerRegistry = Registry<Controller, ControllerConstants&>;
+ControllerRegistry& Controllers();
+/// The name of the one that flies where neither policy nor controller is named.
+std::string DefaultController();
+
+/// The controller of a name alone or with constants that differ from the tuned ones, as in
+/// "pursuit_separated:gain=2,cap=0.5"; null when no controller has that name. Throws UserError for
+/// an unknown constant, or one that is not a number in range.
+std::shared_ptr<const Controller> MakeController(const std::string& text);
+
+}  // namespace stg::agent

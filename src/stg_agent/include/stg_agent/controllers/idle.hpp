@@ -1,0 +1,19 @@
+#pragma once
+
+#include <algorithm>
+
+#include "stg_agent/controllers/controller.hpp"
+
+namespace stg::agent {
+
+/// Asks for nothing: no velocity, or no force.
+struct Idle {
+  template <class T>
+  void Act(const ControllerInput<T>& input, T* action) const {
+    std::fill(action, action + input.scenario.action_size(), T(0.0));
+  }
+};
+
+std::unique_ptr<Controller> MakeIdle(ControllerConstants& constants);
+
+}  // namespace stg::agent

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <vector>
+
+#include "acoustic_channel/link/link_estimator.hpp"
+#include "auv_common/numbers/lane_structs.hpp"
+#include "stg_agent/agent_config.hpp"
+#include "stg_agent/graph/knowledge.hpp"
+#include "stg_agent/packet/packet.hpp"
+
+/// The neighbours of one AUV (T = double), or of the same AUV in kLanes environments (T = Pack), as
+/// a decision sees them: what each one last reported, carried forward to now.
+namespace stg::agent {
+
+/// Dead reckoning p + v age inside the walls [m].
+template <class T>
+Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, double half_extent_m) {
+  return Clip(p_W + v_W * age_s, -half_extent_m, half_extent_m);
+}
+
+/// One neighbour. World axes.
+template <class T>
+struct NeighbourSight {
+  T known = T(0.0);  ///< 0: nothing else means anything; else 1
+  // As it reported.
+  Vec3<T> p_W, v_W;  ///< [m], [m/s], true at generation_ns
+  T generation_ns = T(0.0), tracking_error = T(0.0);
+  // Now.
+  T age_s = T(0.0);         ///< of the report, not negative
+  Vec3<T> p_WN;             ///< dead-reckoned position p + v age, inside the walls [m]
+  Vec3<T> r_BN_W;           ///< p_WN minus own position [m]
+  T distance_m = T(0.0);    ///< length of r_BN_W
+  T link_quality = T(0.0);  ///< at this distance and age
+
+  /// Known in some lane.
+  bool heard() const { return Any(known > T(0.5)); }
+};
+
+/// One lane of sights, [agents]. Valid as long as the Neighbourhood it comes from.
+class SightReader {
+ public:
+  SightReader(const std::vector<NeighbourSight<double>>& sights, int) : one_(sights.data()) {}
+  SightReader(const std::vector<NeighbourSight<Pack>>& sights, int lane)
+      : lanes_(sights.data()), lane_(lane) {}
+
+  NeighbourSight<double> at(int id) const {
+    return one_ != nullptr ? one_[id] : LaneOf(lanes_[id], lane_);
+  }
+
+ private:
+  const NeighbourSight<double>* one_ = nullptr;  // either this
+  const NeighbourSight<Pack>* lanes_ = nullptr;  // or this
+  int lane_ = 0;
+};
+
+/// Fixed capacity (the swarm); allocates nothing after construction.
+template <class T>
+class Neighbourhood {
+ public:
+  explicit Neighbourhood(const AgentConfig& scenario);
+
+  /// Forgets everybody.
+  void Clear(int lane);
+  /// The newest report of state.source in a lane.
+  void Set(int lane, const NeighbourState& state);
+  void Drop(int lane, int id);
+
+  /// Ages all reports to a time; true where one is older than track.neighbour_max_age_s.
+  Mask<T> Age(const T& now_ns);
+  /// Carries all reports forward by their age, seen from own position p_WB [m].
+  void Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links);
+  /// Takes back the lanes outside the mask.
+  void KeepOthers(const Mask<T>& lanes, const Neighbourhood& before);
+
+  /// [agents]; the own one is never known.
+  const std::vector<NeighbourSight<T>>& sights() const { return sights_; }
+
+ private:
+  double max_age_s_, half_extent_m_;
+  std::vector<NeighbourSight<T>> sights_;
+  std::vector<double> distance_, age_, quality_;  // [agents] padded to whole packs; T = double
+};
+
+}  // namespace stg::agent

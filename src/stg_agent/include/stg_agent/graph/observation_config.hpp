@@ -1,0 +1,36 @@
+#pragma once
+
+#include "auv_common/config/field.hpp"
+
+namespace stg::agent {
+
+/// Which neighbours fill the slots of the observation, and in which order.
+enum class NeighbourOrder { kNearest, kIndex };
+
+/// Constants of the observation that the paper leaves open (release's values).
+struct ObservationConfig {
+  bool tracking = true;  ///< Eq. 14, 8 numbers
+  bool semantic = true;  ///< Eqs. 15-16, 9 numbers
+  bool graph = true;     ///< Eq. 18, 6 numbers
+  NeighbourOrder order = NeighbourOrder::kNearest;
+  /// Truth mode only. As the release: the progress shown is always 0 (d(t-1) is
+  /// overwritten first), so is the first P of an episode; mean_k(e) counts the
+  /// current error twice; lost steps read one too many.
+  bool release_bookkeeping = false;
+  double distance_scale_m = 1.2;
+  double error_scale_m = 0.8;
+  double progress_scale_m = 0.04;
+  double closing_scale_mps = 0.08;
+  int error_window = 5;  ///< k of mean_k(e)
+  double lost_scale_steps = 25.0;
+  double near_range_m = 0.10;
+  double quality_high = 0.75;
+  double quality_medium = 0.40;
+  double link_available = 0.10;  ///< q above this is an effective neighbour
+  double role_confidence = 0.40;
+};
+
+/// Keys, units and ranges of the section.
+void Describe(ObservationConfig* c, config::Table* t);
+
+}  // namespace stg::agent

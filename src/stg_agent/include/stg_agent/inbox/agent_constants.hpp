@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "stg_agent/agent_config.hpp"
+#include "stg_agent/packet/packet.hpp"
+
+namespace stg::agent {
+
+/// What all agents of a swarm have in common, shared by them and never changed.
+struct AgentConstants {
+  /// Throws UserError when the scenario does not fit the packet layout.
+  explicit AgentConstants(const AgentConfig& s) : scenario(s), codec(s) {}
+
+  AgentConfig scenario;
+  PacketCodec codec;
+};
+using SharedConstants = std::shared_ptr<const AgentConstants>;
+
+}  // namespace stg::agent

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "acoustic_channel/channel/channel.hpp"
+#include "auv_dynamics/measurements.hpp"
+#include "stg_agent/graph/knowledge.hpp"
+#include "stg_agent/graph/target_view.hpp"
+#include "stg_agent/inbox/agent_constants.hpp"
+#include "stg_agent/inbox/neighbour_table.hpp"
+#include "stg_agent/inbox/target_track.hpp"
+
+namespace stg::agent {
+
+/// All that one AUV was told in one environment: the cue, its own detections, its neighbours'
+/// packets; and what it tells them. What happens at different times in different environments is
+/// here; the arithmetic that all of them share is in Mind.
+///
+/// The result does not depend on the order in which things come in between two Advances.
+/// Deterministic; allocates nothing after construction.
+class Inbox {
+ public:
+  Inbox(SharedConstants constants, int id);
+
+  /// Starts an episode: forgets everything. The cue was true at time 0.
+  void Reset(std::uint32_t episode, const dynamics::Cue& cue);
+
+  /// Own detection; of another target than this AUV's: ignored. The newest before the next
+  /// Advance counts. A non-finite one throws std::invalid_argument: a bug of the caller.
+  void Detect(const dynamics::Detection& detection);
+
+  /// A packet that the modem gave: the state it holds when that is news, else null. One that does
+  /// not decode is counted and ignored.
+  const NeighbourState* Receive(const acoustics::Reception& reception);
+
+  /// Forgets neighbours silent for too long at time `now`.
+  void Forget(TimeNs now) { neighbours_.Forget(now); }
+  /// Brings the target track to time `now`, with all that came in.
+  void Advance(TimeNs now);
+
+  /// The target as of the last Advance.
+  /// @param freshness_s information older than this is not current
+  TargetView<double> Target(double freshness_s) const;
+
+  /// What to tell the neighbours.
+  /// @param knowledge of the same time as the last Advance
+  Packet MakePacket(const Knowledge<double>& knowledge) const;
+
+  int id() const { return id_; }
+  /// Target this AUV is tasked with.
+  int target() const { return target_; }
+  std::uint32_t episode() const { return episode_; }
+  /// Time of the last Advance.
+  TimeNs now() const { return now_; }
+  const NeighbourTable& neighbours() const { return neighbours_; }
+  const TargetTrack& track() const { return track_; }
+  /// Packets of this episode that did not decode.
+  std::uint64_t refused_packets() const { return refused_packets_; }
+
+ private:
+  void TakeSharedEstimates();
+
+  SharedConstants constants_;
+  int id_, target_;
+  NeighbourTable neighbours_;
+  TargetTrack track_;
+  dynamics::Cue cue_;
+  dynamics::Detection detection_;
+  bool cue_pending_ = false, detection_pending_ = false;
+  TimeNs now_ = 0;
+  std::uint32_t episode_ = 0;
+  std::uint64_t refused_packets_ = 0;
+};
+
+}  // namespace stg::agent

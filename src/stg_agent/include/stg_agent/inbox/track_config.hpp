@@ -1,0 +1,20 @@
+#pragma once
+
+#include "auv_common/config/field.hpp"
+
+namespace stg::agent {
+
+/// The agents' target filter and their memory of neighbours.
+struct TrackConfig {
+  double process_accel_std_mps2 = 0.01;  ///< white acceleration of the target model
+  double measurement_std_m = 0.001;      ///< floor of a detection's standard deviation
+  double initial_speed_std_mps = 0.01;
+  double gate_sigma = 5.0;  ///< own detections beyond it are set aside, three in a row restart
+  double lost_std_m = 0.2;  ///< track no better than this counts as lost
+  double neighbour_max_age_s = 10.0;  ///< a neighbour is forgotten after this silence
+};
+
+/// Keys, units and ranges of the section.
+void Describe(TrackConfig* c, config::Table* t);
+
+}  // namespace stg::agent

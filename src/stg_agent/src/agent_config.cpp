@@ -1,0 +1,35 @@
+#include "stg_agent/agent_config.hpp"
+
+namespace stg::agent {
+
+void Describe(TaskConfig* c, config::Table* t) {
+  t->Section("task");
+  t->Add("desired_distance_m", &c->desired_distance_m, config::NonNegative(1e4), "m",
+         "desired distance d* from the target");
+  t->Add("lost_distance_m", &c->lost_distance_m, config::Positive(1e5), "m",
+         "farther from the target than this, it counts as lost");
+  t->Moved("reward.desired_distance_m", "task.desired_distance_m");
+  t->Moved("reward.lost_distance_m", "task.lost_distance_m");
+}
+
+void Describe(AgentConfig* c, config::Table* t) {
+  Describe(static_cast<dynamics::WorldConfig*>(c), t);
+  Describe(&c->channel, t);
+  Describe(&c->track, t);
+  Describe(&c->observation, t);
+  Describe(&c->task, t);
+}
+
+std::optional<config::Violation> FindConflict(const AgentConfig& c) {
+  if (auto violation = FindConflict(static_cast<const dynamics::WorldConfig&>(c))) {
+    return violation;
+  }
+  if (auto violation = FindConflict(c.channel, c)) return violation;
+  if (c.observation.quality_medium > c.observation.quality_high) {
+    return config::Violation{{"observation.quality_medium", "observation.quality_high"},
+                             "medium quality cannot begin above high quality"};
+  }
+  return {};
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,58 @@
+#include "stg_agent/controllers/controller.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "auv_common/error.hpp"
+
+namespace stg::agent {
+
+void Controller::Act(const AgentView& agent, float* action) const {
+  NeighbourSight<double> nearest[kNearestKnown];
+  const int count = agent.Nearest(kNearestKnown, nearest);
+  double a[dynamics::kMaxActionSize] = {};
+  Act({agent.scenario(), agent.id(), agent.knowledge(), nearest, count}, a);
+  for (int k = 0; k < agent.scenario().action_size(); ++k) action[k] = static_cast<float>(a[k]);
+}
+
+ControllerConstants::ControllerConstants(const std::string& text) : text_(text) {
+  const std::size_t colon = text.find(':');
+  std::istringstream rest(colon == std::string::npos ? "" : text.substr(colon + 1));
+  for (std::string item; std::getline(rest, item, ',');) {
+    const std::size_t equals = item.find('=');
+    items_.push_back({item.substr(0, equals),
+                      equals == std::string::npos ? "" : item.substr(equals + 1), false});
+  }
+}
+
+void ControllerConstants::Read(const std::string& name, double largest, double* value) {
+  for (Item& item : items_) {
+    if (item.name != name) continue;
+    item.read = true;
+    char* end = nullptr;
+    *value = std::strtod(item.value.c_str(), &end);
+    if (item.value.empty() || *end != '\0' || !(*value >= 0.0 && *value <= largest)) {
+      std::ostringstream range;
+      range << "'" << text_ << "': " << name << " must be a number from 0 to " << largest;
+      throw UserError(range.str());
+    }
+  }
+}
+
+void ControllerConstants::RequireAllRead() const {
+  for (const Item& item : items_) {
+    if (!item.read) throw UserError("'" + text_ + "': no such constant: " + item.name);
+  }
+}
+
+std::shared_ptr<const Controller> MakeController(const std::string& text) {
+  const std::string name = text.substr(0, text.find(':'));
+  if (!Controllers().Has(name)) return nullptr;
+  ControllerConstants constants(text);
+  std::shared_ptr<const Controller> controller = Controllers().Make(name, constants);
+  constants.RequireAllRead();
+  return controller;
+}
+
+}  // namespace stg::agent

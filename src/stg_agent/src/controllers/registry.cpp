@@ -1,0 +1,18 @@
+#include "stg_agent/controllers/controller.hpp"
+#include "stg_agent/controllers/idle.hpp"
+#include "stg_agent/controllers/pursuit.hpp"
+
+namespace stg::agent {
+
+ControllerRegistry& Controllers() {
+  static ControllerRegistry registry("controller", {
+                                                       {"idle", MakeIdle},
+                                                       {"pursuit", MakePursuit},
+                                                       {"pursuit_separated", MakePursuitSeparated},
+                                                   });
+  return registry;
+}
+
+std::string DefaultController() { return "pursuit_separated"; }
+
+}  // namespace stg::agent

@@ -1,0 +1,92 @@
+#include "stg_agent/graph/neighbourhood.hpp"
+
+#include <type_traits>
+
+namespace stg::agent {
+
+template <class T>
+Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario)
+    : max_age_s_(scenario.track.neighbour_max_age_s),
+      half_extent_m_(scenario.workspace.half_extent_m),
+      sights_(static_cast<std::size_t>(scenario.agents)) {
+  const int padded = (scenario.agents + kLanes - 1) / kLanes * kLanes;
+  for (auto* v : {&distance_, &age_, &quality_}) v->assign(static_cast<std::size_t>(padded), 0.0);
+}
+
+template <class T>
+void Neighbourhood<T>::Clear(int lane) {
+  for (NeighbourSight<T>& n : sights_) SetLaneOf(&n, lane, NeighbourSight<double>());
+}
+
+template <class T>
+void Neighbourhood<T>::Set(int lane, const NeighbourState& state) {
+  NeighbourSight<T>& n = sights_[static_cast<std::size_t>(state.source)];
+  SetLane(&n.known, lane, 1.0);
+  SetLane(&n.p_W, lane, state.p_W);
+  SetLane(&n.v_W, lane, state.v_W);
+  SetLane(&n.generation_ns, lane, static_cast<double>(state.generation));
+  SetLane(&n.tracking_error, lane, state.tracking_error);
+}
+
+template <class T>
+void Neighbourhood<T>::Drop(int lane, int id) {
+  SetLaneOf(&sights_[static_cast<std::size_t>(id)], lane, NeighbourSight<double>());
+}
+
+template <class T>
+Mask<T> Neighbourhood<T>::Age(const T& now_ns) {
+  const T zero(0.0), half(0.5), oldest(max_age_s_);
+  Mask<T> past = half < zero;
+  for (NeighbourSight<T>& n : sights_) {
+    if (!n.heard()) continue;
+    // Whole nanoseconds below 2^53 are exact.
+    n.age_s = Max((now_ns - n.generation_ns) * T(1e-9), zero);
+    past = past || ((n.age_s > oldest) && (n.known > half));
+  }
+  return past;
+}
+
+template <class T>
+void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links) {
+  for (NeighbourSight<T>& n : sights_) {
+    if (!n.heard()) continue;
+    n.p_WN = DeadReckon(n.p_W, n.v_W, n.age_s, half_extent_m_);
+    n.r_BN_W = n.p_WN - p_WB;
+    n.distance_m = Norm(n.r_BN_W);
+  }
+  if constexpr (std::is_same_v<T, Pack>) {
+    for (NeighbourSight<T>& n : sights_) {
+      if (n.heard()) n.link_quality = links.Quality(n.distance_m, n.age_s);
+    }
+  } else {
+    // Whole packs at once: the exponentials cost as much for kLanes links as for one. Entries past
+    // the last neighbour hold old numbers and are not read back.
+    std::size_t heard = 0;
+    for (const NeighbourSight<T>& n : sights_) {
+      if (!n.heard()) continue;
+      distance_[heard] = n.distance_m;
+      age_[heard++] = n.age_s;
+    }
+    for (std::size_t k = 0; k < heard; k += static_cast<std::size_t>(kLanes)) {
+      const Pack d = Pack::load_unaligned(&distance_[k]);
+      const Pack age = Pack::load_unaligned(&age_[k]);
+      links.Quality(d, age).store_unaligned(&quality_[k]);
+    }
+    heard = 0;
+    for (NeighbourSight<T>& n : sights_) {
+      if (n.heard()) n.link_quality = quality_[heard++];
+    }
+  }
+}
+
+template <class T>
+void Neighbourhood<T>::KeepOthers(const Mask<T>& lanes, const Neighbourhood& before) {
+  for (std::size_t j = 0; j < sights_.size(); ++j) {
+    stg::KeepOthers(lanes, before.sights_[j], &sights_[j]);
+  }
+}
+
+template class Neighbourhood<double>;
+template class Neighbourhood<Pack>;
+
+}  // namespace stg::agent

@@ -1,0 +1,42 @@
+#include "stg_agent/graph/observation_config.hpp"
+
+namespace stg::agent {
+
+void Describe(ObservationConfig* c, config::Table* t) {
+  t->Section("observation");
+  t->Add("tracking", &c->tracking, config::kNone, "-", "include the 8 tracking numbers of Eq. 14");
+  t->Add("semantic", &c->semantic, config::kNone, "-",
+         "include the 9 semantic numbers of Eqs. 15-16");
+  t->Add("graph", &c->graph, config::kNone, "-", "include the 6 task-graph numbers of Eq. 18");
+  t->Add("order", config::Enum(&c->order, {"nearest", "index"}), config::kNone, "-",
+         "which three neighbours are shown: the nearest, or the first by index");
+  t->Add(
+      "release_bookkeeping", &c->release_bookkeeping, config::kNone, "-",
+      "truth mode, as the release: shown progress and first P are 0, mean error counts the current "
+      "one twice, lost steps read one too many");
+  t->Add("distance_scale_m", &c->distance_scale_m, config::Positive(1e5), "m",
+         "target distance that reads 1");
+  t->Add("error_scale_m", &c->error_scale_m, config::Positive(1e5), "m",
+         "tracking error that reads 1");
+  t->Add("progress_scale_m", &c->progress_scale_m, config::Positive(1e4), "m",
+         "approach in one decision that reads 1");
+  t->Add("closing_scale_mps", &c->closing_scale_mps, config::Positive(100), "m/s",
+         "closing speed that reads 1");
+  t->Add("error_window", &c->error_window, config::Within(1, 64), "decisions",
+         "length k of the running mean of the tracking error");
+  t->Add("lost_scale_steps", &c->lost_scale_steps, config::Positive(1e6), "decisions",
+         "consecutive lost decisions that read 1");
+  t->Add("near_range_m", &c->near_range_m, config::NonNegative(1e5), "m",
+         "closer to the target than this, an approach counts as stable");
+  t->Add("quality_high", &c->quality_high, config::kFraction, "-",
+         "confidence from here on is high");
+  t->Add("quality_medium", &c->quality_medium, config::kFraction, "-",
+         "confidence from here on is medium, below it low");
+  t->Add("link_available", &c->link_available, config::kFraction, "-",
+         "a link quality above this makes an effective neighbour");
+  t->Add("role_confidence", &c->role_confidence, config::kFraction, "-",
+         "confidence from which an AUV with an advantage takes the tracking role");
+  t->Moved("observation.link_radius_m", "channel.range_m");
+}
+
+}  // namespace stg::agent

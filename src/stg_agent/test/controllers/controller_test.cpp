@@ -1,0 +1,139 @@
+#include "stg_agent/controllers/controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include "agent/agent_fixture.hpp"
+#include "auv_common/error.hpp"
+#include "stg_agent/controllers/pursuit.hpp"
+
+namespace stg::agent {
+namespace {
+
+const std::vector<std::string> kBuiltIn = {"idle", "pursuit", "pursuit_separated"};
+
+/// An agent that has flown a while among neighbours.
+Agent Experienced(const AgentConfig& s) {
+  Agent agent(s, 0);
+  agent.Reset(0, CueAt({0.2, 0.1, 0.0}));
+  std::vector<float> observation;
+  for (const Input& in : RandomEpisode(s, 0, 30, 7, {}, 0.03)) Drive(&agent, in, &observation);
+  return agent;
+}
+
+/// The error that making this controller ends with; empty for none.
+std::string ErrorOf(const std::string& text) {
+  try {
+    MakeController(text);
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Controllers, AreFoundByNameAndNothingElseIs) {
+  for (const std::string& name : kBuiltIn) EXPECT_NE(MakeController(name), nullptr) << name;
+  EXPECT_EQ(Controllers().Names(), kBuiltIn);
+  EXPECT_TRUE(Controllers().Has(DefaultController()));
+  for (const char* name : {"", "Pursuit", "pursuit ", "pursuit.onnx"}) {
+    EXPECT_EQ(MakeController(name), nullptr) << name;
+  }
+}
+
+TEST(Controllers, ANameMayCarryConstants) {
+  const AgentConfig s;
+  const Agent agent = Experienced(s);
+  PursuitOptions options = TunedPursuitSeparated();
+  options.gain_per_s = 0.25;
+  options.feedforward = 1.2;
+  const auto named = MakeController("pursuit_separated:gain=0.25,feedforward=1.2");
+  float tuned[3], a[3], b[3];
+  named->Act(agent.view(), a);
+  ControllerOf<Pursuit>(Pursuit{options}).Act(agent.view(), b);
+  MakeController("pursuit_separated")->Act(agent.view(), tuned);
+  bool differs = false;
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(a[k], b[k]);
+    differs = differs || a[k] != tuned[k];
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
+  for (const char* bad : {"pursuit:gain", "pursuit:gain=", "pursuit:gain=2x", "pursuit:gain=nan",
+                          "pursuit:gain=-1", "pursuit:cap=1.1", "pursuit:speed=1", "idle:gain=1"}) {
+    EXPECT_THROW(MakeController(bad), UserError) << bad;
+  }
+  EXPECT_EQ(ErrorOf("pursuit:gain=2x"), "'pursuit:gain=2x': gain must be a number from 0 to 1000");
+  EXPECT_EQ(ErrorOf("pursuit:cap=2"), "'pursuit:cap=2': cap must be a number from 0 to 1");
+  EXPECT_EQ(ErrorOf("pursuit:speed=1"), "'pursuit:speed=1': no such constant: speed");
+}
+
+TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
+  for (const auto interface :
+       {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
+    AgentConfig s;
+    s.control.interface = interface;
+    const Agent agent = Experienced(s);
+    NeighbourSight<double> one[3];
+    const int count = agent.view().Nearest(3, one);
+    ASSERT_GT(count, 0);
+    Knowledge<Pack> knowledge{};
+    NeighbourSight<Pack> packs[3];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      SetLaneOf(&knowledge, lane, agent.knowledge());
+      for (int j = 0; j < count; ++j) SetLaneOf(&packs[j], lane, one[j]);
+    }
+    for (const std::string& name : kBuiltIn) {
+      const auto controller = MakeController(name);
+      double a[dynamics::kMaxActionSize];
+      Pack b[dynamics::kMaxActionSize];
+      controller->Act({s, 0, agent.knowledge(), one, count}, a);
+      controller->Act({s, 0, knowledge, packs, count}, b);
+      for (int k = 0; k < s.action_size(); ++k) {
+        EXPECT_EQ(a[k], Lane(b[k], kLanes - 1)) << name;
+        EXPECT_LE(std::abs(a[k]), 1.0) << name;
+      }
+    }
+  }
+}
+
+TEST(Controllers, AForceInterfaceIsGivenWhatTheVelocityControllerWouldDo) {
+  AgentConfig velocity, force;
+  velocity.control.smoothing = velocity.control.max_delta = 0.0;  // executed as asked
+  force.control.interface = dynamics::ActionInterface::kTau6;
+  Agent a(velocity, 0), b(force, 0);
+  for (Agent* agent : {&a, &b}) {
+    agent->Reset(0, CueAt({0.2, 0.1, -0.1}));
+    std::vector<float> observation(static_cast<std::size_t>(agent->scenario().observation_size()));
+    agent->Observe(Nav(0, {0.1, 0.0, 0.0}, {0.05, 0.02, 0.0}), observation.data());
+  }
+  float asked[dynamics::kMaxActionSize], action[dynamics::kMaxActionSize];
+  MakeController("pursuit")->Act(a.view(), asked);
+  MakeController("pursuit")->Act(b.view(), action);
+  const AgentOutput out = a.Act(asked);
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(action[k], out.fraction[k], 1e-6) << k;
+}
+
+TEST(Controllers, ALaneIsServedLikeAnAgentOfItsOwn) {
+  const AgentConfig s;
+  Agent alone(s, 0);
+  AgentLanes beside(std::make_shared<const AgentConstants>(s), 0);
+  alone.Reset(0, CueAt({0.2, 0.1, 0.0}));
+  for (int lane = 0; lane < kLanes; ++lane) beside.Reset(lane, 0, CueAt({0.2, 0.1, 0.0}));
+  const auto controller = MakeController("pursuit_separated");
+  std::vector<float> observation;
+  for (const Input& in : RandomEpisode(s, 0, 60, 9, {}, 0.03)) {
+    Drive(&alone, in, &observation);
+    const int lane = kLanes - 1;
+    for (const HeardPacket& r : in.receptions) beside.Receive(lane, r);
+    for (const dynamics::Detection& d : in.detections) beside.Detect(lane, d);
+    beside.Observe(InAllLanes(in.nav));
+    float a[3], b[3];
+    controller->Act(alone.view(), a);
+    controller->Act(beside.view(lane), b);
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(a[k], b[k]);
+  }
+}
+
+}  // namespace
+}  // namespace stg::agent

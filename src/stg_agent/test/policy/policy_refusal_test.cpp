@@ -1,0 +1,154 @@
+// Files that are not policies, or are spoiled ones, are refused with their name and the reason.
+
+#include <gtest/gtest.h>
+#include <onnx/onnx_pb.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "auv_common/error.hpp"
+#include "policy/policy_files.hpp"
+
+namespace stg::agent {
+namespace {
+
+class PolicyRefusal : public PolicyTest {
+ protected:
+  /// Saves a good policy, lets `change` spoil the model, and expects a refusal
+  /// that names the file and contains `reason`.
+  void ExpectRefused(const std::function<void(onnx::ModelProto*)>& change,
+                     const std::string& reason) {
+    Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
+    onnx::ModelProto model;
+    ASSERT_TRUE(model.ParseFromString(Bytes(Path("good.onnx"))));
+    change(&model);
+    Write(Path("bad.onnx"), model.SerializeAsString());
+    ExpectFileRefused(Path("bad.onnx"), reason);
+  }
+  void ExpectFileRefused(const std::string& path, const std::string& reason) {
+    try {
+      Policy::LoadOnnx(path);
+      FAIL() << "accepted; expected: " << reason;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  }
+};
+
+TEST_F(PolicyRefusal, RefusesWhatIsNotAPolicyFile) {
+  ExpectFileRefused(Path("missing.onnx"), "no such");
+  ExpectFileRefused(folder_.string(), "regular file");
+  Write(Path("empty.onnx"), "");
+  ExpectFileRefused(Path("empty.onnx"), "not a policy");
+  Write(Path("text.onnx"), "input_mean: 1\n");
+  ExpectFileRefused(Path("text.onnx"), "not a policy");
+  std::string noise(10000, '\0');
+  std::mt19937 rng(1);
+  for (char& c : noise) c = static_cast<char>(rng());
+  Write(Path("noise.onnx"), noise);
+  ExpectFileRefused(Path("noise.onnx"), "not a policy");
+  Write(Path("huge.onnx"), "");
+  ASSERT_EQ(truncate(Path("huge.onnx").c_str(), Policy::kMaxFileBytes + 1), 0);
+  ExpectFileRefused(Path("huge.onnx"), "larger");
+}
+
+TEST_F(PolicyRefusal, RefusesEveryTruncation) {
+  Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
+  const std::string bytes = Bytes(Path("good.onnx"));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    Write(Path("cut.onnx"), bytes.substr(0, size));
+    EXPECT_THROW(Policy::LoadOnnx(Path("cut.onnx")), UserError) << size << " of " << bytes.size();
+  }
+}
+
+TEST_F(PolicyRefusal, ChangedBytesNeverCrashAndNeverChangeTheNumbers) {
+  const Policy good(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1));
+  good.SaveOnnx(Path("good.onnx"));
+  const std::string bytes = Bytes(Path("good.onnx"));
+  std::mt19937 rng(1);
+  for (int k = 0; k < 1000; ++k) {
+    std::string changed = bytes;
+    changed[rng() % changed.size()] = static_cast<char>(rng());
+    Write(Path("changed.onnx"), changed);
+    try {
+      const Policy read = Policy::LoadOnnx(Path("changed.onnx"));
+      const std::vector<float> o = RandomObservation(6, 1);
+      float a[3], b[3];
+      good.Mean(o.data(), a);
+      read.Mean(o.data(), b);
+      EXPECT_EQ(std::memcmp(a, b, sizeof a), 0) << k;
+    } catch (const UserError&) {
+    }
+  }
+}
+
+TEST_F(PolicyRefusal, RefusesOtherGraphs) {
+  using Model = onnx::ModelProto*;
+  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(3)->set_op_type("MatMul"); },
+                "not Gemm");
+  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(4)->set_op_type("Sigmoid"); },
+                "not Tanh or Relu");
+  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(3)->set_domain("custom"); },
+                "not Gemm");
+  ExpectRefused([](Model m) { m->mutable_graph()->mutable_node(3)->set_input(0, "observation"); },
+                "does not continue");
+  ExpectRefused(
+      [](Model m) { m->mutable_graph()->mutable_node(3)->mutable_attribute(3)->set_i(0); },
+      "Gemm is not");
+  ExpectRefused(
+      [](Model m) {
+        onnx::AttributeProto* a = m->mutable_graph()->mutable_node(4)->add_attribute();
+        a->set_name("body");
+        a->set_type(onnx::AttributeProto::GRAPH);
+      },
+      "attribute 'body'");
+  ExpectRefused([](Model m) { m->mutable_graph()->add_node()->set_op_type("Loop"); },
+                "operators after Mul");
+  ExpectRefused([](Model m) { m->mutable_opset_import(0)->set_version(13); }, "operator set");
+  ExpectRefused([](Model m) { m->add_functions(); }, "functions");
+  ExpectRefused([](Model m) { m->clear_graph(); }, "no graph");
+  ExpectRefused(
+      [](Model m) {
+        for (int i = 0; i < 40; ++i) m->mutable_graph()->add_node()->set_op_type("Tanh");
+      },
+      "too many");
+}
+
+TEST_F(PolicyRefusal, RefusesBadConstants) {
+  using Model = onnx::ModelProto*;
+  const auto tensor = [](Model m, int i) { return m->mutable_graph()->mutable_initializer(i); };
+  ExpectRefused([&](Model m) { tensor(m, 2)->set_dims(0, 5); }, "another size");
+  ExpectRefused([&](Model m) { tensor(m, 2)->set_dims(0, -1); }, "dimension of -1");
+  ExpectRefused([&](Model m) { tensor(m, 2)->set_dims(0, 1LL << 40); }, "dimension of");
+  ExpectRefused([&](Model m) { tensor(m, 2)->set_data_type(onnx::TensorProto::DOUBLE); },
+                "not float32");
+  ExpectRefused(
+      [&](Model m) {
+        tensor(m, 2)->set_data_location(onnx::TensorProto::EXTERNAL);
+        onnx::StringStringEntryProto* e = tensor(m, 2)->add_external_data();
+        e->set_key("location");
+        e->set_value("/etc/passwd");
+      },
+      "outside the file");
+  ExpectRefused(
+      [&](Model m) {
+        const float nan = std::numeric_limits<float>::quiet_NaN();
+        std::memcpy(tensor(m, 2)->mutable_raw_data()->data(), &nan, sizeof nan);
+      },
+      "not finite");
+  ExpectRefused([&](Model m) { tensor(m, 2)->mutable_raw_data()->data()[1] ^= 1; }, "checksum");
+  ExpectRefused([&](Model m) { tensor(m, 2)->set_name("other"); }, "not a constant");
+  ExpectRefused([&](Model m) { *m->mutable_graph()->add_initializer() = *tensor(m, 0); },
+                "defined twice");
+  ExpectRefused([](Model m) { m->mutable_metadata_props(3)->set_value("0.5"); }, "action scale");
+  ExpectRefused([](Model m) { m->mutable_metadata_props(3)->set_value("nan"); }, "not a number");
+}
+
+}  // namespace
+}  // namespace stg::agent

@@ -1,0 +1,290 @@
+/// Shows a running or a replayed swarm in rviz. It only listens, so it may come, go and fall behind
+/// without any effect on the run.
+
+#include <auv_msgs/LinkState.h>
+#include <auv_msgs/LinkStates.h>
+#include <auv_msgs/TaskState.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/ros.h>
+#include <std_msgs/String.h>
+#include <visualization_msgs/MarkerArray.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "acoustic_channel/nodes/topics.hpp"
+#include "auv_common/nodes/health.hpp"
+#include "auv_common/nodes/node_main.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
+#include "marker_builder.hpp"
+#include "stg_agent/nodes/topics.hpp"
+#include "swarm_view.hpp"
+#include "topics.hpp"
+
+namespace stg::nodes {
+namespace {
+
+constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
+
+/// Reads what is drawn and takes the default for the rest: a bag may be older than this program.
+/// Throws YAML::Exception for text that is no scenario at all.
+SceneConfig ReadScene(const std::string& yaml) {
+  const YAML::Node root = YAML::Load(yaml);
+  SceneConfig scene;
+  const auto number = [&](const char* group, const char* key, double fallback) {
+    const double value = root[group] ? root[group][key].as<double>(fallback) : fallback;
+    return std::isfinite(value) && value > 0.0 ? value : fallback;
+  };
+  scene.name = root["name"].as<std::string>("");
+  scene.half_extent_m = number("workspace", "half_extent_m", scene.half_extent_m);
+  scene.sensing_range_m = number("sensing", "range_m", scene.sensing_range_m);
+  scene.radius_m = number("vehicle", "radius_m", scene.radius_m);
+  if (root["reward"] && root["reward"]["band_m"]) {
+    scene.band_lo_m = root["reward"]["band_m"][0].as<double>(scene.band_lo_m);
+    scene.band_hi_m = root["reward"]["band_m"][1].as<double>(scene.band_hi_m);
+  }
+  return scene;
+}
+
+bool Finite(const geometry_msgs::Point& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+class MarkerNode {
+ public:
+  MarkerNode()
+      : private_nh_("~"), health_("markers", "view", [this](auto& status) { Report(status); }) {
+    private_nh_.param("overview/vehicle_scale", overview_.vehicle_scale, 8.0);
+    private_nh_.param("close/vehicle_scale", close_.vehicle_scale, 1.0);
+    private_nh_.param("overview/trail_s", overview_.trail_s, 60.0);
+    private_nh_.param("close/trail_s", close_.trail_s, 8.0);
+    overview_.whole_workspace = true;
+    for (MarkerStyle* style : {&overview_, &close_}) {
+      private_nh_.param("lost_packet_s", style->lost_packet_s, style->lost_packet_s);
+      private_nh_.param("prediction_s", style->prediction_s, style->prediction_s);
+      if (!(style->vehicle_scale > 0.0)) {
+        ROS_FATAL("vehicle_scale must be positive");
+        throw std::invalid_argument("vehicle_scale");
+      }
+    }
+    const double rate_hz = private_nh_.param("rate_hz", 20.0);
+    if (!(rate_hz > 0.0)) throw std::invalid_argument("rate_hz must be positive");
+
+    overview_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kOverview, 1);
+    close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kClose, 1);
+    scenario_sub_ = nh_.subscribe(topics::kScenario, 1, &MarkerNode::OnScenario, this);
+    links_sub_ = nh_.subscribe(topics::kLinks, 50, &MarkerNode::OnLinks, this);
+    const std::string file = private_nh_.param("scenario_file", std::string());
+    if (!file.empty()) ReadScenarioFile(file);
+    // Wall clock: a paused or finished replay stays visible.
+    draw_timer_ = nh_.createWallTimer(ros::WallDuration(1.0 / rate_hz), &MarkerNode::OnDraw, this);
+    discover_timer_ = nh_.createWallTimer(ros::WallDuration(0.5), &MarkerNode::OnDiscover, this);
+  }
+
+ private:
+  void ReadScenarioFile(const std::string& file) {
+    std::ifstream in(file);
+    std_msgs::String text;
+    text.data.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    if (!in) ROS_ERROR("cannot read the scenario file %s", file.c_str());
+    OnScenario(text);
+  }
+
+  void OnScenario(const std_msgs::String& text) {
+    try {
+      view_.scene = ReadScene(text.data);
+    } catch (const YAML::Exception& e) {
+      ROS_ERROR("/scenario is not a scenario, walls and bands are the default ones: %s", e.what());
+    }
+  }
+
+  /// Subscribes to every AUV and target that anybody publishes: any number, live or from a bag.
+  void OnDiscover(const ros::WallTimerEvent&) {
+    static const std::regex kPattern("/(auv|target)_([0-9]{1,4})/odom");
+    ros::master::V_TopicInfo topics;
+    if (!ros::master::getTopics(topics)) return;
+    for (const ros::master::TopicInfo& topic : topics) {
+      std::smatch match;
+      if (!std::regex_match(topic.name, match, kPattern)) continue;
+      const std::size_t index = std::stoul(match[2]);
+      if (match[1] == "auv") {
+        if (index < kMaxVehicles) AddVehicles(index + 1);
+      } else if (index < kMaxTargets) {
+        AddTargets(index + 1);
+      }
+    }
+  }
+
+  void AddVehicles(std::size_t count) {
+    for (std::size_t i = view_.vehicles.size(); i < count; ++i) {
+      view_.vehicles.emplace_back();
+      const int id = static_cast<int>(i);
+      subscribers_.push_back(nh_.subscribe<nav_msgs::Odometry>(
+          topics::AuvTopic(id, topics::kOdom), 20,
+          [this, i](const nav_msgs::Odometry::ConstPtr& m) { OnOdom(i, *m); }));
+      subscribers_.push_back(nh_.subscribe<auv_msgs::TaskState>(
+          topics::AuvTopic(id, topics::kTaskState), 20,
+          [this, i](const auv_msgs::TaskState::ConstPtr& m) { OnTask(i, *m); }));
+    }
+  }
+
+  void AddTargets(std::size_t count) {
+    for (std::size_t k = view_.targets.size(); k < count; ++k) {
+      view_.targets.emplace_back();
+      subscribers_.push_back(nh_.subscribe<nav_msgs::Odometry>(
+          topics::TargetOdom(static_cast<int>(k)), 20,
+          [this, k](const nav_msgs::Odometry::ConstPtr& m) { OnTarget(k, *m); }));
+    }
+  }
+
+  /// Simulated time goes on; when it jumps back (a replay starts over) the past is forgotten.
+  void Advance(const ros::Time& stamp) {
+    const double t = stamp.toSec();
+    if (t < view_.now - 1.0) ForgetPast();
+    if (t > view_.now || view_.now - t > 1.0) view_.now = t;
+  }
+
+  void ForgetPast() {
+    for (VehicleView& v : view_.vehicles) v.trail.clear();
+    for (MovingTarget& t : view_.targets) t.trail.clear();
+    view_.packets.clear();
+    view_.links.clear();
+    view_.now = 0.0;
+  }
+
+  double TrailSeconds() const { return std::max(overview_.trail_s, close_.trail_s); }
+
+  void Extend(std::deque<TrailPoint>* trail, const geometry_msgs::Point& p, ShownPhase phase) {
+    if (!trail->empty()) {
+      const geometry_msgs::Point& q = trail->back().position;
+      const double step = 0.1 * view_.scene.radius_m;
+      if (std::hypot(p.x - q.x, p.y - q.y, p.z - q.z) < step) return;
+    }
+    trail->push_back({view_.now, p, phase});
+    while (trail->size() > kMaxTrailPoints || trail->front().time < view_.now - TrailSeconds()) {
+      trail->pop_front();
+    }
+  }
+
+  void OnOdom(std::size_t i, const nav_msgs::Odometry& odom) {
+    if (!Finite(odom.pose.pose.position)) return refused_.Add(Refusals::kNotFinite);
+    Advance(odom.header.stamp);
+    VehicleView& v = view_.vehicles[i];
+    v.seen = true;
+    v.pose = odom.pose.pose;
+    Extend(&v.trail, v.pose.position, v.phase);
+  }
+
+  void OnTarget(std::size_t k, const nav_msgs::Odometry& odom) {
+    if (!Finite(odom.pose.pose.position)) return refused_.Add(Refusals::kNotFinite);
+    MovingTarget& t = view_.targets[k];
+    t.seen = true;
+    t.position = odom.pose.pose.position;
+    // nav_msgs: the twist is in the child frame; turn it into the world.
+    const auto& q = odom.pose.pose.orientation;
+    const auto& v = odom.twist.twist.linear;
+    const double x = 2 * (q.y * v.z - q.z * v.y), y = 2 * (q.z * v.x - q.x * v.z),
+                 z = 2 * (q.x * v.y - q.y * v.x);
+    t.velocity.x = v.x + q.w * x + q.y * z - q.z * y;
+    t.velocity.y = v.y + q.w * y + q.z * x - q.x * z;
+    t.velocity.z = v.z + q.w * z + q.x * y - q.y * x;
+    Extend(&t.trail, t.position, ShownPhase::kUnknown);
+  }
+
+  void OnTask(std::size_t i, const auv_msgs::TaskState& task) {
+    // One AUV tells the episode: at its change the others' messages may still be the old one's.
+    if (i == 0 && task.episode != view_.episode) {
+      view_.episode = task.episode;
+      ForgetPast();
+      view_.now = task.header.stamp.toSec();
+    }
+    view_.step = task.step;
+    VehicleView& v = view_.vehicles[i];
+    v.phase = task.phase <= auv_msgs::TaskState::LOST ? static_cast<ShownPhase>(task.phase)
+                                                      : ShownPhase::kUnknown;
+    v.leader = task.role;
+    v.target_known = task.target_known && Finite(task.target_position);
+    v.distance = v.target_known ? task.target_distance : -1.0;
+    v.estimate = task.target_position;
+    v.estimate_std = std::isfinite(task.target_std) ? task.target_std : 0.0;
+  }
+
+  void OnLinks(const auv_msgs::LinkStates& states) {
+    const double t = states.header.stamp.toSec();
+    for (const auv_msgs::LinkState& s : states.links) {
+      if (s.source >= kMaxVehicles || s.destination >= kMaxVehicles) continue;
+      const int source = static_cast<int>(s.source), destination = static_cast<int>(s.destination);
+      const auto [found, is_new] = view_.links.try_emplace({source, destination});
+      LinkView& link = found->second;
+      if (!is_new && s.delivered > link.delivered) {
+        view_.packets.push_back({source, destination, t, false, auv_msgs::LinkState::NONE});
+      }
+      if (!is_new && s.dropped > link.dropped) {
+        view_.packets.push_back({source, destination, t, true, s.last_drop_reason});
+      }
+      link = {std::isfinite(s.quality) ? s.quality : 0.0, s.age, s.delivered, s.dropped};
+    }
+  }
+
+  void OnDraw(const ros::WallTimerEvent&) {
+    while (!view_.packets.empty() &&
+           view_.packets.front().time < view_.now - overview_.lost_packet_s) {
+      view_.packets.pop_front();
+    }
+    Draw(overview_, &overview_pub_);
+    Draw(close_, &close_pub_);
+    health_.Tick();
+  }
+
+  void Draw(const MarkerStyle& style, ros::Publisher* publisher) {
+    if (publisher->getNumSubscribers() == 0) return;
+    publisher->publish(BuildMarkers(view_, style));
+    drawn_.Add();
+  }
+
+  void Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+    const auto seen = [](const auto& all) {
+      return std::count_if(all.begin(), all.end(), [](const auto& one) { return one.seen; });
+    };
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+    status.add("AUVs seen", seen(view_.vehicles));
+    status.add("targets seen", seen(view_.targets));
+    status.add("views drawn per second",
+               static_cast<double>(drawn_.TakeRecent()) / health_.period_s());
+    refused_.Report(topics::kOdom, &status);
+    if (seen(view_.vehicles) == 0) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no AUV to be seen");
+    }
+  }
+
+  ros::NodeHandle nh_, private_nh_;
+  MarkerStyle overview_, close_;
+  SwarmView view_;
+  ros::Publisher overview_pub_, close_pub_;
+  ros::Subscriber scenario_sub_, links_sub_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::WallTimer draw_timer_, discover_timer_;
+  Health health_;
+  EventRate drawn_;
+  Refusals refused_;
+};
+
+}  // namespace
+}  // namespace stg::nodes
+
+int main(int argc, char** argv) {
+  stg::nodes::WatchOnly();
+  ros::init(argc, argv, "markers");
+  try {
+    const stg::nodes::MarkerNode node;
+    ros::spin();
+  } catch (const std::invalid_argument& e) {
+    ROS_FATAL("markers: %s", e.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,9 @@
+#pragma once
+
+/// Names of the view's topics, below the marker node's own name.
+namespace stg::topics {
+
+inline constexpr char kOverview[] = "overview";
+inline constexpr char kClose[] = "close";
+
+}  // namespace stg::topics
