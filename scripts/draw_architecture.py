@@ -34,7 +34,7 @@ class House:
         names = {path.parent.name for path in source.glob("*/package.xml")}
         for file in cpp_files(source):
             package, folder = self._place(logical(file))
-            if folder not in ("", "test", "bench"):
+            if folder and not self._is_test(folder):
                 self.folders[package][folder] += 1
         for kind in ("msg", "srv"):
             for file in source.glob(f"{MESSAGES}/{kind}/*.{kind}"):
@@ -42,12 +42,16 @@ class House:
         for include in includes(source):
             ours, folder = self._place(logical(include.file))
             theirs, other = self._place(included(include, source))
-            if folder in ("test", "bench") or theirs not in names:
+            if self._is_test(folder) or theirs not in names:
                 continue
             if ours != theirs:
                 self.arrows[ours, theirs] += 1
             elif other and folder != other:
                 self._within[ours, folder].add(other)
+
+    @staticmethod
+    def _is_test(folder):
+        return folder.split("/")[0] in ("test", "bench")
 
     @staticmethod
     def _place(path):

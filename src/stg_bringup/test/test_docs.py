@@ -51,7 +51,7 @@ class Equations(unittest.TestCase):
         if re.match(r"k[A-Z]", name):
             return rf"\b{name}\b *[,}}=]"
         kind = rf"\b(?:class|struct|using|enum class) {name}\b"
-        typed = rf"^(?! *return\b)[^=(;\n]*[\w>&*] +(?:\w+::)*{name} *[(=;{{]"
+        typed = rf"^(?! *return\b)[^=(;\n]*[\w>&*] +(?:[\w<>]+::)*{name} *[(=;{{]"
         return f"{kind}|{typed}"
 
     def test_every_file_exists_and_declares_the_name(self):
@@ -68,7 +68,7 @@ class Equations(unittest.TestCase):
         for text in (
             "class Reward {",
             "inline T Reward(const T& x)",
-            "void World::Reward()",
+            "void World<T>::Reward()",
             "  double Reward = 0.9;",
             "  std::vector<T> Reward(int n) const;",
         ):

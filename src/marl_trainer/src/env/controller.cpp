@@ -1,8 +1,8 @@
 #include "marl_trainer/env/controller.hpp"
 
 #include "acoustic_channel/models/range.hpp"
-#include "acoustic_source.hpp"
 #include "environment.hpp"
+#include "sources/acoustic_source.hpp"
 #include "stg_agent/agent/agent_view.hpp"
 
 namespace stg::env {

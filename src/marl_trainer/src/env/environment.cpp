@@ -2,10 +2,10 @@
 
 #include <cassert>
 
-#include "acoustic_source.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "scatter.hpp"
-#include "truth_source.hpp"
+#include "sources/acoustic_source.hpp"
+#include "sources/truth_source.hpp"
 
 namespace stg::env {
 namespace {

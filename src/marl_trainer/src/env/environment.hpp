@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "information_source.hpp"
 #include "marl_trainer/task/task.hpp"
+#include "sources/information_source.hpp"
 
 namespace stg::env {
 

@@ -1,7 +1,7 @@
-#include "acoustic_source.hpp"
 #include "auv_common/numbers/lane_structs.hpp"
 #include "environment.hpp"
 #include "marl_trainer/env/vector_env.hpp"
+#include "sources/acoustic_source.hpp"
 
 namespace stg::env {
 

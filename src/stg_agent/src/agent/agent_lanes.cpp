@@ -31,7 +31,7 @@ template <class T>
 LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
     : constants_(constants),
       links_(acoustics::MakeLinkEstimator(constants->scenario.channel)),
-      neighbours_(constants->scenario, id),
+      neighbours_(constants->scenario),
       mind_(constants->scenario),
       neighbours_before_(neighbours_),
       mind_before_(mind_) {

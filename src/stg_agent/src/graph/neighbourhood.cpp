@@ -5,10 +5,9 @@
 namespace stg::agent {
 
 template <class T>
-Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario, int self)
+Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario)
     : max_age_s_(scenario.track.neighbour_max_age_s),
       half_extent_m_(scenario.workspace.half_extent_m),
-      self_(self),
       sights_(static_cast<std::size_t>(scenario.agents)) {
   const int padded = (scenario.agents + kLanes - 1) / kLanes * kLanes;
   for (auto* v : {&distance_, &age_, &quality_}) v->assign(static_cast<std::size_t>(padded), 0.0);
@@ -39,6 +38,7 @@ Mask<T> Neighbourhood<T>::Age(const T& now_ns) {
   const T zero(0.0), half(0.5), oldest(max_age_s_);
   Mask<T> past = half < zero;
   for (NeighbourSight<T>& n : sights_) {
+    if (!n.heard()) continue;
     // Whole nanoseconds below 2^53 are exact.
     n.age_s = Max((now_ns - n.generation_ns) * T(1e-9), zero);
     past = past || ((n.age_s > oldest) && (n.known > half));
@@ -48,27 +48,34 @@ Mask<T> Neighbourhood<T>::Age(const T& now_ns) {
 
 template <class T>
 void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links) {
-  for (std::size_t j = 0; j < sights_.size(); ++j) {
-    if (static_cast<int>(j) == self_) continue;
-    NeighbourSight<T>& n = sights_[j];
+  for (NeighbourSight<T>& n : sights_) {
+    if (!n.heard()) continue;
     n.p_WN = DeadReckon(n.p_W, n.v_W, n.age_s, half_extent_m_);
     n.r_BN_W = n.p_WN - p_WB;
     n.distance_m = Norm(n.r_BN_W);
-    if constexpr (std::is_same_v<T, Pack>) {
-      n.link_quality = links.Quality(n.distance_m, n.age_s);
-    } else {
-      distance_[j] = n.distance_m;
-      age_[j] = n.age_s;
-    }
   }
-  if constexpr (std::is_same_v<T, double>) {
-    // Whole packs at once: the exponentials cost as much for kLanes links as for one.
-    for (std::size_t j = 0; j < sights_.size(); j += static_cast<std::size_t>(kLanes)) {
-      const Pack d = Pack::load_unaligned(&distance_[j]);
-      const Pack age = Pack::load_unaligned(&age_[j]);
-      links.Quality(d, age).store_unaligned(&quality_[j]);
+  if constexpr (std::is_same_v<T, Pack>) {
+    for (NeighbourSight<T>& n : sights_) {
+      if (n.heard()) n.link_quality = links.Quality(n.distance_m, n.age_s);
     }
-    for (std::size_t j = 0; j < sights_.size(); ++j) sights_[j].link_quality = quality_[j];
+  } else {
+    // Whole packs at once: the exponentials cost as much for kLanes links as for one. Entries past
+    // the last neighbour hold old numbers and are not read back.
+    std::size_t heard = 0;
+    for (const NeighbourSight<T>& n : sights_) {
+      if (!n.heard()) continue;
+      distance_[heard] = n.distance_m;
+      age_[heard++] = n.age_s;
+    }
+    for (std::size_t k = 0; k < heard; k += static_cast<std::size_t>(kLanes)) {
+      const Pack d = Pack::load_unaligned(&distance_[k]);
+      const Pack age = Pack::load_unaligned(&age_[k]);
+      links.Quality(d, age).store_unaligned(&quality_[k]);
+    }
+    heard = 0;
+    for (NeighbourSight<T>& n : sights_) {
+      if (n.heard()) n.link_quality = quality_[heard++];
+    }
   }
 }
 

@@ -17,7 +17,7 @@ void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& 
 }
 
 TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
-  Neighbourhood<double> neighbours(AgentConfig(), 0);
+  Neighbourhood<double> neighbours{AgentConfig()};
   neighbours.Set(0, Report(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0}));
   Predict(&neighbours, 3 * kSecond, {0.3, 0.0, 0.0});
   const NeighbourSight<double>& n = neighbours.sights()[2];
@@ -30,14 +30,14 @@ TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
 }
 
 TEST(Neighbourhood, DeadReckoningStopsAtTheWalls) {
-  Neighbourhood<double> neighbours(AgentConfig(), 0);
+  Neighbourhood<double> neighbours{AgentConfig()};
   neighbours.Set(0, Report(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
   Predict(&neighbours, 5 * kSecond, {});
   EXPECT_DOUBLE_EQ(neighbours.sights()[1].p_WN.x, 1.0);
 }
 
 TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsDropped) {
-  Neighbourhood<Pack> neighbours(AgentConfig(), 0);  // 10 s
+  Neighbourhood<Pack> neighbours{AgentConfig()};  // 10 s
   const int last = kLanes - 1;
   neighbours.Set(last, Report(1, 0, {}));
   const auto old = [&](TimeNs now) {
@@ -58,7 +58,7 @@ TEST(Neighbourhood, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
       AgentConfig s;
       s.agents = agents;
       s.channel.model = model;
-      Neighbourhood<double> neighbours(s, 1);
+      Neighbourhood<double> neighbours(s);
       for (int i = agents - 1; i >= 0; --i) {
         if (i != 1) neighbours.Set(0, Report(i, i * kSecond / 10, {0.03 * i, 0.1, 0.0}));
       }

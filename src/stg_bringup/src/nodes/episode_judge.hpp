@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/task.hpp"
 #include "swarm_frame.hpp"
 

@@ -75,6 +75,10 @@ NeighbourView<T> SeeNeighbours(const AgentConfig& s, int self,
   for (int j = 0; j < static_cast<int>(sights.size()); ++j) {
     if (j == self) continue;
     const NeighbourSight<T>& n = sights[static_cast<std::size_t>(j)];
+    if (!n.heard()) {
+      ++slot;
+      continue;
+    }
     const Mask<T> known = n.known > half;
     view.Add(s.observation, known, n.p_WN, p_WT, n.link_quality, n.tracking_error);
     if (nearest) {

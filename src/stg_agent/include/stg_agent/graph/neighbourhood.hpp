@@ -31,6 +31,9 @@ struct NeighbourSight {
   Vec3<T> r_BN_W;           ///< p_WN minus own position [m]
   T distance_m = T(0.0);    ///< length of r_BN_W
   T link_quality = T(0.0);  ///< at this distance and age
+
+  /// Known in some lane.
+  bool heard() const { return Any(known > T(0.5)); }
 };
 
 /// One lane of sights, [agents]. Valid as long as the Neighbourhood it comes from.
@@ -54,7 +57,7 @@ class SightReader {
 template <class T>
 class Neighbourhood {
  public:
-  Neighbourhood(const AgentConfig& scenario, int self);
+  explicit Neighbourhood(const AgentConfig& scenario);
 
   /// Forgets everybody.
   void Clear(int lane);
@@ -74,7 +77,6 @@ class Neighbourhood {
 
  private:
   double max_age_s_, half_extent_m_;
-  int self_;
   std::vector<NeighbourSight<T>> sights_;
   std::vector<double> distance_, age_, quality_;  // [agents] padded to whole packs; T = double
 };

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace stg::env {
 namespace {

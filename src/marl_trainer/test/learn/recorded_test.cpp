@@ -12,7 +12,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "mappo_setup.hpp"
+#include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 

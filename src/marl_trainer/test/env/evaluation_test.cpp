@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "auv_common/error.hpp"
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace stg::env {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace stg::env {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "auv_common/error.hpp"
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 #include "marl_trainer/task/task.hpp"
 
 namespace stg::task {

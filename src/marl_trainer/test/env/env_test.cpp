@@ -4,7 +4,7 @@
 #include <cstring>
 #include <map>
 
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 #include "marl_trainer/env/vector_env.hpp"
 
 namespace stg::env {

@@ -11,6 +11,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
+#include "scenario/scenario_input.hpp"
 
 /// Files that are no scenario at all: the loader refuses each with UserError,
 /// quickly, and never in another way.
@@ -19,19 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class HostileFile : public ::testing::Test {
+class HostileFile : public scenario_test::ScenarioFolder {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "scenario_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
-  }
   static void ExpectRefused(const std::string& file, const std::string& start_after_file,
                             const std::string& what) {
     try {
@@ -55,8 +45,6 @@ class HostileFile : public ::testing::Test {
       return false;
     }
   }
-
-  fs::path folder_;
 };
 
 TEST_F(HostileFile, EmptyFileIsRefused) {

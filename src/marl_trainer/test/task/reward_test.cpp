@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace stg::task {
 namespace {

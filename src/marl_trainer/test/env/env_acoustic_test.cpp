@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "acoustic_channel/channel/channel.hpp"
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::env {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "auv_common/error.hpp"
-#include "mappo_setup.hpp"
+#include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/variants.hpp"
 
 namespace stg::learn {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include "auv_common/error.hpp"
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace stg::env {
 namespace {
@@ -159,6 +161,109 @@ TEST(VectorEnv, StaggeredFirstEpisodesEndAtTimesSpreadOverAnEpisode) {
     // Five blocks, the last one of two: 2, 4, 6, 8, 10 decisions, then whole episodes.
     const int first = 2 * (static_cast<int>(e) / kMixBlock + 1);
     EXPECT_EQ(ends[e], (std::vector<int>{first, first + 10})) << e;
+  }
+}
+
+/// Environment 1 is reset twice in the middle of others' episodes: they do not notice, and its
+/// episodes are those that the seeds give whoever flies beside it.
+TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
+  for (const char* name : {"medium", "medium_release"}) {
+    for (const char* mode : {"mode=truth", "mode=acoustic"}) {
+      const Scenario s =
+          Short(Shipped(name, "nominal",
+                        {mode, "sensing.noise_std_m=0.004", "disturbance.force_std_n=1"}),
+                40);
+      VectorEnvOptions o;
+      o.seed = 70;
+      TestEnv calm(s, o), mixed(s, o);
+      VectorEnvOptions single;
+      single.envs = 1;
+      single.seed = 4321;
+      TestEnv alone(s, single);
+      calm.Reset();
+      mixed.Reset();
+      alone.Reset();
+      EXPECT_EQ(alone.seed(0), 4321u);
+      const int per_env = s.agents * s.action_size();
+      for (int k = 0; k < 90; ++k) {
+        if (k == 7 || k == 19) {
+          mixed.ResetEnv(1, 4321);
+          alone.Reset();
+          EXPECT_EQ(mixed.seed(1), 4321u);
+          EXPECT_EQ(mixed.step(1), 0);
+          EXPECT_EQ(mixed.step(2), calm.step(2));
+        }
+        for (const int e : {0, 2, 3}) {
+          for (int i = 0; i < s.agents; ++i) {
+            for (int f = 0; f < s.observation_size(); ++f) {
+              ASSERT_EQ(Row(mixed, e, i)[f], Row(calm, e, i)[f]) << name << mode << k << " " << e;
+            }
+          }
+        }
+        const bool own = k >= 7 && mixed.seed(1) == 4321u;
+        if (own) {
+          for (int i = 0; i < s.agents; ++i) {
+            for (int f = 0; f < s.observation_size(); ++f) {
+              ASSERT_EQ(Row(mixed, 1, i)[f], Row(alone, 0, i)[f]) << name << mode << k;
+            }
+          }
+        }
+        const std::vector<float> actions = ActionsOf(calm, o);
+        const auto mine = actions.begin() + per_env;
+        calm.Step(actions);
+        mixed.Step(actions);
+        alone.Step({mine, mine + per_env});
+        if (own) {
+          ASSERT_EQ(mixed.memory.team_rewards[1], alone.memory.team_rewards[0]);
+          ASSERT_EQ(mixed.truncated(1), alone.truncated(0));
+          if (mixed.truncated(1)) {
+            EXPECT_EQ(mixed.metrics(1).Items(), alone.metrics(0).Items());
+            EXPECT_EQ(mixed.metrics(1).steps, 40);
+            const auto width = static_cast<std::ptrdiff_t>(mixed.state_size());
+            EXPECT_TRUE(std::equal(alone.memory.final_states.begin(),
+                                   alone.memory.final_states.end(),
+                                   mixed.memory.final_states.begin() + width));
+          }
+        }
+        ASSERT_EQ(mixed.memory.team_rewards[3], calm.memory.team_rewards[3]);
+        ASSERT_EQ(mixed.truncated(0), calm.truncated(0));
+        if (calm.truncated(0)) {
+          EXPECT_EQ(mixed.metrics(0).Items(), calm.metrics(0).Items());
+        }
+      }
+      // The episode after a reset is the one that would have followed the one given up.
+      EXPECT_EQ(mixed.round(1), 1u);
+      EXPECT_EQ(mixed.seed(1), 70u + 1u + 4u);
+    }
+  }
+}
+
+TEST(VectorEnv, APaddedRegisterDoesNotDisturbASingleReset) {
+  const Scenario s = Short(Shipped("medium"), 12);
+  VectorEnvOptions o;
+  o.envs = 5;
+  TestEnv env(s, o), fresh(s, o);
+  env.Reset();
+  fresh.Reset();
+  for (int k = 0; k < 30; ++k) {
+    if (k == 5) env.ResetEnv(4, 9);
+    const auto actions = ActionsOf(fresh, o);
+    env.Step(actions);
+    fresh.Step(actions);
+    EXPECT_EQ(env.truncated(4), (k + 1 - 5) % 12 == 0 && k > 5) << k;
+    EXPECT_EQ(env.memory.team_rewards[0], fresh.memory.team_rewards[0]);
+  }
+}
+
+TEST(VectorEnv, ANonFiniteActionStopsAtTheBoundary) {
+  for (const char* mode : {"mode=truth", "mode=acoustic"}) {
+    TestEnv env(Short(Shipped("medium", "nominal", {mode}), 12));
+    env.Reset();
+    std::vector<float> actions = Idle(env);
+    actions[5] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(env.Step(actions), std::invalid_argument);
+    actions[5] = std::numeric_limits<float>::infinity();
+    EXPECT_THROW(env.Step(actions), std::invalid_argument);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "env_fixture.hpp"
+#include "env/env_fixture.hpp"
 
 namespace {
 long g_allocations = 0;

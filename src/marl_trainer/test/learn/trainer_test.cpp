@@ -10,7 +10,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "mappo_setup.hpp"
+#include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
 #include "marl_trainer/learn/variants.hpp"

@@ -10,7 +10,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "scenario_fields.hpp"
+#include "scenario/scenario_fields.hpp"
 
 /// The shipped scenario files and the reference of their keys.
 namespace stg {
@@ -232,7 +232,8 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
     if (std::regex_search(line, match, section)) members.insert(match[2]);
     if (line.find("struct") != std::string::npos || line.find("enum") != std::string::npos ||
         line.find("namespace") != std::string::npos || line.find('(') != std::string::npos ||
-        line.find("const std::") != std::string::npos) {  // a parameter of a function
+        line.find("constexpr") != std::string::npos ||
+        line.find("const") != std::string::npos) {  // a parameter of a function
       continue;
     }
     for (std::sregex_iterator it(line.begin(), line.end(), member), end; it != end; ++it) {
