@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "auv_common/names.hpp"
 
@@ -161,7 +162,8 @@ EnumRef Name(std::string* value, std::vector<std::string> names) {
     const auto found = std::find(names.begin(), names.end(), *value);
     return found == names.end() ? -1 : static_cast<int>(found - names.begin());
   };
-  return {names, index, [value, names](int i) { *value = names[static_cast<std::size_t>(i)]; }};
+  const auto set = [value, names](int i) { *value = names[static_cast<std::size_t>(i)]; };
+  return {std::move(names), index, set};
 }
 
 std::string KindName(const YamlTree& node) {
@@ -198,9 +200,8 @@ std::string FormatValue(const ValueRef& value) {
 }
 
 std::string FormatRange(const Field& field) {
-  const std::string range = std::string(field.limits.lo_excluded ? "(" : "[") +
-                            FormatBound(field.limits.lo) + ", " + FormatBound(field.limits.hi) +
-                            "]";
+  std::string range = std::string(field.limits.lo_excluded ? "(" : "[") +
+                      FormatBound(field.limits.lo) + ", " + FormatBound(field.limits.hi) + "]";
   return std::visit(
       Overload{[&](double*) { return range; }, [&](int*) { return range; },
                [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },

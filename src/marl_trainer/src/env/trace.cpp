@@ -166,7 +166,7 @@ Columns OurColumns(const VectorEnv& env, const EnvMemory& memory, const Scenario
     c[name] = {group, std::move(f)};
   };
   const auto vec = [&](const std::string& group, const std::vector<std::string>& names,
-                       std::function<Vec3<double>(int)> f) {
+                       const std::function<Vec3<double>(int)>& f) {
     add(group, names[0], [f](int i) { return f(i).x; });
     add(group, names[1], [f](int i) { return f(i).y; });
     add(group, names[2], [f](int i) { return f(i).z; });

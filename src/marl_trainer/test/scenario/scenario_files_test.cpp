@@ -233,7 +233,7 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
     if (line.find("struct") != std::string::npos || line.find("enum") != std::string::npos ||
         line.find("namespace") != std::string::npos || line.find('(') != std::string::npos ||
         line.find("constexpr") != std::string::npos ||
-        line.find("const") != std::string::npos) {  // a parameter of a function
+        line.find("const ") != std::string::npos) {  // a parameter of a function
       continue;
     }
     for (std::sregex_iterator it(line.begin(), line.end(), member), end; it != end; ++it) {

@@ -12,6 +12,12 @@ namespace {
 
 constexpr std::size_t kOpenEpisodes = 2;
 
+/// A NaN equals itself, and the two zeros differ.
+template <class T>
+bool SameBits(T a, T b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
+}
+
 bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() &&
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
@@ -64,12 +70,12 @@ const char* ToString(Flaw flaw) {
 
 bool AgentRecord::operator==(const AgentRecord& other) const {
   return layout_version == other.layout_version && policy_id == other.policy_id &&
-         std::memcmp(&log_probability, &other.log_probability, sizeof log_probability) == 0 &&
+         SameBits(log_probability, other.log_probability) &&
          SameBits(observation, other.observation) && SameBits(action, other.action);
 }
 
 bool RewardRecord::operator==(const RewardRecord& other) const {
-  return truncated == other.truncated && std::memcmp(&reward, &other.reward, sizeof reward) == 0 &&
+  return truncated == other.truncated && SameBits(reward, other.reward) &&
          SameBits(state, other.state) && SameBits(final_state, other.final_state);
 }
 
