@@ -133,6 +133,22 @@ class Faults(unittest.TestCase):
             os.kill(pid, signal.SIGCONT)
         wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours known again")
 
+    def test_one_stopped_agent_does_not_silence_the_others(self):
+        others = [Latest(f"/auv_{i}/task_state", TaskState) for i in (1, 2, 3)]
+        pid = rosnode_pid("/auv_0/agent")
+        os.kill(pid, signal.SIGSTOP)
+        try:
+            # A channel that has just come up does not know that AUV 0 is gone.
+            wait_for_restart("/acoustic_channel", kill("/acoustic_channel"))
+            for i, task in zip((1, 2, 3), others):
+                heard = sorted({1, 2, 3} - {i})
+                wait_for(lambda task=task, heard=heard:
+                         task.message and sorted(task.message.neighbours) == heard,
+                         20.0, f"AUV {i} hears AUVs {heard} and has forgotten AUV 0")
+        finally:
+            os.kill(pid, signal.SIGCONT)
+        wait_for(lambda: sorted(others[0].message.neighbours) == [0, 2, 3], 20.0, "AUV 0 again")
+
     def test_reset_starts_the_asked_episode_and_its_seed(self):
         before = self.frame.message
         reset = rospy.ServiceProxy("/reset", Reset)

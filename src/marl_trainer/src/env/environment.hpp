@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/task.hpp"
 #include "sources/information_source.hpp"
 

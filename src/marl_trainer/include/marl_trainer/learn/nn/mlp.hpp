@@ -7,9 +7,9 @@
 
 namespace stg::learn {
 
-/// The kernels' back end of a network: forward and backward written out on flat arrays. At these
-/// sizes automatic differentiation costs more than the products themselves (docs/adr/009); a test
-/// holds the gradient against libtorch's.
+/// The kernels' back end of a network: forward and backward written out on flat arrays, without
+/// libtorch and at these sizes faster than it (docs/adr/009); a test holds the gradient against
+/// libtorch's.
 class Mlp {
  public:
   explicit Mlp(NetworkSpec spec);
