@@ -196,6 +196,7 @@ class IndependentLinks : public Channel {
       r.sequence = departure.sequence;
       r.generation = packet.generation;
       r.transmit = departure.start;
+      // Delays are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
       r.arrival = departure.start + static_cast<TimeNs>(delay_s_[j] * 1e9 + 0.5);
       r.distance_m = distance_[j];
       r.travel_time_s = delay_s_[j];

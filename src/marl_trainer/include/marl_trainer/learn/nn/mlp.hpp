@@ -24,6 +24,8 @@ class Mlp {
   std::size_t parameters() const { return offsets_.back(); }
 
   /// Activations of up to `rows` rows; allocated once. One per thread.
+  // The copy that the compiler writes has a reserved name in it.
+  // NOLINTNEXTLINE(bugprone-reserved-identifier)
   class Workspace {
    public:
     Workspace(const Mlp& mlp, int rows);
