@@ -26,7 +26,7 @@ TimeNs Aloha::Rested(int node, TimeNs from, const Attempt& attempt) const {
   Random random(seed_, Stream::kMediumAccess, episode_, attempt.sequence,
                 static_cast<std::uint32_t>(node));
   const double rest_s = -config_.rest_s * std::log(1.0 - random.Uniform());
-  return std::max(from, attempt.last_end + std::llround(rest_s * 1e9));
+  return std::max(from, attempt.last_end + static_cast<TimeNs>(std::llround(rest_s * 1e9)));
 }
 
 TimeNs Aloha::Next(int node, TimeNs from, const Attempt& attempt) const {

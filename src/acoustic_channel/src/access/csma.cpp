@@ -18,8 +18,7 @@ TimeNs Csma::Next(int node, TimeNs from, const Attempt& attempt) const {
   // The node takes the low bits of the index, so that no try shares a draw with the rest.
   const std::uint32_t index = static_cast<std::uint32_t>(node) | (attempt.tries % 4096) << 12;
   Random random(seed_, Stream::kMediumAccess, episode_, attempt.sequence, index);
-  const double longest_s =
-      config_.backoff_s * std::exp2(std::min(attempt.tries - 1, kDoublings));
+  const double longest_s = config_.backoff_s * std::exp2(std::min(attempt.tries - 1, kDoublings));
   return from + std::llround(std::max(1.0, longest_s * (1.0 - random.Uniform()) * 1e9));
 }
 

@@ -4,6 +4,7 @@
 
 #include "acoustic_channel/access/tdma.hpp"
 #include "acoustic_channel/channel_config.hpp"
+#include "acoustic_channel/modem/modem_profile.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace stg::acoustics {

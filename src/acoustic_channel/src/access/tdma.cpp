@@ -4,6 +4,7 @@
 #include <string>
 
 #include "acoustic_channel/channel_config.hpp"
+#include "acoustic_channel/modem/modem_profile.hpp"
 
 namespace stg::acoustics {
 

@@ -177,8 +177,7 @@ std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
   }
   std::vector<ModemProfile> fleet;
   for (int i = 0; i < nodes; ++i) {
-    const std::string& name =
-        names.empty() ? config.profile : names[static_cast<std::size_t>(i)];
+    const std::string& name = names.empty() ? config.profile : names[static_cast<std::size_t>(i)];
     fleet.push_back(*ModemProfiles().Make(name));
   }
   return fleet;
@@ -187,9 +186,9 @@ std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
 std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
   const std::vector<std::string> names = Split(c.profiles);
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
-    return config::Violation{{"channel.modem.profiles", "agents"},
-                             std::to_string(names.size()) + " modems for " +
-                                 std::to_string(nodes) + " nodes"};
+    return config::Violation{
+        {"channel.modem.profiles", "agents"},
+        std::to_string(names.size()) + " modems for " + std::to_string(nodes) + " nodes"};
   }
   for (const std::string& name : names) {
     if (!ModemProfiles().Has(name)) {
@@ -198,10 +197,10 @@ std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
   }
   for (const ModemProfile& p : MakeFleet(c, nodes)) {
     if (static_cast<std::size_t>(c.packet_bytes) <= p.max_payload()) continue;
-    return config::Violation{{"channel.modem.packet_bytes",
-                              names.empty() ? "channel.modem.profile" : "channel.modem.profiles"},
-                             "a packet of " + p.name + " takes " +
-                                 std::to_string(p.max_payload()) + " bytes at most"};
+    return config::Violation{
+        {"channel.modem.packet_bytes",
+         names.empty() ? "channel.modem.profile" : "channel.modem.profiles"},
+        "a packet of " + p.name + " takes " + std::to_string(p.max_payload()) + " bytes at most"};
   }
   return {};
 }
@@ -215,13 +214,15 @@ std::size_t LongestPayload(const ModemConfig& config, int nodes) {
 TimeNs LongestAirtime(const ModemConfig& config, int nodes) {
   const std::size_t bytes = LongestPayload(config, nodes);
   TimeNs longest = 0;
-  for (const ModemProfile& p : MakeFleet(config, nodes)) longest = std::max(longest, p.airtime(bytes));
+  for (const ModemProfile& p : MakeFleet(config, nodes))
+    longest = std::max(longest, p.airtime(bytes));
   return longest;
 }
 
 TimeNs LongestTurnaround(const ModemConfig& config, int nodes) {
   TimeNs longest = 0;
-  for (const ModemProfile& p : MakeFleet(config, nodes)) longest = std::max(longest, p.turnaround());
+  for (const ModemProfile& p : MakeFleet(config, nodes))
+    longest = std::max(longest, p.turnaround());
   return longest;
 }
 

@@ -174,7 +174,8 @@ TimeNs Network::now() const { return impl_->now_; }
 std::size_t Network::max_payload() const { return impl_->max_payload_; }
 const ModemProfile& Network::profile(int node) const { return impl_->At(node).profile; }
 const ChannelTotals& Network::totals() const { return impl_->table_.totals(); }
-LinkTable& Network::table() { return impl_->table_; }
+const LinkTable& Network::table() const { return impl_->table_; }
+void Network::StartStatistics(TimeNs t) { impl_->table_.Reset(t); }
 
 void Network::Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<double>& v_W) {
   if (!Finite(p_W) || !Finite(v_W)) throw std::invalid_argument("Network::Move: not finite");

@@ -20,21 +20,21 @@ class Network::Impl {
 
   struct Packet {
     PacketInfo info;
-    int payload = kNone;                ///< in payloads_
-    int holders = 0;                    ///< queue or sender, and arrivals
-    std::uint32_t draw_sequence = 0;    ///< keys its random numbers
-    double bits = 0.0;                  ///< on the air
-    std::uint32_t ping = 0;             ///< of the source of the request, by number
-    TimeNs deadline = 0;                ///< of a request
+    int payload = kNone;              ///< in payloads_
+    int holders = 0;                  ///< queue or sender, and arrivals
+    std::uint32_t draw_sequence = 0;  ///< keys its random numbers
+    double bits = 0.0;                ///< on the air
+    std::uint32_t ping = 0;           ///< of the source of the request, by number
+    TimeNs deadline = 0;              ///< of a request
   };
 
   /// A packet at one receiver, from its first to its last sound.
   struct Arrival {
     int packet = kNone, receiver = 0;
-    bool open = true;       ///< its fate is not told
-    bool candidate = false; ///< began now, and the receiver has not decided
+    bool open = true;        ///< its fate is not told
+    bool candidate = false;  ///< began now, and the receiver has not decided
     Hearing hearing;
-    double power = 0.0;     ///< in the receiver's band, 1 uPa^2
+    double power = 0.0;  ///< in the receiver's band, 1 uPa^2
     double closing_mps = 0.0;
     TimeNs begin = 0, end = 0;
     // While it is locked: up to piece_begin, in parts of the whole packet.

@@ -93,10 +93,10 @@ void Network::Impl::LockOrDrop(int node, int arrival, TimeNs t) {
   const double quiet_db = Db(n.quiet_noise);
   const DropReason reason =
       interference > 0.0 && a.hearing.level_db - noise_db >= needed_db ? DropReason::kCollision
-      : a.hearing.level_db - quiet_db >= needed_db                    ? DropReason::kBurst
-      : a.hearing.steady_level_db - quiet_db >= needed_db             ? DropReason::kFading
-      : a.hearing.clear_level_db - quiet_db >= needed_db              ? DropReason::kShadow
-                                                                      : DropReason::kNotAcquired;
+      : a.hearing.level_db - quiet_db >= needed_db                     ? DropReason::kBurst
+      : a.hearing.steady_level_db - quiet_db >= needed_db              ? DropReason::kFading
+      : a.hearing.clear_level_db - quiet_db >= needed_db               ? DropReason::kShadow
+                                                                       : DropReason::kNotAcquired;
   Drop(&a, reason, noise_db, sinr_db, 0.0);
 }
 
@@ -107,9 +107,10 @@ void Network::Impl::Integrate(Node* n, TimeNs t) {
       static_cast<double>(t - a.piece_begin) / static_cast<double>(a.end - a.begin);
   const double interference = Interference(*n, n->locked);
   const double sinr_db = Db(a.power / (n->noise + interference));
-  const double bits = packets_[a.packet].bits;
-  a.log_success +=
-      n->profile.errors.LogSuccess(sinr_db - n->profile.implementation_db, bits * share);
+  const Packet& p = packets_[a.packet];
+  // The sender chooses the rate, so the curve is its modem's.
+  const ModemProfile& sender = At(p.info.source).profile;
+  a.log_success += sender.errors.LogSuccess(sinr_db - sender.implementation_db, p.bits * share);
   a.noise += n->noise * share;
   a.interference += interference * share;
   a.piece_begin = t;
@@ -145,7 +146,7 @@ void Network::Impl::End(int arrival, TimeNs t) {
 void Network::Impl::Finish(int arrival, TimeNs t) {
   const Arrival a = arrivals_[arrival];
   const Packet& p = packets_[a.packet];
-  const ModemProfile& profile = At(a.receiver).profile;
+  const ModemProfile& profile = At(p.info.source).profile;
   Random random(seed_, Stream::kReception, episode_, p.draw_sequence,
                 static_cast<std::uint32_t>(p.info.source * count_ + a.receiver));
   const double luck = random.Uniform();
@@ -169,12 +170,12 @@ void Network::Impl::Finish(int arrival, TimeNs t) {
     return luck < std::exp(profile.errors.LogSuccess(snr_db - profile.implementation_db, p.bits));
   };
   const double quiet_db = Db(At(a.receiver).quiet_noise);
-  const DropReason reason =
-      a.interference > 0.0 && survives(Db(a.power / a.noise)) ? DropReason::kCollision
-      : survives(a.hearing.level_db - quiet_db)               ? DropReason::kBurst
-      : survives(a.hearing.steady_level_db - quiet_db)        ? DropReason::kFading
-      : survives(a.hearing.clear_level_db - quiet_db)         ? DropReason::kShadow
-                                                              : DropReason::kLoss;
+  const DropReason reason = a.interference > 0.0 && survives(Db(a.power / a.noise))
+                                ? DropReason::kCollision
+                            : survives(a.hearing.level_db - quiet_db)        ? DropReason::kBurst
+                            : survives(a.hearing.steady_level_db - quiet_db) ? DropReason::kFading
+                            : survives(a.hearing.clear_level_db - quiet_db)  ? DropReason::kShadow
+                                                                             : DropReason::kLoss;
   Drop(&arrivals_[arrival], reason, noise_db, sinr_db, loss);
 }
 

@@ -274,10 +274,9 @@ void Network::Impl::TakeReply(const Arrival& reply, TimeNs t) {
   if (!ping.open || ping.number != p.ping) return;
   const ModemProfile& other = At(p.info.source).profile;
   const double watched_s = Seconds(t - ping.transmit) * (1.0 + n.clock_rate);
-  ping.result.round_trip_s = watched_s - n.profile.airtime_s(1) - other.airtime_s(1) -
-                             other.turnaround_s;
-  ping.result.range_m =
-      0.5 * ping.result.round_trip_s * medium_->SoundSpeed(Motion(n, t).p_W);
+  ping.result.round_trip_s =
+      watched_s - n.profile.airtime_s(1) - other.airtime_s(1) - other.turnaround_s;
+  ping.result.range_m = 0.5 * ping.result.round_trip_s * medium_->SoundSpeed(Motion(n, t).p_W);
   ping.result.true_range_m = reply.hearing.distance_m;
   EndPing(reply.receiver, t, true);
 }

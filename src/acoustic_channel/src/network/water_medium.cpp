@@ -34,8 +34,7 @@ Hearing WaterMedium::Hear(const PacketKey& key, const NodeMotion& source,
   const PathSum paths = propagation_.At(source.p_W, receiver.p_W, sender.centre_khz);
   Hearing h = Steady(paths, sender);
   h.level_db += shadowing_.LevelDb(key.source, key.receiver, key.transmit);
-  h.level_db +=
-      RicianDb(paths.rician_k, seed_, episode_, key.sequence, key.source, key.receiver);
+  h.level_db += RicianDb(paths.rician_k, seed_, episode_, key.sequence, key.source, key.receiver);
   return h;
 }
 

@@ -16,9 +16,9 @@ struct Departure {
   TimeNs start;            ///< it begins to leave
 };
 
-/// The sending side of the modems of an ideal channel. What is offered to a modem waits there until medium access lets
-/// it leave; a newer packet replaces the one that waits, which is best for the age of what arrives.
-/// Allocates only while a modem's waiting payloads reach a new maximum size.
+/// The sending side of the modems of an ideal channel. What is offered to a modem waits there until
+/// medium access lets it leave; a newer packet replaces the one that waits, which is best for the
+/// age of what arrives. Allocates only while a modem's waiting payloads reach a new maximum size.
 class Outbox {
  public:
   /// Throws UserError for an unknown medium access.

@@ -7,8 +7,8 @@
 
 namespace stg::acoustics {
 
-/// Time division: node i has the slots [(r N + i) L, (r N + i + 1) L) of N nodes, and begins to send
-/// at their start. Nothing collides while the guard at the end of a slot covers the way to the
+/// Time division: node i has the slots [(r N + i) L, (r N + i + 1) L) of N nodes, and begins to
+/// send at their start. Nothing collides while the guard at the end of a slot covers the way to the
 /// farthest node.
 class Tdma : public MediumAccess {
  public:

@@ -246,7 +246,8 @@ class IndependentLinks : public Channel {
   }
   TimeNs Arrival(const Departure& departure, int receiver) const {
     // Delays are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
-    return departure.start + static_cast<TimeNs>(delay_s_[static_cast<std::size_t>(receiver)] * 1e9 + 0.5);
+    return departure.start +
+           static_cast<TimeNs>(delay_s_[static_cast<std::size_t>(receiver)] * 1e9 + 0.5);
   }
 
   void Send(std::uint32_t step, const Departure& departure) {
@@ -339,8 +340,8 @@ class IndependentLinks : public Channel {
   std::vector<double> x_, y_, z_, vx_, vy_, vz_;             ///< padded to whole packs
   std::vector<double> distance_, loss_, quality_, delay_s_;  ///< scratch of one sender
   std::vector<double> closing_;
-  std::vector<char> present_;  ///< [nodes]
-  int absent_ = 0;             ///< how many are not
+  std::vector<char> present_;                  ///< [nodes]
+  int absent_ = 0;                             ///< how many are not
   std::vector<std::vector<Pending>> pending_;  ///< per receiver, as sent
   std::vector<Ripe> ripe_;                     ///< scratch of Deliver
 };

@@ -46,7 +46,9 @@ class Network {
   std::size_t max_payload() const;
   const ModemProfile& profile(int node) const;
   const ChannelTotals& totals() const;
-  LinkTable& table();
+  const LinkTable& table() const;
+  /// Counts and ages begin here instead of at 0.
+  void StartStatistics(TimeNs t);
 
   // At any time from now() on. Earlier: std::invalid_argument, also for what is not finite.
   void Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<double>& v_W);
