@@ -111,30 +111,14 @@ Profile Evologics() {
   return std::make_unique<ModemProfile>(p);
 }
 
-/// The names of the list; nothing for an empty one.
-std::vector<std::string> Split(const std::string& list) {
-  std::vector<std::string> names;
-  std::string name;
-  for (const char c : list + ',') {
-    if (c == ',') {
-      names.push_back(name);
-      name.clear();
-    } else if (c != ' ') {
-      name += c;
-    }
-  }
-  if (names.size() == 1 && names[0].empty()) names.clear();
-  return names;
-}
-
 }  // namespace
 
 void Describe(ModemConfig* c, config::Table* t) {
   t->Section("channel.modem");
   t->AddOptional("profile", config::Name(&c->profile, ModemProfiles().Names()), "evologics_s2c",
                  config::kNone, "-", "physical: modem of every node");
-  t->AddOptional("profiles", &c->profiles, "\"\"", config::kNone, "-",
-                 "modems of a mixed fleet, one name a node, separated by commas; empty: all alike");
+  t->AddOptional("profiles", config::NamesRef{&c->profiles, ModemProfiles().Names()}, "[]",
+                 config::kNone, "-", "modems of a mixed fleet, one a node; empty: all are alike");
   t->AddOptional("packet_bytes", &c->packet_bytes, "0", config::Within(0.0, 2048.0), "bytes",
                  "longest payload of the network, which a slot must hold; 0: what the modems take");
   t->AddOptional("queue", config::Enum(&c->queue, {"newest", "fifo"}), "newest", config::kNone, "-",
@@ -170,7 +154,7 @@ ModemProfileRegistry& ModemProfiles() {
 }
 
 std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
-  const std::vector<std::string> names = Split(config.profiles);
+  const std::vector<std::string>& names = config.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
     throw UserError("channel.modem.profiles: " + std::to_string(names.size()) + " modems for " +
                     std::to_string(nodes) + " nodes");
@@ -184,16 +168,11 @@ std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
 }
 
 std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
-  const std::vector<std::string> names = Split(c.profiles);
+  const std::vector<std::string>& names = c.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
     return config::Violation{
         {"channel.modem.profiles", "agents"},
         std::to_string(names.size()) + " modems for " + std::to_string(nodes) + " nodes"};
-  }
-  for (const std::string& name : names) {
-    if (!ModemProfiles().Has(name)) {
-      return config::Violation{{"channel.modem.profiles"}, "'" + name + "' is no modem"};
-    }
   }
   for (const ModemProfile& p : MakeFleet(c, nodes)) {
     if (static_cast<std::size_t>(c.packet_bytes) <= p.max_payload()) continue;
