@@ -12,6 +12,11 @@ namespace {
 
 using Profile = std::unique_ptr<ModemProfile>;
 
+double SpreadingDb(const ModemProfile& p) {
+  const double bits_per_s = 8.0 * static_cast<double>(p.frame_bytes) / p.frame_s;
+  return 10.0 * std::log10(1e3 * p.bandwidth_khz / bits_per_s);
+}
+
 /// Instant and lossless: what is left are medium access and queues.
 Profile Ideal() {
   ModemProfile p;
@@ -37,7 +42,7 @@ Profile MicromodemFsk() {
   p.acquisition_db = -10.0;
   p.implementation_db = 3.0;
   p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
-  p.errors.processing_gain_db = 10.0 * std::log10(4000.0 / 80.0);
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.05;
   p.transmit_w = 50.0;
   p.receive_w = 0.2;
@@ -60,6 +65,7 @@ Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, dou
   p.acquisition_db = -10.0;
   p.implementation_db = 3.0;
   p.errors = CodedPskCurve(rate);
+  p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.05;
   p.transmit_w = 50.0;
   p.receive_w = 2.0;
@@ -81,7 +87,7 @@ Profile Janus() {
   p.acquisition_db = -8.0;
   p.implementation_db = 3.0;
   p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
-  p.errors.processing_gain_db = 10.0 * std::log10(4160.0 / (64.0 / p.frame_s));
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.1;
   p.transmit_w = 40.0;
   p.receive_w = 0.5;
@@ -103,7 +109,7 @@ Profile Evologics() {
   p.acquisition_db = -8.0;
   p.implementation_db = 3.0;
   p.errors.kind = ErrorCurve::Kind::kBpsk;
-  p.errors.processing_gain_db = 10.0 * std::log10(16000.0 * p.frame_s / 8.0);
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.02;
   p.transmit_w = 35.0;
   p.receive_w = 1.1;
