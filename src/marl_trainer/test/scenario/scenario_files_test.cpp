@@ -199,7 +199,7 @@ const char* const kSections[] = {
     "acoustic_channel/include/acoustic_channel/access/slots_config",
     "acoustic_channel/include/acoustic_channel/channel_config",
     "acoustic_channel/include/acoustic_channel/models/extended_config",
-    "acoustic_channel/include/acoustic_channel/models/physical_config",
+    "acoustic_channel/include/acoustic_channel/network/physical_config",
     "acoustic_channel/include/acoustic_channel/models/range_config",
     "acoustic_channel/include/acoustic_channel/modem/modem_config",
     "acoustic_channel/include/acoustic_channel/propagation/propagation_config",
