@@ -27,6 +27,8 @@ enum class Stream : std::uint32_t {
   kFading = 21,
   kBurst = 22,
   kTraffic = 23,
+  kClock = 25,
+  kReception = 26,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.
