@@ -38,7 +38,7 @@ TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
 bool Change(const config::Field& field) {
   const auto other = [&](double v) {
     const double middle = 0.5 * (field.limits.lo + field.limits.hi);
-    return v == middle ? 0.75 * middle : middle;
+    return v == middle ? 0.75 * middle + 0.25 * field.limits.hi : middle;
   };
   if (auto v = std::get_if<double*>(&field.value)) **v = other(**v);
   if (auto v = std::get_if<int*>(&field.value)) **v += 1;
