@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "acoustic_channel/access/outbox.hpp"
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/models/link_values.hpp"
-#include "acoustic_channel/modem/outbox.hpp"
 #include "acoustic_channel/modem/payload_pool.hpp"
 #include "auv_common/numbers/random.hpp"
 
