@@ -66,10 +66,6 @@ FleetChannel::Word FleetChannel::Offer(const Transmission& packet) {
 }
 
 void FleetChannel::Ping(int source, int destination, TimeNs timeout, std::uint32_t tag) {
-  const auto exists = [this](int node) { return node >= 0 && node < vehicles(); };
-  if (!exists(source) || !exists(destination) || source == destination) {
-    throw UserError("ping: no such pair of vehicles");
-  }
   asked_.push_back({source, destination, timeout, tag});
 }
 
@@ -114,8 +110,7 @@ void FleetChannel::Close() {
   Place();
   Collect();
   const TimeNs now = next_ - start_;
-  for (const Asked& a : asked_) channel_->Ping(a.source, a.destination, now, a.timeout, a.tag);
-  asked_.clear();
+  Ask(now);
   channel_->Step(now, static_cast<std::uint32_t>(next_ / period_), positions_, velocities_,
                  offers_);
   for (int i = 0; i < vehicles(); ++i) {
@@ -125,6 +120,17 @@ void FleetChannel::Close() {
   }
   closed_ = next_;
   next_ += period_;
+}
+
+void FleetChannel::Ask(TimeNs now) {
+  for (const Asked& a : asked_) {
+    try {
+      channel_->Ping(a.source, a.destination, now, a.timeout, a.tag);
+    } catch (const UserError& error) {
+      listener_->OnPingRefused(a.tag, error.what());
+    }
+  }
+  asked_.clear();
 }
 
 /// Where everybody is, and who is not there.
@@ -150,6 +156,7 @@ void FleetChannel::Collect() {
     while (!queue.empty() && queue.front().packet.stamp <= next_) {
       Offered offered = std::move(queue.front());
       queue.pop_front();
+      offered.packet.payload = ViewOf(offered.bytes);
       if (!present_[i]) {
         listener_->OnAbsent(offered.packet);
         continue;
@@ -159,15 +166,14 @@ void FleetChannel::Collect() {
     }
   }
   offers_.clear();
-  for (Offered& offered : sending_) Take(&offered);
+  for (const Offered& offered : sending_) Hand(offered);
 }
 
-void FleetChannel::Take(Offered* offered) {
-  Transmission packet = offered->packet;
+void FleetChannel::Hand(const Offered& offered) {
+  Transmission packet = offered.packet;  // moving the bytes has not moved them in memory
   const TimeNs stamp = channel_->continuous() ? std::max(packet.stamp, closed_ + 1) : next_;
   packet.stamp = stamp - start_;
   packet.generation -= start_;
-  packet.payload = ViewOf(offered->bytes);
   offers_.push_back(packet);
 }
 

@@ -31,6 +31,8 @@ class FleetListener : public PacketObserver {
   virtual void OnReceptions(int vehicle, const std::vector<Reception>& received) = 0;
   /// A packet that was taken by Offer never reached its modem, as its vehicle is not there.
   virtual void OnAbsent(const Transmission& packet) = 0;
+  /// A ping that could not be asked.
+  virtual void OnPingRefused(std::uint32_t tag, const std::string& why) = 0;
 };
 
 /// A channel for vehicles that nobody keeps in step: motion and packets come in as they do, each
@@ -62,7 +64,7 @@ class FleetChannel {
   /// Throws UserError that says why the modem would never take the packet. `kLate`: it is offered
   /// now instead.
   Word Offer(const Transmission& packet);
-  /// See Channel::Ping; asked at the next step. Throws UserError.
+  /// See Channel::Ping; asked at the next step. The listener hears how it ends.
   void Ping(int source, int destination, TimeNs timeout, std::uint32_t tag);
 
   /// Closes all steps for which everything is in, or has been waited for, at the time `now`.
@@ -96,9 +98,10 @@ class FleetChannel {
   void CloseUntil(TimeNs until);
   void Begin();
   void Close();
+  void Ask(TimeNs now);
   void Place();
   void Collect();
-  void Take(Offered* offered);
+  void Hand(const Offered& offered);
 
   TimeNs period_, lag_, patience_, silent_after_;
   std::uint64_t seed_;
