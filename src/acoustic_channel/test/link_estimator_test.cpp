@@ -18,7 +18,7 @@ TEST(LinkEstimator, OfRangeIsEquation5WhateverTheAge) {
   c.model = "range";
   c.range_m = 0.5;
   c.freshness_s = 3.0;
-  const auto links = MakeLinkEstimator(c);
+  const auto links = MakeLinkEstimator(c, 2);
   for (const double age : {0.0, 1.0, 100.0}) {
     EXPECT_EQ(links->Quality(0.0, age), 1.0);
     EXPECT_NEAR(links->Quality(0.2, age), 0.6, 1e-15);
@@ -35,7 +35,7 @@ TEST(LinkEstimator, OfExtendedIsEquation6) {
   c.loss_probability = 0.1;
   c.loss_distance_m = 2.0;
   c.freshness_s = 2.0;
-  const auto links = MakeLinkEstimator(c);
+  const auto links = MakeLinkEstimator(c, 2);
   for (const double d : {0.0, 0.3, 1.0, 3.0}) {
     for (const double age : {0.0, 0.4, 5.0}) {
       const double q = 0.9 * std::exp(-d * d / 4.0) * std::exp(-0.5 * d) * std::exp(-age / 2.0);
@@ -49,7 +49,7 @@ TEST(LinkEstimator, PacksAndScalarsAgreeBitForBit) {
   for (const char* model : {"range", "extended"}) {
     ChannelConfig c;
     c.model = model;
-    const auto links = MakeLinkEstimator(c);
+    const auto links = MakeLinkEstimator(c, 2);
     for (double d = 0.0; d < 4.0; d += 0.037) {
       const Pack quality = links->Quality(Pack(d), Pack(0.2 * d));
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -65,7 +65,7 @@ TEST(LinkEstimator, MeansWhatTheChannelMeans) {
     s.channel.model = model;
     s.channel.range_m = 1.0;
     const auto channel = MakeChannel(s.channel, s);
-    const auto links = MakeLinkEstimator(s.channel);
+    const auto links = MakeLinkEstimator(s.channel, s.agents);
     channel->Reset(1, 0);
     Transmission packet = From(0, 7 * kDt);
     packet.generation = 5 * kDt;
@@ -105,7 +105,7 @@ TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
   s.channel.model = "coin";
   s.channel.loss_distance_m = 1e6;  // in range, and of no effect
   EXPECT_FALSE(config::FindViolation(s));
-  EXPECT_EQ(MakeLinkEstimator(s.channel)->Quality(3.0, 0.0), 0.25);
+  EXPECT_EQ(MakeLinkEstimator(s.channel, s.agents)->Quality(3.0, 0.0), 0.25);
   const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
   const std::vector<Vec3<double>> p = {{}, {1e4, 0, 0}};
@@ -118,18 +118,18 @@ TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
 
 TEST(PropagationModel, AnUnknownOneIsRefusedWithTheList) {
   NetworkConfig s = LosslessNetwork(2);
-  s.channel.model = "physical";
+  s.channel.model = "telepathy";
   for (const bool channel : {false, true}) {
     try {
       if (channel) {
         MakeChannel(s.channel, s);
       } else {
-        MakeLinkEstimator(s.channel);
+        MakeLinkEstimator(s.channel, s.agents);
       }
       FAIL();
     } catch (const UserError& error) {
       EXPECT_EQ(std::string(error.what())
-                    .find("unknown propagation model 'physical', expected one of range | extended"),
+                    .find("unknown propagation model 'telepathy', expected one of range | extended"),
                 0u)
           << error.what();
     }
@@ -142,7 +142,7 @@ TEST(PropagationModel, AnUnknownOneIsRefusedWhenAFileIsLoaded) {
   EXPECT_EQ(config::LoadText<NetworkConfig>(text, "net.yaml").channel.model, "extended");
   const auto at = text.find("extended");
   ASSERT_NE(at, std::string::npos);
-  text.replace(at, std::string("extended").size(), "physical");
+  text.replace(at, std::string("extended").size(), "telepathy");
   try {
     config::LoadText<NetworkConfig>(text, "net.yaml");
     FAIL();
@@ -151,7 +151,7 @@ TEST(PropagationModel, AnUnknownOneIsRefusedWhenAFileIsLoaded) {
     EXPECT_NE(what.find("channel.model: expected one of range | extended"), std::string::npos)
         << what;
     EXPECT_NE(what.find("net.yaml:"), std::string::npos);
-    EXPECT_NE(what.find("found 'physical'"), std::string::npos);
+    EXPECT_NE(what.find("found 'telepathy'"), std::string::npos);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/link/link_statistics.hpp"
 #include "acoustic_channel/modem/packet.hpp"
+#include "acoustic_channel/propagation/propagation.hpp"
 #include "auv_common/config/run_config.hpp"
 #include "auv_common/numbers/vector.hpp"
 
@@ -78,6 +79,8 @@ class Channel {
 
 /// The channel that the section names, between the nodes of the run. Throws UserError for a
 /// propagation model or medium access that does not exist.
-std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run);
+/// @param line_of_sight for models that know shadows; empty: all lines are free
+std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run,
+                                     LineOfSight line_of_sight = {});
 
 }  // namespace stg::acoustics

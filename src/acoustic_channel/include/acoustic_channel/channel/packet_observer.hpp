@@ -46,7 +46,7 @@ struct PingResult {
   TimeNs asked = 0, ended = 0;  ///< offered; answered or given up
   double round_trip_s = 0.0;    ///< by the source's clock, without turnaround and airtimes
   double range_m = 0.0;         ///< from it and the sound speed at the source
-  double true_range_m = 0.0;    ///< when the request left
+  double true_range_m = 0.0;    ///< when the reply left
 };
 
 /// Told of every packet by every model of Channel. Calls come in the order in which things are

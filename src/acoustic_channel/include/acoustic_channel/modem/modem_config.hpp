@@ -16,7 +16,7 @@ enum class QueuePolicy {
 struct ModemConfig {
   std::string profile = "evologics_s2c";  ///< of ModemProfiles(), for every node
   std::string profiles;                   ///< one for each node, separated by commas; empty: none
-  int packet_bytes = 32;                  ///< longest payload that the network carries
+  int packet_bytes = 0;                   ///< longest payload of the network; 0: the frames'
   QueuePolicy queue = QueuePolicy::kNewest;
   int queue_length = 8;
   double clock_offset_std_s = 0.0;   ///< of a node's clock at the start of an episode

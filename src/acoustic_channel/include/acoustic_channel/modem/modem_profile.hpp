@@ -56,6 +56,9 @@ std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes);
 /// Why the section cannot work for so many nodes; nothing: it can.
 std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes);
 
+/// Longest payload of the network: the section's, or what every modem takes [bytes].
+std::size_t LongestPayload(const ModemConfig& config, int nodes);
+
 /// Longest time that a packet of the network takes to leave a modem of the fleet, and the longest
 /// time that one of them needs between two packets. For rules that give everybody a slot.
 TimeNs LongestAirtime(const ModemConfig& config, int nodes);

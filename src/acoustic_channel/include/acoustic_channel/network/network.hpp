@@ -9,6 +9,7 @@
 #include "acoustic_channel/link/link_statistics.hpp"
 #include "acoustic_channel/modem/packet.hpp"
 #include "acoustic_channel/network/medium.hpp"
+#include "acoustic_channel/propagation/propagation.hpp"
 #include "auv_common/config/run_config.hpp"
 
 namespace stg::acoustics {
@@ -30,7 +31,8 @@ class Network {
   /// @param run its number of agents is that of the nodes; the clock matters to `periodic` only
   Network(const ChannelConfig& config, const RunConfig& run, std::unique_ptr<Medium> medium);
   /// With the water that the section describes.
-  Network(const ChannelConfig& config, const RunConfig& run);
+  /// @param line_of_sight empty: all lines are free
+  Network(const ChannelConfig& config, const RunConfig& run, LineOfSight line_of_sight = {});
   ~Network();
 
   /// Starts an episode at time 0: all nodes present, at the origin and silent.
@@ -44,7 +46,9 @@ class Network {
   std::size_t max_payload() const;
   const ModemProfile& profile(int node) const;
   const ChannelTotals& totals() const;
-  LinkTable& table();
+  const LinkTable& table() const;
+  /// Counts and ages begin here instead of at 0.
+  void StartStatistics(TimeNs t);
 
   // At any time from now() on. Earlier: std::invalid_argument, also for what is not finite.
   void Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<double>& v_W);

@@ -13,7 +13,7 @@ double ThorpAbsorption(double khz);
 /// -2 to 30 degrees C, 30 to 40 psu, 0 to 7000 m.
 /// @param sound_speed_mps at that depth [m/s]
 double FrancoisGarrisonAbsorption(double khz, double temperature_c, double salinity_psu,
-                                  double depth_m, double ph, double sound_speed_mps);
+                                  double depth_m, double ph);
 
 /// By the section's formula, at this depth [m].
 double Absorption(const WaterConfig& water, double khz, double depth_m);
