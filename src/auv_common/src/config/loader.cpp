@@ -48,6 +48,11 @@ void Loader::ApplyText(const std::string& text, const std::string& origin) {
   RequireAll(root, origin, given);
 }
 
+void Loader::ApplyPart(const YamlTree& map, const std::string& prefix, const std::string& file) {
+  Keys given;
+  ApplyMap(map, prefix, file, &given);
+}
+
 void Loader::Refuse(const Violation& violation) const {
   std::string text = Origin(violation.keys[0]) + violation.keys[0] + ": " + violation.message;
   for (std::size_t i = 1; i < violation.keys.size(); ++i) {
