@@ -83,6 +83,7 @@ void FleetNode::Place(int vehicle, const nav_msgs::Odometry& message) {
     last_refusal_ = vehicles_[static_cast<std::size_t>(vehicle)].odom + ": too late for its stamp";
     return;
   }
+  ++odometry_;
   ++frames_[message.header.frame_id];
 }
 
@@ -117,6 +118,7 @@ void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, Time
     if (fleet_.Offer(packet) == acoustics::FleetChannel::Word::kLate) {
       ++members_[static_cast<std::size_t>(vehicle)].late;
     }
+    ++packets_;
   } catch (const UserError& error) {
     refused_packets_.Add(Refusals::kMalformed);
     Refuse(vehicle, message, error.what());

@@ -109,7 +109,7 @@ class FleetNode : private acoustics::FleetListener {
   double settled_s_ = 0.0;  ///< wall time of that
   std::deque<Doubtful> doubtful_;
   std::map<std::string, int> frames_;  ///< of odometry that was taken
-  std::uint64_t runs_ = 0, receptions_ = 0;
+  std::uint64_t runs_ = 0, receptions_ = 0, odometry_ = 0, packets_ = 0;
   std::uint64_t foreign_messages_ = 0;  ///< of the bag, of some other type
   Refusals refused_odometry_, refused_packets_;
   std::string last_refusal_;

@@ -153,6 +153,8 @@ void FleetNode::PublishLinks() {
 void FleetNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(DiagnosticStatus::OK, "running");
   status.add("runs", runs_);
+  status.add("odometry taken", odometry_);
+  status.add("packets taken", packets_);
   status.add("receptions", receptions_);
   refused_odometry_.Report("odom", &status);
   refused_packets_.Report(topics::kAcousticTx, &status);
@@ -162,7 +164,7 @@ void FleetNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
     return;
   }
   if (fleet_.begun()) {
-    status.add("channel time [s]", Seconds(fleet_.closed()));
+    status.addf("channel time [s]", "%.3f", Seconds(fleet_.closed()));
     status.add("channel behind the clock [s]", Seconds(now_ - fleet_.closed()));
     const acoustics::ChannelTotals& totals = fleet_.channel().totals();
     status.add("packets delivered in this run", totals.delivered);
