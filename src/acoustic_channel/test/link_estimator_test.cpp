@@ -46,17 +46,50 @@ TEST(LinkEstimator, OfExtendedIsEquation6) {
 }
 
 TEST(LinkEstimator, PacksAndScalarsAgreeBitForBit) {
-  for (const char* model : {"range", "extended"}) {
+  for (const char* model : {"range", "extended", "physical"}) {
     ChannelConfig c;
     c.model = model;
     const auto links = MakeLinkEstimator(c, 2);
     for (double d = 0.0; d < 4.0; d += 0.037) {
-      const Pack quality = links->Quality(Pack(d), Pack(0.2 * d));
+      const double learnt = 1.0 / (1.0 + d);
+      const Pack quality = links->Quality(Pack(d), Pack(0.2 * d), Pack(learnt));
       for (int lane = 0; lane < kLanes; ++lane) {
-        EXPECT_EQ(Lane(quality, lane), links->Quality(d, 0.2 * d));
+        EXPECT_EQ(Lane(quality, lane), links->Quality(d, 0.2 * d, learnt));
       }
     }
   }
+}
+
+TEST(LinkEstimator, OfPhysicalLearnsFromGapsAndLevels) {
+  ChannelConfig c;
+  c.model = "physical";
+  c.modem.freshness_s = 20.0;
+  const auto links = MakeLinkEstimator(c, 3);
+  const std::uint8_t bytes[32] = {};
+  const auto hear = [&](int lane, std::uint32_t sequence, double sinr_db) {
+    Reception r;
+    r.source = 1;
+    r.sequence = sequence;
+    r.sinr_db = sinr_db;
+    r.payload = {bytes, sizeof(bytes)};
+    links->Learn(lane, r);
+  };
+  EXPECT_EQ(links->Learnt(1)[0], 1.0);
+  hear(0, 5, 40.0);
+  EXPECT_NEAR(links->Learnt(1)[0], 1.0, 1e-9) << "what was before it came is unknown";
+  hear(0, 8, 40.0);  // two are missing
+  EXPECT_NEAR(links->Learnt(1)[0], 1.0 - 0.2 * 0.0 - (1.0 - 0.64) * 0.8, 1e-9);
+  for (std::uint32_t k = 9; k < 60; ++k) hear(0, k, 40.0);
+  EXPECT_NEAR(links->Learnt(1)[0], 1.0, 1e-4);
+  for (std::uint32_t k = 60; k < 400; k += 2) hear(0, k, 40.0);
+  EXPECT_NEAR(links->Learnt(1)[0], 0.5, 0.1) << "every other one is lost";
+  hear(kLanes - 1, 0, -5.0);
+  EXPECT_LT(links->Learnt(1)[kLanes - 1], 0.01) << "hardly above what is lost";
+  EXPECT_EQ(links->Learnt(2)[0], 1.0);
+  EXPECT_NEAR(links->Quality(777.0, 10.0, 0.6), 0.6 * std::exp(-0.5), 1e-12);
+  EXPECT_EQ(links->freshness_s(), 20.0);
+  links->Reset(0);
+  EXPECT_EQ(links->Learnt(1)[0], 1.0);
 }
 
 TEST(LinkEstimator, MeansWhatTheChannelMeans) {
@@ -128,9 +161,10 @@ TEST(PropagationModel, AnUnknownOneIsRefusedWithTheList) {
       }
       FAIL();
     } catch (const UserError& error) {
-      EXPECT_EQ(std::string(error.what())
-                    .find("unknown propagation model 'telepathy', expected one of range | extended"),
-                0u)
+      EXPECT_EQ(
+          std::string(error.what())
+              .find("unknown propagation model 'telepathy', expected one of range | extended"),
+          0u)
           << error.what();
     }
   }

@@ -12,6 +12,11 @@ namespace {
 
 using Profile = std::unique_ptr<ModemProfile>;
 
+double SpreadingDb(const ModemProfile& p) {
+  const double bits_per_s = 8.0 * static_cast<double>(p.frame_bytes) / p.frame_s;
+  return 10.0 * std::log10(1e3 * p.bandwidth_khz / bits_per_s);
+}
+
 /// Instant and lossless: what is left are medium access and queues.
 Profile Ideal() {
   ModemProfile p;
@@ -37,7 +42,7 @@ Profile MicromodemFsk() {
   p.acquisition_db = -10.0;
   p.implementation_db = 3.0;
   p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
-  p.errors.processing_gain_db = 10.0 * std::log10(4000.0 / 80.0);
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.05;
   p.transmit_w = 50.0;
   p.receive_w = 0.2;
@@ -60,6 +65,7 @@ Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, dou
   p.acquisition_db = -10.0;
   p.implementation_db = 3.0;
   p.errors = CodedPskCurve(rate);
+  p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.05;
   p.transmit_w = 50.0;
   p.receive_w = 2.0;
@@ -81,7 +87,7 @@ Profile Janus() {
   p.acquisition_db = -8.0;
   p.implementation_db = 3.0;
   p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
-  p.errors.processing_gain_db = 10.0 * std::log10(4160.0 / (64.0 / p.frame_s));
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.1;
   p.transmit_w = 40.0;
   p.receive_w = 0.5;
@@ -103,28 +109,12 @@ Profile Evologics() {
   p.acquisition_db = -8.0;
   p.implementation_db = 3.0;
   p.errors.kind = ErrorCurve::Kind::kBpsk;
-  p.errors.processing_gain_db = 10.0 * std::log10(16000.0 * p.frame_s / 8.0);
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.02;
   p.transmit_w = 35.0;
   p.receive_w = 1.1;
   p.idle_w = 0.01;
   return std::make_unique<ModemProfile>(p);
-}
-
-/// The names of the list; nothing for an empty one.
-std::vector<std::string> Split(const std::string& list) {
-  std::vector<std::string> names;
-  std::string name;
-  for (const char c : list + ',') {
-    if (c == ',') {
-      names.push_back(name);
-      name.clear();
-    } else if (c != ' ') {
-      name += c;
-    }
-  }
-  if (names.size() == 1 && names[0].empty()) names.clear();
-  return names;
 }
 
 }  // namespace
@@ -133,8 +123,8 @@ void Describe(ModemConfig* c, config::Table* t) {
   t->Section("channel.modem");
   t->AddOptional("profile", config::Name(&c->profile, ModemProfiles().Names()), "evologics_s2c",
                  config::kNone, "-", "physical: modem of every node");
-  t->AddOptional("profiles", &c->profiles, "\"\"", config::kNone, "-",
-                 "modems of a mixed fleet, one name a node, separated by commas; empty: all alike");
+  t->AddOptional("profiles", config::NamesRef{&c->profiles, ModemProfiles().Names()}, "[]",
+                 config::kNone, "-", "modems of a mixed fleet, one a node; empty: all are alike");
   t->AddOptional("packet_bytes", &c->packet_bytes, "0", config::Within(0.0, 2048.0), "bytes",
                  "longest payload of the network, which a slot must hold; 0: what the modems take");
   t->AddOptional("queue", config::Enum(&c->queue, {"newest", "fifo"}), "newest", config::kNone, "-",
@@ -170,7 +160,7 @@ ModemProfileRegistry& ModemProfiles() {
 }
 
 std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
-  const std::vector<std::string> names = Split(config.profiles);
+  const std::vector<std::string>& names = config.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
     throw UserError("channel.modem.profiles: " + std::to_string(names.size()) + " modems for " +
                     std::to_string(nodes) + " nodes");
@@ -184,16 +174,11 @@ std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
 }
 
 std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
-  const std::vector<std::string> names = Split(c.profiles);
+  const std::vector<std::string>& names = c.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
     return config::Violation{
         {"channel.modem.profiles", "agents"},
         std::to_string(names.size()) + " modems for " + std::to_string(nodes) + " nodes"};
-  }
-  for (const std::string& name : names) {
-    if (!ModemProfiles().Has(name)) {
-      return config::Violation{{"channel.modem.profiles"}, "'" + name + "' is no modem"};
-    }
   }
   for (const ModemProfile& p : MakeFleet(c, nodes)) {
     if (static_cast<std::size_t>(c.packet_bytes) <= p.max_payload()) continue;

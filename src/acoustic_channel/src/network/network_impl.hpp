@@ -128,11 +128,15 @@ class Network::Impl {
   void Unlock(Node* n, TimeNs t);
   void Integrate(Node* n, TimeNs t);
   void SenseNoise(int node, TimeNs t);
+  /// Power of all that sounds at a node but one arrival, weighed as the receiver of that does.
   double Interference(const Node& n, int but) const;
   bool HearsCarrier(int node, TimeNs t);
   void LockOrDrop(int node, int arrival, TimeNs t);
   void Finish(int arrival, TimeNs t);
   void Deliver(const Packet& packet, const Arrival& arrival, double loss, double sinr_db);
+  const ModemProfile& SenderOf(const Arrival& a) const {
+    return At(packets_[a.packet].info.source).profile;
+  }
   bool IsFor(const Packet& p, int receiver) const {
     return p.info.destination == kToAll || p.info.destination == receiver;
   }

@@ -14,7 +14,7 @@ void Network::Impl::Begin(int arrival, TimeNs t) {
   if (n.locked != kNone) Integrate(&n, t);
   n.active.push_back(arrival);
   events_.Push(a.end, EventKind::kArrivalEnd, p.info.source, a.receiver, arrival);
-  const ModemProfile& sender = At(p.info.source).profile;
+  const ModemProfile& sender = SenderOf(a);
   if (!n.present) {
     if (a.open) Drop(&a, DropReason::kLeft, 0.0, 0.0, 0.0);
   } else if (n.sending != kNone) {
@@ -56,11 +56,14 @@ void Network::Impl::SenseNoise(int node, TimeNs t) {
 }
 
 double Network::Impl::Interference(const Node& n, int but) const {
-  double sum = 0.0;
+  const ModemProfile* wanted = but == kNone ? nullptr : &SenderOf(arrivals_[but]);
+  double others = 0.0, alike = 0.0;
   for (const int arrival : n.active) {
-    if (arrival != but) sum += arrivals_[arrival].power;
+    if (arrival == but) continue;
+    const Arrival& a = arrivals_[arrival];
+    (wanted != nullptr && SenderOf(a).waveform == wanted->waveform ? alike : others) += a.power;
   }
-  return sum;
+  return alike > 0.0 ? others + alike * FromDb(wanted->spreading_db) : others;
 }
 
 bool Network::Impl::HearsCarrier(int node, TimeNs t) {
@@ -109,7 +112,7 @@ void Network::Impl::Integrate(Node* n, TimeNs t) {
   const double sinr_db = Db(a.power / (n->noise + interference));
   const Packet& p = packets_[a.packet];
   // The sender chooses the rate, so the curve is its modem's.
-  const ModemProfile& sender = At(p.info.source).profile;
+  const ModemProfile& sender = SenderOf(a);
   a.log_success += sender.errors.LogSuccess(sinr_db - sender.implementation_db, p.bits * share);
   a.noise += n->noise * share;
   a.interference += interference * share;
@@ -146,11 +149,11 @@ void Network::Impl::End(int arrival, TimeNs t) {
 void Network::Impl::Finish(int arrival, TimeNs t) {
   const Arrival a = arrivals_[arrival];
   const Packet& p = packets_[a.packet];
-  const ModemProfile& profile = At(p.info.source).profile;
+  const ModemProfile& profile = SenderOf(a);
   Random random(seed_, Stream::kReception, episode_, p.draw_sequence,
                 static_cast<std::uint32_t>(p.info.source * count_ + a.receiver));
   const double luck = random.Uniform();
-  const double loss = -std::expm1(a.log_success);
+  const double loss = 0.0 - std::expm1(a.log_success);
   const double noise_db = Db(a.noise);
   const double sinr_db = Db(a.power / (a.noise + a.interference));
   if (luck < 1.0 - loss) {
@@ -186,12 +189,12 @@ PacketFate Network::Impl::FateOf(const Arrival& a) const {
   fate.arrival = a.end;
   fate.distance_m = a.hearing.distance_m;
   fate.travel_time_s = a.hearing.travel_time_s;
-  if (At(packets_[a.packet].info.source).profile.ideal) return fate;
+  if (SenderOf(a).ideal) return fate;
   fate.received_level_db = a.hearing.level_db;
   if (a.noise > 0.0) {
     fate.noise_level_db = Db(a.noise);
     fate.sinr_db = Db(a.power / (a.noise + a.interference));
-    fate.loss_probability = -std::expm1(a.log_success);
+    fate.loss_probability = 0.0 - std::expm1(a.log_success);
   }
   return fate;
 }

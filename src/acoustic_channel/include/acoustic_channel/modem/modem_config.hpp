@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "auv_common/config/field.hpp"
 
@@ -15,7 +16,7 @@ enum class QueuePolicy {
 /// Keys of `channel.modem`. Read by the model `physical`.
 struct ModemConfig {
   std::string profile = "evologics_s2c";  ///< of ModemProfiles(), for every node
-  std::string profiles;                   ///< one for each node, separated by commas; empty: none
+  std::vector<std::string> profiles;      ///< one for each node; empty: all have `profile`
   int packet_bytes = 0;                   ///< longest payload of the network; 0: the frames'
   QueuePolicy queue = QueuePolicy::kNewest;
   int queue_length = 8;

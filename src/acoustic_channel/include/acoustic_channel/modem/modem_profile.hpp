@@ -30,6 +30,9 @@ struct ModemProfile {
   double acquisition_db = 0.0;     ///< ratio in the band at which a receiver locks on
   double implementation_db = 0.0;  ///< by which a real receiver is worse than its error curve
   ErrorCurve errors;
+  /// Bandwidth over bit rate [dB]. Despreading lifts a packet out of the noise by this, but not out
+  /// of others of the same waveform, which it lifts as well: their power counts so much more.
+  double spreading_db = 0.0;
 
   double turnaround_s = 0.0;  ///< from the end of a reception or transmission to the next start
   double transmit_w = 0.0, receive_w = 0.0, idle_w = 0.0;  ///< electric
