@@ -90,7 +90,7 @@ class BagReplay(unittest.TestCase):
         config = pathlib.Path(roslib.packages.get_pkg_dir("acoustic_channel")) / "config"
         private = {
             "vehicles": " ".join(NAMES), "config": str(config / "channel.yaml"), "seed": 7,
-            "overrides": "channel.model=physical channel.access=csma", "lag": 0.5,
+            "lag": 0.5,
             "packet_log": str(log), **parameters}
         rospy.set_param("/acoustic_channel", private)
         command = [self.channel, "__name:=acoustic_channel", f"__log:={log}.log"]
