@@ -58,8 +58,9 @@ FleetChannel::Word FleetChannel::Offer(const Transmission& packet) {
   channel_->CheckOrThrow(packet);
   if (first_ < 0 || packet.stamp < first_) first_ = packet.stamp;
   auto& queue = waiting_[static_cast<std::size_t>(packet.source)];
-  const auto later = std::upper_bound(queue.begin(), queue.end(), packet.stamp,
-                                      [](TimeNs t, const Offered& o) { return t < o.packet.stamp; });
+  const auto later =
+      std::upper_bound(queue.begin(), queue.end(), packet.stamp,
+                       [](TimeNs t, const Offered& o) { return t < o.packet.stamp; });
   const auto first = packet.payload.data;
   queue.insert(later, {packet, {first, first + packet.payload.size}});
   return begun_ && packet.stamp <= closed_ ? Word::kLate : Word::kCounts;

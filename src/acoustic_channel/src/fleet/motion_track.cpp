@@ -58,7 +58,7 @@ Motion MotionTrack::Between(const Sample& a, const Sample& b, TimeNs t) const {
   Motion m;
   m.p_W = a.motion.p_W + (b.motion.p_W - a.motion.p_W) * share;
   m.v_W = limits_.has_velocity ? a.motion.v_W + (b.motion.v_W - a.motion.v_W) * share
-                        : Slope(a.motion.p_W, b.motion.p_W, b.t - a.t);
+                               : Slope(a.motion.p_W, b.motion.p_W, b.t - a.t);
   return m;
 }
 

@@ -47,8 +47,7 @@ struct Scribe : FleetListener {
     Note("discarded", p.source, p.tag, ToString(reason), t);
   }
   void OnFate(const PacketInfo& p, const PacketFate& f) override {
-    Note("fate", p.source, p.tag, p.bytes, f.receiver, ToString(f.reason), f.arrival,
-         f.distance_m);
+    Note("fate", p.source, p.tag, p.bytes, f.receiver, ToString(f.reason), f.arrival, f.distance_m);
   }
   bool Has(const std::string& text) const {
     return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
@@ -102,10 +101,10 @@ std::vector<Spoken> Traffic() {
     }
     for (TimeNs ms = 300 + 17 * i; ms < 20'000; ms += 330) {
       const TimeNs t = kEpoch + ms * kFleetMs;
-      words.push_back({t, [i, t, ms](FleetChannel* c) {
-                         c->Offer(Saying(i, static_cast<std::uint32_t>(ms), t,
-                                         "ahoy " + std::to_string(ms)));
-                       }});
+      words.push_back(
+          {t, [i, t, ms](FleetChannel* c) {
+             c->Offer(Saying(i, static_cast<std::uint32_t>(ms), t, "ahoy " + std::to_string(ms)));
+           }});
     }
   }
   return words;

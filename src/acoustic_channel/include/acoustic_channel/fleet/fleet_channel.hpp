@@ -111,7 +111,7 @@ class FleetChannel {
   std::vector<std::deque<Offered>> waiting_;  ///< [vehicles] for the step of their stamp
   std::vector<Asked> asked_;
   bool begun_ = false;
-  TimeNs first_ = -1;                        ///< earliest word of a run that has not begun
+  TimeNs first_ = -1;  ///< earliest word of a run that has not begun
   TimeNs start_ = 0, closed_ = 0, next_ = 0;
   std::vector<bool> present_;
   std::vector<Vec3<double>> positions_, velocities_;

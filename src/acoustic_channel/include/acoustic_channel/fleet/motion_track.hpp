@@ -6,7 +6,8 @@
 #include "auv_common/numbers/vector.hpp"
 #include "auv_common/time.hpp"
 
-/// The channel for vehicles of anybody: their motion and packets as they come in, in whatever order.
+/// The channel for vehicles of anybody: their motion and packets as they come in, in whatever
+/// order.
 namespace stg::acoustics {
 
 /// Where a vehicle is and how it moves, world axes.
@@ -18,9 +19,9 @@ struct Motion {
 /// The motion of one vehicle between and beyond the moments at which it told it.
 ///
 /// Stamps may jitter, be rounded, repeat, or come out of order. Between two samples no more than
-/// `patience` apart, position and velocity are interpolated linearly. Otherwise the position goes on
-/// from the earlier one with its velocity: what comes too late to be waited for changes nothing. A
-/// vehicle is silent from `silent_after` past a sample until the next, and not there before the
+/// `patience` apart, position and velocity are interpolated linearly. Otherwise the position goes
+/// on from the earlier one with its velocity: what comes too late to be waited for changes nothing.
+/// A vehicle is silent from `silent_after` past a sample until the next, and not there before the
 /// first: its motion is then nothing.
 class MotionTrack {
  public:

@@ -54,8 +54,9 @@ void FleetNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mess
     return refused_odometry_.Add(Refusals::kFrame);
   }
   // An orientation matters only where the twist is told in it.
-  const bool finite = (twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position)) &&
-                      (twist_ == TwistFrame::kNone || FiniteVector(twist.linear));
+  const bool finite =
+      (twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position)) &&
+      (twist_ == TwistFrame::kNone || FiniteVector(twist.linear));
   if (!finite) {
     last_refusal_ = v.odom + ": not finite, or an orientation that is no rotation";
     return refused_odometry_.Add(Refusals::kNotFinite);
@@ -133,7 +134,8 @@ void FleetNode::Refuse(int vehicle, const auv_msgs::AcousticPacket& message,
   status.status = auv_msgs::TransmitStatus::REFUSED;
   status.text = why;
   PublishStatus(vehicle, status);
-  last_refusal_ = vehicles_[static_cast<std::size_t>(vehicle)].Topic(topics::kAcousticTx) + ": " + why;
+  last_refusal_ =
+      vehicles_[static_cast<std::size_t>(vehicle)].Topic(topics::kAcousticTx) + ": " + why;
 }
 
 void FleetNode::AskPings() {

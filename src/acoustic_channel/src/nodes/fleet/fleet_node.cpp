@@ -31,8 +31,7 @@ acoustics::NetworkConfig NetworkParameters(const std::vector<Vehicle>& vehicles)
   const std::string name = TextParameter("config", "");
   if (name.empty()) throw UserError("parameter config: names no file with the section channel");
   const bool path = name.find('/') != std::string::npos || name.find(".yaml") != std::string::npos;
-  const std::string file =
-      path ? name : config::NamedSource(config::ScenarioFolder(), name).file;
+  const std::string file = path ? name : config::NamedSource(config::ScenarioFolder(), name).file;
   std::vector<std::string> overrides = TextsParameter("overrides");
   const double step_s = NumberParameter("step", 0.0, 0.0, 10.0);
   if (step_s > 0.0) {
@@ -93,8 +92,7 @@ void FleetNode::Connect() {
     const Vehicle& v = vehicles_[i];
     const int vehicle = static_cast<int>(i);
     Member& m = members_[i];
-    m.reception =
-        node.advertise<auv_msgs::AcousticReception>(v.Topic(topics::kAcousticRx), kQueue);
+    m.reception = node.advertise<auv_msgs::AcousticReception>(v.Topic(topics::kAcousticRx), kQueue);
     m.status = node.advertise<auv_msgs::TransmitStatus>(v.Topic(topics::kAcousticStatus), kQueue);
     if (!bag_.empty()) continue;
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> on_odometry =
@@ -103,8 +101,8 @@ void FleetNode::Connect() {
                                                     ros::VoidConstPtr(), NoDelay());
     const boost::function<void(const auv_msgs::AcousticPacket::ConstPtr&)> on_packet =
         [this, vehicle](const auto& message) { OnPacket(vehicle, message); };
-    m.packets = node.subscribe<auv_msgs::AcousticPacket>(
-        v.Topic(topics::kAcousticTx), kQueue, on_packet, ros::VoidConstPtr(), NoDelay());
+    m.packets = node.subscribe<auv_msgs::AcousticPacket>(v.Topic(topics::kAcousticTx), kQueue,
+                                                         on_packet, ros::VoidConstPtr(), NoDelay());
   }
 }
 

@@ -15,9 +15,9 @@
 
 #include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/fleet/fleet_channel.hpp"
+#include "acoustic_channel/nodes/packet_reports.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "packet_files.hpp"
-#include "acoustic_channel/nodes/packet_reports.hpp"
 #include "ping_desk.hpp"
 #include "vehicle_list.hpp"
 
@@ -104,8 +104,8 @@ class FleetNode : private acoustics::FleetListener {
   PacketFiles files_;
   acoustics::PacketObserver* log_ = nullptr;  ///< of this run
 
-  TimeNs now_ = 0;       ///< clock of ROS [ns]; 0: nobody has told it yet
-  TimeNs settled_ = 0;   ///< the clock a moment ago: what was on its way then has come in
+  TimeNs now_ = 0;          ///< clock of ROS [ns]; 0: nobody has told it yet
+  TimeNs settled_ = 0;      ///< the clock a moment ago: what was on its way then has come in
   double settled_s_ = 0.0;  ///< wall time of that
   std::deque<Doubtful> doubtful_;
   std::map<std::string, int> frames_;  ///< of odometry that was taken

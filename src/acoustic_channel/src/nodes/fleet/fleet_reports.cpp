@@ -169,8 +169,7 @@ void FleetNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
     const acoustics::ChannelTotals& totals = fleet_.channel().totals();
     status.add("packets delivered in this run", totals.delivered);
     for (std::size_t k = 1; k < totals.drops.size(); ++k) {
-      status.add(std::string("packets dropped: ") +
-                     acoustics::ToString(static_cast<DropReason>(k)),
+      status.add(std::string("packets dropped: ") + acoustics::ToString(static_cast<DropReason>(k)),
                  totals.drops[k]);
     }
   }

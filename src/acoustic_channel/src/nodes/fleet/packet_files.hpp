@@ -16,8 +16,8 @@ class PacketFiles {
   /// @param path of the first file; empty: none. Throws UserError when it cannot be written.
   PacketFiles(std::string path, const std::vector<int>& ids);
 
-  /// A run begins, whose times count from `start` [ns]. Its log, null without a file, is valid until
-  /// the next.
+  /// A run begins, whose times count from `start` [ns]. Its log, null without a file, is valid
+  /// until the next.
   acoustics::PacketObserver* Begin(TimeNs start);
   /// What was written is in the file.
   void Flush();
