@@ -76,4 +76,10 @@ TorpedoModel::TorpedoModel(const TorpedoConfig& c) : c_(c), z_G_(-c.cg_below_m) 
   torque_slope_ = moment * slope(c.torque_coefficient);
 }
 
+double TorpedoModel::SteadyRpmPerSpeed() const {
+  // thrust n^2 + slope inflow u n = drag u^2, per u^2.
+  const double a = thrust_, b = thrust_slope_ * c_.propeller_inflow, drag = wing_ * CD_0_;
+  return (-b + std::sqrt(b * b + 4.0 * a * drag)) / (2.0 * a);
+}
+
 }  // namespace stg::dynamics

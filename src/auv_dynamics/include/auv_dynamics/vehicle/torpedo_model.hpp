@@ -43,6 +43,16 @@ class TorpedoModel {
   /// Lamb's added mass and inertia, surge to yaw [kg, kg m^2].
   const std::array<double, 6>& added_mass() const { return A_; }
 
+  /// Shaft speed of a steady straight course over its speed [rpm per m/s], without the linear
+  /// damping, which fades: thrust in the wake of the hull equals its drag.
+  double SteadyRpmPerSpeed() const;
+  /// Angular acceleration per angle and squared speed [1/m^2].
+  double RudderAuthority() const { return 0.5 * c_.length_m * rudder_ / M_[5]; }
+  double SternPlaneAuthority() const { return 0.5 * c_.length_m * stern_plane_ / M_[4]; }
+  /// Of pitch: damping [1/s], and righting acceleration per sine of pitch [1/s^2].
+  double PitchDamping() const { return D_[4] / M_[4]; }
+  double Righting() const { return weight_ * c_.cg_below_m / M_[4]; }
+
   /// Within what the actuators can do.
   template <class T>
   TorpedoActuators<T> Limit(const TorpedoActuators<T>& wanted) const;
