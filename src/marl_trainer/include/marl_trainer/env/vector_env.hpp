@@ -64,7 +64,7 @@ class VectorEnv {
              const std::vector<Vec3<double>>& v_WT, const EnvArrays& out);
   /// One decision of every AUV. Writes all arrays.
   /// @param actions [envs, agents, action_size], clipped to [-1, 1]. Non-finite ones throw
-  /// std::invalid_argument.
+  /// std::invalid_argument before anything has moved.
   void Step(const float* actions, const EnvArrays& out);
   void Step(const double* actions, const EnvArrays& out);
 
@@ -111,7 +111,8 @@ class VectorEnv {
   template <class Number>
   void StepAll(const Number* actions, const EnvArrays& out);
   template <class Number>
-  void TakeActions(const Slice& slice, const Number* actions);
+  void TakeActions(const Number* actions);
+  void Judge(const Slice& slice, const EnvArrays& out);
   void Restart(const Slice& slice, int lane, bool first);
   void WriteStart(const Slice& slice, const EnvArrays& out) const;
   /// Ends the episodes of some lanes and starts their next ones.
@@ -127,7 +128,7 @@ class VectorEnv {
   std::vector<int> slice_of_;                   // [envs]
   std::vector<std::uint64_t> round_;            // [envs], k of the running episode
   std::vector<task::EpisodeMetrics> finished_;  // [envs]
-  std::vector<Pack> wanted_;                    // [agents, action_size], of one slice
+  std::vector<Pack> wanted_;                    // [slices, agents, action_size]
   std::vector<float> rows_;                     // [lanes], scratch of Finish
 };
 
