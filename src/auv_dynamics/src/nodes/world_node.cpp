@@ -154,7 +154,7 @@ void WorldNode::StepWorld() {
   }
   if (missed) ++missed_steps_;
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrenches_);
-  publisher_->SetWrenches(commands_, fresh_);
+  publisher_->SetWrenches(commands_, fresh_, barrier_.answered(Channel()));
   ++step_;
   steps_.Add();
   barrier_.Close();
@@ -172,12 +172,13 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   }
   commands_.assign(auvs_.size(), dynamics::Wrench<double>());
   fresh_.assign(auvs_.size(), 0);
-  publisher_->SetWrenches(commands_, fresh_);
+  publisher_->SetWrenches(commands_, fresh_, false);
   OpenStep();
 }
 
 void WorldNode::OpenStep() {
   opened_ = WallSeconds();
+  SetNodeTime(TimeOf(Now()));
   publisher_->PublishSensors(world_, start_, episode_, step_);
   // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
   if (pacer_.lockstep()) publisher_->PublishSwarm();

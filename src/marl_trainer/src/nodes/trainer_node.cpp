@@ -10,6 +10,7 @@
 #include <iostream>
 #include <numeric>
 
+#include "auv_common/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
@@ -144,6 +145,7 @@ void TrainerNode::OnAgentStep(int agent, const auv_msgs::AgentStep& message) {
 }
 
 void TrainerNode::OnReport(const auv_msgs::StepReport& message) {
+  if (PossibleStamp(message.header.stamp)) SetNodeTime(message.header.stamp);
   if (message.episode >= first_episode_) inlet_->Add(message);
 }
 
