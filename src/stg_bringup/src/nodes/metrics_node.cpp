@@ -98,12 +98,13 @@ void MetricsNode::Subscribe() {
 
 bool MetricsNode::Follow(const auv_msgs::SwarmState& m) {
   const TimeNs stamp = NsOf(m.header.stamp);
+  const bool in_run = tracker_.started();  // else what agents said before belongs to this run
   switch (tracker_.Hear({m.run, m.episode, m.step, stamp})) {
     case StepTracker::Verdict::kRefused:
       refused_swarm_.Add(Refusals::kStale);
       return false;
     case StepTracker::Verdict::kNewRun:
-      frames_.Clear();
+      if (in_run) frames_.Clear();
       break;
     case StepTracker::Verdict::kRepeated:
     case StepTracker::Verdict::kNext:
