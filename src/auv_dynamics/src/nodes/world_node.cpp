@@ -127,11 +127,14 @@ bool WorldNode::ListenersReady(double now) {
   return now - *awaited_seen_ > 1.5;
 }
 
-void WorldNode::WarnOfLoss(int party) const {
+void WorldNode::WarnOfLoss(int party) {
+  if (!losses_.Due()) return;
   if (party == Channel()) {
-    ROS_WARN("world: acoustic channel did not close step %u, going on without it", step_);
+    ROS_WARN("world: acoustic channel did not close step %u, going on without it%s", step_,
+             losses_.more().c_str());
   } else {
-    ROS_WARN("world: no wrench of AUV %d for step %u, holding its last command", party, step_);
+    ROS_WARN("world: no wrench of AUV %d for step %u, holding its last command%s", party, step_,
+             losses_.more().c_str());
   }
 }
 
