@@ -1,6 +1,8 @@
 #include "marl_trainer/learn/algorithm_config.hpp"
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
+#include "marl_trainer/learn/algorithms/ippo/ippo_config.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
 
 namespace stg::learn {
@@ -30,6 +32,8 @@ void AlgorithmConfig::FitPolicy(const agent::Policy&) {
 AlgorithmRegistry& Algorithms() {
   static AlgorithmRegistry registry("algorithm", {
                                                      {"mappo", std::make_unique<MappoConfig>},
+                                                     {"ippo", std::make_unique<IppoConfig>},
+                                                     {"happo", std::make_unique<HappoConfig>},
                                                  });
   return registry;
 }

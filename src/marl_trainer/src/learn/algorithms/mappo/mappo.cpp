@@ -11,7 +11,6 @@
 namespace stg::learn {
 namespace {
 
-constexpr double kHalfLogTwoPiE = 1.4189385332046727;  // entropy of a Gaussian of sigma 1
 /// Observations that the normaliser of a given policy counts for at least.
 constexpr double kStartCount = 10000.0;
 
@@ -85,7 +84,7 @@ UpdateReport Mappo::Update(const UpdateContext& context) {
     const auto log_std = static_cast<double>(
         parameters_[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)]);
     sigma += std::exp(log_std) / networks_.action_size();
-    entropy += log_std + kHalfLogTwoPiE;
+    entropy += log_std + agent::kHalfLogTwoPiE;
   }
   UpdateReport report;
   report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
@@ -111,19 +110,15 @@ std::vector<ReportColumn> Mappo::Columns() const {
 
 void Mappo::Save(Archive* archive) const {
   archive->Put("parameters", parameters_);
-  archive->Put("adam_first", adam_.first);
-  archive->Put("adam_second", adam_.second);
-  archive->PutInteger("adam_steps", adam_.steps);
+  adam_.Save("adam", archive);
   rollouts_.normalisers().Save(archive);
 }
 
 void Mappo::Load(const Archive& archive) {
   const std::size_t size = networks_.parameters();
   const std::vector<float>& parameters = archive.Floats("parameters", size);
-  AdamState adam;
-  adam.first = archive.Floats("adam_first", size);
-  adam.second = archive.Floats("adam_second", size);
-  adam.steps = archive.Integer("adam_steps");
+  AdamState adam(size);
+  adam.Load("adam", archive);
   rollouts_.normalisers().Load(archive);
   parameters_ = parameters;
   adam_ = std::move(adam);
