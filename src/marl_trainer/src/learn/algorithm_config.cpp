@@ -3,7 +3,9 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
 #include "marl_trainer/learn/algorithms/ippo/ippo_config.hpp"
+#include "marl_trainer/learn/algorithms/maddpg/maddpg_config.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "marl_trainer/learn/algorithms/matd3/matd3_config.hpp"
 
 namespace stg::learn {
 
@@ -34,6 +36,8 @@ AlgorithmRegistry& Algorithms() {
                                                      {"mappo", std::make_unique<MappoConfig>},
                                                      {"ippo", std::make_unique<IppoConfig>},
                                                      {"happo", std::make_unique<HappoConfig>},
+                                                     {"maddpg", std::make_unique<MaddpgConfig>},
+                                                     {"matd3", std::make_unique<Matd3Config>},
                                                  });
   return registry;
 }

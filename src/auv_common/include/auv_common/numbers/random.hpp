@@ -23,6 +23,8 @@ enum class Stream : std::uint32_t {
   kShuffle = 8,
   kInit = 9,
   kMediumAccess = 10,
+  kReplay = 40,
+  kTargetNoise = 41,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

@@ -17,8 +17,7 @@ class SlicedGradient {
   static constexpr int kSlices = 16;
 
   /// Adds the gradient of samples begin .. end-1 to `gradient` [parameters], which is zero.
-  using Part =
-      std::function<void(int slice, int worker, int begin, int end, float* gradient)>;
+  using Part = std::function<void(int slice, int worker, int begin, int end, float* gradient)>;
 
   /// @param pool must outlive this object.
   SlicedGradient(std::size_t parameters, WorkerPool* pool);

@@ -11,7 +11,6 @@
 namespace stg::learn {
 namespace {
 
-
 std::string ActorName(std::size_t agent) { return "actor_" + std::to_string(agent); }
 
 }  // namespace
@@ -104,8 +103,7 @@ UpdateReport Happo::Update(const UpdateContext& context) {
   }
   for (const double f : update_.factors()) factor += std::abs(f - 1.0) / factors;
   UpdateReport report;
-  report.flops =
-      ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
+  report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
   report.values = {config_.lr * rate,
                    ppo.sums.kl / ppo.sums.rows,
                    ppo.sums.clipped / ppo.sums.rows,
@@ -121,10 +119,12 @@ UpdateReport Happo::Update(const UpdateContext& context) {
 }
 
 std::vector<ReportColumn> Happo::Columns() const {
-  return {{"learning_rate", "", 0},        {"kl", "KL", 4},       {"clip_fraction", "clip", 3},
-          {"actor_loss", "", 0},           {"value_loss", "", 0}, {"entropy", "H", 2},
-          {"explained_variance", "EV", 3}, {"sigma", "sigma", 3}, {"actor_gradient_norm", "", 0},
-          {"critic_gradient_norm", "", 0}, {"joint_ratio_miss", "|M-1|", 3}};
+  return {{"learning_rate", "", 0},        {"kl", "KL", 4},
+          {"clip_fraction", "clip", 3},    {"actor_loss", "", 0},
+          {"value_loss", "", 0},           {"entropy", "H", 2},
+          {"explained_variance", "EV", 3}, {"sigma", "sigma", 3},
+          {"actor_gradient_norm", "", 0},  {"critic_gradient_norm", "", 0},
+          {"joint_ratio_miss", "|M-1|", 3}};
 }
 
 void Happo::Save(Archive* archive) const {

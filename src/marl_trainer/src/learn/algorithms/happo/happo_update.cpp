@@ -84,7 +84,8 @@ PpoBatch HappoUpdate::Gather(int from, int to, int agent, Scratch* s) {
     }
     s->log_prob[at] = b.log_prob[row];
     const double factor = config_.sequential ? factors_[sample] : 1.0;
-    s->advantages[at] = static_cast<float>(factor * static_cast<double>(samples_.advantage(sample)));
+    s->advantages[at] =
+        static_cast<float>(factor * static_cast<double>(samples_.advantage(sample)));
   }
   PpoBatch batch;
   batch.count = to - from;
@@ -105,8 +106,7 @@ int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* a
   PpoSums sums;
   int steps = 0, epochs = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
-    samples_.Shuffle(seed_, collection_,
-                     turn * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
+    samples_.Shuffle(seed_, collection_, turn * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
     sums = PpoSums();
     for (int first = 0; first < samples_.size(); first += config_.minibatch) {
       actor_gradient_.Compute(
@@ -126,8 +126,7 @@ int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* a
           actor_gradient_.Apply(step, 0, actor->size(), config_.lr * learning_rate_scale_,
                                 config_.grad_clip, actor->data());
       for (int a = 0; a < networks_.action_size(); ++a) {
-        float& log_std =
-            (*actor)[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)];
+        float& log_std = (*actor)[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)];
         log_std = std::min(std::max(log_std, static_cast<float>(config_.min_log_std)),
                            static_cast<float>(config_.max_log_std));
       }
@@ -144,9 +143,9 @@ int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* a
 void HappoUpdate::TrainCritic(std::vector<float>* critic, AdamState* adam, PpoReport* report) {
   int steps = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
-    samples_.Shuffle(seed_, collection_,
-                     static_cast<std::uint32_t>(agents_) * kEpochsOfATurn +
-                         static_cast<std::uint32_t>(epoch));
+    samples_.Shuffle(
+        seed_, collection_,
+        static_cast<std::uint32_t>(agents_) * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
     report->sums.value_loss = report->sums.samples = 0.0;
     for (int first = 0; first < samples_.size(); first += config_.minibatch) {
       critic_gradient_.Compute(
@@ -210,9 +209,10 @@ PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, co
   report.actor_norm /= steps;
   TrainCritic(&parameters->critic, &parameters->critic_adam, &report);
   const double actor = networks_.actor.mean().spec().training_products();
-  report.flops = 2.0 * samples_.size() *
-                 (report.epochs * actor + agents_ * networks_.actor.mean().spec().forward_products() +
-                  config_.epochs * networks_.critic.spec().training_products());
+  report.flops =
+      2.0 * samples_.size() *
+      (report.epochs * actor + agents_ * networks_.actor.mean().spec().forward_products() +
+       config_.epochs * networks_.critic.spec().training_products());
   return report;
 }
 

@@ -17,8 +17,7 @@ constexpr double kStartCount = 10000.0;
 }  // namespace
 
 struct Mappo::Scratch {
-  explicit Scratch(const ActorCritic& networks)
-      : actor(networks.actor.mean(), 0) {}
+  explicit Scratch(const ActorCritic& networks) : actor(networks.actor.mean(), 0) {}
   Mlp::Workspace actor;
   std::vector<float> observations;  // normalised
 };
@@ -75,8 +74,8 @@ UpdateReport Mappo::Update(const UpdateContext& context) {
   const double explained_variance =
       rollouts_.Estimate(parameters_.data() + networks_.critic_offset());
   const double rate = 1.0 - (1.0 - config_.lr_final) * std::min(context.progress, 1.0);
-  const PpoReport ppo =
-      update_.Run(rollouts_.buffers(), scales(), collection_, rate, context.imitation, &parameters_, &adam_);
+  const PpoReport ppo = update_.Run(rollouts_.buffers(), scales(), collection_, rate,
+                                    context.imitation, &parameters_, &adam_);
   rollouts_.UpdateInputScales();
 
   double sigma = 0.0, entropy = 0.0;

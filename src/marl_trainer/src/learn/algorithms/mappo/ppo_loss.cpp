@@ -121,7 +121,8 @@ void PpoLoss::AddCritic(const float* critic, const PpoBatch& batch, int minibatc
     sums->value_loss += static_cast<double>(error) * error;
     d_critic_[static_cast<std::size_t>(r)] = weight * error;
   }
-  networks_.critic.Backward(critic, batch.states, d_critic_.data(), batch.count, &critic_, gradient);
+  networks_.critic.Backward(critic, batch.states, d_critic_.data(), batch.count, &critic_,
+                            gradient);
   sums->samples += batch.count;
 }
 

@@ -36,8 +36,7 @@ PpoUpdate::PpoUpdate(const ActorCritic& networks, const MappoConfig& config,
 
 PpoUpdate::~PpoUpdate() = default;
 
-PpoSums PpoUpdate::Slice(const float* parameters, int begin, int end, int worker,
-                         float* gradient) {
+PpoSums PpoUpdate::Slice(const float* parameters, int begin, int end, int worker, float* gradient) {
   Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
   PpoSums sums;
   const auto row = static_cast<std::size_t>(agents_ * networks_.actor.inputs());

@@ -11,8 +11,8 @@ constexpr int kValueRows = 256;
 
 }  // namespace
 
-ValuedRollouts::ValuedRollouts(const Problem& problem, const MappoConfig& config,
-                               const Mlp& critic, WorkerPool* pool)
+ValuedRollouts::ValuedRollouts(const Problem& problem, const MappoConfig& config, const Mlp& critic,
+                               WorkerPool* pool)
     : problem_(problem),
       gamma_(static_cast<float>(config.gamma)),
       lambda_(static_cast<float>(config.lambda)),
