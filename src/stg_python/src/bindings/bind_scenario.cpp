@@ -29,6 +29,10 @@ py::object ToPython(const config::ValueRef& value) {
     py::object operator()(const config::Interval* x) const {
       return py::cast(std::vector<double>{x->lo, x->hi});
     }
+    template <class Names>
+    auto operator()(const Names& x) const -> decltype(py::object(py::cast(*x.list))) {
+      return py::cast(*x.list);
+    }
   };
   return std::visit(Cast{}, value);
 }
