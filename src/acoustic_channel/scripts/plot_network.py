@@ -99,18 +99,21 @@ def draw_delivery(axes, log):
         axes.plot([x], [share], "o", color="#4a8cff", markersize=4)
 
 
-def age_segments(log, source, destination):
-    """Lowest and highest age of every piece between two deliveries of news on a link."""
-    on = log.delivered & (log.source == source) & (log.destination == destination)
-    freshest, since, pieces = 0.0, 0.0, []
-    order = np.flatnonzero(on)
+def age_segments(log):
+    """Lowest and highest age of every piece between two deliveries of news, by link."""
+    links = {link: [] for link in zip(log.source[log.sent], log.destination[log.sent])}
+    news = dict.fromkeys(links, (0.0, 0.0))
+    order = np.flatnonzero(log.delivered)
     for i in order[np.argsort(log.arrival_s[order])]:
+        link = (log.source[i], log.destination[i])
+        freshest, since = news[link]
         if log.generation_s[i] <= freshest:
             continue
-        pieces.append((since - freshest, log.arrival_s[i] - freshest))
-        freshest, since = log.generation_s[i], log.arrival_s[i]
-    pieces.append((since - freshest, log.end_s - freshest))
-    return np.array(pieces)
+        links[link].append((since - freshest, log.arrival_s[i] - freshest))
+        news[link] = (log.generation_s[i], log.arrival_s[i])
+    for link, (freshest, since) in news.items():
+        links[link].append((since - freshest, log.end_s - freshest))
+    return [np.array(pieces) for _, pieces in sorted(links.items())]
 
 
 def share_of_time(pieces, ages):
@@ -125,16 +128,15 @@ def draw_ages(axes, log):
     axes.set_title("age of information")
     axes.set_xlabel("age [s]")
     axes.set_ylabel("share of time")
-    links = sorted(set(zip(log.source[log.sent], log.destination[log.sent])))
-    if not links:
+    pieces = age_segments(log)
+    if not pieces:
         return
-    pieces = [age_segments(log, *link) for link in links]
     together = np.concatenate(pieces)
     grid = np.linspace(0.0, together[:, 1].max(), 500)
     for piece in pieces[:: -(-len(pieces) // MAX_LINKS)]:
         axes.plot(grid, share_of_time(piece, grid), color=GREY, linewidth=0.5, alpha=0.6)
     whole = share_of_time(together, grid)
-    axes.plot(grid, whole, color="#4a8cff", linewidth=2, label=f"all {len(links)} links")
+    axes.plot(grid, whole, color="#4a8cff", linewidth=2, label=f"all {len(pieces)} links")
     reach = grid[np.searchsorted(whole, 0.99).clip(max=len(grid) - 1)]
     axes.set_xlim(0.0, max(reach * 1.3, 1e-9))
     axes.legend(loc="lower right")
@@ -181,11 +183,11 @@ def draw_energy(axes, summary):
     if not energy or not any(energy.values()):
         axes.text(0.5, 0.5, "not known", ha="center", transform=axes.transAxes)
         return
-    axes.bar(list(energy), list(energy.values()), color="#4a8cff")
+    nodes = sorted(energy, key=int)
+    axes.bar(nodes, [energy[node] for node in nodes], color="#4a8cff")
     axes.set_xlabel("node")
     axes.set_ylabel("energy [J]")
-    if len(energy) > 25:
-        axes.set_xticks(range(0, len(energy), -(-len(energy) // 25)))
+    axes.set_xticks(range(0, len(nodes), -(-len(nodes) // 20)))
 
 
 def draw_load(axes, log, sent):
@@ -205,7 +207,7 @@ def draw_load(axes, log, sent):
     middle = 0.5 * (edges[1:] + edges[:-1])
     axes.step(middle, offered, where="mid", color=GREY, label="sent")
     axes.step(middle, arrived, where="mid", color=GOOD, label="delivered, mean receiver")
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.25 * max(offered.max(), 1e-9))
     axes.legend(loc="upper right", fontsize="small")
 
 

@@ -5,8 +5,8 @@
 
 #include "acoustic_channel/access/periodic_config.hpp"
 #include "acoustic_channel/models/extended_config.hpp"
-#include "acoustic_channel/models/physical_config.hpp"
 #include "acoustic_channel/models/range_config.hpp"
+#include "acoustic_channel/network/physical_config.hpp"
 #include "auv_common/config/field.hpp"
 #include "auv_common/config/run_config.hpp"
 

@@ -113,10 +113,11 @@ void PacketLog::Time(TimeNs t) {
   row_ += digits;
 }
 
+/// Never -0.
 void PacketLog::Number(double value, int decimals) {
   char text[400];
   const auto end =
-      std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed, decimals);
+      std::to_chars(text, text + sizeof(text), value + 0.0, std::chars_format::fixed, decimals);
   row_.append(text, end.ptr);
 }
 

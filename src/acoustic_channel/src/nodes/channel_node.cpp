@@ -32,6 +32,7 @@ ChannelNode::ChannelNode()
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
+      tracker_(period_, scenario_.time.episode_steps),
       barrier_(scenario_.agents),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
@@ -82,22 +83,30 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     return;
   }
   const TimeNs stamp = NsOf(message->header.stamp);
-  if (barrier_.open() && stamp > barrier_.stamp()) {
+  using Verdict = StepTracker::Verdict;
+  const Verdict verdict = tracker_.Hear({message->run, message->episode, message->step, stamp});
+  if (verdict == Verdict::kRefused) {
+    refused_swarm_.Add(Refusals::kStale);
+    return;
+  }
+  if (verdict == Verdict::kNewRun) {
+    barrier_.Restart();  // but keeps transmissions: those of this step may have come before it
+  } else if (barrier_.open() && stamp > barrier_.stamp()) {
     // The world has gone on without this channel.
     Close();
     ++incomplete_steps_;
   }
   // Nodes need time to start, and the world waits with its first step until they have.
-  const bool at_start = !barrier_.started() && message->step == 0;
+  const bool at_start = message->episode == 0 && message->step == 0;
   const double deadline_s =
       at_start ? std::numeric_limits<double>::infinity() : WallSeconds() + timeout_s_;
   if (barrier_.Open(stamp, deadline_s) == StepBarrier::Opening::kRepeated) return;
   SetNodeTime(message->header.stamp);
   gave_up_ = false;
-  const TimeNs start = stamp - static_cast<TimeNs>(message->step) * period_;
-  if (start != start_ || message->episode != episode_) channel_->Reset(message->seed, 0);
-  start_ = start;
-  episode_ = message->episode;
+  if (verdict == Verdict::kNewRun || verdict == Verdict::kNewEpisode) {
+    channel_->Reset(message->seed, 0);
+  }
+  start_ = tracker_.start();
   step_ = message->step;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);

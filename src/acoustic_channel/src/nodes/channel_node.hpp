@@ -16,6 +16,7 @@
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/step/step_barrier.hpp"
+#include "auv_common/step/step_tracker.hpp"
 
 namespace stg::nodes {
 
@@ -25,7 +26,8 @@ namespace stg::nodes {
 /// can leave in it; then each AUV gets its reception window (t_k, t_{k+1}], and the world its
 /// acknowledgement. An AUV that is due and silent for `timeout` seconds, or whose step the world
 /// has left behind, is gone for the channel and not waited for again before it transmits again.
-/// Positions, velocities, step, episode and seed come with /swarm_state.
+/// Positions, velocities, step, episode and seed come with /swarm_state; one that contradicts the
+/// run is refused, see StepTracker.
 class ChannelNode {
  public:
   /// Throws UserError.
@@ -58,10 +60,11 @@ class ChannelNode {
   std::unique_ptr<acoustics::Channel> channel_;
   TimeNs period_;  ///< of decisions [ns]
   double timeout_s_, display_period_s_;
+  StepTracker tracker_;
   StepBarrier barrier_;   ///< the AUVs
   bool gave_up_ = false;  ///< on an AUV in the open step
   TimeNs start_ = -1;     ///< clock time of the episode's step 0 [ns]
-  std::uint32_t episode_ = 0, step_ = 0;
+  std::uint32_t step_ = 0;
   ros::WallTime links_sent_;
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_, velocities_;

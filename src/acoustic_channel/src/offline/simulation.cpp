@@ -93,7 +93,8 @@ void Simulation::Place() {
 
 void Simulation::Offer() {
   offers_.clear();
-  traffic_.Take(now_, &offers_);
+  // The end itself is not part of the run.
+  traffic_.Take(now_ == end_ ? end_ - 1 : now_, &offers_);
   transmissions_.clear();
   for (std::size_t k = 0; k < offers_.size(); ++k) {
     const acoustics::Offer& offer = offers_[k];

@@ -1,3 +1,5 @@
+#include "acoustic_channel/offline/traffic.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 
 #include "acoustic_channel/log/packet_log.hpp"
 #include "acoustic_channel/offline/track.hpp"
-#include "acoustic_channel/offline/traffic.hpp"
 #include "auv_common/error.hpp"
 
 namespace stg::acoustics {
@@ -107,7 +108,7 @@ TEST_F(TrackFile, GoesOnStraightLinesAndRestsAtItsEnds) {
 }
 
 TEST_F(TrackFile, BadRowsAreRefusedWithTheirLine) {
-  EXPECT_EQ(Refusal("x,y,z\n1,2,3\n"), ":1: expected the header t,x,y,z, found \"x,y,z\"");
+  EXPECT_EQ(Refusal("x,y,z\n1,2,3\n"), ":1: expected the header t,x,y,z, found 'x,y,z'");
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2,3\n1,2,nan,3\n").find(":3: expected four"), std::string::npos);
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2\n").find(":2: expected four"), std::string::npos);
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2,3,4\n").find(":2: expected four"), std::string::npos);

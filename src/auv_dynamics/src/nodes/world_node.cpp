@@ -127,11 +127,14 @@ bool WorldNode::ListenersReady(double now) {
   return now - *awaited_seen_ > 1.5;
 }
 
-void WorldNode::WarnOfLoss(int party) const {
+void WorldNode::WarnOfLoss(int party) {
+  if (!losses_.Due()) return;
   if (party == Channel()) {
-    ROS_WARN("world: acoustic channel did not close step %u, going on without it", step_);
+    ROS_WARN("world: acoustic channel did not close step %u, going on without it%s", step_,
+             losses_.more().c_str());
   } else {
-    ROS_WARN("world: no wrench of AUV %d for step %u, holding its last command", party, step_);
+    ROS_WARN("world: no wrench of AUV %d for step %u, holding its last command%s", party, step_,
+             losses_.more().c_str());
   }
 }
 
@@ -154,7 +157,7 @@ void WorldNode::StepWorld() {
   }
   if (missed) ++missed_steps_;
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrenches_);
-  publisher_->SetWrenches(commands_, fresh_);
+  publisher_->SetWrenches(commands_, fresh_, barrier_.answered(Channel()));
   ++step_;
   steps_.Add();
   barrier_.Close();
@@ -172,12 +175,13 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   }
   commands_.assign(auvs_.size(), dynamics::Wrench<double>());
   fresh_.assign(auvs_.size(), 0);
-  publisher_->SetWrenches(commands_, fresh_);
+  publisher_->SetWrenches(commands_, fresh_, false);
   OpenStep();
 }
 
 void WorldNode::OpenStep() {
   opened_ = WallSeconds();
+  SetNodeTime(TimeOf(Now()));
   publisher_->PublishSensors(world_, start_, episode_, step_);
   // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
   if (pacer_.lockstep()) publisher_->PublishSwarm();

@@ -58,7 +58,7 @@ class WorldNode {
   double WaitTime() const;
   void Advance();
   bool ListenersReady(double now);
-  void WarnOfLoss(int party) const;
+  void WarnOfLoss(int party);
   void StepWorld();
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
@@ -85,6 +85,7 @@ class WorldNode {
   StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
   bool finishing_ = false, done_ = false;
   std::uint64_t missed_steps_ = 0;
+  Throttle losses_;    ///< of warnings about those who are given up
   bool shown_ = true;  ///< observers have the present step
   EventRate steps_;
   double began_ = 0.0;      ///< WallSeconds() when the run began

@@ -24,9 +24,9 @@ class WorldPublisher {
   WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz);
 
   /// What acted on the AUVs in the step that ends at the next PublishSensors: wrenches, and which
-  /// of them were commanded for it.
+  /// of them were commanded for it; and whether the acoustic channel had closed it.
   void SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
-                   const std::vector<std::uint8_t>& fresh);
+                   const std::vector<std::uint8_t>& fresh, bool channel_fresh);
 
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
   /// [ns].
@@ -57,6 +57,7 @@ class WorldPublisher {
 
   dynamics::WorldConfig scenario_;
   double display_period_s_;
+  std::uint64_t run_;  ///< id of this run
   ros::WallTime clock_sent_, frames_sent_;
   std::vector<AuvTopics> auvs_;
   std::vector<OnDemand<nav_msgs::Odometry>> targets_;

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "acoustic_channel/models/physical_config.hpp"
 #include "acoustic_channel/network/medium.hpp"
+#include "acoustic_channel/network/physical_config.hpp"
 #include "acoustic_channel/propagation/bursts.hpp"
 #include "acoustic_channel/propagation/fading.hpp"
 #include "acoustic_channel/propagation/propagation.hpp"

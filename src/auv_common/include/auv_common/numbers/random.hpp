@@ -29,6 +29,8 @@ enum class Stream : std::uint32_t {
   kTraffic = 23,
   kClock = 25,
   kReception = 26,
+  kReplay = 40,
+  kTargetNoise = 41,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

@@ -41,6 +41,7 @@ enum class NodeClock {
 };
 
 /// For nodes with NodeClock::kMessages: what a diagnostic or a log message will be stamped with.
+/// Only for a PossibleStamp: with others ROS ends the process sooner or later.
 inline void SetNodeTime(const ros::Time& stamp) {
   if (ros::Time::isSimTime()) ros::Time::setNow(stamp);
 }

@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+"""No message kills, blinds or silences a node: mutations of every message on every topic."""
+
+import random
+import unittest
+
+import rosgraph
+import roslib.message
+import rospy
+import rostest
+from auv_msgs.msg import AcousticReception, EpisodeSummary, StepReport, TaskState
+from graph_listener import Diagnostics, Latest, rosnode_pid, wait_for
+from mutations import mutated, stamped
+
+MUTATIONS = 60  # of each topic
+FAR_FUTURE = (2.0**31 + 2.0, 2.0**32 - 0.05)  # [s]
+NOT_OURS = ("/rosout", "/mutations_test", "/recorder")
+
+
+class Tap:
+    """A topic as seen by a stranger: the newest message, and a way to send others."""
+
+    def __init__(self, topic, type_name):
+        message_type = roslib.message.get_message_class(type_name)
+        self.topic = topic
+        self.latest = Latest(topic, message_type)
+        self.publisher = rospy.Publisher(topic, message_type, queue_size=1000)
+
+    def message(self):
+        """Returns the newest message; an empty one when there is none."""
+        return self.latest.message or self.latest.type()
+
+    def send(self, messages):
+        """Sends messages one after the other, slowly enough for a queue of 20."""
+        for message in messages:
+            self.publisher.publish(message)
+            rospy.rostime.wallsleep(0.002)
+
+
+class Mutations(unittest.TestCase):
+    """Short episodes without end; each test leaves the graph at work."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.diagnostics = Diagnostics()
+        cls.task = Latest("/auv_0/task_state", TaskState)
+        cls.reception = Latest("/auv_0/acoustic/rx", AcousticReception)
+        cls.report = Latest("/step_report", StepReport)
+        cls.summary = Latest("/episode_summary", EpisodeSummary)
+        cls.task.wait(30.0)
+        cls.summary.wait(30.0)
+        master = rosgraph.Master("/mutations_test")
+        _, subscribers, _ = master.getSystemState()
+        types = dict(master.getTopicTypes())
+        ours = {}
+        for topic, nodes in subscribers:
+            heard_by = [node for node in nodes if node not in NOT_OURS]
+            if heard_by and topic in types:
+                ours[topic] = heard_by
+        cls.nodes = sorted({node for nodes in ours.values() for node in nodes})
+        cls.pids = {node: rosnode_pid(node) for node in cls.nodes}
+        cls.taps = [Tap(topic, types[topic]) for topic in sorted(ours)]
+        wait_for(lambda: all(tap.publisher.get_num_connections() > 0 for tap in cls.taps),
+                 20.0, "every node hears this test")
+
+    def check_all_is_well(self):
+        """Everybody lives, and whole episodes are flown with all that belongs to them."""
+        self.report.wait_for_more(20)
+        self.reception.wait_for_more(20)
+        self.assertEqual({node: rosnode_pid(node) for node in self.nodes}, self.pids)
+        wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours are heard")
+        # The first to end may have begun while it was disturbed.
+        self.summary.wait_for_more(2, 40.0)
+        wait_for(lambda: self.summary.message.complete, 40.0, "a complete episode")
+
+    def test_1_the_test_hears_of_the_topics_that_matter(self):
+        topics = {tap.topic for tap in self.taps}
+        self.assertLessEqual(
+            {"/swarm_state", "/auv_0/sensor_frame", "/auv_0/wrench", "/auv_0/acoustic/tx",
+             "/auv_0/acoustic/rx", "/auv_0/odom", "/auv_0/cmd_vel", "/auv_0/task_state",
+             "/acoustic_channel/done", "/acoustic_channel/links", "/episode_summary"}, topics)
+        self.assertLessEqual({"/world", "/acoustic_channel", "/metrics", "/auv_3/agent",
+                              "/auv_3/controller"}, set(self.nodes))
+
+    def test_2_stamps_from_the_far_future_end_nobody(self):
+        for tap in self.taps:
+            for seconds in FAR_FUTURE:
+                message = stamped(tap.message(), seconds)
+                tap.send([message, message])
+        rospy.rostime.wallsleep(2.5)  # diagnostics are made once a second
+        self.check_all_is_well()
+
+    def test_3_a_minute_ahead_nobody_is_silenced(self):
+        for tap in self.taps:
+            now = self.task.message.header.stamp.to_sec()
+            tap.send(stamped(tap.message(), now + 58.0 + k / 10) for k in range(2))
+        self.check_all_is_well()
+
+    def test_4_many_future_detections_and_receptions_do_not_blind_or_deafen(self):
+        for tap in self.taps:
+            if tap.topic not in ("/auv_0/sensor_frame", "/auv_0/acoustic/rx"):
+                continue
+            for ahead in (8.0, 1e6):
+                def future(tap=tap, ahead=ahead):
+                    message = tap.message()
+                    now = message.header.stamp.to_sec()
+                    if tap.topic.endswith("rx"):
+                        return stamped(message, now + ahead)
+                    header = message.header
+                    message = stamped(message, now + ahead)
+                    message.detections = (message.detections * 150)[:150]
+                    message.header = header
+                    return message
+                tap.send(future() for _ in range(150))
+        self.check_all_is_well()
+        wait_for(lambda: self.task.message.target_known, 20.0, "the target is seen")
+
+    def test_5_mutations_of_every_message_end_nobody_and_are_counted(self):
+        source = random.Random(14)
+        before = self.refusals()
+        for tap in self.taps:
+            tap.send(mutated(tap.message(), source) for _ in range(MUTATIONS))
+        self.check_all_is_well()
+        for node, count in before.items():
+            wait_for(lambda node=node, count=count: self.refusals()[node] > count, 10.0,
+                     f"{node} counts what it refuses")
+
+    def refusals(self):
+        """Returns how many messages each node says it has refused."""
+        names = ["world", "acoustic_channel", "metrics", "auv_0/agent", "auv_0/controller"]
+        wait_for(lambda: all(name in self.diagnostics.nodes for name in names), 20.0, "diagnostics")
+        return {
+            name: sum(float(value) for key, value in self.diagnostics.nodes[name][2].items()
+                      if "refused" in key)
+            for name in names
+        }
+
+
+if __name__ == "__main__":
+    rospy.init_node("mutations_test")
+    rostest.rosrun("stg_bringup", "mutations", Mutations)
