@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -68,12 +69,17 @@ WorldNode::WorldNode()
 
 void WorldNode::Spin() {
   PollLoop([this] { return Work(); }, RealtimePriorityParameter());
+  if (summary_lost_) throw LostOutput("world: the last episode's summary did not come");
+  if (!done_ && episodes_ > 0 && !StoppedBySignal()) {
+    throw LostOutput("world: another node ended this one after " + std::to_string(episode_) +
+                     " of " + std::to_string(episodes_) + " episodes");
+  }
 }
 
 double WorldNode::Work() {
   if (shown_ || pacer_.lockstep()) health_.Tick();
   if (finishing_) {
-    if (WallSeconds() > give_up_s_) done_ = true;
+    if (WallSeconds() > give_up_s_) done_ = summary_lost_ = true;
   } else {
     const bool quiet =
         pacer_.lockstep() ? barrier_.Complete() : barrier_.Complete(0, scenario_.agents);
@@ -157,11 +163,24 @@ void WorldNode::StepWorld() {
   }
   if (missed) ++missed_steps_;
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrenches_);
+  CheckState();
   publisher_->SetWrenches(commands_, fresh_, barrier_.answered(Channel()));
   ++step_;
   steps_.Add();
   barrier_.Close();
   OpenStep();
+}
+
+/// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
+void WorldNode::CheckState() const {
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const dynamics::NavState nav = world_.Nav(0, i);
+    if (FiniteVector(nav.p_WB) && FiniteVector(nav.v_WB_B) && FiniteVector(nav.w_WB_B)) continue;
+    throw UserError("world: the state of AUV " + std::to_string(i) +
+                    " is not finite or beyond 1e6 after step " + std::to_string(step_) +
+                    " of episode " + std::to_string(episode_) + ", seed " +
+                    std::to_string(world_.seed(0)) + ": " + dynamics::kUnstableHint);
+  }
 }
 
 void WorldNode::StartEpisode(std::uint32_t episode) {
@@ -200,7 +219,11 @@ void WorldNode::Finish() {
       static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
       static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   give_up_s_ = WallSeconds() + summary_timeout_s_;
-  if (subscribers_.back().getNumPublishers() == 0) done_ = true;
+  // Nobody who could send it: fine, unless the run was asked for with metrics.
+  if (subscribers_.back().getNumPublishers() == 0) {
+    done_ = true;
+    summary_lost_ = wait_for_metrics_;
+  }
 }
 
 void WorldNode::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message) {

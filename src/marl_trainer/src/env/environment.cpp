@@ -73,6 +73,7 @@ void Environment::Step(const Pack* wanted) {
   }
   source_->Send(world_);
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
+  world_.CheckFinite();
   source_->Observe(world_, LaneSet::All());
   // The link quality that is rewarded is the one after the step.
   if (scenario_.reward.kind == task::RewardKind::kPaper) {
