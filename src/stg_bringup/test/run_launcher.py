@@ -40,7 +40,8 @@ def process_of(node, environment):
     end = time.monotonic() + 30.0
     while time.monotonic() < end:
         try:
-            return xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid("/record_replay")[2]
+            with xmlrpc.client.ServerProxy(master.lookupNode(node)) as server:
+                return server.getPid("/record_replay")[2]
         except (OSError, rosgraph.MasterException):
             time.sleep(0.1)
     raise AssertionError(f"no {node}")

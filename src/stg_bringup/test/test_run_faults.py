@@ -135,6 +135,22 @@ class Refused(WithFolder):
             outputs.check_after()
 
 
+class View(WithFolder):
+    """The view's node checks what it is given."""
+
+    def test_bad_parameters_end_it_in_one_line(self):
+        for argument, reason in (("trail_s:=-5", "trail_s: must be from 0"),
+                                 ("vehicle_scale:=0", "vehicle_scale: must be from 0.001"),
+                                 (f"scenario_file:={self.folder}", "scenario_file: cannot read")):
+            with self.subTest(argument):
+                process, _ = launch(self.folder, "view.launch", "rviz:=false", argument)
+                self.addCleanup(stop, process)
+                status, output = self.finish(process)
+                self.assertEqual(status, 1, output)
+                self.assertIn(reason, output)
+                self.assertNotIn("what()", output)
+
+
 class Lost(WithFolder):
     """What is known only at the end, or in between."""
 

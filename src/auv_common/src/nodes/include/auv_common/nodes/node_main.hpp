@@ -7,6 +7,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstddef>
+#include <cstdio>
 #include <exception>
 #include <stdexcept>
 #include <string>
@@ -62,6 +63,15 @@ inline std::atomic<bool>& StoppedBySignal() {
   return stopped;
 }
 
+/// After a shutdown the log of ROS is closed.
+inline void SayWhyItEnds(const char* why) {
+  if (ros::ok()) {
+    ROS_FATAL("%s", why);
+  } else {
+    std::fprintf(stderr, "[FATAL] %s\n", why);
+  }
+}
+
 /// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
 /// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
 /// a UserError, 3 after any other exception, 4 after LostOutput.
@@ -92,13 +102,13 @@ int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = No
     Node node;
     node.Spin();
   } catch (const UserError& error) {
-    ROS_FATAL("%s", error.what());
+    SayWhyItEnds(error.what());
     return 2;
   } catch (const LostOutput& error) {
-    ROS_FATAL("%s", error.what());
+    SayWhyItEnds(error.what());
     return 4;
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
+    SayWhyItEnds(error.what());
     return 3;
   }
   return 0;
