@@ -172,14 +172,14 @@ class Mutations(unittest.TestCase):
     def test_7_text_that_is_no_utf8_gets_into_no_file(self):
         summaries = pathlib.Path(rospy.get_param("/metrics/summary_file"))
         self.addCleanup(summaries.unlink)
-        before = self.diagnostics.value("metrics", "refused task_state: not finite")
+        before = self.diagnostics.value("metrics", "refused task_state: malformed")
         publisher = rospy.Publisher("/auv_0/task_state", changed_bytes(
-            TaskState, lambda data: data.replace(b"pursuit", b"\xff\xfe\xc0rsu")), queue_size=10)
+            TaskState, lambda data: data.replace(b"pursuit", b"\xff\xfe\xc0suit")), queue_size=10)
         wait_for(lambda: publisher.get_num_connections() > 0, 20.0, "metrics hear")
 
         def sent_and_refused():
             publisher.publish(copied(self.task.message, publisher.data_class))
-            return self.diagnostics.value("metrics", "refused task_state: not finite") > before
+            return self.diagnostics.value("metrics", "refused task_state: malformed") > before
 
         wait_for(sent_and_refused, 20.0, "the metrics refuse it")
         publisher.unregister()

@@ -89,10 +89,16 @@ void MetricsNode::Subscribe() {
         topics::AuvTopic(i, topics::kTaskState),
         [u](SwarmFrame & f) -> auto& { return f.tasks[u]; },
         [this](const auto& m) {
-          const bool usable = Usable(m), near = Near(NsOf(m.header.stamp));
-          if (!usable) refused_tasks_.Add(Refusals::kNotFinite);
-          if (usable && !near) refused_tasks_.Add(Refusals::kStale);
-          return usable && near;
+          if (!Usable(m)) {
+            refused_tasks_.Add(Refusals::kNotFinite);
+          } else if (!IsText(m.policy_id)) {
+            refused_tasks_.Add(Refusals::kMalformed);
+          } else if (!Near(NsOf(m.header.stamp))) {
+            refused_tasks_.Add(Refusals::kStale);
+          } else {
+            return true;
+          }
+          return false;
         });
   }
   subscribers_.push_back(
@@ -126,8 +132,7 @@ bool MetricsNode::Near(TimeNs stamp) const {
 }
 
 bool MetricsNode::Usable(const auv_msgs::TaskState& m) const {
-  return Finite(m.graph_summary[1]) && IsText(m.policy_id) &&
-         std::all_of(m.action.begin(), m.action.end(), Finite);
+  return Finite(m.graph_summary[1]) && std::all_of(m.action.begin(), m.action.end(), Finite);
 }
 
 bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
