@@ -24,13 +24,9 @@ std::optional<config::Violation> Periodic::FindConflict() const {
                            "an AUV sends at most one packet per decision"};
 }
 
-void Periodic::Plan(TimeNs from, TimeNs /*until*/, std::vector<TimeNs>* start) const {
-  std::fill(start->begin(), start->end(), kNever);
-  const TimeNs slot = from / period_ % slots_;
-  for (auto node = static_cast<std::size_t>(slot); node < start->size();
-       node += static_cast<std::size_t>(slots_)) {
-    (*start)[node] = from;
-  }
+TimeNs Periodic::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {
+  const TimeNs decision = (from + period_ - 1) / period_;
+  return (decision + (node + slots_ - decision % slots_) % slots_) * period_;
 }
 
 std::unique_ptr<MediumAccess> MakePeriodic(const ChannelConfig& config, const RunConfig& run) {

@@ -12,6 +12,7 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/channel_config.hpp"
+#include "acoustic_channel/nodes/packet_reports.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/step/step_barrier.hpp"
@@ -51,6 +52,7 @@ class ChannelNode {
   void CloseIfDue();
   void Close();
   void PublishReceptions(int i, TimeNs until);
+  void PublishPackets();
   void PublishLinks(TimeNs now);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -73,7 +75,8 @@ class ChannelNode {
   EventRate steps_;
   std::uint64_t incomplete_steps_ = 0;
   Refusals refused_swarm_, refused_transmissions_;
-  ros::Publisher done_, links_;
+  PacketReports reports_;
+  ros::Publisher done_, links_, packets_;
   ros::Subscriber swarm_;
   Health health_;
 };

@@ -65,7 +65,7 @@ void Environment::Begin(const LaneSet& lanes) {
   task_.Start(lanes.mask(), Swarm(), length_);
 }
 
-void Environment::Step(const Pack* wanted) {
+void Environment::Move(const Pack* wanted) {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     source_->Act(world_, static_cast<int>(i), wanted, &action_[i], &tau_[i]);
     wrench_[i] = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
@@ -74,6 +74,9 @@ void Environment::Step(const Pack* wanted) {
   source_->Send(world_);
   for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
   world_.CheckFinite();
+}
+
+void Environment::Judge() {
   source_->Observe(world_, LaneSet::All());
   // The link quality that is rewarded is the one after the step.
   if (scenario_.reward.kind == task::RewardKind::kPaper) {

@@ -26,8 +26,10 @@ class Environment {
              const std::vector<Vec3<double>>& v_WT);
   void Begin(const LaneSet& lanes);
 
-  /// One decision of every AUV of every lane. @param wanted [agents, action_size], finite
-  void Step(const Pack* wanted);
+  /// One decision of every AUV of every lane, in two halves: they act and the world moves; they
+  /// learn what came of it and the task judges. @param wanted [agents, action_size], finite
+  void Move(const Pack* wanted);
+  void Judge();
   /// The lane has made all decisions of its episode.
   bool Done(int lane) const { return task_.steps(lane) >= Lane(length_, lane); }
 

@@ -39,7 +39,7 @@ AgentNode::AgentNode()
       agent_(scenario_, id_),
       turns_(scenario_.channel, scenario_),
       decider_(std::make_unique<const Decider>(TextParameter("policy", agent::DefaultController()),
-                                               scenario_)),
+                                               scenario_, id_)),
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
@@ -194,7 +194,7 @@ void AgentNode::Keep(const auv_msgs::AcousticReception::ConstPtr& message) {
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                              auv_msgs::LoadPolicy::Response& response) {
   try {
-    decider_ = std::make_unique<const Decider>(request.path, scenario_);
+    decider_ = std::make_unique<const Decider>(request.path, scenario_, id_);
     response.success = true;
     ROS_INFO("agent %d: policy is now '%s'", id_, decider_->id().c_str());
   } catch (const std::exception& error) {

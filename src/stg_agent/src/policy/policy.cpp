@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "auv_common/error.hpp"
@@ -145,6 +146,15 @@ void Policy::RequireFits(const AgentConfig& scenario) const {
                     "' has " + std::to_string(scenario.observation_size()) + " and " +
                     std::to_string(scenario.action_size()));
   }
+}
+
+std::string PolicyFileOf(const std::string& path, int agent) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return path;
+  std::filesystem::path own = path;
+  own.replace_filename(own.stem().string() + "_" + std::to_string(agent) +
+                       own.extension().string());
+  return std::filesystem::exists(own, ignored) ? own.string() : path;
 }
 
 }  // namespace stg::agent

@@ -95,4 +95,8 @@ class Policy {
   std::vector<Packed> packed_;
 };
 
+/// The file of AUV `agent` where each has a policy of its own: `path` itself where there is such a
+/// file, else <path without .onnx>_<agent>.onnx where that exists; else `path`.
+std::string PolicyFileOf(const std::string& path, int agent);
+
 }  // namespace stg::agent

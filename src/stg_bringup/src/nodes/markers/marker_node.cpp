@@ -3,6 +3,7 @@
 
 #include <auv_msgs/LinkState.h>
 #include <auv_msgs/LinkStates.h>
+#include <auv_msgs/PacketEvents.h>
 #include <auv_msgs/TaskState.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
@@ -34,6 +35,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
+constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
 
 /// Reads what is drawn and takes the default for the rest: a bag may be older than this program.
 /// Throws YAML::Exception for text that is no scenario at all.
@@ -77,6 +79,7 @@ class MarkerNode {
     overview_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kOverview, 1);
     close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kClose, 1);
     scenario_sub_ = nh_.subscribe(topics::kScenario, 1, &MarkerNode::OnScenario, this);
+    packets_sub_ = nh_.subscribe(topics::kPackets, 50, &MarkerNode::OnPackets, this);
     links_sub_ = nh_.subscribe(topics::kLinks, 50, &MarkerNode::OnLinks, this);
     const std::string file = TextParameter("scenario_file", "");
     if (!file.empty()) ReadScenarioFile(file);
@@ -157,6 +160,7 @@ class MarkerNode {
     for (VehicleView& v : view_.vehicles) v.trail.clear();
     for (MovingTarget& t : view_.targets) t.trail.clear();
     view_.packets.clear();
+    view_.carriers.clear();
     view_.links.clear();
     view_.now = 0.0;
   }
@@ -229,21 +233,49 @@ class MarkerNode {
       const int source = static_cast<int>(s.source), destination = static_cast<int>(s.destination);
       const auto [found, is_new] = view_.links.try_emplace({source, destination});
       LinkView& link = found->second;
-      if (!is_new && s.delivered > link.delivered) {
+      // Counts tell of packets only where nobody tells more.
+      const bool counts = !is_new && !told_of_packets_;
+      if (counts && s.delivered > link.delivered) {
         view_.packets.push_back({source, destination, t, false, auv_msgs::LinkState::NONE});
       }
-      if (!is_new && s.dropped > link.dropped) {
+      if (counts && s.dropped > link.dropped) {
         view_.packets.push_back({source, destination, t, true, s.last_drop_reason});
       }
       link = {std::isfinite(s.quality) ? s.quality : 0.0, s.age, s.delivered, s.dropped};
     }
   }
 
-  void OnDraw(const ros::WallTimerEvent&) {
+  void OnPackets(const auv_msgs::PacketEvents& events) {
+    told_of_packets_ = true;
+    const double t = events.header.stamp.toSec();
+    for (const auv_msgs::PacketEvent& e : events.events) {
+      if (e.source >= kMaxVehicles) continue;
+      const int source = static_cast<int>(e.source);
+      if (e.kind == auv_msgs::PacketEvent::SENT) {
+        const double begin = e.transmit.toSec();
+        view_.carriers.push_back({source, begin, begin + std::max(e.airtime, 0.0)});
+      } else if (e.receiver >= 0 && e.receiver < static_cast<int>(kMaxVehicles) &&
+                 (e.kind == auv_msgs::PacketEvent::DELIVERED ||
+                  e.kind == auv_msgs::PacketEvent::DROPPED)) {
+        view_.packets.push_back(
+            {source, e.receiver, t, e.kind == auv_msgs::PacketEvent::DROPPED, e.reason});
+      }
+    }
+  }
+
+  /// What is too old to be shown.
+  void Forget() {
+    const auto old = [this](const CarrierView& c) { return c.end < view_.now - kLongestShown_s; };
+    view_.carriers.erase(std::remove_if(view_.carriers.begin(), view_.carriers.end(), old),
+                         view_.carriers.end());
     while (!view_.packets.empty() &&
            view_.packets.front().time < view_.now - overview_.lost_packet_s) {
       view_.packets.pop_front();
     }
+  }
+
+  void OnDraw(const ros::WallTimerEvent&) {
+    Forget();
     Draw(overview_, &overview_pub_);
     Draw(close_, &close_pub_);
     health_.Tick();
@@ -274,7 +306,8 @@ class MarkerNode {
   MarkerStyle overview_, close_;
   SwarmView view_;
   ros::Publisher overview_pub_, close_pub_;
-  ros::Subscriber scenario_sub_, links_sub_;
+  ros::Subscriber scenario_sub_, links_sub_, packets_sub_;
+  bool told_of_packets_ = false;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer draw_timer_, discover_timer_;
   Health health_;
