@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -61,12 +62,17 @@ WorldNode::WorldNode()
 
 void WorldNode::Spin() {
   PollLoop([this] { return Work(); }, RealtimePriorityParameter());
+  if (summary_lost_) throw LostOutput("world: the last episode's summary did not come");
+  if (!done_ && episodes_ > 0 && !StoppedBySignal()) {
+    throw LostOutput("world: another node ended this one after " + std::to_string(episode_) +
+                     " of " + std::to_string(episodes_) + " episodes");
+  }
 }
 
 double WorldNode::Work() {
   if (shown_ || pacer_.lockstep()) health_.Tick();
   if (finishing_) {
-    if (WallSeconds() > give_up_s_) done_ = true;
+    if (WallSeconds() > give_up_s_) done_ = summary_lost_ = true;
   } else {
     const bool quiet =
         pacer_.lockstep() ? barrier_.Complete() : barrier_.Complete(0, scenario_.agents);
@@ -150,6 +156,7 @@ void WorldNode::StepWorld() {
   if (missed) ++missed_steps_;
   if (part_ == 0) channel_fresh_ = barrier_.answered(Channel());  // later parts excuse it
   commands_.Move(scenario_.time.decision_steps / commands_.parts(), &world_);
+  CheckState();
   barrier_.Close();
   if (++part_ < commands_.parts()) {
     OpenPart();
@@ -169,6 +176,18 @@ void WorldNode::OpenPart() {
   pacer_.Open(WallSeconds());
   barrier_.Open(Now(), pacer_.deadline_s());
   barrier_.Excuse(Channel());
+}
+
+/// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
+void WorldNode::CheckState() const {
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const dynamics::NavState nav = world_.Nav(0, i);
+    if (FiniteVector(nav.p_WB) && FiniteVector(nav.v_WB_B) && FiniteVector(nav.w_WB_B)) continue;
+    throw UserError("world: the state of AUV " + std::to_string(i) +
+                    " is not finite or beyond 1e6 after step " + std::to_string(step_) +
+                    " of episode " + std::to_string(episode_) + ", seed " +
+                    std::to_string(world_.seed(0)) + ": " + dynamics::kUnstableHint);
+  }
 }
 
 void WorldNode::StartEpisode(std::uint32_t episode) {
@@ -208,7 +227,11 @@ void WorldNode::Finish() {
       static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
       static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   give_up_s_ = WallSeconds() + summary_timeout_s_;
-  if (subscribers_.back().getNumPublishers() == 0) done_ = true;
+  // Nobody who could send it: fine, unless the run was asked for with metrics.
+  if (subscribers_.back().getNumPublishers() == 0) {
+    done_ = true;
+    summary_lost_ = wait_for_metrics_;
+  }
 }
 
 StepBarrier::Word WorldNode::Hear(int i, TimeNs stamp) {

@@ -40,7 +40,8 @@ class WorldNode {
  public:
   /// Throws UserError.
   WorldNode();
-  /// Returns after the last episode, when its summary is out.
+  /// Returns after the last episode, when its summary is out. Throws UserError when the vehicles'
+  /// motion gets out of hand, LostOutput when the run did not end as it was asked to.
   void Spin();
 
  private:
@@ -59,6 +60,8 @@ class WorldNode {
   void WarnOfLoss(int party);
   void StepWorld();
   void OpenPart();
+  /// Throws UserError when a vehicle's state is beyond what the nodes take.
+  void CheckState() const;
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
   void ShowStep();
@@ -84,7 +87,7 @@ class WorldNode {
   std::uint32_t episode_ = 0, step_ = 0;
   TimeNs start_;         ///< clock time of the present episode's step 0
   StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
-  bool finishing_ = false, done_ = false;
+  bool finishing_ = false, done_ = false, summary_lost_ = false;
   std::uint64_t missed_steps_ = 0;
   Throttle losses_;    ///< of warnings about those who are given up
   bool shown_ = true;  ///< observers have the present step
