@@ -34,14 +34,14 @@ class Examples(unittest.TestCase):
 
     def test_ppo_learns_and_its_policy_flies(self):
         out = self.folder / "ppo.onnx"
-        found = json.loads(run("ppo", "--steps", 32000, "--episodes", 4, "--out", out))
+        found = json.loads(run("ppo", "--steps", 25600, "--episodes", 4, "--out", out))
         self.assertGreater(found["last_reward"], found["first_reward"] + 0.05)
         again = stg.evaluate(out, "medium_release", episodes=4)
         self.assertEqual(again["lost_rate"], found["lost_rate"])
-        self.assertEqual(stg.load_policy(out).metadata["training_step"], 32000)
+        self.assertEqual(stg.load_policy(out).metadata["training_step"], 25600)
 
     def test_value_decomposition_learns(self):
-        found = json.loads(run("value_decomposition", "--steps", 24000))
+        found = json.loads(run("value_decomposition", "--steps", 16000))
         self.assertGreater(found["last_reward"], found["first_reward"] + 0.02)
 
     def test_an_episode_is_plotted(self):

@@ -83,6 +83,8 @@ class Joint(unittest.TestCase):
         self.assertRaises(RuntimeError, team.step, action)
         team.reset()
         self.assertRaises(ValueError, team.step, action[:5])
+        with self.assertRaisesRegex(TypeError, "MultiDiscrete"):
+            wrappers.joint(wrappers.discrete_actions(plain))
 
     def test_vector_contract(self):
         def make():

@@ -261,7 +261,9 @@ class VectorEnv(_Base):
     def close_extras(self, **kwargs):
         """Frees the engine; a step after it raises RuntimeError."""
         del kwargs
-        self._core.close()
+        core = getattr(self, "_core", None)  # none where __init__ raised
+        if core is not None:
+            core.close()
 
     def close(self, **kwargs):
         """Frees the engine; may be called again."""

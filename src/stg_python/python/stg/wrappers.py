@@ -22,10 +22,8 @@ except ImportError:
         spec = None
         render_mode = None
 
-        @property
-        def unwrapped(self):
-            """The environment without wrappers: itself."""
-            return self
+        def reset(self, *, seed=None, options=None):
+            """Gymnasium's seeds a generator here, which its tester looks for."""
 
 
 def _from_env(name):
@@ -193,6 +191,7 @@ class _JointEnv(_Wrapper, _Env):
 
     def reset(self, *, seed=None, options=None):
         """Returns (observation, info)."""
+        _Env.reset(self, seed=seed)
         observations, _ = self.env.reset(seed=seed, options=options)
         return np.concatenate(list(observations.values())), {"state": self.env.state()}
 
@@ -245,6 +244,9 @@ def joint(env):
 
     Of parallel_env: a gymnasium.Env with the mean of the rewards. Of vector_env: a vector one.
     """
+    one = env.single_action_space if _is_vector(env) else env.action_space(env.possible_agents[0])
+    if not hasattr(one, "low"):
+        raise TypeError(f"joint needs actions of numbers, not {one}")
     return (_JointVector if _is_vector(env) else _JointEnv)(env)
 
 
