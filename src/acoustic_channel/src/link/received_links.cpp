@@ -31,7 +31,7 @@ ReceivedLinks::ReceivedLinks(const ModemConfig& config, int nodes)
     : freshness_s_(config.freshness_s),
       fleet_(MakeFleet(config, nodes)),
       links_(static_cast<std::size_t>(nodes)) {
-  for (int lane = 0; lane < kLanes; ++lane) Reset(lane);
+  for (int lane = 0; lane < kLanes; ++lane) ReceivedLinks::Reset(lane);
 }
 
 double ReceivedLinks::Quality(double /*d*/, double age_s, double learnt) const {

@@ -9,8 +9,8 @@ namespace stg::acoustics {
 
 /// Staggered slots at decisions: node i sends at decisions k with k mod P = i mod P, where P is the
 /// transmit period in decisions, rounded, at least 1. k comes from the time, not from counting: a
-/// node that joins in the middle of an episode keeps to its slot. A modem that is busy then lets its
-/// slot pass.
+/// node that joins in the middle of an episode keeps to its slot. A modem that is busy then lets
+/// its slot pass.
 class Periodic : public MediumAccess {
  public:
   Periodic(const PeriodicConfig& config, const RunConfig& run);
