@@ -8,7 +8,7 @@ import genpy
 SECONDS = (0, 1, 2**31 - 1, 2**31, 2**32 - 1)  # of stamps
 FLOATS = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1e7, -1.0, 0.0, 1e-300)
 TEXTS = ("", "world", "auv_7/base_link", "\x00\x01", "x" * 1000, "\u00e9\u2603")
-WHOLE_LIMITS = {  # type: (lowest, highest)
+WHOLE_LIMITS = {  # of each type: the lowest and the highest
     f"{sign}int{bits}": (0 if sign else -(2 ** (bits - 1)), 2 ** (bits - (not sign)) - 1)
     for sign in ("u", "")
     for bits in (8, 16, 32, 64)

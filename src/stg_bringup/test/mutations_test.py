@@ -1,20 +1,45 @@
 #!/usr/bin/python3
 """No message kills, blinds or silences a node: mutations of every message on every topic."""
 
+import io
+import json
+import pathlib
 import random
+import re
 import unittest
 
 import rosgraph
 import roslib.message
 import rospy
 import rostest
-from auv_msgs.msg import AcousticReception, EpisodeSummary, StepReport, TaskState
+from auv_msgs.msg import AcousticReception, EpisodeSummary, StepReport, SwarmState, TaskState
 from graph_listener import Diagnostics, Latest, rosnode_pid, wait_for
 from mutations import mutated, stamped
+from std_msgs.msg import Header
 
 MUTATIONS = 60  # of each topic
 FAR_FUTURE = (2.0**31 + 2.0, 2.0**32 - 0.05)  # [s]
 NOT_OURS = ("/rosout", "/mutations_test", "/recorder")
+
+
+def changed_bytes(message_type, change):
+    """Returns a message type of the same name whose messages are changed on their way."""
+
+    class Changed(message_type):
+        """As its base, but for its bytes."""
+
+        def serialize(self, buff):
+            plain = io.BytesIO()
+            super().serialize(plain)
+            buff.write(change(plain.getvalue()))
+
+    return Changed
+
+
+def copied(message, message_type):
+    """Returns a message with the fields of another of its base type."""
+    base = type(message)
+    return message_type(**{name: getattr(message, name) for name in base.__slots__})
 
 
 class Tap:
@@ -124,6 +149,43 @@ class Mutations(unittest.TestCase):
         for node, count in before.items():
             wait_for(lambda node=node, count=count: self.refusals()[node] > count, 10.0,
                      f"{node} counts what it refuses")
+
+    def test_6_counts_of_elements_take_no_memory(self):
+        # roscpp makes room for as many poses as a message says it has.
+        size = len(SwarmState(header=Header(frame_id="world")).header.frame_id) + 40
+        swarm = Tap("/swarm_state", "auv_msgs/SwarmState")
+        message = swarm.latest.wait()
+        publisher = rospy.Publisher("/swarm_state", changed_bytes(
+            SwarmState, lambda data: data[:size] + b"\xff\xff\xff\x0f" + data[size + 4:]),
+            queue_size=10)
+        wait_for(lambda: publisher.get_num_connections() >= 2, 20.0, "channel and metrics hear")
+        for _ in range(5):
+            publisher.publish(copied(message, publisher.data_class))
+            rospy.rostime.wallsleep(0.05)
+        publisher.unregister()
+        self.check_all_is_well()
+        for node in ("/acoustic_channel", "/metrics"):
+            status = pathlib.Path(f"/proc/{self.pids[node]}/status").read_text(encoding="utf-8")
+            peak_kb = int(re.search(r"VmHWM:\s*(\d+)", status).group(1))
+            self.assertLess(peak_kb, 2**21, f"{node} had more than 2 GiB")
+
+    def test_7_text_that_is_no_utf8_gets_into_no_file(self):
+        summaries = pathlib.Path(rospy.get_param("/metrics/summary_file"))
+        self.addCleanup(summaries.unlink)
+        before = self.diagnostics.value("metrics", "refused task_state: malformed")
+        publisher = rospy.Publisher("/auv_0/task_state", changed_bytes(
+            TaskState, lambda data: data.replace(b"pursuit", b"\xff\xfe\xc0suit")), queue_size=10)
+        wait_for(lambda: publisher.get_num_connections() > 0, 20.0, "metrics hear")
+
+        def sent_and_refused():
+            publisher.publish(copied(self.task.message, publisher.data_class))
+            return self.diagnostics.value("metrics", "refused task_state: malformed") > before
+
+        wait_for(sent_and_refused, 20.0, "the metrics refuse it")
+        publisher.unregister()
+        self.check_all_is_well()
+        for line in summaries.read_bytes().splitlines():
+            self.assertIn("episode", json.loads(line.decode()))
 
     def refusals(self):
         """Returns how many messages each node says it has refused."""

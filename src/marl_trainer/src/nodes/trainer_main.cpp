@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   return stg::nodes::RunNode<stg::nodes::TrainerNode>(argc, argv, "trainer",
-                                                      stg::nodes::NodeClock::kMessages);
+                                                      stg::nodes::NodeClock::kMessages, 0);
 }

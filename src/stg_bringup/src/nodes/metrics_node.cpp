@@ -1,9 +1,12 @@
 #include "metrics_node.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_common/names.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -86,10 +89,16 @@ void MetricsNode::Subscribe() {
         topics::AuvTopic(i, topics::kTaskState),
         [u](SwarmFrame & f) -> auto& { return f.tasks[u]; },
         [this](const auto& m) {
-          const bool usable = Usable(m), near = Near(NsOf(m.header.stamp));
-          if (!usable) refused_tasks_.Add(Refusals::kNotFinite);
-          if (usable && !near) refused_tasks_.Add(Refusals::kStale);
-          return usable && near;
+          if (!Usable(m)) {
+            refused_tasks_.Add(Refusals::kNotFinite);
+          } else if (!IsText(m.policy_id)) {
+            refused_tasks_.Add(Refusals::kMalformed);
+          } else if (!Near(NsOf(m.header.stamp))) {
+            refused_tasks_.Add(Refusals::kStale);
+          } else {
+            return true;
+          }
+          return false;
         });
   }
   subscribers_.push_back(
@@ -137,7 +146,9 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto finite_wrench = [](const geometry_msgs::Wrench& w) {
     return FiniteVector(w.force) && FiniteVector(w.torque);
   };
-  return m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
+  const bool efforts = m.efforts.empty() || m.efforts.size() == n * dynamics::kWrenchSize;
+  return efforts && std::all_of(m.efforts.begin(), m.efforts.end(), Finite) &&
+         m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
          m.fresh.size() == n && p.size() == targets && v.size() == targets &&
          std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
          std::all_of(m.poses.begin(), m.poses.end(), finite_pose) &&
@@ -147,6 +158,10 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
 
 void MetricsNode::Spin() {
   PollLoop([this] { return Work(); });
+  if (lost_summaries_ > 0) {
+    throw LostOutput("summary_file: " + std::to_string(lost_summaries_) +
+                     " episodes could not be written to '" + file_name_ + "'");
+  }
 }
 
 double MetricsNode::Work() {
@@ -191,7 +206,16 @@ void MetricsNode::Publish(const EpisodeJudge::Verdict& verdict) {
   if (verdict.summary.complete) episodes_.push_back(verdict.metrics);
   if (show_table_) table_.PrintEpisode(verdict.summary, verdict.metrics);
   if (file_.is_open()) WriteSummary(verdict);
+  if (!file_name_.empty() && !file_) LoseSummary();
   if (summary_) summary_.publish(verdict.summary);
+}
+
+/// What the run was asked for is lost. It goes on, and its end tells.
+void MetricsNode::LoseSummary() {
+  if (lost_summaries_++ == 0) {
+    ROS_ERROR("summary_file: cannot write '%s': %s", file_name_.c_str(), std::strerror(errno));
+  }
+  file_.clear();
 }
 
 /// A run begins with episode 0 and an empty file. In any other, this node has died and goes on.
@@ -226,7 +250,8 @@ void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
                               {"deadline_misses", s.deadline_misses},
                               {"channel_misses", s.channel_misses}};
   for (const auto& item : items) line[item.first] = item.second;
-  file_ << line.dump() << std::endl;
+  // What came over a topic may be no UTF-8.
+  file_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
 void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -240,6 +265,7 @@ void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("messages too late", frames_.late());
   status.add("steps without room", frames_.crowded());
   status.add("episodes complete", episodes_.size());
+  status.add("episodes not written to the summary file", lost_summaries_);
   if (reports_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing to judge yet");
   }

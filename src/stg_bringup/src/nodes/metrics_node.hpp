@@ -22,6 +22,7 @@ class MetricsNode {
   /// Throws UserError.
   MetricsNode();
   ~MetricsNode();
+  /// Throws LostOutput at the end when episodes could not be written to the summary file.
   void Spin();
 
  private:
@@ -39,6 +40,7 @@ class MetricsNode {
   void Publish(const EpisodeJudge::Verdict& verdict);
   void OpenSummary(std::uint32_t episode);
   void WriteSummary(const EpisodeJudge::Verdict& verdict);
+  void LoseSummary();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Scenario scenario_;
@@ -54,7 +56,7 @@ class MetricsNode {
   std::string file_name_;
   std::ofstream file_;
   EventRate reports_;
-  std::uint64_t incomplete_frames_ = 0;
+  std::uint64_t incomplete_frames_ = 0, lost_summaries_ = 0;
   Refusals refused_swarm_, refused_tasks_;
   ros::Publisher step_report_, summary_;
   std::vector<ros::Subscriber> subscribers_;
