@@ -198,6 +198,23 @@ TEST_F(Simulate, BadFilesAreRefusedWithFileLineAndKey) {
   }
 }
 
+TEST_F(Simulate, ListsOfTimesMayBeLong) {
+  const auto file = [](int count) {
+    std::string times;
+    for (int k = 0; k < count; ++k) {
+      times += (k == 0 ? "" : ",") + std::to_string(k % 10) + ".5";
+    }
+    return Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, times);
+  };
+  const Result r = Run(file(50000), "--quiet --summary-only");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(r.json["offered"], 50000);
+  EXPECT_EQ(r.json["drops"]["queue"], 50000 - r.json["transmitted"].get<int>());
+  const Result beyond = Run(file(290000), "--quiet --summary-only");
+  EXPECT_EQ(beyond.code, 2);
+  EXPECT_NE(beyond.err.find("larger than"), std::string::npos) << beyond.err;
+}
+
 TEST_F(Simulate, ASlotShorterThanAPacketIsAnError) {
   std::string text = Head("  slots: {length_s: 0.5, guard_s: 0.1}\n") + "nodes:\n" +
                      NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, "1.0");
