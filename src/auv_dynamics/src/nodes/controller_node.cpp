@@ -63,6 +63,8 @@ void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
     refused_odometry_.Add(Refusals::kFrame);
   } else if (!FiniteOdometry(*message)) {
     refused_odometry_.Add(Refusals::kNotFinite);
+  } else if (!PossibleStamp(message->header.stamp)) {
+    refused_odometry_.Add(Refusals::kStale);
   } else {
     SetNodeTime(message->header.stamp);
     nav_ = NavOf(*message, 0);

@@ -67,10 +67,10 @@ void VehicleCommands::Move(int steps, dynamics::World* world) {
   for (int k = 0; k < steps; ++k) world->Step(wrenches_of_lanes_);
 }
 
-void VehicleCommands::Tell(const std::vector<std::uint8_t>& fresh,
+void VehicleCommands::Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,
                            WorldPublisher* publisher) const {
   if (!steered_) {
-    publisher->SetWrenches(wrenches_, fresh);
+    publisher->SetWrenches(wrenches_, fresh, channel_fresh);
     return;
   }
   const std::size_t most = dynamics::kWrenchSize, size = actuators_.size();
@@ -80,7 +80,7 @@ void VehicleCommands::Tell(const std::vector<std::uint8_t>& fresh,
       efforts[i * most + k] = values_[i * size + k] / dynamics::LargestOf(actuators_[k]);
     }
   }
-  publisher->SetEfforts(efforts, fresh);
+  publisher->SetEfforts(efforts, fresh, channel_fresh);
 }
 
 /// Whether a command is the first of this AUV for the open step, and well-formed.

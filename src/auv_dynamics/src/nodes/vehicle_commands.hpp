@@ -34,7 +34,9 @@ class VehicleCommands {
   void Move(int steps, dynamics::World* world);
   /// To those who judge what acted on the AUVs.
   /// @param fresh of each AUV: the command was for the last step
-  void Tell(const std::vector<std::uint8_t>& fresh, WorldPublisher* publisher) const;
+  /// @param channel_fresh the acoustic channel had closed it
+  void Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,
+            WorldPublisher* publisher) const;
   /// In which a decision is flown: periods of the autopilots.
   int parts() const { return parts_; }
   /// Name of the topic below an AUV.

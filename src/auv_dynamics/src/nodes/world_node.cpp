@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -61,12 +62,17 @@ WorldNode::WorldNode()
 
 void WorldNode::Spin() {
   PollLoop([this] { return Work(); }, RealtimePriorityParameter());
+  if (summary_lost_) throw LostOutput("world: the last episode's summary did not come");
+  if (!done_ && episodes_ > 0 && !StoppedBySignal()) {
+    throw LostOutput("world: another node ended this one after " + std::to_string(episode_) +
+                     " of " + std::to_string(episodes_) + " episodes");
+  }
 }
 
 double WorldNode::Work() {
   if (shown_ || pacer_.lockstep()) health_.Tick();
   if (finishing_) {
-    if (WallSeconds() > give_up_s_) done_ = true;
+    if (WallSeconds() > give_up_s_) done_ = summary_lost_ = true;
   } else {
     const bool quiet =
         pacer_.lockstep() ? barrier_.Complete() : barrier_.Complete(0, scenario_.agents);
@@ -120,11 +126,14 @@ bool WorldNode::ListenersReady(double now) {
   return now - *awaited_seen_ > 1.5;
 }
 
-void WorldNode::WarnOfLoss(int party) const {
+void WorldNode::WarnOfLoss(int party) {
+  if (!losses_.Due()) return;
   if (party == Channel()) {
-    ROS_WARN("world: acoustic channel did not close step %u, going on without it", step_);
+    ROS_WARN("world: acoustic channel did not close step %u, going on without it%s", step_,
+             losses_.more().c_str());
   } else {
-    ROS_WARN("world: no command of AUV %d for step %u, holding its last command", party, step_);
+    ROS_WARN("world: no command of AUV %d for step %u, holding its last command%s", party, step_,
+             losses_.more().c_str());
   }
 }
 
@@ -139,18 +148,22 @@ void WorldNode::StepWorld() {
   ShowStep();
   bool missed = false;
   for (std::size_t i = 0; i < fresh_.size(); ++i) {
-    fresh_[i] = barrier_.answered(static_cast<int>(i)) ? 1 : 0;
-    if (!fresh_[i]) missed = true;
+    const bool answered = barrier_.answered(static_cast<int>(i));
+    // A decision is flown as commanded when every part of it is.
+    fresh_[i] = answered && (part_ == 0 || fresh_[i]) ? 1 : 0;
+    if (!answered) missed = true;
   }
   if (missed) ++missed_steps_;
+  if (part_ == 0) channel_fresh_ = barrier_.answered(Channel());  // later parts excuse it
   commands_.Move(scenario_.time.decision_steps / commands_.parts(), &world_);
+  CheckState();
   barrier_.Close();
   if (++part_ < commands_.parts()) {
     OpenPart();
     return;
   }
   part_ = 0;
-  commands_.Tell(fresh_, publisher_.get());
+  commands_.Tell(fresh_, channel_fresh_, publisher_.get());
   ++step_;
   steps_.Add();
   OpenStep();
@@ -165,6 +178,18 @@ void WorldNode::OpenPart() {
   barrier_.Excuse(Channel());
 }
 
+/// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
+void WorldNode::CheckState() const {
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const dynamics::NavState nav = world_.Nav(0, i);
+    if (FiniteVector(nav.p_WB) && FiniteVector(nav.v_WB_B) && FiniteVector(nav.w_WB_B)) continue;
+    throw UserError("world: the state of AUV " + std::to_string(i) +
+                    " is not finite or beyond 1e6 after step " + std::to_string(step_) +
+                    " of episode " + std::to_string(episode_) + ", seed " +
+                    std::to_string(world_.seed(0)) + ": " + dynamics::kUnstableHint);
+  }
+}
+
 void WorldNode::StartEpisode(std::uint32_t episode) {
   ShowStep();
   start_ = Now() + period_;
@@ -177,12 +202,13 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   }
   commands_.Clear();
   fresh_.assign(fresh_.size(), 0);
-  commands_.Tell(fresh_, publisher_.get());
+  commands_.Tell(fresh_, false, publisher_.get());
   OpenStep();
 }
 
 void WorldNode::OpenStep() {
   opened_ = WallSeconds();
+  SetNodeTime(TimeOf(Now()));
   publisher_->PublishSensors(world_, start_, episode_, step_);
   // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
   if (pacer_.lockstep()) publisher_->PublishSwarm();
@@ -201,7 +227,11 @@ void WorldNode::Finish() {
       static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
       static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   give_up_s_ = WallSeconds() + summary_timeout_s_;
-  if (subscribers_.back().getNumPublishers() == 0) done_ = true;
+  // Nobody who could send it: fine, unless the run was asked for with metrics.
+  if (subscribers_.back().getNumPublishers() == 0) {
+    done_ = true;
+    summary_lost_ = wait_for_metrics_;
+  }
 }
 
 StepBarrier::Word WorldNode::Hear(int i, TimeNs stamp) {

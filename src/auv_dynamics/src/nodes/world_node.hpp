@@ -40,7 +40,8 @@ class WorldNode {
  public:
   /// Throws UserError.
   WorldNode();
-  /// Returns after the last episode, when its summary is out.
+  /// Returns after the last episode, when its summary is out. Throws UserError when the vehicles'
+  /// motion gets out of hand, LostOutput when the run did not end as it was asked to.
   void Spin();
 
  private:
@@ -56,9 +57,11 @@ class WorldNode {
   double WaitTime() const;
   void Advance();
   bool ListenersReady(double now);
-  void WarnOfLoss(int party) const;
+  void WarnOfLoss(int party);
   void StepWorld();
   void OpenPart();
+  /// Throws UserError when a vehicle's state is beyond what the nodes take.
+  void CheckState() const;
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
   void ShowStep();
@@ -84,8 +87,9 @@ class WorldNode {
   std::uint32_t episode_ = 0, step_ = 0;
   TimeNs start_;         ///< clock time of the present episode's step 0
   StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
-  bool finishing_ = false, done_ = false;
+  bool finishing_ = false, done_ = false, summary_lost_ = false;
   std::uint64_t missed_steps_ = 0;
+  Throttle losses_;    ///< of warnings about those who are given up
   bool shown_ = true;  ///< observers have the present step
   EventRate steps_;
   double began_ = 0.0;      ///< WallSeconds() when the run began
@@ -95,6 +99,7 @@ class WorldNode {
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
   std::vector<std::uint8_t> fresh_;  ///< the command was for the last step
+  bool channel_fresh_ = false;        ///< the channel had closed it
   std::unique_ptr<WorldPublisher> publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;

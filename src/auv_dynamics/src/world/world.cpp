@@ -1,6 +1,7 @@
 #include "auv_dynamics/world/world.hpp"
 
 #include <cassert>
+#include <string>
 
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
@@ -96,6 +97,26 @@ Pack World::Time() const {
   Pack time_s(0.0);
   for (int lane = 0; lane < kLanes; ++lane) SetLane(&time_s, lane, dt_s_ * step(lane));
   return time_s;
+}
+
+void World::CheckFinite() const {
+  Pack all(0.0);
+  for (const VehicleState<Pack>& v : vehicles_) {
+    all += NonFiniteness(v.p_WB) + NonFiniteness(v.v_WB_B) + NonFiniteness(v.w_WB_B);
+  }
+  if (!Any(!(all == Pack(0.0)))) return;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int i = 0; i < agents(); ++i) {
+      const VehicleState<Pack>& v = vehicle(i);
+      if (Finite(Lane(v.p_WB, lane)) && Finite(Lane(v.v_WB_B, lane)) &&
+          Finite(Lane(v.w_WB_B, lane))) {
+        continue;
+      }
+      throw UserError("the state of AUV " + std::to_string(i) + " is not finite after " +
+                      std::to_string(step(lane)) + " physics steps of the episode with seed " +
+                      std::to_string(seed(lane)) + ": " + kUnstableHint);
+    }
+  }
 }
 
 void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start) {

@@ -47,8 +47,10 @@ void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float
   }
   float a[dynamics::kMaxActionSize];
   for (int row = 0; row < slice.count * n; ++row) {
-    if (c.policy != nullptr) {
-      c.policy->Mean(observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
+    if (!c.policies.empty()) {
+      const std::size_t own = c.policies.size() == 1 ? 0 : static_cast<std::size_t>(row % n);
+      c.policies[own]->Mean(
+          observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
     } else {
       c.builtin->Act(slice.lanes->acoustic().agent(row % n).view(row / n), a);
     }
@@ -64,9 +66,15 @@ Controller MakeController(const std::string& name, const Scenario& scenario) {
   c.name = name;
   c.builtin = agent::MakeController(name);
   if (c.builtin) return c;
-  auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(name));
-  policy->RequireFits(scenario);
-  c.policy = policy;
+  std::string last;
+  for (int i = 0; i < scenario.agents; ++i) {
+    const std::string file = agent::PolicyFileOf(name, i);
+    if (file == last) break;
+    auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(file));
+    policy->RequireFits(scenario);
+    c.policies.push_back(policy);
+    last = file;
+  }
   return c;
 }
 

@@ -82,6 +82,7 @@ void Environment::Move(const Pack* wanted) {
   } else {
     for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
   }
+  world_.CheckFinite();
 }
 
 void Environment::Steer() {

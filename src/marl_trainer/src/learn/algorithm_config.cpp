@@ -1,7 +1,13 @@
 #include "marl_trainer/learn/algorithm_config.hpp"
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
+#include "marl_trainer/learn/algorithms/ippo/ippo_config.hpp"
+#include "marl_trainer/learn/algorithms/maddpg/maddpg_config.hpp"
+#include "marl_trainer/learn/algorithms/madqn/madqn_config.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "marl_trainer/learn/algorithms/masac/masac_config.hpp"
+#include "marl_trainer/learn/algorithms/matd3/matd3_config.hpp"
 
 namespace stg::learn {
 
@@ -30,6 +36,12 @@ void AlgorithmConfig::FitPolicy(const agent::Policy&) {
 AlgorithmRegistry& Algorithms() {
   static AlgorithmRegistry registry("algorithm", {
                                                      {"mappo", std::make_unique<MappoConfig>},
+                                                     {"ippo", std::make_unique<IppoConfig>},
+                                                     {"happo", std::make_unique<HappoConfig>},
+                                                     {"maddpg", std::make_unique<MaddpgConfig>},
+                                                     {"matd3", std::make_unique<Matd3Config>},
+                                                     {"masac", std::make_unique<MasacConfig>},
+                                                     {"madqn", std::make_unique<MadqnConfig>},
                                                  });
   return registry;
 }

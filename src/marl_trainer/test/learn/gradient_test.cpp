@@ -51,7 +51,13 @@ NetworkSpec Spec(int inputs, std::vector<int> hidden, int outputs, HiddenActivat
 }
 
 TEST(BackEnds, AgreeOnOutputsAndGradientsOfEveryShape) {
+  NetworkSpec normalised = Spec(20, {32, 16}, 2, HiddenActivation::kRelu, 0.0F);
+  normalised.layer_norm = true;
+  NetworkSpec squashed = Spec(9, {16, 24}, 3, HiddenActivation::kTanh, 0.7F);
+  squashed.layer_norm = true;
   const NetworkSpec specs[] = {
+      normalised,
+      squashed,
       Spec(5, {}, 3, HiddenActivation::kTanh, 0.0F),
       Spec(5, {}, 3, HiddenActivation::kTanh, 0.7F),
       Spec(7, {16}, 1, HiddenActivation::kRelu, 0.0F),
@@ -70,13 +76,26 @@ TEST(BackEnds, AgreeOnOutputsAndGradientsOfEveryShape) {
     mlp.Backward(p.data(), x.data(), d.data(), rows, &workspace, gradient.data());
 
     TorchNetwork reference = Reference(mlp, p.data());
-    const torch::Tensor y = reference->forward(View(x, {rows, spec.inputs}));
+    const torch::Tensor input = View(x, {rows, spec.inputs}).requires_grad_(true);
+    const torch::Tensor y = reference->forward(input);
     (y * View(d, {rows, spec.outputs})).sum().backward();
     const torch::Tensor flat = y.detach().contiguous();
     for (int i = 0; i < rows * spec.outputs; ++i) {
       EXPECT_NEAR(workspace.output()[i], flat.data_ptr<float>()[i], 2e-5) << i;
     }
     EXPECT_LT(GradientError(reference, gradient.data()), 1e-5);
+    // Of all inputs, and of some in the middle.
+    for (const auto& [first, count] : {std::pair(0, spec.inputs), std::pair(2, 3)}) {
+      std::vector<float> d_input(static_cast<std::size_t>(rows * count));
+      mlp.InputGradient(p.data(), d.data(), rows, first, count, &workspace, d_input.data());
+      const double largest = input.grad().abs().max().item<double>();
+      for (int r = 0; r < rows; ++r) {
+        for (int i = 0; i < count; ++i) {
+          EXPECT_NEAR(d_input[static_cast<std::size_t>(r * count + i)],
+                      input.grad()[r][first + i].item<float>(), 1e-5 * largest);
+        }
+      }
+    }
   }
 }
 

@@ -19,7 +19,7 @@ std::string Resolve(const std::string& name, const agent::AgentConfig& scenario)
 
 }  // namespace
 
-Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario) {
+Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario, int agent) {
   const std::string name = Resolve(wanted, scenario);
   builtin_ = agent::MakeController(name);
   if (builtin_) {
@@ -31,7 +31,7 @@ Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario) 
     for (const std::string& builtin : agent::Controllers().Names()) names += builtin + ", ";
     throw UserError("policy '" + name + "': neither of " + names + "nor an .onnx file");
   }
-  policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(name));
+  policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(agent::PolicyFileOf(name, agent)));
   policy_->RequireFits(scenario);
   id_ = policy_->metadata().id;
 }

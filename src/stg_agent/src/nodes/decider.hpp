@@ -14,10 +14,11 @@ namespace stg::nodes {
 /// What turns an observation into an action: a policy file or a built-in controller.
 class Decider {
  public:
-  /// @param name a built-in controller, an ONNX file, or "auto": the policy shipped for the
-  ///             scenario's name where there is one, else pursuit_separated
+  /// @param name a built-in controller, an ONNX file (see agent::PolicyFileOf), or "auto": the
+  ///             policy shipped for the scenario's name where there is one, else pursuit_separated
+  /// @param agent who decides
   /// Throws UserError when the file is not a policy for this scenario.
-  Decider(const std::string& name, const agent::AgentConfig& scenario);
+  Decider(const std::string& name, const agent::AgentConfig& scenario, int agent);
 
   /// The policy's mean action, or the built-in controller's.
   void Mean(const agent::Agent& agent, const float* observation, float* action) const;

@@ -54,6 +54,17 @@ class ChainWriter {
     node->add_input(name);
   }
 
+  /// Adds a constant list of integers as the node's next input.
+  void AddShape(onnx::NodeProto* node, const std::string& name,
+                const std::vector<std::int64_t>& shape) {
+    onnx::TensorProto* tensor = graph_->add_initializer();
+    tensor->set_name(name);
+    tensor->set_data_type(onnx::TensorProto::INT64);
+    tensor->add_dims(static_cast<std::int64_t>(shape.size()));
+    for (const std::int64_t d : shape) tensor->add_int64_data(d);
+    node->add_input(name);
+  }
+
  private:
   onnx::GraphProto* graph_;
   std::string last_;
@@ -81,6 +92,24 @@ void SetValueInfo(onnx::ValueInfoProto* info, const char* name, int size) {
   type->mutable_shape()->add_dim()->set_dim_value(size);
 }
 
+/// The operators after the last layer of a Q-network: the choice of each head, and what it stands
+/// for.
+void WriteChoice(const Policy::Parameters& p, ChainWriter* chain) {
+  using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::int64_t count = p.choices.rows();
+  chain->AddShape(chain->Add("Reshape", "values"), "heads",
+                  {1, p.layers.back().bias.size() / count, count});
+  onnx::NodeProto* best = chain->Add("ArgMax", "best");
+  SetInt(best, "axis", 2);
+  SetInt(best, "keepdims", 0);
+  const RowMajor choices = p.choices;
+  onnx::NodeProto* gather = chain->Add("Gather", "chosen");
+  chain->AddConstant(gather, "choices", {choices.rows(), choices.cols()}, choices.data());
+  gather->mutable_input()->SwapElements(0, 1);  // Gather takes the data first
+  SetInt(gather, "axis", 0);
+  SetInt(chain->Add("Flatten", "unscaled"), "axis", 1);
+}
+
 void AddProperty(onnx::ModelProto* model, const std::string& key, const std::string& value) {
   onnx::StringStringEntryProto* entry = model->add_metadata_props();
   entry->set_key(key);
@@ -105,30 +134,71 @@ void WriteMetadata(const Policy::Parameters& p, onnx::ModelProto* model) {
   AddProperty(model, "stg.checksum", PolicyChecksum(p));
 }
 
+/// FNV-1a, 64 bits.
+class Fnv {
+ public:
+  void Add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 1099511628211ULL;
+  }
+  /// With its end, so that texts cannot run into each other.
+  void Add(const std::string& text) { Add(text.c_str(), text.size() + 1); }
+  void Add(const float* data, Eigen::Index count) {
+    Add(static_cast<const void*>(data), static_cast<std::size_t>(count) * sizeof(float));
+  }
+  /// All numbers of a policy.
+  void Add(const Policy::Parameters& p) {
+    Add(p.input_mean.data(), p.input_mean.size());
+    Add(p.input_std.data(), p.input_std.size());
+    Add(&p.input_clip, 1);
+    for (const Policy::Layer& layer : p.layers) {
+      Add(layer.weight.data(), layer.weight.size());
+      Add(layer.bias.data(), layer.bias.size());
+    }
+    Add(p.log_std.data(), p.log_std.size());
+    if (p.choices.size() > 0) {
+      Add(p.choices.data(), p.choices.size());
+      const auto width = static_cast<float>(p.choices.cols());
+      Add(&width, 1);
+    }
+    const float rest[] = {static_cast<float>(p.activation),
+                          static_cast<float>(p.metadata.action_scale)};
+    Add(rest, 2);
+  }
+  std::string Text() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016" PRIx64, hash_);
+    return text;
+  }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
 }  // namespace
 
+std::string NumbersChecksum(const Policy::Parameters& p) {
+  Fnv hash;
+  hash.Add(p);
+  return hash.Text();
+}
+
 std::string PolicyChecksum(const Policy::Parameters& p) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  const auto add = [&hash](const float* data, Eigen::Index count) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count) * sizeof(float); ++i) {
-      hash = (hash ^ bytes[i]) * 1099511628211ULL;
-    }
-  };
-  add(p.input_mean.data(), p.input_mean.size());
-  add(p.input_std.data(), p.input_std.size());
-  add(&p.input_clip, 1);
-  for (const Policy::Layer& layer : p.layers) {
-    add(layer.weight.data(), layer.weight.size());
-    add(layer.bias.data(), layer.bias.size());
+  const PolicyMetadata& m = p.metadata;
+  Fnv hash;
+  hash.Add(p);
+  for (const std::string* text :
+       {&m.id, &m.observation_layout, &m.action_interface, &m.scenario_hash}) {
+    hash.Add(*text);
   }
-  add(p.log_std.data(), p.log_std.size());
-  const float rest[] = {static_cast<float>(p.activation),
-                        static_cast<float>(p.metadata.action_scale)};
-  add(rest, 2);
-  char text[17];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
+  hash.Add(Text(m.action_scale, 17));
+  hash.Add(std::to_string(m.training_step));
+  hash.Add(std::to_string(m.seed));
+  for (const auto& [name, value] : m.metrics) {
+    hash.Add(name);
+    hash.Add(value);
+  }
+  return "2:" + hash.Text();
 }
 
 void Policy::SaveOnnx(const std::string& path) const {
@@ -161,6 +231,10 @@ void Policy::SaveOnnx(const std::string& path) const {
     SetFloat(gemm, "beta", 1.0F);
     SetInt(gemm, "transA", 0);
     SetInt(gemm, "transB", 1);
+    if (l + 1 == p.layers.size() && p.choices.size() > 0) {
+      WriteChoice(p, &chain);
+      break;
+    }
     const bool tanh = l + 1 == p.layers.size() || p.activation == Activation::kTanh;
     chain.Add(tanh ? "Tanh" : "Relu", "hidden" + n);
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 #include "policy_onnx.hpp"
 
 /// Reading of policy files: one known chain of operators, everything checked.
@@ -29,7 +30,8 @@ class Reader {
     ReadChain();
     Require(used_ == constants_.size(), "has constants that no operator uses");
     const auto checksum = properties_.find("stg.checksum");
-    Require(checksum != properties_.end() && checksum->second == PolicyChecksum(p_),
+    Require(checksum != properties_.end() &&
+                (checksum->second == PolicyChecksum(p_) || checksum->second == NumbersChecksum(p_)),
             "is damaged: its checksum does not match");
     return std::move(p_);
   }
@@ -52,7 +54,7 @@ class Reader {
             "operator set is not 9 or 10");
     Require(graph_.input_size() == 1 && graph_.output_size() == 1,
             "has not exactly one input and one output");
-    Require(graph_.node_size() <= 4 + 2 * Policy::kMaxLayers, "has too many operators");
+    Require(graph_.node_size() <= 7 + 2 * Policy::kMaxLayers, "has too many operators");
   }
 
   void IndexConstants() {
@@ -107,12 +109,13 @@ class Reader {
   }
 
   /// The next operator, checked to continue the chain with `inputs` inputs.
-  const onnx::NodeProto& Next(const char* op, int inputs) {
+  /// @param from which input continues it.
+  const onnx::NodeProto& Next(const char* op, int inputs, int from = 0) {
     Require(next_ < graph_.node_size(), std::string("ends where ") + op + " is expected");
     const onnx::NodeProto& node = graph_.node(next_++);
     Require(node.op_type() == op && node.domain().empty(),
             "operator " + std::to_string(next_) + " is '" + node.op_type() + "', not " + op);
-    Require(node.input_size() == inputs && node.output_size() == 1 && node.input(0) == last_,
+    Require(node.input_size() == inputs && node.output_size() == 1 && node.input(from) == last_,
             node.op_type() + " does not continue the chain");
     Require(!node.output(0).empty() && constants_.count(node.output(0)) == 0,
             node.op_type() + " overwrites a constant");
@@ -154,6 +157,10 @@ class Reader {
       ReadGemm();
       Require(next_ < graph_.node_size(), "ends without an activation");
       const std::string op = graph_.node(next_).op_type();
+      if (op == "Reshape") {
+        ReadChoice();
+        break;
+      }
       Require(op == "Tanh" || op == "Relu", "operator " + op + " is not Tanh or Relu");
       Attributes(Next(op.c_str(), 1), {});
       const bool relu = op == "Relu";
@@ -170,10 +177,39 @@ class Reader {
     Attributes(mul, {});
     const Eigen::VectorXf scale = Vector(mul, 1);
     Require((scale.array() == static_cast<float>(p_.metadata.action_scale)).all() &&
-                (scale.size() == 1 || scale.size() == p_.layers.back().bias.size()),
+                (scale.size() == 1 || scale.size() == p_.log_std.size()),
             "Mul is not by the stated action scale");
     Require(next_ == graph_.node_size() && last_ == graph_.output(0).name(),
             "has operators after Mul");
+  }
+
+  /// What follows the last layer of a Q-network.
+  void ReadChoice() {
+    const onnx::NodeProto& reshape = Next("Reshape", 2);
+    Attributes(reshape, {});
+    const auto found = constants_.find(reshape.input(1));
+    Require(found != constants_.end(), "Reshape's shape is not a constant");
+    ++used_;
+    const onnx::TensorProto& shape = *found->second;
+    Require(shape.data_type() == onnx::TensorProto::INT64 && shape.dims_size() == 1 &&
+                shape.dims(0) == 3 && shape.int64_data_size() == 3 && !shape.has_raw_data() &&
+                !shape.has_segment() && shape.external_data_size() == 0,
+            "Reshape's shape is not a list of three numbers");
+    const auto best = Attributes(Next("ArgMax", 1), {{"axis", 0.0}, {"keepdims", 1.0}});
+    Require(best.at("axis") == 2.0 && best.at("keepdims") == 0.0, "ArgMax is not over the choices");
+    const onnx::NodeProto& gather = Next("Gather", 2, 1);
+    Require(Attributes(gather, {{"axis", 0.0}}).at("axis") == 0.0, "Gather is not by row");
+    std::vector<std::int64_t> dims;
+    const std::vector<float> data = Constant(gather, 0, &dims);
+    Require(dims.size() == 2, "the choices are not a matrix");
+    using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    p_.choices = Eigen::Map<const RowMajor>(data.data(), dims[0], dims[1]);
+    Require(shape.int64_data(0) == 1 && shape.int64_data(2) == dims[0] &&
+                shape.int64_data(1) >= 1 && shape.int64_data(1) <= Policy::kMaxWidth &&
+                shape.int64_data(1) * dims[0] == p_.layers.back().bias.size(),
+            "Reshape is not to heads and choices");
+    Require(Attributes(Next("Flatten", 1), {{"axis", 1.0}}).at("axis") == 1.0,
+            "Flatten is not to one row");
   }
 
   void ReadGemm() {
@@ -213,7 +249,9 @@ class Reader {
     Require(model_.metadata_props_size() <= 1000, "has too much metadata");
     for (const auto& entry : model_.metadata_props()) {
       Require(entry.value().size() <= 65536, "has too much metadata");
-      properties_[entry.key()] = entry.value();
+      Require(IsText(entry.key()) && IsText(entry.value()), "metadata that is no text");
+      Require(properties_.emplace(entry.key(), entry.value()).second,
+              "metadata '" + entry.key() + "' is there twice");
     }
     PolicyMetadata& m = p_.metadata;
     m.id = Property("stg.id");
@@ -221,7 +259,9 @@ class Reader {
     m.action_interface = Property("stg.action_interface");
     m.action_scale = Number("stg.action_scale");
     m.scenario_hash = Property("stg.scenario_hash");
-    m.training_step = static_cast<std::int64_t>(Number("stg.training_step"));
+    const double step = Number("stg.training_step");
+    Require(std::abs(step) <= 9e15, "metadata 'stg.training_step' is out of range");
+    m.training_step = static_cast<std::int64_t>(step);
     Number("stg.seed");
     m.seed = std::strtoull(Property("stg.seed").c_str(), nullptr, 10);
     const std::size_t prefix = std::strlen(kMetricPrefix);

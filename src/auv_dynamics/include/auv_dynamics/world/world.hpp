@@ -19,6 +19,11 @@
 
 namespace stg::dynamics {
 
+/// What to do about a state that is not finite.
+inline constexpr char kUnstableHint[] =
+    "the motion is unstable with these vehicle constants; check damping, mass and limits, clip "
+    "velocities (vehicle.clip_velocity), or use a smaller time.dt_s or more vehicle.substeps";
+
 /// kLanes independent copies of one scenario's physics, one per SIMD lane:
 /// vehicles, contacts, walls, targets, sensors. What a vehicle, a target motion or a sensor is, the
 /// registries say. Knows nothing of agents, channel or reward. A caller that wants one world uses
@@ -47,6 +52,10 @@ class World {
   /// The same for vehicles that are commanded by a generalised force, one for each. Throws
   /// UserError when the scenario's vehicles are not.
   void Step(const std::vector<Wrench<Pack>>& tau);
+
+  /// Throws UserError that names vehicle, step and seed when the state of a vehicle is not finite:
+  /// the equations of motion, stepped like this, are unstable.
+  void CheckFinite() const;
 
   int agents() const { return static_cast<int>(vehicles_.size()); }
   int targets() const { return static_cast<int>(targets_.size()); }

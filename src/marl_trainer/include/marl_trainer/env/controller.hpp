@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "marl_trainer/env/vector_env.hpp"
 #include "stg_agent/controllers/controller.hpp"
@@ -12,13 +13,14 @@ namespace stg::env {
 /// Who flies: a policy file or a built-in controller.
 struct Controller {
   std::string name;
-  std::shared_ptr<const agent::Policy> policy;       ///< null: built-in
-  std::shared_ptr<const agent::Controller> builtin;  ///< null: policy
+  /// One for all AUVs or one for each; empty: built-in.
+  std::vector<std::shared_ptr<const agent::Policy>> policies;
+  std::shared_ptr<const agent::Controller> builtin;  ///< null: policies
   bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
 };
 
-/// A built-in controller (see agent::MakeController), or the path of an ONNX file, which
-/// must fit the scenario. Throws UserError.
+/// A built-in controller (see agent::MakeController), or the path of an ONNX file, or of one for
+/// each AUV (see agent::PolicyFileOf), which must fit the scenario. Throws UserError.
 Controller MakeController(const std::string& name_or_file, const Scenario& scenario);
 
 /// Deterministic actions of every AUV of every environment, [envs, agents, action_size]. In truth

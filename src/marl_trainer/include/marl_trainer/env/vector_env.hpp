@@ -52,6 +52,8 @@ class VectorEnv {
 
   /// Starts the first episode of every environment. Writes observations and states.
   void Reset(const EnvArrays& out) { RestartAt(0, out); }
+  /// Episodes that start from now on are drawn from this seed; k of the seed rule goes on.
+  void Reseed(std::uint64_t seed) { options_.seed = seed; }
   /// Starts the k-th episode of every environment (resuming a run); it is cut if `stagger` says so.
   void RestartAt(std::uint64_t k, const EnvArrays& out);
   /// Starts an episode of one environment at once, drawn from `seed`. The others go on. The episode

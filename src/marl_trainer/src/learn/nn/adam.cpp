@@ -5,6 +5,19 @@
 
 namespace stg::learn {
 
+void AdamState::Save(const std::string& name, Archive* archive) const {
+  archive->Put(name + "_first", first);
+  archive->Put(name + "_second", second);
+  archive->PutInteger(name + "_steps", steps);
+}
+
+void AdamState::Load(const std::string& name, const Archive& archive) {
+  const std::vector<float>& theirs = archive.Floats(name + "_first", first.size());
+  second = archive.Floats(name + "_second", second.size());
+  first = theirs;
+  steps = archive.Integer(name + "_steps");
+}
+
 Adam::Adam(double eps, AdamState* state) : state_(state), eps_(static_cast<float>(eps)) {
   ++state_->steps;
   constexpr double kBeta1 = 0.9, kBeta2 = 0.999;

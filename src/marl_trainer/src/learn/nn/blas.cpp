@@ -30,6 +30,11 @@ void Multiply(bool transpose_a, bool transpose_b, int m, int n, int k, const flo
          &beta, c, &n);
 }
 
+void MultiplyColumns(int m, int n, int k, const float* a, const float* b, int stride, float* c) {
+  const float alpha = 1.0F, beta = 0.0F;
+  sgemm_("N", "N", &n, &m, &k, &alpha, b, &stride, a, &k, &beta, c, &n);
+}
+
 double MeasurePeakFlops() {
   constexpr int kSize = 512;
   constexpr int kRepeats = 6;

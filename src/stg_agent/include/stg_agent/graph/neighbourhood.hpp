@@ -78,7 +78,8 @@ class Neighbourhood {
  private:
   double max_age_s_, wall_m_;
   std::vector<NeighbourSight<T>> sights_;
-  std::vector<double> distance_, age_, quality_;  // [agents] padded to whole packs; T = double
+  // [agents] padded to whole packs; T = double
+  std::vector<double> distance_, age_, learnt_, quality_;
 };
 
 }  // namespace stg::agent

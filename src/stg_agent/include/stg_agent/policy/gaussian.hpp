@@ -10,6 +10,8 @@ namespace stg::agent {
 
 /// log sqrt(2 pi)
 inline constexpr float kHalfLogTwoPi = 0.918938533F;
+/// log sqrt(2 pi e): entropy of a Gaussian of deviation 1.
+inline constexpr double kHalfLogTwoPiE = 1.4189385332046727;
 
 /// Draws an action: adds noise to the mean that `action` holds.
 /// @param log_std [size]

@@ -2,7 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include "marl_trainer/learn/checkpoint/archive.hpp"
 
 namespace stg::learn {
 
@@ -10,6 +13,11 @@ namespace stg::learn {
 struct AdamState {
   AdamState() = default;
   explicit AdamState(std::size_t parameters) : first(parameters, 0.0F), second(parameters, 0.0F) {}
+
+  /// As arrays name_first, name_second and name_steps.
+  void Save(const std::string& name, Archive* archive) const;
+  /// Throws UserError for another number of parameters.
+  void Load(const std::string& name, const Archive& archive);
 
   std::vector<float> first, second;
   std::int64_t steps = 0;

@@ -11,6 +11,9 @@ void UseOneBlasThread();
 void Multiply(bool transpose_a, bool transpose_b, int m, int n, int k, const float* a,
               const float* b, float beta, float* c);
 
+/// C = A B for n columns of a wider B: A [m, k], rows of B `stride` numbers apart, C [m, n].
+void MultiplyColumns(int m, int n, int k, const float* a, const float* b, int stride, float* c);
+
 /// Measured rate of one thread on square products of 512 [floating-point
 /// operations per second]: the peak that an update is compared with.
 double MeasurePeakFlops();

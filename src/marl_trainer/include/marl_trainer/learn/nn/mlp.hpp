@@ -36,6 +36,8 @@ class Mlp {
     friend class Mlp;
     std::vector<std::vector<float>> values_;  ///< per layer [rows, outputs]
     std::vector<float> gradient_[2];          ///< [rows, widest]
+    // With layer_norm, per hidden layer: what it normalised [rows, outputs], and by what [rows].
+    std::vector<std::vector<float>> normalised_, inverse_std_;
     int rows_;
   };
 
@@ -47,7 +49,18 @@ class Mlp {
   void Backward(const float* parameters, const float* x, const float* d_output, int rows,
                 Workspace* workspace, float* gradient) const;
 
+  /// Writes d loss / d x[:, first .. first+count-1] as d_input [rows, count], given d loss / d
+  /// output as Backward; the parameters get no gradient.
+  void InputGradient(const float* parameters, const float* d_output, int rows, int first, int count,
+                     Workspace* workspace, float* d_input) const;
+
  private:
+  /// d loss / d the last layer's sums, in the workspace unless d_output is that.
+  const float* UndoSquash(const float* d_output, int rows, Workspace* workspace, int* next) const;
+  /// d loss / d layer l's sums from d loss / d the sums of layer l + 1.
+  const float* UndoLayer(const float* parameters, int l, const float* d, int rows,
+                         Workspace* workspace, int* next) const;
+
   NetworkSpec spec_;
   std::vector<std::size_t> offsets_;
 };

@@ -27,6 +27,9 @@ struct NetworkSpec {
   /// > 0: the outputs are squash * tanh of the last layer's; 0: the last layer is linear.
   float squash = 0.0F;
   float output_gain = 1.0F;  ///< of the last layer's initial weights
+  /// Whether the hidden layers normalise each row before the activation (LayerNorm, Ba et al. 2016,
+  /// without gain and offset of its own: the next layer and the bias have them).
+  bool layer_norm = false;
 
   int layers() const { return static_cast<int>(hidden.size()) + 1; }
   int layer_inputs(int l) const;

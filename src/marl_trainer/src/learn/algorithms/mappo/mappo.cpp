@@ -5,24 +5,20 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/learn/buffers/gae.hpp"
 #include "marl_trainer/learn/nn/wall_units.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::learn {
 namespace {
 
-constexpr int kValueRows = 256;
-constexpr double kHalfLogTwoPiE = 1.4189385332046727;  // entropy of a Gaussian of sigma 1
 /// Observations that the normaliser of a given policy counts for at least.
 constexpr double kStartCount = 10000.0;
 
 }  // namespace
 
 struct Mappo::Scratch {
-  explicit Scratch(const ActorCritic& networks)
-      : actor(networks.actor.mean(), 0), critic(networks.critic, kValueRows) {}
-  Mlp::Workspace actor, critic;
+  explicit Scratch(const ActorCritic& networks) : actor(networks.actor.mean(), 0) {}
+  Mlp::Workspace actor;
   std::vector<float> observations;  // normalised
 };
 
@@ -31,10 +27,9 @@ Mappo::Mappo(const MappoConfig& config, const TrainConfig& common, const Problem
     : config_(config),
       problem_(problem),
       seed_(common.seed),
-      pool_(pool),
       networks_(problem, config),
       update_(networks_, config, common, problem.agents, pool),
-      normalisers_(problem, config),
+      rollouts_(problem, config, networks_.critic, pool),
       parameters_(networks_.Initialise(seed_, config.initial_log_std)),
       adam_(networks_.parameters()) {
   for (int w = 0; w < pool->workers(); ++w) {
@@ -46,13 +41,7 @@ Mappo::~Mappo() = default;
 
 void Mappo::Begin(const Collection& collection) {
   collection_ = collection.number;
-  rollouts_.resize(collection.shards.size());
-  for (std::size_t s = 0; s < rollouts_.size(); ++s) {
-    Rollout& r = rollouts_[s];
-    r.buffer.Begin(problem_, collection.steps, collection.shards[s].envs, collection.taught);
-    r.observations = RunningMoments(problem_.observation_size);
-    r.states = RunningMoments(problem_.state_size);
-  }
+  rollouts_.Begin(collection);
 }
 
 void Mappo::Act(const Decision& decision, const Actions& out) {
@@ -79,88 +68,25 @@ void Mappo::Act(const Decision& decision, const Actions& out) {
   }
 }
 
-void Mappo::Observe(const Transition& t) {
-  Rollout& r = rollouts_[static_cast<std::size_t>(t.shard)];
-  if (t.step % config_.moment_stride == 0) {
-    r.observations.Add(t.observations, t.envs * problem_.agents);
-    r.states.Add(t.states, t.envs);
-  }
-  r.buffer.Add(problem_, t, scales().observations, scales().states);
-}
-
-void Mappo::EstimateValues(const float* states, int rows, int worker, float* values) {
-  Mlp::Workspace& workspace = scratch_[static_cast<std::size_t>(worker)]->critic;
-  const Mlp& critic = networks_.critic;
-  for (int first = 0; first < rows; first += kValueRows) {
-    const int count = std::min(kValueRows, rows - first);
-    critic.Forward(parameters_.data() + networks_.critic_offset(),
-                   states + static_cast<std::ptrdiff_t>(first) * critic.inputs(), count,
-                   &workspace);
-    const float* out = workspace.output();
-    for (int r = 0; r < count; ++r) {
-      values[first + r] = scales().value_mean + scales().value_std * out[r];
-    }
-  }
-}
-
-void Mappo::EstimateAdvantages(int shard, int worker) {
-  RolloutBuffer& b = rollouts_[static_cast<std::size_t>(shard)].buffer;
-  EstimateValues(b.states.data(), b.samples(), worker, b.values.data());
-  EstimateValues(b.last_states.data(), b.envs, worker, b.bootstrap.data());
-  std::vector<float> finals(b.final_samples.size());
-  EstimateValues(b.final_states.data(), static_cast<int>(finals.size()), worker, finals.data());
-  for (std::size_t i = 0; i < finals.size(); ++i) {
-    b.final_values[static_cast<std::size_t>(b.final_samples[i])] = finals[i];
-  }
-  for (int e = 0; e < b.envs; ++e) {
-    GeneralisedAdvantages(b.rewards.data() + e, b.values.data() + e, b.done.data() + e,
-                          b.final_values.data() + e, b.bootstrap[static_cast<std::size_t>(e)],
-                          b.steps, b.envs, static_cast<float>(config_.gamma),
-                          static_cast<float>(config_.lambda), b.advantages.data() + e);
-  }
-}
-
-/// Returns the explained variance of the value targets, by the critic that acted.
-double Mappo::UpdateValueScale() {
-  RunningMoments targets(1), errors(1);
-  std::vector<float> target;
-  for (const Rollout& r : rollouts_) {
-    const RolloutBuffer& b = r.buffer;
-    target.resize(b.advantages.size());
-    for (std::size_t i = 0; i < target.size(); ++i) target[i] = b.advantages[i] + b.values[i];
-    targets.Add(target.data(), b.samples());
-    errors.Add(b.advantages.data(), b.samples());
-  }
-  normalisers_.AddTargets(targets, networks_.critic,
-                          parameters_.data() + networks_.critic_offset());
-  return 1.0 - errors.variance(0) / std::max(targets.variance(0), 1e-12);
-}
+void Mappo::Observe(const Transition& t) { rollouts_.Observe(t); }
 
 UpdateReport Mappo::Update(const UpdateContext& context) {
-  pool_->Run(static_cast<int>(rollouts_.size()),
-             [this](int shard, int worker) { EstimateAdvantages(shard, worker); });
-  const double explained_variance = UpdateValueScale();
-  std::vector<const RolloutBuffer*> buffers;
-  double samples = 0.0;
-  for (const Rollout& r : rollouts_) {
-    buffers.push_back(&r.buffer);
-    samples += r.buffer.samples();
-  }
+  const double explained_variance =
+      rollouts_.Estimate(parameters_.data() + networks_.critic_offset());
   const double rate = 1.0 - (1.0 - config_.lr_final) * std::min(context.progress, 1.0);
-  const PpoReport ppo =
-      update_.Run(buffers, scales(), collection_, rate, context.imitation, &parameters_, &adam_);
-  for (const Rollout& r : rollouts_) normalisers_.Add(r.observations, r.states);
-  normalisers_.UpdateInputScales();
+  const PpoReport ppo = update_.Run(rollouts_.buffers(), scales(), collection_, rate,
+                                    context.imitation, &parameters_, &adam_);
+  rollouts_.UpdateInputScales();
 
   double sigma = 0.0, entropy = 0.0;
   for (int a = 0; a < networks_.action_size(); ++a) {
     const auto log_std = static_cast<double>(
         parameters_[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)]);
     sigma += std::exp(log_std) / networks_.action_size();
-    entropy += log_std + kHalfLogTwoPiE;
+    entropy += log_std + agent::kHalfLogTwoPiE;
   }
   UpdateReport report;
-  report.flops = ppo.flops + 2.0 * samples * networks_.critic.spec().forward_products();
+  report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
   report.values = {config_.lr * rate,
                    ppo.sums.kl / ppo.sums.rows,
                    ppo.sums.clipped / ppo.sums.rows,
@@ -183,27 +109,23 @@ std::vector<ReportColumn> Mappo::Columns() const {
 
 void Mappo::Save(Archive* archive) const {
   archive->Put("parameters", parameters_);
-  archive->Put("adam_first", adam_.first);
-  archive->Put("adam_second", adam_.second);
-  archive->PutInteger("adam_steps", adam_.steps);
-  normalisers_.Save(archive);
+  adam_.Save("adam", archive);
+  rollouts_.normalisers().Save(archive);
 }
 
 void Mappo::Load(const Archive& archive) {
   const std::size_t size = networks_.parameters();
   const std::vector<float>& parameters = archive.Floats("parameters", size);
-  AdamState adam;
-  adam.first = archive.Floats("adam_first", size);
-  adam.second = archive.Floats("adam_second", size);
-  adam.steps = archive.Integer("adam_steps");
-  normalisers_.Load(archive);
+  AdamState adam(size);
+  adam.Load("adam", archive);
+  rollouts_.normalisers().Load(archive);
   parameters_ = parameters;
   adam_ = std::move(adam);
 }
 
 void Mappo::StartFrom(const Archive& archive) {
   const std::vector<float>& theirs = archive.Floats("parameters", networks_.parameters());
-  normalisers_.Load(archive);
+  rollouts_.normalisers().Load(archive);
   const auto spread = static_cast<std::ptrdiff_t>(networks_.actor.log_std_offset());
   const std::vector<float> untrained = parameters_;
   parameters_ = theirs;
@@ -228,8 +150,8 @@ void Mappo::StartFrom(const agent::Policy& policy) {
   }
   RunningMoments observations(problem_.observation_size);
   observations.Load(moments);
-  normalisers_.Add(observations, RunningMoments(problem_.state_size));
-  normalisers_.UpdateInputScales();
+  rollouts_.normalisers().Add(observations, RunningMoments(problem_.state_size));
+  rollouts_.normalisers().UpdateInputScales();
 }
 
 std::vector<agent::Policy> Mappo::Policies(const agent::PolicyMetadata& metadata) const {

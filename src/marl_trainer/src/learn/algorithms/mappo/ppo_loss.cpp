@@ -36,17 +36,18 @@ PpoSums PpoLoss::AddGradient(const float* parameters, const PpoBatch& batch, int
                              float* gradient) {
   PpoSums sums;
   AddActor(parameters, batch, minibatch, gradient, &sums);
-  AddCritic(parameters, batch, minibatch, gradient, &sums);
+  const std::size_t critic = networks_.critic_offset();
+  AddCritic(parameters + critic, batch, minibatch, gradient + critic, &sums);
   return sums;
 }
 
-void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minibatch,
-                       float* gradient, PpoSums* sums) {
+void PpoLoss::AddActor(const float* actor, const PpoBatch& batch, int minibatch, float* gradient,
+                       PpoSums* sums) {
   const int rows = batch.count * batch.agents, size = networks_.action_size();
   const float weight = 1.0F / static_cast<float>(minibatch * batch.agents);
-  const float* log_std = parameters + networks_.actor.log_std_offset();
+  const float* log_std = actor + networks_.actor.log_std_offset();
   float* d_log_std = gradient + networks_.actor.log_std_offset();
-  networks_.actor.mean().Forward(parameters, batch.observations, rows, &actor_);
+  networks_.actor.mean().Forward(actor, batch.observations, rows, &actor_);
   const float* mean = actor_.output();
 
   float* inverse_std = inverse_std_.data();
@@ -105,15 +106,14 @@ void PpoLoss::AddActor(const float* parameters, const PpoBatch& batch, int minib
     // The entropy's derivative by log sigma is 1 a row.
     d_log_std[a] += static_cast<float>(d_sigma[a]) - entropy_ * weight * static_cast<float>(rows);
   }
-  networks_.actor.mean().Backward(parameters, batch.observations, d_actor_.data(), rows, &actor_,
+  networks_.actor.mean().Backward(actor, batch.observations, d_actor_.data(), rows, &actor_,
                                   gradient);
   sums->rows += rows;
 }
 
-void PpoLoss::AddCritic(const float* parameters, const PpoBatch& batch, int minibatch,
-                        float* gradient, PpoSums* sums) {
-  const float* p = parameters + networks_.critic_offset();
-  networks_.critic.Forward(p, batch.states, batch.count, &critic_);
+void PpoLoss::AddCritic(const float* critic, const PpoBatch& batch, int minibatch, float* gradient,
+                        PpoSums* sums) {
+  networks_.critic.Forward(critic, batch.states, batch.count, &critic_);
   const float* value = critic_.output();
   const float weight = 2.0F * value_weight_ / static_cast<float>(minibatch);
   for (int r = 0; r < batch.count; ++r) {
@@ -121,8 +121,8 @@ void PpoLoss::AddCritic(const float* parameters, const PpoBatch& batch, int mini
     sums->value_loss += static_cast<double>(error) * error;
     d_critic_[static_cast<std::size_t>(r)] = weight * error;
   }
-  networks_.critic.Backward(p, batch.states, d_critic_.data(), batch.count, &critic_,
-                            gradient + networks_.critic_offset());
+  networks_.critic.Backward(critic, batch.states, d_critic_.data(), batch.count, &critic_,
+                            gradient);
   sums->samples += batch.count;
 }
 

@@ -18,6 +18,9 @@ TorchNetworkImpl::TorchNetworkImpl(const NetworkSpec& spec) : spec_(spec) {
 torch::Tensor TorchNetworkImpl::forward(torch::Tensor x) {
   for (std::size_t l = 0; l < weights_.size(); ++l) {
     x = torch::nn::functional::linear(x, weights_[l], biases_[l]);
+    if (l + 1 < weights_.size() && spec_.layer_norm) {
+      x = torch::layer_norm(x, {x.size(1)}, {}, {}, 1e-5);
+    }
     if (l + 1 < weights_.size()) {
       x = spec_.activation == HiddenActivation::kTanh ? torch::tanh(x) : torch::relu(x);
     } else if (spec_.squash > 0.0F) {

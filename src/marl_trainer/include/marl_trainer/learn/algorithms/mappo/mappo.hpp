@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
+#include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
 
 namespace stg::learn {
 
@@ -31,33 +32,21 @@ class Mappo : public Algorithm {
 
   const ActorCritic& networks() const { return networks_; }
   const std::vector<float>& parameters() const { return parameters_; }
-  const Scales& scales() const { return normalisers_.scales(); }
+  const Scales& scales() const { return rollouts_.scales(); }
 
  private:
   struct Scratch;  // per worker
-  /// What one shard collects.
-  struct Rollout {
-    RolloutBuffer buffer;
-    RunningMoments observations, states;  ///< raw
-  };
-
-  void EstimateAdvantages(int shard, int worker);
-  /// Values in units of reward of normalised states [rows, S].
-  void EstimateValues(const float* states, int rows, int worker, float* values);
-  double UpdateValueScale();
 
   const MappoConfig config_;
   const Problem problem_;
   const std::uint64_t seed_;
-  WorkerPool* pool_;
   const ActorCritic networks_;
   PpoUpdate update_;
-  Normalisers normalisers_;
+  ValuedRollouts rollouts_;
   std::vector<float> parameters_;
   AdamState adam_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::uint32_t collection_ = 0;
-  std::vector<Rollout> rollouts_;
 };
 
 }  // namespace stg::learn

@@ -42,12 +42,14 @@ class PpoLoss {
   PpoSums AddGradient(const float* parameters, const PpoBatch& batch, int minibatch,
                       float* gradient);
 
- private:
-  void AddActor(const float* parameters, const PpoBatch& batch, int minibatch, float* gradient,
+  /// The actor's part alone: its parameters and their gradient, with log sigma.
+  void AddActor(const float* actor, const PpoBatch& batch, int minibatch, float* gradient,
                 PpoSums* sums);
-  void AddCritic(const float* parameters, const PpoBatch& batch, int minibatch, float* gradient,
+  /// The critic's part alone.
+  void AddCritic(const float* critic, const PpoBatch& batch, int minibatch, float* gradient,
                  PpoSums* sums);
 
+ private:
   const ActorCritic& networks_;
   const float clip_, focus_, entropy_, value_weight_;
   Mlp::Workspace actor_, critic_;

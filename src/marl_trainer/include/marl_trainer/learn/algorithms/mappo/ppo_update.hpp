@@ -2,15 +2,13 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/learn/algorithms/mappo/normalisers.hpp"
 #include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
-#include "marl_trainer/learn/buffers/rollout_buffer.hpp"
-#include "marl_trainer/learn/nn/adam.hpp"
+#include "marl_trainer/learn/algorithms/mappo/ppo_samples.hpp"
+#include "marl_trainer/learn/nn/sliced_gradient.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 
 namespace stg::learn {
@@ -23,13 +21,9 @@ struct PpoReport {
   double flops = 0.0;  ///< floating-point operations in matrix products
 };
 
-/// Epochs of minibatch gradient steps over one collection. The minibatch is cut
-/// into kSlices fixed slices with a gradient each, summed in order: the result
-/// does not depend on the number of workers.
+/// Epochs of minibatch gradient steps over one collection.
 class PpoUpdate {
  public:
-  static constexpr int kSlices = 16;
-
   /// @param networks, pool must outlive this object.
   PpoUpdate(const ActorCritic& networks, const MappoConfig& config, const TrainConfig& common,
             int agents, WorkerPool* pool);
@@ -47,11 +41,7 @@ class PpoUpdate {
   struct Scratch;                    // per worker
   static constexpr int kBlock = 64;  // environment steps per pass through the networks
 
-  void Prepare(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales);
-  void Shuffle(std::uint32_t collection, int epoch);
-  void Slice(const std::vector<const RolloutBuffer*>& rollouts, const float* parameters, int first,
-             int slice, int worker);
-  void ForRanges(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
+  PpoSums Slice(const float* parameters, int begin, int end, int worker, float* gradient);
   void Step(double learning_rate_scale, std::vector<float>* parameters, AdamState* adam,
             PpoReport* report);
 
@@ -59,14 +49,11 @@ class PpoUpdate {
   const MappoConfig config_;
   const std::uint64_t seed_;
   const int agents_;
-  WorkerPool* pool_;
+  SlicedGradient gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
-  std::vector<std::vector<float>> gradients_;  // [kSlices][parameters]
-  std::array<PpoSums, kSlices> sums_;
-  std::vector<float> gradient_;
-  std::vector<int> order_, rollout_of_, index_of_;
+  std::array<PpoSums, SlicedGradient::kSlices> sums_;
+  PpoSamples samples_;
   float imitation_ = 0.0F;
-  std::vector<float> advantages_, targets_;  // normalised, by sample
 };
 
 }  // namespace stg::learn

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "marl_trainer/learn/algorithms/happo/happo_update.hpp"
+#include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
+
+namespace stg::learn {
+
+/// HAPPO (Kuba et al. 2022, "Trust region policy optimisation in multi-agent reinforcement
+/// learning"): an actor for each AUV, updated one after the other, and one value of the swarm's
+/// true state.
+class Happo : public Algorithm {
+ public:
+  Happo(const HappoConfig& config, const TrainConfig& common, const Problem& problem,
+        WorkerPool* pool);
+  ~Happo() override;
+
+  void Begin(const Collection& collection) override;
+  void Act(const Decision& decision, const Actions& out) override;
+  void Observe(const Transition& transition) override { rollouts_.Observe(transition); }
+  UpdateReport Update(const UpdateContext& context) override;
+
+  void Save(Archive* archive) const override;
+  void Load(const Archive& archive) override;
+  void StartFrom(const Archive& archive) override;
+
+  /// One for each AUV.
+  std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
+  std::vector<ReportColumn> Columns() const override;
+
+  const ActorCritic& networks() const { return networks_; }
+  const HappoParameters& parameters() const { return parameters_; }
+  const ValuedRollouts& rollouts() const { return rollouts_; }
+  const HappoUpdate& update() const { return update_; }
+
+ private:
+  struct Scratch;  // per worker
+
+  const HappoConfig config_;
+  const Problem problem_;
+  const ActorCritic networks_;
+  HappoUpdate update_;
+  ValuedRollouts rollouts_;
+  HappoParameters parameters_;
+  std::vector<std::unique_ptr<Scratch>> scratch_;
+  std::uint32_t collection_ = 0;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+
+namespace stg::learn {
+
+/// Configuration of IPPO: MAPPO's options and presets; the critic's are those of the value of one
+/// AUV's own observation.
+struct IppoConfig : MappoConfig {
+  std::unique_ptr<AlgorithmConfig> Clone() const override;
+  void ApplyRecordings(const TrainConfig& common) override;
+  std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
+                                  WorkerPool* pool) const override;
+};
+
+}  // namespace stg::learn

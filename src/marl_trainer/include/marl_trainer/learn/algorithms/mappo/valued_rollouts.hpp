@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/algorithms/mappo/normalisers.hpp"
+#include "marl_trainer/learn/buffers/rollout_buffer.hpp"
+
+namespace stg::learn {
+
+/// What on-policy methods with a central critic collect: rollouts, the normalisers of what the
+/// networks see, and advantages by the critic.
+class ValuedRollouts {
+ public:
+  /// @param critic, pool must outlive this object.
+  ValuedRollouts(const Problem& problem, const MappoConfig& config, const Mlp& critic,
+                 WorkerPool* pool);
+
+  void Begin(const Collection& collection);
+  void Observe(const Transition& transition);
+
+  /// Estimates the advantages, and fits the scale of the values to their targets.
+  /// @param critic its parameters; its last layer changes with the scale.
+  /// @return explained variance of the value targets, by the critic that acted
+  double Estimate(float* critic);
+  /// Lets the normalisers see what was collected; call after the update on it.
+  void UpdateInputScales();
+
+  std::vector<const RolloutBuffer*> buffers() const;
+  int samples() const;
+  const Scales& scales() const { return normalisers_.scales(); }
+  Normalisers& normalisers() { return normalisers_; }
+  const Normalisers& normalisers() const { return normalisers_; }
+
+ private:
+  /// What one shard collects.
+  struct Rollout {
+    RolloutBuffer buffer;
+    RunningMoments observations, states;  ///< raw
+  };
+
+  void EstimateAdvantages(const float* critic, int shard, int worker);
+  /// Values in units of reward of normalised states [rows, S].
+  void EstimateValues(const float* critic, const float* states, int rows, int worker,
+                      float* values);
+
+  const Problem problem_;
+  const float gamma_, lambda_;
+  const int moment_stride_;
+  const Mlp& critic_;
+  WorkerPool* pool_;
+  Normalisers normalisers_;
+  std::vector<Mlp::Workspace> workspaces_;  // per worker
+  std::vector<Rollout> rollouts_;
+};
+
+}  // namespace stg::learn

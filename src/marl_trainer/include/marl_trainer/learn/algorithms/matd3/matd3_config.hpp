@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "marl_trainer/learn/algorithms/maddpg/maddpg_config.hpp"
+
+namespace stg::learn {
+
+/// Configuration of MATD3: MADDPG with the smaller of two critics, targets that are smoothed by
+/// noise, and an actor that learns at every other step (Fujimoto et al. 2018).
+struct Matd3Config : MaddpgConfig {
+  Matd3Config();
+  std::unique_ptr<AlgorithmConfig> Clone() const override;
+  void Describe(OptionTable* table) override;
+};
+
+}  // namespace stg::learn

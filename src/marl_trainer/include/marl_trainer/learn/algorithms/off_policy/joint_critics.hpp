@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "marl_trainer/learn/algorithms/off_policy/replay_batch.hpp"
+#include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
+#include "marl_trainer/learn/nn/mlp.hpp"
+
+namespace stg::learn {
+
+/// One or two networks q(state, actions of all AUVs) with the targets that follow them (Lowe et al.
+/// 2017; the smaller of two against overestimation: Fujimoto et al. 2018).
+class JointCritics {
+ public:
+  JointCritics(const Problem& problem, const ReplayOptions& options, int count, std::uint64_t seed);
+
+  /// Memory of one slice.
+  class Scratch {
+   public:
+    Scratch(const JointCritics& critics, int rows);
+
+   private:
+    friend class JointCritics;
+    std::vector<float> inputs_;                // [rows, state + joint action]
+    std::vector<Mlp::Workspace> workspaces_;   // by critic
+    std::vector<float> d_output_, d_actions_;  // [rows], [rows, joint action]
+  };
+
+  /// Value of the targets, the smallest, at states [rows, state_size] and joint actions [rows, A].
+  void Target(const float* states, const float* actions, int rows, Scratch* scratch,
+              float* values) const;
+
+  /// Adds the gradient of weight * sum (q - target)^2 of every critic to gradient [parameters];
+  /// returns the sum of the squares, the mean over critics.
+  double AddGradient(const ReplayBatch& batch, const float* targets, float weight, Scratch* scratch,
+                     float* gradient) const;
+
+  /// Values at joint actions, and d value / d actions [rows, A] times `weight`.
+  /// @param smallest of all critics, row by row; else the first one's
+  void ActionGradient(const float* states, const float* actions, int rows, float weight,
+                      bool smallest, Scratch* scratch, float* values, float* d_actions) const;
+
+  void RescaleValues(double ratio, double shift);
+  void MoveTargets(double tau);
+
+  const Mlp& network() const { return network_; }
+  int count() const { return count_; }
+  std::vector<float>& parameters() { return parameters_; }
+  const std::vector<float>& parameters() const { return parameters_; }
+
+  void Save(Archive* archive) const;
+  void Load(const Archive& archive);
+
+ private:
+  void Fill(const float* states, const float* actions, int rows, Scratch* scratch) const;
+  void Evaluate(const std::vector<float>& parameters, int rows, Scratch* scratch) const;
+  const float* critic(const std::vector<float>& parameters, int k) const {
+    return parameters.data() + static_cast<std::size_t>(k) * network_.parameters();
+  }
+
+  const int state_size_, joint_action_, count_;
+  const Mlp network_;
+  std::vector<float> parameters_, targets_;  // [count][network parameters]
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "marl_trainer/learn/buffers/replay_buffer.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
+
+namespace stg::learn {
+
+/// How raw numbers become what off-policy networks see and predict.
+///
+/// Rewards are shifted by their mean m and divided by s = std(r) / (1 - gamma). Because no episode
+/// ever ends but by truncation, the shift moves every value by the same m / (1 - gamma), and
+/// changes no decision: Q = s q + m / (1 - gamma), for networks that predict q.
+struct ReplayScales {
+  Normaliser observations, states;
+  float action = 1.0F;  ///< actions are in +-action; networks see them in +-1
+  float reward_mean = 0.0F, reward_std = 1.0F;
+  float value_mean = 0.0F;  ///< m / (1 - gamma)
+};
+
+/// Samples as networks see them: normalised, in rows.
+struct ReplayBatch {
+  /// Memory for up to `rows` samples.
+  ReplayBatch(const Problem& problem, int rows);
+
+  /// Writes sample number `row`.
+  void Set(int row, const ReplayBuffer::Sample& sample, const ReplayScales& scales);
+
+  std::vector<float> observations, next_observations;  ///< [rows, agents, observation_size]
+  std::vector<float> states, next_states;              ///< [rows, state_size]
+  std::vector<float> actions;                          ///< [rows, agents, action_size], in +-1
+  std::vector<float> rewards, discounts;               ///< [rows]; q = reward + discount * next q
+  int count = 0;
+
+ private:
+  const int agents_, observation_size_, state_size_, joint_action_;
+};
+
+}  // namespace stg::learn

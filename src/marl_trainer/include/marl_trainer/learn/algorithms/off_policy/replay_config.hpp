@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/learn/algorithm_config.hpp"
+
+namespace stg::learn {
+
+/// Options that all off-policy methods have.
+struct ReplayOptions {
+  std::int64_t replay = 100000;
+  std::int64_t warmup = 10000;
+  int batch = 512;
+  double replayed = 2.0;
+  int n_step = 3;
+  double gamma = 0.9;
+  double tau = 0.01;
+  std::vector<int> actor_hidden{64, 64};
+  std::vector<int> critic_hidden{128, 128};
+  std::string activation = "relu";
+  bool layer_norm = true;
+  double lr = 1e-3;
+  double critic_lr = 1e-3;
+  double lr_final = 0.1;
+  double adam_eps = 1e-5;
+  double grad_clip = 10.0;
+  double observation_clip = 10.0;
+  double std_floor = 0.01;
+};
+
+/// Their configuration, and their presets: `fast` (ours) and `paper` (Table S2, where it says
+/// something).
+struct ReplayConfig : AlgorithmConfig, ReplayOptions {
+  void Describe(OptionTable* table) override;
+  /// Adds the options of critics of state and joint action.
+  void DescribeCritics(OptionTable* table);
+  /// The common part of `fast` and `paper`.
+  void ApplyPreset(const std::string& preset, TrainConfig* common) override;
+  void ValidateOrThrow(const TrainConfig& common) const override;
+};
+
+}  // namespace stg::learn

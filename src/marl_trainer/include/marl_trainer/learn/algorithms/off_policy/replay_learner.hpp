@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/algorithms/off_policy/replay_batch.hpp"
+#include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
+#include "marl_trainer/learn/nn/mlp.hpp"
+#include "marl_trainer/learn/nn/sliced_gradient.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+
+namespace stg::learn {
+
+/// What all off-policy methods share: the replayed transitions, the normalisers, when a gradient
+/// step is due and on which samples. A method adds its networks: how to act, what a gradient step
+/// does, and what a checkpoint holds of them.
+class ReplayLearner : public Algorithm {
+ public:
+  ReplayLearner(const ReplayOptions& options, const TrainConfig& common, const Problem& problem,
+                WorkerPool* pool);
+
+  void Begin(const Collection& collection) override;
+  void Observe(const Transition& transition) override;
+  UpdateReport Update(const UpdateContext& context) override;
+
+  void Save(Archive* archive) const override;
+  void Load(const Archive& archive) override;
+  /// The normalisers; a method adds its networks.
+  void StartFrom(const Archive& archive) override;
+
+  /// Environment steps that it has seen.
+  std::int64_t seen() const { return seen_; }
+  const ReplayScales& scales() const { return scales_; }
+
+ protected:
+  /// A gradient step: which one of the run, and the share of the learning rates.
+  struct StepContext {
+    std::uint32_t number = 0;
+    double rate = 1.0;
+  };
+
+  /// One gradient step on the samples in batches(), one for each slice.
+  virtual void Step(const StepContext& step) = 0;
+  /// The values' scale changes: what was q is now ratio * q + shift. No prediction may change.
+  virtual void RescaleValues(double ratio, double shift) = 0;
+  /// Numbers of Columns() of the gradient steps since the last call, which were `steps`.
+  virtual UpdateReport Report(int steps) = 0;
+
+  const Problem& problem() const { return problem_; }
+  const ReplayOptions& base() const { return options_; }
+  std::uint64_t seed() const { return seed_; }
+  WorkerPool* pool() { return pool_; }
+  std::vector<ReplayBatch>& batches() { return batches_; }
+  /// Whether actions are still random.
+  bool warming_up() const { return seen_ < options_.warmup; }
+  /// Place of an environment among all, in [0, 1]: environments explore differently.
+  double Rank(int env) const;
+  /// Samples of a slice, at most.
+  int slice_rows() const;
+
+ private:
+  void LoadMoments(const Archive& archive);
+  void UpdateScales();
+  void DrawBatch(std::uint32_t number);
+
+  const ReplayOptions options_;
+  const Problem problem_;
+  const std::uint64_t seed_;
+  WorkerPool* pool_;
+  ReplayBuffer replay_;
+  RunningMoments observations_, states_, rewards_;
+  struct Moments {
+    RunningMoments observations, states, rewards;
+  };
+  std::vector<Moments> collected_;  // by shard
+  ReplayScales scales_;
+  std::vector<ReplayBatch> batches_;  // by slice
+  int envs_ = 1;
+  std::int64_t collected_steps_ = 0;
+  std::int64_t seen_ = 0;
+  std::int64_t gradient_steps_ = 0;
+  double due_ = 0.0;  // gradient steps
+};
+
+/// target += tau (online - target).
+void MoveTowards(const std::vector<float>& online, double tau, std::vector<float>* target);
+
+/// Rescales the outputs of a network whose first output is a value: RescaleValues, for one.
+void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters);
+
+}  // namespace stg::learn

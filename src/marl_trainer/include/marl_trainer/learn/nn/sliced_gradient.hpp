@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/nn/adam.hpp"
+
+namespace stg::learn {
+
+/// The gradient of a minibatch, computed by all workers: the samples are cut into kSlices fixed
+/// slices with a gradient each, which are summed in order, so that the result does not depend on
+/// the number of workers.
+class SlicedGradient {
+ public:
+  static constexpr int kSlices = 16;
+
+  /// Adds the gradient of samples begin .. end-1 to `gradient` [parameters], which is zero.
+  using Part = std::function<void(int slice, int worker, int begin, int end, float* gradient)>;
+
+  /// @param pool must outlive this object.
+  SlicedGradient(std::size_t parameters, WorkerPool* pool);
+
+  /// Runs `part` for every slice of the samples first .. first+count-1, then sums.
+  void Compute(int first, int count, const Part& part);
+
+  /// Runs `work` on ranges that cover 0 .. count-1, on all workers where that pays.
+  void ForRanges(std::size_t count,
+                 const std::function<void(std::size_t, std::size_t)>& work) const;
+
+  /// One step of Adam on parameters[begin, end) with its gradient clipped to norm `limit`; `adam`
+  /// has moved on to this step. Returns the norm before clipping; asserts that it is finite.
+  double Apply(const Adam& adam, std::size_t begin, std::size_t end, double learning_rate,
+               double limit, float* parameters) const;
+
+  /// Of the last Compute.
+  const std::vector<float>& sum() const { return sum_; }
+
+ private:
+  WorkerPool* pool_;
+  std::vector<std::vector<float>> parts_;  // [kSlices][parameters]
+  std::vector<float> sum_;
+};
+
+}  // namespace stg::learn

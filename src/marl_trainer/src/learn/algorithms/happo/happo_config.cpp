@@ -1,0 +1,37 @@
+#include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
+
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/algorithms/happo/happo.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+
+namespace stg::learn {
+
+std::unique_ptr<AlgorithmConfig> HappoConfig::Clone() const {
+  return std::make_unique<HappoConfig>(*this);
+}
+
+void HappoConfig::Describe(OptionTable* t) {
+  MappoConfig::Describe(t);
+  t->Add("sequential", &sequential,
+         "each AUV's update knows those before it; off: MAPPO with an actor for each AUV");
+}
+
+void HappoConfig::ValidateOrThrow(const TrainConfig& common) const {
+  MappoConfig::ValidateOrThrow(common);
+  RequireOption(wall_units == 0.0, "wall-units", "is for an actor that all AUVs share");
+}
+
+void HappoConfig::ApplyRecordings(const TrainConfig&) {
+  throw UserError("happo does not learn from recordings: its AUVs fly with policies of their own");
+}
+
+void HappoConfig::FitPolicy(const agent::Policy&) {
+  throw UserError("happo cannot start from one policy: its AUVs fly with policies of their own");
+}
+
+std::unique_ptr<Algorithm> HappoConfig::Make(const TrainConfig& common, const Problem& problem,
+                                             WorkerPool* pool) const {
+  return std::make_unique<Happo>(*this, common, problem, pool);
+}
+
+}  // namespace stg::learn

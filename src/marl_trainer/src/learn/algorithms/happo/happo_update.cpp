@@ -1,0 +1,219 @@
+#include "marl_trainer/learn/algorithms/happo/happo_update.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "auv_common/numbers/random.hpp"
+#include "stg_agent/policy/gaussian.hpp"
+
+namespace stg::learn {
+namespace {
+
+/// Epochs of one collection that keys keep apart: those of each AUV, then the critic's.
+constexpr std::uint32_t kEpochsOfATurn = 1000;
+/// Index of the draw that orders the AUVs, among the draws of a collection's shuffles.
+constexpr std::uint32_t kOrderDraw = 1;
+
+}  // namespace
+
+/// Gathered rows of one block, and the networks' scratch memory.
+struct HappoUpdate::Scratch {
+  Scratch(const ActorCritic& networks, const MappoConfig& config, double focus)
+      : loss(networks, config, focus, kBlock, 1),
+        actor(networks.actor.mean(), kBlock),
+        observations(static_cast<std::size_t>(kBlock * networks.actor.inputs())),
+        actions(static_cast<std::size_t>(kBlock * networks.action_size())),
+        teacher(actions.size()),
+        log_prob(kBlock),
+        states(static_cast<std::size_t>(kBlock * networks.critic.inputs())),
+        advantages(kBlock),
+        targets(kBlock) {}
+
+  PpoLoss loss;
+  Mlp::Workspace actor;
+  std::vector<float> observations, actions, teacher, log_prob, states, advantages, targets;
+};
+
+HappoUpdate::HappoUpdate(const ActorCritic& networks, const HappoConfig& config,
+                         const TrainConfig& common, int agents, WorkerPool* pool)
+    : networks_(networks),
+      config_(config),
+      seed_(common.seed),
+      agents_(agents),
+      pool_(pool),
+      actor_gradient_(networks.actor.parameters(), pool),
+      critic_gradient_(networks.critic.parameters(), pool) {
+  for (int w = 0; w < pool->workers(); ++w) {
+    scratch_.push_back(std::make_unique<Scratch>(networks, config, common.imitation.focus));
+  }
+}
+
+HappoUpdate::~HappoUpdate() = default;
+
+void HappoUpdate::DrawOrder(std::uint32_t collection) {
+  order_.resize(static_cast<std::size_t>(agents_));
+  std::iota(order_.begin(), order_.end(), 0);
+  Random random(seed_, Stream::kShuffle, collection, 0, kOrderDraw);
+  for (std::size_t i = order_.size() - 1; i > 0; --i) {
+    const auto j = static_cast<std::size_t>(random.Uniform() * static_cast<double>(i + 1));
+    std::swap(order_[i], order_[j]);
+  }
+}
+
+PpoBatch HappoUpdate::Gather(int from, int to, int agent, Scratch* s) {
+  const auto inputs = static_cast<std::size_t>(networks_.actor.inputs());
+  const auto action = static_cast<std::size_t>(networks_.action_size());
+  const auto state = static_cast<std::size_t>(networks_.critic.inputs());
+  for (int place = from; place < to; ++place) {
+    const std::size_t sample = samples_.at(place);
+    const RolloutBuffer& b = samples_.rollout(sample);
+    const std::size_t i = samples_.index(sample);
+    const auto at = static_cast<std::size_t>(place - from);
+    if (agent < 0) {
+      std::copy_n(b.states.data() + i * state, state, s->states.data() + at * state);
+      s->targets[at] = samples_.target(sample);
+      continue;
+    }
+    const std::size_t row = i * static_cast<std::size_t>(agents_) + static_cast<std::size_t>(agent);
+    std::copy_n(b.observations.data() + row * inputs, inputs, s->observations.data() + at * inputs);
+    std::copy_n(b.actions.data() + row * action, action, s->actions.data() + at * action);
+    if (imitation_ > 0.0F) {
+      std::copy_n(b.teacher.data() + row * action, action, s->teacher.data() + at * action);
+    }
+    s->log_prob[at] = b.log_prob[row];
+    const double factor = config_.sequential ? factors_[sample] : 1.0;
+    s->advantages[at] =
+        static_cast<float>(factor * static_cast<double>(samples_.advantage(sample)));
+  }
+  PpoBatch batch;
+  batch.count = to - from;
+  batch.agents = 1;
+  batch.observations = s->observations.data();
+  batch.actions = s->actions.data();
+  batch.log_prob = s->log_prob.data();
+  batch.states = s->states.data();
+  batch.advantages = s->advantages.data();
+  batch.targets = s->targets.data();
+  batch.teacher = s->teacher.data();
+  batch.imitation = imitation_;
+  return batch;
+}
+
+int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* actor,
+                            AdamState* adam, PpoReport* report) {
+  PpoSums sums;
+  int steps = 0, epochs = 0;
+  for (int epoch = 0; epoch < config_.epochs; ++epoch) {
+    samples_.Shuffle(seed_, collection_, turn * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
+    sums = PpoSums();
+    for (int first = 0; first < samples_.size(); first += config_.minibatch) {
+      actor_gradient_.Compute(
+          first, config_.minibatch,
+          [&](int slice, int worker, int begin, int end, float* gradient) {
+            Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
+            PpoSums& part = sums_[static_cast<std::size_t>(slice)];
+            part = PpoSums();
+            for (int from = begin; from < end; from += kBlock) {
+              const PpoBatch batch = Gather(from, std::min(end, from + kBlock), agent, &s);
+              s.loss.AddActor(actor->data(), batch, config_.minibatch, gradient, &part);
+            }
+          });
+      for (const PpoSums& part : sums_) sums.Add(part);
+      const Adam step(config_.adam_eps, adam);
+      report->actor_norm +=
+          actor_gradient_.Apply(step, 0, actor->size(), config_.lr * learning_rate_scale_,
+                                config_.grad_clip, actor->data());
+      for (int a = 0; a < networks_.action_size(); ++a) {
+        float& log_std = (*actor)[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)];
+        log_std = std::min(std::max(log_std, static_cast<float>(config_.min_log_std)),
+                           static_cast<float>(config_.max_log_std));
+      }
+      ++steps;
+    }
+    ++epochs;
+    if (config_.target_kl > 0.0 && sums.kl / sums.rows > config_.target_kl) break;
+  }
+  report->sums.Add(sums);
+  report->epochs += epochs;
+  return steps;
+}
+
+void HappoUpdate::TrainCritic(std::vector<float>* critic, AdamState* adam, PpoReport* report) {
+  int steps = 0;
+  for (int epoch = 0; epoch < config_.epochs; ++epoch) {
+    samples_.Shuffle(
+        seed_, collection_,
+        static_cast<std::uint32_t>(agents_) * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
+    report->sums.value_loss = report->sums.samples = 0.0;
+    for (int first = 0; first < samples_.size(); first += config_.minibatch) {
+      critic_gradient_.Compute(
+          first, config_.minibatch,
+          [&](int slice, int worker, int begin, int end, float* gradient) {
+            Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
+            PpoSums& part = sums_[static_cast<std::size_t>(slice)];
+            part = PpoSums();
+            for (int from = begin; from < end; from += kBlock) {
+              const PpoBatch batch = Gather(from, std::min(end, from + kBlock), -1, &s);
+              s.loss.AddCritic(critic->data(), batch, config_.minibatch, gradient, &part);
+            }
+          });
+      for (const PpoSums& part : sums_) report->sums.Add(part);
+      const Adam step(config_.adam_eps, adam);
+      report->critic_norm +=
+          critic_gradient_.Apply(step, 0, critic->size(), config_.critic_lr * learning_rate_scale_,
+                                 config_.grad_clip, critic->data());
+      ++steps;
+    }
+  }
+  report->critic_norm /= steps;
+}
+
+void HappoUpdate::MultiplyFactors(int agent, const float* actor) {
+  const int size = networks_.action_size();
+  const float* log_std = actor + networks_.actor.log_std_offset();
+  const int blocks = (samples_.size() + kBlock - 1) / kBlock;
+  pool_->Run(blocks, [&](int block, int worker) {
+    Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
+    const int from = block * kBlock, to = std::min(samples_.size(), from + kBlock);
+    Gather(from, to, agent, &s);
+    networks_.actor.mean().Forward(actor, s.observations.data(), to - from, &s.actor);
+    for (int k = 0; k < to - from; ++k) {
+      const double now = agent::GaussianLogDensity(s.actor.output() + k * size, log_std,
+                                                   s.actions.data() + k * size, size);
+      const double then = static_cast<double>(s.log_prob[static_cast<std::size_t>(k)]);
+      factors_[samples_.at(from + k)] *= std::exp(now - then);
+    }
+  });
+}
+
+PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
+                           std::uint32_t collection, double learning_rate_scale, double imitation,
+                           HappoParameters* parameters) {
+  collection_ = collection;
+  learning_rate_scale_ = learning_rate_scale;
+  imitation_ = static_cast<float>(imitation);
+  samples_.Prepare(rollouts, scales);
+  assert(samples_.size() % config_.minibatch == 0);
+  factors_.assign(static_cast<std::size_t>(samples_.size()), 1.0);
+  DrawOrder(collection);
+  PpoReport report;
+  int steps = 0;
+  for (std::size_t turn = 0; turn < order_.size(); ++turn) {
+    const auto agent = static_cast<std::size_t>(order_[turn]);
+    steps += TrainActor(order_[turn], static_cast<std::uint32_t>(turn), &parameters->actors[agent],
+                        &parameters->actor_adams[agent], &report);
+    MultiplyFactors(order_[turn], parameters->actors[agent].data());
+  }
+  report.actor_norm /= steps;
+  TrainCritic(&parameters->critic, &parameters->critic_adam, &report);
+  const double actor = networks_.actor.mean().spec().training_products();
+  report.flops =
+      2.0 * samples_.size() *
+      (report.epochs * actor + agents_ * networks_.actor.mean().spec().forward_products() +
+       config_.epochs * networks_.critic.spec().training_products());
+  return report;
+}
+
+}  // namespace stg::learn

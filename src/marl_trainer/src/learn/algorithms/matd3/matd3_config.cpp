@@ -1,0 +1,24 @@
+#include "marl_trainer/learn/algorithms/matd3/matd3_config.hpp"
+
+namespace stg::learn {
+
+Matd3Config::Matd3Config() {
+  critics = 2;
+  policy_delay = 2;
+  target_noise = 0.2;
+}
+
+std::unique_ptr<AlgorithmConfig> Matd3Config::Clone() const {
+  return std::make_unique<Matd3Config>(*this);
+}
+
+void Matd3Config::Describe(OptionTable* t) {
+  MaddpgConfig::Describe(t);
+  t->Add("policy-delay", &policy_delay, {1, 1000},
+         "steps of the critics for each of the actor and the targets");
+  t->Add("target-noise", &target_noise, {0, 10},
+         "noise of the target's actions, in shares of the action's scale");
+  t->Add("target-noise-clip", &target_noise_clip, {0, 10}, "its bound");
+}
+
+}  // namespace stg::learn

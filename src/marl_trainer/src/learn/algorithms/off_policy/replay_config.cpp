@@ -1,0 +1,65 @@
+#include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
+
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+
+namespace stg::learn {
+
+void ReplayConfig::Describe(OptionTable* t) {
+  t->Add("replay", &replay, {1, 1e9},
+         "environment steps that are remembered; a checkpoint holds them all");
+  t->Add("warmup", &warmup, {0, 1e9}, "environment steps of random actions before anything learns");
+  t->Add("batch", &batch, {1, 1e6}, "remembered environment steps per gradient step");
+  t->Add("replayed", &replayed, {0, 1000}, "samples that are replayed per environment step");
+  t->Add("n-step", &n_step, {1, 100}, "steps of a sample before the value of what follows");
+  t->Add("gamma", &gamma, {0, 0.9999}, "discount per decision");
+  t->Add("tau", &tau, {1e-6, 1}, "how far the target networks move at each gradient step");
+  t->Add("actor-hidden", &actor_hidden, {1, 4096},
+         "widths of the hidden layers of what decides on an observation");
+  t->Add("activation", &activation, "of the hidden layers: tanh or relu");
+  t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of what decides, at the start");
+  t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
+  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "Adam's epsilon");
+  t->Add("grad-clip", &grad_clip, {1e-6, 1e6}, "largest gradient norm");
+  t->Add("observation-clip", &observation_clip, {0.1, 1e6},
+         "bound of normalised observations and states");
+  t->Add("std-floor", &std_floor, {1e-6, 1}, "smallest standard deviation of the normalisers");
+}
+
+void ReplayConfig::DescribeCritics(OptionTable* t) {
+  t->Add("critic-hidden", &critic_hidden, {1, 4096},
+         "widths of the hidden layers of the critics of state and joint action");
+  t->Add("layer-norm", &layer_norm, "whether the critics normalise their hidden layers");
+  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critics at the start");
+}
+
+void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
+  common->envs = 256;
+  common->horizon = 20;
+  // A checkpoint holds the replayed steps: some hundred megabytes.
+  common->keep_checkpoints = 1;
+  common->checkpoint_interval = 500000;
+  if (preset == "fast") return;
+  if (preset != "paper") throw UserError("--preset: '" + preset + "' is not fast or paper");
+  common->steps = 2000000;
+  batch = 1024;
+  n_step = 1;
+  gamma = 0.95;
+  tau = 0.005;
+  actor_hidden = {128, 128};
+  lr = critic_lr = 3e-4;
+  lr_final = 1.0;
+  layer_norm = false;
+}
+
+void ReplayConfig::ValidateOrThrow(const TrainConfig& common) const {
+  RequireOption(activation == "tanh" || activation == "relu", "activation",
+                "'" + activation + "' is not tanh or relu");
+  RequireOption(common.imitation.controller.empty(), "imitate",
+                "is for methods that learn from their own actions: mappo, ippo, happo");
+  const std::int64_t collection = static_cast<std::int64_t>(common.envs) * common.horizon;
+  RequireOption(replay >= collection, "replay",
+                "is less than one collection, envs times horizon: " + std::to_string(collection));
+}
+
+}  // namespace stg::learn

@@ -1,0 +1,170 @@
+#include "marl_trainer/learn/algorithms/off_policy/replay_learner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "auv_common/numbers/random.hpp"
+
+namespace stg::learn {
+namespace {
+
+constexpr int kMomentStride = 4;  // the normalisers take in every n-th decision
+/// Rewards that the scale of the values remembers [environment steps].
+constexpr double kRewardMemory = 100000.0;
+/// Rewards that hardly differ must not be blown up.
+constexpr double kSmallestRewardStd = 0.01;
+
+}  // namespace
+
+ReplayLearner::ReplayLearner(const ReplayOptions& options, const TrainConfig& common,
+                             const Problem& problem, WorkerPool* pool)
+    : options_(options),
+      problem_(problem),
+      seed_(common.seed),
+      pool_(pool),
+      replay_(problem, options.replay, options.n_step, options.gamma),
+      observations_(problem.observation_size),
+      states_(problem.state_size),
+      rewards_(1) {
+  for (int s = 0; s < SlicedGradient::kSlices; ++s) batches_.emplace_back(problem, slice_rows());
+  UpdateScales();
+}
+
+int ReplayLearner::slice_rows() const {
+  return (options_.batch + SlicedGradient::kSlices - 1) / SlicedGradient::kSlices;
+}
+
+double ReplayLearner::Rank(int env) const {
+  return envs_ > 1 ? static_cast<double>(env) / (envs_ - 1) : 0.5;
+}
+
+void ReplayLearner::Begin(const Collection& collection) {
+  replay_.Begin(collection);
+  collected_.assign(collection.shards.size(),
+                    {RunningMoments(problem_.observation_size), RunningMoments(problem_.state_size),
+                     RunningMoments(1)});
+  envs_ = 0;
+  for (const Shard& shard : collection.shards) envs_ += shard.envs;
+  collected_steps_ = static_cast<std::int64_t>(envs_) * collection.steps;
+}
+
+void ReplayLearner::Observe(const Transition& t) {
+  Moments& m = collected_[static_cast<std::size_t>(t.shard)];
+  if (t.step % kMomentStride == 0) {
+    m.observations.Add(t.observations, t.envs * problem_.agents);
+    m.states.Add(t.states, t.envs);
+  }
+  m.rewards.Add(t.team_rewards, t.envs);
+  replay_.Add(t);
+}
+
+void ReplayLearner::UpdateScales() {
+  const auto floor = static_cast<float>(options_.std_floor);
+  const auto clip = static_cast<float>(options_.observation_clip);
+  scales_.observations = Normaliser::From(observations_, floor, clip);
+  scales_.states = Normaliser::From(states_, floor, clip);
+  scales_.action = static_cast<float>(problem_.action_scale);
+  if (rewards_.count() == 0.0) return;
+  const double horizon = 1.0 / (1.0 - options_.gamma);
+  const double mean = rewards_.mean(0);
+  const double std = std::max(std::sqrt(rewards_.variance(0)), kSmallestRewardStd) * horizon;
+  scales_.reward_mean = static_cast<float>(mean);
+  scales_.reward_std = static_cast<float>(std);
+  scales_.value_mean = static_cast<float>(mean * horizon);
+}
+
+void ReplayLearner::DrawBatch(std::uint32_t number) {
+  pool_->Run(SlicedGradient::kSlices, [&](int slice, int) {
+    const int begin = options_.batch * slice / SlicedGradient::kSlices;
+    const int end = options_.batch * (slice + 1) / SlicedGradient::kSlices;
+    ReplayBatch& batch = batches_[static_cast<std::size_t>(slice)];
+    batch.count = end - begin;
+    Random random(seed_, Stream::kReplay, number, 0, static_cast<std::uint32_t>(slice));
+    for (int row = 0; row < batch.count; ++row) {
+      batch.Set(row, replay_.At(replay_.Draw(&random)), scales_);
+    }
+  });
+}
+
+UpdateReport ReplayLearner::Update(const UpdateContext& context) {
+  const ReplayScales before = scales_;
+  const bool scaled = rewards_.count() > 0.0;  // else an untrained critic knows no scale yet
+  for (const Moments& m : collected_) {
+    observations_.Merge(m.observations);
+    states_.Merge(m.states);
+    rewards_.Merge(m.rewards);
+  }
+  rewards_.LimitCount(kRewardMemory);
+  UpdateScales();
+  const auto old_std = static_cast<double>(before.reward_std);
+  const auto new_std = static_cast<double>(scales_.reward_std);
+  if (scaled) {
+    RescaleValues(old_std / new_std, (static_cast<double>(before.value_mean) -
+                                      static_cast<double>(scales_.value_mean)) /
+                                         new_std);
+  }
+  const bool learns = seen_ + collected_steps_ > options_.warmup;
+  seen_ += collected_steps_;
+  if (learns) due_ += options_.replayed * static_cast<double>(collected_steps_) / options_.batch;
+  const int steps = static_cast<int>(due_);
+  due_ -= steps;
+  StepContext step;
+  step.rate = 1.0 - (1.0 - options_.lr_final) * std::min(context.progress, 1.0);
+  for (int k = 0; k < steps; ++k) {
+    step.number = static_cast<std::uint32_t>(gradient_steps_++);
+    DrawBatch(step.number);
+    Step(step);
+  }
+  return Report(steps);
+}
+
+void ReplayLearner::Save(Archive* archive) const {
+  archive->Put("observation_moments", observations_.Save());
+  archive->Put("state_moments", states_.Save());
+  archive->Put("reward_moments", rewards_.Save());
+  archive->PutInteger("seen", seen_);
+  archive->PutInteger("gradient_steps", gradient_steps_);
+  archive->PutNumber("due", due_);
+  replay_.Save(archive);
+}
+
+void ReplayLearner::LoadMoments(const Archive& archive) {
+  const auto& observations = archive.Doubles("observation_moments", observations_.Save().size());
+  const auto& states = archive.Doubles("state_moments", states_.Save().size());
+  const auto& rewards = archive.Doubles("reward_moments", rewards_.Save().size());
+  observations_.Load(observations);
+  states_.Load(states);
+  rewards_.Load(rewards);
+  UpdateScales();
+}
+
+void ReplayLearner::Load(const Archive& archive) {
+  const std::int64_t seen = archive.Integer("seen");
+  const std::int64_t steps = archive.Integer("gradient_steps");
+  const double due = archive.Number("due");
+  replay_.Load(archive);
+  LoadMoments(archive);
+  seen_ = seen;
+  gradient_steps_ = steps;
+  due_ = due;
+}
+
+void ReplayLearner::StartFrom(const Archive& archive) { LoadMoments(archive); }
+
+void MoveTowards(const std::vector<float>& online, double tau, std::vector<float>* target) {
+  const auto t = static_cast<float>(tau);
+  float* to = target->data();
+  for (std::size_t i = 0; i < online.size(); ++i) to[i] += t * (online[i] - to[i]);
+}
+
+void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters) {
+  const int last = network.layers() - 1;
+  const std::size_t end = network.parameters();
+  for (std::size_t i = network.weight_offset(last); i < end; ++i) {
+    parameters[i] = static_cast<float>(static_cast<double>(parameters[i]) * ratio);
+  }
+  float& bias = parameters[network.bias_offset(last)];
+  bias = static_cast<float>(static_cast<double>(bias) + shift);
+}
+
+}  // namespace stg::learn

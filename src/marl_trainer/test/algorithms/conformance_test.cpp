@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "algorithms/game.hpp"
+#include "marl_trainer/learn/algorithm_config.hpp"
+
+/// What every registered algorithm promises, whatever it learns.
+namespace stg::learn {
+namespace {
+
+Game AnyGame() {
+  Game game;
+  game.agents = 3;
+  game.scale = 0.75;
+  game.reward = [](double x, const float* a) {
+    return 1.0 - std::abs(x - static_cast<double>(a[0])) -
+           std::abs(static_cast<double>(a[1] - a[2]));
+  };
+  return game;
+}
+
+class Conformance : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Conformance, DoesNotDependOnTheNumberOfWorkers) {
+  const TrainSetup setup = GameSetup(GetParam());
+  Training one(AnyGame(), setup, 1), three(AnyGame(), setup, 3);
+  one.Run(12);
+  three.Run(12);
+  EXPECT_TRUE(one.Save() == three.Save());
+  TrainSetup other = setup;
+  other.common.seed = 1;
+  Training seeded(AnyGame(), other);
+  seeded.Run(12);
+  EXPECT_FALSE(seeded.Save() == one.Save());
+}
+
+TEST_P(Conformance, ResumesBitForBit) {
+  const TrainSetup setup = GameSetup(GetParam());
+  Training whole(AnyGame(), setup), first(AnyGame(), setup), second(AnyGame(), setup);
+  whole.Run(14);
+  first.Run(8);
+  second.Load(first.Save());
+  EXPECT_TRUE(second.Save() == first.Save());
+  second.ContinueAt(8);
+  second.Run(6);
+  EXPECT_TRUE(second.Save() == whole.Save());
+}
+
+TEST_P(Conformance, RefusesTheCheckpointOfAnotherShape) {
+  Training training(AnyGame(), GameSetup(GetParam()));
+  training.Run(1);
+  Game larger = AnyGame();
+  Training other(larger, GameSetup(GetParam(), {{"actor-hidden", {8}}}));
+  EXPECT_THROW(other.Load(training.Save()), std::exception);
+}
+
+TEST_P(Conformance, ExportsThePolicyThatItFlies) {
+  const Game game = AnyGame();
+  Training training(game, GameSetup(GetParam()));
+  training.Run(40);
+  agent::PolicyMetadata metadata;
+  metadata.observation_layout = "any";
+  metadata.action_interface = "any";
+  const std::vector<agent::Policy> policies = training.algorithm().Policies(metadata);
+  ASSERT_TRUE(policies.size() == 1 || policies.size() == static_cast<std::size_t>(game.agents));
+  bool moves = false;
+  for (const float x : {-2.0F, -0.5F, 0.1F, 0.7F}) {
+    const std::vector<float> flown = training.Act(static_cast<double>(x));
+    for (std::size_t i = 0; i < flown.size(); ++i) {
+      float action = 0.0F;
+      policies[policies.size() == 1 ? 0 : i].Mean(&x, &action);
+      EXPECT_NEAR(action, flown[i], 1e-6) << x;
+      moves = moves || flown[i] != 0.0F;
+    }
+  }
+  EXPECT_TRUE(moves);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Conformance, ::testing::ValuesIn(Algorithms().Names()),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace stg::learn

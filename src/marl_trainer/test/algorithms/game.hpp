@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+
+namespace stg::learn {
+
+/// A cooperative game with a known optimum. Everybody sees the same number x, drawn anew in [-1, 1]
+/// at every step whatever was done; nobody is told who it is.
+struct Game {
+  int agents = 2;
+  int episode = 5;  ///< steps until truncation
+  double scale = 1.0;
+  /// Of the actions [agents] at x.
+  std::function<double(double x, const float* actions)> reward;
+
+  Problem problem() const;
+};
+
+/// The third of [-scale, scale] that an action lies in: 0, 1, 2.
+int Third(float action, double scale = 1.0);
+
+/// The named algorithm with options for small games, over which those of `options` go.
+TrainSetup GameSetup(const std::string& algorithm, const nlohmann::json& options = {});
+
+/// A training at a game: algorithm, threads, and how far it is.
+class Training {
+ public:
+  Training(const Game& game, const TrainSetup& setup, int workers = 1);
+
+  /// Plays and updates; returns the mean reward of the last collection.
+  double Run(int collections);
+  /// Actions [agents] of the deterministic policy at x.
+  std::vector<float> Act(double x);
+  /// What the last update reported under this name.
+  double Reported(const std::string& column) const;
+
+  /// Bit for bit what a checkpoint holds.
+  Archive Save() const;
+  void Load(const Archive& archive) { algorithm_->Load(archive); }
+  /// As a resumed run: goes on with this collection.
+  void ContinueAt(std::uint32_t collection) { collection_ = collection; }
+
+  Algorithm& algorithm() { return *algorithm_; }
+
+ private:
+  void PlayShard(const Collection& collection, int shard, int worker, double* reward);
+  float Context(int env, std::int64_t time) const;
+
+  const Game game_;
+  const TrainSetup setup_;
+  WorkerPool pool_;
+  std::unique_ptr<Algorithm> algorithm_;
+  std::uint32_t collection_ = 0;
+  int planned_ = 1;
+  UpdateReport report_;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/game.hpp"
+
+/// Games with known optima: what an algorithm must be able to learn.
+namespace stg::learn {
+namespace {
+
+Game PenaltyGame() {
+  Game game;
+  game.reward = [](double, const float* a) {
+    constexpr double kPayoff[3][3] = {{10, 0, 0}, {0, 2, 0}, {0, 0, 10}};
+    return kPayoff[Third(a[0])][Third(a[1])];
+  };
+  return game;
+}
+
+/// Everybody gets 1 when the two do different things.
+Game DifferingGame() {
+  Game game;
+  game.reward = [](double, const float* a) { return (a[0] > 0.0F) != (a[1] > 0.0F) ? 1.0 : 0.0; };
+  return game;
+}
+
+constexpr int kTeam = 3;
+constexpr double kEffort = 0.5;
+
+/// Three share the work of reaching x: r = -(sum a - x)^2 - rho sum a^2, whose optimum is
+/// a = x / (n + rho) for all, worth -rho x^2 / (n + rho).
+Game QuadraticTeam() {
+  Game game;
+  game.agents = kTeam;
+  game.scale = 0.75;
+  game.reward = [](double x, const float* a) {
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < kTeam; ++i) {
+      sum += static_cast<double>(a[i]);
+      squares += static_cast<double>(a[i]) * static_cast<double>(a[i]);
+    }
+    return -(sum - x) * (sum - x) - kEffort * squares;
+  };
+  return game;
+}
+
+struct Case {
+  std::string algorithm;
+  nlohmann::json options;
+  int collections;
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.algorithm; }
+
+class Penalty : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Penalty, ReachesTheOptimum) {
+  const Game game = PenaltyGame();
+  Training training(game, GameSetup(GetParam().algorithm, GetParam().options));
+  training.Run(GetParam().collections);
+  for (const double x : {-0.9, -0.3, 0.1, 0.8}) {
+    EXPECT_EQ(game.reward(x, training.Act(x).data()), 10.0) << x;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, Penalty,
+                         ::testing::Values(Case{"mappo", {}, 100}, Case{"ippo", {}, 100},
+                                           Case{"happo", {}, 100}, Case{"maddpg", {}, 150},
+                                           Case{"matd3", {}, 150}));
+
+class Quadratic : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Quadratic, EverybodyDoesItsShare) {
+  const Game game = QuadraticTeam();
+  Training training(game, GameSetup(GetParam().algorithm, GetParam().options));
+  training.Run(GetParam().collections);
+  for (const double x : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
+    const std::vector<float> actions = training.Act(x);
+    for (const float a : actions) EXPECT_NEAR(a, x / (kTeam + kEffort), 0.05) << x;
+    EXPECT_NEAR(game.reward(x, actions.data()), -kEffort * x * x / (kTeam + kEffort), 0.02) << x;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, Quadratic,
+                         ::testing::Values(Case{"mappo", {}, 200}, Case{"ippo", {}, 200},
+                                           Case{"happo", {}, 300}, Case{"maddpg", {}, 300},
+                                           Case{"matd3", {}, 300}, Case{"masac", {}, 300}));
+
+TEST(Quadratic, TheBestBinsAreChosen) {
+  const Game game = QuadraticTeam();
+  Training training(game, GameSetup("madqn", {{"bins", 5}}));
+  training.Run(300);
+  // All choose alike: of -0.75, -0.375, 0, 0.375, 0.75, zero is best up to |x| = 0.66.
+  for (const double x : {-0.95, -0.3, 0.0, 0.3, 0.95}) {
+    const float best = std::abs(x) < 0.66 ? 0.0F : x > 0 ? 0.375F : -0.375F;
+    for (const float a : training.Act(x)) EXPECT_EQ(a, best) << x;
+  }
+}
+
+TEST(Differing, AnActorThatAllShareCannotAndActorsOfTheirOwnCan) {
+  Training shared(DifferingGame(), GameSetup("mappo"));
+  // Two that are alike differ half of the time at best, by chance.
+  EXPECT_LT(shared.Run(60), 0.6);
+  const std::vector<float> alike = shared.Act(0.3);
+  EXPECT_EQ(alike[0], alike[1]);
+  for (const bool sequential : {true, false}) {
+    Training own(DifferingGame(), GameSetup("happo", {{"sequential", sequential}}));
+    EXPECT_GT(own.Run(100), 0.9) << sequential;
+    const std::vector<float> actions = own.Act(0.3);
+    EXPECT_LT(actions[0] * actions[1], 0.0F);
+  }
+}
+
+}  // namespace
+}  // namespace stg::learn
