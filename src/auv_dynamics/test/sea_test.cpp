@@ -1,6 +1,11 @@
 #include "auv_dynamics/world/sea.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "auv_common/error.hpp"
 #include "auv_dynamics/world/current.hpp"
@@ -140,11 +145,98 @@ TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
   }
 }
 
+/// A folder with `slope.nc`: 10 m of depth at its southern edge, 210 m at its northern, 22 km on.
+class SeaOverAFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "sea_" + std::to_string(::getpid());
+    std::filesystem::create_directories(folder_);
+    std::vector<double> lats, lons;
+    std::vector<float> elevation;
+    for (int k = 0; k <= 20; ++k) {
+      lats.push_back(10.0 + 0.01 * k);
+      lons.push_back(50.0 + 0.01 * k);
+    }
+    for (int r = 0; r <= 20; ++r) {
+      for (int c = 0; c <= 20; ++c) elevation.push_back(static_cast<float>(-10 - 10 * r));
+    }
+    Bathymetry(lats, lons, elevation).Save(folder_ + "/slope.nc", "for a test");
+    ::setenv("STG_TERRAINS", ("/no/such:" + folder_).c_str(), 1);
+  }
+  void TearDown() override {
+    ::unsetenv("STG_TERRAINS");
+    std::filesystem::remove_all(folder_);
+  }
+  static WorldConfig Slope(double latitude) {
+    WorldConfig s = OpenWater(1);
+    s.sea.terrain = "slope";
+    s.sea.latitude_deg = latitude;
+    s.sea.longitude_deg = 50.1;
+    return s;
+  }
+  static std::string Refusal(const WorldConfig& s) {
+    try {
+      World world(s);
+      world.Reset(0, 1, 0, ResetStage::kMedium);
+    } catch (const UserError& e) {
+      return e.what();
+    }
+    return "accepted";
+  }
+  std::string folder_;
+};
+
+TEST_F(SeaOverAFile, TheBottomIsThatOfTheFile) {
+  World world(Slope(10.1));
+  EXPECT_NEAR(world.sea().terrain().Height(0.0, 0.0), -110.0, 0.1);
+  // 10 m deeper with every hundredth of a degree, 1106 m, to the north.
+  EXPECT_NEAR(world.sea().terrain().Height(0.0, 400.0), -110.0 - 4.0 / 1.106, 0.1);
+  world.Place(0, {{0.0, 300.0, -105.0}}, {{50.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
+  for (int k = 0; k < 300; ++k) world.Step({Pack(1.0), Pack(0.0), Pack(-1.0)});
+  const Vec3<double> p = world.Nav(0, 0).p_WB;
+  EXPECT_NEAR(p.z, world.sea().terrain().Height(p.x, p.y), 1e-3);
+  EXPECT_NEAR(p.z, -110.0 - 3.0 / 1.106, 0.1);
+  EXPECT_EQ(Lane(world.sea().groundings(0), 0), 1.0);
+}
+
+TEST_F(SeaOverAFile, EpisodesStartClearOfTheBottomOrSayThatTheyCannot) {
+  WorldConfig s = Slope(10.05);  // 60 m
+  s.sea.auv_depth_m = s.sea.target_depth_m = {20.0, 80.0};
+  World world(s);
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    world.Reset(0, seed, 0, ResetStage::kMedium);
+    EXPECT_GT(world.sea().terrain().Altitude(world.Nav(0, 0).p_WB), 5.0);
+    EXPECT_GT(world.sea().terrain().Altitude(Lane(world.target(0).p_WT, 0)), 5.0);
+  }
+  s.sea.target_depth_m = {70.0, 80.0};
+  EXPECT_NE(Refusal(s).find("every start of a target lies in the bottom"), std::string::npos);
+  s.sea.target_depth_m = {20.0, 40.0};
+  s.sea.auv_depth_m = {70.0, 80.0};
+  EXPECT_NE(Refusal(s).find("no room for 1 vehicles"), std::string::npos);
+}
+
+TEST_F(SeaOverAFile, SaysWhatIsWrong) {
+  WorldConfig s = Slope(10.1);
+  EXPECT_EQ(Refusal(s), "accepted");
+  s.sea.latitude_deg = 11.0;
+  EXPECT_NE(Refusal(s).find("covers latitudes 10.0"), std::string::npos) << Refusal(s);
+  s = Slope(10.1);
+  s.sea.longitude_deg = 40.0;
+  EXPECT_NE(Refusal(s).find("covers longitudes 50.0"), std::string::npos) << Refusal(s);
+  s.sea.terrain = "atlantis";
+  ::setenv("STG_SCENARIOS", folder_.c_str(), 1);
+  EXPECT_NE(Refusal(s).find("no atlantis.nc in the folders of STG_TERRAINS"), std::string::npos);
+  ::unsetenv("STG_SCENARIOS");
+  std::ofstream(folder_ + "/slope.nc") << "no grid";
+  EXPECT_NE(Refusal(Slope(10.1)).find("not a readable NetCDF file"), std::string::npos);
+}
+
 TEST(Sea, RefusesStartsInTheBottom) {
   WorldConfig s = OpenWater(1);
   s.sea.bottom_m = 60.0;
   EXPECT_THROW(World{s}, UserError);
-  s.sea = {true, 100.0, {20.0, 60.0}, {20.0, 100.0}};
+  s.sea.bottom_m = 100.0;
+  s.sea.target_depth_m = {20.0, 100.0};
   EXPECT_THROW(World{s}, UserError);
   s.sea.open = false;
   EXPECT_NO_THROW(World{s});

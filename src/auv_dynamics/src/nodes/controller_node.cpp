@@ -5,9 +5,9 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/control/control.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_dynamics/world/helm.hpp"
 
 namespace stg::nodes {
 namespace {

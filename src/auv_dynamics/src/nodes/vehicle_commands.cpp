@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "auv_common/nodes/node_main.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_dynamics/world/helm.hpp"
 
 namespace stg::nodes {
 namespace {

@@ -313,6 +313,9 @@ void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
     const std::string name = topics::AuvTopic(i, commands_.topic());
     status.add("deadline misses " + name, barrier_.misses(i));
     commands_.refused(i).Report(name, &status);
+    if (scenario_.sea.open) {
+      status.add("groundings " + name, Lane(world_.sea().groundings(i), 0));
+    }
     if (!barrier_.present(i)) {
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no " + name);
     }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "auv_common/error.hpp"
+#include "classic_header.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -17,6 +18,13 @@ NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
   if (!std::filesystem::is_regular_file(path)) throw UserError(path + ": no such file");
   if (std::filesystem::file_size(path) == 0) throw UserError(path + ": is empty");
   Check(nc_open(path.c_str(), NC_NOWRITE, &id_), "not a readable NetCDF file");
+  const auto least = SmallestClassicSize(path);
+  if (least && std::filesystem::file_size(path) < *least) {
+    nc_close(id_);
+    id_ = -1;
+    Refuse("damaged: " + std::to_string(std::filesystem::file_size(path)) + " bytes of at least " +
+           std::to_string(*least));
+  }
 }
 
 NetcdfFile::~NetcdfFile() {

@@ -1,6 +1,51 @@
 #include "auv_dynamics/world/sea.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "auv_common/config/files.hpp"
+#include "auv_common/error.hpp"
+
 namespace stg::dynamics {
+namespace {
+
+/// Of a scenario in open water; else nobody asks.
+Terrain MakeTerrain(const SeaConfig& c, double region_m) {
+  if (!c.open || c.terrain == "flat") return Terrain(c.bottom_m);
+  // A little more than the region, which is a square of metres and not of degrees.
+  const Datum datum(c.latitude_deg, c.longitude_deg);
+  const Datum::Geodetic corners[] = {
+      datum.ToGeodetic({-region_m, -region_m, 0.0}), datum.ToGeodetic({region_m, -region_m, 0.0}),
+      datum.ToGeodetic({-region_m, region_m, 0.0}),  datum.ToGeodetic({region_m, region_m, 0.0}),
+      datum.ToGeodetic({0.0, -region_m, 0.0}),       datum.ToGeodetic({0.0, region_m, 0.0})};
+  GeoRegion r{90.0, -90.0, c.longitude_deg, c.longitude_deg};
+  for (const Datum::Geodetic& at : corners) {
+    const double longitude =
+        c.longitude_deg + std::remainder(at.longitude_deg - c.longitude_deg, 360.0);
+    r = {std::min(r.south, at.latitude_deg), std::max(r.north, at.latitude_deg),
+         std::min(r.west, longitude), std::max(r.east, longitude)};
+  }
+  return Terrain(Bathymetry::Load(TerrainFile(c.terrain), r), datum, region_m);
+}
+
+}  // namespace
+
+std::string TerrainFile(const std::string& name) {
+  const char* own = std::getenv("STG_TERRAINS");
+  std::istringstream folders(own == nullptr ? "" : own);
+  std::string file;
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    file = folder + "/" + name + ".nc";
+    if (!folder.empty() && std::filesystem::is_regular_file(file)) return file;
+  }
+  file = config::ScenarioFolder() + "/../terrain/" + name + ".nc";
+  if (std::filesystem::is_regular_file(file)) return file;
+  throw UserError("sea.terrain: no " + name + ".nc in the folders of STG_TERRAINS (" +
+                  (own == nullptr ? "not set" : own) + "), and no " + file);
+}
 
 using config::kNone;
 using config::NonNegative;
@@ -10,8 +55,16 @@ void Describe(SeaConfig* c, config::Table* t) {
   t->Section("sea");
   t->AddOptional("open", &c->open, "false", kNone, "-",
                  "open water: a surface at z = 0 and a bottom instead of the walls");
+  t->AddOptional(
+      "terrain", &c->terrain, "flat", kNone, "-",
+      "bottom of open water: flat, or a bathymetry NAME.nc in a folder of $STG_TERRAINS or "
+      "shipped");
   t->AddOptional("bottom_m", &c->bottom_m, "120.0", Positive(12000), "m",
                  "depth of the flat bottom");
+  t->AddOptional("latitude_deg", &c->latitude_deg, "0.0", config::Within(-90, 90), "deg, WGS 84",
+                 "latitude of the world's origin");
+  t->AddOptional("longitude_deg", &c->longitude_deg, "0.0", config::Within(-360, 360),
+                 "deg, WGS 84", "longitude of the world's origin");
   t->AddOptional("auv_depth_m", &c->auv_depth_m, "[20.0, 60.0]", NonNegative(12000), "m",
                  "[low, high] depth at which an AUV starts in open water");
   t->AddOptional("target_depth_m", &c->target_depth_m, "[20.0, 60.0]", NonNegative(12000), "m",
@@ -19,7 +72,7 @@ void Describe(SeaConfig* c, config::Table* t) {
 }
 
 std::optional<config::Violation> FindConflict(const SeaConfig& c) {
-  if (!c.open) return {};
+  if (!c.open || c.terrain != "flat") return {};
   if (c.auv_depth_m.hi >= c.bottom_m) {
     return config::Violation{{"sea.auv_depth_m", "sea.bottom_m"}, "AUVs would start in the bottom"};
   }
@@ -30,8 +83,9 @@ std::optional<config::Violation> FindConflict(const SeaConfig& c) {
   return {};
 }
 
-Sea::Sea(const SeaConfig& config, int vehicles)
+Sea::Sea(const SeaConfig& config, int vehicles, double region_m)
     : config_(config),
+      terrain_(MakeTerrain(config, region_m)),
       groundings_(static_cast<std::size_t>(vehicles), Pack(0.0)),
       aground_(groundings_) {}
 
@@ -40,8 +94,17 @@ void Sea::Reset(int lane) {
   for (Pack& x : aground_) SetLane(&x, lane, 0.0);
 }
 
+Pack Sea::Bottom(const Vec3<Pack>& p_WB) const {
+  if (terrain_.flat()) return Pack(-config_.bottom_m);
+  Pack bottom(0.0);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    SetLane(&bottom, lane, terrain_.Height(Lane(p_WB.x, lane), Lane(p_WB.y, lane)));
+  }
+  return bottom;
+}
+
 void Sea::Apply(int i, VehicleState<Pack>* s) {
-  const Pack zero(0.0), one(1.0), bottom(-config_.bottom_m);
+  const Pack zero(0.0), one(1.0), bottom = Bottom(s->p_WB);
   const auto below = s->p_WB.z < bottom;
   const auto above = s->p_WB.z > zero;
   Pack& aground = aground_[static_cast<std::size_t>(i)];

@@ -22,15 +22,20 @@ bool Inside(const Vec3<double>& p, double half_extent) {
          std::abs(p.z) <= half_extent;
 }
 
+/// Nobody starts closer to the bottom [m].
+constexpr double kClearOfBottom_m = 5.0;
+
 Vec3<double> LevelDirection(Random* random) {
   const double angle = random->Uniform(0.0, 2.0 * kPi);
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
 /// Draws a position for each vehicle until it lies in the region and apart from those before it.
-/// @param draw random, position of the vehicle's target -> a position
-template <class Draw>
-void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, Start* start) {
+/// @param draw  random, position of the vehicle's target -> a position
+/// @param clear whether a position is water
+template <class Draw, class Clear>
+void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, const Clear& clear,
+                   Start* start) {
   auto& p_WB = start->p_WB;
   for (size_t i = 0; i < p_WB.size(); ++i) {
     const Vec3<double>& p_WT = start->targets[i % start->targets.size()].p_WT;
@@ -38,14 +43,14 @@ void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, 
     // Rejection sampling; the validator rejects scenarios too crowded for it.
     for (int attempt = 0; attempt < 100000 && !placed; ++attempt) {
       p_WB[i] = draw(random, p_WT);
-      placed = Inside(p_WB[i], config.start_half_extent_m);
+      placed = Inside(p_WB[i], config.start_half_extent_m) && clear(p_WB[i]);
       for (size_t j = 0; j < i && placed; ++j) {
         placed = Norm(p_WB[i] - p_WB[j]) >= config.min_separation_m;
       }
     }
     if (!placed) {
       throw UserError("reset: no room for " + std::to_string(p_WB.size()) +
-                      " vehicles at reset.min_separation_m");
+                      " vehicles at reset.min_separation_m, clear of walls and bottom");
     }
   }
 }
@@ -68,20 +73,32 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
         const double d = draw->Uniform(r.auv_distance_m.lo, r.auv_distance_m.hi);
         return p_WT + UniformDirection(draw) * d;
       },
-      start);
+      [](const Vec3<double>&) { return true; }, start);
 }
 
-void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, ResetStage stage,
-                  std::uint64_t seed, std::uint32_t episode, Start* start) {
+void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Terrain& terrain,
+                  ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start) {
   const ResetStageConfig& r = config.stages[static_cast<size_t>(stage)];
   Random random(seed, Stream::kReset, episode, 0, 0);
   const auto at_depth = [](Vec3<double> p, Random* draw, const config::Interval& depth_m) {
     p.z = -draw->Uniform(depth_m.lo, depth_m.hi);
     return p;
   };
+  const auto clear = [&terrain](const Vec3<double>& p) {
+    return terrain.Altitude(p) > kClearOfBottom_m;
+  };
   for (auto& target : start->targets) {
-    const double radius = random.Uniform(r.target_radius_m.lo, r.target_radius_m.hi);
-    target.p_WT = at_depth(LevelDirection(&random) * radius, &random, sea.target_depth_m);
+    bool placed = false;
+    for (int attempt = 0; attempt < 1000 && !placed; ++attempt) {
+      const double radius = random.Uniform(r.target_radius_m.lo, r.target_radius_m.hi);
+      target.p_WT = at_depth(LevelDirection(&random) * radius, &random, sea.target_depth_m);
+      placed = clear(target.p_WT);
+    }
+    if (!placed) {
+      throw UserError(
+          "reset: every start of a target lies in the bottom; see sea.target_depth_m, "
+          "sea.latitude_deg, sea.longitude_deg");
+    }
     const double speed = random.Uniform(r.target_speed_mps.lo, r.target_speed_mps.hi);
     target.v_WT = LevelDirection(&random) * speed;
   }
@@ -91,7 +108,7 @@ void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, ResetStage st
         const double d = draw->Uniform(r.auv_distance_m.lo, r.auv_distance_m.hi);
         return at_depth(p_WT + LevelDirection(draw) * d, draw, sea.auv_depth_m);
       },
-      start);
+      clear, start);
 }
 
 }  // namespace stg::dynamics

@@ -22,7 +22,7 @@ void Describe(CurrentConfig* c, config::Table* t) {
                  "m/s, east and north", "amplitude of a tidal current that is added");
   t->AddOptional("tide_period_s", &c->tide_period_s, "44714.2", Positive(1e8), "s",
                  "period of the tide");
-  t->AddOptional("tide_phase_rad", &c->tide_phase_rad, "0.0", Within(-6.3, 6.3), "rad",
+  t->AddOptional("tide_phase_rad", &c->tide_phase_rad, "0.0", NonNegative(6.3), "rad",
                  "phase of the tide when an episode starts");
 }
 

@@ -35,7 +35,7 @@ World::World(const WorldConfig& scenario)
       contacts_(scenario.contact, scenario.agents, scenario.vehicle.radius_m),
       disturbance_(scenario.disturbance, scenario.agents, dt_s_),
       walls_(scenario.workspace),
-      sea_(scenario.sea, scenario.agents),
+      sea_(scenario.sea, scenario.agents, scenario.workspace.half_extent_m),
       open_(scenario.sea.open),
       vehicles_(static_cast<size_t>(scenario.agents)),
       targets_(static_cast<size_t>(scenario.target.count)),
@@ -139,7 +139,7 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
 
 void World::Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStage stage) {
   if (open_) {
-    DrawSeaStart(reset_, depths_, stage, seed, episode, &start_);
+    DrawSeaStart(reset_, depths_, sea_.terrain(), stage, seed, episode, &start_);
   } else {
     DrawStart(reset_, stage, seed, episode, &start_);
   }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -177,7 +178,7 @@ TEST_F(GridFile, SaysWhatIsWrongWithAFile) {
   // Cut off behind its header.
   Write(Layout());
   fs::resize_file(file_, fs::file_size(file_) - 60);
-  EXPECT_NE(Refusal(), "accepted");
+  says(Refusal(), "damaged");
   Layout l;
   l.coordinates = false;
   says(Refusal(l), "has no coordinates");
@@ -235,6 +236,32 @@ TEST_F(GridFile, RefusesOnesOfOtherDimensionsOrWithoutElevations) {
   EXPECT_NE(Refusal().find("it has none at all"), std::string::npos);
   write(2, 2);
   EXPECT_NE(Refusal().find("several variables could be elevations"), std::string::npos);
+}
+
+TEST_F(GridFile, FilesOfBothFormatsThatAreCutOffAnywhereAreRefused) {
+  for (const int format : {NC_CLASSIC_MODEL, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4}) {
+    Layout l;
+    l.format = format;
+    Write(l);
+    const auto whole = fs::file_size(file_);
+    EXPECT_EQ(Refusal(), "accepted");
+    // Of NetCDF 4 the end may be unused.
+    const auto slack = format == NC_NETCDF4 ? whole / 3 : 4;
+    for (auto size = whole - slack; size > 8; size = size * 4 / 5) {
+      Write(l);
+      fs::resize_file(file_, size);
+      EXPECT_NE(Refusal(), "accepted") << format << ": " << size << " of " << whole;
+    }
+  }
+}
+
+TEST(ShippedBathymetry, CoversTheBoxOfThePapersFigure6) {
+  const Bathymetry grid = Bathymetry::Load(STG_SHIPPED_TERRAIN "/fig6.nc");
+  for (const double lat : {21.2, 22.5}) {
+    for (const double lon : {121.6, 122.9}) EXPECT_TRUE(grid.Covers(lat, lon));
+  }
+  EXPECT_LT(grid.highest(), -100.0);
+  EXPECT_NEAR(grid.lowest(), -5288.0, 0.5);
 }
 
 TEST_F(GridFile, AHugeGridIsRefusedAtOnceAndCroppedWithoutReadingIt) {

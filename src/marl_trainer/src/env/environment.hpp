@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "auv_dynamics/world/helm.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/task.hpp"
 #include "sources/information_source.hpp"

@@ -25,7 +25,8 @@ VectorEnvOptions Few(int envs, std::uint64_t seed) {
 
 TEST(SteeredEnv, PursuersReachTheirTargetAndKeepGoing) {
   for (const char* model : {"vehicle.model=torpedo", "vehicle.model=kinematic"}) {
-    TestEnv env(Torpedoes({model, "time.episode_steps=400", "current.velocity_mps=[0,0,0]"}),
+    TestEnv env(Torpedoes({model, "time.episode_steps=400", "current.velocity_mps=[0,0,0]",
+                           "current.layer_east_mps=[0,0,0,0]", "current.tide_mps=[0,0]"}),
                 Few(8, 3));
     env.Reset();
     const Controller pursuit = MakeController("pursuit_separated", env.scenario(0));

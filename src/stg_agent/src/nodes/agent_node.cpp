@@ -11,9 +11,9 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/control/control.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_dynamics/world/helm.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {

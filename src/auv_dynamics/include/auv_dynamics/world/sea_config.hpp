@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "auv_common/config/field.hpp"
 
@@ -11,13 +12,20 @@ namespace stg::dynamics {
 /// region, not for a wall.
 struct SeaConfig {
   bool open = false;
-  double bottom_m = 120.0;                      ///< depth of the flat bottom
+  std::string terrain = "flat";  ///< or the name of a bathymetry, see TerrainFile
+  double bottom_m = 120.0;       ///< depth of the flat bottom
+  double latitude_deg = 0.0;     ///< of the world's origin, WGS 84
+  double longitude_deg = 0.0;
   config::Interval auv_depth_m{20.0, 60.0};     ///< where AUVs start
   config::Interval target_depth_m{20.0, 60.0};  ///< where targets start and stay
 };
 
 /// Keys, units and ranges of the section `sea`, which a file may leave out.
 void Describe(SeaConfig* c, config::Table* t);
+/// The file of a bathymetry by its name: <name>.nc in a folder of $STG_TERRAINS (several with
+/// colons between them), else in `terrain` beside the folder of the shipped scenarios. Throws
+/// UserError that names the folders when there is none.
+std::string TerrainFile(const std::string& name);
 /// Contradictions between its keys.
 std::optional<config::Violation> FindConflict(const SeaConfig& c);
 

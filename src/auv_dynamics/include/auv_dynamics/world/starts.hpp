@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "auv_dynamics/targets/target_state.hpp"
+#include "auv_dynamics/terrain/terrain.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
 #include "auv_dynamics/world/sea_config.hpp"
 
@@ -24,8 +25,8 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
 
 /// The same in open water: distances and directions in the horizontal plane, depths uniform within
-/// those of `sea`, targets level.
-void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, ResetStage stage,
-                  std::uint64_t seed, std::uint32_t episode, Start* start);
+/// those of `sea`, targets level. Nobody starts within 5 m of the bottom.
+void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Terrain& terrain,
+                  ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start);
 
 }  // namespace stg::dynamics

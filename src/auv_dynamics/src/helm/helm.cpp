@@ -1,4 +1,4 @@
-#include "auv_dynamics/world/helm.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 
 namespace stg::dynamics {
 

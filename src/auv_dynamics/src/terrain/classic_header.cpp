@@ -1,0 +1,96 @@
+#include "classic_header.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+namespace stg::dynamics {
+namespace {
+
+/// Reads the header's big-endian numbers one after the other; bad() once it has come to an end.
+class HeaderReader {
+ public:
+  explicit HeaderReader(const std::string& path) : in_(path, std::ios::binary) {}
+
+  /// 1, 2 or 5; 0: no classic file.
+  int Version() {
+    char magic[4] = {};
+    in_.read(magic, 4);
+    if (!in_ || magic[0] != 'C' || magic[1] != 'D' || magic[2] != 'F') return 0;
+    version_ = magic[3];
+    return version_ == 1 || version_ == 2 || version_ == 5 ? version_ : 0;
+  }
+  bool bad() const { return !in_; }
+  std::uint64_t Number(int bytes) {
+    std::uint64_t value = 0;
+    for (int k = 0; k < bytes; ++k) {
+      const int byte = in_.get();
+      value = value << 8 | static_cast<std::uint64_t>(byte & 0xff);
+    }
+    return value;
+  }
+  /// A count, a length or a size.
+  std::uint64_t Count() { return Number(version_ == 5 ? 8 : 4); }
+  /// A place in the file.
+  std::uint64_t Offset() { return Number(version_ == 1 ? 4 : 8); }
+  void SkipPadded(std::uint64_t bytes) {
+    // No header is that long: the file is damaged.
+    if (bytes > (1U << 30)) in_.setstate(std::ios::failbit);
+    if (in_) in_.ignore(static_cast<std::streamsize>((bytes + 3) / 4 * 4));
+    if (in_.peek() == std::ifstream::traits_type::eof()) in_.setstate(std::ios::failbit);
+  }
+  void SkipName() { SkipPadded(Count()); }
+  void SkipAttributes() {
+    static constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    Number(4);  // tag
+    const std::uint64_t count = Count();
+    for (std::uint64_t k = 0; k < count && !bad(); ++k) {
+      SkipName();
+      const std::uint64_t type = Number(4), values = Count();
+      if (type >= std::size(kSizes) || values > (1U << 30)) in_.setstate(std::ios::failbit);
+      if (!bad()) SkipPadded(values * kSizes[type]);
+    }
+  }
+
+ private:
+  std::ifstream in_;
+  int version_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::uint64_t> SmallestClassicSize(const std::string& path) {
+  HeaderReader header(path);
+  if (header.Version() == 0) return {};
+  header.Count();  // records
+  header.Number(4);
+  std::uint64_t dimensions = header.Count();
+  std::uint64_t unlimited = UINT64_MAX;
+  for (std::uint64_t k = 0; k < dimensions && !header.bad(); ++k) {
+    header.SkipName();
+    if (header.Count() == 0) unlimited = k;
+  }
+  header.SkipAttributes();
+  header.Number(4);
+  const std::uint64_t variables = header.Count();
+  std::uint64_t size = 0;
+  for (std::uint64_t k = 0; k < variables && !header.bad(); ++k) {
+    header.SkipName();
+    const std::uint64_t rank = header.Count();
+    bool record = false;
+    for (std::uint64_t d = 0; d < rank && !header.bad(); ++d) {
+      record = header.Count() == unlimited || record;
+    }
+    header.SkipAttributes();
+    header.Number(4);  // type
+    const std::uint64_t bytes = header.Count(), begin = header.Offset();
+    // Sizes are rounded up to four bytes, the file need not be; those of very large variables do
+    // not fit into their field.
+    if (!record && !header.bad() && bytes >= 4 && bytes < 0xfffffffcU) {
+      size = std::max(size, begin + bytes - 3);
+    }
+  }
+  if (header.bad()) return {};
+  return size;
+}
+
+}  // namespace stg::dynamics
