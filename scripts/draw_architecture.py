@@ -21,7 +21,7 @@ from tree import cpp_files, included, includes, logical  # noqa: E402 pylint: di
 
 PICTURE = ROOT / "docs" / "images" / "architecture"
 MESSAGES = "auv_msgs"
-COLOURS = ("#4d6680", "#1b7f79", "#2a6fb0", "#b3641c", "#7a4fa3", "#b03a5b")
+COLOURS = ("#4d6680", "#1b7f79", "#2a6fb0", "#b3641c", "#7a4fa3", "#b03a5b", "#6b7a1f")
 
 
 class House:
@@ -184,6 +184,9 @@ class Picture:
                 width[MESSAGES] = self.MESSAGES_WIDTH
             self.chips.update({p: self.fill(p, width[p]) for p in layer})
             height = 27 + self.LINE * max(len(self.chips[p]) for p in layer)
+            # The first box of a layer takes the arrows from afar on its left side.
+            arrivals = sum(layer[0] in far for far in self.far.values())
+            height = max(height, 12 + 14 * arrivals)
             x = self.left
             for package in layer:
                 self.box[package] = (x, y, width[package], height)

@@ -1,46 +1,90 @@
 #!/usr/bin/python3
 """roslaunch that tells by its exit status whether the run went well.
 
-Takes roslaunch's arguments and does what it does, with three differences. A node that exits with
-status 2 refuses its configuration (stg::RunNode): the run ends at once, where respawning would
-repeat it for ever. The exit status is 1 after that, or when a required node died with an error. And
-nothing is left running when a required node dies while others start, where roslaunch gives up
-before its monitor has stopped them.
+Takes roslaunch's arguments and does what it does, with four differences. What can be known not to
+work is refused before anything starts, in one line (run_checks.py). A node that exits with status 2
+refuses its configuration (stg::RunNode): the run ends at once, where respawning would repeat it for
+ever. The exit status is 1 after that, when a required node, the recorder or the master died, or
+when a file that was asked for was not written. And nothing is left running when a required node
+dies while others start, where roslaunch gives up before its monitor has stopped them.
 """
 
 import os
+import re
 import signal
 import sys
 
 import roslaunch
 import roslaunch.parent
 import roslaunch.pmon
+import run_checks
 
-REFUSED = 2
+REFUSED, LOST_OUTPUT = 2, 4
 MONITOR_ENDS_S = 30  # a node has 15 s after SIGINT and 2 s after SIGTERM
+MOST_AGENTS = 255
+# Each AUV includes the launch file of the next one.
+sys.setrecursionlimit(100 * MOST_AGENTS)
+
+
+def node_of(process_name):
+    """Returns the node of a process, which is named as it is, with a number behind."""
+    return re.sub(r"-[0-9]+$", "", process_name)
 
 
 class Watch(roslaunch.pmon.ProcessListener):
     """Hears of every process that dies by itself."""
 
     def __init__(self):
-        self.required = set()
+        self.required = {"master"}
+        self.recorders = set()
         self.failure = ""
         self.refused = False
         self.started = False
         self.monitor = None
         self.processes = []
+        self.popens = {}  # {name: the newest}, which roslaunch forgets with the process
+        self.outputs = None
+
+    def take(self, config):
+        """Notes what a launch is about to start; refuses what cannot work."""
+        nodes = {(node.namespace + node.name).strip("/"): node for node in config.nodes}
+        parameters = {name: parameter.value for name, parameter in config.params.items()}
+        run_checks.check_numbers(parameters)
+        if run_checks.master_is_online(config.master.uri):
+            run_checks.check_names_are_free(config.master.uri, ["/" + name for name in nodes])
+        self.required |= {name for name, node in nodes.items() if node.required}
+        self.recorders = {name for name, node in nodes.items() if run_checks.bag_of(node)}
+        self.outputs = run_checks.Outputs(config.nodes, parameters)
+        self.outputs.check_before()
 
     def observe(self, monitor):
         """Remembers what the monitor is given to look after."""
         self.monitor = monitor
-        register = monitor.register
+        for name in ("register", "register_core_proc"):
+            setattr(monitor, name, self.remembering(getattr(monitor, name)))
+
+    def remembering(self, register):
+        """Returns the function, made to remember the processes it is given."""
 
         def remember(process):
-            self.processes.append(process)
+            if process not in self.processes:
+                self.processes.append(process)
+                self.keep_popen(process)
             register(process)
 
-        monitor.register = remember
+        return remember
+
+    def keep_popen(self, process):
+        """Keeps what tells the exit status, of every life of a process."""
+        start = process.start
+
+        def started(*arguments):
+            answer = start(*arguments)
+            self.popens[process.name] = process.popen
+            return answer
+
+        process.start = started
+        self.popens[process.name] = getattr(process, "popen", None)
 
     def stop_the_rest(self):
         """Waits for the monitor to stop its processes, then stops those that started too late."""
@@ -56,9 +100,13 @@ class Watch(roslaunch.pmon.ProcessListener):
             os.kill(os.getpid(), signal.SIGINT)
 
     def process_died(self, process_name, exit_code):
-        """Called by roslaunch's monitor; a process is named as its node, with a number behind."""
-        node = process_name.rsplit("-", 1)[0]
-        if self.failure or not exit_code:
+        """Called by roslaunch's monitor."""
+        node = node_of(process_name)
+        if self.failure:
+            return
+        if node in self.recorders:
+            self.failure = f"/{node} ended before the run, with exit status {exit_code}"
+        if not exit_code:
             return
         if exit_code == REFUSED:
             self.failure = f"/{node} refuses its configuration (its message is above)"
@@ -67,21 +115,51 @@ class Watch(roslaunch.pmon.ProcessListener):
         elif node in self.required:
             self.failure = f"/{node} died with exit status {exit_code}"
 
+    def judge(self):
+        """Looks for what the run was asked to write and has not written."""
+        if self.failure or not self.outputs or not self.started:
+            return
+        for name, popen in self.popens.items():
+            if popen and popen.returncode == LOST_OUTPUT:
+                self.failure = f"/{node_of(name)} has lost output (its message is above)"
+                return
+        try:
+            self.outputs.check_after()
+        except run_checks.Refusal as refusal:
+            self.failure = str(refusal)
 
-def main():
-    """Launches; returns the exit status."""
-    watch = Watch()
+
+def check_arguments(arguments):
+    """Refuses what roslaunch would stumble over or hang on."""
+    port = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
+    for k, argument in enumerate(arguments):
+        if argument.startswith("agents:="):
+            number = argument[len("agents:=") :]
+            if not number.isdigit() or not 1 <= int(number) <= MOST_AGENTS:
+                raise run_checks.Refusal(f"agents: '{number}' is none of 1 to {MOST_AGENTS}")
+        if argument.startswith("bag:=") and "'" in argument:
+            raise run_checks.Refusal("bag: a name with ' in it cannot be given to the recorder")
+        if argument in ("-p", "--port") and k + 1 < len(arguments):
+            port = f"http://127.0.0.1:{arguments[k + 1]}"
+    run_checks.master_is_online(port)
+
+
+def launch(watch):
+    """Runs roslaunch under watch; returns its exit status."""
 
     class Parent(roslaunch.parent.ROSLaunchParent):
         """The parent of a launch, watched from its first process on."""
 
+        def _load_config(self):
+            super()._load_config()
+            try:
+                watch.take(self.config)
+            except run_checks.Refusal as refusal:
+                watch.failure = str(refusal)
+                raise SystemExit(1) from None
+
         def _init_runner(self):
             super()._init_runner()
-            watch.required = {
-                (node.namespace + node.name).strip("/")
-                for node in self.config.nodes
-                if node.required
-            }
             self.runner.add_process_listener(watch)
             watch.observe(self.pm)
 
@@ -91,13 +169,25 @@ def main():
             watch.end_if_refused()
 
     roslaunch.parent.ROSLaunchParent = Parent
-    status = 0
     try:
         roslaunch.main()
     except SystemExit as gave_up:
-        status = gave_up.code
+        return gave_up.code
     finally:
         watch.stop_the_rest()
+    return 0
+
+
+def main():
+    """Launches; returns the exit status."""
+    watch = Watch()
+    status = 0
+    try:
+        check_arguments(sys.argv[1:])
+        status = launch(watch)
+        watch.judge()
+    except run_checks.Refusal as refusal:
+        watch.failure = str(refusal)
     if watch.failure:
         print(f"stg: the run failed: {watch.failure}", file=sys.stderr)
         return 1

@@ -17,10 +17,11 @@ LONGEST_CHAIN = 20  # of bases
 
 def agents_of(scenario):
     """Returns the number of AUVs, or None."""
+    shipped = pathlib.Path(os.environ.get("STG_SCENARIOS") or SHIPPED)
     if "/" in scenario or scenario.endswith(".yaml"):
         file = pathlib.Path(scenario)
     else:
-        file = pathlib.Path(os.environ.get("STG_SCENARIOS") or SHIPPED) / f"{scenario}.yaml"
+        file = shipped / f"{scenario}.yaml"
     for _ in range(LONGEST_CHAIN):
         try:
             content = yaml.safe_load(file.read_text(encoding="utf-8"))
@@ -31,7 +32,9 @@ def agents_of(scenario):
         if "agents" in content or "base" not in content:
             agents = content.get("agents")
             return agents if isinstance(agents, int) else None
-        file = file.parent / str(content["base"])
+        base = str(content["base"])
+        beside = file.parent / base
+        file = beside if "/" in base or beside.exists() else shipped / base
     return None
 
 

@@ -25,15 +25,19 @@ class Lottery : public MediumAccess {
     episode_ = episode;
   }
 
-  void Plan(TimeNs from, TimeNs /*until*/, std::vector<TimeNs>* start) const override {
-    const auto decision = static_cast<std::uint32_t>(from / period_);
-    for (std::uint32_t node = 0; node < start->size(); ++node) {
-      Random random(seed_, Stream::kMediumAccess, episode_, decision, node);
-      (*start)[node] = random.Uniform() < probability_ ? from : kNever;
-    }
+  TimeNs Next(int node, TimeNs from, const Attempt& /*attempt*/) const override {
+    TimeNs decision = (from + period_ - 1) / period_;
+    while (!Wins(node, decision)) ++decision;
+    return decision * period_;
   }
 
  private:
+  bool Wins(int node, TimeNs decision) const {
+    Random random(seed_, Stream::kMediumAccess, episode_, static_cast<std::uint32_t>(decision),
+                  static_cast<std::uint32_t>(node));
+    return random.Uniform() < probability_;
+  }
+
   TimeNs period_;
   double probability_;
   std::uint64_t seed_ = 0;

@@ -69,7 +69,7 @@ int main() {
 
   // Half of the packets arrive at the range itself, and what an agent thinks of a link agrees.
   const double near = ShareAt(60.0, network), at = ShareAt(100.0, network);
-  const double quality = MakeLinkEstimator(network.channel)->Quality(100.0, 0.0);
+  const double quality = MakeLinkEstimator(network.channel, 2)->Quality(100.0, 0.0);
   std::printf("arrived: %.3f at 60 m, %.3f at 100 m, %.3f at 301 m; quality at 100 m %.3f\n", near,
               at, ShareAt(301.0, network), quality);
   const double expected = 1.0 / (1.0 + std::exp(-0.4 * 8.0));

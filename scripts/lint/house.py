@@ -22,6 +22,7 @@ MAY_INCLUDE = {
     "acoustic_channel": {"auv_common"},
     "stg_agent": {"auv_common", "auv_dynamics", "acoustic_channel"},
     "marl_trainer": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent"},
+    "stg_python": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "marl_trainer"},
     "stg_bringup": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "marl_trainer"},
 }
 # The namespaces of a package's core, and of all nodes; each may have namespaces within.
@@ -31,6 +32,7 @@ CORE_NAMESPACES = {
     "acoustic_channel": ("stg::acoustics",),
     "stg_agent": ("stg::agent",),
     "marl_trainer": ("stg::task", "stg::env", "stg::learn"),
+    "stg_python": ("stg::python",),
 }
 # What composes the sections of all packages belongs to all of them.
 SHARED_NAMESPACES = {("marl_trainer", "scenario"): ("stg",)}

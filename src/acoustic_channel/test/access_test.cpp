@@ -178,21 +178,21 @@ TEST(Outbox, ResetForgetsWhatWaitsAndCountsFromZero) {
 /// Every packet begins to leave at a time of its own in the middle of the step.
 class Late : public MediumAccess {
  public:
-  explicit Late(int nodes) : nodes_(nodes) {}
-  void Plan(TimeNs from, TimeNs until, std::vector<TimeNs>* start) const override {
-    for (int i = 0; i < nodes_; ++i) {
-      (*start)[static_cast<std::size_t>(i)] = from + (until - from) * (i + 1) / (nodes_ + 1);
-    }
+  explicit Late(const RunConfig& run) : nodes_(run.agents), period_(run.decision_period()) {}
+  TimeNs Next(int node, TimeNs from, const Attempt&) const override {
+    const TimeNs delay = period_ * (node + 1) / (nodes_ + 1);
+    return (from - delay + period_ - 1) / period_ * period_ + delay;
   }
 
  private:
   int nodes_;
+  TimeNs period_;
 };
 
 TEST(MediumAccess, OneFromOutsideIsARegisteredName) {
   if (!MediumAccesses().Has("late")) {  // tests may run repeatedly
     MediumAccesses().Add("late", [](const ChannelConfig&, const RunConfig& run) {
-      return std::make_unique<Late>(run.agents);
+      return std::make_unique<Late>(run);
     });
   }
   NetworkConfig s = LosslessNetwork(3);
@@ -214,13 +214,13 @@ TEST(MediumAccess, OneFromOutsideIsARegisteredName) {
 
 TEST(MediumAccess, AnUnknownOneIsRefusedWithTheList) {
   NetworkConfig s;
-  s.channel.access = "csma";
+  s.channel.access = "shouting";
   try {
     MakeChannel(s.channel, s);
     FAIL();
   } catch (const UserError& error) {
     EXPECT_EQ(std::string(error.what())
-                  .find("unknown medium access 'csma', expected one of "
+                  .find("unknown medium access 'shouting', expected one of "
                         "periodic"),
               0u)
         << error.what();

@@ -58,6 +58,7 @@ struct Traffic {
       }
     }
     delivered += channel->totals().delivered;
+    dropped += channel->totals().dropped;
   }
 
   Channel* channel;
@@ -66,7 +67,7 @@ struct Traffic {
   std::vector<Vec3<double>> p_W, v_W;
   std::vector<Transmission> offered;
   std::vector<Reception> got;
-  std::uint64_t delivered = 0, checksum = 0;
+  std::uint64_t delivered = 0, dropped = 0, checksum = 0;
 };
 
 TEST(Allocation, ChannelAllocatesNothingAfterWarmUp) {
@@ -87,6 +88,33 @@ TEST(Allocation, ChannelAllocatesNothingAfterWarmUp) {
         EXPECT_GT(traffic.delivered, delivered);
         EXPECT_GT(traffic.checksum, 0u);
       }
+    }
+  }
+}
+
+TEST(Allocation, PhysicalAllocatesNothingAfterWarmUp) {
+  for (const char* access : {"periodic", "tdma", "aloha", "slotted_aloha", "csma"}) {
+    for (const bool fifo : {false, true}) {
+      NetworkConfig s;
+      s.agents = 6;
+      s.channel.model = "physical";
+      s.channel.access = access;
+      s.channel.modem.profile = "micromodem_psk_r5";
+      if (fifo) s.channel.modem.queue = QueuePolicy::kFifo;
+      s.channel.transmit_period_s = 5.0;
+      s.channel.slots.length_s = 0.8;
+      s.channel.slots.send_probability = 0.3;
+      s.channel.contention.rest_s = 5.0;
+      s.channel.noise.burst_every_s = 3.0;
+      const auto channel = MakeChannel(s.channel, s);
+      Traffic traffic(channel.get(), true);
+      for (std::uint32_t episode = 0; episode < 16; ++episode) traffic.Fly(episode);
+      const long before = g_allocations;
+      const std::uint64_t ended = traffic.delivered + traffic.dropped;
+      for (std::uint32_t episode = 16; episode < 24; ++episode) traffic.Fly(episode);
+      EXPECT_EQ(g_allocations, before) << access;
+      EXPECT_GT(traffic.delivered + traffic.dropped, ended + 100) << access;
+      EXPECT_GT(traffic.delivered, 0u) << access;
     }
   }
 }

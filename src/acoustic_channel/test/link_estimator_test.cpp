@@ -18,7 +18,7 @@ TEST(LinkEstimator, OfRangeIsEquation5WhateverTheAge) {
   c.model = "range";
   c.range_m = 0.5;
   c.freshness_s = 3.0;
-  const auto links = MakeLinkEstimator(c);
+  const auto links = MakeLinkEstimator(c, 2);
   for (const double age : {0.0, 1.0, 100.0}) {
     EXPECT_EQ(links->Quality(0.0, age), 1.0);
     EXPECT_NEAR(links->Quality(0.2, age), 0.6, 1e-15);
@@ -35,7 +35,7 @@ TEST(LinkEstimator, OfExtendedIsEquation6) {
   c.loss_probability = 0.1;
   c.loss_distance_m = 2.0;
   c.freshness_s = 2.0;
-  const auto links = MakeLinkEstimator(c);
+  const auto links = MakeLinkEstimator(c, 2);
   for (const double d : {0.0, 0.3, 1.0, 3.0}) {
     for (const double age : {0.0, 0.4, 5.0}) {
       const double q = 0.9 * std::exp(-d * d / 4.0) * std::exp(-0.5 * d) * std::exp(-age / 2.0);
@@ -46,17 +46,50 @@ TEST(LinkEstimator, OfExtendedIsEquation6) {
 }
 
 TEST(LinkEstimator, PacksAndScalarsAgreeBitForBit) {
-  for (const char* model : {"range", "extended"}) {
+  for (const char* model : {"range", "extended", "physical"}) {
     ChannelConfig c;
     c.model = model;
-    const auto links = MakeLinkEstimator(c);
+    const auto links = MakeLinkEstimator(c, 2);
     for (double d = 0.0; d < 4.0; d += 0.037) {
-      const Pack quality = links->Quality(Pack(d), Pack(0.2 * d));
+      const double learnt = 1.0 / (1.0 + d);
+      const Pack quality = links->Quality(Pack(d), Pack(0.2 * d), Pack(learnt));
       for (int lane = 0; lane < kLanes; ++lane) {
-        EXPECT_EQ(Lane(quality, lane), links->Quality(d, 0.2 * d));
+        EXPECT_EQ(Lane(quality, lane), links->Quality(d, 0.2 * d, learnt));
       }
     }
   }
+}
+
+TEST(LinkEstimator, OfPhysicalLearnsFromGapsAndLevels) {
+  ChannelConfig c;
+  c.model = "physical";
+  c.modem.freshness_s = 20.0;
+  const auto links = MakeLinkEstimator(c, 3);
+  const std::uint8_t bytes[32] = {};
+  const auto hear = [&](int lane, std::uint32_t sequence, double sinr_db) {
+    Reception r;
+    r.source = 1;
+    r.sequence = sequence;
+    r.sinr_db = sinr_db;
+    r.payload = {bytes, sizeof(bytes)};
+    links->Learn(lane, r);
+  };
+  EXPECT_EQ(links->Learnt(1)[0], 1.0);
+  hear(0, 5, 40.0);
+  EXPECT_NEAR(links->Learnt(1)[0], 1.0, 1e-9) << "what was before it came is unknown";
+  hear(0, 8, 40.0);  // two are missing
+  EXPECT_NEAR(links->Learnt(1)[0], 1.0 - 0.2 * 0.0 - (1.0 - 0.64) * 0.8, 1e-9);
+  for (std::uint32_t k = 9; k < 60; ++k) hear(0, k, 40.0);
+  EXPECT_NEAR(links->Learnt(1)[0], 1.0, 1e-4);
+  for (std::uint32_t k = 60; k < 400; k += 2) hear(0, k, 40.0);
+  EXPECT_NEAR(links->Learnt(1)[0], 0.5, 0.1) << "every other one is lost";
+  hear(kLanes - 1, 0, -5.0);
+  EXPECT_LT(links->Learnt(1)[kLanes - 1], 0.01) << "hardly above what is lost";
+  EXPECT_EQ(links->Learnt(2)[0], 1.0);
+  EXPECT_NEAR(links->Quality(777.0, 10.0, 0.6), 0.6 * std::exp(-0.5), 1e-12);
+  EXPECT_EQ(links->freshness_s(), 20.0);
+  links->Reset(0);
+  EXPECT_EQ(links->Learnt(1)[0], 1.0);
 }
 
 TEST(LinkEstimator, MeansWhatTheChannelMeans) {
@@ -65,7 +98,7 @@ TEST(LinkEstimator, MeansWhatTheChannelMeans) {
     s.channel.model = model;
     s.channel.range_m = 1.0;
     const auto channel = MakeChannel(s.channel, s);
-    const auto links = MakeLinkEstimator(s.channel);
+    const auto links = MakeLinkEstimator(s.channel, s.agents);
     channel->Reset(1, 0);
     Transmission packet = From(0, 7 * kDt);
     packet.generation = 5 * kDt;
@@ -105,7 +138,7 @@ TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
   s.channel.model = "coin";
   s.channel.loss_distance_m = 1e6;  // in range, and of no effect
   EXPECT_FALSE(config::FindViolation(s));
-  EXPECT_EQ(MakeLinkEstimator(s.channel)->Quality(3.0, 0.0), 0.25);
+  EXPECT_EQ(MakeLinkEstimator(s.channel, s.agents)->Quality(3.0, 0.0), 0.25);
   const auto channel = MakeChannel(s.channel, s);
   channel->Reset(1, 0);
   const std::vector<Vec3<double>> p = {{}, {1e4, 0, 0}};
@@ -118,19 +151,20 @@ TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
 
 TEST(PropagationModel, AnUnknownOneIsRefusedWithTheList) {
   NetworkConfig s = LosslessNetwork(2);
-  s.channel.model = "physical";
+  s.channel.model = "telepathy";
   for (const bool channel : {false, true}) {
     try {
       if (channel) {
         MakeChannel(s.channel, s);
       } else {
-        MakeLinkEstimator(s.channel);
+        MakeLinkEstimator(s.channel, s.agents);
       }
       FAIL();
     } catch (const UserError& error) {
-      EXPECT_EQ(std::string(error.what())
-                    .find("unknown propagation model 'physical', expected one of range | extended"),
-                0u)
+      EXPECT_EQ(
+          std::string(error.what())
+              .find("unknown propagation model 'telepathy', expected one of range | extended"),
+          0u)
           << error.what();
     }
   }
@@ -142,7 +176,7 @@ TEST(PropagationModel, AnUnknownOneIsRefusedWhenAFileIsLoaded) {
   EXPECT_EQ(config::LoadText<NetworkConfig>(text, "net.yaml").channel.model, "extended");
   const auto at = text.find("extended");
   ASSERT_NE(at, std::string::npos);
-  text.replace(at, std::string("extended").size(), "physical");
+  text.replace(at, std::string("extended").size(), "telepathy");
   try {
     config::LoadText<NetworkConfig>(text, "net.yaml");
     FAIL();
@@ -151,7 +185,7 @@ TEST(PropagationModel, AnUnknownOneIsRefusedWhenAFileIsLoaded) {
     EXPECT_NE(what.find("channel.model: expected one of range | extended"), std::string::npos)
         << what;
     EXPECT_NE(what.find("net.yaml:"), std::string::npos);
-    EXPECT_NE(what.find("found 'physical'"), std::string::npos);
+    EXPECT_NE(what.find("found 'telepathy'"), std::string::npos);
   }
 }
 

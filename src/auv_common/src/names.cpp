@@ -15,6 +15,33 @@ bool IsName(const std::string& text) {
   return true;
 }
 
+bool IsText(const std::string& text) {
+  const auto byte = [&text](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned first = byte(i++);
+    if (first < 0x80) {
+      if (first < 0x20 || first == 0x7f) return false;
+      continue;
+    }
+    // Unicode, table 3-7: lead bytes and the bytes that may follow them.
+    const int more = first >= 0xc2 && first <= 0xdf   ? 1
+                     : first >= 0xe0 && first <= 0xef ? 2
+                     : first >= 0xf0 && first <= 0xf4 ? 3
+                                                      : 0;
+    if (more == 0) return false;
+    const unsigned low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+    const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+    if (byte(i) < low || byte(i) > high) return false;
+    for (int k = 1; k < more; ++k) {
+      if ((byte(i + static_cast<std::size_t>(k)) & 0xc0U) != 0x80U) return false;
+    }
+    i += static_cast<std::size_t>(more);
+  }
+  return true;
+}
+
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -182,7 +182,7 @@ TEST(Registries, KeysTakeNamesThatWereAddedAndListThem) {
       ranges[field.path] = JoinNames(names->names);
     }
   }
-  EXPECT_EQ(ranges["vehicle.model"], "fully_actuated | cart");
+  EXPECT_EQ(ranges["vehicle.model"], "fully_actuated | torpedo | kinematic | cart");
   EXPECT_EQ(ranges["target.motion"],
             "constant_velocity | coordinated_turn | random_waypoint | evasive | lift");
   EXPECT_EQ(ranges["sensing.sensor"], "position | blinker");

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <new>
+#include <string>
 
 #include "auv_common/error.hpp"
 #include "physics.hpp"
@@ -49,6 +51,30 @@ TEST(World, TimeIsStepsTimesDt) {
   for (int k = 0; k < 123; ++k) world.Step(NoForce(1));
   EXPECT_EQ(world.time(0), 12300000000);
   EXPECT_EQ(world.Nav(0, 0).stamp, world.time(0));
+}
+
+TEST(World, NamesTheVehicleWhoseStateIsNotFinite) {
+  WorldConfig scenario = QuietScenario(3);
+  World world(scenario);
+  for (int lane = 0; lane < kLanes; ++lane) world.Reset(lane, 40, 0, ResetStage::kMedium);
+  world.Step(NoForce(3));
+  EXPECT_NO_THROW(world.CheckFinite());
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    World broken(scenario);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      broken.Reset(lane, 40 + static_cast<std::uint64_t>(lane), 0, ResetStage::kMedium);
+    }
+    broken.Step(NoForce(3));
+    SetLane(&broken.mutable_vehicle(1).w_WB_B.z, kLanes - 1, bad);
+    try {
+      broken.CheckFinite();
+      FAIL() << bad;
+    } catch (const UserError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find("AUV 1 is not finite after 1 physics steps"), std::string::npos) << text;
+      EXPECT_NE(text.find("seed " + std::to_string(40 + kLanes - 1)), std::string::npos) << text;
+    }
+  }
 }
 
 /// Vehicle 0 of a release world, moved to p with body velocity v at zero attitude.

@@ -1,5 +1,10 @@
 #include "stg_agent/agent_config.hpp"
 
+#include <string>
+
+#include "acoustic_channel/models/propagation_model.hpp"
+#include "stg_agent/packet/packet.hpp"
+
 namespace stg::agent {
 
 void Describe(TaskConfig* c, config::Table* t) {
@@ -25,6 +30,11 @@ std::optional<config::Violation> FindConflict(const AgentConfig& c) {
     return violation;
   }
   if (auto violation = FindConflict(c.channel, c)) return violation;
+  if (acoustics::MaxPayload(c.channel, c.agents) < kPacketBytes) {
+    return config::Violation{
+        {"channel.modem.packet_bytes", "channel.modem.profile"},
+        "the packet of an agent has " + std::to_string(kPacketBytes) + " bytes"};
+  }
   if (c.observation.quality_medium > c.observation.quality_high) {
     return config::Violation{{"observation.quality_medium", "observation.quality_high"},
                              "medium quality cannot begin above high quality"};

@@ -5,7 +5,10 @@ Writes into the output folder: poses.csv, targets.csv, tasks.csv, links.csv, ste
 episodes.csv, and report_episode_<n>.png and .svg with trajectories, distances, phases, link
 quality and age of information. Lengths are metres, times seconds of simulated time.
 
-Exit status: 0 done, 1 the bag holds no run, 2 wrong usage or a file that cannot be read.
+The chunks of a compressed bag carry a checksum, as record:=true writes them. In an uncompressed one
+nothing tells a number that the disk has changed from a good one; the last line says so.
+
+Exit status: 0 done, 1 the bag holds no run, 2 wrong usage, or a file that cannot be read or written.
 """
 
 import argparse
@@ -14,16 +17,15 @@ import csv
 import math
 import os
 import re
-import shutil
 import sys
-import tempfile
 from collections import defaultdict
 
-import rosbag
 import yaml
 
-# rosrun starts this file through a relay elsewhere; bag_figure.py lies beside the file itself.
+# rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+from bag_reading import BagError, messages, open_bag  # noqa: E402  (found by the line above)
 
 PHASES = ("search", "approach", "stable", "lost")
 QUALITIES = ("high", "medium", "low", "unavailable")
@@ -51,13 +53,9 @@ TABLES = {
         "episode t seed scenario policy_id steps complete episode_return tail_distance"
         " tracking_error lost_rate action_norm saturation_rate control_cost"
         " communication_quality band_rate colliding_pairs tail_colliding_pairs min_separation"
-        " time_to_band deadline_misses"
+        " time_to_band deadline_misses channel_misses"
     ).split(),
 }
-
-
-class BagError(Exception):
-    """A bag that cannot be read, told in words for the user."""
 
 
 class Run:
@@ -79,61 +77,6 @@ class Run:
     def of_episode(self, table, episode):
         """Returns the rows of one episode."""
         return [row for row in self.rows[table] if row[0] == episode]
-
-
-def open_bag(path, salvage):
-    """Opens a bag for reading; with `salvage`, what is whole of a truncated one."""
-    if not os.path.exists(path):
-        raise BagError(f"{path}: no such file")
-    if os.path.isdir(path):
-        raise BagError(f"{path}: is a folder, not a bag")
-    if os.path.getsize(path) == 0:
-        raise BagError(f"{path}: is empty")
-    try:
-        return rosbag.Bag(path)
-    except rosbag.ROSBagUnindexedException:
-        if salvage:
-            return salvaged(path)
-        raise BagError(
-            f"{path}: is truncated or was not closed (it has no index);"
-            " --salvage reads what is whole of it"
-        ) from None
-    except (rosbag.ROSBagException, OSError, ValueError) as error:
-        if salvage and looks_like_bag(path):
-            return salvaged(path)
-        raise BagError(f"{path}: cannot be read as a bag: {error}") from None
-
-
-def looks_like_bag(path):
-    """True when a file starts as bags do."""
-    with open(path, "rb") as bag:
-        return bag.read(13) == b"#ROSBAG V2.0\n"
-
-
-def salvaged(path):
-    """Indexes a copy of a truncated bag and opens that; the bag itself is left as it is."""
-    folder = tempfile.mkdtemp(prefix="bag_report_")
-    try:
-        copy = os.path.join(folder, "salvaged.bag")
-        shutil.copyfile(path, copy)
-        with rosbag.Bag(copy, "a", allow_unindexed=True) as bag:
-            for _ in bag.reindex():
-                pass
-        print(f"bag_report: {path} is truncated; reading what is whole", file=sys.stderr)
-        return rosbag.Bag(copy)
-    except Exception as error:  # rosbag raises whatever it trips over in damaged data
-        raise BagError(f"{path}: nothing of it can be salvaged: {error}") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def messages(bag, path):
-    """Yields (topic, message); damage inside the bag becomes a BagError."""
-    try:
-        for topic, message, _ in bag.read_messages():
-            yield topic, message
-    except Exception as error:  # damaged chunks raise anything from struct.error to bz2's
-        raise BagError(f"{path}: is damaged: {type(error).__name__}: {error}") from None
 
 
 class EpisodeClock:
@@ -161,25 +104,37 @@ class EpisodeClock:
 def read_run(bag, path):
     """Reads everything the tables need from an open bag."""
     run, clock, late = Run(), EpisodeClock(), []
-    for topic, message in messages(bag, path):
-        odom, task = ODOM.match(topic), TASK.match(topic)
-        if odom:
-            late.append((odom.group(1), int(odom.group(2)), message))
-        elif task:
-            clock.see(message.episode, message.header.stamp.to_sec())
-            add_task(run, int(task.group(1)), message)
-        elif topic == "/acoustic_channel/links":
-            late.append(("links", 0, message))
-        elif topic == "/step_report":
-            add_step(run, message)
-        elif topic == "/episode_summary":
-            add_summary(run, message)
-        elif topic == "/scenario":
-            run.scenario = read_scenario(message.data)
-    add_late(run, late, clock.lookup())
+    topic = ""
+    # The message definitions come with the bag: one of another program, or a damaged one, may lack
+    # any field or give it another type.
+    try:
+        for topic, message in messages(bag, path):
+            take_message(run, clock, late, topic, message)
+        topic = "poses, targets and links"
+        add_late(run, late, clock.lookup())
+    except (AttributeError, TypeError, ValueError, LookupError) as error:
+        raise BagError(f"{path}: {topic}: not as this program records it: {error}") from None
     if not run.rows["poses"]:
         raise LookupError(f"{path}: holds no /auv_<i>/odom: not a recorded run")
     return run
+
+
+def take_message(run, clock, late, topic, message):
+    """Adds one message to the tables; `late` takes what needs the whole run first."""
+    odom, task = ODOM.match(topic), TASK.match(topic)
+    if odom:
+        late.append((odom.group(1), int(odom.group(2)), message))
+    elif task:
+        clock.see(message.episode, message.header.stamp.to_sec())
+        add_task(run, int(task.group(1)), message)
+    elif topic == "/acoustic_channel/links":
+        late.append(("links", 0, message))
+    elif topic == "/step_report":
+        add_step(run, message)
+    elif topic == "/episode_summary":
+        add_summary(run, message)
+    elif topic == "/scenario":
+        run.scenario = read_scenario(message.data)
 
 
 def read_scenario(text):
@@ -259,7 +214,9 @@ def add_step(run, m):
 
 def add_summary(run, m):
     """Adds one EpisodeSummary."""
-    values = {name: getattr(m, name) for name in TABLES["episodes"][2:]}
+    # Older bags lack the newest columns.
+    values = {name: getattr(m, name) for name in TABLES["episodes"][2:-1]}
+    values["channel_misses"] = getattr(m, "channel_misses", "")
     values["complete"] = int(m.complete)
     run.add("episodes", episode=m.episode, t=m.header.stamp.to_sec(), **values)
 
@@ -271,6 +228,17 @@ def write_tables(run, folder):
             writer = csv.writer(file)
             writer.writerow(columns)
             writer.writerows(run.rows[name])
+
+
+def write_report(run, folder, episodes):
+    """Writes the tables, and the figures of these episodes."""
+    os.makedirs(folder, exist_ok=True)
+    write_tables(run, folder)
+    if episodes:
+        from bag_figure import draw_episode  # matplotlib takes a second to load
+
+        for episode in episodes:
+            draw_episode(run, episode, os.path.join(folder, f"report_episode_{episode}"))
 
 
 def parse_arguments(arguments):
@@ -295,6 +263,7 @@ def main(arguments=None):
     try:
         with open_bag(options.bag, options.salvage) as bag:
             run = read_run(bag, options.bag)
+            verified = bag.get_compression_info().compression != "none"
     except BagError as error:
         print(f"bag_report: {error}", file=sys.stderr)
         return 2
@@ -309,14 +278,13 @@ def main(arguments=None):
             return 2
         episodes = [options.episode]
     folder = options.out or os.path.splitext(options.bag)[0] + "_report"
-    os.makedirs(folder, exist_ok=True)
-    write_tables(run, folder)
-    if not options.no_figures:
-        from bag_figure import draw_episode  # matplotlib takes a second to load
-
-        for episode in episodes[: options.max_figures]:
-            draw_episode(run, episode, os.path.join(folder, f"report_episode_{episode}"))
-    print(f"bag_report: {len(episodes)} episode(s), written to {folder}")
+    try:
+        write_report(run, folder, [] if options.no_figures else episodes[: options.max_figures])
+    except OSError as error:
+        print(f"bag_report: cannot write to {folder}: {error}", file=sys.stderr)
+        return 2
+    note = "" if verified else " (uncompressed bag: its numbers have no checksum)"
+    print(f"bag_report: {len(episodes)} episode(s), written to {folder}{note}")
     return 0
 
 

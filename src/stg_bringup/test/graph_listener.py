@@ -25,7 +25,7 @@ class Latest:
     """Keeps the newest message of a topic and counts them."""
 
     def __init__(self, topic, message_type):
-        self.message, self.count = None, 0
+        self.message, self.count, self.type = None, 0, message_type
         self._subscriber = rospy.Subscriber(topic, message_type, self._keep, queue_size=10)
 
     def _keep(self, message):

@@ -36,11 +36,14 @@ class Run:
         self.task = [latched(f"/auv_{i}/task_state", TASK) for i in agents]
         self.target = latched("/target_0/odom", nav_msgs.msg.Odometry)
         self.links = latched("/acoustic_channel/links", auv_msgs.msg.LinkStates)
+        self.packets = rospy.Publisher("/acoustic_channel/packets", auv_msgs.msg.PacketEvents,
+                                       queue_size=10)
         self.scenario = latched("/scenario", std_msgs.msg.String)
         self.scenario.publish(synthetic_bag.SCENARIO.replace("1.0}", "2.0}"))
 
-    def publish(self, k, dropped=0, position=None):
-        """Publishes step k; `dropped` packets lost on every link; AUV 0 at `position` if given."""
+    def publish(self, k, dropped=0, position=None, clash=None):
+        """Publishes step k; `dropped` packets lost on every link; AUV 0 at `position` if given;
+        `clash`: AUV 1 sends for a second, and 2 loses its packet for that reason."""
         t = k * synthetic_bag.STEP_S
         stamp = rospy.Time(1, 0) + rospy.Duration.from_sec(t)
         target = synthetic_bag.odometry("target_0", stamp, synthetic_bag.target_at(t), (1, 0))
@@ -56,6 +59,13 @@ class Run:
         for link in links.links:
             link.dropped, link.last_drop_reason = dropped, link.RANGE
         self.links.publish(links)
+        if clash is not None:
+            kinds = auv_msgs.msg.PacketEvent
+            common = {"source": 1, "transmit": stamp, "airtime": 1.0}
+            events = auv_msgs.msg.PacketEvents(header=links.header)
+            events.events = [kinds(kind=kinds.SENT, receiver=-1, **common),
+                             kinds(kind=kinds.DROPPED, receiver=2, reason=clash, **common)]
+            self.packets.publish(events)
 
 
 class Markers(unittest.TestCase):
@@ -124,6 +134,22 @@ class Markers(unittest.TestCase):
         self.publish_until(
             lambda: not self.shown("overview", "lost_packet"), "no lost packet", dropped=lost
         )
+
+    def test_what_disturbs_a_modem_is_shown_where_it_is(self):
+        # Named to run last: who tells of packets is believed more than counts.
+        self.publish_until(lambda: self.shown("overview", "hull"), "a hull")
+        reasons = auv_msgs.msg.LinkState
+        for name, reason in (("collision", reasons.COLLISION), ("half_duplex", reasons.HALF_DUPLEX)):
+            self.publish_until(lambda name=name: self.shown("overview", name), name, clash=reason)
+            (ball,) = self.shown("overview", name)
+            self.assertEqual(ball.id, 2)
+            here = synthetic_bag.auv_at(2, self.step * synthetic_bag.STEP_S)
+            place = ball.pose.position
+            self.assertLess(math.dist((place.x, place.y, place.z), here), 0.1)
+            # Two rings around AUV 1, and none around others.
+            self.assertEqual({m.id for m in self.shown("overview", "carrier")}, {2, 3})
+        self.publish_until(lambda: not self.shown("overview", "half_duplex")
+                           and not self.shown("overview", "carrier"), "silence again")
 
     def test_walls_follow_the_scenario(self):
         def walls():

@@ -9,6 +9,8 @@ import sys
 import tempfile
 import unittest
 
+import rosbag
+
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "scripts"
 sys.path[:0] = [str(HERE), str(SCRIPTS)]
@@ -21,6 +23,7 @@ import synthetic_bag  # noqa: E402  (lies beside this file)
 def run_report(*arguments):
     """Runs the tool in this process; returns (exit status, standard output, standard error)."""
     output, errors = io.StringIO(), io.StringIO()
+    rosbag.bag._message_types.clear()  # as in a process of its own: definitions are kept by md5
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         try:
             status = bag_report.main([str(argument) for argument in arguments])
@@ -138,6 +141,30 @@ class DamagedBag(WithFolder):
         self.bag.write_bytes(bytes(content))
         self.refused()
 
+    def test_damaged_message_definition_is_reported(self):
+        synthetic_bag.write(str(self.bag), 1.0)
+        whole = self.bag.read_bytes()
+        for good, bad in (
+            (b"float64 confidence", b"float64 confidencf"),
+            (b"float64 confidence", b"float6\x00 confidence"),
+            (b"float64 confidence", b"string  confidence"),
+            (b"geometry_msgs/PoseWithCovariance", b"geometry_msgs/PoseWithCovarianc\xff"),
+            (b"uint32 episode", b"uint32[]episode"),
+        ):
+            with self.subTest(bad):
+                self.assertIn(good, whole)
+                self.bag.write_bytes(whole.replace(good, bad))
+                self.refused("--no-figures")
+
+    def test_messages_of_another_type_are_reported(self):
+        import std_msgs.msg
+
+        for topic in ("/auv_0/odom", "/auv_0/task_state", "/step_report", "/episode_summary"):
+            with self.subTest(topic):
+                with rosbag.Bag(str(self.bag), "w") as bag:
+                    bag.write(topic, std_msgs.msg.String("hello"))
+                self.refused()
+
     def test_other_files_are_reported(self):
         self.refused()  # not there
         self.bag.write_bytes(b"")
@@ -150,7 +177,6 @@ class DamagedBag(WithFolder):
         self.refused()
 
     def test_bag_without_a_run_is_reported(self):
-        import rosbag
         import std_msgs.msg
 
         with rosbag.Bag(str(self.bag), "w") as bag:
@@ -159,6 +185,39 @@ class DamagedBag(WithFolder):
         self.assertEqual(status, 1)
         self.assertIn("not a recorded run", errors)
         self.assertFalse(self.out.exists())
+
+
+class Output(WithFolder):
+    """What is written, or cannot be."""
+
+    def test_output_that_cannot_be_written_is_one_line(self):
+        synthetic_bag.write(str(self.bag), 1.0)
+        (self.folder / "file").write_text("")
+        full = self.folder / "full"
+        full.mkdir()
+        (full / "poses.csv").symlink_to("/dev/full")
+        for out in (self.folder / "file" / "out", full):
+            status, output, errors = run_report(self.bag, "-o", out, "--no-figures")
+            self.assertEqual((status, output), (2, ""))
+            self.assertEqual(len(errors.splitlines()), 1, errors)
+            self.assertIn(str(out), errors)
+
+    def test_uncompressed_bag_is_said_to_be_unverified(self):
+        synthetic_bag.write(str(self.bag), 1.0)
+        _, output, _ = run_report(self.bag, "-o", self.out, "--no-figures")
+        self.assertIn("no checksum", output)
+        packed = self.folder / "packed.bag"
+        with rosbag.Bag(str(self.bag)) as bag, rosbag.Bag(str(packed), "w", "bz2") as copy:
+            for topic, message, time in bag.read_messages():
+                copy.write(topic, message, time)
+        _, output, _ = run_report(packed, "-o", self.out, "--no-figures")
+        self.assertNotIn("checksum", output)
+        content = bytearray(packed.read_bytes())
+        inside = content.index(b"BZh") + 500
+        content[inside : inside + 8] = bytes(8)
+        packed.write_bytes(bytes(content))
+        status, _, errors = run_report(packed, "-o", self.folder / "other", "--no-figures")
+        self.assertEqual(status, 2, errors)
 
 
 class CommandLine(unittest.TestCase):

@@ -15,6 +15,7 @@ PACKAGES = (
     "marl_trainer",
     "stg_agent",
     "stg_bringup",
+    "stg_python",
 )
 sys.path.insert(0, str(ROOT / "scripts" / "lint"))
 

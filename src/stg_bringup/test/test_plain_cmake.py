@@ -88,7 +88,7 @@ class PlainCMake(unittest.TestCase):
         )  # fmt: skip
 
     def test_1_cores_compile_without_catkin_and_ros(self):
-        run("ninja", "-C", self.build, "stg_cores", "marl_trainer_check_trace")
+        run("ninja", "-C", self.build, "stg_cores", "stg_python", "marl_trainer_check_trace")
         headers = run("ninja", "-C", self.build, "-t", "deps")
         self.assertIn("auv_common/numbers/lanes.hpp", headers)
         self.assertEqual(sorted({m.group(0) for m in ROS_HEADER.finditer(headers)}), [])
@@ -113,7 +113,14 @@ class PlainCMake(unittest.TestCase):
         self.assertEqual(commands[0], commands[1])
         self.assertIn("-ffp-contract=off", commands[1].pop())
 
-    def test_3_a_user_with_catkin_is_compiled_alike(self):
+    def test_3_the_python_module_flies_where_it_was_built_and_installed(self):
+        program = "import stg; e = stg.parallel_env('hard'); e.reset(); e.step({a: e.action_space(a).sample() for a in e.agents})"
+        for folder in (self.build / "python", next(self.prefix.rglob("dist-packages"))):
+            run("/usr/bin/python3", "-c", program, PYTHONPATH=str(folder), PYTHONDONTWRITEBYTECODE="1")
+        (module,) = self.build.glob("python/stg/_core.*.so")
+        self.assertNotIn("torch", run("ldd", module))
+
+    def test_4_a_user_with_catkin_is_compiled_alike(self):
         prefixes = os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
         workspace = [p for p in prefixes if os.path.isdir(f"{p}/share/auv_common/cmake")]
         self.assertTrue(workspace, "this test runs in a sourced workspace")

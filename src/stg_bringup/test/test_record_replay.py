@@ -6,76 +6,24 @@ import json
 import os
 import pathlib
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
-import xmlrpc.client
 
 import rosbag
 import rosgraph
 
-LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "launch.py"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from run_launcher import launch, process_of, processes_with, stop  # noqa: E402  (lies beside this file)
+
 STEPS = 60
 AGENTS = 4
 OF_EVERY_STEP = ("odom", "sensor_frame", "cmd_vel", "wrench", "acoustic/rx", "task_state",
                  "agent_step")
 SLOTS = 5  # decisions between two packets of an AUV
-
-
-def free_port():
-    """Returns a port of the loopback that nobody listens on."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
-
-
-def launch(folder, *arguments):
-    """Starts a launch as `./stg run` does, with a master of its own; returns (process, environment)."""
-    port = free_port()
-    environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
-                       ROS_HOME=str(folder / "ros_home"), PWD=str(folder))
-    process = subprocess.Popen(
-        [str(LAUNCH), "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
-    return process, environment
-
-
-def process_of(node, environment):
-    """Returns a node's process id once it runs."""
-    master = rosgraph.Master("/record_replay", master_uri=environment["ROS_MASTER_URI"])
-    end = time.monotonic() + 30.0
-    while time.monotonic() < end:
-        try:
-            return xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid("/record_replay")[2]
-        except (OSError, rosgraph.MasterException):
-            time.sleep(0.1)
-    raise AssertionError(f"no {node}")
-
-
-def processes_with(master_uri):
-    """Returns {program: process id} of all that run with the master."""
-    found = {}
-    for folder in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            environment = (folder / "environ").read_bytes()
-            if f"ROS_MASTER_URI={master_uri}".encode() in environment:
-                found[(folder / "comm").read_text().strip()] = int(folder.name)
-        except OSError:  # it has ended
-            pass
-    return found
-
-
-def stop(process):
-    """Ends a roslaunch as Ctrl-C does."""
-    if process.poll() is None:
-        process.send_signal(signal.SIGINT)
-    try:
-        return process.communicate(timeout=20)[0]
-    except subprocess.TimeoutExpired:
-        process.kill()
-        return process.communicate()[0]
 
 
 class RecordReplay(unittest.TestCase):

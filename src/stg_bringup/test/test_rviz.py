@@ -42,8 +42,9 @@ def published_markers():
 
 def marker_namespaces():
     """Returns the namespaces that the markers are built with."""
-    source = (PACKAGE / "src" / "nodes" / "markers" / "marker_builder.cpp").read_text()
-    return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail)\("(\w+)"', source))
+    folder = PACKAGE / "src" / "nodes" / "markers"
+    source = "".join(path.read_text() for path in sorted(folder.glob("*.cpp")))
+    return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail|Clashes)\("(\w+)"', source))
 
 
 def published_frames():

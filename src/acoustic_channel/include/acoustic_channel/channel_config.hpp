@@ -6,6 +6,7 @@
 #include "acoustic_channel/access/periodic_config.hpp"
 #include "acoustic_channel/models/extended_config.hpp"
 #include "acoustic_channel/models/range_config.hpp"
+#include "acoustic_channel/network/physical_config.hpp"
 #include "auv_common/config/field.hpp"
 #include "auv_common/config/run_config.hpp"
 
@@ -13,7 +14,7 @@ namespace stg::acoustics {
 
 /// The section `channel`: what it is made of, by name, and the keys of its parts, which stand
 /// beside their code.
-struct ChannelConfig : RangeConfig, PeriodicConfig, ExtendedConfig {
+struct ChannelConfig : RangeConfig, PeriodicConfig, ExtendedConfig, PhysicalConfig {
   std::string model = "extended";   ///< of PropagationModels()
   std::string access = "periodic";  ///< of MediumAccesses()
 };

@@ -1,6 +1,12 @@
 #include "acoustic_channel/access/medium_access.hpp"
 
+#include <algorithm>
+
+#include "acoustic_channel/access/aloha.hpp"
+#include "acoustic_channel/access/csma.hpp"
 #include "acoustic_channel/access/periodic.hpp"
+#include "acoustic_channel/access/slotted_aloha.hpp"
+#include "acoustic_channel/access/tdma.hpp"
 #include "acoustic_channel/channel_config.hpp"
 
 namespace stg::acoustics {
@@ -9,6 +15,10 @@ MediumAccessRegistry& MediumAccesses() {
   // clang-format off
   static MediumAccessRegistry registry("medium access", {
       {"periodic", MakePeriodic},
+      {"tdma", MakeTdma},
+      {"aloha", MakeAloha},
+      {"slotted_aloha", MakeSlottedAloha},
+      {"csma", MakeCsma},
   });
   // clang-format on
   return registry;
@@ -21,16 +31,16 @@ std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, cons
 Turns::Turns(const ChannelConfig& config, const RunConfig& run)
     : access_(MakeMediumAccess(config, run)),
       period_(run.decision_period()),
-      start_(static_cast<std::size_t>(run.agents), kNever) {}
+      adapts_(access_->adapts()),
+      memos_(static_cast<std::size_t>(run.agents)) {}
 
 void Turns::Reset(std::uint64_t seed, std::uint32_t episode) {
   access_->Reset(seed, episode);
-  planned_ = kNever;
+  std::fill(memos_.begin(), memos_.end(), Memo{});
 }
 
-void Turns::Plan(TimeNs t) {
-  access_->Plan(t, t + period_, &start_);
-  planned_ = t;
+void Turns::Ask(int node, TimeNs t) {
+  memos_[static_cast<std::size_t>(node)] = {t, access_->Next(node, t, Attempt{})};
 }
 
 }  // namespace stg::acoustics

@@ -18,19 +18,15 @@ Periodic::Periodic(const PeriodicConfig& config, const RunConfig& run)
       period_(run.decision_period()),
       slots_(static_cast<TimeNs>(std::max(1.0, std::round(transmit_period_s_ / decision_s_)))) {}
 
-std::optional<config::Violation> Periodic::FindConflict() const {
+std::optional<config::Violation> Periodic::FindConflict(const PacketTime& /*packet*/) const {
   if (transmit_period_s_ >= decision_s_ * (1.0 - 1e-9)) return {};
   return config::Violation{{"channel.transmit_period_s", "time.dt_s", "time.decision_steps"},
                            "an AUV sends at most one packet per decision"};
 }
 
-void Periodic::Plan(TimeNs from, TimeNs /*until*/, std::vector<TimeNs>* start) const {
-  std::fill(start->begin(), start->end(), kNever);
-  const TimeNs slot = from / period_ % slots_;
-  for (auto node = static_cast<std::size_t>(slot); node < start->size();
-       node += static_cast<std::size_t>(slots_)) {
-    (*start)[node] = from;
-  }
+TimeNs Periodic::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {
+  const TimeNs decision = (from + period_ - 1) / period_;
+  return (decision + (node + slots_ - decision % slots_) % slots_) * period_;
 }
 
 std::unique_ptr<MediumAccess> MakePeriodic(const ChannelConfig& config, const RunConfig& run) {

@@ -23,4 +23,8 @@ void Channel::CheckOrThrow(const Transmission& packet) const {
   if (packet.generation > packet.stamp) refuse("generated after it was offered");
 }
 
+void Channel::Ping(int, int, TimeNs, TimeNs, std::uint32_t) {
+  throw UserError("ping: this channel model has no ranging");
+}
+
 }  // namespace stg::acoustics

@@ -32,6 +32,10 @@ const char* ToString(DropReason reason) {
       return "queue";
     case DropReason::kNotAcquired:
       return "not_acquired";
+    case DropReason::kShadow:
+      return "shadow";
+    case DropReason::kLeft:
+      return "left";
   }
   return "none";
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
@@ -17,6 +18,12 @@ namespace {
 
 constexpr std::uint32_t kQueue = 50;
 
+std::vector<int> IndicesOf(int agents) {
+  std::vector<int> indices(static_cast<std::size_t>(agents));
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
 }  // namespace
 
 ChannelNode::ChannelNode()
@@ -25,14 +32,17 @@ ChannelNode::ChannelNode()
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
+      tracker_(period_, scenario_.time.episode_steps),
       barrier_(scenario_.agents),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
       velocities_(auvs_.size()),
+      reports_(IndicesOf(scenario_.agents)),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
   done_ = node.advertise<std_msgs::Header>(topics::kChannelDone, kQueue, true);
   links_ = node.advertise<auv_msgs::LinkStates>(topics::kLinks, kQueue, true);
+  packets_ = node.advertise<auv_msgs::PacketEvents>(topics::kPackets, kQueue);
   for (int i = 0; i < scenario_.agents; ++i) {
     Auv& auv = auvs_[static_cast<std::size_t>(i)];
     auv.reception = node.advertise<auv_msgs::AcousticReception>(
@@ -73,22 +83,30 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     return;
   }
   const TimeNs stamp = NsOf(message->header.stamp);
-  if (barrier_.open() && stamp > barrier_.stamp()) {
+  using Verdict = StepTracker::Verdict;
+  const Verdict verdict = tracker_.Hear({message->run, message->episode, message->step, stamp});
+  if (verdict == Verdict::kRefused) {
+    refused_swarm_.Add(Refusals::kStale);
+    return;
+  }
+  if (verdict == Verdict::kNewRun) {
+    barrier_.Restart();  // but keeps transmissions: those of this step may have come before it
+  } else if (barrier_.open() && stamp > barrier_.stamp()) {
     // The world has gone on without this channel.
     Close();
     ++incomplete_steps_;
   }
   // Nodes need time to start, and the world waits with its first step until they have.
-  const bool at_start = !barrier_.started() && message->step == 0;
+  const bool at_start = message->episode == 0 && message->step == 0;
   const double deadline_s =
       at_start ? std::numeric_limits<double>::infinity() : WallSeconds() + timeout_s_;
   if (barrier_.Open(stamp, deadline_s) == StepBarrier::Opening::kRepeated) return;
   SetNodeTime(message->header.stamp);
   gave_up_ = false;
-  const TimeNs start = stamp - static_cast<TimeNs>(message->step) * period_;
-  if (start != start_ || message->episode != episode_) channel_->Reset(message->seed, 0);
-  start_ = start;
-  episode_ = message->episode;
+  if (verdict == Verdict::kNewRun || verdict == Verdict::kNewEpisode) {
+    channel_->Reset(message->seed, 0);
+  }
+  start_ = tracker_.start();
   step_ = message->step;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
@@ -152,6 +170,7 @@ acoustics::Transmission ChannelNode::TransmissionOf(const auv_msgs::AcousticPack
   t.destination = message.destination;
   t.stamp = NsOf(message.header.stamp) - start_;
   t.generation = NsOf(message.generation) - start_;
+  t.tag = message.sequence;
   t.payload = acoustics::ViewOf(message.data);
   return t;
 }
@@ -173,6 +192,10 @@ void ChannelNode::Close() {
     if (!barrier_.answered(static_cast<int>(i)) || m->data.empty()) continue;
     offered_.push_back(TransmissionOf(*m));
   }
+  // Who looks on learns what happens; otherwise nobody writes it down.
+  const bool watched = packets_.getNumSubscribers() > 0;
+  reports_.Begin(start_);
+  channel_->Observe(watched ? &reports_ : nullptr);
   channel_->Step(now, step_, positions_, velocities_, offered_);
   for (int i = 0; i < scenario_.agents; ++i) PublishReceptions(i, now + period_);
   std_msgs::Header done;
@@ -180,7 +203,17 @@ void ChannelNode::Close() {
   done.frame_id = frames::kWorld;
   done_.publish(done);
   steps_.Add();
+  PublishPackets();
   PublishLinks(now);
+}
+
+void ChannelNode::PublishPackets() {
+  auv_msgs::PacketEvents& m = reports_.message();
+  if (m.events.empty()) return;
+  m.header.stamp = TimeOf(barrier_.stamp());
+  m.header.frame_id = frames::kWorld;
+  packets_.publish(m);
+  reports_.Clear();
 }
 
 void ChannelNode::PublishReceptions(int i, TimeNs until) {
@@ -207,21 +240,10 @@ void ChannelNode::PublishLinks(TimeNs now) {
   for (int i = 0; i < scenario_.agents; ++i) {
     for (int j = 0; j < scenario_.agents; ++j) {
       if (i == j) continue;
-      const acoustics::LinkStatistics s = channel_->Link(i, j, now);
-      auv_msgs::LinkState link;
+      auv_msgs::LinkState& link = m.links.emplace_back();
+      SetLinkState(channel_->Link(i, j, now), &link);
       link.source = static_cast<std::uint32_t>(i);
       link.destination = static_cast<std::uint32_t>(j);
-      link.distance = s.distance_m;
-      link.quality = s.quality;
-      link.loss_probability = s.loss_probability;
-      link.delay = s.delay_s;
-      link.age = s.age_s;
-      link.average_age = s.average_age_s;
-      link.peak_age = s.peak_age_s;
-      link.delivered = static_cast<std::uint32_t>(s.delivered);
-      link.dropped = static_cast<std::uint32_t>(s.dropped);
-      link.last_drop_reason = static_cast<std::uint8_t>(s.last_drop);
-      m.links.push_back(link);
     }
   }
   links_.publish(m);

@@ -12,9 +12,11 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/channel_config.hpp"
+#include "acoustic_channel/nodes/packet_reports.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/step/step_barrier.hpp"
+#include "auv_common/step/step_tracker.hpp"
 
 namespace stg::nodes {
 
@@ -24,7 +26,8 @@ namespace stg::nodes {
 /// can leave in it; then each AUV gets its reception window (t_k, t_{k+1}], and the world its
 /// acknowledgement. An AUV that is due and silent for `timeout` seconds, or whose step the world
 /// has left behind, is gone for the channel and not waited for again before it transmits again.
-/// Positions, velocities, step, episode and seed come with /swarm_state.
+/// Positions, velocities, step, episode and seed come with /swarm_state; one that contradicts the
+/// run is refused, see StepTracker.
 class ChannelNode {
  public:
   /// Throws UserError.
@@ -49,6 +52,7 @@ class ChannelNode {
   void CloseIfDue();
   void Close();
   void PublishReceptions(int i, TimeNs until);
+  void PublishPackets();
   void PublishLinks(TimeNs now);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -56,10 +60,11 @@ class ChannelNode {
   std::unique_ptr<acoustics::Channel> channel_;
   TimeNs period_;  ///< of decisions [ns]
   double timeout_s_, display_period_s_;
+  StepTracker tracker_;
   StepBarrier barrier_;   ///< the AUVs
   bool gave_up_ = false;  ///< on an AUV in the open step
   TimeNs start_ = -1;     ///< clock time of the episode's step 0 [ns]
-  std::uint32_t episode_ = 0, step_ = 0;
+  std::uint32_t step_ = 0;
   ros::WallTime links_sent_;
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_, velocities_;
@@ -70,7 +75,8 @@ class ChannelNode {
   EventRate steps_;
   std::uint64_t incomplete_steps_ = 0;
   Refusals refused_swarm_, refused_transmissions_;
-  ros::Publisher done_, links_;
+  PacketReports reports_;
+  ros::Publisher done_, links_, packets_;
   ros::Subscriber swarm_;
   Health health_;
 };

@@ -12,6 +12,9 @@ namespace stg {
 /// A letter, then letters, digits, `_` or `-`; 64 characters at most.
 bool IsName(const std::string& text);
 
+/// UTF-8 without control characters: what may go into a terminal, a log or a JSON file.
+bool IsText(const std::string& text);
+
 /// Levenshtein distance: the fewest insertions, deletions and replacements of one character.
 std::size_t EditDistance(const std::string& a, const std::string& b);
 

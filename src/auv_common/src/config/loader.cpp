@@ -23,6 +23,14 @@ std::string Shortened(const std::string& text) {
   return quoted.substr(1, quoted.size() - 2);
 }
 
+/// Edits between what was written and a key, whose unit may have been left out.
+std::size_t SlipDistance(const std::string& text, const std::string& key) {
+  const std::size_t unit = key.rfind('_');
+  const std::size_t whole = EditDistance(text, key);
+  return unit == std::string::npos ? whole
+                                   : std::min(whole, EditDistance(text, key.substr(0, unit)));
+}
+
 }  // namespace
 
 Loader::Loader(const Table& table, Scope scope) : table_(table), scope_(scope) {
@@ -46,6 +54,11 @@ void Loader::ApplyText(const std::string& text, const std::string& origin) {
   Keys given;
   ApplyMap(root, "", origin, &given);
   RequireAll(root, origin, given);
+}
+
+void Loader::ApplyPart(const YamlTree& map, const std::string& prefix, const std::string& file) {
+  Keys given;
+  ApplyMap(map, prefix, file, &given);
 }
 
 void Loader::Refuse(const Violation& violation) const {
@@ -176,7 +189,7 @@ std::string Loader::Unknown(const std::string& path) const {
   if (path.size() <= 200) {
     std::size_t least = std::max<std::size_t>(2, Leaf(path).size() / 3) + 1;
     for (const std::string& key : keys) {
-      const std::size_t distance = Parent(key) == Parent(path) ? EditDistance(Leaf(path), Leaf(key))
+      const std::size_t distance = Parent(key) == Parent(path) ? SlipDistance(Leaf(path), Leaf(key))
                                                                : EditDistance(path, key);
       if (distance < least) {
         least = distance;

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "yaml_files.hpp"
@@ -134,7 +135,18 @@ std::string BaseOf(const std::string& path, const YamlTree::Entry& entry) {
     throw UserError(path + ":" + std::to_string(entry.line) +
                     ": base: expected a file name, found " + KindName(entry.value));
   }
-  return (std::filesystem::path(path).parent_path() / entry.value.scalar).string();
+  namespace fs = std::filesystem;
+  const fs::path name = entry.value.scalar;
+  const fs::path beside = fs::path(path).parent_path() / name;
+  std::error_code error;
+  if (name.has_parent_path() || fs::exists(beside, error)) return beside.string();
+  try {
+    const fs::path shipped = fs::path(ScenarioFolder()) / name;
+    if (fs::is_regular_file(shipped, error)) return shipped.string();
+  } catch (const UserError&) {
+    // There are no shipped files here: the one beside is what is missing.
+  }
+  return beside.string();
 }
 
 std::string OverrideOrigin(const std::string& text) { return "--set " + Quoted(text); }

@@ -52,6 +52,12 @@ std::string FormatWord(const std::string& word) {
   return word;
 }
 
+std::string FormatWords(const std::vector<std::string>& words) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < words.size(); ++i) text += (i > 0 ? ", " : "") + FormatWord(words[i]);
+  return text + "]";
+}
+
 std::optional<std::string> CheckNumbers(const Field& field, const double* values, int size) {
   for (int i = 0; i < size; ++i) {
     if (!std::isfinite(values[i])) return "must be finite";
@@ -153,6 +159,18 @@ struct Assign {
     const auto values = ToDoubles(node, 2);
     *v = {values[0], values[1]};
   }
+  void operator()(const NamesRef& v) const {
+    if (node.kind != YamlTree::Kind::kSequence) {
+      throw Refusal{"expected a sequence of names, found " + KindName(node)};
+    }
+    v.list->clear();
+    for (const YamlTree& item : node.items) {
+      if (item.kind != YamlTree::Kind::kScalar) {
+        throw Refusal{"expected a sequence of names, found " + KindName(item) + " in it"};
+      }
+      v.list->push_back(item.scalar);
+    }
+  }
 };
 
 }  // namespace
@@ -195,7 +213,8 @@ std::string FormatValue(const ValueRef& value) {
                              [](Interval* v) {
                                const double ends[] = {v->lo, v->hi};
                                return FormatNumbers(ends, 2);
-                             }},
+                             },
+                             [](const NamesRef& v) { return FormatWords(*v.list); }},
                     value);
 }
 
@@ -209,7 +228,8 @@ std::string FormatRange(const Field& field) {
                [](std::string*) { return std::string("a letter, then letters, digits, _ or -"); },
                [](const EnumRef& v) { return JoinNames(v.names); },
                [&](const NumbersRef&) { return range; },
-               [&](Interval*) { return range + ", low <= high"; }},
+               [&](Interval*) { return range + ", low <= high"; },
+               [](const NamesRef& v) { return "any number of " + JoinNames(v.names); }},
       field.value);
 }
 
@@ -236,6 +256,14 @@ std::optional<std::string> CheckValue(const Field& field) {
                  if (auto message = CheckNumbers(field, ends, 2)) return message;
                  if (v->lo > v->hi)
                    return "low " + FormatNumber(v->lo) + " is above high " + FormatNumber(v->hi);
+                 return {};
+               },
+               [](const NamesRef& v) -> Result {
+                 for (const std::string& name : *v.list) {
+                   if (std::find(v.names.begin(), v.names.end(), name) == v.names.end()) {
+                     return Quoted(name) + " is none of " + JoinNames(v.names);
+                   }
+                 }
                  return {};
                }},
       field.value);

@@ -23,6 +23,18 @@ void Refusals::Report(const std::string& topic,
   }
 }
 
+bool Throttle::Due() {
+  const ros::WallTime now = ros::WallTime::now();
+  if (!last_.isZero() && (now - last_).toSec() < period_s_) {
+    ++kept_back_;
+    return false;
+  }
+  last_ = now;
+  more_ = kept_back_ > 0 ? " (and " + std::to_string(kept_back_) + " more)" : "";
+  kept_back_ = 0;
+  return true;
+}
+
 Health::Health(const std::string& name, const std::string& hardware, Report report)
     : last_(ros::WallTime::now()) {
   updater_.setHardwareID(hardware);

@@ -34,7 +34,9 @@ std::vector<std::string> Words(const std::string& text) {
   return words;
 }
 
-std::vector<std::string> ListParameter(const std::string& name) {
+}  // namespace
+
+std::vector<std::string> TextsParameter(const std::string& name) {
   XmlRpc::XmlRpcValue value;
   if (!Find(name, &value)) return {};
   if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return Words(value);
@@ -46,8 +48,6 @@ std::vector<std::string> ListParameter(const std::string& name) {
   }
   return list;
 }
-
-}  // namespace
 
 std::string TextParameter(const std::string& name, const std::string& fallback) {
   XmlRpc::XmlRpcValue value;
@@ -96,7 +96,7 @@ bool SimulatedTimeParameter() {
 }
 
 config::Source ScenarioSource() {
-  std::vector<std::string> overrides = ListParameter("overrides");
+  std::vector<std::string> overrides = TextsParameter("overrides");
   const int agents = IntegerParameter("agents", 0, 0, 255);
   if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
   overrides.emplace_back("mode=acoustic");

@@ -27,6 +27,7 @@ void Describe(ControlConfig* c, config::Table* t) {
          "yaw: only damped, or the bow points along the commanded velocity");
   t->Add("heading_gain", &c->heading_gain, config::NonNegative(1e3), "1/rad",
          "along_velocity: gain, as a share of the largest moment");
+  Describe(&c->autopilot, t);
 }
 
 }  // namespace stg::dynamics

@@ -2,5 +2,6 @@
 #include "world_node.hpp"
 
 int main(int argc, char** argv) {
-  return stg::nodes::RunNode<stg::nodes::WorldNode>(argc, argv, "world");
+  return stg::nodes::RunNode<stg::nodes::WorldNode>(argc, argv, "world",
+                                                    stg::nodes::NodeClock::kMessages);
 }

@@ -31,6 +31,7 @@ geometry_msgs::TransformStamped TransformOf(const std::string& child,
 WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz)
     : scenario_(scenario),
       display_period_s_(1.0 / display_rate_hz),
+      run_(ros::WallTime::now().toNSec()),
       auvs_(static_cast<std::size_t>(scenario.agents)),
       targets_(static_cast<std::size_t>(scenario.target.count)),
       target_messages_(targets_.size()) {
@@ -106,12 +107,28 @@ void WorldPublisher::PublishClock(TimeNs now) {
 }
 
 void WorldPublisher::SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
-                                 const std::vector<std::uint8_t>& fresh) {
+                                 const std::vector<std::uint8_t>& fresh, bool channel_fresh) {
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     SetVector(wrenches[i].force, &swarm_message_.wrenches[i].force);
     SetVector(wrenches[i].moment, &swarm_message_.wrenches[i].torque);
   }
   swarm_message_.fresh = fresh;
+  swarm_message_.channel_fresh = channel_fresh;
+}
+
+void WorldPublisher::SetEfforts(const std::vector<double>& efforts,
+                                const std::vector<std::uint8_t>& fresh, bool channel_fresh) {
+  swarm_message_.efforts = efforts;
+  swarm_message_.fresh = fresh;
+  swarm_message_.channel_fresh = channel_fresh;
+}
+
+void WorldPublisher::PublishNavigation(const dynamics::World& world, TimeNs start) {
+  for (int i = 0; i < world.agents(); ++i) {
+    AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
+    SetNavigationOf(world, start, i, &auv);
+    auv.odometry.Publish();
+  }
 }
 
 void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
@@ -120,6 +137,7 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
   for (int i = 0; i < world.agents(); ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
     auv_msgs::SensorFrame& frame = auv.frame_message;
+    frame.run = run_;
     frame.episode = episode;
     frame.step = step;
     SetFrame(world, start, i, &auv);
@@ -140,19 +158,26 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
     SetVector(Lane(world.target(k).v_WT, 0), &swarm_message_.target_velocities[u]);
   }
   swarm_message_.header.stamp = TimeOf(now);
+  swarm_message_.run = run_;
   swarm_message_.episode = episode;
   swarm_message_.step = step;
   swarm_message_.seed = world.seed(0);
 }
 
-void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
-                              AuvTopics* auv) const {
+void WorldPublisher::SetNavigationOf(const dynamics::World& world, TimeNs start, int i,
+                                     AuvTopics* auv) {
   auv_msgs::SensorFrame& m = auv->frame_message;
   const dynamics::NavState nav = world.Nav(0, i);
   m.header.stamp = TimeOf(start + nav.stamp);
-  m.seed = world.seed(0);
   SetNavigation(nav, &m.pose, &m.twist);
-  SetDetections(world, start + nav.stamp, i, &m);
+}
+
+void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
+                              AuvTopics* auv) const {
+  auv_msgs::SensorFrame& m = auv->frame_message;
+  SetNavigationOf(world, start, i, auv);
+  m.seed = world.seed(0);
+  SetDetections(world, start + world.time(0), i, &m);
   if (m.step == 0) {
     m.cue_valid = true;  // and stays in the message, for an agent that comes late
     const dynamics::Cue cue = world.InitialCue(0, i, scenario_.target_of(i));

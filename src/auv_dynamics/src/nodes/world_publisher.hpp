@@ -24,9 +24,16 @@ class WorldPublisher {
   WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz);
 
   /// What acted on the AUVs in the step that ends at the next PublishSensors: wrenches, and which
-  /// of them were commanded for it.
+  /// of them were commanded for it; and whether the acoustic channel had closed it.
   void SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
-                   const std::vector<std::uint8_t>& fresh);
+                   const std::vector<std::uint8_t>& fresh, bool channel_fresh);
+
+  /// The same of vehicles with other actuators: shares of their limits, kWrenchSize of each AUV.
+  void SetEfforts(const std::vector<double>& efforts, const std::vector<std::uint8_t>& fresh,
+                  bool channel_fresh);
+
+  /// The AUVs' navigation between two decisions, for their autopilots.
+  void PublishNavigation(const dynamics::World& world, TimeNs start);
 
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
   /// [ns].
@@ -48,6 +55,7 @@ class WorldPublisher {
     OnDemand<auv_msgs::TargetDetection> detection;
   };
   void Advertise();
+  static void SetNavigationOf(const dynamics::World& world, TimeNs start, int i, AuvTopics* auv);
   void SetFrame(const dynamics::World& world, TimeNs start, int i, AuvTopics* auv) const;
   void SetDetections(const dynamics::World& world, TimeNs now, int i,
                      auv_msgs::SensorFrame* m) const;
@@ -57,6 +65,7 @@ class WorldPublisher {
 
   dynamics::WorldConfig scenario_;
   double display_period_s_;
+  std::uint64_t run_;  ///< id of this run
   ros::WallTime clock_sent_, frames_sent_;
   std::vector<AuvTopics> auvs_;
   std::vector<OnDemand<nav_msgs::Odometry>> targets_;

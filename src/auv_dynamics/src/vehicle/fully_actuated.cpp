@@ -10,11 +10,7 @@ FullyActuated::FullyActuated(const VehicleConfig& config) : model_(config) {
     const double most = config.max_tau[static_cast<size_t>(k)];
     actuators_.push_back({names[k], k < 3 ? "N" : "N m", -most, most});
   }
-  const char* const axes[] = {"v_x", "v_y", "v_z"};
-  for (size_t k = 0; k < config.max_velocity_mps.size(); ++k) {
-    const double most = config.max_velocity_mps[k];
-    actions_.push_back({axes[k], "m/s", -most, most});
-  }
+  actions_ = VelocityActions(config);
 }
 
 void FullyActuated::Step(const Pack* command, const Surroundings& around, double dt,

@@ -75,6 +75,8 @@ void Describe(VehicleConfig* c, config::Table* t) {
   t->Add("substeps", &c->substeps, config::Within(1, 1000), "-",
          "integrator steps per physics step");
   t->Add("radius_m", &c->radius_m, config::Positive(100), "m", "collision radius of one AUV");
+  Describe(&c->torpedo, t);
+  Describe(&c->kinematic, t);
 }
 
 std::optional<config::Violation> FindConflict(const VehicleConfig& c) {

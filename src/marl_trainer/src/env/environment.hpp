@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "auv_dynamics/world/helm.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/task.hpp"
 #include "sources/information_source.hpp"
@@ -26,8 +27,10 @@ class Environment {
              const std::vector<Vec3<double>>& v_WT);
   void Begin(const LaneSet& lanes);
 
-  /// One decision of every AUV of every lane. @param wanted [agents, action_size], finite
-  void Step(const Pack* wanted);
+  /// One decision of every AUV of every lane, in two halves: they act and the world moves; they
+  /// learn what came of it and the task judges. @param wanted [agents, action_size], finite
+  void Move(const Pack* wanted);
+  void Judge();
   /// The lane has made all decisions of its episode.
   bool Done(int lane) const { return task_.steps(lane) >= Lane(length_, lane); }
 
@@ -45,6 +48,7 @@ class Environment {
   AcousticSource& acoustic() const;  ///< acoustic mode only
 
  private:
+  void Steer();
   void Zero(int lane, int episode_steps);
   task::SwarmState<Pack> Swarm() const;
 
@@ -57,6 +61,9 @@ class Environment {
   Pack link_quality_ = Pack(0.0);
   task::Efforts<Pack> tau_, action_;
   std::vector<dynamics::Wrench<Pack>> wrench_;
+  // Of vehicles that are steered by autopilots; else null.
+  std::unique_ptr<dynamics::Helm> helm_;
+  std::vector<Vec3<Pack>> v_des_W_;
 };
 
 }  // namespace stg::env

@@ -4,6 +4,7 @@
 #include <immintrin.h>
 #endif
 
+#include <algorithm>
 #include <cstddef>
 #include <type_traits>
 
@@ -17,16 +18,18 @@ inline void Gather(const Number* rows, std::size_t stride, int lanes, int size, 
   int c = 0;
 #if defined(__AVX__) && !defined(__AVX512F__)
   if constexpr (std::is_same_v<Number, float>) {
-    for (; lanes == kLanes && c + 4 <= size; c += 4) {
-      __m128 r0 = _mm_loadu_ps(rows + c);
-      __m128 r1 = _mm_loadu_ps(rows + stride + c);
-      __m128 r2 = _mm_loadu_ps(rows + 2 * stride + c);
-      __m128 r3 = _mm_loadu_ps(rows + 3 * stride + c);
+    for (; lanes == kLanes && size >= 4 && c < size; c += 4) {
+      const int k = std::min(c, size - 4);
+      const float* row = rows + k;
+      __m128 r0 = _mm_loadu_ps(row);
+      __m128 r1 = _mm_loadu_ps(row + stride);
+      __m128 r2 = _mm_loadu_ps(row + 2 * stride);
+      __m128 r3 = _mm_loadu_ps(row + 3 * stride);
       _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
-      columns[c] = _mm256_cvtps_pd(r0);
-      columns[c + 1] = _mm256_cvtps_pd(r1);
-      columns[c + 2] = _mm256_cvtps_pd(r2);
-      columns[c + 3] = _mm256_cvtps_pd(r3);
+      columns[k] = _mm256_cvtps_pd(r0);
+      columns[k + 1] = _mm256_cvtps_pd(r1);
+      columns[k + 2] = _mm256_cvtps_pd(r2);
+      columns[k + 3] = _mm256_cvtps_pd(r3);
     }
   }
 #endif
@@ -47,18 +50,21 @@ inline void Gather(const Number* rows, std::size_t stride, int lanes, int size, 
 inline void Scatter(const Pack* columns, int size, int lanes, float* rows, std::size_t stride) {
   int c = 0;
 #if defined(__AVX__) && !defined(__AVX512F__)
-  // Four columns of four lanes at a time: a quarter of the time of single stores.
+  // Four columns of four lanes at a time: a quarter of the time of single stores. The last four may
+  // overlap the four before.
   static_assert(kLanes == 4, "AVX holds four doubles");
-  for (; lanes == kLanes && c + 4 <= size; c += 4) {
-    __m128 r0 = _mm256_cvtpd_ps(columns[c]);
-    __m128 r1 = _mm256_cvtpd_ps(columns[c + 1]);
-    __m128 r2 = _mm256_cvtpd_ps(columns[c + 2]);
-    __m128 r3 = _mm256_cvtpd_ps(columns[c + 3]);
+  for (; lanes == kLanes && size >= 4 && c < size; c += 4) {
+    const int k = std::min(c, size - 4);
+    float* row = rows + k;
+    __m128 r0 = _mm256_cvtpd_ps(columns[k]);
+    __m128 r1 = _mm256_cvtpd_ps(columns[k + 1]);
+    __m128 r2 = _mm256_cvtpd_ps(columns[k + 2]);
+    __m128 r3 = _mm256_cvtpd_ps(columns[k + 3]);
     _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
-    _mm_storeu_ps(rows + c, r0);
-    _mm_storeu_ps(rows + stride + c, r1);
-    _mm_storeu_ps(rows + 2 * stride + c, r2);
-    _mm_storeu_ps(rows + 3 * stride + c, r3);
+    _mm_storeu_ps(row, r0);
+    _mm_storeu_ps(row + stride, r1);
+    _mm_storeu_ps(row + 2 * stride, r2);
+    _mm_storeu_ps(row + 3 * stride, r3);
   }
 #endif
   alignas(64) double buffer[kLanes];

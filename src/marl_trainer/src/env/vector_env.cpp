@@ -10,6 +10,8 @@
 namespace stg::env {
 namespace {
 
+constexpr std::size_t kBlock = 4;  ///< of slices whose halves of a step run together
+
 std::size_t Size(int a, int b = 1, int c = 1) {
   return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * static_cast<std::size_t>(c);
 }
@@ -53,7 +55,7 @@ VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& o
   }
   round_.assign(slice_of_.size(), 0);
   finished_.resize(slice_of_.size());
-  wanted_.assign(Size(agents(), action_size()), Pack(0.0));
+  wanted_.assign(slices_.size() * Size(agents(), action_size()), Pack(0.0));
   rows_.resize(Size(kLanes, std::max(agents() * observation_size(), state_size())));
 }
 
@@ -133,36 +135,50 @@ void VectorEnv::Step(const float* actions, const EnvArrays& out) { StepAll(actio
 void VectorEnv::Step(const double* actions, const EnvArrays& out) { StepAll(actions, out); }
 
 template <class Number>
-void VectorEnv::TakeActions(const Slice& slice, const Number* actions) {
-  const int size = static_cast<int>(wanted_.size());
-  Gather(actions + Size(slice.first, size), wanted_.size(), slice.count, size, wanted_.data());
+void VectorEnv::TakeActions(const Number* actions) {
+  const int size = agents() * action_size();
   Pack finite(0.0);
-  for (const Pack& a : wanted_) finite += a - a;
+  Pack* wanted = wanted_.data();
+  for (const Slice& slice : slices_) {
+    Gather(actions + Size(slice.first, size), Size(size), slice.count, size, wanted);
+    for (int k = 0; k < size; ++k) finite += wanted[k] - wanted[k];
+    wanted += size;
+  }
   if (Any(!(finite == Pack(0.0)))) throw std::invalid_argument("non-finite action");
 }
 
 template <class Number>
 void VectorEnv::StepAll(const Number* actions, const EnvArrays& out) {
-  for (const Slice& slice : slices_) {
-    Environment& lanes = *slice.lanes;
-    TakeActions(slice, actions);
-    lanes.Step(wanted_.data());
-    if (out.rewards != nullptr) {
-      lanes.WriteRewards(slice.count, out.rewards + Size(slice.first, agents()));
+  TakeActions(actions);
+  // The code of a whole step does not fit the instruction cache, that of a half does: each half
+  // runs over some environments before the other takes its place.
+  for (std::size_t first = 0; first < slices_.size(); first += kBlock) {
+    const std::size_t last = std::min(first + kBlock, slices_.size());
+    for (std::size_t k = first; k < last; ++k) {
+      slices_[k].lanes->Move(wanted_.data() + k * Size(agents(), action_size()));
     }
-    LaneSet done;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      done.in[static_cast<std::size_t>(lane)] = lanes.Done(lane);
-      if (lane >= slice.count) continue;
-      const std::size_t env = Size(slice.first + lane);
-      if (out.team_rewards != nullptr) {
-        out.team_rewards[env] = static_cast<float>(Lane(lanes.task().team_reward(), lane));
-      }
-      if (out.truncated != nullptr) out.truncated[env] = done[lane] ? 1 : 0;
-    }
-    if (done.any()) Finish(slice, done, out);
-    WriteStart(slice, out);
+    for (std::size_t k = first; k < last; ++k) Judge(slices_[k], out);
   }
+}
+
+void VectorEnv::Judge(const Slice& slice, const EnvArrays& out) {
+  Environment& lanes = *slice.lanes;
+  lanes.Judge();
+  if (out.rewards != nullptr) {
+    lanes.WriteRewards(slice.count, out.rewards + Size(slice.first, agents()));
+  }
+  LaneSet done;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    done.in[static_cast<std::size_t>(lane)] = lanes.Done(lane);
+    if (lane >= slice.count) continue;
+    const std::size_t env = Size(slice.first + lane);
+    if (out.team_rewards != nullptr) {
+      out.team_rewards[env] = static_cast<float>(Lane(lanes.task().team_reward(), lane));
+    }
+    if (out.truncated != nullptr) out.truncated[env] = done[lane] ? 1 : 0;
+  }
+  if (done.any()) Finish(slice, done, out);
+  WriteStart(slice, out);
 }
 
 void VectorEnv::Finish(const Slice& slice, const LaneSet& done, const EnvArrays& out) {

@@ -2,5 +2,6 @@
 #include "trainer_node.hpp"
 
 int main(int argc, char** argv) {
-  return stg::nodes::RunNode<stg::nodes::TrainerNode>(argc, argv, "trainer");
+  return stg::nodes::RunNode<stg::nodes::TrainerNode>(argc, argv, "trainer",
+                                                      stg::nodes::NodeClock::kMessages, 0);
 }

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <numeric>
 
+#include "auv_common/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
@@ -73,8 +74,10 @@ void TrainerNode::Judge(learn::RecordedEpisode episode) {
     return;
   }
   ++recording_.dropped[static_cast<std::size_t>(finding.flaw)];
-  ROS_WARN("trainer: %s, episode %u dropped: %s (%s)", episode.source.c_str(), episode.number,
-           ToString(finding.flaw), finding.where.c_str());
+  // A bag has an end; what is heard live has none.
+  if (inlet_ && !dropped_.Due()) return;
+  ROS_WARN("trainer: %s, episode %u dropped: %s (%s)%s", episode.source.c_str(), episode.number,
+           ToString(finding.flaw), finding.where.c_str(), dropped_.more().c_str());
 }
 
 void TrainerNode::TrainOnBags() {
@@ -123,9 +126,8 @@ void TrainerNode::TrainLive() {
     UpdateAgents();
     for (learn::RecordedEpisode& episode : inlet_->episodes().TakeDone()) {
       Judge(std::move(episode));
-      collected_ = ros::WallTime::now();
     }
-    if (collection_.size() >= static_cast<std::size_t>(episodes_per_update_) && SummariesIn()) {
+    if (CollectionFull() && SummariesIn()) {
       Learn();
       finished = (updates_ > 0 && updates_done_ >= updates_) || TargetReached();
     }
@@ -138,21 +140,31 @@ void TrainerNode::TrainLive() {
 }
 
 void TrainerNode::OnAgentStep(int agent, const auv_msgs::AgentStep& message) {
-  if (message.episode < first_episode_) return;
+  if (message.episode < first_episode_ || !PossibleStamp(message.header.stamp)) return;
   agent_policies_[static_cast<std::size_t>(agent)] = message.policy_id;
   inlet_->Add(agent, message);
 }
 
 void TrainerNode::OnReport(const auv_msgs::StepReport& message) {
-  if (message.episode >= first_episode_) inlet_->Add(message);
+  if (message.episode < first_episode_ || !PossibleStamp(message.header.stamp)) return;
+  SetNodeTime(message.header.stamp);
+  inlet_->Add(message);
 }
 
 void TrainerNode::OnSummary(const auv_msgs::EpisodeSummary& message) {
   if (message.episode >= first_episode_ && message.complete) summaries_[message.episode] = message;
 }
 
+bool TrainerNode::CollectionFull() {
+  if (collection_.size() < static_cast<std::size_t>(episodes_per_update_)) return false;
+  if (!full_) full_ = ros::WallTime::now();
+  return true;
+}
+
+/// A summary that was lost is waited for only so long: episodes that come meanwhile, and in
+/// lockstep they come all the time, renew no patience.
 bool TrainerNode::SummariesIn() const {
-  if ((ros::WallTime::now() - collected_).toSec() > kSummaryPatience_s) return true;
+  if ((ros::WallTime::now() - *full_).toSec() > kSummaryPatience_s) return true;
   return std::all_of(collection_.begin(), collection_.end(),
                      [this](const auto& e) { return summaries_.count(e.number) > 0; });
 }
@@ -216,6 +228,7 @@ void TrainerNode::Learn() {
   Print(progress);
   collection_.clear();
   summaries_.clear();
+  full_.reset();
   for (int i = 0; i < scenario_.agents; ++i) LoadPolicy(i);
   last_load_ = ros::WallTime::now();
   StartEpisode();

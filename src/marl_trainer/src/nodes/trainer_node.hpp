@@ -8,6 +8,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,7 @@ class TrainerNode {
   bool LoadPolicy(int agent);
   void StartEpisode();
   void PauseWorld(bool pause);
+  bool CollectionFull();
   bool SummariesIn() const;
   bool TargetReached() const;
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -64,7 +66,9 @@ class TrainerNode {
   std::uint32_t first_episode_ = 0;          ///< flown by the present policy from its start
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries_;  ///< of the collection, by episode
   std::deque<double> lost_rates_;                                ///< of the newest used episodes
-  ros::WallTime began_, collected_, last_load_;
+  ros::WallTime began_, last_load_;
+  std::optional<ros::WallTime> full_;  ///< since when the collection is
+  Throttle dropped_;                   ///< of warnings about episodes that were dropped live
   int updates_done_ = 0;
   Health health_;
 };

@@ -51,8 +51,11 @@ template <class T>
 void Task<T>::Remember(const SwarmState<T>& swarm) {
   // The paper's cost is of actions, the release's of forces; a registered term may ask for either.
   const bool paper = scenario_.reward.kind == RewardKind::kPaper;
-  if (paper || !extra_.empty()) previous_action_ = swarm.action;
-  if (!paper || !extra_.empty()) previous_tau_ = swarm.tau;
+  const bool actions = paper || !extra_.empty(), forces = !paper || !extra_.empty();
+  for (std::size_t i = 0; i < tracking_.size(); ++i) {
+    if (actions) previous_action_[i] = swarm.action[i];
+    if (forces) previous_tau_[i] = swarm.tau[i];
+  }
 }
 
 template <class T>
@@ -110,11 +113,11 @@ RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
     }
   }
   if (scenario_.reward.kind == RewardKind::kPaper) {
-    std::copy(swarm.action[u].begin(), swarm.action[u].end(), in.action);
-    std::copy(previous_action_[u].begin(), previous_action_[u].end(), in.previous_action);
+    in.action = swarm.action[u].data();
+    in.previous_action = previous_action_[u].data();
   } else {
-    std::copy(swarm.tau[u].begin(), swarm.tau[u].end(), in.tau);
-    std::copy(previous_tau_[u].begin(), previous_tau_[u].end(), in.previous_tau);
+    in.tau = swarm.tau[u].data();
+    in.previous_tau = previous_tau_[u].data();
   }
   return in;
 }

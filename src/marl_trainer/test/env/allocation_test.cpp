@@ -68,6 +68,16 @@ TEST(Allocation, StepsAndRestartsAllocateNothingInEitherMode) {
   }
 }
 
+TEST(Allocation, NorDoModemsInWater) {
+  for (const char* access : {"tdma", "csma", "slotted_aloha"}) {
+    EXPECT_EQ(AllocationsAfterWarmUp(
+                  Shipped("physical", "nominal",
+                          {std::string("channel.access=") + access, "time.decision_steps=10"})),
+              0)
+        << access;
+  }
+}
+
 TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
   for (const char* mode : {"mode=truth", "mode=acoustic"}) {
     EXPECT_EQ(AllocationsAfterWarmUp(

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "acoustic_channel/channel/channel.hpp"
+#include "auv_common/error.hpp"
 #include "env/env_fixture.hpp"
 #include "stg_agent/agent/agent.hpp"
 
@@ -180,6 +181,41 @@ TEST(DegradedCommunication, ReallyDegradesTheLinks) {
     EXPECT_GT(good.share, 0.6);
     // Conditions that are not about links leave them alone.
     EXPECT_NEAR(Fly(stage, "limited_sensing").share, good.share, 0.1);
+  }
+}
+
+TEST(PhysicalChannel, BringsTheAgentsOfTheFieldTheirNeighboursOverModems) {
+  const Scenario s = Short(Shipped("physical"), 40);
+  TestEnv env(s);
+  env.Reset();
+  for (int k = 0; k < 30; ++k) env.Step(Idle(env));
+  for (int e = 0; e < kEnvs; ++e) {
+    const acoustics::ChannelTotals& t = env.channel(e).totals();
+    // Everybody sends once in a decision, to three others.
+    EXPECT_NEAR(static_cast<double>(t.delivered + t.dropped), 30.0 * 12.0, 24.0);
+    EXPECT_GT(t.delivered, 30u * 6u);
+    for (int i = 0; i < s.agents; ++i) {
+      const agent::AgentView view = env.agent(e, i);
+      EXPECT_GT(view.neighbours().known().size(), 0u);
+      for (const int j : view.neighbours().known()) {
+        const auto sight = view.sight(j);
+        EXPECT_GT(sight.link_quality, 0.0);
+        EXPECT_LT(sight.link_quality, 1.0) << "its news is older than now";
+        EXPECT_LT(Norm(sight.p_WN - env.vehicle(e, j).p_WB), 25.0);
+      }
+    }
+  }
+}
+
+TEST(PhysicalChannel, AModemWhoseFrameIsShorterThanAnAgentsPacketIsRefused) {
+  for (const char* key : {"channel.modem.profile=janus", "channel.modem.packet_bytes=31"}) {
+    std::string error;
+    try {
+      Shipped("physical", "nominal", {key});
+    } catch (const UserError& e) {
+      error = e.what();
+    }
+    EXPECT_NE(error.find("channel.modem.packet_bytes"), std::string::npos) << key << error;
   }
 }
 

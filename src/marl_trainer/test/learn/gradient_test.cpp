@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "draw.hpp"
 #include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
 #include "marl_trainer/learn/nn/torch/torch_network.hpp"
@@ -12,14 +12,6 @@
 /// The kernels against libtorch's automatic differentiation.
 namespace stg::learn {
 namespace {
-
-std::vector<float> Draw(std::size_t count, float scale, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<float> normal;
-  std::vector<float> v(count);
-  for (float& x : v) x = scale * normal(rng);
-  return v;
-}
 
 torch::Tensor View(std::vector<float>& v, std::vector<std::int64_t> shape) {
   return torch::from_blob(v.data(), shape, torch::kFloat).clone();

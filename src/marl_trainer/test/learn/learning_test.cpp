@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "draw.hpp"
 #include "marl_trainer/learn/buffers/gae.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
@@ -13,14 +13,6 @@
 
 namespace stg::learn {
 namespace {
-
-std::vector<float> Draw(std::size_t count, float scale, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<float> normal;
-  std::vector<float> v(count);
-  for (float& x : v) x = scale * normal(rng);
-  return v;
-}
 
 TEST(Blas, ProductsOfEveryOrientationMatchTheDefinition) {
   const int m = 5, n = 7, k = 3;

@@ -204,6 +204,36 @@ TEST_F(RecordedTest, GivesUpEpisodesThatNewerOnesOvertook) {
   EXPECT_EQ(done[0].number, 0U);
 }
 
+TEST_F(RecordedTest, StepsFromTheFutureTakeNoEpisodesPlace) {
+  EpisodeAssembler assembler(scenario_, "live");
+  for (const std::uint32_t number : {900U, 901U}) {
+    assembler.Add(number, number * 100 * kSecond, 3, 0, Step(trainer_->policy(), number, 3, 0));
+  }
+  for (std::uint32_t number = 0; number < 5; ++number) {
+    Record(number, number * 100 * kSecond, &assembler, kSteps / 2);
+    // A poll in the middle of each episode, as a live trainer does.
+    for (const RecordedEpisode& e : assembler.TakeDone()) EXPECT_GE(e.number, 900U);
+    Record(number, number * 100 * kSecond, &assembler);
+    const std::vector<RecordedEpisode> done = assembler.TakeDone();
+    ASSERT_EQ(done.size(), 1U) << number;
+    EXPECT_EQ(done[0].number, number);
+    EXPECT_EQ(trainer_->Check(done[0]).flaw, Flaw::kNone);
+  }
+}
+
+TEST_F(RecordedTest, LateWordsOpenNoEpisodeAnew) {
+  EpisodeAssembler assembler(scenario_, "live");
+  for (std::uint32_t number = 0; number < 4; ++number) {
+    Record(number, number * 100 * kSecond, &assembler, kSteps / 2);
+  }
+  EXPECT_EQ(assembler.TakeDone().size(), 2U) << "two are kept open";
+  for (std::uint32_t t = kSteps / 2; t < kSteps; ++t) {
+    assembler.Add(0, 0, t, 0, Step(trainer_->policy(), 0, t, 0));
+    EXPECT_TRUE(assembler.TakeDone().empty());
+  }
+  EXPECT_EQ(assembler.late(), std::uint64_t{kSteps / 2});
+}
+
 TEST_F(RecordedTest, LearnsWhichActionIsRewarded) {
   const auto mean_action = [this] {
     double sum = 0.0;

@@ -38,7 +38,7 @@ TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
 bool Change(const config::Field& field) {
   const auto other = [&](double v) {
     const double middle = 0.5 * (field.limits.lo + field.limits.hi);
-    return v == middle ? 0.75 * middle : middle;
+    return v == middle ? 0.75 * middle + 0.25 * field.limits.hi : middle;
   };
   if (auto v = std::get_if<double*>(&field.value)) **v = other(**v);
   if (auto v = std::get_if<int*>(&field.value)) **v += 1;
@@ -51,6 +51,7 @@ bool Change(const config::Field& field) {
   }
   if (auto v = std::get_if<config::NumbersRef>(&field.value)) v->data[v->size - 1] += 0.5;
   if (auto v = std::get_if<config::Interval*>(&field.value)) (*v)->hi += 0.5;
+  if (auto v = std::get_if<config::NamesRef>(&field.value)) v->list->push_back(v->names[0]);
   return true;
 }
 
@@ -106,6 +107,8 @@ TEST_F(ScenarioInput, EveryMissingKeyIsNamedWithTheLineOfItsSection) {
 
 TEST_F(ScenarioInput, UnknownKeySuggestsTheNearest) {
   ExpectRefused("dt_s", "dt: 0.1", "time.dt", "unknown key, did you mean time.dt_s?");
+  ExpectRefused("range_m", "rnge: 0.3", "sensing.rnge",
+                "unknown key, did you mean sensing.range_m?");
   ExpectRefused("agents", "agent: 4", "agent", "unknown key, did you mean agents?");
   ExpectRefused("mode", "dt_s: 0.1", "dt_s", "unknown key, did you mean time.dt_s?");
   ExpectRefused("mode", "zzzzzzzzzz: 1", "zzzzzzzzzz", "unknown key");

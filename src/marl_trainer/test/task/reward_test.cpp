@@ -13,6 +13,8 @@ Scenario With(RewardKind kind) {
   return s;
 }
 
+constexpr double kRest[6] = {};
+
 RewardInput<double> Input(double previous, double distance, double closing, double confidence,
                           bool lost = false) {
   RewardInput<double> in;
@@ -21,9 +23,7 @@ RewardInput<double> Input(double previous, double distance, double closing, doub
   in.closing = closing;
   in.confidence = confidence;
   in.lost = lost ? 1.0 : 0.0;
-  for (int k = 0; k < 6; ++k) {
-    in.tau[k] = in.previous_tau[k] = in.action[k] = in.previous_action[k] = 0.0;
-  }
+  in.tau = in.previous_tau = in.action = in.previous_action = kRest;
   return in;
 }
 
@@ -33,8 +33,9 @@ RewardInput<double> Input(double previous, double distance, double closing, doub
 TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
   // P = C = 0.5, U = 0, b = 0.185, B = 0.76875, R = 0.25.
   RewardInput<double> in = Input(0.22, 0.20, 0.04, 0.5);
-  in.tau[0] = in.action[0] = 0.6;
-  in.previous_tau[1] = in.previous_action[1] = 0.6;
+  const double effort[6] = {0.6}, before[6] = {0.0, 0.6};
+  in.tau = in.action = effort;
+  in.previous_tau = in.previous_action = before;
   const RewardTerms<double> paper = Reward(With(RewardKind::kPaper), in, 0.9, 0.6);
   EXPECT_NEAR(paper.track, 0.5440625, 1e-12);
   EXPECT_NEAR(paper.observation, 0.5, 1e-12);
@@ -101,7 +102,8 @@ TEST(Reward, InsideTheBandProgressEarnsNoReacquisition) {
 TEST(Reward, EveryTermAndTheTotalStayWithinTheirLimits) {
   Scenario s = With(RewardKind::kPaper);
   RewardInput<double> in = Input(10.0, 0.012, 10.0, 1.0);
-  for (double& a : in.action) a = 1.0;
+  const double all[6] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  in.action = all;
   s.reward.w_band = 5.0;
   RewardTerms<double> r = Reward(s, in, 1.0, 1.0);
   EXPECT_EQ(r.track, 1.0);
@@ -122,7 +124,8 @@ TEST(Reward, EveryTermAndTheTotalStayWithinTheirLimits) {
 
 TEST(Reward, EachWeightScalesItsTermAlone) {
   RewardInput<double> in = Input(0.22, 0.20, 0.04, 0.5);
-  in.action[0] = 0.5;
+  const double half[6] = {0.5};
+  in.action = half;
   in.crowding = 0.3;
   Scenario s = With(RewardKind::kPaper);
   const RewardTerms<double> r = Reward(s, in, 0.9, 0.6);
@@ -159,11 +162,18 @@ TEST(Reward, PacksAndScalarsGiveTheSameBits) {
       RewardInput<double> a = Input(d + random.Uniform(-0.05, 0.05), d, random.Uniform(-0.1, 0.1),
                                     random.Uniform(), d > 0.65);
       RewardInput<Pack> b;
+      double tau[6], action[6];
+      Pack taus[6], actions[6];
+      const Pack rest[6] = {};
       for (int k = 0; k < 6; ++k) {
-        b.tau[k] = Pack(a.tau[k] = random.Uniform(-1.0, 1.0));
-        b.action[k] = Pack(a.action[k] = random.Uniform(-1.0, 1.0));
-        b.previous_tau[k] = b.previous_action[k] = Pack(0.0);
+        taus[k] = Pack(tau[k] = random.Uniform(-1.0, 1.0));
+        actions[k] = Pack(action[k] = random.Uniform(-1.0, 1.0));
       }
+      a.tau = tau;
+      a.action = action;
+      b.tau = taus;
+      b.action = actions;
+      b.previous_tau = b.previous_action = rest;
       b.distance = Pack(a.distance);
       b.previous_distance = Pack(a.previous_distance);
       b.closing = Pack(a.closing);

@@ -169,6 +169,20 @@ TEST_F(CommandLine, EvaluateTakesTheConstantsOfPursuit) {
   EXPECT_GT(other.Json()["tail_distance"], standard.Json()["tail_distance"]);
 }
 
+TEST_F(CommandLine, MotionOutOfHandNamesTheVehicleAndFails) {
+  const std::string unstable = Scenario(
+      "vehicle:\n  clip_velocity: false\n  linear_damping: [1e6, 1e6, 1e6, 1e6, 1e6, 1e6]\n");
+  for (const char* what : {"pursuit", "pursuit --set mode=acoustic"}) {
+    const Result r = Run(STG_EVALUATE, "--episodes 2 --scenario " + unstable + " --policy " + what);
+    EXPECT_EQ(r.code, 2) << r.out;
+    EXPECT_NE(r.err.find("state of AUV "), std::string::npos) << r.err;
+    EXPECT_EQ(r.out.find("nan"), std::string::npos) << r.out;
+  }
+  const Result r = Run(STG_BENCH_ENV, "--workers 2 --seconds 0.1 --scenario " + unstable);
+  EXPECT_EQ(r.code, 2) << "a worker's UserError ends the program as any other";
+  EXPECT_NE(r.err.find("state of AUV "), std::string::npos) << r.err;
+}
+
 TEST_F(CommandLine, BenchEnvEndsWithItsRate) {
   const Result r = Run(STG_BENCH_ENV, "--scenario medium_release --seconds 0.1 --envs 8");
   ASSERT_EQ(r.code, 0) << r.err;

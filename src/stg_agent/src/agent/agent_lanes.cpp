@@ -30,7 +30,7 @@ T Nanoseconds(const PerLane<T, TimeNs>& stamp) {
 template <class T>
 LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
     : constants_(constants),
-      links_(acoustics::MakeLinkEstimator(constants->scenario.channel)),
+      links_(acoustics::MakeLinkEstimator(constants->scenario.channel, constants->scenario.agents)),
       neighbours_(constants->scenario),
       mind_(constants->scenario),
       neighbours_before_(neighbours_),

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 
 namespace stg::agent {
 
@@ -27,6 +28,7 @@ ControllerConstants::ControllerConstants(const std::string& text) : text_(text) 
 }
 
 void ControllerConstants::Read(const std::string& name, double largest, double* value) {
+  known_.push_back(name);
   for (Item& item : items_) {
     if (item.name != name) continue;
     item.read = true;
@@ -42,7 +44,11 @@ void ControllerConstants::Read(const std::string& name, double largest, double* 
 
 void ControllerConstants::RequireAllRead() const {
   for (const Item& item : items_) {
-    if (!item.read) throw UserError("'" + text_ + "': no such constant: " + item.name);
+    if (item.read) continue;
+    std::string text = "'" + text_ + "': no such constant: " + item.name;
+    const std::string nearest = NearestName(item.name, known_);
+    if (!nearest.empty()) text += "; did you mean " + nearest + "?";
+    throw UserError(text);
   }
 }
 

@@ -7,10 +7,11 @@ namespace stg::agent {
 template <class T>
 Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario)
     : max_age_s_(scenario.track.neighbour_max_age_s),
-      half_extent_m_(scenario.workspace.half_extent_m),
+      wall_m_(scenario.wall_m()),
       sights_(static_cast<std::size_t>(scenario.agents)) {
   const int padded = (scenario.agents + kLanes - 1) / kLanes * kLanes;
-  for (auto* v : {&distance_, &age_, &quality_}) v->assign(static_cast<std::size_t>(padded), 0.0);
+  for (auto* v : {&distance_, &age_, &learnt_, &quality_})
+    v->assign(static_cast<std::size_t>(padded), 0.0);
 }
 
 template <class T>
@@ -50,27 +51,33 @@ template <class T>
 void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links) {
   for (NeighbourSight<T>& n : sights_) {
     if (!n.heard()) continue;
-    n.p_WN = DeadReckon(n.p_W, n.v_W, n.age_s, half_extent_m_);
+    n.p_WN = DeadReckon(n.p_W, n.v_W, n.age_s, wall_m_);
     n.r_BN_W = n.p_WN - p_WB;
     n.distance_m = Norm(n.r_BN_W);
   }
   if constexpr (std::is_same_v<T, Pack>) {
-    for (NeighbourSight<T>& n : sights_) {
-      if (n.heard()) n.link_quality = links.Quality(n.distance_m, n.age_s);
+    for (std::size_t j = 0; j < sights_.size(); ++j) {
+      NeighbourSight<T>& n = sights_[j];
+      if (!n.heard()) continue;
+      const Pack learnt = Pack::load_unaligned(links.Learnt(static_cast<int>(j)));
+      n.link_quality = links.Quality(n.distance_m, n.age_s, learnt);
     }
   } else {
     // Whole packs at once: the exponentials cost as much for kLanes links as for one. Entries past
     // the last neighbour hold old numbers and are not read back.
     std::size_t heard = 0;
-    for (const NeighbourSight<T>& n : sights_) {
+    for (std::size_t j = 0; j < sights_.size(); ++j) {
+      const NeighbourSight<T>& n = sights_[j];
       if (!n.heard()) continue;
       distance_[heard] = n.distance_m;
+      learnt_[heard] = *links.Learnt(static_cast<int>(j));
       age_[heard++] = n.age_s;
     }
     for (std::size_t k = 0; k < heard; k += static_cast<std::size_t>(kLanes)) {
       const Pack d = Pack::load_unaligned(&distance_[k]);
       const Pack age = Pack::load_unaligned(&age_[k]);
-      links.Quality(d, age).store_unaligned(&quality_[k]);
+      const Pack learnt = Pack::load_unaligned(&learnt_[k]);
+      links.Quality(d, age, learnt).store_unaligned(&quality_[k]);
     }
     heard = 0;
     for (NeighbourSight<T>& n : sights_) {

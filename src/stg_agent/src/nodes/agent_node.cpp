@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
@@ -12,6 +13,7 @@
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
+#include "auv_dynamics/world/helm.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -21,12 +23,13 @@ constexpr std::uint32_t kQueue = 50;
 constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may never come
 
 /// Whether the agent's process also turns velocities into wrenches.
-bool OnboardParameter() {
+bool OnboardParameter(const dynamics::WorldConfig& scenario) {
   const std::string autopilot = TextParameter("autopilot", "external");
-  if (autopilot != "external" && autopilot != "onboard") {
-    throw UserError("parameter autopilot: must be external or onboard");
-  }
-  return autopilot == "onboard";
+  if (autopilot == "external") return false;
+  if (autopilot != "onboard") throw UserError("parameter autopilot: must be external or onboard");
+  if (!dynamics::Helm::Steers(scenario)) return true;
+  throw UserError("parameter autopilot: vehicle.model " + scenario.vehicle.model +
+                  " is no vehicle for onboard, as it is not commanded by force and moment");
 }
 
 }  // namespace
@@ -44,7 +47,8 @@ AgentNode::AgentNode()
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
       commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
-      commands_wrench_(!commands_velocity_ || OnboardParameter()),
+      commands_wrench_(!commands_velocity_ || OnboardParameter(scenario_)),
+      tracker_(period_, scenario_.time.episode_steps),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
   Advertise();
@@ -111,12 +115,25 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     return;
   }
   const TimeNs stamp = NsOf(message->header.stamp);
+  const bool in_run = tracker_.started();
+  switch (tracker_.Hear({message->run, message->episode, message->step, stamp})) {
+    case StepTracker::Verdict::kRefused:
+      refused_frames_.Add(Refusals::kStale);
+      return;
+    case StepTracker::Verdict::kNewRun:
+      if (in_run) ForgetRun();
+      break;
+    case StepTracker::Verdict::kRepeated:
+    case StepTracker::Verdict::kNext:
+    case StepTracker::Verdict::kNewEpisode:
+      break;
+  }
   const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s_);
   if (opening == StepBarrier::Opening::kRepeated) return;
   if (opening == StepBarrier::Opening::kReplaced) ++skipped_steps_;
   SetNodeTime(message->header.stamp);
   frame_ = message;
-  for (const auv_msgs::TargetDetection& detection : message->detections) Keep(detection);
+  for (const auv_msgs::TargetDetection& detection : message->detections) Keep(detection, stamp);
   // Step 0 has no window before it.
   if (message->step == 0) barrier_.Excuse(kModem);
   HearModem();
@@ -131,7 +148,7 @@ void AgentNode::HearModem() {
   }
 }
 
-void AgentNode::Keep(const auv_msgs::TargetDetection& message) {
+void AgentNode::Keep(const auv_msgs::TargetDetection& message, TimeNs now) {
   if (message.header.frame_id != frames::kWorld) {
     refused_detections_.Add(Refusals::kFrame);
   } else if (!FiniteVector(message.position) || !FiniteVector(message.variance) ||
@@ -140,6 +157,8 @@ void AgentNode::Keep(const auv_msgs::TargetDetection& message) {
   } else if (message.target >= static_cast<std::uint32_t>(scenario_.target.count) ||
              detections_.size() >= kMaxPending) {
     refused_detections_.Add(Refusals::kMalformed);
+  } else if (NsOf(message.header.stamp) > now) {
+    refused_detections_.Add(Refusals::kStale);
   } else {
     dynamics::Detection detection;
     detection.stamp = NsOf(message.header.stamp);
@@ -153,8 +172,6 @@ void AgentNode::Keep(const auv_msgs::TargetDetection& message) {
 void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message) {
   if (message->header.frame_id != body_frame_) {
     refused_receptions_.Add(Refusals::kFrame);
-  } else if (receptions_.size() >= kMaxPending) {
-    refused_receptions_.Add(Refusals::kMalformed);
   } else {
     const TimeNs stamp = NsOf(message->header.stamp);
     if (barrier_.Hear(kModem, stamp) == StepBarrier::Word::kForeign) {
@@ -163,9 +180,17 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
     }
     window_ = stamp;
     HearModem();
-    if (!message->packets.empty()) receptions_.push_back(message);
+    if (!message->packets.empty()) Keep(message);
     DecideIfDue();
   }
+}
+
+/// Where there is no room, the latest one goes: it is needed last, if it is true at all.
+void AgentNode::Keep(const auv_msgs::AcousticReception::ConstPtr& message) {
+  receptions_.emplace(NsOf(message->header.stamp), message);
+  if (receptions_.size() <= kMaxPending) return;
+  receptions_.erase(std::prev(receptions_.end()));
+  refused_receptions_.Add(Refusals::kMalformed);
 }
 
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
@@ -187,6 +212,16 @@ void AgentNode::DecideIfDue() {
   if (!barrier_.open()) return;
   barrier_.GiveUp(WallSeconds());
   if (barrier_.Complete()) Decide();
+}
+
+/// Another one begins, and the clock may have gone back.
+void AgentNode::ForgetRun() {
+  barrier_.Restart();
+  frame_.reset();
+  detections_.clear();
+  receptions_.clear();
+  window_ = -1;
+  in_episode_ = false;
 }
 
 void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
@@ -215,9 +250,9 @@ void AgentNode::TakeDetections(TimeNs stamp) {
 }
 
 void AgentNode::TakeReceptions(TimeNs stamp) {
-  for (const auto& m : receptions_) {
-    const TimeNs end = NsOf(m->header.stamp);
-    if (end <= start_ || end > stamp) continue;
+  const auto taken = receptions_.upper_bound(stamp);
+  for (auto it = receptions_.upper_bound(start_); it != receptions_.end() && it != taken; ++it) {
+    const auto& m = it->second;
     for (const auto& packet : m->packets) {
       const acoustics::Reception reception = ReceptionOf(packet, id_, start_);
       if (reception.arrival < 0 || reception.arrival > stamp - start_) {
@@ -227,10 +262,7 @@ void AgentNode::TakeReceptions(TimeNs stamp) {
       }
     }
   }
-  receptions_.erase(
-      std::remove_if(receptions_.begin(), receptions_.end(),
-                     [stamp](const auto& m) { return NsOf(m->header.stamp) <= stamp; }),
-      receptions_.end());
+  receptions_.erase(receptions_.begin(), taken);
 }
 
 void AgentNode::Decide() {

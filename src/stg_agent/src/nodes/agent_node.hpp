@@ -10,6 +10,7 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "auv_common/nodes/on_demand.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/step/step_barrier.hpp"
+#include "auv_common/step/step_tracker.hpp"
 #include "decider.hpp"
 #include "stg_agent/agent/agent.hpp"
 
@@ -30,7 +32,7 @@ namespace stg::nodes {
 /// Decides step k when the sensors' frame of t_k is there and the modem's reception window that
 /// ends at t_k. A window that does not come within `patience` seconds is given up, and a silent
 /// modem is not waited for again before it has spoken. Of several open steps only the newest is
-/// decided.
+/// decided. What cannot be true of the run is refused, see StepTracker.
 class AgentNode {
  public:
   /// Throws UserError.
@@ -48,9 +50,11 @@ class AgentNode {
   bool OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                     auv_msgs::LoadPolicy::Response& response);
 
-  void Keep(const auv_msgs::TargetDetection& message);
+  void Keep(const auv_msgs::TargetDetection& message, TimeNs now);
+  void Keep(const auv_msgs::AcousticReception::ConstPtr& message);
   void HearModem();
   void DecideIfDue();
+  void ForgetRun();
   void StartEpisode(const auv_msgs::SensorFrame& frame);
   void TakeDetections(TimeNs stamp);
   void TakeReceptions(TimeNs stamp);
@@ -83,9 +87,11 @@ class AgentNode {
   ros::WallTime busy_, commanded_;
 
   auv_msgs::SensorFrame::ConstPtr frame_;  ///< of the open step; null: none is open
+  StepTracker tracker_;
   StepBarrier barrier_{kParties};
   std::vector<dynamics::Detection> detections_;  ///< not taken yet, with clock time
-  std::vector<auv_msgs::AcousticReception::ConstPtr> receptions_;  ///< not taken yet
+  /// Not taken yet, by clock time of the window's end [ns].
+  std::multimap<TimeNs, auv_msgs::AcousticReception::ConstPtr> receptions_;
   TimeNs window_ = -1;  ///< clock time at which the newest reception window ended [ns]
   TimeNs start_ = -1;   ///< clock time of the episode's step 0 [ns]
   bool in_episode_ = false;

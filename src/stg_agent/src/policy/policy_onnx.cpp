@@ -134,35 +134,71 @@ void WriteMetadata(const Policy::Parameters& p, onnx::ModelProto* model) {
   AddProperty(model, "stg.checksum", PolicyChecksum(p));
 }
 
+/// FNV-1a, 64 bits.
+class Fnv {
+ public:
+  void Add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 1099511628211ULL;
+  }
+  /// With its end, so that texts cannot run into each other.
+  void Add(const std::string& text) { Add(text.c_str(), text.size() + 1); }
+  void Add(const float* data, Eigen::Index count) {
+    Add(static_cast<const void*>(data), static_cast<std::size_t>(count) * sizeof(float));
+  }
+  /// All numbers of a policy.
+  void Add(const Policy::Parameters& p) {
+    Add(p.input_mean.data(), p.input_mean.size());
+    Add(p.input_std.data(), p.input_std.size());
+    Add(&p.input_clip, 1);
+    for (const Policy::Layer& layer : p.layers) {
+      Add(layer.weight.data(), layer.weight.size());
+      Add(layer.bias.data(), layer.bias.size());
+    }
+    Add(p.log_std.data(), p.log_std.size());
+    if (p.choices.size() > 0) {
+      Add(p.choices.data(), p.choices.size());
+      const auto width = static_cast<float>(p.choices.cols());
+      Add(&width, 1);
+    }
+    const float rest[] = {static_cast<float>(p.activation),
+                          static_cast<float>(p.metadata.action_scale)};
+    Add(rest, 2);
+  }
+  std::string Text() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016" PRIx64, hash_);
+    return text;
+  }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
 }  // namespace
 
+std::string NumbersChecksum(const Policy::Parameters& p) {
+  Fnv hash;
+  hash.Add(p);
+  return hash.Text();
+}
+
 std::string PolicyChecksum(const Policy::Parameters& p) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  const auto add = [&hash](const float* data, Eigen::Index count) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count) * sizeof(float); ++i) {
-      hash = (hash ^ bytes[i]) * 1099511628211ULL;
-    }
-  };
-  add(p.input_mean.data(), p.input_mean.size());
-  add(p.input_std.data(), p.input_std.size());
-  add(&p.input_clip, 1);
-  for (const Policy::Layer& layer : p.layers) {
-    add(layer.weight.data(), layer.weight.size());
-    add(layer.bias.data(), layer.bias.size());
+  const PolicyMetadata& m = p.metadata;
+  Fnv hash;
+  hash.Add(p);
+  for (const std::string* text :
+       {&m.id, &m.observation_layout, &m.action_interface, &m.scenario_hash}) {
+    hash.Add(*text);
   }
-  add(p.log_std.data(), p.log_std.size());
-  if (p.choices.size() > 0) {
-    add(p.choices.data(), p.choices.size());
-    const auto width = static_cast<float>(p.choices.cols());
-    add(&width, 1);
+  hash.Add(Text(m.action_scale, 17));
+  hash.Add(std::to_string(m.training_step));
+  hash.Add(std::to_string(m.seed));
+  for (const auto& [name, value] : m.metrics) {
+    hash.Add(name);
+    hash.Add(value);
   }
-  const float rest[] = {static_cast<float>(p.activation),
-                        static_cast<float>(p.metadata.action_scale)};
-  add(rest, 2);
-  char text[17];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
+  return "2:" + hash.Text();
 }
 
 void Policy::SaveOnnx(const std::string& path) const {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 #include "policy_onnx.hpp"
 
 /// Reading of policy files: one known chain of operators, everything checked.
@@ -29,7 +30,8 @@ class Reader {
     ReadChain();
     Require(used_ == constants_.size(), "has constants that no operator uses");
     const auto checksum = properties_.find("stg.checksum");
-    Require(checksum != properties_.end() && checksum->second == PolicyChecksum(p_),
+    Require(checksum != properties_.end() &&
+                (checksum->second == PolicyChecksum(p_) || checksum->second == NumbersChecksum(p_)),
             "is damaged: its checksum does not match");
     return std::move(p_);
   }
@@ -247,7 +249,9 @@ class Reader {
     Require(model_.metadata_props_size() <= 1000, "has too much metadata");
     for (const auto& entry : model_.metadata_props()) {
       Require(entry.value().size() <= 65536, "has too much metadata");
-      properties_[entry.key()] = entry.value();
+      Require(IsText(entry.key()) && IsText(entry.value()), "metadata that is no text");
+      Require(properties_.emplace(entry.key(), entry.value()).second,
+              "metadata '" + entry.key() + "' is there twice");
     }
     PolicyMetadata& m = p_.metadata;
     m.id = Property("stg.id");
@@ -255,7 +259,9 @@ class Reader {
     m.action_interface = Property("stg.action_interface");
     m.action_scale = Number("stg.action_scale");
     m.scenario_hash = Property("stg.scenario_hash");
-    m.training_step = static_cast<std::int64_t>(Number("stg.training_step"));
+    const double step = Number("stg.training_step");
+    Require(std::abs(step) <= 9e15, "metadata 'stg.training_step' is out of range");
+    m.training_step = static_cast<std::int64_t>(step);
     Number("stg.seed");
     m.seed = std::strtoull(Property("stg.seed").c_str(), nullptr, 10);
     const std::size_t prefix = std::strlen(kMetricPrefix);

@@ -183,11 +183,13 @@ TEST(AgentLanes, DoWhatSeparateAgentsDoBitForBit) {
 
 TEST(AgentLanes, DoSoWithEveryKindOfLinkOrderAndAction) {
   AgentConfig range = Forgetful(5), index = Forgetful(5), tau = Forgetful(5), bow = Forgetful(5);
+  AgentConfig physical = Forgetful(5);
   range.channel.model = "range";
+  physical.channel.model = "physical";
   index.observation.order = NeighbourOrder::kIndex;
   tau.control.interface = dynamics::ActionInterface::kTau6;
   bow.control.heading = dynamics::HeadingMode::kAlongVelocity;
-  for (const AgentConfig& s : {range, index, tau, bow}) ExpectSame(s, 4);
+  for (const AgentConfig& s : {range, physical, index, tau, bow}) ExpectSame(s, 4);
 }
 
 TEST(AgentLanes, OneLaneMayStartAnEpisodeWhileTheOthersGoOn) {

@@ -66,6 +66,8 @@ TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
   EXPECT_EQ(ErrorOf("pursuit:gain=2x"), "'pursuit:gain=2x': gain must be a number from 0 to 1000");
   EXPECT_EQ(ErrorOf("pursuit:cap=2"), "'pursuit:cap=2': cap must be a number from 0 to 1");
   EXPECT_EQ(ErrorOf("pursuit:speed=1"), "'pursuit:speed=1': no such constant: speed");
+  EXPECT_EQ(ErrorOf("pursuit:gian=2"),
+            "'pursuit:gian=2': no such constant: gian; did you mean gain?");
 }
 
 TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {

@@ -13,7 +13,7 @@ namespace {
 void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& p_WB,
              const AgentConfig& s = AgentConfig()) {
   neighbours->Age(static_cast<double>(now));
-  neighbours->Predict(p_WB, *acoustics::MakeLinkEstimator(s.channel));
+  neighbours->Predict(p_WB, *acoustics::MakeLinkEstimator(s.channel, s.agents));
 }
 
 TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {

@@ -13,6 +13,7 @@
 
 #include "auv_common/error.hpp"
 #include "policy/policy_files.hpp"
+#include "policy/policy_onnx.hpp"
 
 namespace stg::agent {
 namespace {
@@ -118,6 +119,57 @@ TEST_F(PolicyRefusal, RefusesOtherGraphs) {
         for (int i = 0; i < 40; ++i) m->mutable_graph()->add_node()->set_op_type("Tanh");
       },
       "too many");
+}
+
+TEST_F(PolicyRefusal, RefusesAFlippedBitAnywhereInTheMetadata) {
+  Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
+  onnx::ModelProto good;
+  ASSERT_TRUE(good.ParseFromString(Bytes(Path("good.onnx"))));
+  ASSERT_GE(good.metadata_props_size(), 9);
+  for (int k = 0; k < good.metadata_props_size(); ++k) {
+    const std::string& value = good.metadata_props(k).value();
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      for (int bit = 0; bit < 8; bit += k == 0 ? 1 : 7) {
+        onnx::ModelProto bad = good;
+        std::string* text = bad.mutable_metadata_props(k)->mutable_value();
+        (*text)[i] = static_cast<char>((*text)[i] ^ (1 << bit));
+        Write(Path("bad.onnx"), bad.SerializeAsString());
+        try {
+          const Policy policy = Policy::LoadOnnx(Path("bad.onnx"));
+          // A digit of a number may differ and the number not.
+          EXPECT_EQ(policy.metadata().id, "test") << k << " " << i << " " << bit;
+          EXPECT_EQ(policy.metadata().metrics.at("return"), "1040.5");
+          EXPECT_TRUE(std::strpbrk(value.c_str(), "0123456789") != nullptr)
+              << good.metadata_props(k).key() << " = " << *text;
+        } catch (const UserError&) {
+        }
+      }
+    }
+  }
+}
+
+TEST_F(PolicyRefusal, RefusesMetadataThatIsNoTextOrThereTwice) {
+  for (const char* text : {"\xff", "\xc3", "\xed\xa0\x80", "\xc0\xaf", "a\x01", "a\nb", "\x7f"}) {
+    ExpectRefused([&](onnx::ModelProto* m) { m->mutable_metadata_props(0)->set_value(text); },
+                  "no text");
+  }
+  ExpectRefused([](onnx::ModelProto* m) { *m->add_metadata_props() = m->metadata_props(0); },
+                "twice");
+}
+
+TEST_F(PolicyRefusal, TakesTheChecksumOfOlderFiles) {
+  // Made by the writer of 0.1: the numbers alone are covered, so that any id goes with it.
+  Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
+  onnx::ModelProto model;
+  ASSERT_TRUE(model.ParseFromString(Bytes(Path("good.onnx"))));
+  onnx::StringStringEntryProto* checksum = nullptr;
+  for (auto& entry : *model.mutable_metadata_props()) {
+    if (entry.key() == "stg.checksum") checksum = &entry;
+  }
+  ASSERT_NE(checksum, nullptr);
+  checksum->set_value(NumbersChecksum(Policy::LoadOnnx(Path("good.onnx")).parameters()));
+  Write(Path("old.onnx"), model.SerializeAsString());
+  EXPECT_EQ(Policy::LoadOnnx(Path("old.onnx")).metadata().id, "test");
 }
 
 TEST_F(PolicyRefusal, RefusesBadConstants) {

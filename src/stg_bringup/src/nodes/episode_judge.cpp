@@ -32,8 +32,8 @@ std::vector<float> EpisodeJudge::CriticState() const {
 EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   Verdict verdict;
   const bool truth = frame.truth != nullptr;
-  const bool follows =
-      truth && started_ && frame.truth->episode == episode_ && frame.truth->step > step_;
+  const bool follows = truth && started_ && frame.truth->run == run_ &&
+                       frame.truth->episode == episode_ && frame.truth->step > step_;
   if (started_ && !follows && truth) {
     // Cut short by a reset: what there is still counts as an incomplete episode.
     complete_ = false;
@@ -50,7 +50,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
       return verdict;  // the end of an episode that was not watched
     }
     for (auto* v : {&tau_, &action_}) std::fill(v->begin(), v->end(), std::array<double, 6>{});
-    deadline_misses_ = 0;
+    deadline_misses_ = channel_misses_ = 0;
     started_ = true;
     complete_ = frame.truth->step == 0;
     task_.Start(true, Swarm(), scenario_.time.episode_steps);
@@ -68,6 +68,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
       FillSummary(frame.truth->header.stamp, task_.Metrics(0), &verdict);
     }
   }
+  run_ = frame.truth->run;
   episode_ = frame.truth->episode;
   step_ = frame.truth->step;
   seed_ = frame.truth->seed;
@@ -100,7 +101,13 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
 
 /// What acted on the AUVs until this frame.
 void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
+  const bool efforts = truth.efforts.size() == vehicles_.size() * dynamics::kWrenchSize;
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    if (efforts) {
+      std::copy_n(truth.efforts.begin() + static_cast<std::ptrdiff_t>(i * dynamics::kWrenchSize),
+                  dynamics::kWrenchSize, tau_[i].begin());
+      continue;
+    }
     const auto& w = truth.wrenches[i];
     const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
     for (std::size_t k = 0; k < 6; ++k) {
@@ -110,6 +117,7 @@ void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
   const bool missed =
       std::any_of(truth.fresh.begin(), truth.fresh.end(), [](const auto fresh) { return !fresh; });
   if (missed) ++deadline_misses_;
+  if (!truth.channel_fresh) ++channel_misses_;
 }
 
 /// What the decision at this frame wants; it is judged with the next frame.
@@ -178,6 +186,7 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetric
   m.min_separation = e.min_separation;
   m.time_to_band = e.time_to_band;
   m.deadline_misses = deadline_misses_;
+  m.channel_misses = channel_misses_;
 }
 
 }  // namespace stg::nodes

@@ -57,7 +57,8 @@ class EpisodeJudge {
   std::vector<float> state_;  // the critic's, at the present frame
   bool started_ = false;      ///< an episode is being judged
   bool complete_ = true;      ///< no step of it is missing
-  std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0;
+  std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0, channel_misses_ = 0;
+  std::uint64_t run_ = 0;
   std::uint64_t seed_ = 0;
   std::string policy_id_;
 };

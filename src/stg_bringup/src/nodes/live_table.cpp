@@ -106,9 +106,10 @@ std::string LiveTable::Line(const EpisodeJudge& judge, double now_s) const {
 
 void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s,
                              const task::EpisodeMetrics& metrics) {
-  std::printf("\nepisode %u, seed %llu, %u steps%s, policy %s, %u deadline misses\n", s.episode + 1,
-              static_cast<unsigned long long>(s.seed), s.steps, s.complete ? "" : " (incomplete)",
-              s.policy_id.c_str(), s.deadline_misses);
+  std::printf(
+      "\nepisode %u, seed %llu, %u steps%s, policy %s, %u deadline misses, %u of the channel\n",
+      s.episode + 1, static_cast<unsigned long long>(s.seed), s.steps,
+      s.complete ? "" : " (incomplete)", s.policy_id.c_str(), s.deadline_misses, s.channel_misses);
   for (const auto& item : metrics.Items()) {
     std::printf("  %-22s %12.5f\n", item.first.c_str(), item.second);
   }

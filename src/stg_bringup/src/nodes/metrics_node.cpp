@@ -1,9 +1,12 @@
 #include "metrics_node.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_common/names.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
@@ -18,6 +21,8 @@ namespace {
 constexpr std::uint32_t kUnlimited = 0;
 /// Memory for a run whose frames never get complete.
 constexpr std::size_t kMaxFrames = 5000;
+/// Steps by which an agent's messages may come before the world's: what sockets and queues hold.
+constexpr TimeNs kLargestLead = 1000;
 
 /// A text as one field of a CSV file.
 std::string Quoted(std::string text) {
@@ -37,6 +42,7 @@ MetricsNode::MetricsNode()
       period_(scenario_.decision_period()),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
+      tracker_(period_, scenario_.time.episode_steps),
       frames_(kMaxFrames, SwarmFrame(scenario_.agents)),
       judge_(scenario_),
       table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
@@ -61,9 +67,8 @@ void MetricsNode::Subscribe() {
     using Message = std::remove_const_t<typename Slot::element_type>;
     const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
         [this, slot, usable](const boost::shared_ptr<const Message>& m) {
-          if (!usable(*m)) {
-            ++bad_messages_;
-          } else if (SwarmFrame* frame = frames_.At(NsOf(m->header.stamp), WallSeconds())) {
+          if (!usable(*m)) return;
+          if (SwarmFrame* frame = frames_.At(NsOf(m->header.stamp), WallSeconds())) {
             Slot& place = slot(*frame);
             if (!place) place = m;
           }
@@ -74,26 +79,60 @@ void MetricsNode::Subscribe() {
   into_frames(
       topics::kSwarmState, [](SwarmFrame & f) -> auto& { return f.truth; },
       [this](const auto& m) {
-        if (!Usable(m)) return false;
-        // Said once per run: the world was started anew, and with it the clock.
-        const bool first = m.episode == 0 && m.step == 0;
-        if (first && frames_.has_taken() && NsOf(m.header.stamp) <= frames_.taken()) {
-          frames_.Clear();
-        }
-        return true;
+        const bool usable = Usable(m);
+        if (!usable) refused_swarm_.Add(Refusals::kNotFinite);
+        return usable && Follow(m);
       });
   for (int i = 0; i < scenario_.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
     into_frames(
         topics::AuvTopic(i, topics::kTaskState),
         [u](SwarmFrame & f) -> auto& { return f.tasks[u]; },
-        [](const auto& m) {
-          return Finite(m.graph_summary[1]) &&
-                 std::all_of(m.action.begin(), m.action.end(), Finite);
+        [this](const auto& m) {
+          if (!Usable(m)) {
+            refused_tasks_.Add(Refusals::kNotFinite);
+          } else if (!IsText(m.policy_id)) {
+            refused_tasks_.Add(Refusals::kMalformed);
+          } else if (!Near(NsOf(m.header.stamp))) {
+            refused_tasks_.Add(Refusals::kStale);
+          } else {
+            return true;
+          }
+          return false;
         });
   }
   subscribers_.push_back(
       node.subscribe(topics::kLinks, 10, &MetricsNode::OnLinks, this, NoDelay()));
+}
+
+bool MetricsNode::Follow(const auv_msgs::SwarmState& m) {
+  const TimeNs stamp = NsOf(m.header.stamp);
+  const bool in_run = tracker_.started();  // else what agents said before belongs to this run
+  switch (tracker_.Hear({m.run, m.episode, m.step, stamp})) {
+    case StepTracker::Verdict::kRefused:
+      refused_swarm_.Add(Refusals::kStale);
+      return false;
+    case StepTracker::Verdict::kNewRun:
+      if (in_run) frames_.Clear();
+      break;
+    case StepTracker::Verdict::kRepeated:
+    case StepTracker::Verdict::kNext:
+    case StepTracker::Verdict::kNewEpisode:
+      break;
+  }
+  frames_.Reach(stamp);
+  return true;
+}
+
+bool MetricsNode::Near(TimeNs stamp) const {
+  // Before the run is known, a message may be of any step of it.
+  if (!tracker_.started()) return stamp <= StepTracker::kLatest;
+  const TimeNs ahead = stamp - tracker_.place().stamp;
+  return ahead % period_ == 0 && ahead <= kLargestLead * period_;
+}
+
+bool MetricsNode::Usable(const auv_msgs::TaskState& m) const {
+  return Finite(m.graph_summary[1]) && std::all_of(m.action.begin(), m.action.end(), Finite);
 }
 
 bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
@@ -107,7 +146,9 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto finite_wrench = [](const geometry_msgs::Wrench& w) {
     return FiniteVector(w.force) && FiniteVector(w.torque);
   };
-  return m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
+  const bool efforts = m.efforts.empty() || m.efforts.size() == n * dynamics::kWrenchSize;
+  return efforts && std::all_of(m.efforts.begin(), m.efforts.end(), Finite) &&
+         m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
          m.fresh.size() == n && p.size() == targets && v.size() == targets &&
          std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
          std::all_of(m.poses.begin(), m.poses.end(), finite_pose) &&
@@ -117,6 +158,10 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
 
 void MetricsNode::Spin() {
   PollLoop([this] { return Work(); });
+  if (lost_summaries_ > 0) {
+    throw LostOutput("summary_file: " + std::to_string(lost_summaries_) +
+                     " episodes could not be written to '" + file_name_ + "'");
+  }
 }
 
 double MetricsNode::Work() {
@@ -161,7 +206,16 @@ void MetricsNode::Publish(const EpisodeJudge::Verdict& verdict) {
   if (verdict.summary.complete) episodes_.push_back(verdict.metrics);
   if (show_table_) table_.PrintEpisode(verdict.summary, verdict.metrics);
   if (file_.is_open()) WriteSummary(verdict);
+  if (!file_name_.empty() && !file_) LoseSummary();
   if (summary_) summary_.publish(verdict.summary);
+}
+
+/// What the run was asked for is lost. It goes on, and its end tells.
+void MetricsNode::LoseSummary() {
+  if (lost_summaries_++ == 0) {
+    ROS_ERROR("summary_file: cannot write '%s': %s", file_name_.c_str(), std::strerror(errno));
+  }
+  file_.clear();
 }
 
 /// A run begins with episode 0 and an empty file. In any other, this node has died and goes on.
@@ -176,12 +230,13 @@ void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
   file_.precision(17);
   if (EndsWith(file_name_, ".csv")) {
     if (file_.tellp() == 0) {
-      file_ << "episode,seed,scenario,policy,steps,complete,deadline_misses";
+      file_ << "episode,seed,scenario,policy,steps,complete,deadline_misses,channel_misses";
       for (const auto& item : items) file_ << "," << item.first;
       file_ << "\n";
     }
     file_ << s.episode << "," << s.seed << "," << Quoted(s.scenario) << "," << Quoted(s.policy_id)
-          << "," << s.steps << "," << (s.complete ? 1 : 0) << "," << s.deadline_misses;
+          << "," << s.steps << "," << (s.complete ? 1 : 0) << "," << s.deadline_misses << ","
+          << s.channel_misses;
     for (const auto& item : items) file_ << "," << item.second;
     file_ << std::endl;
     return;
@@ -192,9 +247,11 @@ void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
                               {"policy", s.policy_id},
                               {"steps", s.steps},
                               {"complete", bool(s.complete)},
-                              {"deadline_misses", s.deadline_misses}};
+                              {"deadline_misses", s.deadline_misses},
+                              {"channel_misses", s.channel_misses}};
   for (const auto& item : items) line[item.first] = item.second;
-  file_ << line.dump() << std::endl;
+  // What came over a topic may be no UTF-8.
+  file_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
 void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -203,10 +260,12 @@ void MetricsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("steps judged", reports_.total());
   status.add("steps per second", rate);
   status.add("steps with a message missing", incomplete_frames_);
-  status.add("messages refused", bad_messages_);
+  refused_swarm_.Report(topics::kSwarmState, &status);
+  refused_tasks_.Report(topics::kTaskState, &status);
   status.add("messages too late", frames_.late());
   status.add("steps without room", frames_.crowded());
   status.add("episodes complete", episodes_.size());
+  status.add("episodes not written to the summary file", lost_summaries_);
   if (reports_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing to judge yet");
   }

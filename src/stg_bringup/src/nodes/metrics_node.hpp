@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
+#include "auv_common/step/step_tracker.hpp"
 #include "auv_common/step/step_window.hpp"
 #include "live_table.hpp"
 #include "swarm_frame.hpp"
@@ -21,6 +22,7 @@ class MetricsNode {
   /// Throws UserError.
   MetricsNode();
   ~MetricsNode();
+  /// Throws LostOutput at the end when episodes could not be written to the summary file.
   void Spin();
 
  private:
@@ -28,17 +30,24 @@ class MetricsNode {
   void Subscribe();
   /// Of the scenario's sizes, and finite.
   bool Usable(const auv_msgs::SwarmState& message) const;
+  bool Usable(const auv_msgs::TaskState& message) const;
+  /// Follows the run; false: the message contradicts it.
+  bool Follow(const auv_msgs::SwarmState& message);
+  /// A stamp of the run's steps, not further ahead than messages may overtake each other.
+  bool Near(TimeNs stamp) const;
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
   void JudgeFrames();
   void Publish(const EpisodeJudge::Verdict& verdict);
   void OpenSummary(std::uint32_t episode);
   void WriteSummary(const EpisodeJudge::Verdict& verdict);
+  void LoseSummary();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Scenario scenario_;
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_;
   bool show_table_;
+  StepTracker tracker_;
   StepWindow<SwarmFrame> frames_;
   EpisodeJudge judge_;
   LiveTable table_;
@@ -47,7 +56,8 @@ class MetricsNode {
   std::string file_name_;
   std::ofstream file_;
   EventRate reports_;
-  std::uint64_t incomplete_frames_ = 0, bad_messages_ = 0;
+  std::uint64_t incomplete_frames_ = 0, lost_summaries_ = 0;
+  Refusals refused_swarm_, refused_tasks_;
   ros::Publisher step_report_, summary_;
   std::vector<ros::Subscriber> subscribers_;
   Health health_;

@@ -17,9 +17,21 @@ struct ChannelConfig;
 
 inline constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 
-/// The rule by which the modems of a network share the water. Times count from the start of the
-/// episode. What a rule draws must depend on seed, episode, node and time only, so that whoever
-/// asks, in whatever order, gets the same answer.
+/// What a modem knows when it asks its rule.
+struct Attempt {
+  std::uint32_t sequence = 0;  ///< of the packet that waits, as it will leave
+  std::uint32_t tries = 0;     ///< times that this packet found the medium busy
+  TimeNs last_end = kNever;    ///< its last transmission ended; kNever: there was none
+};
+
+/// What a modem needs for the longest packet of the network; nothing on ideal channels.
+struct PacketTime {
+  TimeNs airtime = 0, turnaround = 0;
+};
+
+/// The rule by which the modems of a network share the water, in continuous time. Times count from
+/// the start of the episode. What a rule draws must depend on seed, episode and its arguments only,
+/// so that whoever asks, in whatever order, gets the same answer. Nothing is allocated.
 class MediumAccess {
  public:
   virtual ~MediumAccess() = default;
@@ -27,13 +39,22 @@ class MediumAccess {
   /// Starts an episode.
   virtual void Reset(std::uint64_t /*seed*/, std::uint32_t /*episode*/) {}
 
-  /// For every node the time in [from, until) at which a packet that waits in its modem begins to
-  /// leave; kNever: it goes on waiting.
-  /// @param start one entry per node, overwritten.
-  virtual void Plan(TimeNs from, TimeNs until, std::vector<TimeNs>* start) const = 0;
+  /// Earliest time, not before `from`, at which a packet that waits in the modem of `node` may
+  /// begin to leave. Asked again with a `from` up to that time, it answers the same.
+  virtual TimeNs Next(int node, TimeNs from, const Attempt& attempt) const = 0;
 
-  /// Why the rule cannot work with the section and the clock of the run; nothing: it can.
-  virtual std::optional<config::Violation> FindConflict() const { return {}; }
+  /// True: a modem that hears a carrier at that time does not begin, counts one more try and asks
+  /// again from there. On ideal channels nobody hears any.
+  virtual bool listens() const { return false; }
+
+  /// True: the answer of Next depends on the attempt, so that nobody but the modem can know it.
+  virtual bool adapts() const { return listens(); }
+
+  /// Why the rule cannot work with the section, the clock of the run and such packets; nothing: it
+  /// can.
+  virtual std::optional<config::Violation> FindConflict(const PacketTime& /*packet*/) const {
+    return {};
+  }
 };
 
 /// All rules, by the name that `channel.access` takes.
@@ -43,7 +64,8 @@ MediumAccessRegistry& MediumAccesses();
 /// The rule that the section names, for the nodes and the clock of the run. Throws UserError.
 std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, const RunConfig& run);
 
-/// The plan of the present step, made when first asked for.
+/// When packets that are offered at decisions can leave, as anybody may know it: the modem, and an
+/// agent that would not make a packet in vain.
 class Turns {
  public:
   /// Throws UserError for an unknown rule.
@@ -53,19 +75,25 @@ class Turns {
 
   /// When `node` begins to send in the step from t to the next decision; kNever: not in it.
   TimeNs Start(int node, TimeNs t) {
-    if (t != planned_) Plan(t);
-    return start_[static_cast<std::size_t>(node)];
+    Memo& m = memos_[static_cast<std::size_t>(node)];
+    if (t < m.from || t > m.start) Ask(node, t);
+    return m.start - t < period_ ? m.start : kNever;
   }
-  /// A packet offered at t leaves in this step. False: the next one replaces it, and it need not
-  /// be made.
-  bool Due(int node, TimeNs t) { return Start(node, t) != kNever; }
+  /// A packet offered at t may leave in this step. False: the next one replaces it, and it need not
+  /// be made. Of a rule that adapts only the modem knows: always true.
+  bool Due(int node, TimeNs t) { return adapts_ || Start(node, t) != kNever; }
 
  private:
-  void Plan(TimeNs t);
+  /// Next(from') is `start` for every from' between the two.
+  struct Memo {
+    TimeNs from = kNever, start = kNever;
+  };
+  void Ask(int node, TimeNs t);
 
   std::unique_ptr<MediumAccess> access_;
-  TimeNs period_, planned_ = kNever;
-  std::vector<TimeNs> start_;
+  TimeNs period_;
+  bool adapts_;
+  std::vector<Memo> memos_;
 };
 
 }  // namespace stg::acoustics

@@ -4,9 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "acoustic_channel/channel/packet_observer.hpp"
 #include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/link/link_statistics.hpp"
 #include "acoustic_channel/modem/packet.hpp"
+#include "acoustic_channel/propagation/propagation.hpp"
 #include "auv_common/config/run_config.hpp"
 #include "auv_common/numbers/vector.hpp"
 
@@ -28,6 +30,14 @@ class Channel {
   /// Starts an episode: nothing waits or is in flight, statistics empty. The first Step starts the
   /// clock of the statistics.
   virtual void Reset(std::uint64_t seed, std::uint32_t episode) = 0;
+
+  /// Reports of all packets from now on go there; null: nobody is told, which costs nothing.
+  virtual void Observe(PacketObserver* observer) = 0;
+  /// From the next Step on. An absent node neither sends nor hears. All are present after Reset.
+  virtual void SetPresent(int node, bool present) = 0;
+  /// True: Step also takes packets with stamps after the last time of Deliver and up to t, any
+  /// number of a node. False: at most one of a node, with stamp t.
+  virtual bool continuous() const { return false; }
 
   virtual int nodes() const = 0;
   /// Longest payload of a packet [bytes].
@@ -55,6 +65,12 @@ class Channel {
   /// Packets of this episode, all links together.
   virtual const ChannelTotals& totals() const = 0;
 
+  /// Two-way ranging from the next Step on, at time t; see Network::Ping. Throws UserError when the
+  /// model has none or a node does not exist.
+  virtual void Ping(int source, int destination, TimeNs t, TimeNs timeout, std::uint32_t tag);
+  /// Electric energy that a node's modem has used [J]; 0 of models that do not count it.
+  virtual double EnergyJ(int /*node*/, TimeNs /*now*/) const { return 0.0; }
+
   /// For packets from outside: throws UserError when the source or the destination does not exist,
   /// the payload is empty or longer than max_payload(), or the packet was generated after it was
   /// offered.
@@ -63,6 +79,8 @@ class Channel {
 
 /// The channel that the section names, between the nodes of the run. Throws UserError for a
 /// propagation model or medium access that does not exist.
-std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run);
+/// @param line_of_sight for models that know shadows; empty: all lines are free
+std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run,
+                                     LineOfSight line_of_sight = {});
 
 }  // namespace stg::acoustics

@@ -21,19 +21,28 @@ class LinkEstimator {
 
   /// Quality in [0, 1] of a link to a node at distance d [m] of which the newest information has
   /// this age [s]; 1 is best. Both versions agree bit for bit.
-  virtual double Quality(double d, double age_s) const = 0;
-  virtual Pack Quality(const Pack& d, const Pack& age_s) const = 0;
+  /// @param learnt of that link, see Learnt
+  virtual double Quality(double d, double age_s, double learnt) const = 0;
+  virtual Pack Quality(const Pack& d, const Pack& age_s, const Pack& learnt) const = 0;
+  double Quality(double d, double age_s) const { return Quality(d, age_s, 1.0); }
+  Pack Quality(const Pack& d, const Pack& age_s) const { return Quality(d, age_s, Pack(1.0)); }
+
+  /// What receptions say of the link from node `source`: one number for each lane, [kLanes]. All
+  /// are 1 for a model that knows its constants beforehand.
+  virtual const double* Learnt(int source) const;
 
   /// Information older than this is not current [s].
   virtual double freshness_s() const = 0;
 
   /// Starts an episode in one lane: what was learnt there is forgotten.
   virtual void Reset(int /*lane*/) {}
-  /// A packet came in: a model whose constants are not known beforehand may learn from it.
+  /// A packet came in: a model whose constants are not known beforehand may learn from it. Those
+  /// of one source come in order of arrival.
   virtual void Learn(int /*lane*/, const Reception& /*reception*/) {}
 };
 
-/// The estimator of the section's propagation model. Throws UserError for one that does not exist.
-std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& config);
+/// The estimator of the section's propagation model, for a network of so many nodes. Throws
+/// UserError for a model that does not exist.
+std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& config, int nodes);
 
 }  // namespace stg::acoustics

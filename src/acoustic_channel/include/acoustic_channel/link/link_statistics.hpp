@@ -13,15 +13,17 @@ namespace stg::acoustics {
 enum class DropReason : std::uint8_t {
   kNone,
   kRange,        ///< receiver beyond the range of the model
-  kLoss,         ///< lost by the packet loss probability
+  kLoss,         ///< lost by the packet loss probability; `physical`: in noise
   kCollision,    ///< overlapped with another packet at the receiver
   kHalfDuplex,   ///< receiver was transmitting
   kFading,       ///< link in a deep fade
   kBurst,        ///< burst of noise
   kQueue,        ///< discarded before transmission
-  kNotAcquired,  ///< receiver did not lock onto the packet
+  kNotAcquired,  ///< too weak for the receiver to lock onto it
+  kShadow,       ///< the straight line between the two is not free
+  kLeft,         ///< sender or receiver left the network
 };
-inline constexpr int kDropReasons = 9;
+inline constexpr int kDropReasons = 11;
 const char* ToString(DropReason reason);
 
 using DropCounts = std::array<std::uint64_t, kDropReasons>;  ///< indexed by DropReason

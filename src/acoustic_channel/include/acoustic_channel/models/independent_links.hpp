@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "acoustic_channel/access/outbox.hpp"
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/models/link_values.hpp"
-#include "acoustic_channel/modem/outbox.hpp"
 #include "acoustic_channel/modem/payload_pool.hpp"
 #include "auv_common/numbers/random.hpp"
 
@@ -38,8 +38,26 @@ class IndependentLinks : public Channel {
          {&x_, &y_, &z_, &vx_, &vy_, &vz_, &distance_, &loss_, &quality_, &delay_s_, &closing_}) {
       v->assign(static_cast<std::size_t>(padded_), 0.0);
     }
+    present_.assign(static_cast<std::size_t>(nodes_), 1);
     for (auto& queue : pending_) queue.reserve(static_cast<std::size_t>(nodes_));
     ripe_.reserve(static_cast<std::size_t>(nodes_));
+  }
+
+  void Observe(PacketObserver* observer) override { observer_ = observer; }
+
+  void SetPresent(int node, bool present) override {
+    const auto i = static_cast<std::size_t>(node);
+    present_[i] = present ? 1 : 0;
+    absent_ = static_cast<int>(std::count(present_.begin(), present_.end(), 0));
+    if (present) return;
+    outbox_.Drop(node, [this](const Transmission& packet) { Discard(packet, DropReason::kLeft); });
+    for (const Pending& pending : pending_[i]) {
+      const Reception& r = pending.reception;
+      table_.Drop(r.source, node, DropReason::kLeft);
+      if (observer_ != nullptr) Tell(pending, DropReason::kLeft);
+      payloads_.Release(pending.payload);
+    }
+    pending_[i].clear();
   }
 
   int nodes() const override { return nodes_; }
@@ -54,6 +72,9 @@ class IndependentLinks : public Channel {
     payloads_.Clear();
     table_.Reset(0);
     for (auto& queue : pending_) queue.clear();
+    std::fill(present_.begin(), present_.end(), 1);
+    absent_ = 0;
+    now_ = 0;
     for (std::vector<double>* v : {&x_, &y_, &z_, &vx_, &vy_, &vz_}) {
       std::fill(v->begin(), v->end(), 0.0);
     }
@@ -67,11 +88,15 @@ class IndependentLinks : public Channel {
       table_.Reset(t);
       started_ = true;
     }
+    now_ = t;
     payloads_.Recycle();
     Place(p_W, v_W);
+    if (observer_ != nullptr) {
+      for (const Transmission& packet : offered) observer_->OnQueued(Info(packet));
+    }
     outbox_.Step(
         t, offered, [this, step](const Departure& departure) { Send(step, departure); },
-        [this](const Transmission& packet) { Discard(packet); });
+        [this](const Transmission& packet) { Discard(packet, DropReason::kQueue); });
   }
 
   void Deliver(int receiver, TimeNs until, std::vector<Reception>* out) override {
@@ -87,6 +112,7 @@ class IndependentLinks : public Channel {
       const Pending& pending = queue[ripe.index];
       const Reception& r = pending.reception;
       table_.Deliver(r.source, receiver, r.generation, r.transmit, r.arrival);
+      if (observer_ != nullptr) Tell(pending, DropReason::kNone);
       payloads_.Release(pending.payload);
       out->push_back(r);
       out->back().payload = payloads_.at(pending.payload);
@@ -122,7 +148,8 @@ class IndependentLinks : public Channel {
  private:
   struct Pending {
     Reception reception;
-    int payload;  ///< handle in the pool
+    TimeNs offered;  ///< Transmission::stamp
+    int payload;     ///< handle in the pool
   };
   struct Ripe {
     TimeNs arrival;
@@ -139,6 +166,7 @@ class IndependentLinks : public Channel {
     double finite = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(nodes_); ++i) {
       const Vec3<double>&p = p_W[i], &v = v_W[i];
+      if (absent_ > 0 && present_[i] == 0) continue;
       finite += (p.x + p.y + p.z) * 0.0 + (v.x + v.y + v.z) * 0.0;
       x_[i] = p.x;
       y_[i] = p.y;
@@ -158,30 +186,94 @@ class IndependentLinks : public Channel {
     return packet.destination == kToAll ? nodes_ : packet.destination + 1;
   }
 
-  void Discard(const Transmission& packet) {
+  PacketInfo Info(const Transmission& packet) const {
+    PacketInfo info;
+    info.source = packet.source;
+    info.destination = packet.destination;
+    info.tag = packet.tag;
+    info.bytes = packet.payload.size;
+    info.offered = packet.stamp;
+    info.generation = packet.generation;
+    return info;
+  }
+  PacketInfo Info(const Departure& departure) const {
+    PacketInfo info = Info(departure.packet);
+    info.sequence = departure.sequence;
+    info.transmit = info.transmit_end = departure.start;
+    return info;
+  }
+  void Tell(const Pending& pending, DropReason reason) const {
+    const Reception& r = pending.reception;
+    PacketInfo info;
+    info.source = r.source;
+    info.destination = r.destination;
+    info.tag = r.tag;
+    info.sequence = r.sequence;
+    info.bytes = payloads_.at(pending.payload).size;
+    info.offered = pending.offered;
+    info.generation = r.generation;
+    info.transmit = info.transmit_end = r.transmit;
+    PacketFate fate;
+    fate.receiver = r.receiver;
+    fate.reason = reason;
+    fate.begin = fate.arrival = r.arrival;
+    fate.distance_m = r.distance_m;
+    fate.travel_time_s = r.travel_time_s;
+    fate.loss_probability = r.loss_probability;
+    observer_->OnFate(info, fate);
+  }
+
+  void Discard(const Transmission& packet, DropReason reason) {
     for (int j = FirstReceiver(packet); j < LastReceiver(packet); ++j) {
-      if (j != packet.source) table_.Drop(packet.source, j, DropReason::kQueue);
+      if (j != packet.source) table_.Drop(packet.source, j, reason);
     }
+    if (observer_ != nullptr) observer_->OnDiscarded(Info(packet), reason, now_);
+  }
+
+  /// A packet that left and will not arrive.
+  void Lose(const Departure& departure, int receiver, DropReason reason) {
+    table_.Drop(departure.packet.source, receiver, reason);
+    if (observer_ == nullptr) return;
+    const auto j = static_cast<std::size_t>(receiver);
+    PacketFate fate;
+    fate.receiver = receiver;
+    fate.reason = reason;
+    fate.begin = fate.arrival = Arrival(departure, receiver);
+    fate.distance_m = distance_[j];
+    fate.travel_time_s = delay_s_[j];
+    fate.loss_probability = loss_[j];
+    observer_->OnFate(Info(departure), fate);
+  }
+  TimeNs Arrival(const Departure& departure, int receiver) const {
+    // Delays are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+    return departure.start +
+           static_cast<TimeNs>(delay_s_[static_cast<std::size_t>(receiver)] * 1e9 + 0.5);
   }
 
   void Send(std::uint32_t step, const Departure& departure) {
     const Transmission& packet = departure.packet;
     assert(packet.source >= 0 && packet.source < nodes_);
     assert(packet.payload.size > 0 && packet.payload.size <= max_payload());
+    assert(present_[static_cast<std::size_t>(packet.source)] != 0);
+    if (observer_ != nullptr) observer_->OnSent(Info(departure));
     Evaluate(packet.source, Seconds(departure.start - packet.generation));
     int payload = kNoPayload;
     for (int receiver = FirstReceiver(packet); receiver < LastReceiver(packet); ++receiver) {
       if (receiver == packet.source) continue;
       const auto j = static_cast<std::size_t>(receiver);
+      if (present_[j] == 0) {
+        Lose(departure, receiver, DropReason::kLeft);
+        continue;
+      }
       if (!formula_.Reaches(distance_[j])) {
-        table_.Drop(packet.source, receiver, DropReason::kRange);
+        Lose(departure, receiver, DropReason::kRange);
         continue;
       }
       if (loss_[j] > 0.0) {
         Random random(seed_, Stream::kChannel, episode_, step,
                       static_cast<std::uint32_t>(packet.source * nodes_ + receiver));
         if (random.Uniform() < loss_[j]) {
-          table_.Drop(packet.source, receiver, DropReason::kLoss);
+          Lose(departure, receiver, DropReason::kLoss);
           continue;
         }
       }
@@ -196,13 +288,14 @@ class IndependentLinks : public Channel {
       r.sequence = departure.sequence;
       r.generation = packet.generation;
       r.transmit = departure.start;
-      // Delays are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
-      r.arrival = departure.start + static_cast<TimeNs>(delay_s_[j] * 1e9 + 0.5);
+      r.arrival = Arrival(departure, receiver);
       r.distance_m = distance_[j];
       r.travel_time_s = delay_s_[j];
       r.loss_probability = loss_[j];
       r.link_quality = quality_[j];
       r.doppler_mps = closing_[j];
+      r.tag = packet.tag;
+      pending.offered = packet.stamp;
     }
   }
 
@@ -239,12 +332,16 @@ class IndependentLinks : public Channel {
   std::uint64_t seed_ = 0;
   std::uint32_t episode_ = 0;
   bool started_ = false;
+  TimeNs now_ = 0;
+  PacketObserver* observer_ = nullptr;
   Outbox outbox_;
   PayloadPool payloads_;
   LinkTable table_;
   std::vector<double> x_, y_, z_, vx_, vy_, vz_;             ///< padded to whole packs
   std::vector<double> distance_, loss_, quality_, delay_s_;  ///< scratch of one sender
   std::vector<double> closing_;
+  std::vector<char> present_;                  ///< [nodes]
+  int absent_ = 0;                             ///< how many are not
   std::vector<std::vector<Pending>> pending_;  ///< per receiver, as sent
   std::vector<Ripe> ripe_;                     ///< scratch of Deliver
 };

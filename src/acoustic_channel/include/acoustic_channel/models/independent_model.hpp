@@ -12,8 +12,10 @@ template <class Formula>
 class FormulaEstimator : public LinkEstimator {
  public:
   explicit FormulaEstimator(const Formula& formula) : formula_(formula) {}
-  double Quality(double d, double age_s) const override { return formula_.At(d, age_s).quality; }
-  Pack Quality(const Pack& d, const Pack& age_s) const override {
+  double Quality(double d, double age_s, double /*learnt*/) const override {
+    return formula_.At(d, age_s).quality;
+  }
+  Pack Quality(const Pack& d, const Pack& age_s, const Pack& /*learnt*/) const override {
     return formula_.At(d, age_s).quality;
   }
   double freshness_s() const override { return formula_.freshness_s(); }
@@ -28,11 +30,12 @@ template <class Formula>
 class IndependentModel : public PropagationModel {
  public:
   explicit IndependentModel(const Formula& formula) : formula_(formula) {}
-  std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config,
-                                       const RunConfig& run) const override {
+  std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run,
+                                       LineOfSight /*line_of_sight*/) const override {
     return std::make_unique<IndependentLinks<Formula>>(formula_, config, run);
   }
-  std::unique_ptr<LinkEstimator> MakeLinkEstimator() const override {
+  std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& /*config*/,
+                                                   int /*nodes*/) const override {
     return std::make_unique<FormulaEstimator<Formula>>(formula_);
   }
 

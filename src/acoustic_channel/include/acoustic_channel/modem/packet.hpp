@@ -25,12 +25,16 @@ inline constexpr int kToAll = -1;  ///< destination of a packet for everybody wh
 /// modems in use today (eight frames of 256 bytes).
 inline constexpr std::size_t kLargestFrame = 2048;
 
+/// What a packet is to the modems. Pings and replies are their own business; nobody else sees them.
+enum class PacketKind : std::uint8_t { kData, kPing, kReply };
+
 /// A packet offered to the sender's modem.
 struct Transmission {
   int source = 0;
   int destination = kToAll;  ///< or the node that it is for; others do not see it
   TimeNs stamp = 0;          ///< time of the step it is offered in
   TimeNs generation = 0;     ///< time at which the payload was true, not after `stamp`
+  std::uint32_t tag = 0;     ///< the caller's own, not read; comes back in receptions and reports
   ByteView payload;          ///< not empty; the modem copies it
 };
 
@@ -43,7 +47,7 @@ struct Reception {
   TimeNs transmit = 0;            ///< the packet began to leave the sender
   TimeNs arrival = 0;             ///< the packet was complete at the receiver
   double distance_m = 0.0;        ///< between the two at transmission
-  double travel_time_s = 0.0;     ///< one-way travel time of sound
+  double travel_time_s = 0.0;     ///< one-way, as the clocks of the two see it
   double loss_probability = 0.0;  ///< probability with which this packet could have been lost
   double link_quality = 0.0;      ///< [0, 1], of the model, with the age at arrival
   double received_level_db =
@@ -51,6 +55,7 @@ struct Reception {
   double noise_level_db = 0.0;  ///< re 1 uPa, in the modem's band
   double sinr_db = 0.0;         ///< signal to interference and noise
   double doppler_mps = 0.0;     ///< closing speed at transmission, positive closing
+  std::uint32_t tag = 0;        ///< Transmission::tag; not on the air
   ByteView payload;             ///< valid until the channel's next Step or Reset
 };
 

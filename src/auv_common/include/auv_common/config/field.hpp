@@ -69,8 +69,14 @@ NumbersRef Numbers(std::array<double, N>* values) {
   return {values->data(), static_cast<int>(N)};
 }
 
+/// Any number of names out of a list, written as a sequence.
+struct NamesRef {
+  std::vector<std::string>* list = nullptr;
+  std::vector<std::string> names;  ///< allowed ones
+};
+
 using ValueRef = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef,
-                              NumbersRef, Interval*>;
+                              NumbersRef, Interval*, NamesRef>;
 
 /// One key of a file and the member of the struct that it fills.
 struct Field {

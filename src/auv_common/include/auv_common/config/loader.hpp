@@ -40,6 +40,9 @@ class Loader {
   void Apply(const Source& source);
   /// A whole file that is given as text; `origin` stands for its name. It cannot have a base.
   void ApplyText(const std::string& text, const std::string& origin);
+  /// Keys of a map that lies at `prefix` ("" or with a point at its end) in `file`; those it leaves
+  /// out keep their values. For files of other programs that hold a described section.
+  void ApplyPart(const YamlTree& map, const std::string& prefix, const std::string& file);
   /// Throws the violation with the origin of each of its keys.
   [[noreturn]] void Refuse(const Violation& violation) const;
 

@@ -23,6 +23,12 @@ enum class Stream : std::uint32_t {
   kShuffle = 8,
   kInit = 9,
   kMediumAccess = 10,
+  kShadowing = 20,
+  kFading = 21,
+  kBurst = 22,
+  kTraffic = 23,
+  kClock = 25,
+  kReception = 26,
   kReplay = 40,
   kTargetNoise = 41,
 };

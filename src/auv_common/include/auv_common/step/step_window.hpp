@@ -17,14 +17,15 @@ namespace stg {
 /// Steps as a listener sees them: many are open at once, and are taken in order of time.
 ///
 /// The messages of a step may come in any order, mixed with those of its neighbours. The oldest
-/// step is taken when it is complete, or given up when patience with it is over and a later one is
-/// there. Nobody waits for a listener, so unlike a StepBarrier it waits for everybody in each step:
-/// that delays what it says, but not the steps. Patience with the steps runs side by side.
+/// step is taken when it is complete, or given up when patience with it is over and the run has
+/// come to a later one, as Reach() says. Nobody waits for a listener, so unlike a StepBarrier it
+/// waits for everybody in each step: that delays what it says, but not the steps. Patience with the
+/// steps runs side by side.
 ///
-/// Stamps from the future do no harm while the run goes on: patience with a step begins no sooner
-/// than the last word about an earlier one, so that no step is given up before the run has come to
-/// it; and where there is no room, the latest step goes. Stamps from the past are refused: that a
-/// run has been started anew, with stamps that were there before, must be said by Clear().
+/// Stamps from the future do no harm: no step is given up before the run has come to it, patience
+/// with it begins no sooner than the last word about an earlier one, and where there is no room,
+/// the latest step goes. Stamps from the past are refused: that a run has been started anew, with
+/// stamps that were there before, must be said by Clear().
 ///
 /// Times `now_s` are wall time in seconds of a clock of the caller's choice that does not go back.
 /// This class reads no clock. Not thread-safe.
@@ -55,8 +56,14 @@ class StepWindow {
     return &found->second.frame;
   }
 
-  /// Takes the oldest step if it is complete, or if it has waited for `patience_s` and a later one
-  /// is there. False: wait.
+  /// The run has come to the step at `stamp`: to be said of what is trusted alone.
+  void Reach(TimeNs stamp) {
+    reached_ = has_reached_ ? std::max(reached_, stamp) : stamp;
+    has_reached_ = true;
+  }
+
+  /// Takes the oldest step if it is complete, or if it has waited for `patience_s` and the run has
+  /// come to a later one. False: wait.
   /// @param complete tells of a const Frame& whether all of it is there.
   template <class Complete>
   bool Take(double now_s, double patience_s, const Complete& complete, Frame* frame) {
@@ -66,7 +73,7 @@ class StepWindow {
     Step& step = oldest->second;
     if (!complete(static_cast<const Frame&>(step.frame))) {
       const double waited_s = now_s - std::max(step.opened_s, heard_before_s_);
-      if (steps_.size() < 2 || waited_s <= patience_s) return false;
+      if (!has_reached_ || oldest->first >= reached_ || waited_s <= patience_s) return false;
     }
     heard_before_s_ = std::max(heard_before_s_, step.heard_s);
     *frame = std::move(step.frame);
@@ -79,7 +86,7 @@ class StepWindow {
   /// Forgets all steps, and which were taken: the run has been started anew.
   void Clear() {
     steps_.clear();
-    has_taken_ = false;
+    has_taken_ = has_reached_ = false;
   }
 
   std::size_t size() const { return steps_.size(); }  ///< open steps
@@ -109,8 +116,8 @@ class StepWindow {
   std::size_t capacity_;
   Frame blank_;
   std::map<TimeNs, Step> steps_;
-  bool has_taken_ = false;
-  TimeNs taken_ = 0;
+  bool has_taken_ = false, has_reached_ = false;
+  TimeNs taken_ = 0, reached_ = 0;
   double heard_before_s_ = kNever;  ///< the last word about a step before it was taken
   std::uint64_t late_ = 0, crowded_ = 0;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "auv_common/config/field.hpp"
+#include "auv_dynamics/autopilot/autopilot_config.hpp"
 
 namespace stg::dynamics {
 
@@ -27,6 +28,7 @@ struct ControlConfig {
   double rate_gain = 0.10;      ///< K_omega (Eq. 25), of the maximum moment per max rate
   HeadingMode heading = HeadingMode::kFree;
   double heading_gain = 0.12;  ///< along_velocity: of the maximum moment per rad
+  AutopilotConfig autopilot;   ///< of vehicles that are not commanded by force and moment
 };
 
 /// Keys, units and ranges of the section.

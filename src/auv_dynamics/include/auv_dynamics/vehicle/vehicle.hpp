@@ -19,6 +19,10 @@ struct Axis {
 };
 using Space = std::vector<Axis>;
 
+/// Velocity in world axes, each within the largest of the section: the action space of vehicles
+/// that a velocity command steers.
+Space VelocityActions(const VehicleConfig& config);
+
 /// What acts on a vehicle during one step besides its own actuators.
 struct Surroundings {
   const Vec3<Pack>& v_WC;           ///< current, world axes [m/s]

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "auv_common/config/field.hpp"
+#include "auv_dynamics/vehicle/kinematic_config.hpp"
+#include "auv_dynamics/vehicle/torpedo_config.hpp"
 
 namespace stg::dynamics {
 
@@ -15,7 +17,8 @@ enum class Integrator { kSemiImplicit, kRk4 };
 enum class AddedMassCoriolis { kFull, kNoMunk, kOff };
 
 /// Vehicle constants in Fossen's notation; Table S2. Six-component arrays are
-/// ordered surge, sway, heave, roll, pitch, yaw.
+/// ordered surge, sway, heave, roll, pitch, yaw. The hull's constants, from the mass to the limits
+/// of the actuators, are those of `fully_actuated`; other models have sections of their own.
 struct VehicleConfig {
   std::string model = "fully_actuated";  ///< name in the registry of vehicles
   std::string profile = "remus100";
@@ -37,8 +40,10 @@ struct VehicleConfig {
   std::array<double, 6> max_tau{35.0, 20.0, 20.0, 8.0, 10.0, 10.0};
   bool float32_tau = false;  ///< round force and torque to float32 (release)
   Integrator integrator = Integrator::kRk4;
-  int substeps = 1;         ///< integrator steps per physics step
-  double radius_m = 0.011;  ///< collision radius
+  int substeps = 1;           ///< integrator steps per physics step
+  double radius_m = 0.011;    ///< collision radius
+  TorpedoConfig torpedo;      ///< read by that model alone
+  KinematicConfig kinematic;  ///< read by that model alone
 };
 
 /// Keys, units and ranges of the section.

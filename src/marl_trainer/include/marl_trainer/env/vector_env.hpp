@@ -52,6 +52,8 @@ class VectorEnv {
 
   /// Starts the first episode of every environment. Writes observations and states.
   void Reset(const EnvArrays& out) { RestartAt(0, out); }
+  /// Episodes that start from now on are drawn from this seed; k of the seed rule goes on.
+  void Reseed(std::uint64_t seed) { options_.seed = seed; }
   /// Starts the k-th episode of every environment (resuming a run); it is cut if `stagger` says so.
   void RestartAt(std::uint64_t k, const EnvArrays& out);
   /// Starts an episode of one environment at once, drawn from `seed`. The others go on. The episode
@@ -64,7 +66,7 @@ class VectorEnv {
              const std::vector<Vec3<double>>& v_WT, const EnvArrays& out);
   /// One decision of every AUV. Writes all arrays.
   /// @param actions [envs, agents, action_size], clipped to [-1, 1]. Non-finite ones throw
-  /// std::invalid_argument.
+  /// std::invalid_argument before anything has moved.
   void Step(const float* actions, const EnvArrays& out);
   void Step(const double* actions, const EnvArrays& out);
 
@@ -111,7 +113,8 @@ class VectorEnv {
   template <class Number>
   void StepAll(const Number* actions, const EnvArrays& out);
   template <class Number>
-  void TakeActions(const Slice& slice, const Number* actions);
+  void TakeActions(const Number* actions);
+  void Judge(const Slice& slice, const EnvArrays& out);
   void Restart(const Slice& slice, int lane, bool first);
   void WriteStart(const Slice& slice, const EnvArrays& out) const;
   /// Ends the episodes of some lanes and starts their next ones.
@@ -127,7 +130,7 @@ class VectorEnv {
   std::vector<int> slice_of_;                   // [envs]
   std::vector<std::uint64_t> round_;            // [envs], k of the running episode
   std::vector<task::EpisodeMetrics> finished_;  // [envs]
-  std::vector<Pack> wanted_;                    // [agents, action_size], of one slice
+  std::vector<Pack> wanted_;                    // [slices, agents, action_size]
   std::vector<float> rows_;                     // [lanes], scratch of Finish
 };
 

@@ -22,11 +22,11 @@ struct RewardInput {
   T confidence = T(0.0);  ///< c, 0 when lost
   T lost = T(0.0);        ///< l, 0 or 1
   T crowding = T(0.0);    ///< sum over neighbours of SeparationPenalty
-  // What the cost is of; only those that it reads need be set.
-  T tau[dynamics::kWrenchSize];  ///< release: tau / tau_max of this and the previous step
-  T previous_tau[dynamics::kWrenchSize];
-  T action[dynamics::kWrenchSize];  ///< paper: executed action [action_size]
-  T previous_action[dynamics::kWrenchSize];
+  // What the cost is of, somebody else's arrays; only those that it reads need be set.
+  const T* tau = nullptr;  ///< release: tau / tau_max of this and the previous step [kWrenchSize]
+  const T* previous_tau = nullptr;
+  const T* action = nullptr;  ///< paper: executed action [action_size]
+  const T* previous_action = nullptr;
 };
 
 /// b of Eq. 28 [m].

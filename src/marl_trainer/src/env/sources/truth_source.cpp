@@ -11,7 +11,8 @@ TruthSource::TruthSource(const Scenario& scenario)
       exact_angles_(scenario.vehicle.integrator == dynamics::Integrator::kSemiImplicit),
       minds_(static_cast<std::size_t>(scenario.agents),
              agent::Mind<Pack>(scenario, agent::Bookkeeping::kTruth)),
-      before_(minds_) {}
+      before_(minds_),
+      links_(minds_.size()) {}
 
 void TruthSource::Start(const dynamics::World&, const LaneSet& lanes) {
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -51,30 +52,36 @@ void TruthSource::Think(const dynamics::World& world) {
     total_error += mind.knowledge.error;
     nearest = Min(nearest, mind.knowledge.distance);
   }
+  MeasureLinks(world);
   for (int i = 0; i < scenario_.agents; ++i) {
-    minds_[static_cast<std::size_t>(i)].SetNeighbours(scenario_,
-                                                      Neighbours(world, i, total_error, nearest));
+    agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
+    agent::NeighbourSummary<Pack>& s = links_[static_cast<std::size_t>(i)];
+    const agent::Knowledge<Pack>& k = mind.knowledge;
+    s.mean_error = scenario_.agents > 1
+                       ? (total_error - k.error) * Pack(1.0 / (scenario_.agents - 1))
+                       : k.error;
+    s.closest = Select(k.distance <= nearest, one, zero);
+    Show(world, i, s.offset);
+    mind.SetNeighbours(scenario_, s);
   }
 }
 
-agent::NeighbourSummary<Pack> TruthSource::Neighbours(const dynamics::World& world, int i,
-                                                      const Pack& total_error,
-                                                      const Pack& nearest) const {
-  const agent::Knowledge<Pack>& k = knowledge(i);
-  const int n = scenario_.agents;
+void TruthSource::MeasureLinks(const dynamics::World& world) {
   const Pack zero(0.0), one(1.0), available(scenario_.observation.link_available);
-  agent::NeighbourSummary<Pack> s;
-  for (int j = 0; j < n; ++j) {
-    if (j == i) continue;
-    const Pack q = acoustics::RangeQuality(world.distance(i, j), scenario_.channel.range_m);
-    s.quality += q;
-    s.best = Max(s.best, q);
-    s.effective += Select(q > available, one, zero);
+  for (agent::NeighbourSummary<Pack>& s : links_) s.quality = s.best = s.effective = zero;
+  // Each pair once; every AUV adds up its neighbours in the order of their numbers.
+  for (int i = 0; i < scenario_.agents; ++i) {
+    for (int j = i + 1; j < scenario_.agents; ++j) {
+      const Pack q = acoustics::RangeQuality(world.distance(i, j), scenario_.channel.range_m);
+      const Pack counts = Select(q > available, one, zero);
+      for (const int end : {i, j}) {
+        agent::NeighbourSummary<Pack>& s = links_[static_cast<std::size_t>(end)];
+        s.quality += q;
+        s.best = Max(s.best, q);
+        s.effective += counts;
+      }
+    }
   }
-  s.mean_error = n > 1 ? (total_error - k.error) * Pack(1.0 / (n - 1)) : k.error;
-  s.closest = Select(k.distance <= nearest, one, zero);
-  Show(world, i, s.offset);
-  return s;
 }
 
 void TruthSource::Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const {

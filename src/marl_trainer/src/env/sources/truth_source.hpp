@@ -26,15 +26,15 @@ class TruthSource : public InformationSource {
 
  private:
   void Think(const dynamics::World& world);
-  /// @param total_error, nearest over all AUVs: sum of errors, smallest target distance
-  agent::NeighbourSummary<Pack> Neighbours(const dynamics::World& world, int i,
-                                           const Pack& total_error, const Pack& nearest) const;
+  /// Quality and number of everybody's links into links_.
+  void MeasureLinks(const dynamics::World& world);
   void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
 
   Scenario scenario_;
-  bool exact_angles_;                      // the integrator keeps roll, pitch and yaw
-  std::vector<agent::Mind<Pack>> minds_;   // [agent]
-  std::vector<agent::Mind<Pack>> before_;  // as minds_ before the present Observe
+  bool exact_angles_;                                 // the integrator keeps roll, pitch and yaw
+  std::vector<agent::Mind<Pack>> minds_;              // [agent]
+  std::vector<agent::Mind<Pack>> before_;             // as minds_ before the present Observe
+  std::vector<agent::NeighbourSummary<Pack>> links_;  // [agent], of the present Think
 };
 
 }  // namespace stg::env

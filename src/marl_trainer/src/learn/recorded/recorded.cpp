@@ -11,6 +11,7 @@ namespace stg::learn {
 namespace {
 
 constexpr std::size_t kOpenEpisodes = 2;
+constexpr std::size_t kRemembered = 1000;  // episodes that have been taken
 
 /// A NaN equals itself, and the two zeros differ.
 template <class T>
@@ -90,54 +91,75 @@ EpisodeAssembler::EpisodeAssembler(const Scenario& scenario, std::string source)
       episode_steps_(scenario.time.episode_steps),
       source_(std::move(source)) {}
 
-RecordedEpisode& EpisodeAssembler::At(std::uint32_t episode, TimeNs start) {
+RecordedEpisode* EpisodeAssembler::At(std::uint32_t episode, TimeNs start) {
+  if (taken_.count({start, episode}) > 0) {
+    ++late_;
+    return nullptr;
+  }
   RecordedEpisode& e = episodes_[{start, episode}];
+  e.heard = ++heard_;
   if (e.steps.empty()) {
     e.number = episode;
     e.source = source_;
     e.steps.resize(static_cast<std::size_t>(agents_));
   }
-  return e;
+  return &e;
 }
 
 void EpisodeAssembler::Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent,
                            AgentRecord record) {
   // The decision on an episode's last observation leads nowhere: the world restarts.
   if (step >= static_cast<std::uint32_t>(episode_steps_)) return;
-  RecordedEpisode& e = At(episode, start);
-  const auto [place, added] = e.steps[static_cast<std::size_t>(agent)].try_emplace(step, record);
+  RecordedEpisode* const e = At(episode, start);
+  if (e == nullptr) return;
+  const auto [place, added] = e->steps[static_cast<std::size_t>(agent)].try_emplace(step, record);
   if (!added && !(place->second == record)) {
-    e.finding = {Flaw::kContradiction, learn::At(step, agent)};
+    e->finding = {Flaw::kContradiction, learn::At(step, agent)};
   }
 }
 
 void EpisodeAssembler::Add(std::uint32_t episode, TimeNs start, std::uint32_t step,
                            RewardRecord record) {
-  RecordedEpisode& e = At(episode, start);
+  RecordedEpisode* const e = At(episode, start);
+  if (e == nullptr) return;
   if (step >= static_cast<std::uint32_t>(episode_steps_)) {
-    e.finding = {Flaw::kContradiction, "a reward of step " + std::to_string(step) +
-                                           ", past the scenario's " +
-                                           std::to_string(episode_steps_) + " steps"};
+    e->finding = {Flaw::kContradiction, "a reward of step " + std::to_string(step) +
+                                            ", past the scenario's " +
+                                            std::to_string(episode_steps_) + " steps"};
     return;
   }
-  const auto [place, added] = e.rewards.try_emplace(step, record);
+  const auto [place, added] = e->rewards.try_emplace(step, record);
   if (!added && !(place->second == record)) {
-    e.finding = {Flaw::kContradiction, "reward of step " + std::to_string(step)};
+    e->finding = {Flaw::kContradiction, "reward of step " + std::to_string(step)};
   }
 }
 
 std::vector<RecordedEpisode> EpisodeAssembler::TakeDone() {
+  std::vector<std::uint64_t> heard;
+  for (const auto& [key, e] : episodes_) {
+    if (!e.Complete(episode_steps_)) heard.push_back(e.heard);
+  }
+  std::sort(heard.rbegin(), heard.rend());
+  const std::uint64_t open_since = heard.size() > kOpenEpisodes ? heard[kOpenEpisodes - 1] : 0;
   std::vector<RecordedEpisode> done;
-  std::size_t newer = episodes_.size();
   for (auto it = episodes_.begin(); it != episodes_.end();) {
-    if (newer-- > kOpenEpisodes || it->second.Complete(episode_steps_)) {
+    if (it->second.heard < open_since || it->second.Complete(episode_steps_)) {
       done.push_back(std::move(it->second));
+      Forget(it->first);
       it = episodes_.erase(it);
     } else {
       ++it;
     }
   }
   return done;
+}
+
+void EpisodeAssembler::Forget(const Key& key) {
+  taken_.insert(key);
+  taken_in_order_.push_back(key);
+  if (taken_in_order_.size() <= kRemembered) return;
+  taken_.erase(taken_in_order_.front());
+  taken_in_order_.pop_front();
 }
 
 std::vector<RecordedEpisode> EpisodeAssembler::TakeAll() {

@@ -16,8 +16,9 @@ namespace stg::agent {
 ///
 /// Lanes have clocks of their own: one may start an episode while the others go on.
 ///
-/// Use, for every decision: Receive and Detect in any order (the result does not depend on it),
-/// Observe, Act, MakePacket. Deterministic; allocates nothing after construction.
+/// Use, for every decision: Receive and Detect in any order (the result does not depend on it, but
+/// packets of one source come in order of arrival), Observe, Act, MakePacket. Deterministic;
+/// allocates nothing after construction.
 template <class T>
 class LanedAgent {
  public:

@@ -93,6 +93,7 @@ class ControllerConstants {
   };
   std::string text_;
   std::vector<Item> items_;
+  std::vector<std::string> known_;  ///< constants that the controller asked for
 };
 
 /// All controllers by name; a program may add its own at its start.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "marker_list.hpp"
+#include "network_markers.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -15,23 +16,17 @@ using std_msgs::ColorRGBA;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr int kManyVehicles = 8;  // beyond this, labels are numbers only
-
 class Builder : private MarkerList {
  public:
   Builder(const SwarmView& view, const MarkerStyle& style)
-      : view_(view),
-        style_(style),
-        unit_(view.scene.radius_m * style.vehicle_scale),
-        text_(style.whole_workspace ? 0.05 * view.scene.half_extent_m : 0.36 * unit_) {}
+      : view_(view), style_(style), unit_(UnitOf(view, style)), text_(LettersOf(view, style)) {}
 
   MarkerArray Build() {
     if (style_.whole_workspace) Workspace();
     Targets();
     for (size_t i = 0; i < view_.vehicles.size(); ++i) Vehicle(static_cast<int>(i));
-    Links();
-    Packets();
     Summary();
+    AddNetworkMarkers(view_, style_, &array_);
     return std::move(array_);
   }
 
@@ -202,77 +197,6 @@ class Builder : private MarkerList {
     return view_.vehicles[static_cast<size_t>(i)].pose.position;
   }
 
-  /// One line per directed link: its half that ends at the receiver, in the link's colour.
-  void Links() {
-    Marker m = Lines("link", 0, Marker::LINE_LIST, 0.05 * unit_, Color(1, 1, 1));
-    for (const auto& [pair, link] : view_.links) {
-      if (!Seen(pair.first) || !Seen(pair.second)) continue;
-      const Point& to = PositionOf(pair.second);
-      m.points.push_back(Between(PositionOf(pair.first), to, 0.5));
-      m.points.push_back(to);
-      m.colors.insert(m.colors.end(), 2, QualityColor(link.quality));
-    }
-    Add(std::move(m));
-  }
-
-  /// Packets travel as dots; a lost one ends in a red cross on the way, with a broken line to it.
-  void Packets() {
-    Marker dots = New("packet", 0, Marker::SPHERE_LIST, Color(1, 1, 1));
-    dots.scale.x = dots.scale.y = dots.scale.z = 0.18 * unit_;
-    Marker crosses = Lines("lost_packet", 0, Marker::LINE_LIST, 0.07 * unit_, Color(1, 0.1, 0.1));
-    Marker dashes =
-        Lines("lost_packet", 1, Marker::LINE_LIST, 0.05 * unit_, Color(1, 0.1, 0.1, 0.8));
-    std::map<std::pair<int, int>, std::uint8_t> shown;
-    for (const PacketEvent& e : view_.packets) {
-      if (!Seen(e.source) || !Seen(e.destination)) continue;
-      const double age = view_.now - e.time;
-      const Point &from = PositionOf(e.source), &to = PositionOf(e.destination);
-      const double travelled = std::clamp(age / style_.packet_s, 0.0, 1.0);
-      if (!e.lost) {
-        if (travelled < 1.0) dots.points.push_back(Between(from, to, travelled));
-      } else if (age < style_.lost_packet_s) {
-        shown[{e.source, e.destination}] = e.reason;
-      }
-    }
-    for (const auto& [pair, reason] : shown) {
-      const Point &from = PositionOf(pair.first), &to = PositionOf(pair.second);
-      const Point end = Between(from, to, 0.62);
-      const double s = 0.15 * unit_;
-      for (const double sign : {-1.0, 1.0}) {
-        crosses.points.insert(crosses.points.end(),
-                              {Sum(end, At(-s, -sign * s, -s)), Sum(end, At(s, sign * s, s)),
-                               Sum(end, At(-s, sign * s, s)), Sum(end, At(s, -sign * s, -s))});
-      }
-      constexpr int kDashes = 8;
-      for (int k = 0; k < kDashes; ++k) {
-        dashes.points.push_back(Between(from, end, (k + 0.2) / kDashes));
-        dashes.points.push_back(Between(from, end, (k + 0.7) / kDashes));
-      }
-    }
-    Add(std::move(dots));
-    Add(std::move(crosses));
-    Add(std::move(dashes));
-    LostReasons(shown);
-  }
-
-  /// Says at each cross why; only in swarms small enough to read it.
-  void LostReasons(const std::map<std::pair<int, int>, std::uint8_t>& shown) {
-    const int count = static_cast<int>(view_.vehicles.size());
-    if (count > kManyVehicles) return;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        const auto found = shown.find({i, j});
-        if (found == shown.end()) {
-          if (i != j) Delete("lost_reason", i * count + j, Marker::TEXT_VIEW_FACING);
-          continue;
-        }
-        const Point end = Between(PositionOf(i), PositionOf(j), 0.62);
-        Text("lost_reason", i * count + j, Sum(end, At(0, 0, 0.2 * unit_ + 0.5 * text_)),
-             0.7 * text_, DropReasonName(found->second), Color(1, 0.45, 0.4));
-      }
-    }
-  }
-
   /// What the whole swarm does, above the workspace or above target 0.
   void Summary() {
     double distance = 0.0, quality = 0.0, age = 0.0;
@@ -331,12 +255,6 @@ class Builder : private MarkerList {
 };
 
 }  // namespace
-
-const char* DropReasonName(std::uint8_t reason) {
-  static const char* const kNames[] = {"none",   "range", "loss",  "collision",   "half duplex",
-                                       "fading", "burst", "queue", "not acquired"};
-  return reason < sizeof(kNames) / sizeof(kNames[0]) ? kNames[reason] : "unknown";
-}
 
 MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style) {
   return Builder(view, style).Build();

@@ -15,6 +15,7 @@ struct MarkerStyle {
   double trail_s = 60.0;       ///< simulated time that trails reach back
   double packet_s = 0.35;      ///< simulated time that a packet is shown travelling
   double lost_packet_s = 1.0;  ///< simulated time that a lost packet stays visible
+  double carrier_s = 0.3;      ///< simulated time that a carrier stays visible at least
   double prediction_s = 20.0;  ///< length of the target's velocity arrow
 };
 
@@ -22,7 +23,14 @@ struct MarkerStyle {
 /// where there is nothing to show, so that a view never keeps what is gone.
 visualization_msgs::MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style);
 
-/// Names of the drop reasons of auv_msgs/LinkState.
-const char* DropReasonName(std::uint8_t reason);
+/// Radius of a vehicle as drawn [m]; every size that scales is a multiple.
+inline double UnitOf(const SwarmView& view, const MarkerStyle& style) {
+  return view.scene.radius_m * style.vehicle_scale;
+}
+/// Height of letters [m].
+inline double LettersOf(const SwarmView& view, const MarkerStyle& style) {
+  return style.whole_workspace ? 0.05 * view.scene.half_extent_m : 0.36 * UnitOf(view, style);
+}
+inline constexpr int kManyVehicles = 8;  ///< beyond this, labels are numbers only
 
 }  // namespace stg::nodes

@@ -3,6 +3,7 @@
 
 #include <auv_msgs/LinkState.h>
 #include <auv_msgs/LinkStates.h>
+#include <auv_msgs/PacketEvents.h>
 #include <auv_msgs/TaskState.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
@@ -12,13 +13,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <system_error>
 
 #include "acoustic_channel/nodes/topics.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/nodes/conversions.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/nodes/node_main.hpp"
+#include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marker_builder.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -29,6 +35,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
+constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
 
 /// Reads what is drawn and takes the default for the rest: a bag may be older than this program.
 /// Throws YAML::Exception for text that is no scenario at all.
@@ -58,39 +65,40 @@ class MarkerNode {
  public:
   MarkerNode()
       : private_nh_("~"), health_("markers", "view", [this](auto& status) { Report(status); }) {
-    private_nh_.param("overview/vehicle_scale", overview_.vehicle_scale, 8.0);
-    private_nh_.param("close/vehicle_scale", close_.vehicle_scale, 1.0);
-    private_nh_.param("overview/trail_s", overview_.trail_s, 60.0);
-    private_nh_.param("close/trail_s", close_.trail_s, 8.0);
+    overview_.vehicle_scale = NumberParameter("overview/vehicle_scale", 8.0, 1e-3, 1e6);
+    close_.vehicle_scale = NumberParameter("close/vehicle_scale", 1.0, 1e-3, 1e6);
+    overview_.trail_s = NumberParameter("overview/trail_s", 60.0, 0.0, 1e6);
+    close_.trail_s = NumberParameter("close/trail_s", 8.0, 0.0, 1e6);
     overview_.whole_workspace = true;
     for (MarkerStyle* style : {&overview_, &close_}) {
-      private_nh_.param("lost_packet_s", style->lost_packet_s, style->lost_packet_s);
-      private_nh_.param("prediction_s", style->prediction_s, style->prediction_s);
-      if (!(style->vehicle_scale > 0.0)) {
-        ROS_FATAL("vehicle_scale must be positive");
-        throw std::invalid_argument("vehicle_scale");
-      }
+      style->lost_packet_s = NumberParameter("lost_packet_s", style->lost_packet_s, 0.0, 1e6);
+      style->prediction_s = NumberParameter("prediction_s", style->prediction_s, 0.0, 1e6);
     }
-    const double rate_hz = private_nh_.param("rate_hz", 20.0);
-    if (!(rate_hz > 0.0)) throw std::invalid_argument("rate_hz must be positive");
+    const double rate_hz = NumberParameter("rate_hz", 20.0, 0.01, 1000.0);
 
     overview_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kOverview, 1);
     close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kClose, 1);
     scenario_sub_ = nh_.subscribe(topics::kScenario, 1, &MarkerNode::OnScenario, this);
+    packets_sub_ = nh_.subscribe(topics::kPackets, 50, &MarkerNode::OnPackets, this);
     links_sub_ = nh_.subscribe(topics::kLinks, 50, &MarkerNode::OnLinks, this);
-    const std::string file = private_nh_.param("scenario_file", std::string());
+    const std::string file = TextParameter("scenario_file", "");
     if (!file.empty()) ReadScenarioFile(file);
     // Wall clock: a paused or finished replay stays visible.
     draw_timer_ = nh_.createWallTimer(ros::WallDuration(1.0 / rate_hz), &MarkerNode::OnDraw, this);
     discover_timer_ = nh_.createWallTimer(ros::WallDuration(0.5), &MarkerNode::OnDiscover, this);
   }
 
+  void Spin() { ros::spin(); }
+
  private:
   void ReadScenarioFile(const std::string& file) {
+    std::error_code error;
     std::ifstream in(file);
+    if (!std::filesystem::is_regular_file(file, error) || !in) {
+      throw UserError("scenario_file: cannot read '" + file + "'");
+    }
     std_msgs::String text;
     text.data.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    if (!in) ROS_ERROR("cannot read the scenario file %s", file.c_str());
     OnScenario(text);
   }
 
@@ -152,6 +160,7 @@ class MarkerNode {
     for (VehicleView& v : view_.vehicles) v.trail.clear();
     for (MovingTarget& t : view_.targets) t.trail.clear();
     view_.packets.clear();
+    view_.carriers.clear();
     view_.links.clear();
     view_.now = 0.0;
   }
@@ -165,13 +174,16 @@ class MarkerNode {
       if (std::hypot(p.x - q.x, p.y - q.y, p.z - q.z) < step) return;
     }
     trail->push_back({view_.now, p, phase});
-    while (trail->size() > kMaxTrailPoints || trail->front().time < view_.now - TrailSeconds()) {
+    while (!trail->empty() &&
+           (trail->size() > kMaxTrailPoints || trail->front().time < view_.now - TrailSeconds())) {
       trail->pop_front();
     }
   }
 
   void OnOdom(std::size_t i, const nav_msgs::Odometry& odom) {
     if (!Finite(odom.pose.pose.position)) return refused_.Add(Refusals::kNotFinite);
+    if (!PossibleStamp(odom.header.stamp)) return refused_.Add(Refusals::kStale);
+    SetNodeTime(odom.header.stamp);
     Advance(odom.header.stamp);
     VehicleView& v = view_.vehicles[i];
     v.seen = true;
@@ -196,6 +208,7 @@ class MarkerNode {
   }
 
   void OnTask(std::size_t i, const auv_msgs::TaskState& task) {
+    if (!PossibleStamp(task.header.stamp)) return refused_.Add(Refusals::kStale);
     // One AUV tells the episode: at its change the others' messages may still be the old one's.
     if (i == 0 && task.episode != view_.episode) {
       view_.episode = task.episode;
@@ -220,21 +233,49 @@ class MarkerNode {
       const int source = static_cast<int>(s.source), destination = static_cast<int>(s.destination);
       const auto [found, is_new] = view_.links.try_emplace({source, destination});
       LinkView& link = found->second;
-      if (!is_new && s.delivered > link.delivered) {
+      // Counts tell of packets only where nobody tells more.
+      const bool counts = !is_new && !told_of_packets_;
+      if (counts && s.delivered > link.delivered) {
         view_.packets.push_back({source, destination, t, false, auv_msgs::LinkState::NONE});
       }
-      if (!is_new && s.dropped > link.dropped) {
+      if (counts && s.dropped > link.dropped) {
         view_.packets.push_back({source, destination, t, true, s.last_drop_reason});
       }
       link = {std::isfinite(s.quality) ? s.quality : 0.0, s.age, s.delivered, s.dropped};
     }
   }
 
-  void OnDraw(const ros::WallTimerEvent&) {
+  void OnPackets(const auv_msgs::PacketEvents& events) {
+    told_of_packets_ = true;
+    const double t = events.header.stamp.toSec();
+    for (const auv_msgs::PacketEvent& e : events.events) {
+      if (e.source >= kMaxVehicles) continue;
+      const int source = static_cast<int>(e.source);
+      if (e.kind == auv_msgs::PacketEvent::SENT) {
+        const double begin = e.transmit.toSec();
+        view_.carriers.push_back({source, begin, begin + std::max(e.airtime, 0.0)});
+      } else if (e.receiver >= 0 && e.receiver < static_cast<int>(kMaxVehicles) &&
+                 (e.kind == auv_msgs::PacketEvent::DELIVERED ||
+                  e.kind == auv_msgs::PacketEvent::DROPPED)) {
+        view_.packets.push_back(
+            {source, e.receiver, t, e.kind == auv_msgs::PacketEvent::DROPPED, e.reason});
+      }
+    }
+  }
+
+  /// What is too old to be shown.
+  void Forget() {
+    const auto old = [this](const CarrierView& c) { return c.end < view_.now - kLongestShown_s; };
+    view_.carriers.erase(std::remove_if(view_.carriers.begin(), view_.carriers.end(), old),
+                         view_.carriers.end());
     while (!view_.packets.empty() &&
            view_.packets.front().time < view_.now - overview_.lost_packet_s) {
       view_.packets.pop_front();
     }
+  }
+
+  void OnDraw(const ros::WallTimerEvent&) {
+    Forget();
     Draw(overview_, &overview_pub_);
     Draw(close_, &close_pub_);
     health_.Tick();
@@ -265,7 +306,8 @@ class MarkerNode {
   MarkerStyle overview_, close_;
   SwarmView view_;
   ros::Publisher overview_pub_, close_pub_;
-  ros::Subscriber scenario_sub_, links_sub_;
+  ros::Subscriber scenario_sub_, links_sub_, packets_sub_;
+  bool told_of_packets_ = false;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer draw_timer_, discover_timer_;
   Health health_;
@@ -278,13 +320,6 @@ class MarkerNode {
 
 int main(int argc, char** argv) {
   stg::nodes::WatchOnly();
-  ros::init(argc, argv, "markers");
-  try {
-    const stg::nodes::MarkerNode node;
-    ros::spin();
-  } catch (const std::invalid_argument& e) {
-    ROS_FATAL("markers: %s", e.what());
-    return 2;
-  }
-  return 0;
+  return stg::nodes::RunNode<stg::nodes::MarkerNode>(argc, argv, "markers",
+                                                     stg::nodes::NodeClock::kMessages);
 }

@@ -66,6 +66,12 @@ struct PacketEvent {
   std::uint8_t reason = 0;  ///< LinkState's constants
 };
 
+/// Sound that a modem sends.
+struct CarrierView {
+  int source = 0;
+  double begin = 0.0, end = 0.0;  ///< at the sender; equal where the model has no airtime
+};
+
 struct SwarmView {
   SceneConfig scene;
   double now = 0.0;
@@ -74,6 +80,7 @@ struct SwarmView {
   std::vector<MovingTarget> targets;
   std::map<std::pair<int, int>, LinkView> links;  ///< by (source, destination)
   std::deque<PacketEvent> packets;
+  std::deque<CarrierView> carriers;
 };
 
 }  // namespace stg::nodes

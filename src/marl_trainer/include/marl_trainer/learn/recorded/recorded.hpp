@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,7 +62,8 @@ struct RecordedEpisode {
   std::string source;                                       ///< bag file, or how it was heard
   std::vector<std::map<std::uint32_t, AgentRecord>> steps;  ///< [agent], by step
   std::map<std::uint32_t, RewardRecord> rewards;            ///< by step
-  Finding finding;  ///< what was wrong with it while it was put together
+  Finding finding;          ///< what was wrong with it while it was put together
+  std::uint64_t heard = 0;  ///< when the last word about it came, in words of the source
 
   bool Complete(int episode_steps) const;
 };
@@ -75,18 +78,28 @@ class EpisodeAssembler {
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent, AgentRecord record);
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, RewardRecord record);
 
-  /// Takes complete episodes, oldest first; and all but the two newest of the others, which are
-  /// not going to be completed any more.
+  /// Takes complete episodes, oldest first; and of the others all but the two that were heard of
+  /// last, whatever their stamps say: they are not going to be completed any more. What is said
+  /// later about an episode that has been taken is ignored.
   std::vector<RecordedEpisode> TakeDone();
   /// Takes all there is: the source has ended.
   std::vector<RecordedEpisode> TakeAll();
 
+  /// Records of episodes that had been taken.
+  std::uint64_t late() const { return late_; }
+
  private:
-  RecordedEpisode& At(std::uint32_t episode, TimeNs start);
+  using Key = std::pair<TimeNs, std::uint32_t>;
+  /// Null: it has been taken.
+  RecordedEpisode* At(std::uint32_t episode, TimeNs start);
+  void Forget(const Key& key);
 
   const int agents_, episode_steps_;
   const std::string source_;
-  std::map<std::pair<TimeNs, std::uint32_t>, RecordedEpisode> episodes_;
+  std::map<Key, RecordedEpisode> episodes_;
+  std::set<Key> taken_;
+  std::deque<Key> taken_in_order_;  ///< the same, to forget the first ones
+  std::uint64_t heard_ = 0, late_ = 0;
 };
 
 /// Judges episodes for on-policy learning with one policy in one scenario.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <auv_msgs/LinkState.h>
 #include <auv_msgs/ReceivedPacket.h>
 
 #include "acoustic_channel/channel/channel.hpp"
@@ -47,6 +48,20 @@ inline acoustics::Reception ReceptionOf(const auv_msgs::ReceivedPacket& m, int r
   r.doppler_mps = m.doppler_mps;
   r.payload = acoustics::ViewOf(m.data);
   return r;
+}
+
+/// The numbers of a link; not whose it is.
+inline void SetLinkState(const acoustics::LinkStatistics& s, auv_msgs::LinkState* m) {
+  m->distance = s.distance_m;
+  m->quality = s.quality;
+  m->loss_probability = s.loss_probability;
+  m->delay = s.delay_s;
+  m->age = s.age_s;
+  m->average_age = s.average_age_s;
+  m->peak_age = s.peak_age_s;
+  m->delivered = static_cast<std::uint32_t>(s.delivered);
+  m->dropped = static_cast<std::uint32_t>(s.dropped);
+  m->last_drop_reason = static_cast<std::uint8_t>(s.last_drop);
 }
 
 }  // namespace stg::nodes

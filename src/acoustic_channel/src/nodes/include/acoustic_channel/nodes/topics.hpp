@@ -3,10 +3,13 @@
 /// Names of the acoustic channel's topics.
 namespace stg::topics {
 
-// Of each AUV, below Auv(i).
+// Of each AUV, below Auv(i), or of each vehicle of a fleet, below its name.
 inline constexpr char kAcousticTx[] = "acoustic/tx";
 inline constexpr char kAcousticRx[] = "acoustic/rx";
+inline constexpr char kAcousticStatus[] = "acoustic/status";
 
 inline constexpr char kLinks[] = "/acoustic_channel/links";
+inline constexpr char kPackets[] = "/acoustic_channel/packets";
+inline constexpr char kPing[] = "/acoustic_channel/ping";
 
 }  // namespace stg::topics

@@ -6,6 +6,7 @@
 
 #include "auv_common/numbers/attitude.hpp"
 #include "auv_common/numbers/vector.hpp"
+#include "auv_common/step/step_tracker.hpp"
 #include "auv_common/time.hpp"
 
 /// Between the core's plain data and messages. Doubles and integer nanoseconds pass unchanged, so
@@ -13,6 +14,8 @@
 namespace stg::nodes {
 
 inline TimeNs NsOf(const ros::Time& t) { return static_cast<TimeNs>(t.toNSec()); }
+/// A stamp that a run can have: nothing computed with it is beyond what ROS holds in 32 bits.
+inline bool PossibleStamp(const ros::Time& t) { return NsOf(t) <= StepTracker::kLatest; }
 inline ros::Time TimeOf(TimeNs t) { return ros::Time().fromNSec(static_cast<std::uint64_t>(t)); }
 
 template <class Message>

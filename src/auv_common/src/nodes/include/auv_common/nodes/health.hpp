@@ -41,6 +41,23 @@ class Refusals {
   std::uint64_t reported_ = 0;
 };
 
+/// Lets a message through once in a while, however often there is cause for it, and tells how many
+/// were kept back. Wall time: simulated time may run a hundred times faster, or stand still.
+class Throttle {
+ public:
+  explicit Throttle(double period_s = 2.0) : period_s_(period_s) {}
+  /// True: say it now, with more() at its end.
+  bool Due();
+  /// " (and 41 more)", or nothing, of what was kept back before the last Due().
+  const std::string& more() const { return more_; }
+
+ private:
+  double period_s_;
+  ros::WallTime last_;
+  std::uint64_t kept_back_ = 0;
+  std::string more_;
+};
+
 /// Publishes one status of a node, paced by the wall clock: simulated time may run a hundred times
 /// faster, or stand still.
 class Health {

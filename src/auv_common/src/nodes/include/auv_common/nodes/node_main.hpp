@@ -4,12 +4,17 @@
 #include <ros/ros.h>
 #include <sched.h>
 
+#include <atomic>
 #include <csignal>
+#include <cstddef>
+#include <cstdio>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "auv_common/error.hpp"
+#include "auv_common/nodes/memory_limit.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 
@@ -41,24 +46,55 @@ enum class NodeClock {
 };
 
 /// For nodes with NodeClock::kMessages: what a diagnostic or a log message will be stamped with.
+/// Only for a PossibleStamp: with others ROS ends the process sooner or later.
 inline void SetNodeTime(const ros::Time& stamp) {
   if (ros::Time::isSimTime()) ros::Time::setNow(stamp);
 }
 
+/// What a run was asked to write and could not; thrown at its end.
+class LostOutput : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The user or roslaunch ended this process, and not another node that took its name.
+inline std::atomic<bool>& StoppedBySignal() {
+  static std::atomic<bool> stopped{false};
+  return stopped;
+}
+
+/// After a shutdown the log of ROS is closed.
+inline void SayWhyItEnds(const char* why) {
+  if (ros::ok()) {
+    ROS_FATAL("%s", why);
+  } else {
+    std::fprintf(stderr, "[FATAL] %s\n", why);
+  }
+}
+
 /// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
 /// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
-/// a UserError, 3 after any other exception.
+/// a UserError, 3 after any other exception, 4 after LostOutput.
+/// @param memory bytes that the process may have; 0: no limit
 template <class Node>
-int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic) {
+int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic,
+            std::size_t memory = kNodeMemory) {
+  if (memory > 0) LimitMemory(memory);
   std::vector<char*> arguments(argv, argv + argc);
   // roscpp listens to /clock if it finds this parameter.
   char no_clock[] = "/use_sim_time:=/not_asked/use_sim_time";
   if (clock == NodeClock::kMessages) arguments.push_back(no_clock);
   int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
-  ros::init(count, arguments.data(), name);
+  ros::init(count, arguments.data(), name, ros::init_options::NoSigintHandler);
   ReservePollLoop();
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  StoppedBySignal() = false;
+  for (const int number : {SIGINT, SIGTERM}) {
+    std::signal(number, [](int) {
+      StoppedBySignal() = true;
+      ros::requestShutdown();
+    });
+  }
   // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
   ros::NodeHandle keeps_ros_running;
   if (clock == NodeClock::kMessages && SimulatedTimeParameter()) ros::Time::setNow(ros::Time());
@@ -66,10 +102,13 @@ int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = No
     Node node;
     node.Spin();
   } catch (const UserError& error) {
-    ROS_FATAL("%s", error.what());
+    SayWhyItEnds(error.what());
     return 2;
+  } catch (const LostOutput& error) {
+    SayWhyItEnds(error.what());
+    return 4;
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
+    SayWhyItEnds(error.what());
     return 3;
   }
   return 0;

@@ -3,6 +3,7 @@
 #include <ros/node_handle.h>
 
 #include <string>
+#include <vector>
 
 #include "auv_common/config/loader.hpp"
 
@@ -36,6 +37,8 @@ double NumberParameter(const std::string& name, double fallback, double lo, doub
 /// The same for whole numbers, which the parameter server holds with 32 bits.
 int IntegerParameter(const std::string& name, int fallback, int lo, int hi);
 bool FlagParameter(const std::string& name, bool fallback);
+/// A list of texts, or one text of words; empty when nobody has set it.
+std::vector<std::string> TextsParameter(const std::string& name);
 std::string TextParameter(const std::string& name, const std::string& fallback);
 
 /// The parameter /use_sim_time of the graph, whatever name this node has for it.

@@ -16,9 +16,9 @@ struct Departure {
   TimeNs start;            ///< it begins to leave
 };
 
-/// The sending side of all modems. What is offered to a modem waits there until medium access lets
-/// it leave; a newer packet replaces the one that waits, which is best for the age of what arrives.
-/// Allocates only while a modem's waiting payloads reach a new maximum size.
+/// The sending side of the modems of an ideal channel. What is offered to a modem waits there until
+/// medium access lets it leave; a newer packet replaces the one that waits, which is best for the
+/// age of what arrives. Allocates only while a modem's waiting payloads reach a new maximum size.
 class Outbox {
  public:
   /// Throws UserError for an unknown medium access.
@@ -28,6 +28,10 @@ class Outbox {
 
   /// See Turns::Due.
   bool Due(int node, TimeNs t) { return turns_.Due(node, t); }
+
+  /// Forgets what waits in a modem; calls discarded(const Transmission&) of it.
+  template <class Discarded>
+  void Drop(int node, Discarded&& discarded);
 
   /// One step of all modems.
   /// @param offered at t, at most one per node, in any order
@@ -52,6 +56,15 @@ class Outbox {
   std::vector<Waiting> waiting_;         ///< [nodes]
   int full_ = 0;                         ///< modems in which a packet waits
 };
+
+template <class Discarded>
+void Outbox::Drop(int node, Discarded&& discarded) {
+  Waiting& w = waiting_[static_cast<std::size_t>(node)];
+  if (!w.full) return;
+  w.full = false;
+  --full_;
+  discarded(w.packet);
+}
 
 template <class Send, class Replaced>
 void Outbox::Step(TimeNs t, const std::vector<Transmission>& offered, Send&& send,

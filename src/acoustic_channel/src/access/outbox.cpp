@@ -1,4 +1,4 @@
-#include "acoustic_channel/modem/outbox.hpp"
+#include "acoustic_channel/access/outbox.hpp"
 
 #include <algorithm>
 

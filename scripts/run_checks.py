@@ -1,0 +1,162 @@
+"""What can be known of a run before it starts, and what must be there when it has ended."""
+
+import http.client
+import os
+import shlex
+import socket
+import time
+import urllib.parse
+import xmlrpc.client
+
+import rosbag
+
+PATIENCE_S = 3.0  # with a master or a node that does not answer
+RECORDER_STOPS_AT = 2**30  # bytes free: rosbag record ends its recording below
+WHOLE = (-(2**31), 2**31 - 1)  # numbers that a parameter of ROS can be
+
+
+class Refusal(Exception):
+    """Why a run cannot start, or what is missing at its end, told in words for the user."""
+
+
+class _Transport(xmlrpc.client.Transport):
+    """Gives up on a server that does not answer."""
+
+    def make_connection(self, host):
+        return http.client.HTTPConnection(host, timeout=PATIENCE_S)
+
+
+def _call(uri, name, *arguments):
+    """Calls an XML-RPC method; returns (code, message, value) as ROS has it."""
+    with xmlrpc.client.ServerProxy(uri, transport=_Transport()) as server:
+        answer = getattr(server, name)("/stg", *arguments)
+    if not (isinstance(answer, list) and len(answer) == 3):
+        raise ValueError("no answer of ROS")
+    return answer
+
+
+def master_is_online(uri):
+    """True when a ROS master listens at `uri`, False when nobody does; refuses anybody else."""
+    address = urllib.parse.urlparse(uri)
+    try:
+        if not address.hostname or not address.port:
+            raise ValueError
+    except ValueError:
+        raise Refusal(f"ROS_MASTER_URI is '{uri}', not like http://127.0.0.1:11311") from None
+    try:
+        socket.create_connection((address.hostname, address.port), PATIENCE_S).close()
+    except OSError:
+        return False
+    try:
+        if _call(uri, "getPid")[0] == 1:
+            return True
+    except Exception:  # whatever speaks there
+        pass
+    raise Refusal(
+        f"{uri}: something listens there that is no ROS master; end it, or choose a free port with"
+        " ROS_MASTER_URI=http://127.0.0.1:PORT"
+    )
+
+
+def check_names_are_free(uri, names):
+    """Refuses to displace nodes that are alive: ROS would end them in favour of new ones."""
+    for name in names:
+        try:
+            code, _, node = _call(uri, "lookupNode", name)
+            if code == 1 and _call(node, "getPid")[0] == 1:
+                break
+        except Exception:  # registered, and dead
+            pass
+    else:
+        return
+    raise Refusal(
+        f"a node {name} runs already on the master at {uri}: end that run first, or give this one"
+        " a master of its own with ROS_MASTER_URI=http://127.0.0.1:PORT"
+    )
+
+
+def check_file_can_be_written(what, path):
+    """Refuses a file whose folder is not there or closed to us."""
+    folder = os.path.dirname(path) or "."
+    if os.path.isdir(path):
+        raise Refusal(f"{what} '{path}' is a folder")
+    if not os.path.isdir(folder):
+        raise Refusal(f"{what} '{path}': there is no folder '{folder}'")
+    if not os.access(path if os.path.exists(path) else folder, os.W_OK):
+        raise Refusal(f"{what} '{path}' cannot be written")
+
+
+def check_numbers(parameters):
+    """Refuses whole numbers that ROS cannot carry; `parameters` are {name: value}."""
+    for name, value in sorted(parameters.items()):
+        if isinstance(value, int) and not WHOLE[0] <= value <= WHOLE[1]:
+            raise Refusal(f"{name.rsplit('/', 1)[1]}: {value} is more than {WHOLE[1]}")
+
+
+def bag_of(node):
+    """Returns the bag that a node is to record, or None."""
+    if (node.package, node.type) != ("rosbag", "record"):
+        return None
+    for argument in shlex.split(node.args):
+        if argument.startswith("--output-name="):
+            return argument[len("--output-name=") :]
+    return None
+
+
+class Outputs:
+    """The files that a run is asked for."""
+
+    def __init__(self, nodes, parameters):
+        bags = [bag_of(node) for node in nodes]
+        self.bags = [bag for bag in bags if bag]
+        self.summary = parameters.get("/metrics/summary_file", "")
+        self.episodes = parameters.get("/world/episodes", 0)
+        self.began = time.time()
+
+    def check_before(self):
+        """Refuses what is known not to work."""
+        for bag in self.bags:
+            check_file_can_be_written("bag", bag)
+            self._check_space(bag, "the recorder needs 1 GiB")
+        if self.summary:
+            check_file_can_be_written("summary_file", self.summary)
+
+    def check_after(self):
+        """Refuses to call a run done when files of it are missing or cut off."""
+        for bag in self.bags:
+            self._check_bag(bag)
+        if self.summary:
+            self._check_summary()
+
+    @staticmethod
+    def _check_space(bag, why):
+        state = os.statvfs(os.path.dirname(bag) or ".")
+        if state.f_bavail * state.f_frsize < RECORDER_STOPS_AT:
+            raise Refusal(f"bag '{bag}': too little space is free on its disk; {why}")
+
+    def _check_bag(self, bag):
+        if not os.path.exists(bag) or os.path.getmtime(bag) < self.began - 2.0:
+            rest = bag + ".active"
+            left = f"; what was written is in '{rest}'" if os.path.exists(rest) else ""
+            raise Refusal(f"bag '{bag}' was not written to its end{left}")
+        try:
+            with rosbag.Bag(bag) as opened:
+                if opened.get_message_count() == 0:
+                    raise Refusal(f"bag '{bag}' is empty")
+        except (rosbag.ROSBagException, OSError, ValueError) as error:
+            raise Refusal(f"bag '{bag}' is not whole: {error}") from None
+        self._check_space(bag, "the recorder may have stopped before the run's end")
+
+    def _check_summary(self):
+        if os.path.exists(self.summary) and not os.path.isfile(self.summary):
+            return  # a device or a pipe cannot be read again
+        try:
+            with open(self.summary, encoding="utf-8") as file:
+                lines = sum(1 for line in file if line.strip())
+        except (OSError, ValueError) as error:
+            raise Refusal(f"summary_file '{self.summary}': {error}") from None
+        written = max(lines - self.summary.endswith(".csv"), 0)
+        if written < self.episodes:
+            raise Refusal(
+                f"summary_file '{self.summary}' holds {written} of {self.episodes} episodes"
+            )

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+
+#include "acoustic_channel/access/aloha.hpp"
+
+namespace stg::acoustics {
+
+/// Carrier sense, not persistent (L. Kleinrock and F. A. Tobagi 1975): as Aloha, but a modem
+/// listens first, and where it hears a carrier it waits for a time uniform in (0, backoff], with a
+/// bound that doubles at each try up to 32 times the first. What it hears is as old as the way of
+/// the sound: where that is longer than a packet, listening gains nothing.
+class Csma : public Aloha {
+ public:
+  explicit Csma(const ContentionConfig& config) : Aloha(config) {}
+  TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
+  bool listens() const override { return true; }
+  bool adapts() const override { return true; }
+};
+
+std::unique_ptr<MediumAccess> MakeCsma(const ChannelConfig& config, const RunConfig& run);
+
+}  // namespace stg::acoustics

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "acoustic_channel/access/medium_access.hpp"
+#include "acoustic_channel/access/slots_config.hpp"
+
+namespace stg::acoustics {
+
+/// Slotted ALOHA (L. G. Roberts 1972): slots as those of Tdma but nobody's; a packet that waits
+/// leaves at the start of a slot with probability q. Throughput G exp(-G) at load G where the guard
+/// covers the differences of the ways; without, it falls towards that of pure ALOHA.
+class SlottedAloha : public MediumAccess {
+ public:
+  explicit SlottedAloha(const SlotsConfig& config);
+  void Reset(std::uint64_t seed, std::uint32_t episode) override;
+  TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
+  std::optional<config::Violation> FindConflict(const PacketTime& packet) const override;
+
+ private:
+  SlotsConfig config_;
+  TimeNs slot_;
+  std::uint64_t seed_ = 0;
+  std::uint32_t episode_ = 0;
+};
+
+std::unique_ptr<MediumAccess> MakeSlottedAloha(const ChannelConfig& config, const RunConfig& run);
+
+}  // namespace stg::acoustics

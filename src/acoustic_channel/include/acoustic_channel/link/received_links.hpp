@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "acoustic_channel/link/link_estimator.hpp"
+#include "acoustic_channel/modem/modem_profile.hpp"
+
+namespace stg::acoustics {
+
+/// What links are worth by what came over them; the distance does not matter.
+///
+/// Every packet of a source is a sample: one that a gap in the sequence numbers betrays counts 0,
+/// one that came counts the probability that a packet survives at its SINR less a margin of
+/// kMarginDb. `learnt` is their running mean with weight kGain; quality is that times
+/// exp(-age / freshness). A source that sends to others alone looks worse than it is, as its
+/// numbers show gaps.
+class ReceivedLinks : public LinkEstimator {
+ public:
+  static constexpr double kGain = 0.2, kMarginDb = 3.0;
+
+  /// Throws UserError for a modem that does not exist.
+  ReceivedLinks(const ModemConfig& config, int nodes);
+
+  using LinkEstimator::Quality;
+  double Quality(double d, double age_s, double learnt) const override;
+  Pack Quality(const Pack& d, const Pack& age_s, const Pack& learnt) const override;
+  const double* Learnt(int source) const override;
+  double freshness_s() const override { return freshness_s_; }
+  void Reset(int lane) override;
+  void Learn(int lane, const Reception& reception) override;
+
+ private:
+  struct Link {
+    std::array<double, kLanes> learnt;
+    std::array<std::int64_t, kLanes> next;  ///< sequence after the last that came; 0: none did
+  };
+
+  double freshness_s_;
+  std::vector<ModemProfile> fleet_;  ///< [nodes]
+  std::vector<Link> links_;          ///< [nodes], from this source
+};
+
+}  // namespace stg::acoustics

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "auv_common/config/field.hpp"
+
+namespace stg::acoustics {
+
+/// What a modem does with a packet that cannot leave yet.
+enum class QueuePolicy {
+  kNewest,  ///< one waits; a newer one replaces it: best for age
+  kFifo     ///< up to `queue_length` wait; one more is refused
+};
+
+/// Keys of `channel.modem`. Read by the model `physical`.
+struct ModemConfig {
+  std::string profile = "evologics_s2c";  ///< of ModemProfiles(), for every node
+  std::vector<std::string> profiles;      ///< one for each node; empty: all have `profile`
+  int packet_bytes = 0;                   ///< longest payload of the network; 0: the frames'
+  QueuePolicy queue = QueuePolicy::kNewest;
+  int queue_length = 8;
+  double clock_offset_std_s = 0.0;   ///< of a node's clock at the start of an episode
+  double clock_drift_std_ppm = 0.0;  ///< of its rate
+  double freshness_s = 30.0;         ///< decay time of link quality with the age of the news
+};
+
+void Describe(ModemConfig* c, config::Table* t);
+
+}  // namespace stg::acoustics

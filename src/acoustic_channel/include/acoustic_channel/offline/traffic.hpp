@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "acoustic_channel/modem/packet.hpp"
+#include "auv_common/time.hpp"
+
+/// Who wants to send what when, in a network that is simulated offline.
+namespace stg::acoustics {
+
+/// One flow of packets.
+struct TrafficSpec {
+  enum class Kind {
+    kPoisson,   ///< independent packets, `rate_hz` on average
+    kPeriodic,  ///< at offset_s + k period_s
+    kAt         ///< at times_s
+  };
+  int source = 0, destination = kToAll;  ///< indices of nodes
+  Kind kind = Kind::kPoisson;
+  double rate_hz = 0.0;
+  double period_s = 0.0, offset_s = 0.0;
+  std::vector<double> times_s;  ///< ascending
+  std::size_t bytes = 0;
+};
+
+/// A packet that is about to be offered.
+struct Offer {
+  TimeNs t = 0;
+  int source = 0, destination = kToAll;
+  std::size_t bytes = 0;
+};
+
+/// All flows together, in order of time. What a flow does depends on the seed and its place in the
+/// list alone.
+class Traffic {
+ public:
+  Traffic(std::vector<TrafficSpec> flows, std::uint64_t seed);
+
+  /// Appends what is offered up to and including t and was not told before, by time, then by flow.
+  void Take(TimeNs t, std::vector<Offer>* offers);
+
+ private:
+  struct Flow {
+    TrafficSpec spec;
+    std::uint32_t next_index = 0;
+    TimeNs next = 0;
+    bool over = false;
+  };
+  void Schedule(std::size_t flow);
+
+  std::uint64_t seed_;
+  std::vector<Flow> flows_;
+  std::vector<std::size_t> heap_;  ///< of flows that go on, the earliest on top
+};
+
+}  // namespace stg::acoustics

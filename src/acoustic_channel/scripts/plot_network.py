@@ -1,0 +1,271 @@
+#!/usr/bin/python3
+"""Draws what an acoustic network did, from the packet log of `simulate` or of the channel node.
+
+Into one picture: delivery against distance, distribution of the age of information, use of the
+water by the senders over a window of time, drops by reason, energy by node, and airtime and
+deliveries over the whole run. Times are seconds, distances metres.
+
+Exit status: 0 done, 2 wrong usage or a file that cannot be read.
+"""
+
+import argparse
+import csv
+import json
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+
+NUMBERS = "offered_s generation_s transmit_s transmit_end_s begin_s arrival_s distance_m".split()
+NAMES = "source destination sequence fate".split()
+GOOD, PARTLY, BAD, GREY = "#2fb457", "#f5a11a", "#e23636", "#9aa3ad"
+MAX_LINKS = 40
+
+
+class LogError(Exception):
+    """A log that cannot be read, told in words for the user."""
+
+
+class Log:
+    """Columns of a packet log as arrays, one entry per packet and receiver; NaN: not known."""
+
+    def __init__(self, path):
+        columns = {name: [] for name in NAMES + NUMBERS}
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                reader = csv.DictReader(file)
+                missing = [name for name in columns if name not in (reader.fieldnames or [])]
+                if missing:
+                    raise LogError(f"{path}:1: no column {', '.join(missing)}")
+                for row in reader:
+                    for name in NAMES:
+                        columns[name].append(row[name])
+                    try:
+                        for name in NUMBERS:
+                            columns[name].append(float(row[name]) if row[name] else np.nan)
+                    except (TypeError, ValueError):
+                        raise LogError(f"{path}:{reader.line_num}: {name}: no number") from None
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise LogError(f"{path}: {error}") from None
+        if not columns["source"]:
+            raise LogError(f"{path}: no packets")
+        for name in NAMES:
+            setattr(self, name, np.array(columns[name], dtype=object))
+        for name in NUMBERS:
+            setattr(self, name, np.array(columns[name]))
+        self.delivered = self.fate == "delivered"
+        self.sent = np.isfinite(self.transmit_s)
+        self.end_s = max(np.nanmax(self.offered_s), np.nanmax(self.arrival_s, initial=0.0))
+
+    def nodes(self):
+        """All names of nodes, numbers in their order."""
+        names = set(self.source) | set(self.destination)
+        return sorted(names, key=lambda n: (not n.isdigit(), int(n) if n.isdigit() else 0, n))
+
+    def transmissions(self):
+        """Start, end, source and share of receivers reached of every packet that left."""
+        found = {}
+        for i in np.flatnonzero(self.sent):
+            key = (self.source[i], self.sequence[i], self.transmit_s[i])
+            entry = found.setdefault(key, [self.transmit_end_s[i], 0, 0])
+            entry[1] += 1
+            entry[2] += int(self.delivered[i])
+        return [(start, end, source, got / of) for (source, _, start), (end, of, got) in found.items()]
+
+
+def draw_delivery(axes, log):
+    """Share of what was sent that was delivered, by distance, with 95 % intervals of Wilson."""
+    axes.set_title("delivery against distance")
+    axes.set_xlabel("distance [m]")
+    axes.set_ylabel("delivered")
+    axes.set_ylim(-0.03, 1.03)
+    there = log.sent & (log.fate != "left")
+    distance, good = log.distance_m[there], log.delivered[there]
+    if not len(distance):
+        return
+    # Bins of equal numbers of packets; fixed distances make bins of their own.
+    edges = np.unique(np.quantile(distance, np.linspace(0.0, 1.0, 25)))
+    place = np.searchsorted(edges, distance, side="right")
+    for i in np.unique(place):
+        of = place == i
+        n, share, z = of.sum(), good[of].mean(), 1.96
+        middle = (share + z * z / (2 * n)) / (1 + z * z / n)
+        half = z / (1 + z * z / n) * np.sqrt(share * (1 - share) / n + z * z / (4 * n * n))
+        x = distance[of].mean()
+        axes.plot([x, x], [middle - half, middle + half], color=GREY)
+        axes.plot([x], [share], "o", color="#4a8cff", markersize=4)
+
+
+def age_segments(log):
+    """Lowest and highest age of every piece between two deliveries of news, by link."""
+    links = {link: [] for link in zip(log.source[log.sent], log.destination[log.sent])}
+    news = dict.fromkeys(links, (0.0, 0.0))
+    order = np.flatnonzero(log.delivered)
+    for i in order[np.argsort(log.arrival_s[order])]:
+        link = (log.source[i], log.destination[i])
+        freshest, since = news[link]
+        if log.generation_s[i] <= freshest:
+            continue
+        links[link].append((since - freshest, log.arrival_s[i] - freshest))
+        news[link] = (log.generation_s[i], log.arrival_s[i])
+    for link, (freshest, since) in news.items():
+        links[link].append((since - freshest, log.end_s - freshest))
+    return [np.array(pieces) for _, pieces in sorted(links.items())]
+
+
+def share_of_time(pieces, ages):
+    """Share of the time in which the age, a sawtooth over these pieces, was at most `ages`."""
+    low, high = pieces[:, :1], pieces[:, 1:]
+    length = np.maximum((high - low).sum(), 1e-12)
+    return np.clip(ages[None, :] - low, 0.0, high - low).sum(axis=0) / length
+
+
+def draw_ages(axes, log):
+    """Distribution of the age of information over time, of every link and of all of them."""
+    axes.set_title("age of information")
+    axes.set_xlabel("age [s]")
+    axes.set_ylabel("share of time")
+    pieces = age_segments(log)
+    if not pieces:
+        return
+    together = np.concatenate(pieces)
+    grid = np.linspace(0.0, together[:, 1].max(), 500)
+    for piece in pieces[:: -(-len(pieces) // MAX_LINKS)]:
+        axes.plot(grid, share_of_time(piece, grid), color=GREY, linewidth=0.5, alpha=0.6)
+    whole = share_of_time(together, grid)
+    axes.plot(grid, whole, color="#4a8cff", linewidth=2, label=f"all {len(pieces)} links")
+    reach = grid[np.searchsorted(whole, 0.99).clip(max=len(grid) - 1)]
+    axes.set_xlim(0.0, max(reach * 1.3, 1e-9))
+    axes.legend(loc="lower right")
+
+
+def draw_slots(axes, log, sent, window):
+    """Who sent when, coloured by what became of it."""
+    start, end = window
+    axes.set_title("use of the water (window)")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("sender")
+    rows = {name: i for i, name in enumerate(log.nodes())}
+    for begin, stop, source, share in sent:
+        if stop < start or begin > end:
+            continue
+        colour = GOOD if share == 1.0 else BAD if share == 0.0 else PARTLY
+        width = max(stop - begin, (end - start) / 500)
+        axes.broken_barh([(begin, width)], (rows[source] - 0.4, 0.8), color=colour, linewidth=0)
+    axes.set_xlim(start, end)
+    axes.set_ylim(-0.7, 1.12 * len(rows) + 0.2)
+    stride = -(-len(rows) // 25)
+    axes.set_yticks(list(rows.values())[::stride])
+    axes.set_yticklabels(list(rows)[::stride])
+    for colour, label in ((GOOD, "all heard it"), (PARTLY, "some"), (BAD, "none")):
+        axes.plot([], [], "s", color=colour, label=label)
+    axes.legend(loc="upper right", ncol=3, fontsize="small", framealpha=0.9)
+
+
+def draw_drops(axes, log):
+    """Counts of fates, one for each packet and receiver."""
+    names, counts = np.unique(log.fate.astype(str), return_counts=True)
+    order = np.argsort(counts)
+    names, counts = names[order], counts[order]
+    bars = axes.barh(names, counts, color=[GOOD if n == "delivered" else BAD for n in names])
+    axes.bar_label(bars, [f"{c} ({c / counts.sum():.1%})" for c in counts], padding=3)
+    axes.set_title("fates, by packet and receiver")
+    axes.set_xlim(0, counts.max() * 1.35)
+
+
+def draw_energy(axes, summary):
+    """Energy by node."""
+    axes.set_title("energy of the modems")
+    energy = summary.get("energy_j") or {}
+    if not energy or not any(energy.values()):
+        axes.text(0.5, 0.5, "not known", ha="center", transform=axes.transAxes)
+        return
+    nodes = sorted(energy, key=int)
+    axes.bar(nodes, [energy[node] for node in nodes], color="#4a8cff")
+    axes.set_xlabel("node")
+    axes.set_ylabel("energy [J]")
+    axes.set_xticks(range(0, len(nodes), -(-len(nodes) // 20)))
+
+
+def draw_load(axes, log, sent):
+    """Airtime that is sent, and airtime that is delivered per receiver, over the run."""
+    axes.set_title("load over time")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("airtime per time")
+    edges = np.linspace(0.0, log.end_s, 61)
+    width = edges[1] - edges[0]
+    begin = np.array([s[0] for s in sent])
+    length = np.array([s[1] - s[0] for s in sent])
+    if not len(begin) or not width > 0.0:
+        return
+    share = np.array([s[3] for s in sent])
+    offered = np.histogram(begin, edges, weights=length)[0] / width
+    arrived = np.histogram(begin, edges, weights=length * share)[0] / width
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    axes.step(middle, offered, where="mid", color=GREY, label="sent")
+    axes.step(middle, arrived, where="mid", color=GOOD, label="delivered, mean receiver")
+    axes.set_ylim(0.0, 1.25 * max(offered.max(), 1e-9))
+    axes.legend(loc="upper right", fontsize="small")
+
+
+def draw(log, summary, window, path):
+    """Draws all panels into one file."""
+    sent = log.transmissions()
+    if window is None:
+        airtime = np.median([s[1] - s[0] for s in sent]) if sent else 0.0
+        window = (0.0, min(log.end_s, max(60.0 * airtime, 20.0)))
+    figure, panels = plt.subplots(2, 3, figsize=(17, 9), constrained_layout=True)
+    draw_delivery(panels[0, 0], log)
+    draw_ages(panels[0, 1], log)
+    draw_slots(panels[0, 2], log, sent, window)
+    draw_drops(panels[1, 0], log)
+    draw_energy(panels[1, 1], summary)
+    draw_load(panels[1, 2], log, sent)
+    for axes in panels.flat:
+        axes.grid(alpha=0.3)
+        axes.set_axisbelow(True)
+    if "model" in summary:
+        figure.suptitle(
+            f"{summary['model']}, {summary['access']}: {summary['transmitted']} packets sent in"
+            f" {summary['duration_s']:g} s, delivery ratio {summary['delivery_ratio']:.3f}"
+        )
+    figure.savefig(path, dpi=100)
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("folder", help="with packets.csv and, for energy, summary.json")
+    parser.add_argument("--out", help="picture (.png, .svg, .pdf); default: FOLDER/network.png")
+    parser.add_argument(
+        "--window",
+        nargs=2,
+        type=float,
+        metavar=("START", "END"),
+        help="of the senders' picture [s]; default: the first sixty airtimes",
+    )
+    arguments = parser.parse_args()
+    if arguments.window and not arguments.window[1] > arguments.window[0]:
+        parser.error("--window: END is not after START")
+    summary = {}
+    try:
+        log = Log(os.path.join(arguments.folder, "packets.csv"))
+        file = os.path.join(arguments.folder, "summary.json")
+        if os.path.exists(file):
+            with open(file, encoding="utf-8") as text:
+                summary = json.load(text)
+        out = arguments.out or os.path.join(arguments.folder, "network.png")
+        draw(log, summary, arguments.window, out)
+    except (LogError, OSError, ValueError) as error:
+        print(f"plot_network: {error}", file=sys.stderr)
+        return 2
+    print(out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

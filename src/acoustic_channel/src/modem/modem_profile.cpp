@@ -1,0 +1,217 @@
+#include "acoustic_channel/modem/modem_profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "acoustic_channel/modem/packet.hpp"
+#include "auv_common/error.hpp"
+
+namespace stg::acoustics {
+namespace {
+
+using Profile = std::unique_ptr<ModemProfile>;
+
+double SpreadingDb(const ModemProfile& p) {
+  const double bits_per_s = 8.0 * static_cast<double>(p.frame_bytes) / p.frame_s;
+  return 10.0 * std::log10(1e3 * p.bandwidth_khz / bits_per_s);
+}
+
+/// Instant and lossless: what is left are medium access and queues.
+Profile Ideal() {
+  ModemProfile p;
+  p.name = p.waveform = "ideal";
+  p.ideal = true;
+  p.centre_khz = 25.0;
+  p.bandwidth_khz = 5.0;
+  p.max_frames = 2048;
+  p.errors.kind = ErrorCurve::Kind::kNone;
+  return std::make_unique<ModemProfile>(p);
+}
+
+/// WHOI Micromodem, FSK with frequency hopping at 80 bit/s: one frame of 32 bytes.
+Profile MicromodemFsk() {
+  ModemProfile p;
+  p.name = "micromodem_fsk_r0";
+  p.waveform = "micromodem_fsk";
+  p.centre_khz = 22.0;
+  p.bandwidth_khz = 4.0;
+  p.source_level_db = 185.0;
+  p.frame_s = 3.2;
+  p.frame_bytes = 32;
+  p.acquisition_db = -10.0;
+  p.implementation_db = 3.0;
+  p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
+  p.turnaround_s = 0.05;
+  p.transmit_w = 50.0;
+  p.receive_w = 0.2;
+  p.idle_w = 0.1;
+  return std::make_unique<ModemProfile>(p);
+}
+
+/// WHOI Micromodem, coded PSK at 5 kHz. A set of frames takes the published time; one of fewer
+/// frames its share.
+Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, double set_s) {
+  ModemProfile p;
+  p.name = "micromodem_psk_r" + std::to_string(rate);
+  p.waveform = "micromodem_psk";
+  p.centre_khz = 25.0;
+  p.bandwidth_khz = 5.0;
+  p.source_level_db = 185.0;
+  p.frame_s = set_s / static_cast<double>(frames);
+  p.frame_bytes = frame_bytes;
+  p.max_frames = frames;
+  p.acquisition_db = -10.0;
+  p.implementation_db = 3.0;
+  p.errors = CodedPskCurve(rate);
+  p.spreading_db = SpreadingDb(p);
+  p.turnaround_s = 0.05;
+  p.transmit_w = 50.0;
+  p.receive_w = 2.0;
+  p.idle_w = 0.1;
+  return std::make_unique<ModemProfile>(p);
+}
+
+/// JANUS baseline packet (NATO STANAG 4748): 32 chips of preamble and 144 of 64 coded bits, at 160
+/// chips per second. The standard leaves the source level open; this one is a usual transducer's.
+Profile Janus() {
+  ModemProfile p;
+  p.name = p.waveform = "janus";
+  p.centre_khz = 11.52;
+  p.bandwidth_khz = 4.16;
+  p.source_level_db = 183.0;
+  p.preamble_s = 32.0 / 160.0;
+  p.frame_s = 144.0 / 160.0;
+  p.frame_bytes = 8;
+  p.acquisition_db = -8.0;
+  p.implementation_db = 3.0;
+  p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
+  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
+  p.turnaround_s = 0.1;
+  p.transmit_w = 40.0;
+  p.receive_w = 0.5;
+  p.idle_w = 0.1;
+  return std::make_unique<ModemProfile>(p);
+}
+
+/// Like an EvoLogics S2C R 18/34 with instant messages: preamble and rate are the straight line
+/// through the published airtimes of 16, 32 and 39 bytes, within 1 %. No error curve is published;
+/// this one loses half of the frames of 32 bytes at Eb/N0 = 4 dB, as convolutional codes do.
+Profile Evologics() {
+  ModemProfile p;
+  p.name = p.waveform = "evologics_s2c";
+  p.centre_khz = 26.0;
+  p.bandwidth_khz = 16.0;
+  p.source_level_db = 184.0;
+  p.preamble_s = 0.1515;
+  p.frame_s = 0.011;
+  p.max_frames = 64;
+  p.acquisition_db = -8.0;
+  p.implementation_db = 3.0;
+  p.spreading_db = SpreadingDb(p);
+  p.errors.kind = ErrorCurve::Kind::kCoded;
+  p.errors.frame_bits = 256.0;
+  p.errors.half_db = 4.0 - p.spreading_db;
+  p.turnaround_s = 0.02;
+  p.transmit_w = 35.0;
+  p.receive_w = 1.1;
+  p.idle_w = 0.01;
+  return std::make_unique<ModemProfile>(p);
+}
+
+}  // namespace
+
+void Describe(ModemConfig* c, config::Table* t) {
+  t->Section("channel.modem");
+  t->AddOptional("profile", config::Name(&c->profile, ModemProfiles().Names()), "evologics_s2c",
+                 config::kNone, "-", "physical: modem of every node");
+  t->AddOptional("profiles", config::NamesRef{&c->profiles, ModemProfiles().Names()}, "[]",
+                 config::kNone, "-", "modems of a mixed fleet, one a node; empty: all are alike");
+  t->AddOptional("packet_bytes", &c->packet_bytes, "0", config::Within(0.0, 2048.0), "bytes",
+                 "longest payload of the network, which a slot must hold; 0: what the modems take");
+  t->AddOptional("queue", config::Enum(&c->queue, {"newest", "fifo"}), "newest", config::kNone, "-",
+                 "a packet replaces the one that waits, or waits behind it");
+  t->AddOptional("queue_length", &c->queue_length, "8", config::Within(1.0, 1000.0), "packets",
+                 "fifo: how many may wait; one more is refused");
+  t->AddOptional("clock_offset_std_s", &c->clock_offset_std_s, "0.0", config::NonNegative(1e3), "s",
+                 "standard deviation of a modem's clock at the start of an episode");
+  t->AddOptional("clock_drift_std_ppm", &c->clock_drift_std_ppm, "0.0", config::NonNegative(1e3),
+                 "1e-6", "standard deviation of the rate of a modem's clock");
+  t->AddOptional("freshness_s", &c->freshness_s, "30.0", config::Positive(1e5), "s",
+                 "decay time of link quality with the age of the information");
+}
+
+TimeNs ModemProfile::airtime(std::size_t bytes) const {
+  return std::llround(airtime_s(bytes) * 1e9);
+}
+TimeNs ModemProfile::turnaround() const { return std::llround(turnaround_s * 1e9); }
+
+ModemProfileRegistry& ModemProfiles() {
+  // clang-format off
+  static ModemProfileRegistry registry("modem", {
+      {"ideal", Ideal},
+      {"micromodem_fsk_r0", MicromodemFsk},
+      {"micromodem_psk_r1", [] { return MicromodemPsk(1, 3, 64, 3.07); }},
+      {"micromodem_psk_r3", [] { return MicromodemPsk(3, 2, 256, 3.07); }},
+      {"micromodem_psk_r5", [] { return MicromodemPsk(5, 8, 256, 3.0); }},
+      {"janus", Janus},
+      {"evologics_s2c", Evologics},
+  });
+  // clang-format on
+  return registry;
+}
+
+std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
+  const std::vector<std::string>& names = config.profiles;
+  if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
+    throw UserError("channel.modem.profiles: " + std::to_string(names.size()) + " modems for " +
+                    std::to_string(nodes) + " nodes");
+  }
+  std::vector<ModemProfile> fleet;
+  for (int i = 0; i < nodes; ++i) {
+    const std::string& name = names.empty() ? config.profile : names[static_cast<std::size_t>(i)];
+    fleet.push_back(*ModemProfiles().Make(name));
+  }
+  return fleet;
+}
+
+std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
+  const std::vector<std::string>& names = c.profiles;
+  if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
+    return config::Violation{
+        {"channel.modem.profiles", "agents"},
+        std::to_string(names.size()) + " modems for " + std::to_string(nodes) + " nodes"};
+  }
+  for (const ModemProfile& p : MakeFleet(c, nodes)) {
+    if (static_cast<std::size_t>(c.packet_bytes) <= p.max_payload()) continue;
+    return config::Violation{
+        {"channel.modem.packet_bytes",
+         names.empty() ? "channel.modem.profile" : "channel.modem.profiles"},
+        "a packet of " + p.name + " takes " + std::to_string(p.max_payload()) + " bytes at most"};
+  }
+  return {};
+}
+
+std::size_t LongestPayload(const ModemConfig& config, int nodes) {
+  std::size_t least = kLargestFrame;
+  for (const ModemProfile& p : MakeFleet(config, nodes)) least = std::min(least, p.max_payload());
+  return config.packet_bytes > 0 ? static_cast<std::size_t>(config.packet_bytes) : least;
+}
+
+TimeNs LongestAirtime(const ModemConfig& config, int nodes) {
+  const std::size_t bytes = LongestPayload(config, nodes);
+  TimeNs longest = 0;
+  for (const ModemProfile& p : MakeFleet(config, nodes))
+    longest = std::max(longest, p.airtime(bytes));
+  return longest;
+}
+
+TimeNs LongestTurnaround(const ModemConfig& config, int nodes) {
+  TimeNs longest = 0;
+  for (const ModemProfile& p : MakeFleet(config, nodes))
+    longest = std::max(longest, p.turnaround());
+  return longest;
+}
+
+}  // namespace stg::acoustics

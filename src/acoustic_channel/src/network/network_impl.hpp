@@ -1,0 +1,170 @@
+#pragma once
+
+#include <cassert>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "acoustic_channel/access/medium_access.hpp"
+#include "acoustic_channel/modem/payload_pool.hpp"
+#include "acoustic_channel/network/event_queue.hpp"
+#include "acoustic_channel/network/network.hpp"
+
+namespace stg::acoustics {
+
+/// The state of a network: nodes, packets and arrivals, and what happens to them. The parts of the
+/// class stand in network.cpp (time, motion, energy), sending.cpp and receiving.cpp.
+class Network::Impl {
+ public:
+  static constexpr int kNone = -1;
+
+  struct Packet {
+    PacketInfo info;
+    int payload = kNone;              ///< in payloads_
+    int holders = 0;                  ///< queue or sender, and arrivals
+    std::uint32_t draw_sequence = 0;  ///< keys its random numbers
+    double bits = 0.0;                ///< on the air
+    std::uint32_t ping = 0;           ///< of the source of the request, by number
+    TimeNs deadline = 0;              ///< of a request
+  };
+
+  /// A packet at one receiver, from its first to its last sound.
+  struct Arrival {
+    int packet = kNone, receiver = 0;
+    bool open = true;        ///< its fate is not told
+    bool candidate = false;  ///< began now, and the receiver has not decided
+    Hearing hearing;
+    double power = 0.0;  ///< in the receiver's band, 1 uPa^2
+    double closing_mps = 0.0;
+    TimeNs begin = 0, end = 0;
+    // While it is locked: up to piece_begin, in parts of the whole packet.
+    TimeNs piece_begin = 0;
+    double log_success = 0.0;
+    double noise = 0.0, interference = 0.0;  ///< mean powers
+  };
+
+  struct Ping {
+    std::uint32_t number = 0;
+    bool open = false;
+    PingResult result;
+    TimeNs transmit = 0;
+  };
+
+  struct Delivered {
+    Reception reception;
+    int payload;
+  };
+
+  struct Node {
+    ModemProfile profile;
+    NodeMotion motion;
+    TimeNs moved = 0;  ///< time of motion
+    bool present = true;
+    double clock_offset_s = 0.0, clock_rate = 0.0;  ///< clock = t + offset + rate t
+
+    // Sending.
+    std::vector<int> queue;  ///< packets, oldest first
+    int request = kNone;     ///< a ping that waits; it goes first
+    std::uint32_t sequence = 0, control_sequence = 0, tries = 0;
+    bool attempts = false;  ///< an event kSend is under way
+    int sending = kNone;
+    TimeNs send_begin = 0, send_end = 0, ready = 0, last_end = kNever;
+    Ping ping;
+
+    // Receiving.
+    std::vector<int> active;  ///< arrivals whose sound is here
+    int locked = kNone;
+    TimeNs lock_begin = 0;
+    double noise = 0.0, quiet_noise = 0.0;  ///< powers, while something is locked
+    std::vector<Delivered> delivered;
+
+    // Whole spans that are over.
+    TimeNs present_since = 0, present_ns = 0, sent_ns = 0, received_ns = 0;
+  };
+
+  struct Told {
+    NodeMotion motion;
+    bool present = true;
+  };
+
+  Impl(const ChannelConfig& config, const RunConfig& run, std::unique_ptr<Medium> medium);
+
+  void Reset(std::uint64_t seed, std::uint32_t episode);
+  void Advance(TimeNs t);
+  void Happen(const Event& event);
+
+  // network.cpp
+  NodeMotion Motion(const Node& n, TimeNs t) const;
+  void SetMotion(int node, TimeNs t, const NodeMotion& motion);
+  void SetPresent(int node, TimeNs t, bool present);
+  double EnergyJ(const Node& n, TimeNs t) const;
+  double ClockError(const Node& n, TimeNs t) const {
+    return n.clock_offset_s + n.clock_rate * Seconds(t);
+  }
+  Node& At(int node) { return nodes_[static_cast<std::size_t>(node)]; }
+  const Node& At(int node) const { return nodes_[static_cast<std::size_t>(node)]; }
+
+  // sending.cpp
+  int MakePacket(const Transmission& offer, PacketKind kind);
+  void ReleasePacket(int packet);
+  void Queue(int packet, TimeNs t);
+  void Discard(int packet, DropReason reason, TimeNs t);
+  void Attempt(int node, TimeNs t);
+  void TrySend(int node, TimeNs t);
+  void Send(int node, int packet, TimeNs t);
+  void EndSend(int node, TimeNs t);
+  void Propagate(int packet, int receiver, TimeNs t, const NodeMotion& source);
+  void StartPing(int packet, TimeNs t);
+  void EndPing(int node, TimeNs t, bool answered);
+  void Answer(const Arrival& request, TimeNs t);
+  void Reply(int node, int packet, TimeNs t);
+  void TakeReply(const Arrival& reply, TimeNs t);
+
+  // receiving.cpp
+  void Begin(int arrival, TimeNs t);
+  void Acquire(int node, TimeNs t);
+  void End(int arrival, TimeNs t);
+  void ChangeNoise(int node, int arrival, TimeNs t);
+  void Unlock(Node* n, TimeNs t);
+  void Integrate(Node* n, TimeNs t);
+  void SenseNoise(int node, TimeNs t);
+  /// Power of all that sounds at a node but one arrival, weighed as the receiver of that does.
+  double Interference(const Node& n, int but) const;
+  bool HearsCarrier(int node, TimeNs t);
+  void LockOrDrop(int node, int arrival, TimeNs t);
+  void Finish(int arrival, TimeNs t);
+  void Deliver(const Packet& packet, const Arrival& arrival, double loss, double sinr_db);
+  const ModemProfile& SenderOf(const Arrival& a) const {
+    return At(packets_[a.packet].info.source).profile;
+  }
+  bool IsFor(const Packet& p, int receiver) const {
+    return p.info.destination == kToAll || p.info.destination == receiver;
+  }
+  /// Closes an arrival; tells of it where it was for this node.
+  void Drop(Arrival* a, DropReason reason, double noise_db, double sinr_db, double loss);
+  void Tell(const Packet& packet, const PacketFate& fate);
+  PacketFate FateOf(const Arrival& a) const;
+
+  int count_;
+  std::size_t max_payload_;
+  ModemConfig config_;
+  std::unique_ptr<Medium> medium_;
+  std::unique_ptr<MediumAccess> access_;
+  PacketObserver* observer_ = nullptr;
+  std::uint64_t seed_ = 0;
+  std::uint32_t episode_ = 0;
+  TimeNs now_ = -1;
+  EventQueue events_;
+  std::vector<Node> nodes_;
+  Pool<Packet> packets_;
+  Pool<Arrival> arrivals_;
+  Pool<Told> told_;
+  PayloadPool payloads_;
+  LinkTable table_;
+};
+
+/// 10 lg of a ratio of powers.
+inline double Db(double ratio) { return 10.0 * std::log10(ratio); }
+inline double FromDb(double db) { return std::exp(db * 0.23025850929940457); }
+
+}  // namespace stg::acoustics

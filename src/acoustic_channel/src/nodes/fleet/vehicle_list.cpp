@@ -1,0 +1,114 @@
+#include "vehicle_list.hpp"
+
+#include <ros/names.h>
+#include <ros/node_handle.h>
+
+#include <sstream>
+
+#include "auv_common/error.hpp"
+
+namespace stg::nodes {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+constexpr int kLargestId = 254;
+
+[[noreturn]] void RefuseEntry(int place, const std::string& why) {
+  throw UserError("parameter vehicles: entry " + std::to_string(place) + ": " + why);
+}
+
+std::string TextOf(int place, const XmlRpcValue& value, const std::string& what) {
+  if (value.getType() != XmlRpcValue::TypeString) RefuseEntry(place, what + " must be a text");
+  return XmlRpcValue(value);
+}
+
+/// NAME or NAME=TOPIC.
+Vehicle FromWord(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos) return {word, 0, ""};
+  return {word.substr(0, equals), 0, word.substr(equals + 1)};
+}
+
+Vehicle FromMap(int place, XmlRpcValue& map) {
+  Vehicle v;
+  v.id = place;
+  for (auto& [key, value] : map) {
+    if (key == "name") {
+      v.name = TextOf(place, value, key);
+    } else if (key == "odom") {
+      v.odom = TextOf(place, value, key);
+    } else if (key == "id") {
+      if (value.getType() != XmlRpcValue::TypeInt) RefuseEntry(place, "id must be a whole number");
+      v.id = static_cast<int>(value);
+    } else {
+      RefuseEntry(place, "unknown key '" + key + "'; there are name, id, odom");
+    }
+  }
+  return v;
+}
+
+void Complete(int place, Vehicle* v) {
+  while (!v->name.empty() && v->name.front() == '/') v->name.erase(0, 1);
+  std::string error;
+  if (v->name.empty() || !ros::names::validate("/" + v->name, error)) {
+    RefuseEntry(place, "'" + v->name + "' is no name of a vehicle");
+  }
+  if (v->odom.empty()) v->odom = v->Topic("odom");
+  if (!ros::names::validate(v->odom, error)) {
+    RefuseEntry(place, "'" + v->odom + "' is no name of a topic");
+  }
+  if (v->id < 0 || v->id > kLargestId) {
+    RefuseEntry(place, "id must be from 0 to " + std::to_string(kLargestId));
+  }
+}
+
+void RefuseTwins(const std::vector<Vehicle>& vehicles) {
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vehicle &a = vehicles[j], &b = vehicles[i];
+      const int place = static_cast<int>(i);
+      if (a.name == b.name) RefuseEntry(place, "a second vehicle '" + b.name + "'");
+      if (a.id == b.id) RefuseEntry(place, "a second vehicle with id " + std::to_string(b.id));
+      if (a.odom == b.odom) RefuseEntry(place, "a second vehicle with odometry " + b.odom);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Vehicle> VehicleListParameter() {
+  const ros::NodeHandle node("~");
+  XmlRpcValue value;
+  node.getParam("vehicles", value);
+  std::vector<Vehicle> vehicles;
+  if (value.getType() == XmlRpcValue::TypeString) {
+    std::istringstream words{std::string(value)};
+    for (std::string word; words >> word;) {
+      vehicles.push_back(FromWord(word));
+      vehicles.back().id = static_cast<int>(vehicles.size()) - 1;
+    }
+  } else if (value.getType() == XmlRpcValue::TypeArray) {
+    for (int i = 0; i < value.size(); ++i) {
+      const bool map = value[i].getType() == XmlRpcValue::TypeStruct;
+      vehicles.push_back(map ? FromMap(i, value[i])
+                             : FromWord(TextOf(i, value[i], "what is no map of keys")));
+      if (!map) vehicles.back().id = i;
+    }
+  } else {
+    throw UserError("parameter vehicles: must be a list of vehicles");
+  }
+  if (vehicles.empty()) throw UserError("parameter vehicles: names no vehicle");
+  for (std::size_t i = 0; i < vehicles.size(); ++i) Complete(static_cast<int>(i), &vehicles[i]);
+  RefuseTwins(vehicles);
+  return vehicles;
+}
+
+int IndexOf(const std::vector<Vehicle>& vehicles, long id) {
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    if (vehicles[i].id == id) return static_cast<int>(i);
+  }
+  return kNobody;
+}
+
+}  // namespace stg::nodes

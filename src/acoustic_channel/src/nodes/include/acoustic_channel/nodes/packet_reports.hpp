@@ -1,0 +1,40 @@
+#pragma once
+
+#include <auv_msgs/PacketEvents.h>
+
+#include <vector>
+
+#include "acoustic_channel/channel/packet_observer.hpp"
+
+namespace stg::nodes {
+
+/// Gathers what the channel says of packets into the message for those who look from outside.
+class PacketReports : public acoustics::PacketObserver {
+ public:
+  /// @param ids of the nodes, as messages name them
+  explicit PacketReports(std::vector<int> ids);
+
+  /// Times of the channel count from here [ns].
+  void Begin(TimeNs start) { start_ = start; }
+  /// What was gathered since Clear.
+  auv_msgs::PacketEvents& message() { return message_; }
+  void Clear() { message_.events.clear(); }
+
+  void OnQueued(const acoustics::PacketInfo& packet) override;
+  void OnDiscarded(const acoustics::PacketInfo& packet, acoustics::DropReason reason,
+                   TimeNs t) override;
+  void OnSent(const acoustics::PacketInfo& packet) override;
+  void OnFate(const acoustics::PacketInfo& packet, const acoustics::PacketFate& fate) override;
+
+  /// As messages name a node: also kToAll.
+  int IdOf(int node) const { return node < 0 ? node : ids_[static_cast<std::size_t>(node)]; }
+
+ private:
+  auv_msgs::PacketEvent& Add(std::uint8_t kind, const acoustics::PacketInfo& packet);
+
+  std::vector<int> ids_;
+  TimeNs start_ = 0;
+  auv_msgs::PacketEvents message_;
+};
+
+}  // namespace stg::nodes

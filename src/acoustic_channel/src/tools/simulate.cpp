@@ -1,0 +1,194 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "acoustic_channel/log/packet_log.hpp"
+#include "acoustic_channel/offline/simulation.hpp"
+#include "acoustic_channel/offline/simulation_file.hpp"
+#include "auv_common/config/yaml_tree.hpp"
+#include "auv_common/error.hpp"
+
+namespace {
+
+using stg::acoustics::SimulationFile;
+using stg::acoustics::SimulationSummary;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// The second one ends the program at once.
+void OnSignal(int signal) {
+  interrupted = 1;
+  std::signal(signal, SIG_DFL);
+}
+
+/// Opens a file in the folder, which is made; UserError when that does not work.
+std::ofstream Create(const std::string& folder, const std::string& name) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::ofstream out(std::filesystem::path(folder) / name);
+  if (!out) throw stg::UserError(folder + "/" + name + ": cannot be written");
+  return out;
+}
+
+void Close(std::ofstream* out, const std::string& folder, const std::string& name) {
+  if (!out->flush()) throw stg::UserError(folder + "/" + name + ": cannot be written");
+}
+
+nlohmann::json ToJson(const SimulationSummary& s, const SimulationFile& file, bool whole) {
+  using stg::acoustics::DropReason;
+  const auto id = [&](int node) { return file.nodes[static_cast<std::size_t>(node)].id; };
+  nlohmann::json drops = nlohmann::json::object();
+  for (std::size_t r = 1; r < s.drops.size(); ++r) {
+    if (s.drops[r] > 0) {
+      drops[stg::acoustics::ToString(static_cast<DropReason>(r))] = s.drops[r];
+    }
+  }
+  nlohmann::json receivers = nlohmann::json::array(), links = nlohmann::json::array();
+  nlohmann::json energy = nlohmann::json::object();
+  for (std::size_t i = 0; i < s.receivers.size(); ++i) {
+    receivers.push_back({{"id", id(static_cast<int>(i))},
+                         {"delivered", s.receivers[i].delivered},
+                         {"throughput", s.receivers[i].throughput}});
+    energy[std::to_string(id(static_cast<int>(i)))] = s.energy_j[i];
+  }
+  for (const auto& link : s.links) {
+    links.push_back({{"source", id(link.source)},
+                     {"destination", id(link.destination)},
+                     {"delivered", link.delivered},
+                     {"average_age_s", link.average_age_s},
+                     {"peak_age_s", link.peak_age_s}});
+  }
+  const double ratio =
+      s.expected == 0 ? 0.0 : static_cast<double>(s.delivered) / static_cast<double>(s.expected);
+  return {{"model", file.channel.model},
+          {"access", file.channel.access},
+          {"duration_s", s.duration_s},
+          {"finished", whole},
+          {"offered", s.offered},
+          {"transmitted", s.transmitted},
+          {"delivered", s.delivered},
+          {"in_flight", s.in_flight},
+          {"drops", drops},
+          {"delivery_ratio", ratio},
+          {"receivers", receivers},
+          {"links", links},
+          {"energy_j", energy}};
+}
+
+/// How far it is, on a terminal, twice a second of wall time.
+class Progress {
+ public:
+  Progress(double duration_s, bool on) : duration_s_(duration_s), on_(on) {}
+  void At(double t_s) {
+    const auto now = Clock::now();
+    if (!on_ || now - shown_ < std::chrono::milliseconds(500)) return;
+    shown_ = now;
+    const double wall_s = std::chrono::duration<double>(now - start_).count();
+    std::fprintf(stderr, "\r%.0f / %.0f s, %.0f times real time   ", t_s, duration_s_,
+                 t_s / wall_s);
+    drawn_ = true;
+  }
+  ~Progress() {
+    if (drawn_) std::fprintf(stderr, "\n");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double duration_s_;
+  bool on_, drawn_ = false;
+  Clock::time_point start_ = Clock::now(), shown_ = start_;
+};
+
+/// Exit status: 0, or 130 when it was interrupted.
+int Simulate(const std::string& path, const std::string& folder, bool quiet, bool log_packets) {
+  const SimulationFile file = stg::acoustics::LoadSimulation(path);
+  std::vector<std::string> names;
+  for (const auto& node : file.nodes) names.push_back(std::to_string(node.id));
+  std::ofstream input = Create(folder, "simulation.yaml");
+  input << stg::config::ReadBoundedFile(path);
+  Close(&input, folder, "simulation.yaml");
+
+  std::ofstream packets;
+  std::optional<stg::acoustics::PacketLog> log;
+  if (log_packets) {
+    packets = Create(folder, "packets.csv");
+    log.emplace(&packets, static_cast<int>(names.size()), names);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  stg::acoustics::Simulation simulation(file, log ? &*log : nullptr);
+  bool whole = true;
+  {
+    Progress progress(file.duration_s, !quiet && isatty(STDERR_FILENO) != 0);
+    while (simulation.Step()) {
+      if (interrupted != 0) {
+        whole = false;
+        break;
+      }
+      progress.At(simulation.time_s());
+    }
+  }
+  if (log_packets) Close(&packets, folder, "packets.csv");
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  const SimulationSummary summary = simulation.Summary();
+  const nlohmann::json json = ToJson(summary, file, whole);
+  std::ofstream out = Create(folder, "summary.json");
+  out << json.dump(1) << "\n";
+  Close(&out, folder, "summary.json");
+  if (!quiet) {
+    std::printf("%s: %zu nodes, %.1f s of %s with %s in %.2f s%s\n", path.c_str(), names.size(),
+                summary.duration_s, file.channel.model.c_str(), file.channel.access.c_str(), wall_s,
+                whole ? "" : " (interrupted)");
+    std::printf("  offered %llu, transmitted %llu, delivered %llu of %llu\n",
+                static_cast<unsigned long long>(summary.offered),
+                static_cast<unsigned long long>(summary.transmitted),
+                static_cast<unsigned long long>(summary.delivered),
+                static_cast<unsigned long long>(summary.expected));
+    for (const auto& [reason, count] : json["drops"].items()) {
+      std::printf("  dropped, %s: %s\n", reason.c_str(), count.dump().c_str());
+    }
+    std::fflush(stdout);
+  }
+  std::cout << json.dump() << std::endl;
+  return whole ? 0 : 130;
+}
+
+}  // namespace
+
+/// A network offline: nodes, motion and traffic from a file; packet log as CSV, summary as one JSON
+/// object on the last line.
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Runs an acoustic network from a file (docs/simulate.md) and writes DIR/packets.csv, "
+      "DIR/summary.json and a copy of the file. The last line printed is the summary as JSON.");
+  std::string path, folder;
+  bool quiet = false, summary_only = false;
+  app.add_option("file", path, "YAML file: duration_s, seed, channel, nodes, traffic")->required();
+  app.add_option("--out", folder, "folder for the results, made if need be")->required();
+  app.add_flag("--quiet", quiet, "print nothing but the summary");
+  app.add_flag("--summary-only", summary_only, "do not write packets.csv");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  try {
+    return Simulate(path, folder, quiet, !summary_only);
+  } catch (const stg::UserError& e) {
+    std::cerr << "simulate: " << e.what() << "\n";
+    return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "simulate: " << e.what() << "\n";
+    return 1;
+  }
+}

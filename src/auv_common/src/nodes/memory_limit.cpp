@@ -1,0 +1,20 @@
+#include "auv_common/nodes/memory_limit.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace stg::nodes {
+
+void LimitMemory(std::size_t bytes) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  (void)bytes;  // sanitizers reserve terabytes
+#else
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, bytes);
+  setrlimit(RLIMIT_DATA, &limit);
+#endif
+}
+
+}  // namespace stg::nodes

@@ -1,0 +1,129 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "auv_common/config/files.hpp"
+#include "auv_common/error.hpp"
+#include "auv_dynamics/check/recorded_motion.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+
+namespace {
+
+using stg::dynamics::MotionError;
+using stg::dynamics::RecordedMotion;
+
+/// Infinite shares, of columns that do not move at all, are null in JSON.
+nlohmann::json JsonOf(const MotionError& e) {
+  nlohmann::json columns;
+  for (int c = 0; c < stg::dynamics::kMotionColumns; ++c) {
+    const auto& column = e.columns[static_cast<std::size_t>(c)];
+    columns[stg::dynamics::NameOf(static_cast<stg::dynamics::MotionColumn>(c))] = {
+        {"max_abs_error", column.max_abs_error},
+        {"range", column.hi - column.lo},
+        {"share", column.share()},
+        {"line", column.line}};
+  }
+  return {{"columns", columns},
+          {"position", {{"share_of_distance_run", e.position_share}, {"line", e.position_line}}},
+          {"motions", e.motions},
+          {"rows", e.rows}};
+}
+
+void Print(const char* what, const MotionError& e) {
+  std::printf("%s: %d motions, %d rows\n  column  largest error        range     share  line\n",
+              what, e.motions, e.rows);
+  for (int c = 0; c < stg::dynamics::kMotionColumns; ++c) {
+    const auto& column = e.columns[static_cast<std::size_t>(c)];
+    std::printf("  %-6s  %13.4g  %11.4g  %6.3f %%  %4d\n",
+                stg::dynamics::NameOf(static_cast<stg::dynamics::MotionColumn>(c)),
+                column.max_abs_error, column.hi - column.lo, 1e2 * column.share(), column.line);
+  }
+  std::printf("  position off by at most %.4f %% of the distance run (line %d)\n",
+              1e2 * e.position_share, e.position_line);
+}
+
+}  // namespace
+
+/// Replays recorded vehicle motions; JSON on the last line; exit 1 past the tolerance, 2 on
+/// unusable input.
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Flies recorded motions of a torpedo-shaped vehicle with vehicle.model torpedo and compares "
+      "every column: speeds, rates and attitude by their range over the file, positions by the "
+      "distance run. Each motion starts from rest at the origin under one command; frames are NED "
+      "and FRD, units SI and radians where the header does not say otherwise.");
+  std::string file, scenario;
+  std::vector<std::string> overrides;
+  double tolerance = 0.01, dt_s = 0.02;
+  std::string integrator = "semi_implicit";
+  bool over_ground = false;
+  app.add_option("file", file,
+                 "CSV: rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r")
+      ->required();
+  app.add_option("--tolerance", tolerance, "largest share of range or distance allowed")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--dt", dt_s, "largest physics step [s]")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-4, 1.0));
+  app.add_option("--integrator", integrator,
+                 "semi_implicit, as the public model that the shipped motions are from, or rk4")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"semi_implicit", "rk4"}));
+  app.add_option("--scenario", scenario,
+                 "take the vehicle of this scenario, a name or a file; else the REMUS 100");
+  app.add_option("--set", overrides, "key=value over the scenario, e.g. vehicle.substeps=2");
+  app.add_flag("--advance-over-ground", over_ground,
+               "propeller inflow from the speed over ground, as the public model has it");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    stg::dynamics::VehicleConfig vehicle;
+    if (!scenario.empty()) {
+      const auto source =
+          stg::config::NamedSource(stg::config::ScenarioFolder(), scenario, "nominal", overrides);
+      vehicle =
+          stg::config::Load<stg::dynamics::WorldConfig>(source, stg::config::Scope::kOwnSections)
+              .vehicle;
+    } else if (!overrides.empty()) {
+      throw stg::UserError("--set needs --scenario");
+    }
+    vehicle.integrator = integrator == "rk4" ? stg::dynamics::Integrator::kRk4
+                                             : stg::dynamics::Integrator::kSemiImplicit;
+    if (over_ground) vehicle.torpedo.advance_over_ground = true;
+    std::vector<RecordedMotion> still = stg::dynamics::LoadMotions(file);
+    const auto begin_of_current = std::stable_partition(
+        still.begin(), still.end(), [](const RecordedMotion& m) { return m.current_mps == 0.0; });
+    const std::vector<RecordedMotion> moving(begin_of_current, still.end());
+    still.erase(begin_of_current, still.end());
+
+    const MotionError in_still = Compare(vehicle, still, dt_s);
+    const MotionError in_current = Compare(vehicle, moving, dt_s);
+    // The public model's current neither feeds the propeller nor turns with pitch as ours does:
+    // shown, not judged, unless there is nothing else.
+    const bool judged = still.empty();
+    const bool pass = (judged ? in_current : in_still).Within(tolerance);
+    if (!still.empty()) Print("without current", in_still);
+    if (!moving.empty()) Print(judged ? "in a current" : "in a current, not judged", in_current);
+    nlohmann::json json = JsonOf(in_still);
+    json["file"] = file;
+    json["tolerance"] = tolerance;
+    json["pass"] = pass;
+    if (!moving.empty()) {
+      json["in_current"] = JsonOf(in_current);
+      json["in_current"]["judged"] = judged;
+    }
+    std::cout << json.dump() << std::endl;
+    return pass ? 0 : 1;
+  } catch (const stg::UserError& e) {
+    std::cerr << "check_vehicle: " << e.what() << "\n";
+    return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "check_vehicle: " << e.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,139 @@
+#include "auv_dynamics/check/recorded_motion.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "auv_common/error.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+constexpr char kTitle[] =
+    "rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r\n";
+constexpr char kRestAt1[] = "0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n";
+
+class MotionFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "motion_" + std::to_string(::getpid()) + "_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::create_directories(folder_);
+    file_ = folder_ + "/motion.csv";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void Write(const std::string& text) const { std::ofstream(file_) << text; }
+  std::string Refusal(const std::string& text) const {
+    Write(text);
+    try {
+      LoadMotions(file_);
+    } catch (const UserError& e) {
+      return e.what();
+    }
+    return "accepted";
+  }
+  int Run(const std::string& arguments) {
+    const std::string out = folder_ + "/stdout";
+    const int status = std::system(
+        ("'" STG_CHECK_VEHICLE "' " + arguments + " > '" + out + "' 2> '" + folder_ + "/stderr'")
+            .c_str());
+    out_ = Read(out);
+    err_ = Read(folder_ + "/stderr");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  nlohmann::json Json() const {
+    std::istringstream in(out_);
+    std::string line, last;
+    while (std::getline(in, line)) last = line;
+    return nlohmann::json::parse(last, nullptr, false);
+  }
+  static std::string Read(const std::string& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+
+  std::string folder_, file_, out_, err_;
+};
+
+TEST_F(MotionFile, CommandsAndTimesPartTheMotions) {
+  Write(std::string(kTitle) + kRestAt1 + "0,0,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0,0\r\n" +
+        "0,0,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0,0\n" + "0,5,0,0,0,3,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  const auto motions = LoadMotions(file_);
+  ASSERT_EQ(motions.size(), 3u);
+  EXPECT_EQ(motions[0].rows.size(), 2u);
+  EXPECT_EQ(motions[1].rows[0].line, 4);
+  EXPECT_EQ(motions[2].rudder_deg, 5.0);
+}
+
+TEST_F(MotionFile, SaysWhatIsWrongAndWhere) {
+  EXPECT_NE(Refusal("").find("holds no motion"), std::string::npos);
+  EXPECT_NE(Refusal("a,b\n").find(":1: expected the header"), std::string::npos);
+  EXPECT_NE(Refusal(kTitle).find("holds no motion"), std::string::npos);
+  const std::string title = kTitle;
+  EXPECT_NE(Refusal(title + "0,0,0,0,0,1,0,0\n").find(":2: after column y: expected a comma"),
+            std::string::npos);
+  EXPECT_NE(Refusal(title + kRestAt1 + "0,0,0,0,0,2,0,nan,0,0,0,0,0,0,0,0,0,0\n")
+                .find(":3: column y: expected a finite number"),
+            std::string::npos);
+  EXPECT_NE(
+      Refusal(title + "0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0,0\n").find("more than the columns"),
+      std::string::npos);
+  EXPECT_NE(Refusal(title + "0,0,0,0,0,-1,0,0,0,0,0,0,0,0,0,0,0,0\n").find("column t"),
+            std::string::npos);
+  EXPECT_NE(Refusal(title + "0,0,0,0,0,1e9,0,0,0,0,0,0,0,0,0,0,0,0\n").find("column t"),
+            std::string::npos);
+  EXPECT_NE(
+      Refusal(title + "1e9,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n").find("column rpm: out of range"),
+      std::string::npos);
+  EXPECT_NE(Refusal(title + "\n" + kRestAt1).find(":2: column rpm"), std::string::npos);
+  std::filesystem::remove(file_);
+  EXPECT_THROW(LoadMotions(file_), UserError);
+  EXPECT_THROW(LoadMotions(folder_), UserError);
+  std::ofstream(file_) << 'x';
+  std::filesystem::resize_file(file_, 1ULL << 40);  // sparse
+  EXPECT_THROW(LoadMotions(file_), UserError);
+}
+
+TEST_F(MotionFile, AVehicleAtRestHasNoError) {
+  Write(std::string(kTitle) + kRestAt1);
+  const MotionError e = Compare(VehicleConfig(), LoadMotions(file_), 0.05);
+  EXPECT_TRUE(e.Within(0.0));
+  EXPECT_EQ(e.rows, 1);
+}
+
+TEST_F(MotionFile, AColumnThatMovesWhereNoneShouldIsInfinitelyWrong) {
+  Write(std::string(kTitle) + "500,0,0,0,0,5,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  const MotionError e = Compare(VehicleConfig(), LoadMotions(file_), 0.05);
+  EXPECT_TRUE(std::isinf(e.columns[kU].share()));
+  EXPECT_FALSE(e.Within(1e9));
+}
+
+TEST_F(MotionFile, ToolReportsByColumnAndByExitStatus) {
+  const std::string shipped = "'" STG_TEST_DATA "/remus100.csv'";
+  EXPECT_EQ(Run(shipped), 0) << err_;
+  nlohmann::json json = Json();
+  ASSERT_FALSE(json.is_discarded());
+  EXPECT_TRUE(json["pass"].get<bool>());
+  EXPECT_EQ(json["motions"], 7);
+  EXPECT_EQ(json["in_current"]["motions"], 1);
+  EXPECT_LT(json["columns"]["r"]["share"].get<double>(), 0.01);
+  EXPECT_EQ(Run(shipped + " --tolerance 1e-9"), 1);
+  EXPECT_FALSE(Json()["pass"].get<bool>());
+  EXPECT_EQ(Run("--help"), 0);
+  EXPECT_NE(out_.find("--tolerance"), std::string::npos);
+  EXPECT_EQ(Run(""), 2);
+  EXPECT_EQ(Run("'" + folder_ + "/none.csv'"), 2);
+  EXPECT_NE(err_.find("none.csv: no such file"), std::string::npos);
+  EXPECT_EQ(Run(shipped + " --set vehicle.substeps=2"), 2);
+}
+
+}  // namespace
+}  // namespace stg::dynamics

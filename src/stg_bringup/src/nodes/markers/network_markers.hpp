@@ -1,0 +1,19 @@
+#pragma once
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include "marker_builder.hpp"
+#include "swarm_view.hpp"
+
+namespace stg::nodes {
+
+/// The acoustic network: links, packets under way and lost ones with their reasons; a ring around
+/// each modem that sends and the front of its sound; at receivers, where packets collided and who
+/// could not hear because it was sending.
+void AddNetworkMarkers(const SwarmView& view, const MarkerStyle& style,
+                       visualization_msgs::MarkerArray* array);
+
+/// Names of the drop reasons of auv_msgs/LinkState.
+const char* DropReasonName(std::uint8_t reason);
+
+}  // namespace stg::nodes

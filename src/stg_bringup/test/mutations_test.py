@@ -1,0 +1,203 @@
+#!/usr/bin/python3
+"""No message kills, blinds or silences a node: mutations of every message on every topic."""
+
+import io
+import json
+import pathlib
+import random
+import re
+import unittest
+
+import rosgraph
+import roslib.message
+import rospy
+import rostest
+from auv_msgs.msg import AcousticReception, EpisodeSummary, StepReport, SwarmState, TaskState
+from graph_listener import Diagnostics, Latest, rosnode_pid, wait_for
+from mutations import mutated, stamped
+from std_msgs.msg import Header
+
+MUTATIONS = 60  # of each topic
+FAR_FUTURE = (2.0**31 + 2.0, 2.0**32 - 0.05)  # [s]
+NOT_OURS = ("/rosout", "/mutations_test", "/recorder")
+
+
+def changed_bytes(message_type, change):
+    """Returns a message type of the same name whose messages are changed on their way."""
+
+    class Changed(message_type):
+        """As its base, but for its bytes."""
+
+        def serialize(self, buff):
+            plain = io.BytesIO()
+            super().serialize(plain)
+            buff.write(change(plain.getvalue()))
+
+    return Changed
+
+
+def copied(message, message_type):
+    """Returns a message with the fields of another of its base type."""
+    base = type(message)
+    return message_type(**{name: getattr(message, name) for name in base.__slots__})
+
+
+class Tap:
+    """A topic as seen by a stranger: the newest message, and a way to send others."""
+
+    def __init__(self, topic, type_name):
+        message_type = roslib.message.get_message_class(type_name)
+        self.topic = topic
+        self.latest = Latest(topic, message_type)
+        self.publisher = rospy.Publisher(topic, message_type, queue_size=1000)
+
+    def message(self):
+        """Returns the newest message; an empty one when there is none."""
+        return self.latest.message or self.latest.type()
+
+    def send(self, messages):
+        """Sends messages one after the other, slowly enough for a queue of 20."""
+        for message in messages:
+            self.publisher.publish(message)
+            rospy.rostime.wallsleep(0.002)
+
+
+class Mutations(unittest.TestCase):
+    """Short episodes without end; each test leaves the graph at work."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.diagnostics = Diagnostics()
+        cls.task = Latest("/auv_0/task_state", TaskState)
+        cls.reception = Latest("/auv_0/acoustic/rx", AcousticReception)
+        cls.report = Latest("/step_report", StepReport)
+        cls.summary = Latest("/episode_summary", EpisodeSummary)
+        cls.task.wait(30.0)
+        cls.summary.wait(30.0)
+        master = rosgraph.Master("/mutations_test")
+        _, subscribers, _ = master.getSystemState()
+        types = dict(master.getTopicTypes())
+        ours = {}
+        for topic, nodes in subscribers:
+            heard_by = [node for node in nodes if node not in NOT_OURS]
+            if heard_by and topic in types:
+                ours[topic] = heard_by
+        cls.nodes = sorted({node for nodes in ours.values() for node in nodes})
+        cls.pids = {node: rosnode_pid(node) for node in cls.nodes}
+        cls.taps = [Tap(topic, types[topic]) for topic in sorted(ours)]
+        wait_for(lambda: all(tap.publisher.get_num_connections() > 0 for tap in cls.taps),
+                 20.0, "every node hears this test")
+
+    def check_all_is_well(self):
+        """Everybody lives, and whole episodes are flown with all that belongs to them."""
+        self.report.wait_for_more(20)
+        self.reception.wait_for_more(20)
+        self.assertEqual({node: rosnode_pid(node) for node in self.nodes}, self.pids)
+        wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours are heard")
+        # The first to end may have begun while it was disturbed.
+        self.summary.wait_for_more(2, 40.0)
+        wait_for(lambda: self.summary.message.complete, 40.0, "a complete episode")
+
+    def test_1_the_test_hears_of_the_topics_that_matter(self):
+        topics = {tap.topic for tap in self.taps}
+        self.assertLessEqual(
+            {"/swarm_state", "/auv_0/sensor_frame", "/auv_0/wrench", "/auv_0/acoustic/tx",
+             "/auv_0/acoustic/rx", "/auv_0/odom", "/auv_0/cmd_vel", "/auv_0/task_state",
+             "/acoustic_channel/done", "/acoustic_channel/links", "/episode_summary"}, topics)
+        self.assertLessEqual({"/world", "/acoustic_channel", "/metrics", "/auv_3/agent",
+                              "/auv_3/controller"}, set(self.nodes))
+
+    def test_2_stamps_from_the_far_future_end_nobody(self):
+        for tap in self.taps:
+            for seconds in FAR_FUTURE:
+                message = stamped(tap.message(), seconds)
+                tap.send([message, message])
+        rospy.rostime.wallsleep(2.5)  # diagnostics are made once a second
+        self.check_all_is_well()
+
+    def test_3_a_minute_ahead_nobody_is_silenced(self):
+        for tap in self.taps:
+            now = self.task.message.header.stamp.to_sec()
+            tap.send(stamped(tap.message(), now + 58.0 + k / 10) for k in range(2))
+        self.check_all_is_well()
+
+    def test_4_many_future_detections_and_receptions_do_not_blind_or_deafen(self):
+        for tap in self.taps:
+            if tap.topic not in ("/auv_0/sensor_frame", "/auv_0/acoustic/rx"):
+                continue
+            for ahead in (8.0, 1e6):
+                def future(tap=tap, ahead=ahead):
+                    message = tap.message()
+                    now = message.header.stamp.to_sec()
+                    if tap.topic.endswith("rx"):
+                        return stamped(message, now + ahead)
+                    header = message.header
+                    message = stamped(message, now + ahead)
+                    message.detections = (message.detections * 150)[:150]
+                    message.header = header
+                    return message
+                tap.send(future() for _ in range(150))
+        self.check_all_is_well()
+        wait_for(lambda: self.task.message.target_known, 20.0, "the target is seen")
+
+    def test_5_mutations_of_every_message_end_nobody_and_are_counted(self):
+        source = random.Random(14)
+        before = self.refusals()
+        for tap in self.taps:
+            tap.send(mutated(tap.message(), source) for _ in range(MUTATIONS))
+        self.check_all_is_well()
+        for node, count in before.items():
+            wait_for(lambda node=node, count=count: self.refusals()[node] > count, 10.0,
+                     f"{node} counts what it refuses")
+
+    def test_6_counts_of_elements_take_no_memory(self):
+        # roscpp makes room for as many poses as a message says it has.
+        size = len(SwarmState(header=Header(frame_id="world")).header.frame_id) + 40
+        swarm = Tap("/swarm_state", "auv_msgs/SwarmState")
+        message = swarm.latest.wait()
+        publisher = rospy.Publisher("/swarm_state", changed_bytes(
+            SwarmState, lambda data: data[:size] + b"\xff\xff\xff\x0f" + data[size + 4:]),
+            queue_size=10)
+        wait_for(lambda: publisher.get_num_connections() >= 2, 20.0, "channel and metrics hear")
+        for _ in range(5):
+            publisher.publish(copied(message, publisher.data_class))
+            rospy.rostime.wallsleep(0.05)
+        publisher.unregister()
+        self.check_all_is_well()
+        for node in ("/acoustic_channel", "/metrics"):
+            status = pathlib.Path(f"/proc/{self.pids[node]}/status").read_text(encoding="utf-8")
+            peak_kb = int(re.search(r"VmHWM:\s*(\d+)", status).group(1))
+            self.assertLess(peak_kb, 2**21, f"{node} had more than 2 GiB")
+
+    def test_7_text_that_is_no_utf8_gets_into_no_file(self):
+        summaries = pathlib.Path(rospy.get_param("/metrics/summary_file"))
+        self.addCleanup(summaries.unlink)
+        before = self.diagnostics.value("metrics", "refused task_state: malformed")
+        publisher = rospy.Publisher("/auv_0/task_state", changed_bytes(
+            TaskState, lambda data: data.replace(b"pursuit", b"\xff\xfe\xc0suit")), queue_size=10)
+        wait_for(lambda: publisher.get_num_connections() > 0, 20.0, "metrics hear")
+
+        def sent_and_refused():
+            publisher.publish(copied(self.task.message, publisher.data_class))
+            return self.diagnostics.value("metrics", "refused task_state: malformed") > before
+
+        wait_for(sent_and_refused, 20.0, "the metrics refuse it")
+        publisher.unregister()
+        self.check_all_is_well()
+        for line in summaries.read_bytes().splitlines():
+            self.assertIn("episode", json.loads(line.decode()))
+
+    def refusals(self):
+        """Returns how many messages each node says it has refused."""
+        names = ["world", "acoustic_channel", "metrics", "auv_0/agent", "auv_0/controller"]
+        wait_for(lambda: all(name in self.diagnostics.nodes for name in names), 20.0, "diagnostics")
+        return {
+            name: sum(float(value) for key, value in self.diagnostics.nodes[name][2].items()
+                      if "refused" in key)
+            for name in names
+        }
+
+
+if __name__ == "__main__":
+    rospy.init_node("mutations_test")
+    rostest.rosrun("stg_bringup", "mutations", Mutations)

@@ -1,0 +1,71 @@
+"""Starts and ends whole runs as `./stg run` does, for tests."""
+
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import time
+import xmlrpc.client
+
+import rosgraph
+
+LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "launch.py"
+
+
+def free_port():
+    """Returns a port of the loopback that nobody listens on."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+def launch(folder, *arguments, port=None):
+    """Starts a launch as `./stg run` does, by default with a master of its own.
+
+    Returns (process, environment).
+    """
+    port = port or free_port()
+    environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
+                       ROS_HOME=str(folder / "ros_home"), PWD=str(folder))
+    process = subprocess.Popen(
+        [str(LAUNCH), "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    return process, environment
+
+
+def process_of(node, environment):
+    """Returns a node's process id once it runs."""
+    master = rosgraph.Master("/record_replay", master_uri=environment["ROS_MASTER_URI"])
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
+        try:
+            with xmlrpc.client.ServerProxy(master.lookupNode(node)) as server:
+                return server.getPid("/record_replay")[2]
+        except (OSError, rosgraph.MasterException):
+            time.sleep(0.1)
+    raise AssertionError(f"no {node}")
+
+
+def processes_with(master_uri):
+    """Returns {program: process id} of all that run with the master."""
+    found = {}
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            environment = (folder / "environ").read_bytes()
+            if f"ROS_MASTER_URI={master_uri}".encode() in environment:
+                found[(folder / "comm").read_text().strip()] = int(folder.name)
+        except OSError:  # it has ended
+            pass
+    return found
+
+
+def stop(process):
+    """Ends a roslaunch as Ctrl-C does."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    try:
+        return process.communicate(timeout=20)[0]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.communicate()[0]

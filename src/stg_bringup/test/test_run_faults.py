@@ -1,0 +1,218 @@
+"""What a run was asked to do and did not is told: at the start where it can be known, else by its end."""
+
+import contextlib
+import os
+import pathlib
+import signal
+import socket
+import sys
+import tempfile
+import threading
+import time
+import types
+import unittest
+import unittest.mock
+
+import rosbag
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[2] / "scripts")]
+
+import run_checks  # noqa: E402  (lies in the scripts folder)
+from run_launcher import launch, process_of, processes_with, stop  # noqa: E402
+
+QUICK = ("episodes:=2", "real_time_factor:=0", "deadline:=20", "policy:=pursuit_separated",
+         "table:=false", "overrides:=[time.episode_steps=40, time.tail_steps=10]")
+ENDLESS = ("policy:=idle", "table:=false")
+
+
+class WithFolder(unittest.TestCase):
+    """A test with a folder of its own, from which runs are started."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def start(self, *arguments, port=None):
+        """Starts the medium scenario; returns (process, environment)."""
+        process, environment = launch(self.folder, "medium.launch", *arguments, port=port)
+        self.addCleanup(stop, process)
+        return process, environment
+
+    def finish(self, process, timeout_s=60):
+        """Returns (exit status, output) of a run that ends by itself."""
+        output = process.communicate(timeout=timeout_s)[0]
+        return process.returncode, output
+
+    def check_refused(self, reason, *arguments, port=None):
+        """Starts a run that must be refused in one line, before any node is started."""
+        status, output = self.finish(self.start(*arguments, port=port)[0], 20)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, f"stg: the run failed: .*{reason}")
+        for word in ("Traceback", "started with pid", "process["):
+            self.assertNotIn(word, output)
+
+
+class Refused(WithFolder):
+    """What can be known before anything starts."""
+
+    def test_bag_or_summary_where_nothing_can_be_written(self):
+        self.check_refused("there is no folder", "record:=true", "bag:=nowhere/run.bag")
+        self.check_refused("there is no folder", "summary_file:=nowhere/summary.csv")
+        self.check_refused("is a folder", f"summary_file:={self.folder}")
+
+    def test_numbers_that_ros_cannot_carry(self):
+        self.check_refused("seed: 5000000000 is more than 2147483647", "seed:=5000000000")
+        self.check_refused("agents: 'abc' is none of 1 to 255", "agents:=abc")
+        self.check_refused("agents: '256' is none of 1 to 255", "agents:=256")
+
+    def test_a_stranger_on_the_port_of_the_master(self):
+        for answer in (b"HTTP/1.0 200 OK\r\n\r\nhello", b"SSH-2.0-OpenSSH\r\n", None):
+            with self.subTest(answer), self.stranger(answer) as port:
+                began = time.monotonic()
+                self.check_refused("no ROS master", *ENDLESS, port=port)
+                self.assertLess(time.monotonic() - began, 20.0)
+
+    @contextlib.contextmanager
+    def stranger(self, answer):
+        """Somebody who listens and gives an answer, or none."""
+        with socket.socket() as listener:
+            listener.bind(("127.0.0.1", 0))
+            listener.listen()
+            listener.settimeout(0.1)
+            done, kept = threading.Event(), []
+
+            def serve():
+                while not done.is_set():
+                    try:
+                        peer = listener.accept()[0]
+                    except OSError:
+                        continue
+                    kept.append(peer)
+                    if answer:
+                        peer.sendall(answer)
+                        peer.close()
+
+            server = threading.Thread(target=serve)
+            server.start()
+            try:
+                yield listener.getsockname()[1]
+            finally:
+                done.set()
+                server.join()
+                for peer in kept:
+                    peer.close()
+
+    def test_a_second_run_on_the_same_master_leaves_the_first_alone(self):
+        first, environment = self.start(*ENDLESS)
+        world = process_of("/world", environment)
+        process_of("/metrics", environment)
+        port = int(environment["ROS_MASTER_URI"].rsplit(":", 1)[1])
+        self.check_refused("runs already on the master", *QUICK, port=port)
+        self.assertEqual(process_of("/world", environment), world)
+        self.assertIsNone(first.poll())
+
+    def test_a_full_disk_and_a_bag_that_was_cut_off(self):
+        bag = self.folder / "run.bag"
+        node = types.SimpleNamespace(package="rosbag", type="record",
+                                     args=f"--output-name='{bag}' --lz4 /tf")
+        outputs = run_checks.Outputs([node], {})
+        self.assertEqual(outputs.bags, [str(bag)])
+        outputs.check_before()
+        with self.assertRaisesRegex(run_checks.Refusal, "not written to its end"):
+            outputs.check_after()
+        with rosbag.Bag(str(bag), "w") as opened:
+            opened.write("/chatter", __import__("std_msgs.msg").msg.String("x"))
+        outputs.check_after()
+        full = types.SimpleNamespace(f_bavail=2**10, f_frsize=4096)
+        with unittest.mock.patch("os.statvfs", lambda _: full):
+            for check in (outputs.check_before, outputs.check_after):
+                with self.assertRaisesRegex(run_checks.Refusal, "too little space"):
+                    check()
+        bag.write_bytes(bag.read_bytes()[:-100])
+        with self.assertRaisesRegex(run_checks.Refusal, "not whole"):
+            outputs.check_after()
+
+
+class View(WithFolder):
+    """The view's node checks what it is given."""
+
+    def test_bad_parameters_end_it_in_one_line(self):
+        for argument, reason in (("trail_s:=-5", "trail_s: must be from 0"),
+                                 ("vehicle_scale:=0", "vehicle_scale: must be from 0.001"),
+                                 (f"scenario_file:={self.folder}", "scenario_file: cannot read")):
+            with self.subTest(argument):
+                process, _ = launch(self.folder, "view.launch", "rviz:=false", argument)
+                self.addCleanup(stop, process)
+                status, output = self.finish(process)
+                self.assertEqual(status, 1, output)
+                self.assertIn(reason, output)
+                self.assertNotIn("what()", output)
+
+
+class Lost(WithFolder):
+    """What is known only at the end, or in between."""
+
+    def test_output_that_is_written_is_no_failure_whatever_its_name(self):
+        process, _ = self.start(*QUICK, "record:=true", "bag:=my own run.bag",
+                                "summary_file:=my own summary.csv")
+        status, output = self.finish(process)
+        self.assertEqual(status, 0, output)
+        with rosbag.Bag(str(self.folder / "my own run.bag")) as bag:
+            self.assertEqual(bag.get_message_count("/episode_summary"), 2)
+        self.assertEqual(len((self.folder / "my own summary.csv").read_text().splitlines()), 3)
+
+    def test_summary_on_a_full_disk(self):
+        status, output = self.finish(self.start(*QUICK, "summary_file:=/dev/full")[0])
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, "cannot write '/dev/full': No space left")
+        self.assertRegex(output, "2 episodes could not be written")
+
+    def test_summary_that_lacks_episodes(self):
+        outputs = run_checks.Outputs([], {"/metrics/summary_file": str(self.folder / "s.csv"),
+                                          "/world/episodes": 2})
+        with self.assertRaisesRegex(run_checks.Refusal, "s.csv"):
+            outputs.check_after()
+        (self.folder / "s.csv").write_text("episode,seed\n0,0\n")
+        with self.assertRaisesRegex(run_checks.Refusal, "holds 1 of 2 episodes"):
+            outputs.check_after()
+        (self.folder / "s.csv").write_text("episode,seed\n0,0\n1,1\n")
+        outputs.check_after()
+
+    def test_death_of_the_recorder(self):
+        process, environment = self.start(*ENDLESS, "record:=true", "bag:=run.bag",
+                                          "episodes:=1", "real_time_factor:=20")
+        os.kill(process_of("/recorder", environment), signal.SIGKILL)
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+        self.assertIn("/recorder ended before the run", output)
+
+    def test_death_of_the_master_ends_the_run(self):
+        process, environment = self.start(*ENDLESS)
+        process_of("/metrics", environment)
+        time.sleep(1.0)
+        os.kill(processes_with(environment["ROS_MASTER_URI"])["rosmaster"], signal.SIGKILL)
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+        self.assertIn("/master died", output)
+        self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {}, output)
+
+    def test_metrics_that_are_gone_at_the_end(self):
+        process, environment = self.start(*QUICK, "respawn:=false", "episodes:=1",
+                                          "overrides:=[time.episode_steps=4000]")
+        os.kill(process_of("/metrics", environment), signal.SIGKILL)
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+
+    def test_motion_out_of_hand_names_the_vehicle_and_the_step(self):
+        process, _ = self.start(
+            "real_time_factor:=0", "policy:=pursuit", "table:=false",
+            "overrides:=[vehicle.clip_velocity=false, 'vehicle.linear_damping=[1e6,1e6,1e6,1e6,1e6,1e6]']")
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, "state of AUV [0-3] is not finite or beyond 1e6 after step [0-9]+")
+
+
+if __name__ == "__main__":
+    unittest.main()

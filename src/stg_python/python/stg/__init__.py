@@ -1,0 +1,43 @@
+"""Swarms of AUVs that track targets, for learning in Python; the engine is C++.
+
+    env = stg.parallel_env("medium", condition="nominal", seed=0)    # PettingZoo's Parallel API
+    envs = stg.vector_env("medium", num_envs=256, workers=2)         # Gymnasium's vector API
+
+docs/python.md is the tutorial, docs/environment.md says what every number means.
+"""
+
+from stg._core import (
+    Agent,
+    NeighbourState,
+    PacketCodec,
+    Policy,
+    Scenario,
+    TargetTrack,
+    UserError,
+    controllers,
+)
+from stg.parallel import ParallelEnv, parallel_env
+from stg.policies import evaluate, export_policy, load_policy
+from stg.scenarios import load_scenario, scenario_folder, scenario_names
+from stg.vector import VectorEnv, vector_env
+
+__all__ = [
+    "Agent",
+    "NeighbourState",
+    "PacketCodec",
+    "ParallelEnv",
+    "Policy",
+    "Scenario",
+    "TargetTrack",
+    "UserError",
+    "VectorEnv",
+    "controllers",
+    "evaluate",
+    "export_policy",
+    "load_policy",
+    "load_scenario",
+    "parallel_env",
+    "scenario_folder",
+    "scenario_names",
+    "vector_env",
+]

@@ -1,0 +1,197 @@
+"""One swarm in the form of PettingZoo's parallel environments."""
+
+import numpy as np
+
+from stg import _core, spaces
+from stg.scenarios import load_scenario
+from stg.vector import seed_of
+
+__all__ = ["ParallelEnv", "parallel_env"]
+
+try:
+    from pettingzoo import ParallelEnv as _Base
+except ImportError:
+
+    class _Base:
+        """Stands in for pettingzoo.ParallelEnv."""
+
+        render_mode = None
+
+        @property
+        def num_agents(self):
+            """Number of the AUVs that fly now."""
+            return len(self.agents)
+
+        @property
+        def max_num_agents(self):
+            """Number of all AUVs."""
+            return len(self.possible_agents)
+
+        @property
+        def unwrapped(self):
+            """The environment without wrappers: itself."""
+            return self
+
+
+class ParallelEnv(_Base):
+    """One swarm: AUV i is the agent "auv_<i>". Nobody leaves before all do.
+
+    observations  [K] float32 each, of the decision to come
+    actions       [A] float32 or float64 each, clipped to [-1, 1]
+    rewards       a float each
+    terminations  never true
+    truncations   true for all at the last decision of an episode; `agents` is then empty
+    infos         empty but for the last decision: "metrics" of the episode, one dictionary for all
+
+    All that is returned is the caller's to keep. A step that raises changes nothing.
+    """
+
+    def __init__(
+        self, scenario="medium", condition="nominal", overrides=None, seed=0, render_mode=None
+    ):
+        """See parallel_env."""
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode: must be None or 'rgb_array', not {render_mode!r}")
+        self.scenario = load_scenario(scenario, condition, overrides)
+        self.render_mode = render_mode
+        self.metadata = {
+            "name": f"stg_{self.scenario.name}_v0",
+            "render_modes": ["rgb_array"],
+            "is_parallelizable": True,
+            "render_fps": round(1.0 / self.scenario.decision_dt_s) or 1,
+        }
+        self._next_seed = seed_of(seed)
+        self._core = _core.VectorEnv([self.scenario], 1, 1, self._next_seed)
+        s = self.scenario
+        self._observations = np.zeros((1, s.agents, s.observation_size), np.float32)
+        self._final = np.zeros_like(self._observations)
+        self._states = np.zeros((2, 1, s.state_size), np.float32)  # under way, final
+        self._rewards = np.zeros((1, s.agents), np.float32)
+        arrays = {"observations": self._observations, "final_observations": self._final}
+        arrays.update(states=self._states[0], final_states=self._states[1], rewards=self._rewards)
+        self._core.bind({**arrays, "truncated": np.zeros(1, bool)})
+        self.possible_agents = [f"auv_{i}" for i in range(s.agents)]
+        self.agents = []
+        self._history = []
+        self._ended = False
+        seen = (s.observation_size,)
+        self.observation_spaces = {
+            name: spaces.Box(-np.inf, np.inf, seen, np.float32) for name in self.possible_agents
+        }
+        self.action_spaces = {
+            name: spaces.Box(-1.0, 1.0, (s.action_size,), np.float32)
+            for name in self.possible_agents
+        }
+        self.state_space = spaces.Box(-np.inf, np.inf, (s.state_size,), np.float32)
+
+    def observation_space(self, agent):
+        """The space of one AUV's observations, the same object at every call."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent):
+        """The space of one AUV's actions, the same object at every call."""
+        return self.action_spaces[agent]
+
+    def reset(self, seed=None, options=None):
+        """Starts an episode; returns ({agent: observation}, {agent: info}).
+
+        seed: of the world; None: one more than the last one, the first time that given to
+        parallel_env. options: none are known.
+        """
+        if options:
+            raise ValueError(f"options: {sorted(options)} are not known")
+        seed = self._next_seed if seed is None else seed_of(seed)
+        self._core.reset_env(0, seed)
+        self._next_seed = seed + 1
+        self._ended = False
+        self.agents = list(self.possible_agents)
+        self._history = []
+        self._remember()
+        return self._by_name(self._observations), {name: {} for name in self.agents}
+
+    def _by_name(self, rows):
+        """Returns {agent: row} of a fresh copy of [1, N, ...]."""
+        return dict(zip(self.possible_agents, rows[0].copy()))
+
+    def _remember(self):
+        if self.render_mode is not None:
+            self._history.append(self._core.snapshot(0))
+
+    def step(self, actions):
+        """One decision: {agent: [A] array} of all AUVs.
+
+        Returns five dictionaries by agent: observations, rewards, terminations, truncations, infos.
+        Raises RuntimeError after the end of an episode or before the first reset, ValueError or
+        TypeError for actions that are missing, of another shape or type, or not finite.
+        """
+        if not self.agents:
+            raise RuntimeError("no AUV flies: the episode has ended or not begun; call reset")
+        if not isinstance(actions, dict):
+            raise TypeError(f"actions: expected a dictionary, not {type(actions).__name__}")
+        names = self.possible_agents
+        ended = self._core.step_agents(actions) == 1
+        if ended:
+            self._ended = True
+            self.agents = []
+            metrics = self._core.metrics(0)
+            infos = {name: {"metrics": metrics} for name in names}
+        else:
+            self._remember()
+            infos = {name: {} for name in names}
+        return (
+            self._by_name(self._final if ended else self._observations),
+            dict(zip(names, self._rewards[0].tolist())),
+            dict.fromkeys(names, False),
+            dict.fromkeys(names, ended),
+            infos,
+        )
+
+    def state(self):
+        """The truth of the swarm [S] float32, for critics; after the end: of the last decision."""
+        return self._states[int(self._ended), 0].copy()
+
+    def snapshot(self):
+        """The truth in SI units and world axes, for drawing; see render.Snapshot.
+
+        At the end of an episode it is already that of the next one.
+        """
+        return self._core.snapshot(0)
+
+    def controller_actions(self, controller, privileged=False):
+        """Returns {agent: action} of a controller: "pursuit", ..., or a policy's file.
+
+        privileged: a built-in controller sees the truth in acoustic mode, too.
+        """
+        if not self.agents:
+            raise RuntimeError("no AUV flies: the episode has ended or not begun; call reset")
+        return self._by_name(self._core.decide(str(controller), privileged))
+
+    def render(self):
+        """A picture [height, width, 3] uint8 of the episode up to now: see stg.render."""
+        if self.render_mode is None:
+            return None
+        if not self._history:
+            raise RuntimeError("nothing to draw: call reset")
+        from stg.render import draw  # pylint: disable=import-outside-toplevel
+
+        return draw(self._history, self.scenario)
+
+    def close(self):
+        """Frees the engine; may be called again. A step after it raises RuntimeError."""
+        self._core.close()
+        self.agents = []
+
+    def __repr__(self):
+        return f"<stg.ParallelEnv {self.scenario.name}, {self.scenario.agents} AUVs>"
+
+
+def parallel_env(scenario="medium", condition="nominal", overrides=None, seed=0, render_mode=None):
+    """Returns a ParallelEnv.
+
+    scenario      a shipped scenario's name, a YAML file, or a Scenario
+    condition     a stress condition's name
+    overrides     {"key.path": value} of docs/scenarios.md, nested or not
+    seed          of the first reset without one
+    render_mode   None or "rgb_array"
+    """
+    return ParallelEnv(scenario, condition, overrides, seed, render_mode)

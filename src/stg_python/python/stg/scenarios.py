@@ -1,0 +1,74 @@
+"""Scenarios by name, with changes given as a dictionary."""
+
+import os
+import pathlib
+
+from stg import _core
+
+__all__ = ["load_scenario", "scenario_folder", "scenario_names"]
+
+
+def scenario_folder():
+    """Returns the folder of the shipped scenarios.
+
+    $STG_SCENARIOS where it is set, else that of stg_bringup on ROS_PACKAGE_PATH, else the one that
+    belongs to the files of this module.
+    """
+    if os.environ.get("STG_SCENARIOS") or os.environ.get("ROS_PACKAGE_PATH"):
+        try:
+            return _core.scenario_folder()
+        except _core.UserError:
+            if os.environ.get("STG_SCENARIOS"):
+                raise
+    for parent in pathlib.Path(__file__).resolve().parents:
+        for folder in ("stg_bringup/scenarios", "share/stg_bringup/scenarios"):
+            if (parent / folder).is_dir():
+                return str(parent / folder)
+    return _core.scenario_folder()
+
+
+def scenario_names():
+    """Returns the names of the shipped scenarios, sorted."""
+    return sorted(path.stem for path in pathlib.Path(scenario_folder()).glob("*.yaml"))
+
+
+def _text(value):
+    """Returns a value as it stands in a YAML file."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_text(v) for v in value) + "]"
+    return str(value)
+
+
+def override_texts(overrides):
+    """Returns ["key.path=value", ...] of a dictionary, nested or with dotted keys, or of a list of
+    such texts."""
+    if isinstance(overrides, (list, tuple)):
+        return [str(text) for text in overrides]
+    texts = []
+
+    def walk(prefix, values):
+        for key, value in values.items():
+            if isinstance(value, dict):
+                walk(f"{prefix}{key}.", value)
+            else:
+                texts.append(f"{prefix}{key}={_text(value)}")
+
+    walk("", overrides or {})
+    return texts
+
+
+def load_scenario(scenario="medium", condition="nominal", overrides=None):
+    """Returns a Scenario.
+
+    scenario: name of a shipped one, path of a YAML file, or a Scenario, which is returned as it is.
+    condition: "nominal", or name or path of an overlay. overrides: {"key.path": value}, nested or
+    not, or ["key.path=value", ...], see docs/scenarios.md. Raises UserError that names file, line and key.
+    """
+    if isinstance(scenario, _core.Scenario):
+        if overrides or condition != "nominal":
+            raise ValueError("a loaded scenario takes neither condition nor overrides")
+        return scenario
+    texts = override_texts(overrides)
+    return _core.Scenario.load(str(scenario), str(condition), texts, scenario_folder())

@@ -1,0 +1,126 @@
+#include <pybind11/stl.h>
+
+#include "auv_common/config/files.hpp"
+#include "auv_common/config/loader.hpp"
+#include "auv_common/error.hpp"
+#include "bind.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
+#include "marl_trainer/task/critic_state.hpp"
+#include "stg_agent/policy/policy.hpp"
+
+namespace stg::python {
+namespace {
+
+namespace py = pybind11;
+
+/// What a key holds, as Python has it.
+struct Cast {
+  py::object operator()(const double* x) const { return py::float_(*x); }
+  py::object operator()(const int* x) const { return py::int_(*x); }
+  py::object operator()(const std::uint64_t* x) const { return py::int_(*x); }
+  py::object operator()(const bool* x) const { return py::bool_(*x); }
+  py::object operator()(const std::string* x) const { return py::str(*x); }
+  py::object operator()(const config::EnumRef& x) const {
+    return py::str(x.names[static_cast<std::size_t>(x.get())]);
+  }
+  py::object operator()(const config::NumbersRef& x) const {
+    return py::cast(std::vector<double>(x.data, x.data + x.size));
+  }
+  py::object operator()(const config::Interval* x) const {
+    return py::cast(std::vector<double>{x->lo, x->hi});
+  }
+  template <class Names>
+  auto operator()(const Names& x) const -> decltype(py::object(py::cast(*x.list))) {
+    return py::cast(*x.list);
+  }
+};
+
+py::object ToPython(const config::ValueRef& value) { return std::visit(Cast{}, value); }
+
+/// All keys with their values.
+py::dict Values(const Scenario& scenario) {
+  Scenario copy = scenario;
+  config::Table table;
+  Describe(&copy, &table);
+  py::dict values;
+  for (const config::Field& field : table.fields()) {
+    values[py::str(field.path)] = ToPython(field.value);
+  }
+  return values;
+}
+
+py::list Layout(const Scenario& scenario) {
+  const agent::ObservationSpec spec(scenario.observation);
+  py::list blocks;
+  for (int b = 0; b < agent::kBlockCount; ++b) {
+    const auto block = static_cast<agent::Block>(b);
+    if (spec.size(block) == 0) continue;
+    const agent::BlockDescription& d = agent::kBlocks[b];
+    blocks.append(py::make_tuple(d.name, spec.offset(block), spec.size(block), d.content));
+  }
+  return blocks;
+}
+
+}  // namespace
+
+void BindScenario(py::module_& module) {
+  module.def("scenario_folder", &config::ScenarioFolder, "Where the shipped scenarios lie.");
+  py::class_<Scenario>(module, "Scenario", "Everything an episode depends on besides its seed.")
+      .def_static(
+          "load",
+          [](const std::string& scenario, const std::string& condition,
+             const std::vector<std::string>& overrides, const std::string& folder) {
+            return LoadNamedScenario(folder.empty() ? config::ScenarioFolder() : folder, scenario,
+                                     condition, overrides);
+          },
+          py::arg("scenario"), py::arg("condition") = "nominal",
+          py::arg("overrides") = std::vector<std::string>(), py::arg("folder") = "",
+          "Loads a shipped scenario by name, or a YAML file. `overrides`: \"key.path=value\" "
+          "each.\n"
+          "Raises UserError that names file, line and key.")
+      .def_static(
+          "from_yaml",
+          [](const std::string& text) { return config::LoadText<Scenario>(text, "text"); },
+          py::arg("text"), "The scenario of a whole file given as text, as a node's `/scenario`.")
+      .def(
+          "to_yaml", [](const Scenario& s) { return ToYaml(s); }, "Every key with its value.")
+      .def("values", &Values, "{\"key.path\": value} of every key.")
+      .def("__getitem__",
+           [](const Scenario& s, const std::string& key) -> py::object {
+             const py::dict values = Values(s);
+             if (!values.contains(key)) throw py::key_error(key);
+             return values[py::str(key)];
+           })
+      .def("__repr__",
+           [](const Scenario& s) {
+             return "<stg.Scenario '" + s.name + "', " + std::to_string(s.agents) + " AUVs>";
+           })
+      .def_property_readonly(
+          "hash", [](const Scenario& s) { return ScenarioHash(s); },
+          "Identifies the scenario in policy files.")
+      .def_property_readonly("name", [](const Scenario& s) { return s.name; })
+      .def_property_readonly("agents", [](const Scenario& s) { return s.agents; })
+      .def_property_readonly("targets", [](const Scenario& s) { return s.target.count; })
+      .def_property_readonly("action_size", [](const Scenario& s) { return s.action_size(); })
+      .def_property_readonly("observation_size",
+                             [](const Scenario& s) { return s.observation_size(); })
+      .def_property_readonly("state_size",
+                             [](const Scenario& s) { return task::CriticStateSize(s); })
+      .def_property_readonly(
+          "episode_steps", [](const Scenario& s) { return s.time.episode_steps; },
+          "Decisions of an episode.")
+      .def_property_readonly(
+          "decision_dt_s", [](const Scenario& s) { return s.decision_dt_s(); },
+          "Time between two decisions [s].")
+      .def_property_readonly(
+          "observation_layout", [](const Scenario& s) { return agent::ObservationLayout(s); },
+          "Name of the layout, which policy files carry.")
+      .def_property_readonly(
+          "action_interface",
+          [](const Scenario& s) { return agent::ActionInterfaceName(s.control.interface); },
+          "\"velocity3\" or \"tau6\".")
+      .def_property_readonly("observation_blocks", &Layout,
+                             "[(name, first index, size, content)] of an observation.");
+}
+
+}  // namespace stg::python

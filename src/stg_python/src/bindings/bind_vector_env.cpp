@@ -1,0 +1,46 @@
+#include <pybind11/stl.h>
+
+#include "bind.hpp"
+#include "bound_env.hpp"
+
+namespace stg::python {
+
+void BindVectorEnv(py::module_& module) {
+  module.attr("MIX_BLOCK") = env::kMixBlock;
+  py::class_<BoundEnv>(module, "VectorEnv", "Environments on arrays of the caller's; see stg.")
+      .def(py::init([](const std::vector<Scenario>& mix, int envs, int workers, std::uint64_t seed,
+                       bool curriculum, bool stagger) {
+             env::VectorEnvOptions options;
+             options.envs = envs;
+             options.seed = seed;
+             options.curriculum = curriculum;
+             options.stagger = stagger;
+             return std::make_unique<BoundEnv>(mix, options, workers);
+           }),
+           py::arg("mix"), py::arg("num_envs"), py::arg("workers") = 1, py::arg("seed") = 0,
+           py::arg("curriculum") = false, py::arg("stagger") = false)
+      .def("bind", &BoundEnv::Bind, py::arg("arrays"),
+           "Names the arrays that later calls write to.")
+      .def("restart_at", &BoundEnv::RestartAt, py::arg("k"),
+           "Starts the k-th episode of every environment.")
+      .def("reseed", &BoundEnv::Reseed, py::arg("seed"),
+           "Episodes that start from now on are drawn from this seed.")
+      .def("reset_env", &BoundEnv::ResetEnv, py::arg("env"), py::arg("seed"),
+           "Starts an episode of one environment; the others go on.")
+      .def("step", &BoundEnv::Step, py::arg("actions"),
+           "One decision; returns how many episodes it ended.")
+      .def("step_agents", &BoundEnv::StepAgents, py::arg("actions"),
+           "One decision of one environment, actions by the AUVs' names.")
+      .def("decide", &BoundEnv::Decide, py::arg("name"), py::arg("privileged") = false,
+           "Actions of a policy file or built-in controller.")
+      .def("close", &BoundEnv::Close, "Frees everything; later calls raise RuntimeError.")
+      .def("metrics", &BoundEnv::Metrics, py::arg("env"), "Of the episode that ended last.")
+      .def("snapshot", &BoundEnv::Snapshot, py::arg("env"), "The truth, for drawing.")
+      .def("scenario", &BoundEnv::scenario, py::arg("env"), py::return_value_policy::copy)
+      .def("seed", &BoundEnv::seed, py::arg("env"), "World seed of the episode under way.")
+      .def("round", &BoundEnv::round, py::arg("env"), "k of the episode under way.")
+      .def("episode_step", &BoundEnv::step, py::arg("env"), "Decisions made in it.")
+      .def_property_readonly("workers", &BoundEnv::workers);
+}
+
+}  // namespace stg::python

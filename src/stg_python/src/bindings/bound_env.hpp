@@ -1,0 +1,85 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marl_trainer/env/controller.hpp"
+#include "stg_python/env/fleet.hpp"
+
+namespace stg::python {
+
+namespace py = pybind11;
+
+/// A Fleet with numpy arrays of the caller's, which are written to without the GIL.
+///
+/// Every call checks what it is given before anything moves: after an exception the environments
+/// are as they were. A second thread's call while one is under way, and any call in a process that
+/// was forked from the one that made the environments, raise RuntimeError.
+class BoundEnv {
+ public:
+  BoundEnv(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers);
+  ~BoundEnv();
+  BoundEnv(const BoundEnv&) = delete;
+  BoundEnv& operator=(const BoundEnv&) = delete;
+
+  /// Names the arrays that every later call writes to; None: not wanted. Only names of EnvArrays.
+  void Bind(const py::dict& arrays);
+
+  void RestartAt(std::uint64_t k);
+  void Reseed(std::uint64_t seed);
+  void ResetEnv(int env, std::uint64_t seed);
+  /// Returns the number of environments whose episode this decision ended.
+  int Step(const py::handle& actions);
+  /// The same for one environment. @param actions {name of an AUV: array [action_size]}
+  int StepAgents(const py::dict& actions);
+  /// Actions [envs, agents, action_size] of a policy file or a built-in controller.
+  py::array_t<float> Decide(const std::string& name, bool privileged);
+  void Close();
+
+  py::dict Metrics(int env) const;
+  py::dict Snapshot(int env) const;
+  Scenario scenario(int env) const;
+  std::uint64_t seed(int env) const;
+  std::uint64_t round(int env) const;
+  int step(int env) const;
+
+  int envs() const { return envs_; }
+  int workers() const { return fleet().workers(); }
+
+ private:
+  /// Makes the environments one caller's for as long as it lives.
+  class Use {
+   public:
+    explicit Use(const BoundEnv* env);
+    ~Use() { env_.busy_.clear(std::memory_order_release); }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    const BoundEnv& env_;
+  };
+
+  const Fleet& fleet() const;
+  Fleet::Place at(int env) const;
+  void RequireEnv(int env) const;
+  template <class Number>
+  int StepChecked(const Number* actions);
+  const env::Controller& ControllerOf(const std::string& name, bool privileged);
+  void RequireBound() const;
+
+  std::unique_ptr<Fleet> fleet_;
+  int envs_, agents_, action_size_, observation_size_, state_size_;
+  py::dict arrays_;  ///< keeps them alive
+  env::EnvArrays out_;
+  std::vector<py::str> names_;  ///< of the AUVs
+  std::vector<float> actions_;  ///< [agents, action_size], of StepAgents
+  env::Controller controller_;
+  mutable std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
+  int process_;
+};
+
+}  // namespace stg::python

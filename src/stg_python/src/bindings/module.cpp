@@ -1,0 +1,14 @@
+#include "auv_common/error.hpp"
+#include "bind.hpp"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "The C++ engine of the package stg; its public face is the package itself.";
+  py::register_exception<stg::UserError>(module, "UserError", PyExc_ValueError).doc() =
+      "Bad input: the message names file, line and key where they are known.";
+  stg::python::BindScenario(module);
+  stg::python::BindVectorEnv(module);
+  stg::python::BindPolicy(module);
+  stg::python::BindAgent(module);
+}

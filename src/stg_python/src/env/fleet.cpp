@@ -1,0 +1,96 @@
+#include "stg_python/env/fleet.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "auv_common/error.hpp"
+
+namespace stg::python {
+namespace {
+
+std::ptrdiff_t Rows(int a, int b = 1, int c = 1) { return static_cast<std::ptrdiff_t>(a) * b * c; }
+
+/// Threads that have something to do: environments of one block share a register.
+int Busy(int envs, int workers) {
+  if (envs < 1) throw UserError("num_envs must be at least 1, not " + std::to_string(envs));
+  if (workers < 1) throw UserError("workers must be at least 1, not " + std::to_string(workers));
+  return std::min(workers, (envs + env::kMixBlock - 1) / env::kMixBlock);
+}
+
+}  // namespace
+
+Fleet::Fleet(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers)
+    : envs_(options.envs), pool_(Busy(options.envs, workers)) {
+  const int blocks = (envs_ + env::kMixBlock - 1) / env::kMixBlock;
+  for (int w = 0; w < pool_.workers(); ++w) {
+    const int first = blocks * w / pool_.workers() * env::kMixBlock;
+    const int end = std::min(envs_, blocks * (w + 1) / pool_.workers() * env::kMixBlock);
+    env::VectorEnvOptions own = options;
+    own.first_env = first;
+    own.envs = end - first;
+    own.total_envs = envs_;
+    parts_.push_back({std::make_unique<env::VectorEnv>(mix, own), first});
+  }
+}
+
+env::EnvArrays Fleet::PartOf(const env::EnvArrays& all, const Part& part) const {
+  const env::VectorEnv& envs = *part.envs;
+  const auto from = [&part](auto* array, std::ptrdiff_t row) {
+    return array == nullptr ? nullptr : array + part.first * row;
+  };
+  const std::ptrdiff_t seen = Rows(envs.agents(), envs.observation_size());
+  env::EnvArrays own;
+  own.observations = from(all.observations, seen);
+  own.states = from(all.states, envs.state_size());
+  own.rewards = from(all.rewards, envs.agents());
+  own.team_rewards = from(all.team_rewards, 1);
+  own.truncated = from(all.truncated, 1);
+  own.final_observations = from(all.final_observations, seen);
+  own.final_states = from(all.final_states, envs.state_size());
+  return own;
+}
+
+Fleet::Place Fleet::at(int env) const {
+  const auto after = std::upper_bound(parts_.begin(), parts_.end(), env,
+                                      [](int e, const Part& part) { return e < part.first; });
+  const Part& part = *std::prev(after);
+  return {*part.envs, env - part.first};
+}
+
+void Fleet::Reseed(std::uint64_t seed) {
+  for (const Part& part : parts_) part.envs->Reseed(seed);
+}
+
+void Fleet::RestartAt(std::uint64_t k, const env::EnvArrays& out) {
+  pool_.Run(workers(), [&](int w, int) {
+    const Part& part = parts_[static_cast<std::size_t>(w)];
+    part.envs->RestartAt(k, PartOf(out, part));
+  });
+}
+
+void Fleet::ResetEnv(int env, std::uint64_t seed, const env::EnvArrays& out) {
+  for (const Part& part : parts_) {
+    if (env < part.first || env >= part.first + part.envs->envs()) continue;
+    part.envs->ResetEnv(env - part.first, seed, PartOf(out, part));
+  }
+}
+
+void Fleet::Step(const float* actions, const env::EnvArrays& out) { StepAll(actions, out); }
+void Fleet::Step(const double* actions, const env::EnvArrays& out) { StepAll(actions, out); }
+
+template <class Number>
+void Fleet::StepAll(const Number* actions, const env::EnvArrays& out) {
+  const auto step = [&](int w, int) {
+    const Part& part = parts_[static_cast<std::size_t>(w)];
+    const env::VectorEnv& envs = *part.envs;
+    part.envs->Step(actions + part.first * Rows(envs.agents(), envs.action_size()),
+                    PartOf(out, part));
+  };
+  if (workers() == 1) {
+    step(0, 0);
+  } else {
+    pool_.Run(workers(), step);
+  }
+}
+
+}  // namespace stg::python
