@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -10,7 +11,7 @@ import yaml
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 
-from stg_study import runner, statistics, study, tables  # noqa: E402
+from stg_study import jobs, runner, statistics, study, tables  # noqa: E402
 from stg_study.data import Paper  # noqa: E402
 
 
@@ -172,6 +173,25 @@ class PaperFigures(unittest.TestCase):
                     where = f"{final} {algorithm} {name}"
                     self.assertAlmostEqual(np.mean(values), mean, delta=1.01 * unit, msg=where)
                     self.assertAlmostEqual(np.std(values, ddof=1), std, delta=1.6 * unit, msg=where)
+
+
+class PolicyFiles(unittest.TestCase):
+    def test_one_for_all_goes_before_one_for_each(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "policy_best.onnx")
+            self.assertIsNone(jobs.policy_hash(path))
+            own = [os.path.join(folder, f"policy_best_{i}.onnx") for i in range(2)]
+            for i, name in enumerate(own):
+                with open(name, "w", encoding="utf-8") as file:
+                    file.write(str(i))
+            self.assertEqual(jobs.policy_files(path), own)
+            before = jobs.policy_hash(path)
+            with open(own[1], "w", encoding="utf-8") as file:
+                file.write("changed")
+            self.assertNotEqual(jobs.policy_hash(path), before)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("all")
+            self.assertEqual(jobs.policy_files(path), [path])
 
 
 class Studies(unittest.TestCase):

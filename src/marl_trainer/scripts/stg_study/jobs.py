@@ -25,13 +25,22 @@ def read_json(path):
         return None
 
 
-def file_hash(path):
-    """SHA-256 of a file, or None where there is none."""
-    try:
-        with open(path, "rb") as file:
-            return hashlib.sha256(file.read()).hexdigest()
-    except OSError:
-        return None
+def policy_files(path):
+    """The policy file, or those of each AUV where every one has its own, or none."""
+    if os.path.isfile(path):
+        return [path]
+    stem, extension = os.path.splitext(path)
+    return sorted(glob.glob(f"{glob.escape(stem)}_[0-9]*{extension}"))
+
+
+def policy_hash(path):
+    """SHA-256 of the policy's files, or None where there are none."""
+    digest = hashlib.sha256()
+    files = policy_files(path)
+    for name in files:
+        with open(name, "rb") as file:
+            digest.update(file.read())
+    return digest.hexdigest() if files else None
 
 
 def _options(mapping):
@@ -85,7 +94,7 @@ class Training:
             and summary.get("env_steps", 0) >= self.steps
             and record is not None
             and record.get("arguments") == self.arguments
-            and os.path.isfile(self.policy)
+            and bool(policy_files(self.policy))
         )
 
     def prepare(self):
@@ -148,7 +157,7 @@ class Evaluation:
         """What the result depends on: the options and the policy's content."""
         return {
             "arguments": self.arguments,
-            "policy": file_hash(self.policy) if self.training else self.policy,
+            "policy": policy_hash(self.policy) if self.training else self.policy,
         }
 
     def conflict(self):

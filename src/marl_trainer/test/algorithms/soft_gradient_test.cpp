@@ -95,7 +95,8 @@ TEST(JointCritics, GradientsAreThoseOfAutomaticDifferentiation) {
   JointCritics::Scratch scratch(critics, rows);
 
   const torch::Tensor actions = Rows(batch.actions, rows).requires_grad_(true);
-  const torch::Tensor inputs = torch::cat({Rows(batch.states, rows), actions}, 1);
+  const torch::Tensor inputs =
+      torch::cat({Rows(batch.states, rows), options.action_gain * actions}, 1);
   std::vector<TorchNetwork> networks;
   std::vector<torch::Tensor> values;
   const std::size_t size = critics.network().parameters();

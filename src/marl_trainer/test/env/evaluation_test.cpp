@@ -1,9 +1,11 @@
 #include "marl_trainer/env/evaluation.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "auv_common/error.hpp"
 #include "env/env_fixture.hpp"
@@ -65,6 +67,48 @@ TEST(MakeController, AnUnknownNameOrMissingFileIsAUserError) {
   const Scenario s;
   EXPECT_THROW(MakeController("pursiut", s), UserError);
   EXPECT_THROW(MakeController("/nonexistent/policy.onnx", s), UserError);
+}
+
+/// A policy that always does tanh(bias).
+agent::Policy ConstantPolicy(const Scenario& s, float bias) {
+  agent::Policy::Parameters p;
+  p.input_mean = Eigen::VectorXf::Zero(s.observation_size());
+  p.input_std = Eigen::VectorXf::Ones(s.observation_size());
+  p.layers.push_back({Eigen::MatrixXf::Zero(s.action_size(), s.observation_size()),
+                      Eigen::VectorXf::Constant(s.action_size(), bias)});
+  p.log_std = Eigen::VectorXf::Zero(s.action_size());
+  p.metadata.observation_layout = agent::ObservationLayout(s);
+  p.metadata.action_interface = agent::ActionInterfaceName(s.control.interface);
+  return agent::Policy(std::move(p));
+}
+
+TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
+  const Scenario s = Shipped("medium_release");
+  std::string folder = (std::filesystem::temp_directory_path() / "own_XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const auto file = [&](int i) { return folder + "/p_" + std::to_string(i) + ".onnx"; };
+  for (int i = 0; i < s.agents; ++i) {
+    ConstantPolicy(s, 0.1F * static_cast<float>(i)).SaveOnnx(file(i));
+  }
+  VectorEnvOptions options;
+  options.envs = 3;
+  VectorEnv env(s, options);
+  EnvMemory memory = env.MakeMemory();
+  env.RestartAt(0, memory.arrays());
+  std::vector<double> actions(static_cast<std::size_t>(3 * s.agents * s.action_size()));
+  const Controller own = MakeController(folder + "/p.onnx", s);
+  EXPECT_EQ(own.policies.size(), static_cast<std::size_t>(s.agents));
+  Decide(own, env, memory.observations.data(), actions.data());
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    const auto row = static_cast<int>(i) / s.action_size();
+    EXPECT_NEAR(actions[i], std::tanh(0.1 * (row % s.agents)), 1e-6);
+  }
+  std::filesystem::remove(file(2));
+  EXPECT_THROW(MakeController(folder + "/p.onnx", s), UserError);
+  // One for all goes first.
+  ConstantPolicy(s, 1.0F).SaveOnnx(folder + "/p.onnx");
+  EXPECT_EQ(MakeController(folder + "/p.onnx", s).policies.size(), 1U);
+  std::filesystem::remove_all(folder);
 }
 
 /// A row of the table in the reference (400 episodes of the release's simulator).

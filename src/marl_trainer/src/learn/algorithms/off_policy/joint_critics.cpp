@@ -24,6 +24,7 @@ JointCritics::JointCritics(const Problem& problem, const ReplayOptions& options,
     : state_size_(problem.state_size),
       joint_action_(problem.agents * problem.action_size),
       count_(count),
+      action_gain_(static_cast<float>(options.action_gain)),
       network_(CriticSpec(problem, options)),
       parameters_(static_cast<std::size_t>(count) * network_.parameters()) {
   for (int k = 0; k < count; ++k) {
@@ -45,7 +46,8 @@ void JointCritics::Fill(const float* states, const float* actions, int rows, Scr
   float* to = s->inputs_.data();
   for (int r = 0; r < rows; ++r) {
     to = std::copy_n(states + static_cast<std::ptrdiff_t>(r) * state_size_, state_size_, to);
-    to = std::copy_n(actions + static_cast<std::ptrdiff_t>(r) * joint_action_, joint_action_, to);
+    const float* action = actions + static_cast<std::ptrdiff_t>(r) * joint_action_;
+    for (int a = 0; a < joint_action_; ++a) *to++ = action_gain_ * action[a];
   }
 }
 
@@ -114,7 +116,7 @@ void JointCritics::ActionGradient(const float* states, const float* actions, int
                            joint_action_, &s->workspaces_[static_cast<std::size_t>(k)],
                            s->d_actions_.data());
     for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(rows) * joint_action_; ++i) {
-      d_actions[i] += s->d_actions_[static_cast<std::size_t>(i)];
+      d_actions[i] += action_gain_ * s->d_actions_[static_cast<std::size_t>(i)];
     }
   }
 }

@@ -30,6 +30,8 @@ void ReplayConfig::DescribeCritics(OptionTable* t) {
   t->Add("critic-hidden", &critic_hidden, {1, 4096},
          "widths of the hidden layers of the critics of state and joint action");
   t->Add("layer-norm", &layer_norm, "whether the critics normalise their hidden layers");
+  t->Add("action-gain", &action_gain, {1e-3, 1e3},
+         "the critics see actions of [-1, 1] times this: above 1, they tell fine actions apart");
   t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critics at the start");
 }
 
@@ -50,6 +52,7 @@ void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   lr = critic_lr = 3e-4;
   lr_final = 1.0;
   layer_norm = false;
+  action_gain = 1.0;
 }
 
 void ReplayConfig::ValidateOrThrow(const TrainConfig& common) const {

@@ -60,6 +60,7 @@ class JointCritics {
   }
 
   const int state_size_, joint_action_, count_;
+  const float action_gain_;
   const Mlp network_;
   std::vector<float> parameters_, targets_;  // [count][network parameters]
 };

@@ -21,6 +21,7 @@ struct ReplayOptions {
   std::vector<int> critic_hidden{128, 128};
   std::string activation = "relu";
   bool layer_norm = true;
+  double action_gain = 4.0;
   double lr = 1e-3;
   double critic_lr = 1e-3;
   double lr_final = 0.1;
