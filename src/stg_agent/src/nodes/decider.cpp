@@ -31,7 +31,8 @@ Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario, 
     for (const std::string& builtin : agent::Controllers().Names()) names += builtin + ", ";
     throw UserError("policy '" + name + "': neither of " + names + "nor an .onnx file");
   }
-  policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(agent::PolicyFileOf(name, agent)));
+  policy_ = std::make_unique<const agent::Policy>(
+      agent::Policy::LoadOnnx(agent::PolicyFileOf(name, agent)));
   policy_->RequireFits(scenario);
   id_ = policy_->metadata().id;
 }
