@@ -67,6 +67,10 @@ class Refused(WithFolder):
         self.check_refused("agents: 'abc' is none of 1 to 255", "agents:=abc")
         self.check_refused("agents: '256' is none of 1 to 255", "agents:=256")
 
+    def test_arguments_that_the_launch_file_does_not_know(self):
+        self.check_refused("no argument 'episods'; did you mean 'episodes'", "episods:=1")
+        self.check_refused("no argument 'foo'; it has scenario, ", "foo:=1")
+
     def test_a_stranger_on_the_port_of_the_master(self):
         for answer in (b"HTTP/1.0 200 OK\r\n\r\nhello", b"SSH-2.0-OpenSSH\r\n", None):
             with self.subTest(answer), self.stranger(answer) as port:
