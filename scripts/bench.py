@@ -15,6 +15,7 @@ import time
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
+ALGORITHMS = "ippo,happo,maddpg,matd3,masac,madqn"  # beside MAPPO, the default
 GOAL = ("1030", 60.0)  # return and seconds that every seed should reach
 
 
@@ -38,6 +39,11 @@ def parse(argv):
     )
     parser.add_argument(
         "--seeds", default="0,1,2,3,4", help="seeds of the trainings (%(default)s); '' for none"
+    )
+    parser.add_argument(
+        "--algorithms",
+        default=ALGORITHMS,
+        help="trained once each, with the first seed (%(default)s); '' for none",
     )
     parser.add_argument(
         "--workers", type=int, default=os.cpu_count() or 1, help="threads of train (%(default)s)"
@@ -145,34 +151,51 @@ def time_to(summary, name):
     return moment["seconds"] if moment else None
 
 
+def train(options, folder, algorithm, seed):
+    """Summary of one training from scratch; prints its row."""
+    out = os.path.join(folder, f"{algorithm or 'seed'}{seed}")
+    command = [program(options.bin, "train"), "--scenario", "medium_release", "--preset", "fast"]
+    command += ["--seed", str(seed), "--workers", str(options.workers), "--out", out]
+    command += ["--algorithm", algorithm] if algorithm else []
+    command += ["--steps", str(options.steps)] if options.steps else []
+    run(command)
+    with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    times = [time_to(summary, name) for name in THRESHOLDS]
+    cells = "  ".join("       -" if t is None else f"{t:8.1f}" for t in times)
+    print(
+        f"{algorithm or seed:>6}           {cells}  {summary['wall_seconds']:7.1f} s  "
+        f"{summary['env_steps_per_second']:8,.0f}  "
+        f"{summary['best_validation'].get('return', float('nan')):11.1f}",
+        flush=True,
+    )
+    return summary
+
+
 def bench_training(options):
     """Wall time from scratch to each return, one training after the other."""
     heading(f"Training (--preset fast, medium_release, {options.workers} workers)")
-    tool = program(options.bin, "train")
     cells = "  ".join(f"{name:>8}" for name in THRESHOLDS)
     print(f"seed  seconds to {cells}  whole run   steps/s  best return", flush=True)
-    results = {}
     with tempfile.TemporaryDirectory() as folder:
-        for seed in options.seeds:
-            out = os.path.join(folder, f"seed{seed}")
-            command = [tool, "--scenario", "medium_release", "--preset", "fast"]
-            command += ["--seed", str(seed), "--workers", str(options.workers), "--out", out]
-            command += ["--steps", str(options.steps)] if options.steps else []
-            run(command)
-            with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
-                summary = json.load(file)
-            results[seed] = summary
-            times = [time_to(summary, name) for name in THRESHOLDS]
-            cells = "  ".join("       -" if t is None else f"{t:8.1f}" for t in times)
-            print(
-                f"{seed:4}             {cells}  {summary['wall_seconds']:7.1f} s  "
-                f"{summary['env_steps_per_second']:8,.0f}  "
-                f"{summary['best_validation'].get('return', float('nan')):11.1f}",
-                flush=True,
-            )
+        results = {seed: train(options, folder, "", seed) for seed in options.seeds}
     if results:
         report_training(list(results.values()))
     return results
+
+
+def bench_algorithms(options):
+    """The same for every other algorithm, with one seed."""
+    if not options.algorithms or not options.seeds:
+        return {}
+    heading(f"Algorithms (--preset fast, medium_release, {options.workers} workers)")
+    cells = "  ".join(f"{name:>8}" for name in THRESHOLDS)
+    print(f"name  seconds to {cells}  whole run   steps/s  best return", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        return {
+            name: train(options, folder, name, options.seeds[0])
+            for name in options.algorithms.split(",")
+        }
 
 
 def report_training(summaries):
@@ -208,6 +231,7 @@ def main(argv):
     report["environment"] = bench_environment(options)
     if options.seeds:
         report["training"] = bench_training(options)
+        report["algorithms"] = bench_algorithms(options)
     if not options.no_ros:
         report["ros"] = bench_ros()
     folder = os.path.dirname(options.out)

@@ -3,9 +3,9 @@
 //
 //   uan_network NODES PACKETS DURATION_S RATE_BPS KHZ BAND_HZ LEVEL_DB ACQUISITION_DB THRESHOLD_DB
 //
-// NODES has lines `x y z` [m], PACKETS lines `time source bytes`, by time. A packet of so many bytes,
-// the module's header among them, goes to everybody by ALOHA. Prints `source receiver delivered` for
-// every pair, after a line with the number of packets that were sent.
+// NODES has lines `x y z` [m], PACKETS lines `time source bytes`, by time. A packet of so many
+// bytes, the module's header among them, goes to everybody by ALOHA. Prints `source receiver
+// delivered` for every pair, after a line with the number of packets that were sent.
 
 #include <ns3/core-module.h>
 #include <ns3/mobility-module.h>
@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <vector>
 
 using namespace ns3;
@@ -69,8 +70,8 @@ int main(int argc, char** argv) {
   channel->SetNoiseModel(CreateObjectWithAttributes<UanNoiseModelDefault>(
       "Wind", DoubleValue(5.0), "Shipping", DoubleValue(0.5)));
   UanModesList modes;
-  modes.AppendMode(UanTxModeFactory::CreateMode(UanTxMode::PSK, rate, rate, centre_hz, band_hz, 2,
-                                                "compared"));
+  modes.AppendMode(
+      UanTxModeFactory::CreateMode(UanTxMode::PSK, rate, rate, centre_hz, band_hz, 2, "compared"));
   UanHelper uan;
   uan.SetMac("ns3::UanMacAloha");
   uan.SetPhy("ns3::UanPhyGen", "TxPower", DoubleValue(std::atof(argv[7])), "RxThreshold",

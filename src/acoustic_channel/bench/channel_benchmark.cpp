@@ -51,6 +51,52 @@ void ExtendedStep(benchmark::State& bench) { Step(bench, "extended"); }
 BENCHMARK(RangeStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 
+/// Modems 20 m apart that always have a packet, by a rule of medium access; decisions of 0.1 s.
+void Modems(benchmark::State& bench, const char* access) {
+  const int agents = static_cast<int>(bench.range(0));
+  NetworkConfig s;
+  s.agents = agents;
+  s.channel.model = "physical";
+  s.channel.access = access;
+  s.channel.modem.packet_bytes = 32;
+  s.channel.slots.length_s = 1.25;
+  s.channel.contention.rest_s = agents;
+  const auto channel = MakeChannel(s.channel, s);
+  channel->Reset(1, 0);
+  std::vector<Vec3<double>> p_W;
+  for (int i = 0; i < agents; ++i) p_W.push_back({20.0 * (i % 7), 20.0 * (i / 7), -5.0 - i % 3});
+  const std::vector<Vec3<double>> v_W(p_W.size(), {0.1, 0.0, 0.0});
+  const std::vector<std::uint8_t> bytes(32, 1);
+  std::vector<Transmission> offered;
+  std::vector<Reception> got;
+  std::uint32_t k = 0;
+  for (auto _ : bench) {
+    const TimeNs t = k * kDt;
+    offered.clear();
+    for (int i = 0; i < agents; ++i) {
+      if (!channel->Due(i, t)) continue;
+      Transmission& packet = offered.emplace_back();
+      packet.source = i;
+      packet.stamp = packet.generation = t;
+      packet.payload = ViewOf(bytes);
+    }
+    channel->Step(t, k, p_W, v_W, offered);
+    for (int j = 0; j < agents; ++j) {
+      got.clear();
+      channel->Deliver(j, t + kDt, &got);
+      benchmark::DoNotOptimize(got.data());
+    }
+    ++k;
+  }
+  const auto& totals = channel->totals();
+  bench.counters["fates/step"] =
+      static_cast<double>(totals.delivered + totals.dropped) / static_cast<double>(k);
+}
+void TdmaStep(benchmark::State& bench) { Modems(bench, "tdma"); }
+void CsmaStep(benchmark::State& bench) { Modems(bench, "csma"); }
+BENCHMARK(TdmaStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50);
+BENCHMARK(CsmaStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50);
+
 void Link(benchmark::State& bench) {
   const NetworkConfig s;
   const auto channel = MakeChannel(s.channel, s);

@@ -78,12 +78,13 @@ class Log:
 
 
 def draw_delivery(axes, log):
-    """Share of sent packets that were delivered by distance, with 95 % intervals of Wilson."""
+    """Share of what was sent that was delivered, by distance, with 95 % intervals of Wilson."""
     axes.set_title("delivery against distance")
     axes.set_xlabel("distance [m]")
     axes.set_ylabel("delivered")
     axes.set_ylim(-0.03, 1.03)
-    distance, good = log.distance_m[log.sent], log.delivered[log.sent]
+    there = log.sent & (log.fate != "left")
+    distance, good = log.distance_m[there], log.delivered[there]
     if not len(distance):
         return
     # Bins of equal numbers of packets; fixed distances make bins of their own.
@@ -156,7 +157,7 @@ def draw_slots(axes, log, sent, window):
         width = max(stop - begin, (end - start) / 500)
         axes.broken_barh([(begin, width)], (rows[source] - 0.4, 0.8), color=colour, linewidth=0)
     axes.set_xlim(start, end)
-    axes.set_ylim(-0.7, len(rows) - 0.3)
+    axes.set_ylim(-0.7, 1.12 * len(rows) + 0.2)
     stride = -(-len(rows) // 25)
     axes.set_yticks(list(rows.values())[::stride])
     axes.set_yticklabels(list(rows)[::stride])

@@ -25,7 +25,7 @@ std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunC
     return config::Violation{{"channel.access", "channel.model"},
                              "this medium access needs modems, which the model has not"};
   }
-  return access->FindConflict();
+  return access->FindConflict(model->packet_time(c, run.agents));
 }
 
 void Describe(NetworkConfig* c, config::Table* t) {

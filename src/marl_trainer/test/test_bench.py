@@ -33,7 +33,9 @@ class Bench(unittest.TestCase):
         return done.returncode, done.stdout
 
     def test_report_and_file_hold_what_the_programs_measured(self):
-        status, output = self.bench("--seeds", "0,1", "--workers", "2", "--seconds", "0.5")
+        status, output = self.bench(
+            *("--seeds", "0,1", "--workers", "2", "--seconds", "0.5", "--algorithms", "ippo,maddpg")
+        )
         self.assertEqual(status, 0, output)
         with open(self.out, encoding="utf-8") as file:
             report = json.load(file)
@@ -45,8 +47,14 @@ class Bench(unittest.TestCase):
         self.assertIn("update 60 %", output)
         self.assertIn("(25 %)", output)
         train = [c for c in stub_programs.calls(self.folder) if c.startswith("train ")]
-        self.assertEqual(len(train), 2)
+        self.assertEqual(len(train), 4)
         self.assertIn("--scenario medium_release --preset fast --seed 1 --workers 2", train[1])
+        self.assertIn("--seed 0 --workers 2", train[3])
+        self.assertIn("--algorithm maddpg", train[3])
+        self.assertEqual(
+            report["algorithms"]["ippo"]["time_to_threshold"]["1030"]["seconds"], 50.0
+        )
+        self.assertRegex(output, r"maddpg +3\.0 ")
 
     def test_missing_program_is_named(self):
         os.remove(os.path.join(self.folder, "bench_env"))

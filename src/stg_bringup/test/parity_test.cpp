@@ -45,6 +45,8 @@ Flight Listen(const Scenario& s) {
   for (int i = 0; i < s.agents; ++i) {
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> callback =
         [&, i](const nav_msgs::Odometry::ConstPtr& m) {
+          // Between two decisions navigation goes to autopilots alone.
+          if ((NsOf(m->header.stamp) - kFirstStamp) % s.decision_period() != 0) return;
           const int index = index_of(m->header.stamp);
           auto& states = flight.states[index];
           states.resize(static_cast<std::size_t>(s.agents));

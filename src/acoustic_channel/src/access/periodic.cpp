@@ -18,7 +18,7 @@ Periodic::Periodic(const PeriodicConfig& config, const RunConfig& run)
       period_(run.decision_period()),
       slots_(static_cast<TimeNs>(std::max(1.0, std::round(transmit_period_s_ / decision_s_)))) {}
 
-std::optional<config::Violation> Periodic::FindConflict() const {
+std::optional<config::Violation> Periodic::FindConflict(const PacketTime& /*packet*/) const {
   if (transmit_period_s_ >= decision_s_ * (1.0 - 1e-9)) return {};
   return config::Violation{{"channel.transmit_period_s", "time.dt_s", "time.decision_steps"},
                            "an AUV sends at most one packet per decision"};

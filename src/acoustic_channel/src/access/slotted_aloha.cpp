@@ -4,13 +4,12 @@
 
 #include "acoustic_channel/access/tdma.hpp"
 #include "acoustic_channel/channel_config.hpp"
-#include "acoustic_channel/modem/modem_profile.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace stg::acoustics {
 
-SlottedAloha::SlottedAloha(const SlotsConfig& config, TimeNs airtime)
-    : config_(config), slot_(std::llround(config.length_s * 1e9)), airtime_(airtime) {}
+SlottedAloha::SlottedAloha(const SlotsConfig& config)
+    : config_(config), slot_(std::llround(config.length_s * 1e9)) {}
 
 void SlottedAloha::Reset(std::uint64_t seed, std::uint32_t episode) {
   seed_ = seed;
@@ -30,12 +29,12 @@ TimeNs SlottedAloha::Next(int node, TimeNs from, const Attempt& /*attempt*/) con
   return slot * slot_;
 }
 
-std::optional<config::Violation> SlottedAloha::FindConflict() const {
-  return FindSlotConflict(config_, airtime_);
+std::optional<config::Violation> SlottedAloha::FindConflict(const PacketTime& packet) const {
+  return FindSlotConflict(config_, packet.airtime);
 }
 
-std::unique_ptr<MediumAccess> MakeSlottedAloha(const ChannelConfig& config, const RunConfig& run) {
-  return std::make_unique<SlottedAloha>(config.slots, LongestAirtime(config.modem, run.agents));
+std::unique_ptr<MediumAccess> MakeSlottedAloha(const ChannelConfig& config, const RunConfig&) {
+  return std::make_unique<SlottedAloha>(config.slots);
 }
 
 }  // namespace stg::acoustics

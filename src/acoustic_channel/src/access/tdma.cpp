@@ -4,7 +4,6 @@
 #include <string>
 
 #include "acoustic_channel/channel_config.hpp"
-#include "acoustic_channel/modem/modem_profile.hpp"
 
 namespace stg::acoustics {
 
@@ -27,12 +26,8 @@ std::optional<config::Violation> FindSlotConflict(const SlotsConfig& config, Tim
           std::to_string(Seconds(airtime)) + " s and the guard"};
 }
 
-Tdma::Tdma(const SlotsConfig& config, int nodes, TimeNs airtime, TimeNs turnaround)
-    : config_(config),
-      slot_(std::llround(config.length_s * 1e9)),
-      frame_(slot_ * nodes),
-      airtime_(airtime),
-      turnaround_(turnaround) {}
+Tdma::Tdma(const SlotsConfig& config, int nodes)
+    : config_(config), slot_(std::llround(config.length_s * 1e9)), frame_(slot_ * nodes) {}
 
 TimeNs Tdma::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {
   const TimeNs first = slot_ * node;
@@ -40,17 +35,17 @@ TimeNs Tdma::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {
   return first + (from - first + frame_ - 1) / frame_ * frame_;
 }
 
-std::optional<config::Violation> Tdma::FindConflict() const {
-  if (auto violation = FindSlotConflict(config_, airtime_)) return violation;
-  if (airtime_ + turnaround_ <= frame_) return {};
+std::optional<config::Violation> Tdma::FindConflict(const PacketTime& packet) const {
+  if (auto violation = FindSlotConflict(config_, packet.airtime)) return violation;
+  const TimeNs busy = packet.airtime + packet.turnaround;
+  if (busy <= frame_) return {};
   return config::Violation{{"channel.slots.length_s", "channel.modem.profile"},
-                           "a modem needs " + std::to_string(Seconds(airtime_ + turnaround_)) +
-                               " s for a packet and to turn around, a round of slots is shorter"};
+                           "a modem is busy for " + std::to_string(Seconds(busy)) +
+                               " s with a packet, a round of slots is shorter"};
 }
 
 std::unique_ptr<MediumAccess> MakeTdma(const ChannelConfig& config, const RunConfig& run) {
-  return std::make_unique<Tdma>(config.slots, run.agents, LongestAirtime(config.modem, run.agents),
-                                LongestTurnaround(config.modem, run.agents));
+  return std::make_unique<Tdma>(config.slots, run.agents);
 }
 
 }  // namespace stg::acoustics

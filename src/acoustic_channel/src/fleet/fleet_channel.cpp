@@ -72,11 +72,13 @@ void FleetChannel::Ping(int source, int destination, TimeNs timeout, std::uint32
 
 /// Until when everything is in at the time `now`, or has been waited for.
 TimeNs FleetChannel::Settled(TimeNs now) const {
-  TimeNs settled = now - lag_;
+  const TimeNs complete = now - lag_;  // no word up to here is still to come
+  TimeNs settled = complete;
   for (const MotionTrack& track : tracks_) {
-    const auto newest = track.newest();
+    // A step between two samples needs both, and no third between them: hence not the newest one.
+    const auto newest = track.NewestUntil(complete);
     const bool silent = !newest || (begun_ && *newest + silent_after_ < closed_);
-    if (!silent) settled = std::min(settled, std::max(*newest, now - lag_ - patience_));
+    if (!silent) settled = std::min(settled, std::max(*newest, complete - patience_));
   }
   return settled;
 }
@@ -125,6 +127,10 @@ void FleetChannel::Close() {
 
 void FleetChannel::Ask(TimeNs now) {
   for (const Asked& a : asked_) {
+    if (!present(a.source)) {
+      listener_->OnPingRefused(a.tag, "no odometry: the vehicle that asks is not there");
+      continue;
+    }
     try {
       channel_->Ping(a.source, a.destination, now, a.timeout, a.tag);
     } catch (const UserError& error) {

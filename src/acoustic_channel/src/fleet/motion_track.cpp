@@ -42,9 +42,10 @@ std::optional<TimeNs> MotionTrack::newest() const {
   return samples_.back().t;
 }
 
-std::optional<Vec3<double>> MotionTrack::last_position() const {
-  if (samples_.empty()) return {};
-  return samples_.back().motion.p_W;
+std::optional<TimeNs> MotionTrack::NewestUntil(TimeNs t) const {
+  const auto next = FirstAfter(t);
+  if (next == samples_.begin()) return {};
+  return (next - 1)->t;
 }
 
 void MotionTrack::ForgetBefore(TimeNs t) {

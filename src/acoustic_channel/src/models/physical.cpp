@@ -23,6 +23,9 @@ class PhysicalModel : public PropagationModel {
     return std::make_unique<ReceivedLinks>(config.modem, nodes);
   }
   bool has_modems() const override { return true; }
+  PacketTime packet_time(const ChannelConfig& config, int nodes) const override {
+    return {LongestAirtime(config.modem, nodes), LongestTurnaround(config.modem, nodes)};
+  }
   std::size_t max_payload(const ChannelConfig& config, int nodes) const override {
     return LongestPayload(config.modem, nodes);
   }

@@ -16,6 +16,8 @@ namespace {
 using config::YamlTree;
 
 constexpr std::size_t kMaxNodes = 1000;
+/// As many as fit into the largest file, nearly: times of packets are lists.
+constexpr int kMaxValues = 300000;
 constexpr double kLongestS = 1e8;
 
 /// The keys of one map of the file, each by the program's usual rules.
@@ -232,7 +234,7 @@ RunConfig SimulationFile::Run() const {
 }
 
 SimulationFile LoadSimulation(const std::string& path) {
-  const YamlTree root = config::ParseYaml(config::ReadBoundedFile(path), path);
+  const YamlTree root = config::ParseYaml(config::ReadBoundedFile(path), path, true, kMaxValues);
   Reader reader(path, root, "");
   SimulationFile simulation;
   config::Table* t = reader.table();

@@ -64,6 +64,16 @@ TEST(Slots, ThatCannotHoldAPacketAreAConfigurationError) {
   }
 }
 
+TEST(Slots, ConcernNobodyOnIdealChannels) {
+  NetworkConfig s;
+  s.channel.access = "tdma";
+  s.channel.slots.length_s = 0.1;
+  s.channel.slots.guard_s = 0.0;
+  EXPECT_FALSE(config::FindViolation(s)) << "packets take no time";
+  s.channel.model = "physical";
+  EXPECT_TRUE(config::FindViolation(s));
+}
+
 TEST(Configuration, APacketThatNoFrameTakesIsRefused) {
   NetworkConfig s;
   s.channel.model = "physical";

@@ -97,10 +97,17 @@ class Fleet(unittest.TestCase):
         answer = wait_for(answered, 60.0, "an answer")
         self.assertAlmostEqual(answer.range, 500.0, delta=1.0)
         self.assertAlmostEqual(answer.round_trip, 2.0 * 500.0 / SOUND_SPEED, delta=0.02)
-        for source, destination in ((10, 10), (10, 7), (0, 20)):
+        # Itself, who is not in the list, and who is but never said where it is.
+        for source, destination in ((10, 10), (10, 7), (0, 20), (10, 40)):
             refused = ping(source=source, destination=destination, timeout=5.0)
             self.assertFalse(refused.success)
             self.assertTrue(refused.message)
+
+    def test_who_never_said_where_it_is_is_named_and_the_rest_goes_on(self):
+        wait_for(lambda: "no odometry on /delta/odom" in self.diagnostics.message, 20.0,
+                 "delta in the diagnostics")
+        self.assertEqual(self.diagnostics.values["delta"], "no odometry yet")
+        self.say_until_heard(self.alpha, self.beta, b"without delta")
 
     def test_links_of_all_pairs_by_id(self):
         wait_for(lambda: self.links and len(self.links[-1].links) == 6, 20.0, "six links")
@@ -119,6 +126,9 @@ class Fleet(unittest.TestCase):
             refusal = wait_for(lambda: self.gamma.fate(number), 20.0, "a status")[0]
             self.assertEqual(refusal.status, TransmitStatus.REFUSED)
             self.assertIn("no odometry", refusal.text)
+            ping = rospy.ServiceProxy("/acoustic_channel/ping", Ping)
+            for pair in ((10, 30), (30, 10)):
+                self.assertFalse(ping(source=pair[0], destination=pair[1], timeout=2.0).success)
             self.say_until_heard(self.alpha, self.beta, b"without gamma")
             self.assertFalse(self.gamma.heard(b"without gamma"))
         finally:

@@ -208,6 +208,18 @@ TEST_F(Simulate, ASlotShorterThanAPacketIsAnError) {
   EXPECT_NE(r.err.find("network.yaml:"), std::string::npos) << r.err;
 }
 
+TEST_F(Simulate, ShippedNetworksRun) {
+  int networks = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(STG_NETWORKS)) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++networks;
+    const Result r = Command("'" + entry.path().string() + "' --out '" + folder_ + "/out' --quiet");
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_GT(r.json["delivery_ratio"], 0.3);
+  }
+  EXPECT_GT(networks, 0);
+}
+
 TEST_F(Simulate, CommandLine) {
   const Result help = Command("--help");
   EXPECT_EQ(help.code, 0);

@@ -1,6 +1,8 @@
+#include <random>
 #include <tuple>
 #include <utility>
 
+#include "acoustic_channel/water/absorption.hpp"
 #include "simulate_fixture.hpp"
 
 /// Throughput and age of information of networks against their closed forms.
@@ -102,6 +104,43 @@ TEST_F(Throughput, ListeningHelpsWhereSoundIsQuickerThanAPacket) {
   const double far_aloha = Of("aloha", 8, 2500.0, 0.4, 2e4);
   const double far_csma = Of("csma", 8, 2500.0, 0.4, 2e4);
   EXPECT_LT(far_csma, 1.03 * far_aloha);
+}
+
+/// Non-coherent FSK of 256 bits through noise, slow fading and fading of packets: what the program
+/// delivers over distance against the mean of the same formulas over draws of another generator.
+TEST_F(Throughput, DeliveryOverDistanceIsTheMeanOverTheFading) {
+  const double site_db = 99.0;
+  const std::vector<double> distances = {500.0, 1000.0, 1500.0, 2000.0};
+  std::string text =
+      "duration_s: 80000.0\nstep_s: 10.0\nchannel:\n  model: physical\n  access: aloha\n"
+      "  modem: {profile: micromodem_fsk_r0}\n  water: {sound_speed: profile}\n"
+      "  propagation: {shadowing_time_s: 0.1}\n  noise: {site_db: 99.0}\nnodes:\n" +
+      NodeAt(0, 0.0, 0.0);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    text += NodeAt(static_cast<int>(i) + 1, distances[i], 0.0);
+  }
+  const Result r =
+      Run(text + "traffic:\n  - {source: 0, kind: periodic, period_s: 8.0, bytes: 32}\n",
+          "--quiet --summary-only");
+  ASSERT_EQ(r.code, 0) << r.err;
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const double d = distances[i];
+    const double snr_db = 185.0 - 15.0 * std::log10(d) - ThorpAbsorption(22.0) * d / 1000.0 -
+                          site_db - 10.0 * std::log10(4000.0) + 10.0 * std::log10(50.0) - 3.0;
+    double sum = 0.0;
+    constexpr int kDraws = 100000;
+    for (int k = 0; k < kDraws; ++k) {
+      const double re = std::sqrt(10.0 / 11.0) + std::sqrt(0.5 / 11.0) * normal(generator);
+      const double im = std::sqrt(0.5 / 11.0) * normal(generator);
+      const double gamma =
+          std::pow(10.0, (snr_db + 3.0 * normal(generator)) / 10.0) * (re * re + im * im);
+      sum += std::pow(1.0 - 0.5 * std::exp(-0.5 * gamma), 256.0);
+    }
+    EXPECT_NEAR(r.json["receivers"][i + 1]["delivered"].get<double>() / 10000.0, sum / kDraws, 0.02)
+        << d;
+  }
 }
 
 class Age : public Simulate {

@@ -18,15 +18,14 @@ namespace stg::config {
 namespace {
 
 constexpr std::size_t kMaxBytes = 1 << 20;
-constexpr int kMaxNodes = 20000;
 constexpr std::size_t kMaxDepth = 16;
 
 /// Builds the tree from the parser's events. The parser's own node type would
 /// expand aliases and lose duplicate keys.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(std::string origin, bool with_lines)
-      : origin_(std::move(origin)), with_lines_(with_lines) {}
+  TreeBuilder(std::string origin, bool with_lines, int max_values)
+      : origin_(std::move(origin)), with_lines_(with_lines), max_values_(max_values) {}
 
   YamlTree Take() { return std::move(root_); }
 
@@ -82,7 +81,9 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   YamlTree Make(const YAML::Mark& mark, YamlTree::Kind kind) {
-    if (++nodes_ > kMaxNodes) Fail(mark.line + 1, "too many values for a scenario file");
+    if (++nodes_ > max_values_) {
+      Fail(mark.line + 1, "more than " + std::to_string(max_values_) + " values");
+    }
     YamlTree node;
     node.kind = kind;
     node.line = mark.line + 1;
@@ -145,15 +146,16 @@ class TreeBuilder : public YAML::EventHandler {
 
   std::string origin_;
   bool with_lines_;
-  int nodes_ = 0;
+  int max_values_, nodes_ = 0;
   YamlTree root_;
   std::vector<Frame> stack_;
 };
 
 }  // namespace
 
-YamlTree ParseYaml(const std::string& text, const std::string& origin, bool with_lines) {
-  TreeBuilder builder(origin, with_lines);
+YamlTree ParseYaml(const std::string& text, const std::string& origin, bool with_lines,
+                   int max_values) {
+  TreeBuilder builder(origin, with_lines, max_values);
   const auto nul = text.find('\0');
   if (nul != std::string::npos) builder.Fail(1, "not a text file (it holds a zero byte)");
   std::istringstream stream(text);
@@ -161,7 +163,7 @@ YamlTree ParseYaml(const std::string& text, const std::string& origin, bool with
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) return {};
     YamlTree tree = builder.Take();
-    TreeBuilder rest(origin, with_lines);
+    TreeBuilder rest(origin, with_lines, max_values);
     if (parser.HandleNextDocument(rest)) {
       builder.Fail(rest.Take().line, "more than one YAML document");
     }

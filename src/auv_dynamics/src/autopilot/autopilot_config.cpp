@@ -8,7 +8,7 @@ using config::Within;
 
 void Describe(AutopilotConfig* c, config::Table* t) {
   t->Section("control.autopilot");
-  t->AddOptional("period_steps", &c->period_steps, "4", Within(1, 1000), "physics steps",
+  t->AddOptional("period_steps", &c->period_steps, "1", Within(1, 1000), "physics steps",
                  "autopilot: time between two commands to the actuators, a part of a decision");
   t->AddOptional(
       "min_speed_mps", &c->min_speed_mps, "0.8", NonNegative(100), "m/s",

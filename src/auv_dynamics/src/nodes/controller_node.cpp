@@ -7,6 +7,7 @@
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
+#include "auv_dynamics/world/helm.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -26,10 +27,24 @@ ControllerNode::ControllerNode()
     ROS_INFO("the scenario's policy commands force and moment itself: nothing to control");
     return;
   }
-  wrench_.header.frame_id = body_frame_;
   ros::NodeHandle node;
-  publisher_ = node.advertise<geometry_msgs::WrenchStamped>(topics::AuvTopic(id_, topics::kWrench),
-                                                            kQueue, true);
+  if (dynamics::Helm::Steers(scenario_)) {
+    const std::string& model = scenario_.vehicle.model;
+    autopilot_ = dynamics::Autopilots().Make(model, scenario_.vehicle, scenario_.control.autopilot);
+    memory_.assign(static_cast<std::size_t>(autopilot_->state_size()), 0.0);
+    actuators_.header.frame_id = body_frame_;
+    actuators_.vehicle = model;
+    actuators_.values.resize(
+        dynamics::Vehicles().Make(model, scenario_.vehicle)->actuators().size());
+    publisher_ = node.advertise<auv_msgs::ActuatorCommand>(
+        topics::AuvTopic(id_, topics::kActuators), kQueue, true);
+    frames_ = node.subscribe(topics::AuvTopic(id_, topics::kSensorFrame), kQueue,
+                             &ControllerNode::OnFrame, this, NoDelay());
+  } else {
+    wrench_.header.frame_id = body_frame_;
+    publisher_ = node.advertise<geometry_msgs::WrenchStamped>(
+        topics::AuvTopic(id_, topics::kWrench), kQueue, true);
+  }
   odometry_ = node.subscribe(topics::AuvTopic(id_, topics::kOdom), kQueue,
                              &ControllerNode::OnOdometry, this, NoDelay());
   commands_ = node.subscribe(topics::AuvTopic(id_, topics::kCmdVel), kQueue,
@@ -69,7 +84,9 @@ void ControllerNode::OnCommand(const geometry_msgs::TwistStamped::ConstPtr& mess
   }
   // A command answers the newest odometry, or one that is still on its way.
   const TimeNs ahead = NsOf(message->header.stamp) - nav_.stamp;
-  if (has_nav_ && (ahead < 0 || ahead > period_)) {
+  // An autopilot also takes one that comes late: better that than the one before.
+  const TimeNs late = autopilot_ == nullptr ? 0 : period_ - 1;
+  if (has_nav_ && (ahead < -late || ahead > period_)) {
     refused_commands_.Add(Refusals::kStale);
     return;
   }
@@ -77,8 +94,43 @@ void ControllerNode::OnCommand(const geometry_msgs::TwistStamped::ConstPtr& mess
   Answer();
 }
 
+void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
+  if (message->header.frame_id != body_frame_) return;  // what it says is in the odometry, too
+  const TimeNs stamp = NsOf(message->header.stamp);
+  if (stamp == framed_) return;
+  framed_ = stamp;
+  if (message->step == 0) memory_.assign(memory_.size(), 0.0);
+  Answer();
+}
+
 void ControllerNode::Answer() {
-  if (!has_nav_ || !command_ || NsOf(command_->header.stamp) != nav_.stamp) return;
+  if (!has_nav_ || !command_) return;
+  if (autopilot_ == nullptr) {
+    if (NsOf(command_->header.stamp) == nav_.stamp) AnswerWithWrench();
+  } else if (Steerable()) {
+    AnswerWithActuators();
+  }
+}
+
+/// The newest odometry has not been answered, and the velocity to steer by is known.
+bool ControllerNode::Steerable() const {
+  const TimeNs since = nav_.stamp - NsOf(command_->header.stamp);
+  if (nav_.stamp == answered_ || since < 0 || since >= period_) return false;
+  // A frame says whether an episode begins; it may come later than the velocity that answers it.
+  return since > 0 || frames_.getNumPublishers() == 0 || framed_ == nav_.stamp;
+}
+
+void ControllerNode::AnswerWithActuators() {
+  const double dt_s = scenario_.time.dt_s * scenario_.control.autopilot.period_steps;
+  autopilot_->Steer(VectorOf(command_->twist.linear), nav_, dt_s, memory_.data(),
+                    actuators_.values.data());
+  actuators_.header.stamp = TimeOf(nav_.stamp);
+  publisher_.publish(actuators_);
+  answered_ = nav_.stamp;
+  answers_.Add();
+}
+
+void ControllerNode::AnswerWithWrench() {
   double fraction[6];
   dynamics::VelocityController(scenario_.control, scenario_.vehicle,
                                VectorOf(command_->twist.linear), nav_, fraction);
@@ -94,8 +146,8 @@ void ControllerNode::Answer() {
 void ControllerNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
   const std::uint64_t recent = answers_.TakeRecent();
-  status.add("wrenches", answers_.total());
-  status.add("wrenches per second", static_cast<double>(recent) / health_.period_s());
+  status.add("commands", answers_.total());
+  status.add("commands per second", static_cast<double>(recent) / health_.period_s());
   if (!has_nav_) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no odometry yet");
   refused_commands_.Report(topics::kCmdVel, &status);
   refused_odometry_.Report(topics::kOdom, &status);

@@ -1,18 +1,28 @@
 #pragma once
 
+#include <auv_msgs/ActuatorCommand.h>
+#include <auv_msgs/SensorFrame.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 
+#include <memory>
+#include <vector>
+
 #include "auv_common/nodes/health.hpp"
+#include "auv_dynamics/autopilot/autopilot.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 
 namespace stg::nodes {
 
-/// Velocity controller of one AUV (Eqs. 24-26): answers each desired velocity with the wrench for
-/// the odometry of the same stamp. Holds no state between steps.
+/// Velocity controller of one AUV. Where force and moment command the vehicle (Eqs. 24-26), it
+/// answers each desired velocity with the wrench for the odometry of the same stamp, and holds no
+/// state between steps. Else the vehicle's autopilot answers every odometry with a command of the
+/// actuators: that of a decision when its velocity is in, those until the next decision at once.
+/// Its memory begins anew with each episode, of which the sensor frame of step 0 tells; on a
+/// vehicle without simulator there is none, and it begins with the node.
 class ControllerNode {
  public:
   /// Throws UserError.
@@ -23,7 +33,11 @@ class ControllerNode {
   double Work();
   void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
   void OnCommand(const geometry_msgs::TwistStamped::ConstPtr& message);
+  void OnFrame(const auv_msgs::SensorFrame::ConstPtr& message);
   void Answer();
+  void AnswerWithWrench();
+  bool Steerable() const;
+  void AnswerWithActuators();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   dynamics::WorldConfig scenario_;
@@ -35,6 +49,13 @@ class ControllerNode {
   ros::WallTime busy_;
   geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry
   geometry_msgs::WrenchStamped wrench_;
+  // Of vehicles that are steered by autopilots; else null.
+  std::unique_ptr<const dynamics::Autopilot> autopilot_;
+  std::vector<double> memory_;  ///< of the autopilot
+  auv_msgs::ActuatorCommand actuators_;
+  TimeNs framed_ = 0;    ///< stamp of the newest sensor frame
+  TimeNs answered_ = 0;  ///< of the newest odometry that was answered
+  ros::Subscriber frames_;
   EventRate answers_;
   Refusals refused_odometry_, refused_commands_;
   ros::Publisher publisher_;

@@ -35,7 +35,8 @@ WorldNode::WorldNode()
     : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
       world_(scenario_),
       period_(scenario_.decision_period()),
-      pacer_(PacerParameters(period_)),
+      commands_(scenario_, world_, [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
+      pacer_(PacerParameters(period_ / commands_.parts())),
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
       episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       awaited_(TextParameter("wait_for_node", "")),
@@ -43,21 +44,13 @@ WorldNode::WorldNode()
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
       barrier_(scenario_.agents + 1),
-      auvs_(static_cast<std::size_t>(scenario_.agents)),
-      commands_(auvs_.size()),
-      fresh_(auvs_.size()),
-      wrenches_(auvs_.size()),
+      fresh_(static_cast<std::size_t>(scenario_.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.agents);
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
-  for (int i = 0; i < scenario_.agents; ++i) {
-    const boost::function<void(const geometry_msgs::WrenchStamped::ConstPtr&)> callback =
-        [this, i](const auto& message) { OnWrench(i, message); };
-    auvs_[static_cast<std::size_t>(i)].subscriber = node.subscribe<geometry_msgs::WrenchStamped>(
-        topics::AuvTopic(i, topics::kWrench), kQueue, callback, ros::VoidConstPtr(), NoDelay());
-  }
+  commands_.Listen();
   subscribers_.push_back(
       node.subscribe(topics::kChannelDone, kQueue, &WorldNode::OnChannelDone, this, NoDelay()));
   subscribers_.push_back(
@@ -139,7 +132,7 @@ void WorldNode::WarnOfLoss(int party) {
     ROS_WARN("world: acoustic channel did not close step %u, going on without it%s", step_,
              losses_.more().c_str());
   } else {
-    ROS_WARN("world: no wrench of AUV %d for step %u, holding its last command%s", party, step_,
+    ROS_WARN("world: no command of AUV %d for step %u, holding its last command%s", party, step_,
              losses_.more().c_str());
   }
 }
@@ -154,21 +147,35 @@ void WorldNode::ShowStep() {
 void WorldNode::StepWorld() {
   ShowStep();
   bool missed = false;
-  for (std::size_t i = 0; i < auvs_.size(); ++i) {
-    fresh_[i] = barrier_.answered(static_cast<int>(i)) ? 1 : 0;
-    if (!fresh_[i]) missed = true;
-    const dynamics::Wrench<double>& c = commands_[i];
-    wrenches_[i] = {{Pack(c.force.x), Pack(c.force.y), Pack(c.force.z)},
-                    {Pack(c.moment.x), Pack(c.moment.y), Pack(c.moment.z)}};
+  for (std::size_t i = 0; i < fresh_.size(); ++i) {
+    const bool answered = barrier_.answered(static_cast<int>(i));
+    // A decision is flown as commanded when every part of it is.
+    fresh_[i] = answered && (part_ == 0 || fresh_[i]) ? 1 : 0;
+    if (!answered) missed = true;
   }
   if (missed) ++missed_steps_;
-  for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrenches_);
+  if (part_ == 0) channel_fresh_ = barrier_.answered(Channel());  // later parts excuse it
+  commands_.Move(scenario_.time.decision_steps / commands_.parts(), &world_);
   CheckState();
-  publisher_->SetWrenches(commands_, fresh_, barrier_.answered(Channel()));
+  barrier_.Close();
+  if (++part_ < commands_.parts()) {
+    OpenPart();
+    return;
+  }
+  part_ = 0;
+  commands_.Tell(fresh_, channel_fresh_, publisher_.get());
   ++step_;
   steps_.Add();
-  barrier_.Close();
   OpenStep();
+}
+
+/// Between two decisions: navigation goes out to the autopilots alone.
+void WorldNode::OpenPart() {
+  opened_ = WallSeconds();
+  publisher_->PublishNavigation(world_, start_);
+  pacer_.Open(WallSeconds());
+  barrier_.Open(Now(), pacer_.deadline_s());
+  barrier_.Excuse(Channel());
 }
 
 /// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
@@ -188,13 +195,14 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   start_ = Now() + period_;
   episode_ = episode;
   step_ = 0;
+  part_ = 0;
   // The other lanes run the same world; only lane 0 is looked at.
   for (int lane = 0; lane < kLanes; ++lane) {
     world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.reset.stage);
   }
-  commands_.assign(auvs_.size(), dynamics::Wrench<double>());
-  fresh_.assign(auvs_.size(), 0);
-  publisher_->SetWrenches(commands_, fresh_, false);
+  commands_.Clear();
+  fresh_.assign(fresh_.size(), 0);
+  commands_.Tell(fresh_, false, publisher_.get());
   OpenStep();
 }
 
@@ -226,30 +234,10 @@ void WorldNode::Finish() {
   }
 }
 
-void WorldNode::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message) {
-  Auv& auv = auvs_[static_cast<std::size_t>(i)];
-  if (message->header.frame_id != frames::Body(i)) {
-    auv.refused.Add(Refusals::kFrame);
-    return;
-  }
-  if (!FiniteVector(message->wrench.force) || !FiniteVector(message->wrench.torque)) {
-    auv.refused.Add(Refusals::kNotFinite);
-    return;
-  }
-  switch (barrier_.Hear(i, NsOf(message->header.stamp))) {
-    case StepBarrier::Word::kCounts:
-      break;
-    case StepBarrier::Word::kDuplicate:
-      return;
-    case StepBarrier::Word::kLate:
-    case StepBarrier::Word::kEarly:
-    case StepBarrier::Word::kForeign:
-      auv.refused.Add(Refusals::kStale);
-      return;
-  }
-  KeepDelay();
-  commands_[static_cast<std::size_t>(i)] = {VectorOf(message->wrench.force),
-                                            VectorOf(message->wrench.torque)};
+StepBarrier::Word WorldNode::Hear(int i, TimeNs stamp) {
+  const StepBarrier::Word word = barrier_.Hear(i, stamp);
+  if (word == StepBarrier::Word::kCounts) KeepDelay();
+  return word;
 }
 
 void WorldNode::KeepDelay() {
@@ -322,9 +310,9 @@ void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("steps with a deadline miss", missed_steps_);
   status.add("deadline misses of the channel", barrier_.misses(Channel()));
   for (int i = 0; i < scenario_.agents; ++i) {
-    const std::string name = topics::AuvTopic(i, topics::kWrench);
+    const std::string name = topics::AuvTopic(i, commands_.topic());
     status.add("deadline misses " + name, barrier_.misses(i));
-    auvs_[static_cast<std::size_t>(i)].refused.Report(name, &status);
+    commands_.refused(i).Report(name, &status);
     if (!barrier_.present(i)) {
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no " + name);
     }

@@ -3,7 +3,6 @@
 #include <auv_msgs/EpisodeSummary.h>
 #include <auv_msgs/Pause.h>
 #include <auv_msgs/Reset.h>
-#include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <std_msgs/Header.h>
 
@@ -18,6 +17,7 @@
 #include "auv_common/step/step_barrier.hpp"
 #include "auv_dynamics/world/world.hpp"
 #include "auv_dynamics/world/world_config.hpp"
+#include "vehicle_commands.hpp"
 #include "world_publisher.hpp"
 
 namespace stg::nodes {
@@ -31,6 +31,9 @@ namespace stg::nodes {
 /// not waited for again before it has spoken again. All topics are latched, so a node that comes
 /// late or comes back gets the present step and answers it.
 ///
+/// Vehicles that are steered by autopilots get a command of their actuators more often: a decision
+/// is then flown in parts, before each of which all AUVs, not the channel, are waited for.
+///
 /// After the last decision of an episode the final state is published as step T and answered like
 /// any other; its wrenches are not used. The next episode starts one decision later.
 class WorldNode {
@@ -42,17 +45,12 @@ class WorldNode {
   void Spin();
 
  private:
-  struct Auv {
-    Refusals refused;
-    ros::Subscriber subscriber;
-  };
-
-  void OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message);
   void OnChannelDone(const std_msgs::Header::ConstPtr& message);
   void OnSummary(const auv_msgs::EpisodeSummary::ConstPtr& message);
   bool OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Response& response);
   bool OnPause(auv_msgs::Pause::Request& request, auv_msgs::Pause::Response& response);
 
+  StepBarrier::Word Hear(int i, TimeNs stamp);
   double Work();
   int Channel() const { return scenario_.agents; }
   double OpenFor() const { return WallSeconds() - opened_; }
@@ -61,6 +59,7 @@ class WorldNode {
   bool ListenersReady(double now);
   void WarnOfLoss(int party);
   void StepWorld();
+  void OpenPart();
   /// Throws UserError when a vehicle's state is beyond what the nodes take.
   void CheckState() const;
   void StartEpisode(std::uint32_t episode);
@@ -76,6 +75,8 @@ class WorldNode {
   dynamics::WorldConfig scenario_;
   dynamics::World world_;
   TimeNs period_;  ///< of decisions [ns]
+  VehicleCommands commands_;
+  int part_ = 0;  ///< of the decision, whose commands are waited for
   Pacer pacer_;
   double summary_timeout_s_;
   int episodes_;         ///< to run; 0: until stopped
@@ -97,10 +98,8 @@ class WorldNode {
   std::optional<double> awaited_seen_;
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
-  std::vector<Auv> auvs_;
-  std::vector<dynamics::Wrench<double>> commands_;  ///< of each AUV, its newest
-  std::vector<std::uint8_t> fresh_;                 ///< the command was for the last step
-  std::vector<dynamics::Wrench<Pack>> wrenches_;    ///< the commands in all lanes
+  std::vector<std::uint8_t> fresh_;  ///< the command was for the last step
+  bool channel_fresh_ = false;        ///< the channel had closed it
   std::unique_ptr<WorldPublisher> publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;

@@ -116,6 +116,21 @@ void WorldPublisher::SetWrenches(const std::vector<dynamics::Wrench<double>>& wr
   swarm_message_.channel_fresh = channel_fresh;
 }
 
+void WorldPublisher::SetEfforts(const std::vector<double>& efforts,
+                                const std::vector<std::uint8_t>& fresh, bool channel_fresh) {
+  swarm_message_.efforts = efforts;
+  swarm_message_.fresh = fresh;
+  swarm_message_.channel_fresh = channel_fresh;
+}
+
+void WorldPublisher::PublishNavigation(const dynamics::World& world, TimeNs start) {
+  for (int i = 0; i < world.agents(); ++i) {
+    AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
+    SetNavigationOf(world, start, i, &auv);
+    auv.odometry.Publish();
+  }
+}
+
 void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
                                     std::uint32_t episode, std::uint32_t step) {
   const TimeNs now = start + world.time(0);
@@ -149,14 +164,20 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
   swarm_message_.seed = world.seed(0);
 }
 
-void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
-                              AuvTopics* auv) const {
+void WorldPublisher::SetNavigationOf(const dynamics::World& world, TimeNs start, int i,
+                                     AuvTopics* auv) {
   auv_msgs::SensorFrame& m = auv->frame_message;
   const dynamics::NavState nav = world.Nav(0, i);
   m.header.stamp = TimeOf(start + nav.stamp);
-  m.seed = world.seed(0);
   SetNavigation(nav, &m.pose, &m.twist);
-  SetDetections(world, start + nav.stamp, i, &m);
+}
+
+void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
+                              AuvTopics* auv) const {
+  auv_msgs::SensorFrame& m = auv->frame_message;
+  SetNavigationOf(world, start, i, auv);
+  m.seed = world.seed(0);
+  SetDetections(world, start + world.time(0), i, &m);
   if (m.step == 0) {
     m.cue_valid = true;  // and stays in the message, for an agent that comes late
     const dynamics::Cue cue = world.InitialCue(0, i, scenario_.target_of(i));

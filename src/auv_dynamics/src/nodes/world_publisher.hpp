@@ -28,6 +28,13 @@ class WorldPublisher {
   void SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
                    const std::vector<std::uint8_t>& fresh, bool channel_fresh);
 
+  /// The same of vehicles with other actuators: shares of their limits, kWrenchSize of each AUV.
+  void SetEfforts(const std::vector<double>& efforts, const std::vector<std::uint8_t>& fresh,
+                  bool channel_fresh);
+
+  /// The AUVs' navigation between two decisions, for their autopilots.
+  void PublishNavigation(const dynamics::World& world, TimeNs start);
+
   /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
   /// [ns].
   void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
@@ -48,6 +55,7 @@ class WorldPublisher {
     OnDemand<auv_msgs::TargetDetection> detection;
   };
   void Advertise();
+  static void SetNavigationOf(const dynamics::World& world, TimeNs start, int i, AuvTopics* auv);
   void SetFrame(const dynamics::World& world, TimeNs start, int i, AuvTopics* auv) const;
   void SetDetections(const dynamics::World& world, TimeNs now, int i,
                      auv_msgs::SensorFrame* m) const;

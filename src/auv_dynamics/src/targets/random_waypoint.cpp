@@ -15,7 +15,8 @@ bool InsideTurningCircle(const Vec3<double>& v, const Vec3<double>& to, double m
   return along * along + aside * aside < radius * radius;
 }
 
-/// Towards points drawn within 0.8 of the workspace, one after the other.
+/// Towards points drawn within 0.8 of the workspace, one after the other; in open water at its
+/// depth.
 class RandomWaypoint : public SteeredMotion {
  public:
   explicit RandomWaypoint(const MotionSetup& setup)
@@ -31,8 +32,9 @@ class RandomWaypoint : public SteeredMotion {
     const auto waypoint = [&] {
       Random random =
           now.clock.DrawAt(Stream::kTarget, index, static_cast<std::uint32_t>(now.target));
-      const double e = 0.8 * half_extent();
-      return Vec3<double>{random.Uniform(-e, e), random.Uniform(-e, e), random.Uniform(-e, e)};
+      const double e = 0.8 * region();
+      const double x = random.Uniform(-e, e), y = random.Uniform(-e, e);
+      return Vec3<double>{x, y, open_water() ? now.p_WT.z : random.Uniform(-e, e)};
     };
     const Vec3<double> to = waypoint() - now.p_WT;
     // A point that cannot be reached by turning is given up for the next one.

@@ -20,7 +20,10 @@ Vec3<double> TurnTowards(const Vec3<double>& v, const Vec3<double>& direction, d
 }
 
 SteeredMotion::SteeredMotion(const MotionSetup& setup)
-    : config_(setup.target), dt_(setup.dt_s), half_extent_(setup.half_extent_m) {}
+    : config_(setup.target),
+      dt_(setup.dt_s),
+      half_extent_(setup.half_extent_m),
+      region_(setup.region_m) {}
 
 void SteeredMotion::Step(const EpisodeClocks& clocks,
                          const std::vector<VehicleState<Pack>>& vehicles,

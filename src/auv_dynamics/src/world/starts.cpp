@@ -22,6 +22,34 @@ bool Inside(const Vec3<double>& p, double half_extent) {
          std::abs(p.z) <= half_extent;
 }
 
+Vec3<double> LevelDirection(Random* random) {
+  const double angle = random->Uniform(0.0, 2.0 * kPi);
+  return {std::cos(angle), std::sin(angle), 0.0};
+}
+
+/// Draws a position for each vehicle until it lies in the region and apart from those before it.
+/// @param draw random, position of the vehicle's target -> a position
+template <class Draw>
+void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, Start* start) {
+  auto& p_WB = start->p_WB;
+  for (size_t i = 0; i < p_WB.size(); ++i) {
+    const Vec3<double>& p_WT = start->targets[i % start->targets.size()].p_WT;
+    bool placed = false;
+    // Rejection sampling; the validator rejects scenarios too crowded for it.
+    for (int attempt = 0; attempt < 100000 && !placed; ++attempt) {
+      p_WB[i] = draw(random, p_WT);
+      placed = Inside(p_WB[i], config.start_half_extent_m);
+      for (size_t j = 0; j < i && placed; ++j) {
+        placed = Norm(p_WB[i] - p_WB[j]) >= config.min_separation_m;
+      }
+    }
+    if (!placed) {
+      throw UserError("reset: no room for " + std::to_string(p_WB.size()) +
+                      " vehicles at reset.min_separation_m");
+    }
+  }
+}
+
 }  // namespace
 
 void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
@@ -34,24 +62,36 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
     const double speed = random.Uniform(r.target_speed_mps.lo, r.target_speed_mps.hi);
     target.v_WT = UniformDirection(&random) * speed;
   }
-  auto& p_WB = start->p_WB;
-  for (size_t i = 0; i < p_WB.size(); ++i) {
-    const Vec3<double>& p_WT = start->targets[i % start->targets.size()].p_WT;
-    bool placed = false;
-    // Rejection sampling; the validator rejects scenarios too crowded for it.
-    for (int attempt = 0; attempt < 100000 && !placed; ++attempt) {
-      const double d = random.Uniform(r.auv_distance_m.lo, r.auv_distance_m.hi);
-      p_WB[i] = p_WT + UniformDirection(&random) * d;
-      placed = Inside(p_WB[i], config.start_half_extent_m);
-      for (size_t j = 0; j < i && placed; ++j) {
-        placed = Norm(p_WB[i] - p_WB[j]) >= config.min_separation_m;
-      }
-    }
-    if (!placed) {
-      throw UserError("reset: no room for " + std::to_string(p_WB.size()) +
-                      " vehicles at reset.min_separation_m");
-    }
+  PlaceVehicles(
+      config, &random,
+      [&r](Random* draw, const Vec3<double>& p_WT) {
+        const double d = draw->Uniform(r.auv_distance_m.lo, r.auv_distance_m.hi);
+        return p_WT + UniformDirection(draw) * d;
+      },
+      start);
+}
+
+void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, ResetStage stage,
+                  std::uint64_t seed, std::uint32_t episode, Start* start) {
+  const ResetStageConfig& r = config.stages[static_cast<size_t>(stage)];
+  Random random(seed, Stream::kReset, episode, 0, 0);
+  const auto at_depth = [](Vec3<double> p, Random* draw, const config::Interval& depth_m) {
+    p.z = -draw->Uniform(depth_m.lo, depth_m.hi);
+    return p;
+  };
+  for (auto& target : start->targets) {
+    const double radius = random.Uniform(r.target_radius_m.lo, r.target_radius_m.hi);
+    target.p_WT = at_depth(LevelDirection(&random) * radius, &random, sea.target_depth_m);
+    const double speed = random.Uniform(r.target_speed_mps.lo, r.target_speed_mps.hi);
+    target.v_WT = LevelDirection(&random) * speed;
   }
+  PlaceVehicles(
+      config, &random,
+      [&](Random* draw, const Vec3<double>& p_WT) {
+        const double d = draw->Uniform(r.auv_distance_m.lo, r.auv_distance_m.hi);
+        return at_depth(p_WT + LevelDirection(draw) * d, draw, sea.auv_depth_m);
+      },
+      start);
 }
 
 }  // namespace stg::dynamics

@@ -12,6 +12,27 @@ void Describe(CurrentConfig* c, config::Table* t) {
   t->Section("current");
   t->Add("velocity_mps", config::Numbers(&c->velocity_mps), config::Within(-10, 10),
          "m/s, world ENU", "constant, irrotational water current");
+  t->AddOptional("layer_depth_m", Numbers(&c->layer_depth_m), "[0.0, 50.0, 100.0, 200.0]",
+                 NonNegative(12000), "m", "depths of the layers' velocities, increasing");
+  t->AddOptional("layer_east_mps", Numbers(&c->layer_east_mps), "[0.0, 0.0, 0.0, 0.0]",
+                 Within(-10, 10), "m/s", "current to the east that is added at these depths");
+  t->AddOptional("layer_north_mps", Numbers(&c->layer_north_mps), "[0.0, 0.0, 0.0, 0.0]",
+                 Within(-10, 10), "m/s", "current to the north that is added at these depths");
+  t->AddOptional("tide_mps", Numbers(&c->tide_mps), "[0.0, 0.0]", Within(-10, 10),
+                 "m/s, east and north", "amplitude of a tidal current that is added");
+  t->AddOptional("tide_period_s", &c->tide_period_s, "44714.2", Positive(1e8), "s",
+                 "period of the tide");
+  t->AddOptional("tide_phase_rad", &c->tide_phase_rad, "0.0", Within(-6.3, 6.3), "rad",
+                 "phase of the tide when an episode starts");
+}
+
+std::optional<config::Violation> FindConflict(const CurrentConfig& c) {
+  for (std::size_t k = 1; k < c.layer_depth_m.size(); ++k) {
+    if (!(c.layer_depth_m[k] > c.layer_depth_m[k - 1])) {
+      return config::Violation{{"current.layer_depth_m"}, "depths must increase"};
+    }
+  }
+  return {};
 }
 
 void Describe(DisturbanceConfig* c, config::Table* t) {

@@ -20,18 +20,23 @@ const WorldConfig& Valid(const WorldConfig& scenario) {
 World::World(const WorldConfig& scenario)
     : dt_s_(Valid(scenario).time.dt_s),
       dt_ns_(scenario.step_period()),
+      current_(scenario.current),
       v_WC_(Broadcast({scenario.current.velocity_mps[0], scenario.current.velocity_mps[1],
                        scenario.current.velocity_mps[2]})),
       reset_(scenario.reset),
+      depths_(scenario.sea),
       sensing_(scenario.sensing),
       model_(Vehicles().Make(scenario.vehicle.model, scenario.vehicle)),
-      motion_(TargetMotions().Make(scenario.target.motion,
-                                   {scenario.target, scenario.workspace.half_extent_m, dt_s_})),
+      motion_(TargetMotions().Make(
+          scenario.target.motion,
+          {scenario.target, scenario.wall_m(), dt_s_, scenario.workspace.half_extent_m})),
       sensor_(TargetSensors().Make(scenario.sensing.sensor, scenario.sensing)),
       separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
       contacts_(scenario.contact, scenario.agents, scenario.vehicle.radius_m),
       disturbance_(scenario.disturbance, scenario.agents, dt_s_),
       walls_(scenario.workspace),
+      sea_(scenario.sea, scenario.agents),
+      open_(scenario.sea.open),
       vehicles_(static_cast<size_t>(scenario.agents)),
       targets_(static_cast<size_t>(scenario.target.count)),
       internal_(vehicles_.size() * static_cast<size_t>(model_->internal_size()), Pack(0.0)),
@@ -53,14 +58,21 @@ void World::Step(const std::vector<Pack>& commands) {
   assert(commands.size() == vehicles_.size() * inputs);
   contacts_.Update(vehicles_, separations_);
   disturbance_.Advance(clocks_);
+  const Pack time_s = current_.uniform() ? Pack(0.0) : Time();
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     const int id = static_cast<int>(i);
+    if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
     model_->Step(commands.data() + i * inputs,
                  {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
                  internal_.data() + i * internals);
-    walls_.Apply(&vehicles_[i]);
+    if (open_) {
+      sea_.Apply(id, &vehicles_[i]);
+    } else {
+      walls_.Apply(&vehicles_[i]);
+    }
   }
   motion_->Step(clocks_, vehicles_, &targets_);
+  if (open_) sea_.Apply(&targets_);
   for (EpisodeClock& clock : clocks_) ++clock.step;
   separations_.Measure(vehicles_);
 }
@@ -78,6 +90,13 @@ void World::Step(const std::vector<Wrench<Pack>>& tau) {
     }
   }
   Step(commands_);
+}
+
+/// Seconds since the start of each lane's episode.
+Pack World::Time() const {
+  Pack time_s(0.0);
+  for (int lane = 0; lane < kLanes; ++lane) SetLane(&time_s, lane, dt_s_ * step(lane));
+  return time_s;
 }
 
 void World::CheckFinite() const {
@@ -114,11 +133,16 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
     SetLane(&targets_[k].v_WT, lane, start.targets[k].v_WT);
   }
   motion_->Reset(lane);
+  sea_.Reset(lane);
   separations_.Measure(vehicles_);
 }
 
 void World::Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStage stage) {
-  DrawStart(reset_, stage, seed, episode, &start_);
+  if (open_) {
+    DrawSeaStart(reset_, depths_, stage, seed, episode, &start_);
+  } else {
+    DrawStart(reset_, stage, seed, episode, &start_);
+  }
   StartLane(lane, seed, episode, start_);
 }
 

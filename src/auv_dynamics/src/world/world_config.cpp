@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "auv_dynamics/autopilot/autopilot.hpp"
+
 namespace stg::dynamics {
 namespace {
 
@@ -53,6 +55,7 @@ void DescribeSections(WorldConfig* c, config::Table* t) {
   Describe(&c->disturbance, t);
   Describe(&c->contact, t);
   Describe(&c->workspace, t);
+  Describe(&c->sea, t);
   Describe(&c->target, t);
   Describe(&c->reset, t);
   Describe(&c->sensing, t);
@@ -67,6 +70,18 @@ void Describe(WorldConfig* c, config::Table* t) {
 std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   if (auto violation = FindConflict(static_cast<const RunConfig&>(s))) return violation;
   if (auto violation = FindConflict(s.vehicle)) return violation;
+  if (auto violation = FindConflict(s.current)) return violation;
+  if (auto violation = FindConflict(s.sea)) return violation;
+  if (Autopilots().Has(s.vehicle.model)) {
+    if (s.control.interface != ActionInterface::kVelocity3) {
+      return Violation{{"control.interface", "vehicle.model"},
+                       "these vehicles are steered by a velocity command: velocity3"};
+    }
+    if (s.time.decision_steps % s.control.autopilot.period_steps != 0) {
+      return Violation{{"control.autopilot.period_steps", "time.decision_steps"},
+                       "a decision must be a whole number of the autopilot's periods"};
+    }
+  }
   if (s.vehicle.radius_m >= s.workspace.half_extent_m) {
     return Violation{{"vehicle.radius_m", "workspace.half_extent_m"},
                      "an AUV does not fit between the walls"};

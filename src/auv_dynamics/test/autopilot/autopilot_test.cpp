@@ -13,10 +13,17 @@ namespace {
 constexpr double kInRad = kPi / 180.0;
 constexpr double kPhysics_s = 0.05;
 
+/// Commands 0.2 s apart.
+AutopilotConfig Slow() {
+  AutopilotConfig config;
+  config.period_steps = 4;
+  return config;
+}
+
 /// A torpedo under its autopilot, from rest at the origin, bow to the east.
 class Helmsman {
  public:
-  explicit Helmsman(const AutopilotConfig& config = {}, const Vec3<double>& v_WC = {})
+  explicit Helmsman(const AutopilotConfig& config = Slow(), const Vec3<double>& v_WC = {})
       : config_(config),
         model_(vehicle_.torpedo),
         autopilot_(Autopilots().Make("torpedo", vehicle_, config)),
@@ -138,7 +145,7 @@ TEST(Autopilot, TurnsWithLittleOvershootAndSettles) {
 
 TEST(Autopilot, HoldsCourseOverGroundAcrossACurrent) {
   for (const double set_deg : {90.0, 170.0, 0.0, -45.0}) {
-    Helmsman h({}, Towards(set_deg, 0.5, 0.0));
+    Helmsman h(Slow(), Towards(set_deg, 0.5, 0.0));
     h.Hold(Towards(50.0, 1.5, 0.0), 200.0);
     EXPECT_NEAR(h.course_deg(), 50.0, 0.5) << set_deg;
     EXPECT_NEAR(h.speed(), 1.5, 0.03) << set_deg;
@@ -151,7 +158,7 @@ TEST(Autopilot, KeepsSteerageWayWhateverIsAsked) {
   EXPECT_NEAR(h.state().v_WB_B.x, 0.8, 0.02);
   EXPECT_NEAR(h.heading_deg(), 0.0, 0.5);
   // Also with the current behind it, where it is fast enough over ground without a propeller.
-  Helmsman carried({}, {1.5, 0.0, 0.0});
+  Helmsman carried(Slow(), {1.5, 0.0, 0.0});
   carried.Hold(Towards(0.0, 1.0, 0.0), 120.0);
   EXPECT_GT(carried.state().v_WB_B.x - 1.5, 0.75);
 }

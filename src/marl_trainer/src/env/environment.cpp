@@ -28,6 +28,10 @@ Environment::Environment(const Scenario& scenario)
   tau_.assign(static_cast<std::size_t>(scenario.agents), zero);
   action_ = tau_;
   wrench_.resize(tau_.size());
+  if (dynamics::Helm::Steers(scenario)) {
+    helm_ = std::make_unique<dynamics::Helm>(scenario);
+    v_des_W_.resize(tau_.size());
+  }
 }
 
 Environment::~Environment() = default;
@@ -44,6 +48,7 @@ void Environment::Zero(int lane, int episode_steps) {
     for (Pack& x : tau_[i]) SetLane(&x, lane, 0.0);
     for (Pack& x : action_[i]) SetLane(&x, lane, 0.0);
   }
+  if (helm_ != nullptr) helm_->Reset(lane);
 }
 
 void Environment::Reset(int lane, std::uint64_t seed, dynamics::ResetStage stage,
@@ -72,8 +77,23 @@ void Environment::Move(const Pack* wanted) {
     wanted += scenario_.action_size();
   }
   source_->Send(world_);
-  for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
+  if (helm_ != nullptr) {
+    Steer();
+  } else {
+    for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
+  }
   world_.CheckFinite();
+}
+
+void Environment::Steer() {
+  for (std::size_t i = 0; i < tau_.size(); ++i) {
+    v_des_W_[i] = dynamics::DesiredVelocity(scenario_.vehicle, action_[i].data());
+  }
+  helm_->Drive(v_des_W_, &world_);
+  for (std::size_t i = 0; i < tau_.size(); ++i) {
+    tau_[i].fill(Pack(0.0));
+    helm_->WriteShares(static_cast<int>(i), tau_[i].data());
+  }
 }
 
 void Environment::Judge() {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "auv_dynamics/world/helm.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/task.hpp"
 #include "sources/information_source.hpp"
@@ -47,6 +48,7 @@ class Environment {
   AcousticSource& acoustic() const;  ///< acoustic mode only
 
  private:
+  void Steer();
   void Zero(int lane, int episode_steps);
   task::SwarmState<Pack> Swarm() const;
 
@@ -59,6 +61,9 @@ class Environment {
   Pack link_quality_ = Pack(0.0);
   task::Efforts<Pack> tau_, action_;
   std::vector<dynamics::Wrench<Pack>> wrench_;
+  // Of vehicles that are steered by autopilots; else null.
+  std::unique_ptr<dynamics::Helm> helm_;
+  std::vector<Vec3<Pack>> v_des_W_;
 };
 
 }  // namespace stg::env

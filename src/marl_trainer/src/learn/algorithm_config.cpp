@@ -4,7 +4,9 @@
 #include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
 #include "marl_trainer/learn/algorithms/ippo/ippo_config.hpp"
 #include "marl_trainer/learn/algorithms/maddpg/maddpg_config.hpp"
+#include "marl_trainer/learn/algorithms/madqn/madqn_config.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "marl_trainer/learn/algorithms/masac/masac_config.hpp"
 #include "marl_trainer/learn/algorithms/matd3/matd3_config.hpp"
 
 namespace stg::learn {
@@ -38,6 +40,8 @@ AlgorithmRegistry& Algorithms() {
                                                      {"happo", std::make_unique<HappoConfig>},
                                                      {"maddpg", std::make_unique<MaddpgConfig>},
                                                      {"matd3", std::make_unique<Matd3Config>},
+                                                     {"masac", std::make_unique<MasacConfig>},
+                                                     {"madqn", std::make_unique<MadqnConfig>},
                                                  });
   return registry;
 }

@@ -58,7 +58,7 @@ TEST_P(Conformance, RefusesTheCheckpointOfAnotherShape) {
 TEST_P(Conformance, ExportsThePolicyThatItFlies) {
   const Game game = AnyGame();
   Training training(game, GameSetup(GetParam()));
-  training.Run(12);
+  training.Run(40);
   agent::PolicyMetadata metadata;
   metadata.observation_layout = "any";
   metadata.action_interface = "any";

@@ -84,7 +84,18 @@ TEST_P(Quadratic, EverybodyDoesItsShare) {
 INSTANTIATE_TEST_SUITE_P(Algorithms, Quadratic,
                          ::testing::Values(Case{"mappo", {}, 200}, Case{"ippo", {}, 200},
                                            Case{"happo", {}, 300}, Case{"maddpg", {}, 300},
-                                           Case{"matd3", {}, 300}));
+                                           Case{"matd3", {}, 300}, Case{"masac", {}, 300}));
+
+TEST(Quadratic, TheBestBinsAreChosen) {
+  const Game game = QuadraticTeam();
+  Training training(game, GameSetup("madqn", {{"bins", 5}}));
+  training.Run(300);
+  // All choose alike: of -0.75, -0.375, 0, 0.375, 0.75, zero is best up to |x| = 0.66.
+  for (const double x : {-0.95, -0.3, 0.0, 0.3, 0.95}) {
+    const float best = std::abs(x) < 0.66 ? 0.0F : x > 0 ? 0.375F : -0.375F;
+    for (const float a : training.Act(x)) EXPECT_EQ(a, best) << x;
+  }
+}
 
 TEST(Differing, AnActorThatAllShareCannotAndActorsOfTheirOwnCan) {
   Training shared(DifferingGame(), GameSetup("mappo"));

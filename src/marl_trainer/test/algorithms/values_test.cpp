@@ -26,7 +26,44 @@ TEST_P(Endless, TruncationIsNoEnd) {
   EXPECT_NEAR(training.Reported("value"), 10.0, 0.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(OffPolicy, Endless, ::testing::Values("maddpg", "matd3"));
+INSTANTIATE_TEST_SUITE_P(OffPolicy, Endless, ::testing::Values("maddpg", "matd3", "madqn"));
+
+TEST(Endless, TruncationIsNoEndForSoftValues) {
+  // With hardly any weight on the entropy.
+  Training training(
+      ConstantGame(),
+      GameSetup("masac", {{"gamma", 0.9}, {"initial-alpha", 1e-6}, {"alpha-lr", 0.0}}));
+  training.Run(150);
+  EXPECT_NEAR(training.Reported("value"), 10.0, 0.1);
+}
+
+TEST(Masac, TheWeightDrivesTheEntropyToItsTarget) {
+  Game game;  // the better the closer to x: without the bonus the entropy would fall for ever
+  game.reward = [](double x, const float* a) {
+    return -std::pow(static_cast<double>(a[0]) - 0.5 * x, 2.0) -
+           std::pow(static_cast<double>(a[1]) - 0.5 * x, 2.0);
+  };
+  for (const auto& [alpha, target] : {std::pair(1e-3, -0.5), std::pair(0.1, -1.5)}) {
+    Training training(game, GameSetup("masac", {{"initial-alpha", alpha},
+                                                {"alpha-lr", 0.01},
+                                                {"target-entropy", target}}));
+    training.Run(300);
+    double entropy = 0.0;
+    for (int c = 0; c < 30; ++c) {
+      training.Run(1);
+      entropy += training.Reported("entropy") / 30.0;
+    }
+    EXPECT_NEAR(entropy, target, 0.15) << alpha;
+  }
+}
+
+TEST(Masac, WithoutTheWeightTheEntropyMissesTheTarget) {
+  Game game;
+  game.reward = [](double, const float* a) { return -static_cast<double>(a[0] * a[0]); };
+  Training training(game, GameSetup("masac", {{"initial-alpha", 1e-6}, {"alpha-lr", 0.0}}));
+  training.Run(200);
+  EXPECT_GT(std::abs(training.Reported("entropy") + 1.0), 0.3);
+}
 
 double Value(const Mlp& critic, const float* parameters, const Scales& scales, float x) {
   float state = 0.0F;

@@ -187,11 +187,13 @@ TEST(ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
 /// The headers with the sections of a scenario.
 const char* const kSections[] = {
     "auv_common/include/auv_common/config/run_config",
+    "auv_dynamics/include/auv_dynamics/autopilot/autopilot_config",
     "auv_dynamics/include/auv_dynamics/vehicle/kinematic_config",
     "auv_dynamics/include/auv_dynamics/vehicle/torpedo_config",
     "auv_dynamics/include/auv_dynamics/vehicle/vehicle_config",
     "auv_dynamics/include/auv_dynamics/world/surroundings_config",
     "auv_dynamics/include/auv_dynamics/world/reset_config",
+    "auv_dynamics/include/auv_dynamics/world/sea_config",
     "auv_dynamics/include/auv_dynamics/world/world_config",
     "auv_dynamics/include/auv_dynamics/sensing/sensing_config",
     "auv_dynamics/include/auv_dynamics/targets/target_config",

@@ -7,7 +7,7 @@ namespace stg::agent {
 template <class T>
 Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario)
     : max_age_s_(scenario.track.neighbour_max_age_s),
-      half_extent_m_(scenario.workspace.half_extent_m),
+      wall_m_(scenario.wall_m()),
       sights_(static_cast<std::size_t>(scenario.agents)) {
   const int padded = (scenario.agents + kLanes - 1) / kLanes * kLanes;
   for (auto* v : {&distance_, &age_, &learnt_, &quality_})
@@ -51,7 +51,7 @@ template <class T>
 void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links) {
   for (NeighbourSight<T>& n : sights_) {
     if (!n.heard()) continue;
-    n.p_WN = DeadReckon(n.p_W, n.v_W, n.age_s, half_extent_m_);
+    n.p_WN = DeadReckon(n.p_W, n.v_W, n.age_s, wall_m_);
     n.r_BN_W = n.p_WN - p_WB;
     n.distance_m = Norm(n.r_BN_W);
   }

@@ -40,7 +40,7 @@ TargetTrack::TargetTrack(const AgentConfig& scenario)
       speed_std_mps_(scenario.track.initial_speed_std_mps),
       max_speed_mps_(scenario.target.max_speed_mps),
       gate2_(scenario.track.gate_sigma * scenario.track.gate_sigma),
-      half_extent_m_(scenario.workspace.half_extent_m) {}
+      wall_m_(scenario.wall_m()) {}
 
 void TargetTrack::Clear() {
   started_ = observed_ = false;
@@ -60,9 +60,9 @@ void TargetTrack::Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp) {
 
 void TargetTrack::Grow(double t, TargetEstimate* e) const {
   e->p_WT += e->v_WT * t;
-  ReflectAtWall(half_extent_m_, &e->p_WT.x, &e->v_WT.x);
-  ReflectAtWall(half_extent_m_, &e->p_WT.y, &e->v_WT.y);
-  ReflectAtWall(half_extent_m_, &e->p_WT.z, &e->v_WT.z);
+  ReflectAtWall(wall_m_, &e->p_WT.x, &e->v_WT.x);
+  ReflectAtWall(wall_m_, &e->p_WT.y, &e->v_WT.y);
+  ReflectAtWall(wall_m_, &e->p_WT.z, &e->v_WT.z);
   const double S = intensity_;
   e->pp += t * (2.0 * e->pv + t * (e->vv + S * t * (1.0 / 3.0)));
   e->pv += t * (e->vv + 0.5 * S * t);

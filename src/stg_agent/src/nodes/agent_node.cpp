@@ -11,6 +11,7 @@
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
+#include "auv_dynamics/world/helm.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -19,12 +20,13 @@ namespace {
 constexpr std::uint32_t kQueue = 50;
 
 /// Whether the agent's process also turns velocities into wrenches.
-bool OnboardParameter() {
+bool OnboardParameter(const dynamics::WorldConfig& scenario) {
   const std::string autopilot = TextParameter("autopilot", "external");
-  if (autopilot != "external" && autopilot != "onboard") {
-    throw UserError("parameter autopilot: must be external or onboard");
-  }
-  return autopilot == "onboard";
+  if (autopilot == "external") return false;
+  if (autopilot != "onboard") throw UserError("parameter autopilot: must be external or onboard");
+  if (!dynamics::Helm::Steers(scenario)) return true;
+  throw UserError("parameter autopilot: vehicle.model " + scenario.vehicle.model +
+                  " is no vehicle for onboard, as it is not commanded by force and moment");
 }
 
 }  // namespace
@@ -42,7 +44,7 @@ AgentNode::AgentNode()
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
       commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
-      commands_wrench_(!commands_velocity_ || OnboardParameter()),
+      commands_wrench_(!commands_velocity_ || OnboardParameter(scenario_)),
       pending_(id_, scenario_.target.count),
       tracker_(period_, scenario_.time.episode_steps),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),

@@ -51,7 +51,16 @@ void Validate(const Policy::Parameters& p) {
     if (p.activation == Policy::Activation::kTanh) bound = bound.cwiseMin(1.0);
     inputs = layer.weight.rows();
   }
-  Require(p.log_std.size() == inputs, "log_std and the last layer differ in size");
+  Eigen::Index actions = inputs;
+  if (p.choices.size() > 0) {
+    RequireWidth(p.choices.rows(), "the choices");
+    Require(inputs % p.choices.rows() == 0, "the last layer does not value every choice");
+    Require(p.choices.allFinite() && p.choices.cwiseAbs().maxCoeff() <= 1.0F,
+            "a choice is not in [-1, 1]");
+    actions = inputs / p.choices.rows() * p.choices.cols();
+    RequireWidth(actions, "the action");
+  }
+  Require(p.log_std.size() == actions, "log_std and the actions differ in size");
   Require(p.log_std.allFinite() && p.log_std.cwiseAbs().maxCoeff() <= 20.0F,
           "log_std is not in [-20, 20]");
   const double scale = p.metadata.action_scale;
@@ -116,7 +125,12 @@ void Policy::Mean(const float* observation, float* action) const {
     for (; i < layer.inputs; ++i, column += layer.padded) {
       sum += AlignedConst(column, layer.padded) * in[i];
     }
-    if (l + 1 == packed_.size() || parameters_.activation == Activation::kTanh) {
+    const bool last = l + 1 == packed_.size();
+    if (last && parameters_.choices.size() > 0) {
+      Choose(out, action);
+      return;
+    }
+    if (last || parameters_.activation == Activation::kTanh) {
       sum = sum.tanh();
     } else {
       sum = sum.max(0.0F);
@@ -125,6 +139,17 @@ void Policy::Mean(const float* observation, float* action) const {
   }
   const float scale = static_cast<float>(parameters_.metadata.action_scale);
   for (int a = 0; a < action_size(); ++a) action[a] = scale * in[a];
+}
+
+void Policy::Choose(const float* outputs, float* action) const {
+  const Eigen::MatrixXf& choices = parameters_.choices;
+  const float scale = static_cast<float>(parameters_.metadata.action_scale);
+  const auto count = static_cast<int>(choices.rows());
+  const int heads = static_cast<int>(parameters_.layers.back().bias.size()) / count;
+  for (int h = 0; h < heads; ++h, outputs += count) {
+    const auto best = std::max_element(outputs, outputs + count) - outputs;
+    for (Eigen::Index d = 0; d < choices.cols(); ++d) *action++ = scale * choices(best, d);
+  }
 }
 
 void Policy::RequireFits(const AgentConfig& scenario) const {

@@ -54,6 +54,17 @@ class ChainWriter {
     node->add_input(name);
   }
 
+  /// Adds a constant list of integers as the node's next input.
+  void AddShape(onnx::NodeProto* node, const std::string& name,
+                const std::vector<std::int64_t>& shape) {
+    onnx::TensorProto* tensor = graph_->add_initializer();
+    tensor->set_name(name);
+    tensor->set_data_type(onnx::TensorProto::INT64);
+    tensor->add_dims(static_cast<std::int64_t>(shape.size()));
+    for (const std::int64_t d : shape) tensor->add_int64_data(d);
+    node->add_input(name);
+  }
+
  private:
   onnx::GraphProto* graph_;
   std::string last_;
@@ -79,6 +90,24 @@ void SetValueInfo(onnx::ValueInfoProto* info, const char* name, int size) {
   type->set_elem_type(onnx::TensorProto::FLOAT);
   type->mutable_shape()->add_dim()->set_dim_value(1);
   type->mutable_shape()->add_dim()->set_dim_value(size);
+}
+
+/// The operators after the last layer of a Q-network: the choice of each head, and what it stands
+/// for.
+void WriteChoice(const Policy::Parameters& p, ChainWriter* chain) {
+  using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::int64_t count = p.choices.rows();
+  chain->AddShape(chain->Add("Reshape", "values"), "heads",
+                  {1, p.layers.back().bias.size() / count, count});
+  onnx::NodeProto* best = chain->Add("ArgMax", "best");
+  SetInt(best, "axis", 2);
+  SetInt(best, "keepdims", 0);
+  const RowMajor choices = p.choices;
+  onnx::NodeProto* gather = chain->Add("Gather", "chosen");
+  chain->AddConstant(gather, "choices", {choices.rows(), choices.cols()}, choices.data());
+  gather->mutable_input()->SwapElements(0, 1);  // Gather takes the data first
+  SetInt(gather, "axis", 0);
+  SetInt(chain->Add("Flatten", "unscaled"), "axis", 1);
 }
 
 void AddProperty(onnx::ModelProto* model, const std::string& key, const std::string& value) {
@@ -127,6 +156,11 @@ class Fnv {
       Add(layer.bias.data(), layer.bias.size());
     }
     Add(p.log_std.data(), p.log_std.size());
+    if (p.choices.size() > 0) {
+      Add(p.choices.data(), p.choices.size());
+      const auto width = static_cast<float>(p.choices.cols());
+      Add(&width, 1);
+    }
     const float rest[] = {static_cast<float>(p.activation),
                           static_cast<float>(p.metadata.action_scale)};
     Add(rest, 2);
@@ -197,6 +231,10 @@ void Policy::SaveOnnx(const std::string& path) const {
     SetFloat(gemm, "beta", 1.0F);
     SetInt(gemm, "transA", 0);
     SetInt(gemm, "transB", 1);
+    if (l + 1 == p.layers.size() && p.choices.size() > 0) {
+      WriteChoice(p, &chain);
+      break;
+    }
     const bool tanh = l + 1 == p.layers.size() || p.activation == Activation::kTanh;
     chain.Add(tanh ? "Tanh" : "Relu", "hidden" + n);
   }

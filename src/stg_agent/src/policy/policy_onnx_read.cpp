@@ -54,7 +54,7 @@ class Reader {
             "operator set is not 9 or 10");
     Require(graph_.input_size() == 1 && graph_.output_size() == 1,
             "has not exactly one input and one output");
-    Require(graph_.node_size() <= 4 + 2 * Policy::kMaxLayers, "has too many operators");
+    Require(graph_.node_size() <= 7 + 2 * Policy::kMaxLayers, "has too many operators");
   }
 
   void IndexConstants() {
@@ -109,12 +109,13 @@ class Reader {
   }
 
   /// The next operator, checked to continue the chain with `inputs` inputs.
-  const onnx::NodeProto& Next(const char* op, int inputs) {
+  /// @param from which input continues it.
+  const onnx::NodeProto& Next(const char* op, int inputs, int from = 0) {
     Require(next_ < graph_.node_size(), std::string("ends where ") + op + " is expected");
     const onnx::NodeProto& node = graph_.node(next_++);
     Require(node.op_type() == op && node.domain().empty(),
             "operator " + std::to_string(next_) + " is '" + node.op_type() + "', not " + op);
-    Require(node.input_size() == inputs && node.output_size() == 1 && node.input(0) == last_,
+    Require(node.input_size() == inputs && node.output_size() == 1 && node.input(from) == last_,
             node.op_type() + " does not continue the chain");
     Require(!node.output(0).empty() && constants_.count(node.output(0)) == 0,
             node.op_type() + " overwrites a constant");
@@ -156,6 +157,10 @@ class Reader {
       ReadGemm();
       Require(next_ < graph_.node_size(), "ends without an activation");
       const std::string op = graph_.node(next_).op_type();
+      if (op == "Reshape") {
+        ReadChoice();
+        break;
+      }
       Require(op == "Tanh" || op == "Relu", "operator " + op + " is not Tanh or Relu");
       Attributes(Next(op.c_str(), 1), {});
       const bool relu = op == "Relu";
@@ -172,10 +177,39 @@ class Reader {
     Attributes(mul, {});
     const Eigen::VectorXf scale = Vector(mul, 1);
     Require((scale.array() == static_cast<float>(p_.metadata.action_scale)).all() &&
-                (scale.size() == 1 || scale.size() == p_.layers.back().bias.size()),
+                (scale.size() == 1 || scale.size() == p_.log_std.size()),
             "Mul is not by the stated action scale");
     Require(next_ == graph_.node_size() && last_ == graph_.output(0).name(),
             "has operators after Mul");
+  }
+
+  /// What follows the last layer of a Q-network.
+  void ReadChoice() {
+    const onnx::NodeProto& reshape = Next("Reshape", 2);
+    Attributes(reshape, {});
+    const auto found = constants_.find(reshape.input(1));
+    Require(found != constants_.end(), "Reshape's shape is not a constant");
+    ++used_;
+    const onnx::TensorProto& shape = *found->second;
+    Require(shape.data_type() == onnx::TensorProto::INT64 && shape.dims_size() == 1 &&
+                shape.dims(0) == 3 && shape.int64_data_size() == 3 && !shape.has_raw_data() &&
+                !shape.has_segment() && shape.external_data_size() == 0,
+            "Reshape's shape is not a list of three numbers");
+    const auto best = Attributes(Next("ArgMax", 1), {{"axis", 0.0}, {"keepdims", 1.0}});
+    Require(best.at("axis") == 2.0 && best.at("keepdims") == 0.0, "ArgMax is not over the choices");
+    const onnx::NodeProto& gather = Next("Gather", 2, 1);
+    Require(Attributes(gather, {{"axis", 0.0}}).at("axis") == 0.0, "Gather is not by row");
+    std::vector<std::int64_t> dims;
+    const std::vector<float> data = Constant(gather, 0, &dims);
+    Require(dims.size() == 2, "the choices are not a matrix");
+    using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    p_.choices = Eigen::Map<const RowMajor>(data.data(), dims[0], dims[1]);
+    Require(shape.int64_data(0) == 1 && shape.int64_data(2) == dims[0] &&
+                shape.int64_data(1) >= 1 && shape.int64_data(1) <= Policy::kMaxWidth &&
+                shape.int64_data(1) * dims[0] == p_.layers.back().bias.size(),
+            "Reshape is not to heads and choices");
+    Require(Attributes(Next("Flatten", 1), {{"axis", 1.0}}).at("axis") == 1.0,
+            "Flatten is not to one row");
   }
 
   void ReadGemm() {

@@ -101,7 +101,13 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
 
 /// What acted on the AUVs until this frame.
 void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
+  const bool efforts = truth.efforts.size() == vehicles_.size() * dynamics::kWrenchSize;
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    if (efforts) {
+      std::copy_n(truth.efforts.begin() + static_cast<std::ptrdiff_t>(i * dynamics::kWrenchSize),
+                  dynamics::kWrenchSize, tau_[i].begin());
+      continue;
+    }
     const auto& w = truth.wrenches[i];
     const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
     for (std::size_t k = 0; k < 6; ++k) {

@@ -146,7 +146,9 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   const auto finite_wrench = [](const geometry_msgs::Wrench& w) {
     return FiniteVector(w.force) && FiniteVector(w.torque);
   };
-  return m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
+  const bool efforts = m.efforts.empty() || m.efforts.size() == n * dynamics::kWrenchSize;
+  return efforts && std::all_of(m.efforts.begin(), m.efforts.end(), Finite) &&
+         m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
          m.fresh.size() == n && p.size() == targets && v.size() == targets &&
          std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
          std::all_of(m.poses.begin(), m.poses.end(), finite_pose) &&

@@ -42,7 +42,10 @@ def _text(value):
 
 
 def override_texts(overrides):
-    """Returns ["key.path=value", ...] of a dictionary, nested or with dotted keys."""
+    """Returns ["key.path=value", ...] of a dictionary, nested or with dotted keys, or of a list of
+    such texts."""
+    if isinstance(overrides, (list, tuple)):
+        return [str(text) for text in overrides]
     texts = []
 
     def walk(prefix, values):
@@ -61,7 +64,7 @@ def load_scenario(scenario="medium", condition="nominal", overrides=None):
 
     scenario: name of a shipped one, path of a YAML file, or a Scenario, which is returned as it is.
     condition: "nominal", or name or path of an overlay. overrides: {"key.path": value}, nested or
-    not, see docs/scenarios.md. Raises UserError that names file, line and key.
+    not, or ["key.path=value", ...], see docs/scenarios.md. Raises UserError that names file, line and key.
     """
     if isinstance(scenario, _core.Scenario):
         if overrides or condition != "nominal":

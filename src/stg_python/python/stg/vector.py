@@ -34,6 +34,8 @@ except ImportError:
 
 def _mix(scenario, condition, overrides):
     """Returns the list of scenarios that a mix names: any of the three may be a list."""
+    if isinstance(overrides, (list, tuple)) and all(isinstance(x, str) for x in overrides):
+        overrides = [overrides]  # one scenario's, as texts
     given = [x if isinstance(x, (list, tuple)) else [x] for x in (scenario, condition, overrides)]
     count = max(map(len, given))
     if any(len(x) not in (1, count) for x in given):

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "acoustic_channel/access/medium_access.hpp"
 #include "arrays.hpp"
@@ -77,6 +79,7 @@ struct BoundAgent {
 
   agent::Agent mind;
   acoustics::Turns turns;
+  std::vector<double> action;  ///< executed by the last act
 };
 
 void Reset(BoundAgent& a, std::uint64_t seed, std::uint32_t episode,
@@ -117,11 +120,36 @@ py::dict Act(BoundAgent& a, const py::handle& action) {
   const Floats floats = RequireFloats(action, "action", {s.action_size()});
   const auto wanted = py::array_t<float, py::array::c_style | py::array::forcecast>(floats.array);
   const agent::AgentOutput out = a.mind.Act(wanted.data());
+  a.action.assign(out.action, out.action + s.action_size());
   const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(s.vehicle, out.fraction);
   py::dict all;
   all["cmd_vel"] = TripleOf(out.cmd_vel_W);
   all["force"] = TripleOf(wrench.force);
   all["moment"] = TripleOf(wrench.moment);
+  return all;
+}
+
+/// What it believes about its task, by the names of the fields of auv_msgs/TaskState.
+py::dict Task(const BoundAgent& a) {
+  const agent::TaskView task = a.mind.task();
+  const agent::Knowledge<double>& k = a.mind.knowledge();
+  const agent::AgentView view = a.mind.view();
+  double age = std::numeric_limits<double>::infinity();
+  for (const int id : view.neighbours().known()) age = std::min(age, view.sight(id).age_s);
+  py::dict all;
+  all["z_track"] = task.z_track;
+  all["phase"] = task.phase;
+  all["quality"] = task.quality;
+  all["graph_summary"] = task.graph;
+  all["role"] = task.role;
+  all["action"] = a.action;
+  all["target_known"] = a.mind.track().started();
+  all["target_std"] = a.mind.track().estimate().position_std_m();
+  all["target_distance"] = k.distance;
+  all["tracking_error"] = k.error;
+  all["confidence"] = k.confidence;
+  all["neighbours"] = view.neighbours().known();
+  all["neighbour_age"] = std::isfinite(age) ? age : 0.0;
   return all;
 }
 
@@ -217,6 +245,7 @@ void BindAgent(py::module_& module) {
       .def("act", &Act, py::arg("action"),
            "Executes an action, once after each observe: {cmd_vel (world) [m/s], force [N] and\n"
            "moment [N m] (body)}.")
+      .def("task", &Task, "What it believes, by the names of the fields of auv_msgs/TaskState.")
       .def(
           "make_packet", [](const BoundAgent& a) { return Bytes(a.mind.MakePacket()); },
           "What it offers to its modem: 32 bytes.")

@@ -13,29 +13,29 @@ namespace {
 
 namespace py = pybind11;
 
-py::object ToPython(const config::ValueRef& value) {
-  struct Cast {
-    py::object operator()(const double* x) const { return py::float_(*x); }
-    py::object operator()(const int* x) const { return py::int_(*x); }
-    py::object operator()(const std::uint64_t* x) const { return py::int_(*x); }
-    py::object operator()(const bool* x) const { return py::bool_(*x); }
-    py::object operator()(const std::string* x) const { return py::str(*x); }
-    py::object operator()(const config::EnumRef& x) const {
-      return py::str(x.names[static_cast<std::size_t>(x.get())]);
-    }
-    py::object operator()(const config::NumbersRef& x) const {
-      return py::cast(std::vector<double>(x.data, x.data + x.size));
-    }
-    py::object operator()(const config::Interval* x) const {
-      return py::cast(std::vector<double>{x->lo, x->hi});
-    }
-    template <class Names>
-    auto operator()(const Names& x) const -> decltype(py::object(py::cast(*x.list))) {
-      return py::cast(*x.list);
-    }
-  };
-  return std::visit(Cast{}, value);
-}
+/// What a key holds, as Python has it.
+struct Cast {
+  py::object operator()(const double* x) const { return py::float_(*x); }
+  py::object operator()(const int* x) const { return py::int_(*x); }
+  py::object operator()(const std::uint64_t* x) const { return py::int_(*x); }
+  py::object operator()(const bool* x) const { return py::bool_(*x); }
+  py::object operator()(const std::string* x) const { return py::str(*x); }
+  py::object operator()(const config::EnumRef& x) const {
+    return py::str(x.names[static_cast<std::size_t>(x.get())]);
+  }
+  py::object operator()(const config::NumbersRef& x) const {
+    return py::cast(std::vector<double>(x.data, x.data + x.size));
+  }
+  py::object operator()(const config::Interval* x) const {
+    return py::cast(std::vector<double>{x->lo, x->hi});
+  }
+  template <class Names>
+  auto operator()(const Names& x) const -> decltype(py::object(py::cast(*x.list))) {
+    return py::cast(*x.list);
+  }
+};
+
+py::object ToPython(const config::ValueRef& value) { return std::visit(Cast{}, value); }
 
 /// All keys with their values.
 py::dict Values(const Scenario& scenario) {

@@ -24,6 +24,11 @@ struct Attempt {
   TimeNs last_end = kNever;    ///< its last transmission ended; kNever: there was none
 };
 
+/// What a modem needs for the longest packet of the network; nothing on ideal channels.
+struct PacketTime {
+  TimeNs airtime = 0, turnaround = 0;
+};
+
 /// The rule by which the modems of a network share the water, in continuous time. Times count from
 /// the start of the episode. What a rule draws must depend on seed, episode and its arguments only,
 /// so that whoever asks, in whatever order, gets the same answer. Nothing is allocated.
@@ -45,8 +50,11 @@ class MediumAccess {
   /// True: the answer of Next depends on the attempt, so that nobody but the modem can know it.
   virtual bool adapts() const { return listens(); }
 
-  /// Why the rule cannot work with the section and the clock of the run; nothing: it can.
-  virtual std::optional<config::Violation> FindConflict() const { return {}; }
+  /// Why the rule cannot work with the section, the clock of the run and such packets; nothing: it
+  /// can.
+  virtual std::optional<config::Violation> FindConflict(const PacketTime& /*packet*/) const {
+    return {};
+  }
 };
 
 /// All rules, by the name that `channel.access` takes.

@@ -9,13 +9,14 @@ namespace stg::acoustics {
 
 /// Staggered slots at decisions: node i sends at decisions k with k mod P = i mod P, where P is the
 /// transmit period in decisions, rounded, at least 1. k comes from the time, not from counting: a
-/// node that joins in the middle of an episode keeps to its slot.
+/// node that joins in the middle of an episode keeps to its slot. A modem that is busy then lets its
+/// slot pass.
 class Periodic : public MediumAccess {
  public:
   Periodic(const PeriodicConfig& config, const RunConfig& run);
   TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
   /// A period shorter than a decision cannot be kept.
-  std::optional<config::Violation> FindConflict() const override;
+  std::optional<config::Violation> FindConflict(const PacketTime& packet) const override;
 
  private:
   double transmit_period_s_, decision_s_;

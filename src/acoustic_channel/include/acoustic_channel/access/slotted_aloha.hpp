@@ -12,15 +12,14 @@ namespace stg::acoustics {
 /// covers the differences of the ways; without, it falls towards that of pure ALOHA.
 class SlottedAloha : public MediumAccess {
  public:
-  /// @param airtime the longest of the fleet
-  SlottedAloha(const SlotsConfig& config, TimeNs airtime);
+  explicit SlottedAloha(const SlotsConfig& config);
   void Reset(std::uint64_t seed, std::uint32_t episode) override;
   TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
-  std::optional<config::Violation> FindConflict() const override;
+  std::optional<config::Violation> FindConflict(const PacketTime& packet) const override;
 
  private:
   SlotsConfig config_;
-  TimeNs slot_, airtime_;
+  TimeNs slot_;
   std::uint64_t seed_ = 0;
   std::uint32_t episode_ = 0;
 };

@@ -12,15 +12,14 @@ namespace stg::acoustics {
 /// farthest node.
 class Tdma : public MediumAccess {
  public:
-  /// @param airtime, turnaround the longest of the fleet
-  Tdma(const SlotsConfig& config, int nodes, TimeNs airtime, TimeNs turnaround);
+  Tdma(const SlotsConfig& config, int nodes);
   TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
   /// A slot shorter than the longest packet and the guard cannot hold it.
-  std::optional<config::Violation> FindConflict() const override;
+  std::optional<config::Violation> FindConflict(const PacketTime& packet) const override;
 
  private:
   SlotsConfig config_;
-  TimeNs slot_, frame_, airtime_, turnaround_;
+  TimeNs slot_, frame_;
 };
 
 /// Why a slot cannot hold a packet of this airtime; nothing: it can.

@@ -38,11 +38,9 @@ class MotionTrack {
   /// Nothing: not there, or silent.
   std::optional<Motion> At(TimeNs t) const;
 
-  /// Time of the newest sample; nothing: there is none.
+  /// Time of the newest sample, and of the newest up to and including t; nothing: there is none.
   std::optional<TimeNs> newest() const;
-  /// Of the newest sample; nothing: there is none.
-  std::optional<Vec3<double>> last_position() const;
-
+  std::optional<TimeNs> NewestUntil(TimeNs t) const;
   /// Times before t are not asked for again.
   void ForgetBefore(TimeNs t);
   void Clear() { samples_.clear(); }

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/link/link_estimator.hpp"
@@ -23,6 +24,8 @@ class PropagationModel {
   /// True: nodes have modems, which know when they are busy, hear carriers and take frames of a
   /// certain length. False: packets leave at decisions and take no time.
   virtual bool has_modems() const { return false; }
+  /// What the longest packet takes; see MediumAccess::FindConflict.
+  virtual PacketTime packet_time(const ChannelConfig&, int /*nodes*/) const { return {}; }
   /// Longest payload of a packet [bytes].
   virtual std::size_t max_payload(const ChannelConfig&, int /*nodes*/) const {
     return kLargestFrame;

@@ -15,6 +15,8 @@ constexpr std::size_t kMostDoubtful = 10'000;
 /// A clock that is on its way is here after this wall time.
 constexpr double kDoubt_s = 0.5;
 
+using Word = acoustics::FleetChannel::Word;
+
 }  // namespace
 
 TimeNs FleetNode::Clock() const { return bag_.empty() ? NsOf(ros::Time::now()) : now_; }
@@ -48,25 +50,20 @@ void FleetNode::JudgeAgain() {
 void FleetNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& message) {
   const auto& pose = message->pose.pose;
   const auto& twist = message->twist.twist;
-  const Vehicle& v = vehicles_[static_cast<std::size_t>(vehicle)];
   if (!frame_.empty() && message->header.frame_id != frame_) {
-    last_refusal_ = v.odom + ": frame '" + message->header.frame_id + "' instead of " + frame_;
-    return refused_odometry_.Add(Refusals::kFrame);
+    return RefuseOdometry(vehicle, Refusals::kFrame,
+                          "frame '" + message->header.frame_id + "' instead of " + frame_);
   }
   // An orientation matters only where the twist is told in it.
-  const bool finite =
-      (twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position)) &&
-      (twist_ == TwistFrame::kNone || FiniteVector(twist.linear));
-  if (!finite) {
-    last_refusal_ = v.odom + ": not finite, or an orientation that is no rotation";
-    return refused_odometry_.Add(Refusals::kNotFinite);
+  const bool placed = twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position);
+  if (!placed || (twist_ != TwistFrame::kNone && !FiniteVector(twist.linear))) {
+    return RefuseOdometry(vehicle, Refusals::kNotFinite,
+                          "not finite, or an orientation that is no rotation");
   }
-  Judge(NsOf(message->header.stamp), [this, vehicle, message](bool timely) {
+  const TimeNs stamp = NsOf(message->header.stamp);
+  Judge(stamp, [this, vehicle, message, stamp](bool timely) {
     if (timely) return Place(vehicle, *message);
-    refused_odometry_.Add(Refusals::kStale);
-    last_refusal_ = vehicles_[static_cast<std::size_t>(vehicle)].odom + ": stamp " +
-                    std::to_string(message->header.stamp.toSec()) + " s, the clock says " +
-                    std::to_string(Seconds(now_)) + " s";
+    RefuseOdometry(vehicle, Refusals::kStale, FarFromTheClock(stamp));
   });
 }
 
@@ -78,11 +75,8 @@ void FleetNode::Place(int vehicle, const nav_msgs::Odometry& message) {
   } else if (twist_ == TwistFrame::kWorld) {
     motion.v_W = VectorOf(message.twist.twist.linear);
   }
-  if (fleet_.Move(vehicle, NsOf(message.header.stamp), motion) ==
-      acoustics::FleetChannel::Word::kLate) {
-    refused_odometry_.Add(Refusals::kStale);
-    last_refusal_ = vehicles_[static_cast<std::size_t>(vehicle)].odom + ": too late for its stamp";
-    return;
+  if (fleet_.Move(vehicle, NsOf(message.header.stamp), motion) == Word::kLate) {
+    return RefuseOdometry(vehicle, Refusals::kStale, "too late for its stamp");
   }
   ++odometry_;
   ++frames_[message.header.frame_id];
@@ -93,14 +87,14 @@ void FleetNode::OnPacket(int vehicle, const auv_msgs::AcousticPacket::ConstPtr& 
   const TimeNs stamp = now ? Clock() : NsOf(message->header.stamp);
   Judge(stamp, [this, vehicle, message, stamp](bool timely) {
     if (timely) return Offer(vehicle, *message, stamp);
-    refused_packets_.Add(Refusals::kStale);
-    Refuse(vehicle, *message,
-           "stamp " + std::to_string(Seconds(stamp)) + " s, the clock says " +
-               std::to_string(Seconds(now_)) + " s");
+    RefusePacket(vehicle, *message, Refusals::kStale, FarFromTheClock(stamp));
   });
 }
 
 void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, TimeNs stamp) {
+  const auto refuse = [&](const std::string& why) {
+    RefusePacket(vehicle, message, Refusals::kMalformed, why);
+  };
   acoustics::Transmission packet;
   packet.source = vehicle;
   packet.destination = message.destination == acoustics::kToAll
@@ -111,31 +105,43 @@ void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, Time
   packet.tag = message.sequence;
   packet.payload = acoustics::ViewOf(message.data);
   if (packet.destination == kNobody) {
-    refused_packets_.Add(Refusals::kMalformed);
-    return Refuse(vehicle, message,
-                  "destination " + std::to_string(message.destination) + " does not exist");
+    return refuse("destination " + std::to_string(message.destination) + " does not exist");
   }
+  if (packet.destination == vehicle) return refuse("its destination is its sender");
   try {
-    if (fleet_.Offer(packet) == acoustics::FleetChannel::Word::kLate) {
-      ++members_[static_cast<std::size_t>(vehicle)].late;
-    }
+    if (fleet_.Offer(packet) == Word::kLate) ++members_[static_cast<std::size_t>(vehicle)].late;
     ++packets_;
   } catch (const UserError& error) {
-    refused_packets_.Add(Refusals::kMalformed);
-    Refuse(vehicle, message, error.what());
+    refuse(error.what());
   }
 }
 
-void FleetNode::Refuse(int vehicle, const auv_msgs::AcousticPacket& message,
-                       const std::string& why) {
-  auv_msgs::TransmitStatus status = StatusOf(vehicle, now_);
+std::string FleetNode::FarFromTheClock(TimeNs stamp) const {
+  return "stamp " + std::to_string(Seconds(stamp)) + " s, the clock says " +
+         std::to_string(Seconds(Clock())) + " s";
+}
+
+void FleetNode::RefuseOdometry(int vehicle, Refusals::Reason reason, const std::string& why) {
+  refused_odometry_.Add(reason);
+  last_refusal_ = vehicles_[static_cast<std::size_t>(vehicle)].odom + ": " + why;
+}
+
+void FleetNode::RefusePacket(int vehicle, const auv_msgs::AcousticPacket& message,
+                             Refusals::Reason reason, const std::string& why) {
+  auv_msgs::TransmitStatus status = StatusOf(vehicle, Clock());
   status.destination = message.destination;
   status.sequence = message.sequence;
-  status.status = auv_msgs::TransmitStatus::REFUSED;
-  status.text = why;
-  PublishStatus(vehicle, status);
-  last_refusal_ =
-      vehicles_[static_cast<std::size_t>(vehicle)].Topic(topics::kAcousticTx) + ": " + why;
+  RefusePacket(vehicle, &status, reason, why);
+}
+
+void FleetNode::RefusePacket(int vehicle, auv_msgs::TransmitStatus* status, Refusals::Reason reason,
+                             const std::string& why) {
+  refused_packets_.Add(reason);
+  const Vehicle& v = vehicles_[static_cast<std::size_t>(vehicle)];
+  last_refusal_ = v.Topic(topics::kAcousticTx) + ": " + why;
+  status->status = auv_msgs::TransmitStatus::REFUSED;
+  status->text = why;
+  PublishStatus(vehicle, *status);
 }
 
 void FleetNode::AskPings() {

@@ -195,12 +195,26 @@ void FleetNode::ReplayBag() {
   }
   fleet_.Finish();
   Tell();
+  Conclude();
+}
+
+/// Says how the bag went.
+void FleetNode::Conclude() {
+  const auto count = [](std::uint64_t n) { return static_cast<unsigned long>(n); };
   const acoustics::ChannelTotals& totals = fleet_.channel().totals();
-  ROS_INFO("%s: %lu packets delivered, %lu dropped, refused %lu of odometry and %lu packets",
-           bag_.c_str(), static_cast<unsigned long>(totals.delivered),
-           static_cast<unsigned long>(totals.dropped),
-           static_cast<unsigned long>(refused_odometry_.total()),
-           static_cast<unsigned long>(refused_packets_.total()));
+  ROS_INFO("%s: %lu of odometry and %lu packets taken; %lu delivered, %lu lost, by receiver",
+           bag_.c_str(), count(odometry_), count(packets_), count(totals.delivered),
+           count(totals.dropped));
+  if (odometry_ == 0) ROS_WARN("%s: no odometry of any of the vehicles", bag_.c_str());
+  if (foreign_messages_ > 0) {
+    ROS_WARN("%s: %lu messages on topics of the vehicles are of another type", bag_.c_str(),
+             count(foreign_messages_));
+  }
+  const std::uint64_t refused = refused_odometry_.total() + refused_packets_.total();
+  if (refused > 0) {
+    ROS_WARN("%s: %lu messages refused, the last one: %s", bag_.c_str(), count(refused),
+             last_refusal_.c_str());
+  }
 }
 
 }  // namespace stg::nodes

@@ -56,6 +56,7 @@ class FleetNode : private acoustics::FleetListener {
   void Connect();
   double Work();
   void ReplayBag();
+  void Conclude();
   void WatchClock(TimeNs now);
   void StartAnew();
   void Advance(TimeNs now);
@@ -70,7 +71,12 @@ class FleetNode : private acoustics::FleetListener {
   void Place(int vehicle, const nav_msgs::Odometry& message);
   void OnPacket(int vehicle, const auv_msgs::AcousticPacket::ConstPtr& message);
   void Offer(int vehicle, const auv_msgs::AcousticPacket& message, TimeNs stamp);
-  void Refuse(int vehicle, const auv_msgs::AcousticPacket& message, const std::string& why);
+  std::string FarFromTheClock(TimeNs stamp) const;
+  void RefuseOdometry(int vehicle, Refusals::Reason reason, const std::string& why);
+  void RefusePacket(int vehicle, const auv_msgs::AcousticPacket& message, Refusals::Reason reason,
+                    const std::string& why);
+  void RefusePacket(int vehicle, auv_msgs::TransmitStatus* status, Refusals::Reason reason,
+                    const std::string& why);
   void AskPings();
 
   void OnBegin(TimeNs start) override;

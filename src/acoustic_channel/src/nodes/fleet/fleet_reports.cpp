@@ -59,10 +59,7 @@ void FleetNode::OnAbsent(const acoustics::Transmission& packet) {
   TransmitStatus m = StatusOf(packet.source, packet.stamp);
   m.destination = reports_.IdOf(packet.destination);
   m.sequence = packet.tag;
-  m.status = TransmitStatus::REFUSED;
-  m.text = "no odometry: the vehicle is not there";
-  refused_packets_.Add(Refusals::kStale);
-  PublishStatus(packet.source, m);
+  RefusePacket(packet.source, &m, Refusals::kStale, "no odometry: the vehicle is not there");
 }
 
 void FleetNode::OnQueued(const PacketInfo& packet) {

@@ -28,9 +28,13 @@ struct YamlTree::Entry {
   YamlTree value;
 };
 
-/// Parses one document. An empty text gives a null node. Throws UserError whose
-/// message starts with `origin`, followed by `:line` when `with_lines`.
-YamlTree ParseYaml(const std::string& text, const std::string& origin, bool with_lines = true);
+/// Maps, sequences and scalars that a scenario may have, together.
+inline constexpr int kMaxValues = 20000;
+
+/// Parses one document of at most so many values. An empty text gives a null node. Throws UserError
+/// whose message starts with `origin`, followed by `:line` when `with_lines`.
+YamlTree ParseYaml(const std::string& text, const std::string& origin, bool with_lines = true,
+                   int max_values = kMaxValues);
 
 /// The whole of a regular file of at most 1 MiB; throws UserError otherwise.
 std::string ReadBoundedFile(const std::string& path);

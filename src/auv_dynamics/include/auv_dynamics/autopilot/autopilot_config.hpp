@@ -8,7 +8,7 @@ namespace stg::dynamics {
 /// normalised loops: what the fins do at the present speed is divided out with the vehicle's own
 /// constants.
 struct AutopilotConfig {
-  int period_steps = 4;        ///< physics steps between two commands to the actuators
+  int period_steps = 1;        ///< physics steps between two commands to the actuators
   double min_speed_mps = 0.8;  ///< through the water: it is not told to be slower
   double speed_integral_ps = 0.1;
   double course_gain_ps = 0.25;  ///< turn rate per error of course

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "auv_dynamics/targets/target_motion.hpp"
 
 namespace stg::dynamics {
@@ -30,13 +32,15 @@ class SteeredMotion : public TargetMotion {
 
   const TargetConfig& config() const { return config_; }
   double dt() const { return dt_; }
-  double half_extent() const { return half_extent_; }
+  double region() const { return region_; }
+  /// No walls, and a band of depths: what it steers for is level.
+  bool open_water() const { return std::isinf(half_extent_); }
   /// Largest turn of one step [rad].
   double largest_turn() const { return config_.max_turn_rate_radps * dt_; }
 
  private:
   TargetConfig config_;
-  double dt_, half_extent_;
+  double dt_, half_extent_, region_;
 };
 
 }  // namespace stg::dynamics

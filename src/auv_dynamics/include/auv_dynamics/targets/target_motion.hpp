@@ -13,8 +13,9 @@ namespace stg::dynamics {
 /// What a motion is made from. It copies what it keeps.
 struct MotionSetup {
   const TargetConfig& target;
-  double half_extent_m;  ///< walls at +- this value on each axis
+  double half_extent_m;  ///< walls at +- this value on each axis; infinity: there are none
   double dt_s;           ///< physics step
+  double region_m;       ///< half the size of the region that waypoints are drawn from
 };
 
 /// How the targets of one World move. One object moves all of them, in every lane; what it

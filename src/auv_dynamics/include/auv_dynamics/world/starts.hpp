@@ -5,6 +5,7 @@
 
 #include "auv_dynamics/targets/target_state.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
+#include "auv_dynamics/world/sea_config.hpp"
 
 namespace stg::dynamics {
 
@@ -21,5 +22,10 @@ struct Start {
 /// @param start in and out: its sizes say how many vehicles and targets there are
 void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
+
+/// The same in open water: distances and directions in the horizontal plane, depths uniform within
+/// those of `sea`, targets level.
+void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, ResetStage stage,
+                  std::uint64_t seed, std::uint32_t episode, Start* start);
 
 }  // namespace stg::dynamics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "auv_common/config/field.hpp"
 
@@ -9,6 +10,14 @@ namespace stg::dynamics {
 /// Water current; the hull forces of Eq. 3 act on the velocity relative to it.
 struct CurrentConfig {
   std::array<double, 3> velocity_mps{0.0, 0.0, 0.0};  ///< world frame, irrotational
+  /// Added at four depths, linear in between: none while all velocities are zero.
+  std::array<double, 4> layer_depth_m{0.0, 50.0, 100.0, 200.0};
+  std::array<double, 4> layer_east_mps{0.0, 0.0, 0.0, 0.0};
+  std::array<double, 4> layer_north_mps{0.0, 0.0, 0.0, 0.0};
+  /// Added: amplitude to east and north, cos(2 pi t / period + phase).
+  std::array<double, 2> tide_mps{0.0, 0.0};
+  double tide_period_s = 44714.2;  ///< M2, 12.4206 h
+  double tide_phase_rad = 0.0;
 };
 
 /// First-order Gauss-Markov disturbance w of Eq. 3, body axes.
@@ -36,6 +45,7 @@ struct WorkspaceConfig {
 
 /// Keys, units and ranges of the sections.
 void Describe(CurrentConfig* c, config::Table* t);
+std::optional<config::Violation> FindConflict(const CurrentConfig& c);
 void Describe(DisturbanceConfig* c, config::Table* t);
 void Describe(ContactConfig* c, config::Table* t);
 void Describe(WorkspaceConfig* c, config::Table* t);

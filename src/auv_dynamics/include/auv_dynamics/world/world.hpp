@@ -9,7 +9,9 @@
 #include "auv_dynamics/targets/target_motion.hpp"
 #include "auv_dynamics/vehicle/vehicle.hpp"
 #include "auv_dynamics/world/contacts.hpp"
+#include "auv_dynamics/world/current.hpp"
 #include "auv_dynamics/world/disturbance.hpp"
+#include "auv_dynamics/world/sea.hpp"
 #include "auv_dynamics/world/separations.hpp"
 #include "auv_dynamics/world/starts.hpp"
 #include "auv_dynamics/world/walls.hpp"
@@ -89,14 +91,20 @@ class World {
   const Pack& colliding_pairs() const { return separations_.colliding_pairs(); }
   const Pack& smallest_separation() const { return separations_.smallest(); }
 
+  /// Surface and bottom; of scenarios in open water.
+  const Sea& sea() const { return sea_; }
+
  private:
   const EpisodeClock& clock(int lane) const { return clocks_[static_cast<size_t>(lane)]; }
+  Pack Time() const;
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start);
 
   double dt_s_;
   TimeNs dt_ns_;
-  Vec3<Pack> v_WC_;
+  Current current_;
+  Vec3<Pack> v_WC_;  // where it is uniform
   ResetConfig reset_;
+  SeaConfig depths_;
   SensingConfig sensing_;
   std::unique_ptr<const Vehicle> model_;
   std::unique_ptr<TargetMotion> motion_;
@@ -105,6 +113,8 @@ class World {
   Contacts contacts_;
   Disturbance disturbance_;
   Walls walls_;
+  Sea sea_;
+  bool open_;  // sea, not walls
   std::vector<VehicleState<Pack>> vehicles_;
   std::vector<TargetState<Pack>> targets_;
   std::vector<Pack> internal_;  // [agents, model_->internal_size()]

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "auv_common/config/run_config.hpp"
@@ -8,6 +9,7 @@
 #include "auv_dynamics/targets/target_config.hpp"
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
+#include "auv_dynamics/world/sea_config.hpp"
 #include "auv_dynamics/world/surroundings_config.hpp"
 
 namespace stg::dynamics {
@@ -19,6 +21,7 @@ struct WorldConfig : RunConfig {
   DisturbanceConfig disturbance;
   ContactConfig contact;
   WorkspaceConfig workspace;
+  SeaConfig sea;
   TargetConfig target;
   ResetConfig reset;
   SensingConfig sensing;
@@ -26,6 +29,10 @@ struct WorldConfig : RunConfig {
 
   /// Target that agent i is tasked with: i modulo the number of targets.
   int target_of(int agent) const { return agent % target.count; }
+  /// Where the walls are on each axis [m]; infinity: there are none.
+  double wall_m() const {
+    return sea.open ? std::numeric_limits<double>::infinity() : workspace.half_extent_m;
+  }
   int action_size() const { return ActionSize(control.interface); }
 };
 

@@ -8,7 +8,8 @@
 
 namespace stg::task {
 
-/// Of one AUV: tau / tau_max, or an executed action (the first action_size numbers count).
+/// Of one AUV: tau / tau_max, or of other actuators the last command as shares of their limits, or
+/// an executed action (the first action_size numbers count).
 template <class T>
 using Effort = std::array<T, dynamics::kWrenchSize>;
 template <class T>

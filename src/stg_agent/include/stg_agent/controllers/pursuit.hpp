@@ -90,10 +90,10 @@ inline void PursuitAction(const PursuitOptions& o, const dynamics::VehicleConfig
 /// Moves a target that is closer to a wall than the margin away from it, and takes the velocity
 /// towards or off that wall from it.
 template <class T>
-inline void KeepFromWalls(double half_extent_m, double margin_m, const Vec3<T>& p_WB,
-                          Vec3<T>* r_BT_W, Vec3<T>* v_WT) {
+inline void KeepFromWalls(double wall_m, double margin_m, const Vec3<T>& p_WB, Vec3<T>* r_BT_W,
+                          Vec3<T>* v_WT) {
   if (margin_m <= 0.0) return;
-  const T limit(std::max(half_extent_m - margin_m, 0.0)), zero(0.0);
+  const T limit(std::max(wall_m - margin_m, 0.0)), zero(0.0);
   const auto keep = [&](const T& own, T* offset, T* velocity) {
     const T position = own + *offset;
     *velocity = Select(limit < Abs(position), zero, *velocity);
@@ -110,7 +110,7 @@ inline void PursuitAction(const PursuitOptions& o, const AgentConfig& scenario,
                           const Knowledge<T>& k, const NeighbourSight<T>* neighbours, int count,
                           T* action) {
   Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
-  KeepFromWalls(scenario.workspace.half_extent_m, o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
+  KeepFromWalls(scenario.wall_m(), o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
   PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, neighbours, count, action);
 }
 

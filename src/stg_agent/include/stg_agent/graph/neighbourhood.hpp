@@ -14,8 +14,8 @@ namespace stg::agent {
 
 /// Dead reckoning p + v age inside the walls [m].
 template <class T>
-Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, double half_extent_m) {
-  return Clip(p_W + v_W * age_s, -half_extent_m, half_extent_m);
+Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, double wall_m) {
+  return Clip(p_W + v_W * age_s, -wall_m, wall_m);
 }
 
 /// One neighbour. World axes.
@@ -76,7 +76,7 @@ class Neighbourhood {
   const std::vector<NeighbourSight<T>>& sights() const { return sights_; }
 
  private:
-  double max_age_s_, half_extent_m_;
+  double max_age_s_, wall_m_;
   std::vector<NeighbourSight<T>> sights_;
   // [agents] padded to whole packs; T = double
   std::vector<double> distance_, age_, learnt_, quality_;

@@ -94,7 +94,7 @@ class TargetTrack {
   double speed_std_mps_;
   double max_speed_mps_;
   double gate2_;
-  double half_extent_m_;
+  double wall_m_;
   bool started_ = false, observed_ = false;
   TargetEstimate now_;
   SharedEstimate shared_;

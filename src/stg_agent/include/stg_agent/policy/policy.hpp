@@ -33,6 +33,9 @@ std::string ActionInterfaceName(dynamics::ActionInterface interface);
 ///   x = act(W_l x + b_l)           for every hidden layer l
 ///   action = action_scale * tanh(W_L x + b_L)
 ///
+/// or, with `choices`, the greedy choice of a Q-network: the last layer's outputs are [heads,
+/// choices.rows()], and the action is action_scale times the chosen rows, one of each head.
+///
 /// Immutable after construction. Evaluation is by Eigen, one row at a time, and
 /// sums in an order that depends on the layer sizes only: every program of one
 /// build gets the same bits.
@@ -50,6 +53,8 @@ class Policy {
     std::vector<Layer> layers;
     Activation activation = Activation::kTanh;  ///< of the hidden layers
     Eigen::VectorXf log_std;  ///< [action_size], for exploration; not used by Mean
+    /// What each head chooses from, in [-1, 1]; empty: the actions are squashed outputs.
+    Eigen::MatrixXf choices;
     PolicyMetadata metadata;
   };
 
@@ -79,11 +84,13 @@ class Policy {
   void RequireFits(const AgentConfig& scenario) const;
 
   int observation_size() const { return static_cast<int>(parameters_.input_mean.size()); }
-  int action_size() const { return static_cast<int>(parameters_.layers.back().bias.size()); }
+  int action_size() const { return static_cast<int>(parameters_.log_std.size()); }
   const Parameters& parameters() const { return parameters_; }
   const PolicyMetadata& metadata() const { return parameters_.metadata; }
 
  private:
+  void Choose(const float* outputs, float* action) const;
+
   /// Weights by input column, columns padded to whole SIMD registers.
   struct Packed {
     int inputs, outputs, padded;

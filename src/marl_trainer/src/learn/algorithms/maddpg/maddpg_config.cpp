@@ -10,6 +10,7 @@ std::unique_ptr<AlgorithmConfig> MaddpgConfig::Clone() const {
 
 void MaddpgConfig::Describe(OptionTable* t) {
   ReplayConfig::Describe(t);
+  DescribeCritics(t);
   t->Add("noise-min", &noise_min, {0, 10},
          "exploration noise of the first environment, in shares of the action's scale; between it "
          "and the last one it grows by equal factors");

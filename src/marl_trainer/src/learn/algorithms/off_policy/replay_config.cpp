@@ -16,18 +16,21 @@ void ReplayConfig::Describe(OptionTable* t) {
   t->Add("tau", &tau, {1e-6, 1}, "how far the target networks move at each gradient step");
   t->Add("actor-hidden", &actor_hidden, {1, 4096},
          "widths of the hidden layers of what decides on an observation");
-  t->Add("critic-hidden", &critic_hidden, {1, 4096},
-         "widths of the hidden layers of the critics of state and joint action");
   t->Add("activation", &activation, "of the hidden layers: tanh or relu");
-  t->Add("layer-norm", &layer_norm, "whether the critics normalise their hidden layers");
   t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of what decides, at the start");
-  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critics at the start");
   t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
   t->Add("adam-eps", &adam_eps, {1e-12, 1}, "Adam's epsilon");
   t->Add("grad-clip", &grad_clip, {1e-6, 1e6}, "largest gradient norm");
   t->Add("observation-clip", &observation_clip, {0.1, 1e6},
          "bound of normalised observations and states");
   t->Add("std-floor", &std_floor, {1e-6, 1}, "smallest standard deviation of the normalisers");
+}
+
+void ReplayConfig::DescribeCritics(OptionTable* t) {
+  t->Add("critic-hidden", &critic_hidden, {1, 4096},
+         "widths of the hidden layers of the critics of state and joint action");
+  t->Add("layer-norm", &layer_norm, "whether the critics normalise their hidden layers");
+  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critics at the start");
 }
 
 void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {

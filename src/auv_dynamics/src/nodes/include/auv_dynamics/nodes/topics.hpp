@@ -11,6 +11,7 @@ inline constexpr char kOdom[] = "odom";
 inline constexpr char kTargetDetection[] = "target_detection";
 inline constexpr char kCmdVel[] = "cmd_vel";
 inline constexpr char kWrench[] = "wrench";
+inline constexpr char kActuators[] = "actuators";
 
 // Of the whole run.
 inline std::string TargetOdom(int k) { return "/target_" + std::to_string(k) + "/odom"; }

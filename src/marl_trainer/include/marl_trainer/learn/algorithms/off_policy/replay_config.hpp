@@ -34,6 +34,8 @@ struct ReplayOptions {
 /// something).
 struct ReplayConfig : AlgorithmConfig, ReplayOptions {
   void Describe(OptionTable* table) override;
+  /// Adds the options of critics of state and joint action.
+  void DescribeCritics(OptionTable* table);
   /// The common part of `fast` and `paper`.
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;

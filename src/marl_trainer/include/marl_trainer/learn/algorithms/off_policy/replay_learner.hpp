@@ -7,6 +7,7 @@
 #include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_batch.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
+#include "marl_trainer/learn/nn/mlp.hpp"
 #include "marl_trainer/learn/nn/sliced_gradient.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 

@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+"""The pictures of packet logs: what they show follows from the log, and bad logs are refused."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts/plot_network.py")
+sys.path.insert(0, os.path.dirname(SCRIPT))
+import plot_network  # noqa: E402  (the path comes first)
+
+HEADER = (
+    "source,destination,addressed,kind,sequence,bytes,offered_s,generation_s,transmit_s,"
+    "transmit_end_s,begin_s,arrival_s,distance_m,travel_time_s,received_level_db,"
+    "noise_level_db,sinr_db,error_probability,fate\n"
+)
+
+
+def row(source, destination, sequence, made, arrival, fate="delivered"):
+    """A row of a packet that takes a second and a second of sound."""
+    times = f"{made},{made},{arrival - 2},{arrival - 1},{arrival - 1},{arrival}"
+    return f"{source},{destination},all,data,{sequence},8,{times},1500,1,0,0,0,0,{fate}\n"
+
+
+class PlotNetwork(unittest.TestCase):
+    """One folder with a log for each test."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def write(self, text):
+        """Makes the folder's packet log."""
+        path = os.path.join(self.folder.name, "packets.csv")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def run_script(self, *arguments):
+        """Runs the program on the folder."""
+        return subprocess.run(
+            [SCRIPT, self.folder.name, *arguments], capture_output=True, text=True, check=False
+        )
+
+    def test_age_is_the_sawtooth_of_the_deliveries(self):
+        log = plot_network.Log(
+            self.write(
+                HEADER
+                + row(0, 1, 0, 1.0, 3.0)
+                + row(0, 1, 1, 0.5, 4.0)  # older than what is known
+                + row(0, 1, 2, 5.0, 7.0)
+                + row(0, 1, 3, 8.0, 10.0, "collision")
+            )
+        )
+        (pieces,) = plot_network.age_segments(log)
+        # 0 to 3, from 2 (made at 1, there at 3) to 6, and 2 to 5 at the log's end.
+        np.testing.assert_allclose(pieces, [[0.0, 3.0], [2.0, 6.0], [2.0, 5.0]])
+        share = plot_network.share_of_time(pieces, np.array([0.0, 2.0, 3.0, 6.0]))
+        np.testing.assert_allclose(share, [0.0, 0.2, 0.5, 1.0])
+
+    def test_transmissions_know_how_many_heard_them(self):
+        log = plot_network.Log(
+            self.write(
+                HEADER
+                + row(10, 2, 0, 1.0, 3.0)
+                + row(10, 9, 0, 1.0, 3.0, "half_duplex")
+                + row(9, 2, 0, 4.0, 6.0, "fading")
+                + "9,2,all,data,,8,7,7,,,,,,,,,,,queue\n"
+            )
+        )
+        self.assertEqual(log.nodes(), ["2", "9", "10"])
+        self.assertEqual(
+            sorted(log.transmissions()), [(1.0, 2.0, "10", 0.5), (4.0, 5.0, "9", 0.0)]
+        )
+
+    def test_draws_with_and_without_a_summary(self):
+        self.write(HEADER + "".join(row(0, 1, k, 5.0 * k, 5.0 * k + 2.0) for k in range(9)))
+        picture = os.path.join(self.folder.name, "network.png")
+        result = self.run_script()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.strip(), picture)
+        with open(picture, "rb") as file:
+            self.assertEqual(file.read(4), b"\x89PNG")
+        with open(os.path.join(self.folder.name, "summary.json"), "w", encoding="utf-8") as file:
+            file.write('{"energy_j": {"0": 2.0, "1": 1.0}}')
+        result = self.run_script("--out", picture + ".svg", "--window", "0", "10")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_a_network_that_never_sends_is_drawn(self):
+        self.write(HEADER + "9,2,all,data,,8,7,7,,,,,,,,,,,queue\n")
+        result = self.run_script()
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_refuses_what_is_no_log(self):
+        for text, message in (
+            ("", "no column"),
+            (HEADER, "no packets"),
+            ("a,b\n1,2\n", "no column source"),
+            (HEADER + row(0, 1, 0, 1.0, 3.0).replace("1500", "far"), "packets.csv:2: distance_m"),
+        ):
+            self.write(text)
+            result = self.run_script()
+            self.assertEqual(result.returncode, 2, text)
+            self.assertIn(message, result.stderr)
+        os.remove(os.path.join(self.folder.name, "packets.csv"))
+        self.assertEqual(self.run_script().returncode, 2)
+        self.assertEqual(self.run_script("--window", "5", "1").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

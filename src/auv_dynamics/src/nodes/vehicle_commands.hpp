@@ -1,0 +1,64 @@
+#pragma once
+
+#include <auv_msgs/ActuatorCommand.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/node_handle.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "auv_common/nodes/health.hpp"
+#include "auv_common/step/step_barrier.hpp"
+#include "auv_dynamics/world/world.hpp"
+#include "world_publisher.hpp"
+
+namespace stg::nodes {
+
+/// The newest command of each AUV, and what it does to the world: force and moment, or values of
+/// actuators where vehicles are steered by autopilots.
+class VehicleCommands {
+ public:
+  /// What an AUV's word about the step at this stamp is worth; called for well-formed commands.
+  using Hear = std::function<StepBarrier::Word(int auv, TimeNs stamp)>;
+
+  VehicleCommands(const dynamics::WorldConfig& scenario, const dynamics::World& world, Hear hear);
+  VehicleCommands(const VehicleCommands&) = delete;
+  VehicleCommands& operator=(const VehicleCommands&) = delete;
+
+  /// Subscribes to all AUVs' commands.
+  void Listen();
+  /// An episode starts: no command.
+  void Clear();
+  /// Steps the world under the newest commands, which all lanes get.
+  void Move(int steps, dynamics::World* world);
+  /// To those who judge what acted on the AUVs.
+  /// @param fresh of each AUV: the command was for the last step
+  /// @param channel_fresh the acoustic channel had closed it
+  void Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,
+            WorldPublisher* publisher) const;
+  /// In which a decision is flown: periods of the autopilots.
+  int parts() const { return parts_; }
+  /// Name of the topic below an AUV.
+  const char* topic() const;
+  Refusals& refused(int auv) { return refused_[static_cast<std::size_t>(auv)]; }
+
+ private:
+  void OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message);
+  void OnActuators(int i, const auv_msgs::ActuatorCommand::ConstPtr& message);
+  bool Counts(int i, const std_msgs::Header& header, bool finite);
+
+  Hear hear_;
+  std::string vehicle_;
+  dynamics::Space actuators_;
+  bool steered_;  ///< by autopilots, which command actuators
+  int parts_;
+  std::vector<Refusals> refused_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::vector<dynamics::Wrench<double>> wrenches_;
+  std::vector<dynamics::Wrench<Pack>> wrenches_of_lanes_;
+  std::vector<double> values_;  ///< [agents, actuators]
+  std::vector<Pack> values_of_lanes_;
+};
+
+}  // namespace stg::nodes

@@ -1,0 +1,86 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "auv_common/error.hpp"
+#include "auv_dynamics/terrain/bathymetry.hpp"
+
+namespace {
+
+using stg::dynamics::Bathymetry;
+
+/// A map in letters, north up: land `#`, then digits for tenths of the largest depth.
+void Show(const Bathymetry& grid, int columns) {
+  const stg::dynamics::GeoRegion r = grid.region();
+  const double width = r.east - r.west, height = r.north - r.south;
+  // A letter is about twice as high as it is wide.
+  const int rows = std::max(2, static_cast<int>(columns * height / width / 2.0));
+  const double deepest = std::max(1.0, -grid.lowest());
+  std::printf("%.4f to %.4f N, %.4f to %.4f E; %zu x %zu points, %.0f to %.0f m\n", r.south,
+              r.north, r.west, r.east, grid.latitudes().size(), grid.longitudes().size(),
+              grid.lowest(), grid.highest());
+  for (int i = 0; i < rows; ++i) {
+    std::string line;
+    for (int k = 0; k < columns; ++k) {
+      const double elevation =
+          grid.At(r.north - height * (i + 0.5) / rows, r.west + width * (k + 0.5) / columns);
+      const int tenth = std::clamp(static_cast<int>(-elevation / deepest * 10.0), 0, 9);
+      line += elevation >= 0.0 ? '#' : static_cast<char>('0' + tenth);
+    }
+    std::printf("  %s\n", line.c_str());
+  }
+  std::printf("  #: land; 0 to 9: depth in steps of %.0f m\n", deepest / 10.0);
+}
+
+}  // namespace
+
+/// Crops a region of a bathymetry file and shows it; JSON on the last line; exit 2 on unusable
+/// input.
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Shows a NetCDF bathymetry (GEBCO, ETOPO and their like) and crops a region of it. A crop is "
+      "written as GEBCO writes its own: elevation(lat, lon) in whole metres.");
+  std::string file, out;
+  std::vector<double> region;
+  int columns = 72;
+  app.add_option("file", file, "NetCDF file")->required();
+  app.add_option("--region", region, "SOUTH NORTH WEST EAST in degrees; else the whole file")
+      ->expected(4);
+  app.add_option("--out", out, "write the region to this file");
+  app.add_option("--columns", columns, "width of the map in letters")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 400));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    const Bathymetry grid =
+        region.empty() ? Bathymetry::Load(file)
+                       : Bathymetry::Load(file, {region[0], region[1], region[2], region[3]});
+    Show(grid, columns);
+    if (!out.empty()) {
+      if (out == file) throw stg::UserError(out + ": is the file that is read");
+      const std::string name = file.substr(file.find_last_of('/') + 1);
+      grid.Save(out, "cropped from " + name + " by crop_terrain");
+    }
+    const stg::dynamics::GeoRegion r = grid.region();
+    std::cout << nlohmann::json{{"region", {r.south, r.north, r.west, r.east}},
+                                {"points", {grid.latitudes().size(), grid.longitudes().size()}},
+                                {"lowest_m", grid.lowest()},
+                                {"highest_m", grid.highest()},
+                                {"file", out.empty() ? nlohmann::json() : nlohmann::json(out)}}
+                     .dump()
+              << std::endl;
+    return 0;
+  } catch (const stg::UserError& e) {
+    std::cerr << "crop_terrain: " << e.what() << "\n";
+    return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "crop_terrain: " << e.what() << "\n";
+    return 1;
+  }
+}

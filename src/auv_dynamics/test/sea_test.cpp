@@ -1,0 +1,154 @@
+#include "auv_dynamics/world/sea.hpp"
+
+#include <gtest/gtest.h>
+
+#include "auv_common/error.hpp"
+#include "auv_dynamics/world/current.hpp"
+#include "physics.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// Open water for vehicles that do what they are told.
+WorldConfig OpenWater(int agents) {
+  WorldConfig s = QuietScenario(agents);
+  s.vehicle.model = "kinematic";
+  s.vehicle.max_velocity_mps = {2.0, 2.0, 1.0};
+  s.vehicle.max_rate_radps = {0.5, 0.5, 0.2};
+  s.workspace.half_extent_m = 500.0;
+  s.sea.open = true;
+  s.target.max_speed_mps = 1.0;
+  s.reset.start_half_extent_m = 500.0;
+  s.reset.min_separation_m = 20.0;
+  for (ResetStageConfig& stage : s.reset.stages) stage = {{0.0, 100.0}, {50.0, 150.0}, {0.3, 0.9}};
+  return s;
+}
+
+double East(const Current& current, double z, double time_s) {
+  return Lane(current.At(Pack(z), Pack(time_s)), 0).x;
+}
+
+TEST(Current, IsLinearBetweenItsLayersAndConstantBeyond) {
+  CurrentConfig c;
+  c.velocity_mps = {0.1, 0.2, 0.3};
+  EXPECT_TRUE(Current(c).uniform());
+  c.layer_depth_m = {10.0, 20.0, 40.0, 50.0};
+  c.layer_east_mps = {1.0, 0.5, 0.5, 0.0};
+  const Current current(c);
+  EXPECT_FALSE(current.uniform());
+  const double table[][2] = {{0.0, 1.0},  {10.0, 1.0},  {15.0, 0.75}, {20.0, 0.5},
+                             {30.0, 0.5}, {45.0, 0.25}, {50.0, 0.0},  {500.0, 0.0}};
+  for (const auto& [depth, east] : table) {
+    EXPECT_NEAR(East(current, -depth, 0.0), 0.1 + east, 1e-12) << depth;
+  }
+  EXPECT_EQ(Lane(current.At(Pack(-15.0), Pack(9.0)), 0).z, 0.3);
+  c.layer_depth_m[2] = 20.0;
+  EXPECT_TRUE(FindConflict(c).has_value());
+}
+
+TEST(Current, TideCarriesADriftingVehicleToAndFro) {
+  WorldConfig s = OpenWater(1);
+  s.time.dt_s = 0.1;
+  s.current.tide_mps = {0.5, -0.2};
+  s.current.tide_period_s = 200.0;
+  World world(s);
+  world.Place(0, {{0.0, 0.0, -30.0}}, {{50.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
+  const std::vector<Pack> still(3, Pack(0.0));
+  for (int k = 0; k < 500; ++k) world.Step(still);  // a quarter of the tide
+  const double amplitude = 0.5 * 200.0 / (2.0 * kPi);
+  EXPECT_NEAR(world.Nav(0, 0).p_WB.x, amplitude, 0.05);
+  EXPECT_NEAR(world.Nav(0, 0).p_WB.y, -0.4 * amplitude, 0.05);
+  for (int k = 0; k < 1500; ++k) world.Step(still);
+  EXPECT_NEAR(world.Nav(0, 0).p_WB.x, 0.0, 0.05);
+}
+
+TEST(Sea, StopsAtSurfaceAndBottomAndCountsGroundings) {
+  World world(OpenWater(2));
+  world.Place(0, {{0.0, 0.0, -118.0}, {0.0, 50.0, -2.0}}, {{50.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
+  const auto steer = [&world](double first, double second, int steps) {
+    const std::vector<Pack> commands{Pack(1.0), Pack(0.0), Pack(first),
+                                     Pack(1.0), Pack(0.0), Pack(second)};
+    for (int k = 0; k < steps; ++k) world.Step(commands);
+  };
+  steer(-1.0, 1.0, 100);
+  EXPECT_EQ(world.Nav(0, 0).p_WB.z, -120.0);
+  EXPECT_EQ(world.Nav(0, 1).p_WB.z, 0.0);
+  EXPECT_EQ(Lane(world.vehicle(0).v_WB.z, 0), 0.0);
+  EXPECT_EQ(Lane(world.vehicle(1).v_WB.z, 0), 0.0);
+  EXPECT_GT(world.Nav(0, 0).v_WB_B.x, 0.9);  // along the bottom it goes on
+  EXPECT_EQ(Lane(world.sea().groundings(0), 0), 1.0);
+  EXPECT_EQ(Lane(world.sea().aground(0), 0), 1.0);
+  EXPECT_EQ(Lane(world.sea().groundings(1), 0), 0.0);
+  steer(1.0, 1.0, 100);
+  EXPECT_EQ(Lane(world.sea().aground(0), 0), 0.0);
+  steer(-1.0, 1.0, 200);
+  EXPECT_EQ(Lane(world.sea().groundings(0), 0), 2.0);
+  world.Reset(0, 3, 0, ResetStage::kMedium);
+  EXPECT_EQ(Lane(world.sea().groundings(0), 0), 0.0);
+}
+
+TEST(Sea, HasNoWalls) {
+  World world(OpenWater(1));
+  world.Place(0, {{490.0, 0.0, -30.0}}, {{495.0, 0.0, -30.0}}, {{1.0, 0.0, 0.0}});
+  for (int k = 0; k < 1000; ++k) world.Step({Pack(2.0), Pack(0.0), Pack(0.0)});
+  EXPECT_GT(world.Nav(0, 0).p_WB.x, 680.0);
+  EXPECT_NEAR(Lane(world.target(0).p_WT.x, 0), 595.0, 1e-9);
+}
+
+TEST(Sea, EpisodesStartAtTheirDepthsApartFromEachOther) {
+  WorldConfig s = OpenWater(6);
+  s.sea.auv_depth_m = {10.0, 15.0};
+  s.sea.target_depth_m = {40.0, 50.0};
+  s.target.count = 2;
+  World world(s);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    world.Reset(0, seed, 0, ResetStage::kMedium);
+    for (int i = 0; i < 6; ++i) {
+      const Vec3<double> p = world.Nav(0, i).p_WB;
+      EXPECT_LE(p.z, -10.0);
+      EXPECT_GE(p.z, -15.0);
+      const Vec3<double> t = Lane(world.target(i % 2).p_WT, 0);
+      const double distance = std::hypot(p.x - t.x, p.y - t.y);
+      EXPECT_GE(distance, 50.0 - 1e-9);
+      EXPECT_LE(distance, 150.0 + 1e-9);
+    }
+    EXPECT_GE(Lane(world.smallest_separation(), 0), 20.0);
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_LE(Lane(world.target(k).p_WT.z, 0), -40.0);
+      EXPECT_GE(Lane(world.target(k).p_WT.z, 0), -50.0);
+      EXPECT_EQ(Lane(world.target(k).v_WT.z, 0), 0.0);
+    }
+  }
+}
+
+TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
+  for (const std::string& motion : TargetMotions().Names()) {
+    if (motion == "lift") continue;  // of another test
+    WorldConfig s = OpenWater(1);
+    s.target.motion = motion;
+    s.target.evasion_range_m = 300.0;
+    World world(s);
+    world.Reset(0, 9, 0, ResetStage::kMedium);
+    const double speed = Norm(Lane(world.target(0).v_WT, 0));
+    for (int k = 0; k < 6000; ++k) {
+      world.Step({Pack(1.0), Pack(0.02), Pack(0.0)});
+      const TargetState<Pack>& t = world.target(0);
+      ASSERT_LE(Lane(t.p_WT.z, 0), -20.0) << motion;
+      ASSERT_GE(Lane(t.p_WT.z, 0), -60.0) << motion;
+      ASSERT_NEAR(Norm(Lane(t.v_WT, 0)), speed, 1e-6) << motion;
+    }
+  }
+}
+
+TEST(Sea, RefusesStartsInTheBottom) {
+  WorldConfig s = OpenWater(1);
+  s.sea.bottom_m = 60.0;
+  EXPECT_THROW(World{s}, UserError);
+  s.sea = {true, 100.0, {20.0, 60.0}, {20.0, 100.0}};
+  EXPECT_THROW(World{s}, UserError);
+  s.sea.open = false;
+  EXPECT_NO_THROW(World{s});
+}
+
+}  // namespace
+}  // namespace stg::dynamics

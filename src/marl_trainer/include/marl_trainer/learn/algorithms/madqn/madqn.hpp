@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "marl_trainer/learn/algorithms/madqn/madqn_config.hpp"
+#include "marl_trainer/learn/algorithms/off_policy/replay_learner.hpp"
+
+namespace stg::learn {
+
+/// The actions that a Q-network chooses among: `heads` choices, each of a row of `choices`.
+struct Codebook {
+  Codebook(const Problem& problem, const QOptions& options);
+
+  /// The row that an action of head h stands for, the nearest. @param action [action_size], +-1
+  int Nearest(int head, const float* action) const;
+
+  int heads = 1, count = 1, width = 1;  ///< action_size = heads * width
+  std::vector<float> choices;           ///< [count, width], in +-1
+};
+
+/// MADQN: independent double Q-learning on each AUV's own observation (Tampuu et al. 2017, van
+/// Hasselt et al. 2016) from the team's reward, with a network that all AUVs share. One head per
+/// action dimension (Tavakoli et al. 2018), or one for all combinations; dueling (Wang et al.
+/// 2016): outputs V, then the advantages [heads, count], and q = V + A - mean A.
+class Madqn : public ReplayLearner {
+ public:
+  Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
+        const Problem& problem, WorkerPool* pool);
+  ~Madqn() override;
+
+  void Act(const Decision& decision, const Actions& out) override;
+  void Save(Archive* archive) const override;
+  void Load(const Archive& archive) override;
+  void StartFrom(const Archive& archive) override;
+  /// The greedy one.
+  std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
+  std::vector<ReportColumn> Columns() const override;
+
+  const Mlp& network() const { return network_; }
+
+ protected:
+  void Step(const StepContext& step) override;
+  void RescaleValues(double ratio, double shift) override;
+  UpdateReport Report(int steps) override;
+
+ private:
+  struct Scratch;  // per slice
+  struct Acting;   // per worker
+
+  void AddGradient(int slice, float* gradient);
+
+  const QOptions own_;
+  const Codebook codebook_;
+  const Mlp network_;
+  std::vector<float> parameters_, target_;
+  AdamState adam_;
+  SlicedGradient gradient_;
+  std::vector<std::unique_ptr<Scratch>> scratch_;
+  std::vector<std::unique_ptr<Acting>> acting_;
+  // Since the last report.
+  double squares_ = 0.0, values_ = 0.0, norm_ = 0.0;
+  double rate_ = 1.0;
+};
+
+}  // namespace stg::learn

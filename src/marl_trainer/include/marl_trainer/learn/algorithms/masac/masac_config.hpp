@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
+
+namespace stg::learn {
+
+/// Options of MASAC's own.
+struct SoftOptions {
+  double initial_alpha = 0.01;
+  double alpha_lr = 1e-3;
+  double target_entropy = -1.0;
+  double min_log_std = -5.0, max_log_std = 1.0;
+};
+
+/// Configuration of MASAC.
+struct MasacConfig : ReplayConfig, SoftOptions {
+  std::unique_ptr<AlgorithmConfig> Clone() const override;
+  void Describe(OptionTable* table) override;
+  void ValidateOrThrow(const TrainConfig& common) const override;
+  std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
+                                  WorkerPool* pool) const override;
+};
+
+}  // namespace stg::learn

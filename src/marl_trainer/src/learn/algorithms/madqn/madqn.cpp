@@ -1,0 +1,297 @@
+#include "marl_trainer/learn/algorithms/madqn/madqn.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "auv_common/numbers/random.hpp"
+#include "marl_trainer/learn/nn/gaussian_actor.hpp"
+
+namespace stg::learn {
+namespace {
+
+NetworkSpec QSpec(const Problem& problem, const ReplayOptions& options, const Codebook& codebook) {
+  NetworkSpec spec;
+  spec.inputs = problem.observation_size;
+  spec.hidden = options.actor_hidden;
+  spec.activation = ActivationNamed(options.activation);
+  spec.outputs = 1 + codebook.heads * codebook.count;
+  spec.output_gain = 0.1F;
+  return spec;
+}
+
+/// Index of the largest, the first of equals: as agent::Policy chooses.
+int Best(const float* advantages, int count) {
+  return static_cast<int>(std::max_element(advantages, advantages + count) - advantages);
+}
+
+float Mean(const float* x, int count) {
+  float sum = 0.0F;
+  for (int k = 0; k < count; ++k) sum += x[k];
+  return sum / static_cast<float>(count);
+}
+
+}  // namespace
+
+Codebook::Codebook(const Problem& problem, const QOptions& options) {
+  std::vector<float> bins;
+  for (int k = 0; k < options.bins; ++k) {
+    const double x = 2.0 * k / (options.bins - 1) - 1.0;
+    bins.push_back(static_cast<float>(std::copysign(std::pow(std::abs(x), options.bin_power), x)));
+  }
+  if (options.heads == "separate") {
+    heads = problem.action_size;
+    count = options.bins;
+    choices = bins;
+    return;
+  }
+  width = problem.action_size;
+  for (int d = 0; d < width; ++d) count *= options.bins;
+  for (int k = 0; k < count; ++k) {
+    for (int d = 0, rest = k; d < width; ++d, rest /= options.bins) {
+      choices.push_back(bins[static_cast<std::size_t>(rest % options.bins)]);
+    }
+  }
+}
+
+int Codebook::Nearest(int head, const float* action) const {
+  int best = 0;
+  float least = 1e30F;
+  for (int k = 0; k < count; ++k) {
+    float miss = 0.0F;
+    for (int d = 0; d < width; ++d) {
+      const float x = choices[static_cast<std::size_t>(k * width + d)] - action[head * width + d];
+      miss += x * x;
+    }
+    if (miss < least) {
+      least = miss;
+      best = k;
+    }
+  }
+  return best;
+}
+
+struct Madqn::Scratch {
+  Scratch(const Mlp& q, int rows, int agents)
+      : network(q, rows),
+        d_outputs(static_cast<std::size_t>(rows * q.outputs())),
+        best(static_cast<std::size_t>(rows * (q.outputs() - 1))),
+        targets(static_cast<std::size_t>(rows)),
+        actions(static_cast<std::size_t>(agents)) {}
+  Mlp::Workspace network;
+  std::vector<float> d_outputs;
+  std::vector<int> best;  // [rows, heads]
+  std::vector<float> targets, actions;
+  double squares = 0.0, values = 0.0;
+};
+
+struct Madqn::Acting {
+  explicit Acting(const Mlp& q) : network(q, 0) {}
+  Mlp::Workspace network;
+  std::vector<float> observations;  // normalised
+};
+
+Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
+             const Problem& problem, WorkerPool* pool)
+    : ReplayLearner(options, common, problem, pool),
+      own_(own),
+      codebook_(problem, own),
+      network_(QSpec(problem, options, codebook_)),
+      parameters_(network_.parameters()),
+      adam_(network_.parameters()),
+      gradient_(network_.parameters(), pool) {
+  InitialiseOrthogonally(network_.spec(), common.seed, 0, parameters_.data());
+  target_ = parameters_;
+  for (int s = 0; s < SlicedGradient::kSlices; ++s) {
+    scratch_.push_back(
+        std::make_unique<Scratch>(network_, slice_rows() * problem.agents, problem.agents));
+  }
+  for (int w = 0; w < pool->workers(); ++w) acting_.push_back(std::make_unique<Acting>(network_));
+}
+
+Madqn::~Madqn() = default;
+
+void Madqn::Act(const Decision& decision, const Actions& out) {
+  Acting& s = *acting_[static_cast<std::size_t>(decision.worker)];
+  const int agents = problem().agents, rows = decision.envs * agents;
+  if (s.network.rows() < rows) s.network = Mlp::Workspace(network_, rows);
+  s.observations.resize(static_cast<std::size_t>(rows) *
+                        static_cast<std::size_t>(network_.inputs()));
+  scales().observations.Apply(decision.observations, rows, s.observations.data());
+  network_.Forward(parameters_.data(), s.observations.data(), rows, &s.network);
+  const Codebook& book = codebook_;
+  float* action = out.actions;
+  for (int r = 0; r < rows; ++r) {
+    const float* advantages =
+        s.network.output() + static_cast<std::ptrdiff_t>(r) * network_.outputs() + 1;
+    std::vector<int> chosen(static_cast<std::size_t>(book.heads));
+    for (int h = 0; h < book.heads; ++h) {
+      chosen[static_cast<std::size_t>(h)] = Best(advantages + h * book.count, book.count);
+    }
+    if (decision.explore != nullptr) {
+      const DrawKeys& keys = *decision.explore;
+      Random random(keys.seed, Stream::kPolicy, keys.collection, keys.step,
+                    static_cast<std::uint32_t>(keys.first_env * agents + r));
+      const double rank = Rank(keys.first_env + r / agents);
+      double epsilon = 0.0;
+      if (own_.epsilon_max > 0.0) {
+        epsilon = own_.epsilon_min * std::pow(own_.epsilon_max / own_.epsilon_min, rank);
+      }
+      for (int& choice : chosen) {
+        if (!warming_up() && random.Uniform() >= epsilon) continue;
+        choice = static_cast<int>(random.Uniform() * book.count);
+      }
+    }
+    for (const int choice : chosen) {
+      for (int d = 0; d < book.width; ++d) {
+        *action++ =
+            scales().action * book.choices[static_cast<std::size_t>(choice * book.width + d)];
+      }
+    }
+  }
+}
+
+void Madqn::AddGradient(int slice, float* gradient) {
+  const ReplayBatch& batch = batches()[static_cast<std::size_t>(slice)];
+  Scratch& s = *scratch_[static_cast<std::size_t>(slice)];
+  const Codebook& book = codebook_;
+  const int agents = problem().agents, rows = batch.count * agents, outputs = network_.outputs();
+  const int heads = book.heads, count = book.count;
+  const auto row = [&](int r) {
+    return s.network.output() + static_cast<std::ptrdiff_t>(r) * outputs;
+  };
+  // Double: the network chooses, its target judges.
+  network_.Forward(parameters_.data(), batch.next_observations.data(), rows, &s.network);
+  for (int r = 0; r < rows; ++r) {
+    for (int h = 0; h < heads; ++h) {
+      s.best[static_cast<std::size_t>(r * heads + h)] = Best(row(r) + 1 + h * count, count);
+    }
+  }
+  network_.Forward(target_.data(), batch.next_observations.data(), rows, &s.network);
+  for (int r = 0; r < rows; ++r) {
+    float next = row(r)[0];
+    for (int h = 0; h < heads; ++h) {
+      const float* advantages = row(r) + 1 + h * count;
+      next +=
+          (advantages[s.best[static_cast<std::size_t>(r * heads + h)]] - Mean(advantages, count)) /
+          static_cast<float>(heads);
+    }
+    const auto sample = static_cast<std::size_t>(r / agents);
+    s.targets[static_cast<std::size_t>(r)] = batch.rewards[sample] + batch.discounts[sample] * next;
+  }
+  // The mean over samples, AUVs and heads of (q - target)^2.
+  network_.Forward(parameters_.data(), batch.observations.data(), rows, &s.network);
+  const float weight = 2.0F / static_cast<float>(base().batch * agents * heads);
+  s.squares = s.values = 0.0;
+  for (int r = 0; r < rows; ++r) {
+    const float* action =
+        batch.actions.data() + static_cast<std::ptrdiff_t>(r) * problem().action_size;
+    float* d = s.d_outputs.data() + static_cast<std::ptrdiff_t>(r) * outputs;
+    d[0] = 0.0F;
+    for (int h = 0; h < heads; ++h) {
+      const float* advantages = row(r) + 1 + h * count;
+      const int chosen = book.Nearest(h, action);
+      const float value = row(r)[0] + advantages[chosen] - Mean(advantages, count);
+      const float error = value - s.targets[static_cast<std::size_t>(r)];
+      const float d_q = weight * error;
+      s.squares += static_cast<double>(error) * static_cast<double>(error) / (agents * heads);
+      s.values += static_cast<double>(value) / (agents * heads);
+      d[0] += d_q;
+      float* d_advantages = d + 1 + h * count;
+      std::fill_n(d_advantages, count, -d_q / static_cast<float>(count));
+      d_advantages[chosen] += d_q;
+    }
+  }
+  network_.Backward(parameters_.data(), batch.observations.data(), s.d_outputs.data(), rows,
+                    &s.network, gradient);
+}
+
+void Madqn::Step(const StepContext& step) {
+  rate_ = step.rate;
+  gradient_.Compute(0, base().batch, [&](int slice, int, int, int, float* gradient) {
+    AddGradient(slice, gradient);
+  });
+  const Adam adam(base().adam_eps, &adam_);
+  norm_ += gradient_.Apply(adam, 0, network_.parameters(), base().lr * step.rate, base().grad_clip,
+                           parameters_.data());
+  for (const auto& s : scratch_) {
+    squares_ += s->squares / base().batch;
+    values_ += s->values / base().batch;
+  }
+  MoveTowards(parameters_, base().tau, &target_);
+}
+
+void Madqn::RescaleValues(double ratio, double shift) {
+  RescaleOutputs(network_, ratio, shift, parameters_.data());
+  RescaleOutputs(network_, ratio, shift, target_.data());
+}
+
+UpdateReport Madqn::Report(int steps) {
+  const double n = std::max(steps, 1);
+  UpdateReport report;
+  report.values = {base().lr * rate_, squares_ / n,
+                   static_cast<double>(scales().reward_std) * (values_ / n) +
+                       static_cast<double>(scales().value_mean),
+                   norm_ / n};
+  report.flops = 2.0 * base().batch * steps * problem().agents *
+                 (2.0 * network_.spec().forward_products() + network_.spec().training_products());
+  squares_ = values_ = norm_ = 0.0;
+  return report;
+}
+
+std::vector<ReportColumn> Madqn::Columns() const {
+  return {{"learning_rate", "", 0},
+          {"critic_loss", "TD", 5},
+          {"value", "Q", 2},
+          {"gradient_norm", "|d|", 4}};
+}
+
+void Madqn::Save(Archive* archive) const {
+  ReplayLearner::Save(archive);
+  archive->Put("network", parameters_);
+  archive->Put("target_network", target_);
+  adam_.Save("adam", archive);
+}
+
+void Madqn::Load(const Archive& archive) {
+  const std::vector<float>& network = archive.Floats("network", parameters_.size());
+  const std::vector<float>& target = archive.Floats("target_network", target_.size());
+  adam_.Load("adam", archive);
+  ReplayLearner::Load(archive);
+  parameters_ = network;
+  target_ = target;
+}
+
+void Madqn::StartFrom(const Archive& archive) {
+  ReplayLearner::StartFrom(archive);
+  parameters_ = archive.Floats("network", parameters_.size());
+  target_ = archive.Floats("target_network", target_.size());
+}
+
+std::vector<agent::Policy> Madqn::Policies(const agent::PolicyMetadata& metadata) const {
+  // What is largest does not depend on V: the last layer without its first row.
+  NetworkSpec spec = network_.spec();
+  spec.outputs -= 1;
+  spec.squash = scales().action;
+  const int last = network_.layers() - 1;
+  const auto weight = static_cast<std::ptrdiff_t>(network_.weight_offset(last));
+  const auto bias = static_cast<std::ptrdiff_t>(network_.bias_offset(last));
+  const auto from = parameters_.begin();
+  std::vector<float> parameters(from, from + weight);
+  parameters.insert(parameters.end(), from + weight + network_.spec().layer_inputs(last),
+                    from + bias);
+  parameters.insert(parameters.end(), from + bias + 1, parameters_.end());
+  constexpr float kNoSpread = -20.0F;
+  parameters.insert(parameters.end(), static_cast<std::size_t>(spec.outputs), kNoSpread);
+  agent::Policy::Parameters p =
+      GaussianActor(spec).ToPolicy(parameters.data(), scales().observations, metadata).parameters();
+  p.choices.resize(codebook_.count, codebook_.width);
+  for (int k = 0; k < codebook_.count; ++k) {
+    for (int d = 0; d < codebook_.width; ++d) {
+      p.choices(k, d) = codebook_.choices[static_cast<std::size_t>(k * codebook_.width + d)];
+    }
+  }
+  p.log_std.setConstant(problem().action_size, kNoSpread);
+  return {agent::Policy(std::move(p))};
+}
+
+}  // namespace stg::learn

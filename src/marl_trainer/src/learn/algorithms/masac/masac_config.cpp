@@ -1,0 +1,33 @@
+#include "marl_trainer/learn/algorithms/masac/masac_config.hpp"
+
+#include "marl_trainer/learn/algorithms/masac/masac.hpp"
+
+namespace stg::learn {
+
+std::unique_ptr<AlgorithmConfig> MasacConfig::Clone() const {
+  return std::make_unique<MasacConfig>(*this);
+}
+
+void MasacConfig::Describe(OptionTable* t) {
+  ReplayConfig::Describe(t);
+  DescribeCritics(t);
+  t->Add("initial-alpha", &initial_alpha, {1e-9, 1e3},
+         "weight of the entropy at the start, against rewards of deviation 1 - gamma");
+  t->Add("alpha-lr", &alpha_lr, {0, 1}, "Adam's learning rate of its logarithm; 0: fixed");
+  t->Add("target-entropy", &target_entropy, {-20, 1},
+         "entropy that it aims at, of each AUV and action dimension in [-1, 1]");
+  t->Add("min-log-std", &min_log_std, {-20, 2}, "lower bound of log sigma before the squash");
+  t->Add("max-log-std", &max_log_std, {-20, 2}, "upper bound of log sigma before the squash");
+}
+
+void MasacConfig::ValidateOrThrow(const TrainConfig& common) const {
+  ReplayConfig::ValidateOrThrow(common);
+  RequireOption(min_log_std < max_log_std, "max-log-std", "is not above --min-log-std");
+}
+
+std::unique_ptr<Algorithm> MasacConfig::Make(const TrainConfig& common, const Problem& problem,
+                                             WorkerPool* pool) const {
+  return std::make_unique<Masac>(*this, *this, common, problem, pool);
+}
+
+}  // namespace stg::learn

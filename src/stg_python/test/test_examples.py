@@ -1,0 +1,53 @@
+"""The examples run, and the learners learn: short runs of each, as a user starts them."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import stg
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
+
+
+def run(name, *arguments, folder="."):
+    """Runs an example; returns the last line of its output."""
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / f"{name}.py", *map(str, arguments)],
+        cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-3000:]
+    return done.stdout.splitlines()[-1]
+
+
+class Examples(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def test_random_actions(self):
+        self.assertIn("share of the tail lost", run("random_actions"))
+
+    def test_ppo_learns_and_its_policy_flies(self):
+        out = self.folder / "ppo.onnx"
+        found = json.loads(run("ppo", "--steps", 32000, "--episodes", 4, "--out", out))
+        self.assertGreater(found["last_reward"], found["first_reward"] + 0.05)
+        again = stg.evaluate(out, "medium_release", episodes=4)
+        self.assertEqual(again["lost_rate"], found["lost_rate"])
+        self.assertEqual(stg.load_policy(out).metadata["training_step"], 32000)
+
+    def test_value_decomposition_learns(self):
+        found = json.loads(run("value_decomposition", "--steps", 24000))
+        self.assertGreater(found["last_reward"], found["first_reward"] + 0.02)
+
+    def test_an_episode_is_plotted(self):
+        run("plot_episode", "--scenario", "two_targets", "--out", "a.png", folder=self.folder)
+        self.assertEqual((self.folder / "a.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
