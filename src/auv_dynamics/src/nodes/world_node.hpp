@@ -99,7 +99,7 @@ class WorldNode {
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
   std::vector<std::uint8_t> fresh_;  ///< the command was for the last step
-  bool channel_fresh_ = false;        ///< the channel had closed it
+  bool channel_fresh_ = false;       ///< the channel had closed it
   std::unique_ptr<WorldPublisher> publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
