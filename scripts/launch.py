@@ -9,14 +9,17 @@ when a file that was asked for was not written. And nothing is left running when
 dies while others start, where roslaunch gives up before its monitor has stopped them.
 """
 
+import difflib
 import os
 import re
 import signal
 import sys
+import xml.etree.ElementTree as ElementTree
 
 import roslaunch
 import roslaunch.parent
 import roslaunch.pmon
+import roslib.packages
 import run_checks
 
 REFUSED, LOST_OUTPUT = 2, 4
@@ -141,7 +144,26 @@ def check_arguments(arguments):
             raise run_checks.Refusal("bag: a name with ' in it cannot be given to the recorder")
         if argument in ("-p", "--port") and k + 1 < len(arguments):
             port = f"http://127.0.0.1:{arguments[k + 1]}"
+    for name in arguments_unknown_to(arguments):
+        raise run_checks.Refusal(name)
     run_checks.master_is_online(port)
+
+
+def arguments_unknown_to(arguments):
+    """Yields what is wrong with the names that a launch file is given: roslaunch would ignore them."""
+    names = [a for a in arguments if ":=" not in a and not a.startswith("-")]
+    if len(names) < 2:
+        return
+    found = roslib.packages.find_resource(names[-2], names[-1])
+    if not found:
+        return
+    declared = [arg.get("name") for arg in ElementTree.parse(found[0]).getroot().findall("arg")
+                if arg.get("value") is None]  # fmt: skip
+    for name in (a.split(":=", 1)[0] for a in arguments if ":=" in a):
+        if name not in declared and not name.startswith("_"):
+            near = difflib.get_close_matches(name, declared, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(declared)}"
+            yield f"{names[-1]} has no argument '{name}'; {hint}"
 
 
 def launch(watch):

@@ -5,6 +5,7 @@ import os
 import pathlib
 import signal
 import socket
+import subprocess
 import sys
 import tempfile
 import threading
@@ -19,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[2] / "scripts")]
 
 import run_checks  # noqa: E402  (lies in the scripts folder)
-from run_launcher import launch, process_of, processes_with, stop  # noqa: E402
+from run_launcher import LAUNCH, launch, process_of, processes_with, stop  # noqa: E402
 
 QUICK = ("episodes:=2", "real_time_factor:=0", "deadline:=20", "policy:=pursuit_separated",
          "table:=false", "overrides:=[time.episode_steps=40, time.tail_steps=10]")
@@ -66,6 +67,18 @@ class Refused(WithFolder):
         self.check_refused("seed: 5000000000 is more than 2147483647", "seed:=5000000000")
         self.check_refused("agents: 'abc' is none of 1 to 255", "agents:=abc")
         self.check_refused("agents: '256' is none of 1 to 255", "agents:=256")
+
+    def test_as_many_agents_as_a_scenario_may_have(self):
+        # Launch files include themselves, one AUV after the other.
+        listed = subprocess.run([str(LAUNCH), "--nodes", "stg_bringup", "medium.launch",
+                                 "agents:=255"], cwd=self.folder, stdout=subprocess.PIPE,
+                                universal_newlines=True, check=True,
+                                env=dict(os.environ, PWD=str(self.folder))).stdout.split()
+        self.assertEqual(sum(node.endswith("/agent") for node in listed), 255)
+
+    def test_arguments_that_the_launch_file_does_not_know(self):
+        self.check_refused("no argument 'episods'; did you mean 'episodes'", "episods:=1")
+        self.check_refused("no argument 'foo'; it has scenario, ", "foo:=1")
 
     def test_a_stranger_on_the_port_of_the_master(self):
         for answer in (b"HTTP/1.0 200 OK\r\n\r\nhello", b"SSH-2.0-OpenSSH\r\n", None):

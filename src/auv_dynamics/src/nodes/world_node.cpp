@@ -195,6 +195,7 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   start_ = Now() + period_;
   episode_ = episode;
   step_ = 0;
+  summarised_ = false;
   part_ = 0;
   // The other lanes run the same world; only lane 0 is looked at.
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -228,7 +229,9 @@ void WorldNode::Finish() {
       static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   give_up_s_ = WallSeconds() + summary_timeout_s_;
   // Nobody who could send it: fine, unless the run was asked for with metrics.
-  if (subscribers_.back().getNumPublishers() == 0) {
+  if (summarised_) {
+    done_ = true;
+  } else if (subscribers_.back().getNumPublishers() == 0) {
     done_ = true;
     summary_lost_ = wait_for_metrics_;
   }
@@ -265,7 +268,10 @@ void WorldNode::OnChannelDone(const std_msgs::Header::ConstPtr& message) {
 }
 
 void WorldNode::OnSummary(const auv_msgs::EpisodeSummary::ConstPtr& message) {
-  if (finishing_ && message->episode == episode_) done_ = true;
+  // It may come before the last answers to the episode's final state do.
+  if (!AtEnd() || message->episode != episode_) return;
+  summarised_ = true;
+  if (finishing_) done_ = true;
 }
 
 bool WorldNode::OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Response& response) {

@@ -88,6 +88,7 @@ class WorldNode {
   TimeNs start_;         ///< clock time of the present episode's step 0
   StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
   bool finishing_ = false, done_ = false, summary_lost_ = false;
+  bool summarised_ = false;  ///< the episode that has ended
   std::uint64_t missed_steps_ = 0;
   Throttle losses_;    ///< of warnings about those who are given up
   bool shown_ = true;  ///< observers have the present step

@@ -1,8 +1,6 @@
 #include "agent_node.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
@@ -20,7 +18,6 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may never come
 
 /// Whether the agent's process also turns velocities into wrenches.
 bool OnboardParameter(const dynamics::WorldConfig& scenario) {
@@ -48,6 +45,7 @@ AgentNode::AgentNode()
       explore_(FlagParameter("explore", false)),
       commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
       commands_wrench_(!commands_velocity_ || OnboardParameter(scenario_)),
+      pending_(id_, scenario_.target.count),
       tracker_(period_, scenario_.time.episode_steps),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
@@ -133,7 +131,7 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   if (opening == StepBarrier::Opening::kReplaced) ++skipped_steps_;
   SetNodeTime(message->header.stamp);
   frame_ = message;
-  for (const auv_msgs::TargetDetection& detection : message->detections) Keep(detection, stamp);
+  for (const auto& detection : message->detections) pending_.Keep(detection, stamp);
   // Step 0 has no window before it.
   if (message->step == 0) barrier_.Excuse(kModem);
   HearModem();
@@ -148,49 +146,20 @@ void AgentNode::HearModem() {
   }
 }
 
-void AgentNode::Keep(const auv_msgs::TargetDetection& message, TimeNs now) {
-  if (message.header.frame_id != frames::kWorld) {
-    refused_detections_.Add(Refusals::kFrame);
-  } else if (!FiniteVector(message.position) || !FiniteVector(message.variance) ||
-             message.variance.x < 0.0) {
-    refused_detections_.Add(Refusals::kNotFinite);
-  } else if (message.target >= static_cast<std::uint32_t>(scenario_.target.count) ||
-             detections_.size() >= kMaxPending) {
-    refused_detections_.Add(Refusals::kMalformed);
-  } else if (NsOf(message.header.stamp) > now) {
-    refused_detections_.Add(Refusals::kStale);
-  } else {
-    dynamics::Detection detection;
-    detection.stamp = NsOf(message.header.stamp);
-    detection.target = static_cast<int>(message.target);
-    detection.p_WT = VectorOf(message.position);
-    detection.std_m = std::sqrt(message.variance.x);
-    detections_.push_back(detection);
-  }
-}
-
 void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message) {
   if (message->header.frame_id != body_frame_) {
-    refused_receptions_.Add(Refusals::kFrame);
+    pending_.refused_receptions().Add(Refusals::kFrame);
   } else {
     const TimeNs stamp = NsOf(message->header.stamp);
     if (barrier_.Hear(kModem, stamp) == StepBarrier::Word::kForeign) {
-      refused_receptions_.Add(Refusals::kStale);
+      pending_.refused_receptions().Add(Refusals::kStale);
       return;
     }
     window_ = stamp;
     HearModem();
-    if (!message->packets.empty()) Keep(message);
+    pending_.Keep(message);
     DecideIfDue();
   }
-}
-
-/// Where there is no room, the latest one goes: it is needed last, if it is true at all.
-void AgentNode::Keep(const auv_msgs::AcousticReception::ConstPtr& message) {
-  receptions_.emplace(NsOf(message->header.stamp), message);
-  if (receptions_.size() <= kMaxPending) return;
-  receptions_.erase(std::prev(receptions_.end()));
-  refused_receptions_.Add(Refusals::kMalformed);
 }
 
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
@@ -218,8 +187,7 @@ void AgentNode::DecideIfDue() {
 void AgentNode::ForgetRun() {
   barrier_.Restart();
   frame_.reset();
-  detections_.clear();
-  receptions_.clear();
+  pending_.Clear();
   window_ = -1;
   in_episode_ = false;
 }
@@ -240,31 +208,6 @@ void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
   in_episode_ = true;
 }
 
-void AgentNode::TakeDetections(TimeNs stamp) {
-  for (dynamics::Detection& detection : detections_) {
-    if (detection.stamp < start_ || detection.stamp > stamp) continue;
-    detection.stamp -= start_;
-    agent_.Detect(detection);
-  }
-  detections_.clear();
-}
-
-void AgentNode::TakeReceptions(TimeNs stamp) {
-  const auto taken = receptions_.upper_bound(stamp);
-  for (auto it = receptions_.upper_bound(start_); it != receptions_.end() && it != taken; ++it) {
-    const auto& m = it->second;
-    for (const auto& packet : m->packets) {
-      const acoustics::Reception reception = ReceptionOf(packet, id_, start_);
-      if (reception.arrival < 0 || reception.arrival > stamp - start_) {
-        refused_receptions_.Add(Refusals::kStale);
-      } else {
-        agent_.Receive(reception);
-      }
-    }
-  }
-  receptions_.erase(receptions_.begin(), taken);
-}
-
 void AgentNode::Decide() {
   if (unreported_) ReportDecision();
   const TimeNs stamp = NsOf(frame_->header.stamp);
@@ -273,8 +216,7 @@ void AgentNode::Decide() {
     start_ = start;
     StartEpisode(*frame_);
   }
-  TakeReceptions(stamp);
-  TakeDetections(stamp);
+  pending_.Give(start_, stamp, &agent_);
   agent_.Observe(NavOf(frame_->pose, frame_->twist, stamp - start_), observation_.data());
   decider_->Mean(agent_, observation_.data(), action_);
   log_probability_ = explore_ ? decider_->Explore(frame_->seed, frame_->step, id_, action_) : 0.0F;
@@ -366,8 +308,7 @@ void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("neighbours known", view.neighbours().known().size());
   status.add("age of information, largest [s]", age);
   refused_frames_.Report(topics::kSensorFrame, &status);
-  refused_detections_.Report(topics::kTargetDetection, &status);
-  refused_receptions_.Report(topics::kAcousticRx, &status);
+  pending_.Report(&status);
   if (decisions_.total() == 0) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no decision yet");
   }

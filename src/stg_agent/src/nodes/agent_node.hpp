@@ -10,7 +10,6 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +21,7 @@
 #include "auv_common/step/step_barrier.hpp"
 #include "auv_common/step/step_tracker.hpp"
 #include "decider.hpp"
+#include "pending_inputs.hpp"
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::nodes {
@@ -50,14 +50,10 @@ class AgentNode {
   bool OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                     auv_msgs::LoadPolicy::Response& response);
 
-  void Keep(const auv_msgs::TargetDetection& message, TimeNs now);
-  void Keep(const auv_msgs::AcousticReception::ConstPtr& message);
   void HearModem();
   void DecideIfDue();
   void ForgetRun();
   void StartEpisode(const auv_msgs::SensorFrame& frame);
-  void TakeDetections(TimeNs stamp);
-  void TakeReceptions(TimeNs stamp);
   void Decide();
   /// Publishes what the last decision commands.
   void Command();
@@ -87,11 +83,9 @@ class AgentNode {
   ros::WallTime busy_, commanded_;
 
   auv_msgs::SensorFrame::ConstPtr frame_;  ///< of the open step; null: none is open
+  PendingInputs pending_;
   StepTracker tracker_;
   StepBarrier barrier_{kParties};
-  std::vector<dynamics::Detection> detections_;  ///< not taken yet, with clock time
-  /// Not taken yet, by clock time of the window's end [ns].
-  std::multimap<TimeNs, auv_msgs::AcousticReception::ConstPtr> receptions_;
   TimeNs window_ = -1;  ///< clock time at which the newest reception window ended [ns]
   TimeNs start_ = -1;   ///< clock time of the episode's step 0 [ns]
   bool in_episode_ = false;
@@ -110,7 +104,7 @@ class AgentNode {
 
   EventRate decisions_;
   std::uint64_t skipped_steps_ = 0;
-  Refusals refused_frames_, refused_detections_, refused_receptions_;
+  Refusals refused_frames_;
   Health health_;
 };
 
