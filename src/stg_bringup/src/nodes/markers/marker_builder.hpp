@@ -2,6 +2,8 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
+
 #include "swarm_view.hpp"
 
 namespace stg::nodes {
@@ -23,9 +25,11 @@ struct MarkerStyle {
 /// where there is nothing to show, so that a view never keeps what is gone.
 visualization_msgs::MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style);
 
-/// Radius of a vehicle as drawn [m]; every size that scales is a multiple.
+/// Radius of a vehicle as drawn [m]; every size that scales is a multiple. In a view of a whole
+/// field it is large enough to be seen.
 inline double UnitOf(const SwarmView& view, const MarkerStyle& style) {
-  return view.scene.radius_m * style.vehicle_scale;
+  const double unit = view.scene.radius_m * style.vehicle_scale;
+  return style.whole_workspace ? std::max(unit, 0.03 * view.scene.half_extent_m) : unit;
 }
 /// Height of letters [m].
 inline double LettersOf(const SwarmView& view, const MarkerStyle& style) {

@@ -153,6 +153,7 @@ class MarkerNode {
   void Advance(const ros::Time& stamp) {
     const double t = stamp.toSec();
     if (t < view_.now - 1.0) ForgetPast();
+    if (t > view_.now && view_.now > 0.0) view_.step_s = t - view_.now;
     if (t > view_.now || view_.now - t > 1.0) view_.now = t;
   }
 
@@ -265,7 +266,8 @@ class MarkerNode {
 
   /// What is too old to be shown.
   void Forget() {
-    const auto old = [this](const CarrierView& c) { return c.end < view_.now - kLongestShown_s; };
+    const double shown_s = std::max(kLongestShown_s, view_.step_s);
+    const auto old = [&](const CarrierView& c) { return c.end < view_.now - shown_s; };
     view_.carriers.erase(std::remove_if(view_.carriers.begin(), view_.carriers.end(), old),
                          view_.carriers.end());
     while (!view_.packets.empty() &&

@@ -120,9 +120,9 @@ class NetworkBuilder : private MarkerList {
     std::set<int> sending;
     for (const CarrierView& c : view_.carriers) {
       if (!Seen(c.source)) continue;
-      if (view_.now >= c.begin && view_.now <= std::max(c.end, c.begin + style_.carrier_s)) {
-        sending.insert(c.source);
-      }
+      // Where time goes on in long steps: whoever has sent since the one before.
+      const double after_s = std::max(style_.carrier_s - (c.end - c.begin), view_.step_s);
+      if (view_.now >= c.begin && view_.now <= c.end + after_s) sending.insert(c.source);
       const double radius = kSoundSpeed_mps * (view_.now - c.begin);
       if (radius > 0.0 && radius < 2.0 * view_.scene.half_extent_m) {
         const Point& p = PositionOf(c.source);

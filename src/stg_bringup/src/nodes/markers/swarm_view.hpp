@@ -75,6 +75,7 @@ struct CarrierView {
 struct SwarmView {
   SceneConfig scene;
   double now = 0.0;
+  double step_s = 0.0;  ///< by which time went on last
   std::uint32_t episode = 0, step = 0;
   std::vector<VehicleView> vehicles;
   std::vector<MovingTarget> targets;
