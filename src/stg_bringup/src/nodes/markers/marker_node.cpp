@@ -258,8 +258,10 @@ class MarkerNode {
       } else if (e.receiver >= 0 && e.receiver < static_cast<int>(kMaxVehicles) &&
                  (e.kind == auv_msgs::PacketEvent::DELIVERED ||
                   e.kind == auv_msgs::PacketEvent::DROPPED)) {
-        view_.packets.push_back(
-            {source, e.receiver, t, e.kind == auv_msgs::PacketEvent::DROPPED, e.reason});
+        // What is lost or heard is shown as its sound arrives.
+        const double arrives = std::max(t, e.arrival.toSec());
+        const bool lost = e.kind == auv_msgs::PacketEvent::DROPPED;
+        view_.packets.push_back({source, e.receiver, arrives, lost, e.reason});
       }
     }
   }
@@ -270,10 +272,10 @@ class MarkerNode {
     const auto old = [&](const CarrierView& c) { return c.end < view_.now - shown_s; };
     view_.carriers.erase(std::remove_if(view_.carriers.begin(), view_.carriers.end(), old),
                          view_.carriers.end());
-    while (!view_.packets.empty() &&
-           view_.packets.front().time < view_.now - overview_.lost_packet_s) {
-      view_.packets.pop_front();
-    }
+    const double lost_s = std::max(overview_.lost_packet_s, view_.step_s);
+    const auto past = [&](const PacketEvent& e) { return e.time < view_.now - lost_s; };
+    view_.packets.erase(std::remove_if(view_.packets.begin(), view_.packets.end(), past),
+                        view_.packets.end());
   }
 
   void OnDraw(const ros::WallTimerEvent&) {

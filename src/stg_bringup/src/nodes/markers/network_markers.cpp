@@ -22,7 +22,11 @@ constexpr double kSoundSpeed_mps = 1500.0;
 class NetworkBuilder : private MarkerList {
  public:
   NetworkBuilder(const SwarmView& view, const MarkerStyle& style)
-      : view_(view), style_(style), unit_(UnitOf(view, style)), text_(LettersOf(view, style)) {}
+      : view_(view),
+        style_(style),
+        unit_(UnitOf(view, style)),
+        text_(LettersOf(view, style)),
+        lost_s_(std::max(style.lost_packet_s, view.step_s)) {}
 
   MarkerArray Build() {
     Links();
@@ -66,11 +70,12 @@ class NetworkBuilder : private MarkerList {
     for (const PacketEvent& e : view_.packets) {
       if (!Seen(e.source) || !Seen(e.destination)) continue;
       const double age = view_.now - e.time;
+      if (age < 0.0) continue;  // on its way
       const Point &from = PositionOf(e.source), &to = PositionOf(e.destination);
       const double travelled = std::clamp(age / style_.packet_s, 0.0, 1.0);
       if (!e.lost) {
         if (travelled < 1.0) dots.points.push_back(Between(from, to, travelled));
-      } else if (age < style_.lost_packet_s) {
+      } else if (age < lost_s_) {
         shown[{e.source, e.destination}] = e.reason;
       }
     }
@@ -154,7 +159,7 @@ class NetworkBuilder : private MarkerList {
     std::map<int, double> since;
     for (const PacketEvent& e : view_.packets) {
       const double age = view_.now - e.time;
-      if (e.lost && e.reason == reason && Seen(e.destination) && age < style_.lost_packet_s) {
+      if (e.lost && e.reason == reason && Seen(e.destination) && age >= 0.0 && age < lost_s_) {
         since[e.destination] = age;
       }
     }
@@ -165,7 +170,7 @@ class NetworkBuilder : private MarkerList {
         continue;
       }
       std_msgs::ColorRGBA fading = color;
-      fading.a *= static_cast<float>(1.0 - 0.7 * found->second / style_.lost_packet_s);
+      fading.a *= static_cast<float>(1.0 - 0.7 * found->second / lost_s_);
       Sphere(name, i, PositionOf(i), 2.4 * unit_, fading);
     }
   }
@@ -173,6 +178,7 @@ class NetworkBuilder : private MarkerList {
   const SwarmView& view_;
   const MarkerStyle& style_;
   const double unit_, text_;
+  const double lost_s_;  ///< simulated time that what was lost stays visible
 };
 
 }  // namespace
