@@ -29,6 +29,7 @@ class TrainFaults(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
+        kill("/trainer")  # before its folder is gone
         shutil.rmtree(pathlib.Path(rospy.get_param("~out")), ignore_errors=True)
 
     @classmethod
