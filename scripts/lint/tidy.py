@@ -19,6 +19,7 @@ from files import CPP, ROOT
 
 # Flags of g++ that clang does not know, or that only say where the output goes.
 DROPPED = {"-fno-semantic-interposition", "-MD", "-c"}
+DROPPED_PREFIXES = ("-mmove-max=", "-mstore-max=", "-mmemcpy-strategy=")  # of GCC alone
 DROPPED_WITH_ARGUMENT = {"-o", "-MT", "-MF"}
 INCLUDE = re.compile(rb"^\s*#\s*include\s*\"([^\"]+)\"", re.MULTILINE)
 FINDING = re.compile(r"(\S+?):(\d+:\d+: (?:warning|error): .*)")
@@ -35,7 +36,9 @@ class Unit:
         for word in words:
             if word in DROPPED_WITH_ARGUMENT:
                 next(words)
-            elif word not in DROPPED and word != entry["file"]:
+            elif word in DROPPED or word.startswith(DROPPED_PREFIXES):
+                continue
+            elif word != entry["file"]:
                 self.arguments.append(word)
         # What precedes the first option is the compiler and what launches it.
         while self.arguments and not self.arguments[0].startswith("-"):
