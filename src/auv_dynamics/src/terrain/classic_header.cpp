@@ -16,7 +16,7 @@ class HeaderReader {
     char magic[4] = {};
     in_.read(magic, 4);
     if (!in_ || magic[0] != 'C' || magic[1] != 'D' || magic[2] != 'F') return 0;
-    version_ = magic[3];
+    version_ = static_cast<unsigned char>(magic[3]);
     return version_ == 1 || version_ == 2 || version_ == 5 ? version_ : 0;
   }
   bool bad() const { return !in_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "auv_common/error.hpp"
@@ -115,9 +116,11 @@ bool LineOfSight(const Terrain& terrain, const std::vector<Obstacle>& obstacles,
   if (terrain.Altitude(a) < 0.0 || terrain.Altitude(b) < 0.0) return false;
   if (terrain.flat()) return true;
   // Symmetric: the points lie evenly between a and b.
-  const double steps = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * terrain.spacing_m()));
-  for (double k = 1.0; k < steps; k += 1.0) {
-    const Vec3<double> p = (a * (steps - k) + b * k) * (1.0 / steps);
+  const double pieces = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * terrain.spacing_m()));
+  const auto steps = static_cast<std::int64_t>(pieces);
+  for (std::int64_t k = 1; k < steps; ++k) {
+    const auto from_a = static_cast<double>(k), from_b = static_cast<double>(steps - k);
+    const Vec3<double> p = (a * from_b + b * from_a) * (1.0 / pieces);
     if (terrain.Altitude(p) < 0.0) return false;
   }
   return true;

@@ -245,9 +245,9 @@ class IndependentLinks : public Channel {
     observer_->OnFate(Info(departure), fate);
   }
   TimeNs Arrival(const Departure& departure, int receiver) const {
+    const double delay_ns = delay_s_[static_cast<std::size_t>(receiver)] * 1e9;
     // Delays are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
-    return departure.start +
-           static_cast<TimeNs>(delay_s_[static_cast<std::size_t>(receiver)] * 1e9 + 0.5);
+    return departure.start + static_cast<TimeNs>(delay_ns + 0.5);
   }
 
   void Send(std::uint32_t step, const Departure& departure) {

@@ -28,7 +28,7 @@ void ForEachImage(double range_m, double depth_a_m, double depth_b_m, double lay
     f(ImagePath{length, length > 0.0 ? rise / length : 0.0, surface, bottom});
   };
   emit(difference, 0, 0);
-  for (int n = 0; left > 0; ++n) {
+  for (int n = 0; 1 + 4 * n < count; ++n) {
     const double down = 2.0 * layer_m * n, next = down + 2.0 * layer_m;
     emit(down + sum, n + 1, n);
     emit(next - sum, n, n + 1);
