@@ -73,7 +73,9 @@ void Environment::Begin(const LaneSet& lanes) {
 void Environment::Move(const Pack* wanted) {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     source_->Act(world_, static_cast<int>(i), wanted, &action_[i], &tau_[i]);
-    wrench_[i] = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
+    const auto wrench = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
+    wrench_[i].force = wrench.force;  // by halves: the whole is copied by a call
+    wrench_[i].moment = wrench.moment;
     wanted += scenario_.action_size();
   }
   source_->Send(world_);

@@ -57,7 +57,12 @@ class Mind {
     k.p_WB = state.p_WB;
     k.v_WB_B = state.v_WB_B;
     k.w_WB_B = state.w_WB_B;
-    k.R_WB = state.R_WB;
+    // Nine packs as a whole are copied by a call, which costs more than the copy.
+    for (int row = 0; row < 3; ++row) {
+      k.R_WB.m[row][0] = state.R_WB.m[row][0];
+      k.R_WB.m[row][1] = state.R_WB.m[row][1];
+      k.R_WB.m[row][2] = state.R_WB.m[row][2];
+    }
     k.trig = state.trig;
     k.v_WB = state.v_WB;
   }
