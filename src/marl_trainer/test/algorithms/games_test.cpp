@@ -83,7 +83,8 @@ TEST_P(Quadratic, EverybodyDoesItsShare) {
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, Quadratic,
                          ::testing::Values(Case{"mappo", {}, 200}, Case{"ippo", {}, 200},
-                                           Case{"happo", {}, 300}, Case{"maddpg", {}, 300},
+                                           Case{"happo", {}, 300},
+                                           Case{"maddpg", {{"action-gain", 1.0}}, 300},
                                            Case{"matd3", {}, 300}, Case{"masac", {}, 300}));
 
 TEST(Quadratic, TheBestBinsAreChosen) {
