@@ -34,11 +34,11 @@ class Examples(unittest.TestCase):
 
     def test_ppo_learns_and_its_policy_flies(self):
         out = self.folder / "ppo.onnx"
-        found = json.loads(run("ppo", "--steps", 25600, "--episodes", 4, "--out", out))
+        found = json.loads(run("ppo", "--steps", 51200, "--episodes", 4, "--out", out))
         self.assertGreater(found["last_reward"], found["first_reward"] + 0.05)
         again = stg.evaluate(out, "medium_release", episodes=4)
         self.assertEqual(again["lost_rate"], found["lost_rate"])
-        self.assertEqual(stg.load_policy(out).metadata["training_step"], 25600)
+        self.assertEqual(stg.load_policy(out).metadata["training_step"], 51200)
 
     def test_value_decomposition_learns(self):
         found = json.loads(run("value_decomposition", "--steps", 16000))

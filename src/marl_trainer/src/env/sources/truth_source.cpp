@@ -38,7 +38,8 @@ void TruthSource::Act(const dynamics::World& world, int i, const Pack* wanted,
   const dynamics::VehicleState<Pack>& v = world.vehicle(i);
   mind.Act(scenario_, wanted, [&] { return exact_angles_ ? v.rpy : RpyOf(v.trig); });
   *action = mind.action;
-  std::copy(std::begin(mind.knowledge.tau), std::end(mind.knowledge.tau), tau->begin());
+  const Pack* t = mind.knowledge.tau;
+  *tau = {t[0], t[1], t[2], t[3], t[4], t[5]};  // std::copy is a call, which costs more
 }
 
 void TruthSource::Think(const dynamics::World& world) {

@@ -57,12 +57,7 @@ class Mind {
     k.p_WB = state.p_WB;
     k.v_WB_B = state.v_WB_B;
     k.w_WB_B = state.w_WB_B;
-    // Nine packs as a whole are copied by a call, which costs more than the copy.
-    for (int row = 0; row < 3; ++row) {
-      k.R_WB.m[row][0] = state.R_WB.m[row][0];
-      k.R_WB.m[row][1] = state.R_WB.m[row][1];
-      k.R_WB.m[row][2] = state.R_WB.m[row][2];
-    }
+    k.R_WB = state.R_WB;
     k.trig = state.trig;
     k.v_WB = state.v_WB;
   }
@@ -108,7 +103,11 @@ class Mind {
   void SetNeighbours(const AgentConfig& s, const NeighbourSummary<T>& n) {
     const T others(1.0 / std::max(1.0, static_cast<double>(s.agents - 1)));
     Knowledge<T>& k = knowledge;
-    std::copy(n.offset, n.offset + kNeighbourSlots, k.neighbour);
+    static_assert(kNeighbourSlots == 3,
+                  "std::copy of packs is a call, which costs more than they do");
+    k.neighbour[0] = n.offset[0];
+    k.neighbour[1] = n.offset[1];
+    k.neighbour[2] = n.offset[2];
     k.effective_fraction = n.effective * others;
     k.mean_quality = n.quality * others;
     k.best_quality = n.best;
