@@ -65,13 +65,16 @@ class FaultMatrix(unittest.TestCase):
         wait_for_restart("/auv_0/controller", kill("/auv_0/controller"))
         self.check_all_is_well()
         with stopped("/auv_0/controller"):  # one that is killed may be back before it is missed
-            time.sleep(3.0)
+            time.sleep(2.0)
 
         def same():
             counted = int(self.world("steps with a deadline miss"))
             told = sum(s.deadline_misses for s in self.summaries)
-            self.counts = f"{counted} counted by the world, {told} told in summaries"
-            return counted > 0 and told == counted
+            # The world waits for no listener: whole episodes may pass metrics by while it races on.
+            episodes = {s.episode for s in self.summaries}
+            untold = 100 * (max(episodes) + 1 - len(episodes))
+            self.counts = f"{counted} counted by the world, {told} told, at most {untold} not"
+            return counted > 0 and told <= counted <= told + untold
 
         try:
             wait_for(same, 40.0, "the same number of misses")
