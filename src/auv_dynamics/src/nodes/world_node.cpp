@@ -6,6 +6,7 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/nodes/autopilot_parameter.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
@@ -35,7 +36,8 @@ WorldNode::WorldNode()
     : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
       world_(scenario_),
       period_(scenario_.decision_period()),
-      commands_(scenario_, world_, [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
+      commands_(scenario_, world_, AutopilotOnBoardParameter(),
+                [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
       pacer_(PacerParameters(period_ / commands_.parts())),
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
       episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
