@@ -52,6 +52,7 @@ WorldNode::WorldNode()
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
+  if (FlagParameter("instruments", false)) instruments_ = std::make_unique<Instruments>(scenario_);
   commands_.Listen();
   subscribers_.push_back(
       node.subscribe(topics::kChannelDone, kQueue, &WorldNode::OnChannelDone, this, NoDelay()));
@@ -213,6 +214,7 @@ void WorldNode::OpenStep() {
   opened_ = WallSeconds();
   SetNodeTime(TimeOf(Now()));
   publisher_->PublishSensors(world_, start_, episode_, step_);
+  if (instruments_ != nullptr) instruments_->Publish(world_, Now(), step_ == 0);
   // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
   if (pacer_.lockstep()) publisher_->PublishSwarm();
   shown_ = false;
