@@ -10,10 +10,8 @@
 #include "auv_common/error.hpp"
 
 namespace stg::dynamics {
-namespace {
 
-/// Of a scenario in open water; else nobody asks.
-Terrain MakeTerrain(const SeaConfig& c, double region_m) {
+Terrain TerrainOf(const SeaConfig& c, double region_m) {
   if (!c.open || c.terrain == "flat") return Terrain(c.bottom_m);
   // A little more than the region, which is a square of metres and not of degrees.
   const Datum datum(c.latitude_deg, c.longitude_deg);
@@ -30,8 +28,6 @@ Terrain MakeTerrain(const SeaConfig& c, double region_m) {
   }
   return Terrain(Bathymetry::Load(TerrainFile(c.terrain), r), datum, region_m);
 }
-
-}  // namespace
 
 std::string TerrainFile(const std::string& name) {
   const char* own = std::getenv("STG_TERRAINS");
@@ -85,7 +81,7 @@ std::optional<config::Violation> FindConflict(const SeaConfig& c) {
 
 Sea::Sea(const SeaConfig& config, int vehicles, double region_m)
     : config_(config),
-      terrain_(MakeTerrain(config, region_m)),
+      terrain_(TerrainOf(config, region_m)),
       groundings_(static_cast<std::size_t>(vehicles), Pack(0.0)),
       aground_(groundings_) {}
 

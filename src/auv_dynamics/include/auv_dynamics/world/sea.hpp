@@ -9,14 +9,18 @@
 
 namespace stg::dynamics {
 
+/// The bottom of a scenario in open water; of another one a flat one that nobody asks for.
+/// @param region_m half the size of the square around the origin whose bottom is read. Throws
+/// UserError when its bathymetry cannot be had (TerrainFile, Bathymetry::Load, Terrain).
+Terrain TerrainOf(const SeaConfig& config, double region_m);
+
 /// Surface and bottom of open water. A vehicle that reaches either stops there: its height is
 /// clamped and the vertical part of its velocity, over ground, is taken from it; a slope does not
 /// stop it, and where the bottom is above the surface it goes on along the surface, aground. Coming
 /// to the bottom is an event, counted once until the vehicle is off it again.
 class Sea {
  public:
-  /// @param region_m half the size of the square around the origin whose bottom is read. Throws
-  /// UserError when its bathymetry cannot be had (Bathymetry::Load, Terrain).
+  /// Throws as TerrainOf does.
   Sea(const SeaConfig& config, int vehicles, double region_m);
 
   /// An episode starts in one lane.
