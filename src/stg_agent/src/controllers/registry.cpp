@@ -1,4 +1,5 @@
 #include "stg_agent/controllers/controller.hpp"
+#include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/idle.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
@@ -7,6 +8,7 @@ namespace stg::agent {
 ControllerRegistry& Controllers() {
   static ControllerRegistry registry("controller", {
                                                        {"idle", MakeIdle},
+                                                       {"encircle", MakeEncircle},
                                                        {"pursuit", MakePursuit},
                                                        {"pursuit_separated", MakePursuitSeparated},
                                                    });
