@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Opens rviz with a shipped view whose camera fits the scenario.
 
 The views are written for the paper's box of two metres. The scenario that runs, or is replayed,
@@ -41,13 +41,12 @@ def camera_scale(view, scenario):
     return max(hulls, BANDS_AWAY * float(band[1]))
 
 
-def fitted(config, scale):
-    """Returns the view with every distance of its camera multiplied."""
+def fit(config, scale):
+    """Multiplies every distance of a view's camera."""
     camera = config["Visualization Manager"]["Views"]["Current"]
     for key in ("Distance", "Near Clip Distance", "Focal Shape Size"):
         camera[key] *= scale
     camera["Focal Point"] = {axis: x * scale for axis, x in camera["Focal Point"].items()}
-    return config
 
 
 def running_scenario():
@@ -73,14 +72,19 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("view", choices=["overview", "follow"])
     parser.add_argument("--scenario-file", default="", help="instead of the running scenario")
+    parser.add_argument("--write", metavar="FILE", help="write the view there instead of opening it")
     arguments, names = parser.parse_known_args()
     file = arguments.scenario_file
     scenario = yaml.safe_load(pathlib.Path(file).read_text()) if file else running_scenario()
     package = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
     config = yaml.safe_load((package / "rviz" / f"{arguments.view}.rviz").read_text())
+    fit(config, camera_scale(arguments.view, scenario))
+    if arguments.write:
+        pathlib.Path(arguments.write).write_text(yaml.safe_dump(config))
+        return 0
     with tempfile.TemporaryDirectory() as folder:
         view = pathlib.Path(folder) / f"{arguments.view}.rviz"
-        view.write_text(yaml.safe_dump(fitted(config, camera_scale(arguments.view, scenario))))
+        view.write_text(yaml.safe_dump(config))
         viewer = subprocess.Popen(["rviz", "-d", str(view), *names])
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: viewer.terminate())

@@ -30,6 +30,10 @@ Terrain TerrainOf(const SeaConfig& c, double region_m) {
 }
 
 std::string TerrainFile(const std::string& name) {
+  if (std::filesystem::path(name).extension() == ".nc") {
+    if (std::filesystem::is_regular_file(name)) return name;
+    throw UserError("sea.terrain: no file " + name);
+  }
   const char* own = std::getenv("STG_TERRAINS");
   std::istringstream folders(own == nullptr ? "" : own);
   std::string file;
@@ -53,8 +57,8 @@ void Describe(SeaConfig* c, config::Table* t) {
                  "open water: a surface at z = 0 and a bottom instead of the walls");
   t->AddOptional(
       "terrain", &c->terrain, "flat", kNone, "-",
-      "bottom of open water: flat, or a bathymetry NAME.nc in a folder of $STG_TERRAINS or "
-      "shipped");
+      "bottom of open water: flat, or a bathymetry: a FILE.nc, or a NAME whose file NAME.nc is in a "
+      "folder of $STG_TERRAINS or shipped");
   t->AddOptional("bottom_m", &c->bottom_m, "120.0", Positive(12000), "m",
                  "depth of the flat bottom");
   t->AddOptional("latitude_deg", &c->latitude_deg, "0.0", config::Within(-90, 90), "deg, WGS 84",

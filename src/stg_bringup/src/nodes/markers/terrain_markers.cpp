@@ -18,7 +18,8 @@ using visualization_msgs::MarkerArray;
 constexpr int kCells = 96;        // of the drawn surface, on each side
 constexpr int kLineEvery = 8;     // cells between two lines drawn on it
 constexpr int kScaleSteps = 6;    // colours named in the scale
-constexpr double kLeastSpan_m = 1.0;  // a flat bottom has one colour
+constexpr double kLeastSpan_m = 1.0;  // less is a flat bottom, which has one colour
+constexpr double kFlatShare = 0.35;
 
 /// From the deepest point (0) through blues and greens to the shallowest (1); land is brown.
 ColorRGBA DepthColor(double share, bool land) {
@@ -70,7 +71,8 @@ class TerrainBuilder : private MarkerList {
               heights_[static_cast<std::size_t>(j * (kCells + 1) + i)] + lift);
   }
   ColorRGBA ColorAt(double z) const {
-    return DepthColor((z - lowest_) / std::max(highest_ - lowest_, kLeastSpan_m), z > 0.0);
+    const bool flat = highest_ - lowest_ < kLeastSpan_m;
+    return DepthColor(flat ? kFlatShare : (z - lowest_) / (highest_ - lowest_), z > 0.0);
   }
 
   void Surface() {
@@ -120,7 +122,7 @@ class TerrainBuilder : private MarkerList {
     const int steps = flat ? 1 : kScaleSteps;
     for (int k = 0; k < steps; ++k) {
       const double z = flat ? lowest_ : highest_ - (highest_ - lowest_) * k / (steps - 1);
-      const Point p = At(0.55 * half_, -1.12 * half_, 0.62 * half_ - 1.5 * size * k);
+      const Point p = At(0.55 * half_, -1.12 * half_, 0.35 * half_ - 1.5 * size * k);
       Marker patch = New("depth_scale", k, Marker::CUBE, ColorAt(z));
       patch.pose.position = p;
       patch.scale.x = patch.scale.y = patch.scale.z = size;
