@@ -210,7 +210,7 @@ const char* const kSections[] = {
     "auv_dynamics/include/auv_dynamics/vehicle/vehicle_config",
     "auv_dynamics/include/auv_dynamics/world/surroundings_config",
     "auv_dynamics/include/auv_dynamics/world/reset_config",
-    "auv_dynamics/include/auv_dynamics/world/sea_config",
+    "auv_dynamics/include/auv_dynamics/terrain/sea_config",
     "auv_dynamics/include/auv_dynamics/world/world_config",
     "auv_dynamics/include/auv_dynamics/sensing/sensing_config",
     "auv_dynamics/include/auv_dynamics/targets/target_config",

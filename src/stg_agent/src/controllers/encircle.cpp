@@ -122,6 +122,14 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
         Miss(own, c.q + now, c.w, T(o.clearance_m), Select(beside, one, zero));
     v = v + miss;
   }
+  // What its chart shows.
+  const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
+    const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));
+    const Level<T> there{T(x) - k.p_WB.x, T(y) - k.p_WB.y};
+    v = v + Miss(own, there, Level<T>{}, T(radius_m + o.clearance_m), Select(beside, one, zero));
+  };
+  for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
+  for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
   v = Within(v, slow, fast);
   const T climb = Clip((z - k.p_WB.z) * T(o.depth_gain_ps), T(-o.climb_mps), T(o.climb_mps));
   return {v.x, v.y, climb};

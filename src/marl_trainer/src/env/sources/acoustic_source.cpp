@@ -9,8 +9,9 @@ AcousticSource::AcousticSource(const Scenario& scenario) : scenario_(scenario) {
   const auto constants = std::make_shared<const agent::AgentConstants>(scenario_);
   agents_.reserve(n);
   for (int i = 0; i < scenario.agents; ++i) agents_.emplace_back(constants, i);
+  const auto shadows = dynamics::ShadowsOf(scenario.sea, scenario.workspace.half_extent_m);
   for (int lane = 0; lane < kLanes; ++lane) {
-    channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_));
+    channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_, shadows));
   }
   packets_.resize(n);
   offered_.reserve(n);

@@ -108,7 +108,8 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
 /// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
 /// its own. On the circle it speeds up or slows down towards the middle between the one ahead and
 /// the one behind, as their packets and the time since tell; off it, it comes in on a spiral. It
-/// gives way to who would pass too closely at a like depth. In a team that is too large for one
+/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart, which
+/// is the scenario. In a team that is too large for one
 /// circle every other AUV flies inside, the others outside of d*. Without open water it keeps to
 /// the target's depth.
 ///

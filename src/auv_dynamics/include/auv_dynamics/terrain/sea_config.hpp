@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "auv_common/config/field.hpp"
 
@@ -18,6 +19,10 @@ struct SeaConfig {
   double longitude_deg = 0.0;
   config::Interval auv_depth_m{20.0, 60.0};     ///< where AUVs start
   config::Interval target_depth_m{20.0, 60.0};  ///< where targets start and stay
+  /// Rows of x, y, z of the centre and radius [m], world axes.
+  std::vector<std::vector<double>> spheres;
+  /// Upright: rows of x, y, z of the foot, radius and height [m], world axes.
+  std::vector<std::vector<double>> cylinders;
 };
 
 /// Keys, units and ranges of the section `sea`, which a file may leave out.
