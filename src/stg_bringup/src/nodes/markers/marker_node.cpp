@@ -26,7 +26,7 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "auv_dynamics/world/sea.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "marker_builder.hpp"
 #include "scene.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -94,7 +94,7 @@ class MarkerNode {
     if (!scene.sea.open) return;
     try {
       terrain_pub_.publish(
-          BuildTerrain(scene, dynamics::TerrainOf(scene.sea, scene.half_extent_m)));
+          BuildTerrain(scene, dynamics::Seascape(scene.sea, scene.half_extent_m)));
     } catch (const UserError& e) {
       ROS_WARN("the bottom of the sea is not shown: %s", e.what());
     }

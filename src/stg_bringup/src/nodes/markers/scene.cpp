@@ -6,6 +6,20 @@
 
 namespace stg::nodes {
 
+namespace {
+
+/// Rows of as many finite numbers as there should be; what is none of them is left out.
+void ReadRows(const YAML::Node& list, std::size_t size, std::vector<std::vector<double>>* rows) {
+  for (const YAML::Node& row : list) {
+    std::vector<double> numbers = row.as<std::vector<double>>(std::vector<double>());
+    bool finite = numbers.size() == size;
+    for (const double x : numbers) finite = finite && std::isfinite(x);
+    if (finite) rows->push_back(std::move(numbers));
+  }
+}
+
+}  // namespace
+
 SceneConfig ReadScene(const std::string& yaml) {
   const YAML::Node root = YAML::Load(yaml);
   SceneConfig scene;
@@ -32,6 +46,8 @@ SceneConfig ReadScene(const std::string& yaml) {
     scene.sea.bottom_m = positive("sea", "bottom_m", scene.sea.bottom_m);
     scene.sea.latitude_deg = number("sea", "latitude_deg", 0.0);
     scene.sea.longitude_deg = number("sea", "longitude_deg", 0.0);
+    ReadRows(sea["spheres"], 4, &scene.sea.spheres);
+    ReadRows(sea["cylinders"], 5, &scene.sea.cylinders);
   }
   return scene;
 }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "auv_dynamics/world/sea_config.hpp"
+#include "auv_dynamics/terrain/sea_config.hpp"
 
 /// What a viewer knows of a run: the newest of everything that was published, and a short past.
 /// Lengths [m], frame world; times [s] of simulated time.

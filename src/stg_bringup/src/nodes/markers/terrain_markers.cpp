@@ -42,14 +42,14 @@ ColorRGBA DepthColor(double share, bool land) {
 
 class TerrainBuilder : private MarkerList {
  public:
-  TerrainBuilder(const SceneConfig& scene, const dynamics::Terrain& terrain)
-      : half_(scene.half_extent_m), step_(2.0 * half_ / kCells) {
+  TerrainBuilder(const SceneConfig& scene, const dynamics::Seascape& sea)
+      : sea_(sea), half_(scene.half_extent_m), step_(2.0 * half_ / kCells) {
     heights_.reserve((kCells + 1) * (kCells + 1));
     lowest_ = std::numeric_limits<double>::infinity();
     highest_ = -lowest_;
     for (int j = 0; j <= kCells; ++j) {
       for (int i = 0; i <= kCells; ++i) {
-        const double z = terrain.Height(i * step_ - half_, j * step_ - half_);
+        const double z = sea.terrain.Height(i * step_ - half_, j * step_ - half_);
         lowest_ = std::min(lowest_, z);
         highest_ = std::max(highest_, std::min(z, 0.0));
         heights_.push_back(z);
@@ -62,6 +62,7 @@ class TerrainBuilder : private MarkerList {
     Grid();
     Frame();
     Scale();
+    Obstacles();
     return std::move(array_);
   }
 
@@ -134,6 +135,23 @@ class TerrainBuilder : private MarkerList {
     }
   }
 
+  void Obstacles() {
+    const ColorRGBA color = Color(0.75, 0.45, 0.25, 0.85);
+    int id = 0;
+    for (const dynamics::Obstacle& o : sea_.obstacles) {
+      if (o.kind == dynamics::Obstacle::Kind::kSphere) {
+        Sphere("obstacle", id++, At(o.p_W.x, o.p_W.y, o.p_W.z), 2.0 * o.radius_m, color);
+        continue;
+      }
+      Marker m = New("obstacle", id++, Marker::CYLINDER, color);
+      m.pose.position = At(o.p_W.x, o.p_W.y, o.p_W.z + 0.5 * o.height_m);
+      m.scale.x = m.scale.y = 2.0 * o.radius_m;
+      m.scale.z = o.height_m;
+      Add(std::move(m));
+    }
+  }
+
+  const dynamics::Seascape& sea_;
   const double half_, step_;
   double lowest_, highest_;
   std::vector<double> heights_;
@@ -141,8 +159,8 @@ class TerrainBuilder : private MarkerList {
 
 }  // namespace
 
-MarkerArray BuildTerrain(const SceneConfig& scene, const dynamics::Terrain& terrain) {
-  return TerrainBuilder(scene, terrain).Build();
+MarkerArray BuildTerrain(const SceneConfig& scene, const dynamics::Seascape& sea) {
+  return TerrainBuilder(scene, sea).Build();
 }
 
 MarkerArray NoTerrain() {

@@ -2,16 +2,16 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
-#include "auv_dynamics/terrain/terrain.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "swarm_view.hpp"
 
 namespace stg::nodes {
 
-/// The bottom of open water as a surface coloured by depth, contour lines every few cells, a frame
-/// at the sea's surface, and the colours' scale in metres at its corner. It does not move: drawn
+/// The bottom of open water as a surface coloured by depth with lines on it, obstacles, a frame at
+/// the sea's surface, and the colours' scale in metres at its corner. Nothing of it moves: drawn
 /// once for a scenario.
 visualization_msgs::MarkerArray BuildTerrain(const SceneConfig& scene,
-                                             const dynamics::Terrain& terrain);
+                                             const dynamics::Seascape& sea);
 /// Takes away what BuildTerrain drew.
 visualization_msgs::MarkerArray NoTerrain();
 
