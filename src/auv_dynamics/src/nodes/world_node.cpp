@@ -49,6 +49,8 @@ WorldNode::WorldNode()
       fresh_(static_cast<std::size_t>(scenario_.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.agents);
+  // Of no use here; but no other node sees all that a launch says of them.
+  RequireIndices("external", scenario_.agents);
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));

@@ -50,6 +50,9 @@ AgentNode::AgentNode()
       node.subscribe(own(topics::kAcousticRx), kQueue, &AgentNode::OnReception, this, NoDelay()));
   load_policy_ =
       ros::NodeHandle("~").advertiseService(topics::kLoadPolicy, &AgentNode::OnLoadPolicy, this);
+  const std::string file = decider_->file();
+  ROS_INFO("agent %d: flies '%s'%s%s", id_, decider_->id().c_str(), file.empty() ? "" : " of ",
+           file.c_str());
 }
 
 void AgentNode::Advertise() {
