@@ -25,6 +25,7 @@ from run_launcher import LAUNCH, launch, process_of, processes_with, stop  # noq
 QUICK = ("episodes:=2", "real_time_factor:=0", "deadline:=20", "policy:=pursuit_separated",
          "table:=false", "overrides:=[time.episode_steps=40, time.tail_steps=10]")
 ENDLESS = ("policy:=idle", "table:=false")
+RED = "\033[31m"
 
 
 class WithFolder(unittest.TestCase):
@@ -162,6 +163,40 @@ class View(WithFolder):
                 self.assertEqual(status, 1, output)
                 self.assertIn(reason, output)
                 self.assertNotIn("what()", output)
+
+
+class Ends(WithFolder):
+    """The end of the world is that of the run, and told as what it is."""
+
+    def test_a_clean_end_is_no_death(self):
+        for program in (LAUNCH, "roslaunch"):
+            with self.subTest(program):
+                process, environment = launch(self.folder, "medium.launch", *QUICK, program=program)
+                self.addCleanup(stop, process)
+                status, output = self.finish(process)
+                self.assertEqual(status, 0, output)
+                self.assertRegex(output, "world: 80 steps in")
+                for word in ("has died", "REQUIRED", RED, "escalating"):
+                    self.assertNotIn(word, output)
+                self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {}, output)
+
+    def test_a_death_is_told_with_its_signal(self):
+        process, environment = self.start(*ENDLESS)
+        process_of("/metrics", environment)
+        os.kill(process_of("/world", environment), signal.SIGABRT)
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, "REQUIRED process .world-[0-9]+. has died")
+        self.assertIn(f"/world died with exit status -{int(signal.SIGABRT)}", output)
+        self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {}, output)
+
+    def test_a_world_does_not_outlive_what_roslaunch_watches(self):
+        process, environment = self.start(*ENDLESS)
+        process_of("/metrics", environment)
+        os.kill(processes_with(environment["ROS_MASTER_URI"])["ends_launch"], signal.SIGKILL)
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+        self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {}, output)
 
 
 class Lost(WithFolder):

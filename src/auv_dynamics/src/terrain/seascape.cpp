@@ -34,6 +34,10 @@ Terrain MakeTerrain(const SeaConfig& c, double region_m) {
 }  // namespace
 
 std::string TerrainFile(const std::string& name) {
+  if (std::filesystem::path(name).extension() == ".nc") {
+    if (std::filesystem::is_regular_file(name)) return name;
+    throw UserError("sea.terrain: no file " + name);
+  }
   const char* own = std::getenv("STG_TERRAINS");
   std::istringstream folders(own == nullptr ? "" : own);
   std::string file;

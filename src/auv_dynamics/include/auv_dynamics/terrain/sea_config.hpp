@@ -27,7 +27,7 @@ struct SeaConfig {
 
 /// Keys, units and ranges of the section `sea`, which a file may leave out.
 void Describe(SeaConfig* c, config::Table* t);
-/// The file of a bathymetry by its name: <name>.nc in a folder of $STG_TERRAINS (several with
+/// The file of a bathymetry: the name itself where it ends in .nc; else <name>.nc in a folder of $STG_TERRAINS (several with
 /// colons between them), else in `terrain` beside the folder of the shipped scenarios. Throws
 /// UserError that names the folders when there is none.
 std::string TerrainFile(const std::string& name);

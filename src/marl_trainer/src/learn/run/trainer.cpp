@@ -76,7 +76,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
     StartFrom(setup_.common.start_from);
   }
   ScheduleNext();
-  folder_.WriteSetup(ToJson(setup_), scenario_);
+  folder_.WriteSetup(ToJson(setup_), scenario_, options.mix);
   log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
                                     options_.resume ? state_.env_steps : -1, setup_.common.steps,
                                     options_.log);

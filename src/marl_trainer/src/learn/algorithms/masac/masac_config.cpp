@@ -4,10 +4,6 @@
 
 namespace stg::learn {
 
-std::unique_ptr<AlgorithmConfig> MasacConfig::Clone() const {
-  return std::make_unique<MasacConfig>(*this);
-}
-
 void MasacConfig::Describe(OptionTable* t) {
   ReplayConfig::Describe(t);
   DescribeCritics(t);

@@ -8,10 +8,6 @@ Matd3Config::Matd3Config() {
   target_noise = 0.2;
 }
 
-std::unique_ptr<AlgorithmConfig> Matd3Config::Clone() const {
-  return std::make_unique<Matd3Config>(*this);
-}
-
 void Matd3Config::Describe(OptionTable* t) {
   MaddpgConfig::Describe(t);
   t->Add("policy-delay", &policy_delay, {1, 1000},

@@ -3,13 +3,14 @@
 #include <memory>
 #include <string>
 
+#include "marl_trainer/learn/algorithms/off_policy/exploration_ramp.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
 
 namespace stg::learn {
 
 /// Options of methods with a deterministic actor.
 struct DeterministicOptions {
-  double noise_min = 0.05, noise_max = 0.5;
+  ExplorationRamp noise{0.05, 0.5};  ///< in shares of the action's scale
   std::string others = "buffer";
   int critics = 1;
   int policy_delay = 1;
@@ -17,11 +18,9 @@ struct DeterministicOptions {
 };
 
 /// Configuration of MADDPG.
-struct MaddpgConfig : ReplayConfig, DeterministicOptions {
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
+struct MaddpgConfig : CopyableConfig<MaddpgConfig, ReplayConfig>, DeterministicOptions {
   void Describe(OptionTable* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
-  void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   WorkerPool* pool) const override;
 };

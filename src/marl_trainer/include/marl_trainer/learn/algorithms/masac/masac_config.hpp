@@ -16,8 +16,7 @@ struct SoftOptions {
 };
 
 /// Configuration of MASAC.
-struct MasacConfig : ReplayConfig, SoftOptions {
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
+struct MasacConfig : CopyableConfig<MasacConfig, ReplayConfig>, SoftOptions {
   void Describe(OptionTable* table) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
