@@ -7,8 +7,8 @@ namespace stg::agent {
 
 ControllerRegistry& Controllers() {
   static ControllerRegistry registry("controller", {
-                                                       {"idle", MakeIdle},
                                                        {"encircle", MakeEncircle},
+                                                       {"idle", MakeIdle},
                                                        {"pursuit", MakePursuit},
                                                        {"pursuit_separated", MakePursuitSeparated},
                                                    });

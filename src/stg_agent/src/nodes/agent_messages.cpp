@@ -21,6 +21,8 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   SetVector(target.p_WT, &m->target_position);
   SetVector(target.v_WT, &m->target_velocity);
   m->target_std = target.position_std_m();
+  for (const std::size_t axis : {0U, 3U, 5U}) m->target_covariance[axis] = target.pp;
+  m->target_age = Seconds(target.stamp - agent.track().information_stamp());
   m->target_distance = k.distance;
   m->tracking_error = k.error;
   m->confidence = k.confidence;

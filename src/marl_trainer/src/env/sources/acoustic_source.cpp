@@ -93,4 +93,22 @@ Pack AcousticSource::LinkQuality(const dynamics::World&) const {
   return sum / Pack(scenario_.agents);
 }
 
+void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const auto u = static_cast<std::size_t>(i);
+    const TimeNs now = world.time(lane);
+    const agent::TargetTrack& track = agents_[u].inbox(lane).track();
+    SetLane(&f->known, lane, track.started() ? 1.0 : 0.0);
+    SetLane(&f->p_WT, lane, track.estimate().p_WT);
+    const double variance = track.estimate().pp;
+    for (const int k : {0, 3, 5}) SetLane(&f->covariance[k], lane, variance);
+    SetLane(&f->age_s, lane, Seconds(now - track.information_stamp()));
+    const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
+    SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));
+    const acoustics::ChannelTotals& totals = channel.totals();
+    SetLane(&f->received, lane, static_cast<double>(totals.delivered) / scenario_.agents);
+    SetLane(&f->missed, lane, static_cast<double>(totals.dropped) / scenario_.agents);
+  }
+}
+
 }  // namespace stg::env
