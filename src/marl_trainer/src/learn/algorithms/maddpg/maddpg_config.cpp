@@ -15,7 +15,9 @@ void MaddpgConfig::Describe(OptionTable* t) {
 
 void MaddpgConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   ReplayConfig::ApplyPreset(preset, common);
-  if (preset == "paper") noise = {0.1, 0.1};
+  if (preset != "paper") return;
+  noise = {0.1, 0.1};
+  others = "buffer";
 }
 
 std::unique_ptr<Algorithm> MaddpgConfig::Make(const TrainConfig& common, const Problem& problem,

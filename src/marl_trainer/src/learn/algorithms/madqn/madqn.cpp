@@ -93,7 +93,8 @@ Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfi
       parameters_(network_.parameters()),
       adam_(network_.parameters()),
       gradient_(network_.parameters(), pool),
-      acting_(PassesOf(network_, pool->workers())) {
+      acting_(PassesOf(network_, pool->workers())),
+      chosen_(acting_.size(), std::vector<int>(static_cast<std::size_t>(codebook_.heads))) {
   InitialiseOrthogonally(network_.spec(), common.seed, 0, parameters_.data());
   target_ = parameters_;
   Keep("network", &parameters_);
@@ -112,10 +113,10 @@ void Madqn::Act(const Decision& decision, const Actions& out) {
   const float* outputs = acting_[static_cast<std::size_t>(decision.worker)].Evaluate(
       parameters_.data(), scales().observations, decision.observations, rows);
   const Codebook& book = codebook_;
+  std::vector<int>& chosen = chosen_[static_cast<std::size_t>(decision.worker)];
   float* action = out.actions;
   for (int r = 0; r < rows; ++r) {
     const float* advantages = outputs + static_cast<std::ptrdiff_t>(r) * network_.outputs() + 1;
-    std::vector<int> chosen(static_cast<std::size_t>(book.heads));
     for (int h = 0; h < book.heads; ++h) {
       chosen[static_cast<std::size_t>(h)] = Best(advantages + h * book.count, book.count);
     }

@@ -16,6 +16,13 @@ void MasacConfig::Describe(OptionTable* t) {
   t->Add("max-log-std", &max_log_std, {-20, 2}, "upper bound of log sigma before the squash");
 }
 
+void MasacConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
+  ReplayConfig::ApplyPreset(preset, common);
+  if (preset != "paper") return;
+  initial_alpha = 0.01;
+  target_entropy = -1.0;
+}
+
 void MasacConfig::ValidateOrThrow(const TrainConfig& common) const {
   ReplayConfig::ValidateOrThrow(common);
   RequireOption(min_log_std < max_log_std, "max-log-std", "is not above --min-log-std");

@@ -36,15 +36,16 @@ void ReplayConfig::DescribeCritics(OptionTable* t) {
 }
 
 void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
-  common->envs = 256;
+  common->envs = 128;
   common->horizon = 20;
   // A checkpoint holds the replayed steps: some hundred megabytes.
   common->keep_checkpoints = 1;
-  common->checkpoint_interval = 500000;
+  common->checkpoint_interval = 200000;
   if (preset == "fast") return;
   if (preset != "paper") throw UserError("--preset: '" + preset + "' is not fast or paper");
   common->steps = 2000000;
   batch = 1024;
+  replayed = 2.0;
   n_step = 1;
   gamma = 0.95;
   tau = 0.005;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMomentStride = 4;  // the normalisers take in every n-th decision
 /// Rewards that the scale of the values remembers [environment steps].
-constexpr double kRewardMemory = 100000.0;
+constexpr double kRewardMemory = 30000.0;
 /// Rewards that hardly differ must not be blown up.
 constexpr double kSmallestRewardStd = 0.01;
 

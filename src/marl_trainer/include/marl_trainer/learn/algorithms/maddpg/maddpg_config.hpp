@@ -10,8 +10,8 @@ namespace stg::learn {
 
 /// Options of methods with a deterministic actor.
 struct DeterministicOptions {
-  ExplorationRamp noise{0.05, 0.5};  ///< in shares of the action's scale
-  std::string others = "buffer";
+  ExplorationRamp noise{0.02, 0.2};  ///< in shares of the action's scale
+  std::string others = "policy";
   int critics = 1;
   int policy_delay = 1;
   double target_noise = 0.0, target_noise_clip = 0.5;

@@ -54,7 +54,8 @@ class Madqn : public ReplayLearner {
   AdamState adam_;
   SlicedGradient gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
-  std::vector<ObservedPass> acting_;  // by worker
+  std::vector<ObservedPass> acting_;      // by worker
+  std::vector<std::vector<int>> chosen_;  // by worker: what each head of one AUV chose
   // Since the last report.
   double squares_ = 0.0, values_ = 0.0, norm_ = 0.0;
   double rate_ = 1.0;

@@ -12,6 +12,7 @@ namespace stg::learn {
 struct Matd3Config : CopyableConfig<Matd3Config, MaddpgConfig> {
   Matd3Config();
   void Describe(OptionTable* table) override;
+  void ApplyPreset(const std::string& preset, TrainConfig* common) override;
 };
 
 }  // namespace stg::learn
