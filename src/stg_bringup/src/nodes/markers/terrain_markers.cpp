@@ -10,9 +10,6 @@
 namespace stg::nodes {
 namespace {
 
-using geometry_msgs::Point;
-using std_msgs::ColorRGBA;
-using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr int kCells = 96;        // of the drawn surface, on each side
@@ -22,7 +19,7 @@ constexpr double kLeastSpan_m = 1.0;  // less is a flat bottom, which has one co
 constexpr double kFlatShare = 0.35;
 
 /// From the deepest point (0) through blues and greens to the shallowest (1); land is brown.
-ColorRGBA DepthColor(double share, bool land) {
+std_msgs::ColorRGBA DepthColor(double share, bool land) {
   struct Stop {
     double at, r, g, b;
   };
@@ -166,7 +163,7 @@ MarkerArray BuildTerrain(const SceneConfig& scene, const dynamics::Seascape& sea
 MarkerArray NoTerrain() {
   MarkerArray none;
   none.markers.emplace_back();
-  none.markers.back().action = Marker::DELETEALL;
+  none.markers.back().action = visualization_msgs::Marker::DELETEALL;
   return none;
 }
 
