@@ -67,8 +67,9 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const EncircleOptions& o = options;
   const Knowledge<T>& k = in.knowledge;
   const T zero(0.0), one(1.0);
-  const double slow = std::max(o.slow_mps, s.control.autopilot.min_speed_mps);
-  const double fast = std::max(o.fast_mps, slow);
+  const double most = s.vehicle.max_velocity_mps[0];
+  const double slow = std::min(most, std::max(o.slow_mps, s.control.autopilot.min_speed_mps));
+  const double fast = std::max(std::min(most, o.fast_mps), slow);
 
   const Level<T> v_T = [&] {
     const Level<T> v{k.v_WT.x, k.v_WT.y};
@@ -78,10 +79,10 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const T z = Height(in);
   const T R = Radius(in, z - p_WT.z);
 
-  // Where the vehicle will be: commands take effect late.
+  // Where the vehicle will be: commands take effect late, and last a decision.
   const Level<T> own{k.v_WB.x, k.v_WB.y};
   const Level<T> now{k.r_BT_W.x, k.r_BT_W.y};
-  const Level<T> r = now + (v_T - own) * T(o.lead_s);
+  const Level<T> r = now + (v_T - own) * T(o.lead_s + 0.5 * s.decision_dt_s());
   const T rho = Max(Norm(r), T(1e-3));
   const Level<T> in_W = r * (one / rho);
   const Level<T> around{in_W.y, -in_W.x};

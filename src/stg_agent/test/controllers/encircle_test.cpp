@@ -20,6 +20,7 @@ AgentConfig Sea() {
   s.target.max_speed_mps = 1.0;
   s.task.desired_distance_m = 90.0;
   s.control.max_delta = s.control.smoothing = 0.0;
+  s.time.dt_s = 1e-9;  // of a decision
   return s;
 }
 
