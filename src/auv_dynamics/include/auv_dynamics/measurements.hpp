@@ -34,7 +34,7 @@ struct Detection {
                        ///< bearing where they meet, of a range or a bearing alone the observer
   double std_m = 0.0;  ///< standard deviation of each component [m], of the worst one
   MeasurementKind kind = MeasurementKind::kPosition;
-  Vec3<double> p_WO;                ///< where the observer believed to be [m]
+  Vec3<double> p_WO = {};           ///< where the observer believed to be [m]
   double p_WO_std_m = 0.0;          ///< of each horizontal component, as its navigation states
   double heading_std_rad = 0.0;     ///< of its heading, as its navigation states
   double range_m = 0.0;             ///< from the observer
