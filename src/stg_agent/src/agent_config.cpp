@@ -3,6 +3,7 @@
 #include <string>
 
 #include "acoustic_channel/models/propagation_model.hpp"
+#include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
@@ -38,6 +39,7 @@ std::optional<config::Violation> FindConflict(const AgentConfig& c) {
         {"channel.modem.packet_bytes", "channel.modem.profile"},
         "the packet of an agent has " + std::to_string(kPacketBytes) + " bytes"};
   }
+  if (auto violation = FindFilterConflict(c)) return violation;
   if (c.observation.quality_medium > c.observation.quality_high) {
     return config::Violation{{"observation.quality_medium", "observation.quality_high"},
                              "medium quality cannot begin above high quality"};

@@ -186,7 +186,7 @@ void WorldNode::OpenPart() {
 /// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
 void WorldNode::CheckState() const {
   for (int i = 0; i < scenario_.agents; ++i) {
-    const dynamics::NavState nav = world_.Nav(0, i);
+    const dynamics::NavState nav = world_.Truth(0, i);
     if (FiniteVector(nav.p_WB) && FiniteVector(nav.v_WB_B) && FiniteVector(nav.w_WB_B)) continue;
     throw UserError("world: the state of AUV " + std::to_string(i) +
                     " is not finite or beyond 1e6 after step " + std::to_string(step_) +

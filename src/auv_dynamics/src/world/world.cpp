@@ -15,6 +15,18 @@ const WorldConfig& Valid(const WorldConfig& scenario) {
   return scenario;
 }
 
+NavState LaneOfNav(const Navigation<Pack>& all, int lane) {
+  NavState nav;
+  nav.stamp = OfLane(all.stamp, lane);
+  nav.p_WB = Lane(all.p_WB, lane);
+  nav.v_WB_B = Lane(all.v_WB_B, lane);
+  nav.w_WB_B = Lane(all.w_WB_B, lane);
+  for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(all.q_WB[k], lane);
+  nav.position_std_m = Lane(all.position_std_m, lane);
+  nav.heading_std_rad = Lane(all.heading_std_rad, lane);
+  return nav;
+}
+
 }  // namespace
 
 World::World(const WorldConfig& scenario)
@@ -31,6 +43,9 @@ World::World(const WorldConfig& scenario)
           scenario.target.motion,
           {scenario.target, scenario.wall_m(), dt_s_, scenario.workspace.half_extent_m})),
       sensor_(TargetSensors().Make(scenario.sensing.sensor, scenario.sensing)),
+      navigation_(NavigationSystems().Make(
+          scenario.navigation.kind, {scenario.navigation, scenario.agents, scenario.time.dt_s})),
+      perfect_(navigation_->perfect()),
       separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
       contacts_(scenario.contact, scenario.agents, scenario.vehicle.radius_m),
       disturbance_(scenario.disturbance, scenario.agents, dt_s_),
@@ -74,7 +89,16 @@ void World::Step(const std::vector<Pack>& commands) {
   motion_->Step(clocks_, vehicles_, &targets_);
   if (open_) sea_.Apply(&targets_);
   for (EpisodeClock& clock : clocks_) ++clock.step;
+  if (!perfect_) Navigate();
   separations_.Measure(vehicles_);
+}
+
+void World::Navigate() {
+  const Pack time_s = current_.uniform() ? Pack(0.0) : Time();
+  for (size_t i = 0; i < vehicles_.size(); ++i) {
+    if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
+    navigation_->Step(static_cast<int>(i), clocks_, vehicles_[i], v_WC_, sea_.terrain());
+  }
 }
 
 void World::Step(const std::vector<Wrench<Pack>>& tau) {
@@ -126,6 +150,9 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
   const Mat3<double> R_WB = RotationOf(level);
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     SetState(&vehicles_[i], lane, start.p_WB[i], upright, level, R_WB, {}, {});
+    if (!perfect_) {
+      navigation_->Reset(lane, static_cast<int>(i), clock(lane), vehicles_[i]);
+    }
   }
   for (Pack& x : internal_) SetLane(&x, lane, 0.0);
   for (size_t k = 0; k < targets_.size(); ++k) {
@@ -172,7 +199,7 @@ void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
   StartLane(lane, 0, 0, start_);
 }
 
-Navigation<Pack> World::Nav(int i) const {
+Navigation<Pack> World::TrueNav(int i) const {
   const VehicleState<Pack>& v = vehicle(i);
   Navigation<Pack> nav;
   for (int lane = 0; lane < kLanes; ++lane) nav.stamp[static_cast<size_t>(lane)] = time(lane);
@@ -183,16 +210,15 @@ Navigation<Pack> World::Nav(int i) const {
   return nav;
 }
 
-NavState World::Nav(int lane, int i) const {
-  const Navigation<Pack> all = Nav(i);
-  NavState nav;
-  nav.stamp = time(lane);
-  nav.p_WB = Lane(all.p_WB, lane);
-  nav.v_WB_B = Lane(all.v_WB_B, lane);
-  nav.w_WB_B = Lane(all.w_WB_B, lane);
-  for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(all.q_WB[k], lane);
+Navigation<Pack> World::Nav(int i) const {
+  Navigation<Pack> nav = TrueNav(i);
+  if (!perfect_) navigation_->Believe(i, &nav);
   return nav;
 }
+
+NavState World::Nav(int lane, int i) const { return LaneOfNav(Nav(i), lane); }
+
+NavState World::Truth(int lane, int i) const { return LaneOfNav(TrueNav(i), lane); }
 
 bool World::Sense(int lane, int i, int k, Detection* out) const {
   if (open_ && !sea_.scape().clear() &&
@@ -200,8 +226,15 @@ bool World::Sense(int lane, int i, int k, Detection* out) const {
     return false;
   }
   const auto pair = static_cast<std::uint32_t>(i * targets() + k);
-  return sensor_->Sense(
-      {lane, clock(lane), dt_s_ * step(lane), time(lane), k, pair, vehicle(i), target(k)}, out);
+  Observer observer;
+  if (perfect_) {
+    observer.p_WO = Lane(vehicle(i).p_WB, lane);
+  } else {
+    observer = navigation_->At(lane, i);
+  }
+  return sensor_->Sense({lane, clock(lane), dt_s_ * step(lane), time(lane), k, pair, vehicle(i),
+                         target(k), observer, !perfect_},
+                        out);
 }
 
 Cue World::InitialCue(int lane, int i, int k) const {

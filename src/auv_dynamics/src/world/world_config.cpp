@@ -58,6 +58,7 @@ void DescribeSections(WorldConfig* c, config::Table* t) {
   Describe(&c->sea, t);
   Describe(&c->target, t);
   Describe(&c->reset, t);
+  Describe(&c->navigation, t);
   Describe(&c->sensing, t);
   Describe(&c->control, t);
 }
@@ -72,6 +73,7 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   if (auto violation = FindConflict(s.vehicle)) return violation;
   if (auto violation = FindConflict(s.current)) return violation;
   if (auto violation = FindConflict(s.sea)) return violation;
+  if (auto violation = FindConflict(s.sensing, s.decision_dt_s())) return violation;
   if (Autopilots().Has(s.vehicle.model)) {
     if (s.control.interface != ActionInterface::kVelocity3) {
       return Violation{{"control.interface", "vehicle.model"},

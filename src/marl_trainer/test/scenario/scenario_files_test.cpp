@@ -227,7 +227,7 @@ const char* const kSections[] = {
     "acoustic_channel/include/acoustic_channel/water/water_config",
     "stg_agent/include/stg_agent/agent_config",
     "stg_agent/include/stg_agent/graph/observation_config",
-    "stg_agent/include/stg_agent/inbox/track_config",
+    "stg_agent/include/stg_agent/estimation/track_config",
     "marl_trainer/include/marl_trainer/task/judge_config",
     "marl_trainer/include/marl_trainer/task/reward_config",
     "marl_trainer/include/marl_trainer/scenario/scenario",

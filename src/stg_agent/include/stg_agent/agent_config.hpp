@@ -4,8 +4,8 @@
 
 #include "acoustic_channel/channel_config.hpp"
 #include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/estimation/track_config.hpp"
 #include "stg_agent/graph/observation_spec.hpp"
-#include "stg_agent/inbox/track_config.hpp"
 
 namespace stg::agent {
 

@@ -103,7 +103,9 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     refused_frames_.Add(Refusals::kFrame);
     return;
   }
-  if (!FinitePose(message->pose) || !FiniteTwist(message->twist)) {
+  if (!FinitePose(message->pose) || !FiniteTwist(message->twist) ||
+      !Finite(message->position_std) || !Finite(message->heading_std) ||
+      message->position_std < 0.0 || message->heading_std < 0.0) {
     refused_frames_.Add(Refusals::kNotFinite);
     return;
   }
@@ -212,7 +214,10 @@ void AgentNode::Decide() {
     StartEpisode(*frame_);
   }
   pending_.Give(start_, stamp, &agent_);
-  agent_.Observe(NavOf(frame_->pose, frame_->twist, stamp - start_), observation_.data());
+  dynamics::NavState nav = NavOf(frame_->pose, frame_->twist, stamp - start_);
+  nav.position_std_m = frame_->position_std;
+  nav.heading_std_rad = frame_->heading_std;
+  agent_.Observe(nav, observation_.data());
   decider_->Mean(agent_, observation_.data(), action_);
   log_probability_ = explore_ ? decider_->Explore(frame_->seed, frame_->step, id_, action_) : 0.0F;
   policy_id_ = decider_->id();

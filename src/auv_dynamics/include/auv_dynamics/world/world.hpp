@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 #include "auv_dynamics/targets/target_motion.hpp"
 #include "auv_dynamics/vehicle/vehicle.hpp"
@@ -72,10 +73,12 @@ class World {
   const std::vector<VehicleState<Pack>>& vehicle_states() const { return vehicles_; }
   const std::vector<TargetState<Pack>>& target_states() const { return targets_; }
 
-  /// Truth of one lane as the vehicle's own navigation gives it.
+  /// What the navigation of vehicle i believes: the truth where `navigation.kind` is perfect.
   NavState Nav(int lane, int i) const;
   /// The same of all lanes.
   Navigation<Pack> Nav(int i) const;
+  /// What a perfect navigation would tell, whatever the vehicles have.
+  NavState Truth(int lane, int i) const;
   /// Simulated time since the start of the episode: physics steps times dt.
   TimeNs time(int lane) const { return dt_ns_ * static_cast<TimeNs>(step(lane)); }
   std::uint32_t step(int lane) const { return clock(lane).step; }
@@ -103,6 +106,8 @@ class World {
   Pack Time() const;
   /// @param who with its number, for the message
   void RequireWater(const std::string& who, const Vec3<double>& p_W) const;
+  Navigation<Pack> TrueNav(int i) const;
+  void Navigate();
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start);
 
   double dt_s_;
@@ -115,6 +120,8 @@ class World {
   std::unique_ptr<const Vehicle> model_;
   std::unique_ptr<TargetMotion> motion_;
   std::unique_ptr<const TargetSensor> sensor_;
+  std::unique_ptr<NavigationSystem> navigation_;
+  bool perfect_;  // navigation
   Separations<Pack> separations_;
   Contacts contacts_;
   Disturbance disturbance_;
