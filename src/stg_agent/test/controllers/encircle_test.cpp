@@ -94,7 +94,7 @@ TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
 TEST(Encircle, MakesForTheMiddleBetweenThoseAheadAndBehind) {
   EncircleOptions o;
   o.lead_s = 0.0;
-  o.clearance_m = 1.0;
+  o.clearance_m = o.mate_clearance_m = 1.0;
   const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
   const auto at = [](double degrees) {
     const double a = degrees * kPi / 180.0;
