@@ -97,12 +97,13 @@ void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto u = static_cast<std::size_t>(i);
     const TimeNs now = world.time(lane);
-    const agent::TargetTrack& track = agents_[u].inbox(lane).track();
-    SetLane(&f->known, lane, track.started() ? 1.0 : 0.0);
-    SetLane(&f->p_WT, lane, track.estimate().p_WT);
-    const double variance = track.estimate().pp;
-    for (const int k : {0, 3, 5}) SetLane(&f->covariance[k], lane, variance);
-    SetLane(&f->age_s, lane, Seconds(now - track.information_stamp()));
+    const agent::TargetBelief belief = agents_[u].inbox(lane).belief();
+    SetLane(&f->known, lane, belief.started ? 1.0 : 0.0);
+    SetLane(&f->p_WT, lane, belief.p_WT);
+    const agent::Covariance3& P = belief.P_WT;
+    const double covariance[6] = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
+    for (int k = 0; k < 6; ++k) SetLane(&f->covariance[k], lane, covariance[k]);
+    SetLane(&f->age_s, lane, Seconds(now - belief.information));
     const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
     SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));
     const acoustics::ChannelTotals& totals = channel.totals();
