@@ -80,7 +80,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
   // Before anybody writes, all have seen what was there.
   if (options_.ranks != nullptr) options_.ranks->GatherBytes({});
   if (!leads()) return;
-  folder_.WriteSetup(ToJson(setup_), scenario_);
+  folder_.WriteSetup(ToJson(setup_), scenario_, options.mix);
   log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
                                     options_.resume ? state_.env_steps : -1, setup_.common.steps,
                                     options_.log);
