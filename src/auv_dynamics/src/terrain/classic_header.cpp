@@ -24,6 +24,7 @@ class HeaderReader {
     return version_ == 1 || version_ == 2 || version_ == 5 ? version_ : 0;
   }
   bool bad() const { return !in_; }
+  void Fail() { in_.setstate(std::ios::failbit); }
   std::uint64_t Number(int bytes) {
     std::uint64_t value = 0;
     for (int k = 0; k < bytes; ++k) {
@@ -37,26 +38,31 @@ class HeaderReader {
   /// How many things follow that take so many bytes of the file each.
   std::uint64_t CountOf(std::uint64_t bytes_each) {
     const std::uint64_t count = Count();
-    if (count > bytes_ / bytes_each) in_.setstate(std::ios::failbit);
+    if (count > bytes_ / bytes_each) Fail();
     return bad() ? 0 : count;
   }
   /// A place in the file.
   std::uint64_t Offset() { return Number(version_ == 1 ? 4 : 8); }
   void SkipPadded(std::uint64_t bytes) {
-    if (bytes > bytes_) in_.setstate(std::ios::failbit);
+    if (bytes > bytes_) Fail();
     if (in_) in_.ignore(static_cast<std::streamsize>((bytes + 3) / 4 * 4));
-    if (in_.peek() == std::ifstream::traits_type::eof()) in_.setstate(std::ios::failbit);
+    if (in_.peek() == std::ifstream::traits_type::eof()) Fail();
   }
   void SkipName() { SkipPadded(Count()); }
-  void SkipAttributes() {
+  /// Bytes of a value, from the type that comes next.
+  std::uint64_t SizeOfType() {
     static constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    const std::uint64_t type = Number(4);
+    if (type == 0 || type >= std::size(kSizes)) Fail();
+    return bad() ? 0 : kSizes[type];
+  }
+  void SkipAttributes() {
     Number(4);  // tag
     const std::uint64_t count = CountOf(12);
     for (std::uint64_t k = 0; k < count && !bad(); ++k) {
       SkipName();
-      const std::uint64_t type = Number(4), values = CountOf(1);
-      if (type >= std::size(kSizes)) in_.setstate(std::ios::failbit);
-      if (!bad()) SkipPadded(values * kSizes[type]);
+      const std::uint64_t bytes = SizeOfType(), values = CountOf(1);
+      if (!bad()) SkipPadded(values * bytes);
     }
   }
 
@@ -88,10 +94,12 @@ std::optional<std::uint64_t> SmallestClassicSize(const std::string& path) {
     const std::uint64_t rank = header.CountOf(4);
     bool record = false;
     for (std::uint64_t d = 0; d < rank && !header.bad(); ++d) {
-      record = header.Count() == unlimited || record;
+      const std::uint64_t dimension = header.Count();
+      if (dimension >= dimensions) header.Fail();
+      record = dimension == unlimited || record;
     }
     header.SkipAttributes();
-    header.Number(4);  // type
+    header.SizeOfType();
     const std::uint64_t bytes = header.Count(), begin = header.Offset();
     // Sizes are rounded up to four bytes, the file need not be; those of very large variables do
     // not fit into their field.
