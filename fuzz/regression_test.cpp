@@ -1,5 +1,5 @@
-// Every input that the fuzzers start from, and every one that they have found a bug with, is refused
-// or taken as it should be.
+// Every input that the fuzzers start from, and every one that they have found a bug with, is
+// refused or taken as it should be.
 
 #include <gtest/gtest.h>
 

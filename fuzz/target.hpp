@@ -10,8 +10,8 @@
 /// (docs/fuzzing.md).
 namespace stg::fuzz {
 
-/// One loader. `run` takes any bytes: true when they were accepted, false when they were refused with
-/// UserError; anything else that comes of them is a bug.
+/// One loader. `run` takes any bytes: true when they were accepted, false when they were refused
+/// with UserError; anything else that comes of them is a bug.
 struct Target {
   const char* name;
   bool (*run)(const std::string& bytes);
@@ -37,7 +37,8 @@ inline constexpr Target kTargets[] = {
 /// True unless it throws UserError.
 bool LoadAsFile(const std::string& bytes, const std::function<void(const std::string&)>& load);
 
-/// Ends the program with a message: bytes were accepted that must not be, or not read as they stand.
+/// Ends the program with a message: bytes were accepted that must not be, or not read as they
+/// stand.
 void Require(bool ok, const char* what);
 
 /// Numbers from the front of the bytes; zeros past their end.

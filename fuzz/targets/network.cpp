@@ -1,5 +1,4 @@
 #include "acoustic_channel/offline/simulation_file.hpp"
-
 #include "target.hpp"
 
 /// A network that is to be simulated offline.

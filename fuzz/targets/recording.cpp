@@ -1,7 +1,6 @@
-#include "marl_trainer/learn/recorded/recorded.hpp"
-
 #include <vector>
 
+#include "marl_trainer/learn/recorded/recorded.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "target.hpp"
 
@@ -31,9 +30,9 @@ agent::Policy MakePolicy(const Scenario& scenario) {
 /// The messages of a recorded run as the trainer's node hands them on, in any order. True when an
 /// episode was whole.
 bool RunRecording(const std::string& bytes) {
-  static const Scenario scenario = LoadNamedScenario(
-      STG_SCENARIOS, "medium", "nominal",
-      {"agents=1", "time.episode_steps=2", "time.tail_steps=1"});
+  static const Scenario scenario =
+      LoadNamedScenario(STG_SCENARIOS, "medium", "nominal",
+                        {"agents=1", "time.episode_steps=2", "time.tail_steps=1"});
   static const agent::Policy policy = MakePolicy(scenario);
   static const learn::EpisodeChecker checker(scenario, 2, policy);
   learn::EpisodeAssembler assembler(scenario, "fuzz");

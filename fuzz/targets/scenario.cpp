@@ -1,5 +1,6 @@
-#include "auv_common/config/loader.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
+
+#include "auv_common/config/loader.hpp"
 #include "target.hpp"
 
 /// A scenario file. What is accepted is the same when it is written and read again.

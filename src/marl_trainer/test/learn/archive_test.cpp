@@ -218,8 +218,9 @@ TEST_F(ArchiveTest, ATrainingOfNegativeStepsIsRefused) {
     return RefusalOf([this] { LoadCheckpoint(path_); });
   };
   EXPECT_EQ(refusal([](TrainState*) {}), "accepted");
-  EXPECT_NE(refusal([](TrainState* s) { s->env_steps = -4000000000; })
-                .find("'env_steps' is -4000000000, which is no count"),
+  EXPECT_NE(refusal([](TrainState* s) {
+              s->env_steps = -4000000000;
+            }).find("'env_steps' is -4000000000, which is no count"),
             std::string::npos);
   EXPECT_NE(refusal([](TrainState* s) { s->collections = -1; }).find("'collections'"),
             std::string::npos);
@@ -247,10 +248,8 @@ TEST_F(ArchiveTest, MomentsThatWouldBecomeNaNAreRefused) {
 
   RunningMoments moments(1);
   EXPECT_EQ(RefusalOf([&] { moments.Load({2.0, -5.0, 1.0}); }), "accepted");
-  EXPECT_NE(RefusalOf([&] { moments.Load({-1.0, 0.0, 1.0}); }).find("negative"),
-            std::string::npos);
-  EXPECT_NE(RefusalOf([&] { moments.Load({2.0, 0.0, -1.0}); }).find("negative"),
-            std::string::npos);
+  EXPECT_NE(RefusalOf([&] { moments.Load({-1.0, 0.0, 1.0}); }).find("negative"), std::string::npos);
+  EXPECT_NE(RefusalOf([&] { moments.Load({2.0, 0.0, -1.0}); }).find("negative"), std::string::npos);
   EXPECT_EQ(moments.mean(0), -5.0);
 }
 
