@@ -4,9 +4,9 @@
 include_guard(DIRECTORY)
 
 option(STG_WERROR "Treat warnings in this repository's own code as errors" OFF)
-set(STG_SANITIZE "" CACHE STRING "Sanitizer to build with: address, thread, undefined, fuzz (with clang: address and undefined,
-and libFuzzer's eyes), or empty")
-set_property(CACHE STG_SANITIZE PROPERTY STRINGS "" address thread undefined fuzz)
+set(STG_SANITIZE "" CACHE STRING "Sanitizer to build with: address, thread, undefined, address,undefined, fuzz (with clang: address
+and undefined, and libFuzzer's eyes), or empty")
+set_property(CACHE STG_SANITIZE PROPERTY STRINGS "" address thread undefined address,undefined fuzz)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -85,8 +85,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 if(STG_SANITIZE)
-  if(NOT STG_SANITIZE MATCHES "^(address|thread|undefined|fuzz)$")
-    message(FATAL_ERROR "STG_SANITIZE is '${STG_SANITIZE}', not address, thread, undefined or fuzz")
+  if(NOT STG_SANITIZE MATCHES "^(address|thread|undefined|address,undefined|fuzz)$")
+    message(FATAL_ERROR
+      "STG_SANITIZE is '${STG_SANITIZE}', not address, thread, undefined, address,undefined or fuzz"
+    )
   endif()
   # Optimised a little and with assertions, whatever the build type says.
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")
