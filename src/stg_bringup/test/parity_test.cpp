@@ -103,7 +103,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
       const auto found = flight.states.find(index);
       ASSERT_NE(found, flight.states.end()) << "episode " << e << ", step " << k;
       for (int i = 0; i < s.agents; ++i) {
-        const dynamics::NavState truth = env.nav(0, i);
+        const dynamics::NavState truth = env.navigation(0, i);
         const dynamics::NavState& flown = found->second[static_cast<std::size_t>(i)];
         worst = std::max(worst, Distance(truth.p_WB, flown.p_WB));
         worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));

@@ -119,6 +119,21 @@ std::optional<std::string> FindScalar(const std::string& file, const std::string
   return node->scalar;
 }
 
+std::vector<std::string> NamesOfBases(const std::string& file) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names;
+  std::string path = file;
+  while (names.size() <= kMaxBases) {
+    names.push_back(fs::path(path).stem().string());
+    const YamlTree root = ReadMap(path);
+    const auto base = std::find_if(root.entries.begin(), root.entries.end(),
+                                   [](const auto& entry) { return entry.key == "base"; });
+    if (base == root.entries.end()) break;
+    path = BaseOf(path, *base);
+  }
+  return names;
+}
+
 YamlTree ParseMap(const std::string& text, const std::string& origin) {
   YamlTree root = ParseYaml(text, origin);
   if (root.kind == YamlTree::Kind::kNull) throw UserError(origin + ":1: the file is empty");

@@ -16,19 +16,34 @@ struct Navigation {
   T q_WB[4] = {T(1.0), T(0.0), T(0.0), T(0.0)};  ///< orientation, w x y z, unit norm
   Vec3<T> v_WB_B;                                ///< velocity over ground in body axes [m/s]
   Vec3<T> w_WB_B;                                ///< body rates p, q, r [rad/s]
+  // What it states of its own errors; zero: it makes none.
+  T position_std_m = T(0.0);   ///< of each horizontal component of p_WB
+  T heading_std_rad = T(0.0);  ///< of the turn about the vertical that q_WB is off by
 };
 using NavState = Navigation<double>;
 
 /// What a detection measures.
-enum class MeasurementKind { kPosition };
+enum class MeasurementKind { kPosition, kRange, kBearing, kRangeBearing };
 
-/// One detection of a target by one vehicle's own sensor.
+/// One detection of a target by one vehicle's own sensor, told in the frame of that vehicle's
+/// navigation, whose errors it shares.
 struct Detection {
   TimeNs stamp = 0;
   int target = 0;
-  Vec3<double> p_WT;   ///< measured target position in the world [m]
-  double std_m = 0.0;  ///< standard deviation of each component [m]
+  Vec3<double> p_WT;   ///< measured target position in the world [m]; of what has a range and a
+                       ///< bearing where they meet, of a range or a bearing alone the observer
+  double std_m = 0.0;  ///< standard deviation of each component [m], of the worst one
   MeasurementKind kind = MeasurementKind::kPosition;
+  Vec3<double> p_WO = {};           ///< where the observer believed to be [m]
+  double p_WO_std_m = 0.0;          ///< of each horizontal component, as its navigation states
+  double heading_std_rad = 0.0;     ///< of its heading, as its navigation states
+  double range_m = 0.0;             ///< from the observer
+  double range_std_m = 0.0;         ///< standard deviation of the range
+  double azimuth_rad = 0.0;         ///< direction of the target, from east counter-clockwise
+  double elevation_rad = 0.0;       ///< above the horizontal
+  double bearing_std_rad = 0.0;     ///< standard deviation of azimuth and elevation
+  bool ambiguous = false;           ///< the target may as well lie at mirror_azimuth_rad
+  double mirror_azimuth_rad = 0.0;  ///< the azimuth mirrored at the observer's heading
 };
 
 /// Where a search starts: a datum of stated uncertainty.

@@ -64,6 +64,7 @@ void WorldPublisher::Advertise() {
                              m->child_frame_id = frames::Body(i);
                              m->pose.pose = auv.frame_message.pose;
                              m->twist.twist = auv.frame_message.twist;
+                             SetCovariance(auv.navigation, &m->pose);
                              return !m->header.stamp.isZero();
                            });
     auv.detection.Advertise(topics::AuvTopic(i, topics::kTargetDetection), kSentQueue,
@@ -142,8 +143,8 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
     frame.step = step;
     SetFrame(world, start, i, &auv);
     auv.frame.publish(frame);
-    swarm_message_.poses[static_cast<std::size_t>(i)] = frame.pose;
-    swarm_message_.twists[static_cast<std::size_t>(i)] = frame.twist;
+    const auto u = static_cast<std::size_t>(i);
+    SetNavigation(world.Truth(0, i), &swarm_message_.poses[u], &swarm_message_.twists[u]);
   }
   for (AuvTopics& auv : auvs_) {
     auv.odometry.Publish();
@@ -157,6 +158,13 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
     SetVector(Lane(world.target(k).p_WT, 0), &swarm_message_.target_positions[u]);
     SetVector(Lane(world.target(k).v_WT, 0), &swarm_message_.target_velocities[u]);
   }
+  swarm_message_.groundings.clear();
+  swarm_message_.collisions.clear();
+  for (int i = 0; world.open_water() && i < world.agents(); ++i) {
+    const auto whole = [](const Pack& x) { return static_cast<std::uint32_t>(Lane(x, 0)); };
+    swarm_message_.groundings.push_back(whole(world.sea().groundings(i)));
+    swarm_message_.collisions.push_back(whole(world.sea().collisions(i)));
+  }
   swarm_message_.header.stamp = TimeOf(now);
   swarm_message_.run = run_;
   swarm_message_.episode = episode;
@@ -167,9 +175,12 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
 void WorldPublisher::SetNavigationOf(const dynamics::World& world, TimeNs start, int i,
                                      AuvTopics* auv) {
   auv_msgs::SensorFrame& m = auv->frame_message;
-  const dynamics::NavState nav = world.Nav(0, i);
+  auv->navigation = world.Nav(0, i);
+  const dynamics::NavState& nav = auv->navigation;
   m.header.stamp = TimeOf(start + nav.stamp);
   SetNavigation(nav, &m.pose, &m.twist);
+  m.position_std = nav.position_std_m;
+  m.heading_std = nav.heading_std_rad;
 }
 
 void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
@@ -194,15 +205,9 @@ void WorldPublisher::SetDetections(const dynamics::World& world, TimeNs now, int
     if (!world.Sense(0, i, k, &detection)) continue;
     frame->detections.emplace_back();
     auv_msgs::TargetDetection& m = frame->detections.back();
-    const Vec3<double> r = detection.p_WT - Lane(world.vehicle(i).p_WB, 0);
-    const double variance = detection.std_m * detection.std_m;
     m.header.stamp = TimeOf(now);
     m.header.frame_id = frames::kWorld;
-    m.target = static_cast<std::uint32_t>(k);
-    SetVector(r, &m.relative_position);
-    SetVector(detection.p_WT, &m.position);
-    SetVector({variance, variance, variance}, &m.variance);
-    m.range = Norm(r);
+    SetDetection(detection, &m);
   }
 }
 
@@ -226,8 +231,9 @@ void WorldPublisher::PublishFrames(TimeNs now) {
   if ((wall - frames_sent_).toSec() < display_period_s_) return;
   frames_sent_ = wall;
   transforms_.clear();
-  for (const AuvTopics& auv : auvs_) {
-    transforms_.push_back(TransformOf(auv.frame_message.header.frame_id, auv.frame_message.pose));
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    transforms_.push_back(
+        TransformOf(auvs_[i].frame_message.header.frame_id, swarm_message_.poses[i]));
   }
   for (const auto& target : target_messages_) {
     transforms_.push_back(TransformOf(target.child_frame_id, target.pose.pose));

@@ -50,6 +50,7 @@ class WorldPublisher {
   struct AuvTopics {
     ros::Publisher frame;
     auv_msgs::SensorFrame frame_message;
+    dynamics::NavState navigation;
     auv_msgs::TargetDetection last_detection;
     OnDemand<nav_msgs::Odometry> odometry;
     OnDemand<auv_msgs::TargetDetection> detection;

@@ -15,33 +15,37 @@ class PositionSensor : public TargetSensor {
 
   bool Sense(const Look& look, Detection* out) const override {
     const Vec3<double> p_WB = look.p_WB(), p_WT = look.p_WT();
-    if (Norm(p_WT - p_WB) > config_.range_m) return false;
+    if (Norm(p_WT - p_WB) > config_.range_m || !LooksNow(config_, look)) return false;
     out->kind = MeasurementKind::kPosition;
-    out->stamp = look.stamp;
-    out->target = look.target;
+    SetObserver(look, out);
     out->p_WT = p_WT;
     out->std_m = config_.noise_std_m;
-    if (config_.detection_probability >= 1.0 && config_.noise_std_m == 0.0 &&
-        config_.dropout_rate_hz == 0.0) {
+    if (Ideal()) {
+      TellOwn(look, out);
       return true;
     }
-    if (Blind(look)) return false;
+    if (Blind(config_, look)) return false;
     Random random = look.clock.Draw(Stream::kDetection, look.pair);
     if (random.Uniform() >= config_.detection_probability) return false;
     const double s = config_.noise_std_m;
     out->p_WT += Vec3<double>{s * random.Normal(), s * random.Normal(), s * random.Normal()};
+    TellOwn(look, out);
     return true;
   }
 
  private:
-  /// Dropouts start in each spell-long slot with the probability of a Poisson
-  /// process of the given rate and blind the sensor for that slot: memoryless
-  /// across slots, so that a draw needs no history.
-  bool Blind(const Look& look) const {
-    if (config_.dropout_rate_hz <= 0.0) return false;
-    const auto slot = static_cast<std::uint32_t>(look.time_s / config_.dropout_duration_s);
-    Random random = look.clock.DrawAt(Stream::kDetection, slot, look.pair | 0x800000U);
-    return random.Uniform() < 1.0 - std::exp(-config_.dropout_rate_hz * config_.dropout_duration_s);
+  bool Ideal() const {
+    return config_.detection_probability >= 1.0 && config_.noise_std_m == 0.0 &&
+           config_.dropout_rate_hz == 0.0;
+  }
+
+  /// Turns the measured position into the frame of the vehicle's own navigation.
+  static void TellOwn(const Look& look, Detection* out) {
+    if (!look.drifts) return;
+    const Vec3<double> r = out->p_WT - look.p_WB();
+    const double c = std::cos(look.observer.heading_error_rad);
+    const double s = std::sin(look.observer.heading_error_rad);
+    out->p_WT = look.observer.p_WO + Vec3<double>{c * r.x - s * r.y, s * r.x + c * r.y, r.z};
   }
 
   SensingConfig config_;

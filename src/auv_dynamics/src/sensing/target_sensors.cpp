@@ -6,6 +6,9 @@ namespace stg::dynamics {
 SensorRegistry& TargetSensors() {
   static SensorRegistry registry("target sensor", {
                                                       {"position", MakePositionSensor},
+                                                      {"range", MakeRangeSensor},
+                                                      {"bearing", MakeBearingSensor},
+                                                      {"range_bearing", MakeRangeBearingSensor},
                                                   });
   return registry;
 }

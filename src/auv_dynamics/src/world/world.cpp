@@ -15,6 +15,18 @@ const WorldConfig& Valid(const WorldConfig& scenario) {
   return scenario;
 }
 
+NavState LaneOfNav(const Navigation<Pack>& all, int lane) {
+  NavState nav;
+  nav.stamp = OfLane(all.stamp, lane);
+  nav.p_WB = Lane(all.p_WB, lane);
+  nav.v_WB_B = Lane(all.v_WB_B, lane);
+  nav.w_WB_B = Lane(all.w_WB_B, lane);
+  for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(all.q_WB[k], lane);
+  nav.position_std_m = Lane(all.position_std_m, lane);
+  nav.heading_std_rad = Lane(all.heading_std_rad, lane);
+  return nav;
+}
+
 }  // namespace
 
 World::World(const WorldConfig& scenario)
@@ -26,11 +38,14 @@ World::World(const WorldConfig& scenario)
       reset_(scenario.reset),
       depths_(scenario.sea),
       sensing_(scenario.sensing),
-      model_(Vehicles().Make(scenario.vehicle.model, scenario.vehicle)),
+      fleet_(scenario.vehicle, scenario.agents),
       motion_(TargetMotions().Make(
           scenario.target.motion,
           {scenario.target, scenario.wall_m(), dt_s_, scenario.workspace.half_extent_m})),
       sensor_(TargetSensors().Make(scenario.sensing.sensor, scenario.sensing)),
+      navigation_(NavigationSystems().Make(
+          scenario.navigation.kind, {scenario.navigation, scenario.agents, scenario.time.dt_s})),
+      perfect_(navigation_->perfect()),
       separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
       contacts_(scenario.contact, scenario.agents, scenario.vehicle.radius_m),
       disturbance_(scenario.disturbance, scenario.agents, dt_s_),
@@ -39,7 +54,7 @@ World::World(const WorldConfig& scenario)
       open_(scenario.sea.open),
       vehicles_(static_cast<size_t>(scenario.agents)),
       targets_(static_cast<size_t>(scenario.target.count)),
-      internal_(vehicles_.size() * static_cast<size_t>(model_->internal_size()), Pack(0.0)),
+      internal_(vehicles_.size() * fleet_.internal_size(), Pack(0.0)),
       commands_(vehicles_.size() * kWrenchSize, Pack(0.0)),
       start_{std::vector<Vec3<double>>(vehicles_.size()),
              std::vector<TargetState<double>>(targets_.size())} {
@@ -53,8 +68,7 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 
 void World::Step(const std::vector<Pack>& commands) {
-  const size_t inputs = model_->actuators().size();
-  const auto internals = static_cast<size_t>(model_->internal_size());
+  const size_t inputs = fleet_.command_size(), internals = fleet_.internal_size();
   assert(commands.size() == vehicles_.size() * inputs);
   contacts_.Update(vehicles_, separations_);
   disturbance_.Advance(clocks_);
@@ -62,7 +76,7 @@ void World::Step(const std::vector<Pack>& commands) {
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     const int id = static_cast<int>(i);
     if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
-    model_->Step(commands.data() + i * inputs,
+    fleet_[id].Step(commands.data() + i * inputs,
                  {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
                  internal_.data() + i * internals);
     if (open_) {
@@ -74,11 +88,20 @@ void World::Step(const std::vector<Pack>& commands) {
   motion_->Step(clocks_, vehicles_, &targets_);
   if (open_) sea_.Apply(&targets_);
   for (EpisodeClock& clock : clocks_) ++clock.step;
+  if (!perfect_) Navigate();
   separations_.Measure(vehicles_);
 }
 
+void World::Navigate() {
+  const Pack time_s = current_.uniform() ? Pack(0.0) : Time();
+  for (size_t i = 0; i < vehicles_.size(); ++i) {
+    if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
+    navigation_->Step(static_cast<int>(i), clocks_, vehicles_[i], v_WC_, sea_.terrain());
+  }
+}
+
 void World::Step(const std::vector<Wrench<Pack>>& tau) {
-  if (model_->actuators().size() != kWrenchSize) {
+  if (fleet_.command_size() != kWrenchSize) {
     throw UserError("vehicle.model: these vehicles are not commanded by force and moment");
   }
   assert(tau.size() == vehicles_.size());
@@ -126,6 +149,9 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
   const Mat3<double> R_WB = RotationOf(level);
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     SetState(&vehicles_[i], lane, start.p_WB[i], upright, level, R_WB, {}, {});
+    if (!perfect_) {
+      navigation_->Reset(lane, static_cast<int>(i), clock(lane), vehicles_[i]);
+    }
   }
   for (Pack& x : internal_) SetLane(&x, lane, 0.0);
   for (size_t k = 0; k < targets_.size(); ++k) {
@@ -139,48 +165,75 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
 
 void World::Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStage stage) {
   if (open_) {
-    DrawSeaStart(reset_, depths_, sea_.terrain(), stage, seed, episode, &start_);
+    DrawSeaStart(reset_, depths_, sea_.scape(), stage, seed, episode, &start_);
   } else {
     DrawStart(reset_, stage, seed, episode, &start_);
   }
   StartLane(lane, seed, episode, start_);
 }
 
+void World::RequireWater(const std::string& who, const Vec3<double>& p) const {
+  const bool bottom = sea_.scape().Altitude(p) < 0.0, obstacle = sea_.scape().Clearance(p) < 0.0;
+  if (!bottom && !obstacle && p.z <= 0.0) return;
+  throw UserError(who + " would start " +
+                  (bottom     ? "inside the bottom"
+                   : obstacle ? "inside an obstacle"
+                              : "above the surface") +
+                  ", at x " + std::to_string(p.x) + ", y " + std::to_string(p.y) + ", z " +
+                  std::to_string(p.z) + " m");
+}
+
 void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
                   const std::vector<Vec3<double>>& p_WT, const std::vector<Vec3<double>>& v_WT) {
   assert(static_cast<int>(p_WB.size()) == agents());
   assert(static_cast<int>(p_WT.size()) == targets() && p_WT.size() == v_WT.size());
+  for (std::size_t i = 0; open_ && i < p_WB.size(); ++i) {
+    RequireWater("AUV " + std::to_string(i), p_WB[i]);
+  }
+  for (std::size_t k = 0; open_ && k < p_WT.size(); ++k) {
+    RequireWater("target " + std::to_string(k), p_WT[k]);
+  }
   start_.p_WB = p_WB;
   for (size_t k = 0; k < p_WT.size(); ++k) start_.targets[k] = {p_WT[k], v_WT[k]};
   StartLane(lane, 0, 0, start_);
 }
 
-Navigation<Pack> World::Nav(int i) const {
+Navigation<Pack> World::TrueNav(int i) const {
   const VehicleState<Pack>& v = vehicle(i);
   Navigation<Pack> nav;
   for (int lane = 0; lane < kLanes; ++lane) nav.stamp[static_cast<size_t>(lane)] = time(lane);
   nav.p_WB = v.p_WB;
   nav.v_WB_B = v.v_WB_B;
   nav.w_WB_B = v.w_WB_B;
-  model_->Orientation(v, &nav.q_WB);
+  fleet_[i].Orientation(v, &nav.q_WB);
   return nav;
 }
 
-NavState World::Nav(int lane, int i) const {
-  const Navigation<Pack> all = Nav(i);
-  NavState nav;
-  nav.stamp = time(lane);
-  nav.p_WB = Lane(all.p_WB, lane);
-  nav.v_WB_B = Lane(all.v_WB_B, lane);
-  nav.w_WB_B = Lane(all.w_WB_B, lane);
-  for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(all.q_WB[k], lane);
+Navigation<Pack> World::Nav(int i) const {
+  Navigation<Pack> nav = TrueNav(i);
+  if (!perfect_) navigation_->Believe(i, &nav);
   return nav;
 }
+
+NavState World::Nav(int lane, int i) const { return LaneOfNav(Nav(i), lane); }
+
+NavState World::Truth(int lane, int i) const { return LaneOfNav(TrueNav(i), lane); }
 
 bool World::Sense(int lane, int i, int k, Detection* out) const {
+  if (open_ && !sea_.scape().clear() &&
+      !sea_.scape().Sees(Lane(vehicle(i).p_WB, lane), Lane(target(k).p_WT, lane))) {
+    return false;
+  }
   const auto pair = static_cast<std::uint32_t>(i * targets() + k);
-  return sensor_->Sense(
-      {lane, clock(lane), dt_s_ * step(lane), time(lane), k, pair, vehicle(i), target(k)}, out);
+  Observer observer;
+  if (perfect_) {
+    observer.p_WO = Lane(vehicle(i).p_WB, lane);
+  } else {
+    observer = navigation_->At(lane, i);
+  }
+  return sensor_->Sense({lane, clock(lane), dt_s_ * step(lane), time(lane), k, pair, vehicle(i),
+                         target(k), observer, !perfect_},
+                        out);
 }
 
 Cue World::InitialCue(int lane, int i, int k) const {

@@ -58,6 +58,7 @@ void DescribeSections(WorldConfig* c, config::Table* t) {
   Describe(&c->sea, t);
   Describe(&c->target, t);
   Describe(&c->reset, t);
+  Describe(&c->navigation, t);
   Describe(&c->sensing, t);
   Describe(&c->control, t);
 }
@@ -72,7 +73,14 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   if (auto violation = FindConflict(s.vehicle)) return violation;
   if (auto violation = FindConflict(s.current)) return violation;
   if (auto violation = FindConflict(s.sea)) return violation;
-  if (Autopilots().Has(s.vehicle.model)) {
+  if (auto violation = FindConflict(s.sensing, s.decision_dt_s())) return violation;
+  for (const std::string& model : s.vehicle.models) {
+    if (Autopilots().Has(model) == Autopilots().Has(s.vehicle.models[0])) continue;
+    return Violation{{"vehicle.models"},
+                     "vehicles that autopilots steer fly with their like, not with those that force "
+                     "and moment command"};
+  }
+  if (Autopilots().Has(s.vehicle.model_of(0))) {
     if (s.control.interface != ActionInterface::kVelocity3) {
       return Violation{{"control.interface", "vehicle.model"},
                        "these vehicles are steered by a velocity command: velocity3"};

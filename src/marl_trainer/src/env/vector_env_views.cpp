@@ -14,6 +14,10 @@ std::uint64_t VectorEnv::seed(int env) const {
 TimeNs VectorEnv::time(int env) const { return SliceOf(env).lanes->world().time(lane_of(env)); }
 
 dynamics::NavState VectorEnv::nav(int env, int i) const {
+  return SliceOf(env).lanes->world().Truth(lane_of(env), i);
+}
+
+dynamics::NavState VectorEnv::navigation(int env, int i) const {
   return SliceOf(env).lanes->world().Nav(lane_of(env), i);
 }
 

@@ -134,8 +134,8 @@ TEST(Sharing, AnAgentOutOfSightLearnsTheTargetFromItsNeighbours) {
     };
     EXPECT_LT(error(env), 0.005) << i;
     EXPECT_GT(error(alone), 0.01) << i;
-    EXPECT_TRUE(env.agent(0, i).track().observed());
-    EXPECT_FALSE(alone.agent(0, i).track().observed());
+    EXPECT_TRUE(env.agent(0, i).belief().observed);
+    EXPECT_FALSE(alone.agent(0, i).belief().observed);
   }
 }
 

@@ -4,8 +4,8 @@
 
 #include "acoustic_channel/channel_config.hpp"
 #include "auv_dynamics/world/world_config.hpp"
+#include "stg_agent/estimation/track_config.hpp"
 #include "stg_agent/graph/observation_spec.hpp"
-#include "stg_agent/inbox/track_config.hpp"
 
 namespace stg::agent {
 
@@ -13,6 +13,7 @@ namespace stg::agent {
 struct TaskConfig {
   double desired_distance_m = 0.015;  ///< d*
   double lost_distance_m = 0.65;      ///< farther from the target than this, it counts as lost
+  double lost_error_m = 0.0;  ///< judged: so does a target whose estimate is off by more; 0: no
 };
 
 /// What an agent needs to know: its vehicle and world, the network, and its own sections.

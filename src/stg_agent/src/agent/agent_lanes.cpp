@@ -79,7 +79,7 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   const T taking_part = Select(lanes, T(1.0), T(0.0));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
-    At(lane).Advance(OfLane(nav.stamp, lane));
+    At(lane).Advance(OfLane(nav.stamp, lane), Lane(nav.position_std_m, lane));
     SetLaneOf(&target, lane, inbox(lane).Target(links_->freshness_s()));
   }
   mind_.SetNavigation(nav);

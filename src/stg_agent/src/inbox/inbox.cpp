@@ -8,19 +8,13 @@
 #include "stg_agent/graph/features.hpp"
 
 namespace stg::agent {
-namespace {
-
-/// Oldest target estimate worth sending: the packet's age field ends at 32.767 s.
-constexpr TimeNs kOldestShared = 30'000'000'000;
-
-}  // namespace
 
 Inbox::Inbox(SharedConstants constants, int id)
     : constants_(std::move(constants)),
       id_(id),
       target_(constants_->scenario.target_of(id)),
       neighbours_(constants_->scenario, id),
-      track_(constants_->scenario) {
+      filter_(TargetFilters().Make(constants_->scenario.track.filter, constants_->scenario, id_)) {
   if (id < 0 || id >= constants_->scenario.agents) {
     throw std::invalid_argument("agent index outside the swarm");
   }
@@ -28,7 +22,7 @@ Inbox::Inbox(SharedConstants constants, int id)
 
 void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
   neighbours_.Clear();
-  track_.Clear();
+  filter_->Clear();
   cue_ = cue;
   cue_pending_ = cue.target == target_;
   detection_ = dynamics::Detection();
@@ -40,7 +34,11 @@ void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
 
 void Inbox::Detect(const dynamics::Detection& detection) {
   if (detection.target != target_) return;
-  if (!Finite(detection.p_WT) || !std::isfinite(detection.std_m)) {
+  if (!Finite(detection.p_WT) || !Finite(detection.p_WO) ||
+      !std::isfinite(detection.std_m + detection.p_WO_std_m + detection.heading_std_rad +
+                     detection.range_m + detection.range_std_m + detection.azimuth_rad +
+                     detection.elevation_rad + detection.bearing_std_rad +
+                     detection.mirror_azimuth_rad)) {
     throw std::invalid_argument("non-finite target detection");
   }
   if (detection_pending_ && detection.stamp <= detection_.stamp) return;
@@ -52,6 +50,7 @@ const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
   try {
     const NeighbourState state =
         constants_->codec.Decode(reception.payload.data, reception.payload.size, reception.arrival);
+    if (state.has_target && state.target == target_) filter_->Hear(state);
     return neighbours_.Update(state) ? &neighbours_.state(state.source) : nullptr;
   } catch (const UserError&) {
     ++refused_packets_;  // what comes from the water may be damaged
@@ -59,37 +58,37 @@ const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
   }
 }
 
-void Inbox::Advance(TimeNs now) {
+void Inbox::Advance(TimeNs now, double position_std_m) {
   now_ = now;
+  position_std_m_ = position_std_m;
   if (cue_pending_) {
-    track_.Start(cue_.p_WT, cue_.std_m, 0);
+    filter_->Start(cue_.p_WT, cue_.std_m, 0);
     cue_pending_ = false;
   }
-  track_.Predict(now_);
+  filter_->Predict(now_);
   // A fixed order, whatever order the messages came in: shared estimates by index, then the
   // own detection.
-  if (neighbours_.unread()) TakeSharedEstimates();
+  if (neighbours_.unread()) FuseNewest();
   if (detection_pending_ && detection_.stamp <= now_) {
-    track_.Detect(detection_);
+    filter_->Detect(detection_);
     detection_pending_ = false;
   }
+  filter_->Settle(now_);
 }
 
-void Inbox::TakeSharedEstimates() {
+void Inbox::FuseNewest() {
   for (const int id : neighbours_.known()) {
     const NeighbourState& s = neighbours_.state(id);
-    if (neighbours_.unread(id) && s.target == target_ && s.target_stamp <= now_) {
-      track_.Fuse({s.target_stamp, s.p_WT, s.v_WT, s.target_std});
-    }
+    if (neighbours_.unread(id) && s.target == target_) filter_->Fuse(s);
   }
   neighbours_.MarkRead();
 }
 
 TargetView<double> Inbox::Target(double freshness_s) const {
-  const TargetEstimate& e = track_.estimate();
-  const bool current =
-      track_.observed() && Seconds(now_ - track_.information_stamp()) <= freshness_s;
-  return {e.p_WT, e.v_WT, e.pp, track_.started() ? 1.0 : 0.0, current ? 1.0 : 0.0};
+  const TargetEstimate e = filter_->estimate();
+  const TargetBelief b = filter_->belief();
+  const bool current = b.observed && Seconds(now_ - b.information) <= freshness_s;
+  return {e.p_WT, e.v_WT, e.pp, b.started ? 1.0 : 0.0, current ? 1.0 : 0.0};
 }
 
 Packet Inbox::MakePacket(const Knowledge<double>& k) const {
@@ -102,17 +101,9 @@ Packet Inbox::MakePacket(const Knowledge<double>& k) const {
   state.tracking_error = k.error;
   state.phase = PhaseOf(constants_->scenario.observation, k);
   state.link_quality = k.mean_quality;
-  // Only what rests on an observation: everybody has the cue already.
-  state.has_target =
-      k.lost <= 0.5 && track_.observed() && now_ - track_.information_stamp() <= kOldestShared;
-  if (state.has_target) {
-    const SharedEstimate& shared = track_.shareable();
-    state.target = target_;
-    state.target_stamp = shared.stamp;
-    state.p_WT = shared.p_WT;
-    state.v_WT = shared.v_WT;
-    state.target_std = shared.std_m;
-  }
+  state.position_std_m = position_std_m_;
+  state.target = target_;
+  filter_->Tell(k.lost > 0.5, &state);
   return constants_->codec.Encode(state);
 }
 

@@ -10,6 +10,7 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/helm/helm.hpp"
+#include "auv_dynamics/nodes/autopilot_parameter.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -18,16 +19,6 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-
-/// Whether the agent's process also turns velocities into wrenches.
-bool OnboardParameter(const dynamics::WorldConfig& scenario) {
-  const std::string autopilot = TextParameter("autopilot", "external");
-  if (autopilot == "external") return false;
-  if (autopilot != "onboard") throw UserError("parameter autopilot: must be external or onboard");
-  if (!dynamics::Helm::Steers(scenario)) return true;
-  throw UserError("parameter autopilot: vehicle.model " + scenario.vehicle.model +
-                  " is no vehicle for onboard, as it is not commanded by force and moment");
-}
 
 }  // namespace
 
@@ -44,7 +35,8 @@ AgentNode::AgentNode()
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
       commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
-      commands_wrench_(!commands_velocity_ || OnboardParameter(scenario_)),
+      commands_wrench_(!commands_velocity_ ||
+                       (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(scenario_))),
       pending_(id_, scenario_.target.count),
       tracker_(period_, scenario_.time.episode_steps),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
@@ -111,7 +103,9 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     refused_frames_.Add(Refusals::kFrame);
     return;
   }
-  if (!FinitePose(message->pose) || !FiniteTwist(message->twist)) {
+  if (!FinitePose(message->pose) || !FiniteTwist(message->twist) ||
+      !Finite(message->position_std) || !Finite(message->heading_std) ||
+      message->position_std < 0.0 || message->heading_std < 0.0) {
     refused_frames_.Add(Refusals::kNotFinite);
     return;
   }
@@ -220,7 +214,10 @@ void AgentNode::Decide() {
     StartEpisode(*frame_);
   }
   pending_.Give(start_, stamp, &agent_);
-  agent_.Observe(NavOf(frame_->pose, frame_->twist, stamp - start_), observation_.data());
+  dynamics::NavState nav = NavOf(frame_->pose, frame_->twist, stamp - start_);
+  nav.position_std_m = frame_->position_std;
+  nav.heading_std_rad = frame_->heading_std;
+  agent_.Observe(nav, observation_.data());
   decider_->Mean(agent_, observation_.data(), action_);
   log_probability_ = explore_ ? decider_->Explore(frame_->seed, frame_->step, id_, action_) : 0.0F;
   policy_id_ = decider_->id();

@@ -1,6 +1,5 @@
 #include "pending_inputs.hpp"
 
-#include <cmath>
 #include <cstdint>
 #include <iterator>
 
@@ -19,8 +18,7 @@ constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may n
 void PendingInputs::Keep(const auv_msgs::TargetDetection& message, TimeNs now) {
   if (message.header.frame_id != frames::kWorld) {
     refused_detections_.Add(Refusals::kFrame);
-  } else if (!FiniteVector(message.position) || !FiniteVector(message.variance) ||
-             message.variance.x < 0.0) {
+  } else if (!UsableDetection(message)) {
     refused_detections_.Add(Refusals::kNotFinite);
   } else if (message.target >= static_cast<std::uint32_t>(targets_) ||
              detections_.size() >= kMaxPending) {
@@ -28,12 +26,7 @@ void PendingInputs::Keep(const auv_msgs::TargetDetection& message, TimeNs now) {
   } else if (NsOf(message.header.stamp) > now) {
     refused_detections_.Add(Refusals::kStale);
   } else {
-    dynamics::Detection detection;
-    detection.stamp = NsOf(message.header.stamp);
-    detection.target = static_cast<int>(message.target);
-    detection.p_WT = VectorOf(message.position);
-    detection.std_m = std::sqrt(message.variance.x);
-    detections_.push_back(detection);
+    detections_.push_back(DetectionOf(message));
   }
 }
 

@@ -7,16 +7,10 @@
 #include <string>
 
 #include "auv_common/error.hpp"
+#include "bits.hpp"
 
 namespace stg::agent {
 namespace {
-
-/// Bits [first, first + count) of the packet, least significant bit of byte 0 first.
-struct Bits {
-  int first, count;
-  constexpr int end() const { return first + count; }
-};
-constexpr Bits After(Bits previous, int count) { return {previous.end(), count}; }
 
 constexpr std::uint64_t kVersion = 1;
 constexpr int kPositionBits = 15, kVelocityBits = 12, kTargetVelocityBits = 11;
@@ -40,79 +34,10 @@ constexpr Bits kCrcBits = After(kStd, 8);
 static_assert(kCrcBits.end() == 8 * kPacketBytes, "the fields fill the packet");
 static_assert(kConfidence.count == kQuality.count, "one quantiser serves the unit interval");
 
-constexpr TimeNs kTick = 1'000'000;  // resolution of both times [ns]
 constexpr std::int64_t kMaxAge = (1 << kAge.count) - 1;
 constexpr double kPositionMargin = 1.25;  // noisy target estimates lie outside the walls
 constexpr double kTargetSpeedMargin = 2.0;
 constexpr double kStdLo = 1e-5, kStdHi = 10.0;  // of the workspace half extent
-
-constexpr std::size_t kWords = kPacketBytes / 8;
-using Words = std::array<std::uint64_t, kWords>;
-
-/// Tables for eight bytes at a time: kCrc[k][b] is the checksum of byte b and k zero bytes.
-/// Bits are taken least significant first, so that the first bit of the version is the highest
-/// power: the one pair of bits that the polynomial's period of 255 hides contains that bit, and
-/// the version check sees it.
-struct CrcTables {
-  std::uint8_t t[8][256];
-};
-constexpr CrcTables MakeCrcTables() {
-  CrcTables tables{};
-  for (int b = 0; b < 256; ++b) {
-    unsigned crc = static_cast<unsigned>(b);
-    for (int i = 0; i < 8; ++i) crc = (crc >> 1) ^ ((crc & 1u) ? 0xB8u : 0u);  // 0x1D reversed
-    tables.t[0][b] = static_cast<std::uint8_t>(crc);
-  }
-  for (int k = 1; k < 8; ++k) {
-    for (int b = 0; b < 256; ++b) tables.t[k][b] = tables.t[0][tables.t[k - 1][b]];
-  }
-  return tables;
-}
-constexpr CrcTables kCrc = MakeCrcTables();
-
-template <int kBytes>
-std::uint64_t ExtendCrc(std::uint64_t crc, std::uint64_t word) {
-  const std::uint64_t x = word ^ crc;
-  std::uint64_t sum = 0;
-  for (int i = 0; i < kBytes; ++i) sum ^= kCrc.t[kBytes - 1 - i][(x >> (8 * i)) & 0xFF];
-  return sum;
-}
-
-/// CRC-8 of all bytes but the last, which holds it.
-std::uint64_t Checksum(const Words& words) {
-  std::uint64_t crc = 0xFF;  // so that a packet of zeros is damaged
-  for (std::size_t w = 0; w + 1 < kWords; ++w) crc = ExtendCrc<8>(crc, words[w]);
-  return ExtendCrc<7>(crc, words[kWords - 1]);
-}
-
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "words are copied as bytes");
-
-// Inlined always, so that shifts and word indices are constants.
-[[gnu::always_inline]] inline void Put(Words* words, Bits bits, std::uint64_t code) {
-  const auto word = static_cast<std::size_t>(bits.first / 64);
-  const int shift = bits.first % 64;
-  (*words)[word] |= code << shift;
-  if (shift + bits.count > 64) (*words)[word + 1] |= code >> (64 - shift);
-}
-
-[[gnu::always_inline]] inline std::uint64_t Get(const Words& words, Bits bits) {
-  const auto word = static_cast<std::size_t>(bits.first / 64);
-  const int shift = bits.first % 64;
-  std::uint64_t code = words[word] >> shift;
-  if (shift + bits.count > 64) code |= words[word + 1] << (64 - shift);
-  return code & ((std::uint64_t{1} << bits.count) - 1);
-}
-
-/// Component `axis` of a field of three equal ones.
-constexpr Bits Component(Bits bits, int axis) {
-  return {bits.first + axis * (bits.count / 3), bits.count / 3};
-}
-
-/// Nearest tick, halves upwards; monotone, so that generation <= now survives the rounding.
-std::int64_t Ticks(TimeNs t) {
-  const TimeNs shifted = t + kTick / 2;
-  return shifted / kTick - (shifted % kTick < 0 ? 1 : 0);
-}
 
 /// Zero when all components are finite, NaN otherwise.
 double Finiteness(const Vec3<double>& v) { return v.x * 0.0 + v.y * 0.0 + v.z * 0.0; }
@@ -133,75 +58,25 @@ double TargetSpeedLimit(const AgentConfig& s) {
       {kTargetSpeedMargin * s.target.max_speed_mps, 4.0 * s.track.initial_speed_std_mps, 1e-3});
 }
 
-template <class Q>
-[[gnu::always_inline]] inline std::uint64_t Code(const Q& q, double value, bool* saturated) {
-  const double code = std::floor((value - q.lo) * q.inverse + 0.5);
-  const double clipped = std::min(std::max(code, 0.0), q.steps);
-  *saturated |= clipped != code;
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(clipped));
-}
-
-template <class Q>
-[[gnu::always_inline]] inline double Value(const Q& q, std::uint64_t code, bool* unused_code) {
-  const double c = static_cast<double>(static_cast<std::int64_t>(code));
-  *unused_code |= c > q.steps;
-  return std::min(std::max(q.middle + (c - 0.5 * q.steps) * q.resolution, q.lo), q.hi);
-}
-
-template <class Q>
-[[gnu::always_inline]] inline void PutVector(Words* words, Bits bits, const Q& q,
-                                             const Vec3<double>& v, bool* saturated) {
-  Put(words, Component(bits, 0), Code(q, v.x, saturated));
-  Put(words, Component(bits, 1), Code(q, v.y, saturated));
-  Put(words, Component(bits, 2), Code(q, v.z, saturated));
-}
-
-template <class Q>
-[[gnu::always_inline]] inline Vec3<double> GetVector(const Words& words, Bits bits, const Q& q,
-                                                     bool* unused_code) {
-  return {Value(q, Get(words, Component(bits, 0)), unused_code),
-          Value(q, Get(words, Component(bits, 1)), unused_code),
-          Value(q, Get(words, Component(bits, 2)), unused_code)};
-}
-
 [[noreturn, gnu::noinline, gnu::cold]] void Refuse(const std::string& why) {
   throw UserError("packet: " + why);
 }
 
 }  // namespace
 
-PacketCodec::Quantiser PacketCodec::Signed(double limit, int bits) {
-  Quantiser q;
-  q.steps = static_cast<double>((1 << bits) - 2);
-  q.resolution = 2.0 * limit / q.steps;
-  q.lo = -limit;
-  q.hi = limit;
-  q.middle = 0.0;
-  q.inverse = 1.0 / q.resolution;
-  return q;
-}
-
-PacketCodec::Quantiser PacketCodec::Unsigned(double lo, double hi, int bits) {
-  Quantiser q;
-  q.steps = static_cast<double>((1 << bits) - 1);
-  q.resolution = (hi - lo) / q.steps;
-  q.lo = lo;
-  q.hi = hi;
-  q.middle = 0.5 * (lo + hi);
-  q.inverse = 1.0 / q.resolution;
-  return q;
-}
-
-PacketCodec::PacketCodec(const AgentConfig& s)
-    : agents_(s.agents),
+PacketCodec::PacketCodec(const AgentConfig& s, PacketLayout layout)
+    : layout_(layout),
+      agents_(s.agents),
       targets_(s.target.count),
-      position_(Signed(kPositionMargin * s.workspace.half_extent_m, kPositionBits)),
-      velocity_(Signed(SpeedLimit(s), kVelocityBits)),
-      unit_(Unsigned(0.0, 1.0, kConfidence.count)),
-      error_(Unsigned(0.0, 2.0 * std::sqrt(3.0) * s.workspace.half_extent_m, kError.count)),
-      target_velocity_(Signed(TargetSpeedLimit(s), kTargetVelocityBits)),
-      log_std_(Unsigned(std::log(kStdLo * s.workspace.half_extent_m),
-                        std::log(kStdHi * s.workspace.half_extent_m), kStd.count)) {
+      position_(Quantiser::Signed(kPositionMargin * s.workspace.half_extent_m, kPositionBits)),
+      velocity_(Quantiser::Signed(SpeedLimit(s), kVelocityBits)),
+      unit_(Quantiser::Unsigned(0.0, 1.0, kConfidence.count)),
+      error_(
+          Quantiser::Unsigned(0.0, 2.0 * std::sqrt(3.0) * s.workspace.half_extent_m, kError.count)),
+      target_velocity_(Quantiser::Signed(TargetSpeedLimit(s), kTargetVelocityBits)),
+      log_std_(Quantiser::Unsigned(std::log(kStdLo * s.workspace.half_extent_m),
+                                   std::log(kStdHi * s.workspace.half_extent_m), kStd.count)),
+      measurements_(s) {
   if (agents_ < 1 || agents_ > 1 << kSource.count) {
     throw UserError("agents: a packet can name 1 to 256 AUVs, not " + std::to_string(agents_));
   }
@@ -216,6 +91,15 @@ PacketCodec::PacketCodec(const AgentConfig& s)
 }
 
 Packet PacketCodec::Encode(const NeighbourState& s) const {
+  return layout_ == PacketLayout::kEstimate ? EncodeEstimate(s) : measurements_.Encode(s);
+}
+
+NeighbourState PacketCodec::Decode(const std::uint8_t* data, std::size_t size, TimeNs now) const {
+  return layout_ == PacketLayout::kEstimate ? DecodeEstimate(data, size, now)
+                                            : measurements_.Decode(data, size, now);
+}
+
+Packet PacketCodec::EncodeEstimate(const NeighbourState& s) const {
   double finite = Finiteness(s.p_W) + Finiteness(s.v_W) +
                   (s.confidence + s.tracking_error + s.link_quality) * 0.0;
   bool valid =
@@ -259,7 +143,8 @@ Packet PacketCodec::Encode(const NeighbourState& s) const {
   return packet;
 }
 
-NeighbourState PacketCodec::Decode(const std::uint8_t* data, std::size_t size, TimeNs now) const {
+NeighbourState PacketCodec::DecodeEstimate(const std::uint8_t* data, std::size_t size,
+                                           TimeNs now) const {
   if (size != kPacketBytes) {
     Refuse(std::to_string(size) + " bytes instead of " + std::to_string(kPacketBytes));
   }

@@ -68,7 +68,7 @@ TEST(Agent, LosesAnUnseenTargetAndCountsTheSteps) {
   int lost_steps = 0;
   for (int k = 0; k < 400; ++k) {
     Look(&agent, Nav(k * kStep, {}));
-    const bool uncertain = agent.track().estimate().position_std_m() > s.track.lost_std_m;
+    const bool uncertain = agent.estimate().position_std_m() > s.track.lost_std_m;
     EXPECT_EQ(agent.lost(), uncertain);
     lost_steps = uncertain ? lost_steps + 1 : 0;
     EXPECT_EQ(agent.knowledge().lost_steps, lost_steps);
@@ -217,8 +217,7 @@ TEST(Agent, OneThatComesLateFindsTheCueAsUncertainAsItHasBecome) {
       if (k < late) continue;
       Look(&restarted, Nav(k * kStep, {}));
       restarted.Act(kZero);
-      EXPECT_NEAR(restarted.track().estimate().position_std_m(),
-                  always.track().estimate().position_std_m(), 1e-12);
+      EXPECT_NEAR(restarted.estimate().position_std_m(), always.estimate().position_std_m(), 1e-12);
       EXPECT_EQ(restarted.knowledge().distance, 0.2);
     }
   }

@@ -42,8 +42,7 @@ py::bytes Bytes(const agent::Packet& packet) {
   return {reinterpret_cast<const char*>(packet.data()), packet.size()};
 }
 
-py::dict EstimateOf(const agent::TargetTrack& track) {
-  const agent::TargetEstimate& e = track.estimate();
+py::dict EstimateOf(const agent::TargetEstimate& e) {
   py::dict all;
   all["stamp"] = e.stamp;
   all["p_WT"] = TripleOf(e.p_WT);
@@ -143,8 +142,8 @@ py::dict Task(const BoundAgent& a) {
   all["graph_summary"] = task.graph;
   all["role"] = task.role;
   all["action"] = a.action;
-  all["target_known"] = a.mind.track().started();
-  all["target_std"] = a.mind.track().estimate().position_std_m();
+  all["target_known"] = a.mind.belief().started;
+  all["target_std"] = a.mind.estimate().position_std_m();
   all["target_distance"] = k.distance;
   all["tracking_error"] = k.error;
   all["confidence"] = k.confidence;
@@ -221,8 +220,9 @@ void BindAgent(py::module_& module) {
           py::arg("stamp"), py::arg("p_WT"), py::arg("v_WT"), py::arg("std_m"),
           "Takes an estimate that another AUV shared.")
       .def_property_readonly("started", &agent::TargetTrack::started)
-      .def_property_readonly("estimate", &EstimateOf,
-                             "{stamp [ns], p_WT [m], v_WT [m/s], position_std_m}.");
+      .def_property_readonly(
+          "estimate", [](const agent::TargetTrack& t) { return EstimateOf(t.estimate()); },
+          "{stamp [ns], p_WT [m], v_WT [m/s], position_std_m}.");
 
   py::class_<BoundAgent>(module, "Agent", "The mind of one AUV, as the C++ node runs it.")
       .def(py::init<const Scenario&, int>(), py::arg("scenario"), py::arg("id"))
@@ -259,7 +259,7 @@ void BindAgent(py::module_& module) {
           "neighbours", [](const BoundAgent& a) { return a.mind.neighbours().known(); },
           "Indices of the neighbours it has heard of lately.")
       .def_property_readonly("track",
-                             [](const BoundAgent& a) { return EstimateOf(a.mind.track()); });
+                             [](const BoundAgent& a) { return EstimateOf(a.mind.estimate()); });
 }
 
 }  // namespace stg::python

@@ -31,6 +31,10 @@ enum class Stream : std::uint32_t {
   kReception = 26,
   kReplay = 40,
   kTargetNoise = 41,
+  kNavigationStart = 50,
+  kNavigation = 51,
+  kMeasurement = 52,
+  kFalseAlarm = 53,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

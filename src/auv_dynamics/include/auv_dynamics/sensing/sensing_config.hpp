@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "auv_common/config/field.hpp"
@@ -15,9 +16,21 @@ struct SensingConfig {
   double dropout_rate_hz = 0.0;     ///< rate at which the sensor goes blind
   double dropout_duration_s = 1.0;  ///< mean duration of a blind spell
   double cue_std_m = 0.05;          ///< uncertainty of the initial datum, per component
+  double period_s = 0.0;            ///< between two looks; 0: every decision
+  // Of range and bearing; docs/sensors.md says where the numbers come from.
+  double range_std_m = 1.0;              ///< a of the deviation a + b r of a range
+  double range_std_share = 0.01;         ///< b of it
+  double bearing_std_deg = 2.0;          ///< of azimuth and elevation
+  double probability_at_range = 1.0;     ///< share of detection_probability left at range_m
+  double outlier_probability = 0.0;      ///< that a detection is drawn from anywhere
+  double false_alarm_probability = 0.0;  ///< that a look without a detection tells of one
+  double field_of_view_deg = 360.0;      ///< full angle around the bow
+  bool ambiguous = false;                ///< a bearing cannot tell port from starboard
 };
 
 /// Keys, units and ranges of the section.
 void Describe(SensingConfig* c, config::Table* t);
+/// Contradictions between its keys. @param decision_dt_s length of a decision
+std::optional<config::Violation> FindConflict(const SensingConfig& c, double decision_dt_s);
 
 }  // namespace stg::dynamics

@@ -5,6 +5,7 @@
 #include "auv_common/registry.hpp"
 #include "auv_dynamics/episode_clock.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/sensing_config.hpp"
 #include "auv_dynamics/targets/target_state.hpp"
 #include "auv_dynamics/vehicle/vehicle_state.hpp"
@@ -21,6 +22,8 @@ struct Look {
   std::uint32_t pair;  ///< index of this vehicle and target for draws of Stream::kDetection
   const VehicleState<Pack>& vehicle_state;
   const TargetState<Pack>& target_state;
+  Observer observer;    ///< what the vehicle believes of itself, in whose frame it tells
+  bool drifts = false;  ///< which is not the truth
 
   Vec3<double> p_WB() const { return Lane(vehicle_state.p_WB, lane); }
   Vec3<double> p_WT() const { return Lane(target_state.p_WT, lane); }

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "auv_dynamics/measurements.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 #include "auv_dynamics/targets/target_motion.hpp"
-#include "auv_dynamics/vehicle/vehicle.hpp"
+#include "auv_dynamics/vehicle/fleet.hpp"
 #include "auv_dynamics/world/contacts.hpp"
 #include "auv_dynamics/world/current.hpp"
 #include "auv_dynamics/world/disturbance.hpp"
@@ -40,14 +42,16 @@ class World {
   void Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStage stage);
 
   /// Starts an episode in one lane from given world positions and target
-  /// velocities, vehicles at rest with zero attitude (golden traces, tests).
+  /// velocities, vehicles at rest with zero attitude (golden traces, tests). Throws UserError for a
+  /// place inside the bottom or an obstacle of open water, or above its surface.
   void Place(int lane, const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
              const std::vector<Vec3<double>>& v_WT);
 
   /// One physics step of dt: steps each vehicle under its command, contacts, current and
   /// disturbance, applies walls, moves targets. A non-finite command is a bug of the caller.
   ///
-  /// @param commands [agents, model().actuators().size()], row-major
+  /// @param commands [agents, command_size()], row-major; a vehicle takes as many numbers of its
+  /// row as it has actuators
   void Step(const std::vector<Pack>& commands);
   /// The same for vehicles that are commanded by a generalised force, one for each. Throws
   /// UserError when the scenario's vehicles are not.
@@ -59,7 +63,9 @@ class World {
 
   int agents() const { return static_cast<int>(vehicles_.size()); }
   int targets() const { return static_cast<int>(targets_.size()); }
-  const Vehicle& model() const { return *model_; }
+  /// What vehicle i is.
+  const Vehicle& model(int i = 0) const { return fleet_[i]; }
+  std::size_t command_size() const { return fleet_.command_size(); }
   const TargetSensor& sensor() const { return *sensor_; }
   const VehicleState<Pack>& vehicle(int i) const { return vehicles_[static_cast<size_t>(i)]; }
   VehicleState<Pack>& mutable_vehicle(int i) { return vehicles_[static_cast<size_t>(i)]; }
@@ -70,17 +76,20 @@ class World {
   const std::vector<VehicleState<Pack>>& vehicle_states() const { return vehicles_; }
   const std::vector<TargetState<Pack>>& target_states() const { return targets_; }
 
-  /// Truth of one lane as the vehicle's own navigation gives it.
+  /// What the navigation of vehicle i believes: the truth where `navigation.kind` is perfect.
   NavState Nav(int lane, int i) const;
   /// The same of all lanes.
   Navigation<Pack> Nav(int i) const;
+  /// What a perfect navigation would tell, whatever the vehicles have.
+  NavState Truth(int lane, int i) const;
   /// Simulated time since the start of the episode: physics steps times dt.
   TimeNs time(int lane) const { return dt_ns_ * static_cast<TimeNs>(step(lane)); }
   std::uint32_t step(int lane) const { return clock(lane).step; }
   std::uint32_t episode(int lane) const { return clock(lane).episode; }
   std::uint64_t seed(int lane) const { return clock(lane).seed; }
 
-  /// Detection of target k by vehicle i at the current step; false when there is none. Draws
+  /// Detection of target k by vehicle i at the current step; false when there is none, as where
+  /// bottom or obstacles of open water stand between them. Draws
   /// depend on (seed, episode, step, i, k) only.
   bool Sense(int lane, int i, int k, Detection* out) const;
   /// Datum that vehicle i starts the episode with.
@@ -91,12 +100,17 @@ class World {
   const Pack& colliding_pairs() const { return separations_.colliding_pairs(); }
   const Pack& smallest_separation() const { return separations_.smallest(); }
 
-  /// Surface and bottom; of scenarios in open water.
+  /// Surface, bottom and obstacles; of scenarios in open water.
   const Sea& sea() const { return sea_; }
+  bool open_water() const { return open_; }
 
  private:
   const EpisodeClock& clock(int lane) const { return clocks_[static_cast<size_t>(lane)]; }
   Pack Time() const;
+  /// @param who with its number, for the message
+  void RequireWater(const std::string& who, const Vec3<double>& p_W) const;
+  Navigation<Pack> TrueNav(int i) const;
+  void Navigate();
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start);
 
   double dt_s_;
@@ -106,9 +120,11 @@ class World {
   ResetConfig reset_;
   SeaConfig depths_;
   SensingConfig sensing_;
-  std::unique_ptr<const Vehicle> model_;
+  Fleet fleet_;
   std::unique_ptr<TargetMotion> motion_;
   std::unique_ptr<const TargetSensor> sensor_;
+  std::unique_ptr<NavigationSystem> navigation_;
+  bool perfect_;  // navigation
   Separations<Pack> separations_;
   Contacts contacts_;
   Disturbance disturbance_;
@@ -117,7 +133,7 @@ class World {
   bool open_;  // sea, not walls
   std::vector<VehicleState<Pack>> vehicles_;
   std::vector<TargetState<Pack>> targets_;
-  std::vector<Pack> internal_;  // [agents, model_->internal_size()]
+  std::vector<Pack> internal_;  // [agents, fleet_.internal_size()]
   std::vector<Pack> commands_;  // [agents, actuators], of the last generalised forces
   Start start_;                 // scratch of Reset
   EpisodeClocks clocks_{};

@@ -5,11 +5,12 @@
 
 #include "auv_common/config/run_config.hpp"
 #include "auv_dynamics/control/control_config.hpp"
+#include "auv_dynamics/navigation/navigation_config.hpp"
 #include "auv_dynamics/sensing/sensing_config.hpp"
 #include "auv_dynamics/targets/target_config.hpp"
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
-#include "auv_dynamics/world/sea_config.hpp"
+#include "auv_dynamics/terrain/sea_config.hpp"
 #include "auv_dynamics/world/surroundings_config.hpp"
 
 namespace stg::dynamics {
@@ -24,6 +25,7 @@ struct WorldConfig : RunConfig {
   SeaConfig sea;
   TargetConfig target;
   ResetConfig reset;
+  NavigationConfig navigation;
   SensingConfig sensing;
   ControlConfig control;
 

@@ -91,6 +91,8 @@ class VectorEnv {
 
   /// The truth of one environment, for built-in controllers, tests and traces.
   dynamics::NavState nav(int env, int i) const;
+  /// What an AUV's own navigation believes.
+  dynamics::NavState navigation(int env, int i) const;
   dynamics::VehicleState<double> vehicle(int env, int i) const;
   dynamics::TargetState<double> target(int env, int k) const;
   TimeNs time(int env) const;

@@ -76,7 +76,8 @@ class Agent {
   const Knowledge<double>& knowledge() const { return one_.knowledge(); }
   TaskView task() const { return TaskOf(scenario().observation, knowledge()); }
   const NeighbourTable& neighbours() const { return one_.inbox(0).neighbours(); }
-  const TargetTrack& track() const { return one_.inbox(0).track(); }
+  TargetEstimate estimate() const { return one_.inbox(0).estimate(); }
+  TargetBelief belief() const { return one_.inbox(0).belief(); }
   /// Target this agent is tasked with.
   int target() const { return one_.inbox(0).target(); }
   bool lost() const { return knowledge().lost > 0.5; }

@@ -37,7 +37,10 @@ class AgentView {
   /// Executed action of the last Act; action_size entries count.
   const Action& action() const { return action_; }
 
-  const TargetTrack& track() const { return inbox_.track(); }
+  /// The target in the frame of the own navigation.
+  TargetEstimate estimate() const { return inbox_.estimate(); }
+  /// The same in the true world frame, with a whole covariance.
+  TargetBelief belief() const { return inbox_.belief(); }
   /// The neighbours' packets, as received.
   const NeighbourTable& neighbours() const { return inbox_.neighbours(); }
   /// A known neighbour as of the last Observe.

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "stg_agent/agent_config.hpp"
+#include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
@@ -10,7 +11,7 @@ namespace stg::agent {
 /// What all agents of a swarm have in common, shared by them and never changed.
 struct AgentConstants {
   /// Throws UserError when the scenario does not fit the packet layout.
-  explicit AgentConstants(const AgentConfig& s) : scenario(s), codec(s) {}
+  explicit AgentConstants(const AgentConfig& s) : scenario(s), codec(s, LayoutOf(s)) {}
 
   AgentConfig scenario;
   PacketCodec codec;

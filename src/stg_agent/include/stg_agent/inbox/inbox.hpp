@@ -5,11 +5,11 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/graph/target_view.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
 #include "stg_agent/inbox/neighbour_table.hpp"
-#include "stg_agent/inbox/target_track.hpp"
 
 namespace stg::agent {
 
@@ -37,7 +37,8 @@ class Inbox {
   /// Forgets neighbours silent for too long at time `now`.
   void Forget(TimeNs now) { neighbours_.Forget(now); }
   /// Brings the target track to time `now`, with all that came in.
-  void Advance(TimeNs now);
+  /// @param position_std_m deviation of the own position as navigation states it then
+  void Advance(TimeNs now, double position_std_m = 0.0);
 
   /// The target as of the last Advance.
   /// @param freshness_s information older than this is not current
@@ -54,21 +55,25 @@ class Inbox {
   /// Time of the last Advance.
   TimeNs now() const { return now_; }
   const NeighbourTable& neighbours() const { return neighbours_; }
-  const TargetTrack& track() const { return track_; }
+  /// The target in the frame of the own navigation, as of the last Advance.
+  TargetEstimate estimate() const { return filter_->estimate(); }
+  /// The same in the true world frame, with what the own navigation adds to its deviation.
+  TargetBelief belief() const { return filter_->belief(); }
   /// Packets of this episode that did not decode.
   std::uint64_t refused_packets() const { return refused_packets_; }
 
  private:
-  void TakeSharedEstimates();
+  void FuseNewest();
 
   SharedConstants constants_;
   int id_, target_;
   NeighbourTable neighbours_;
-  TargetTrack track_;
+  std::unique_ptr<TargetFilter> filter_;
   dynamics::Cue cue_;
   dynamics::Detection detection_;
   bool cue_pending_ = false, detection_pending_ = false;
   TimeNs now_ = 0;
+  double position_std_m_ = 0.0;
   std::uint32_t episode_ = 0;
   std::uint64_t refused_packets_ = 0;
 };

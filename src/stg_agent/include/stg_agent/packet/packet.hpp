@@ -4,33 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "auv_dynamics/measurements.hpp"
 #include "stg_agent/agent_config.hpp"
+#include "stg_agent/packet/measurement_packet.hpp"
+#include "stg_agent/packet/neighbour_state.hpp"
+#include "stg_agent/packet/quantiser.hpp"
 
 /// What one AUV tells its neighbours, and its 32-byte form on the acoustic link.
 namespace stg::agent {
-
-inline constexpr int kPacketBytes = 32;
-using Packet = std::array<std::uint8_t, kPacketBytes>;
-
-/// State of one AUV and its target estimate, as its neighbours learn it. World axes (ENU).
-struct NeighbourState {
-  int source = 0;               ///< index of the AUV, 0-based
-  TimeNs generation = 0;        ///< time at which this state was true
-  Vec3<double> p_W;             ///< position [m]
-  Vec3<double> v_W;             ///< velocity over ground [m/s]
-  double confidence = 0.0;      ///< observation confidence c (Eq. 13), [0, 1]
-  double tracking_error = 0.0;  ///< tracking error e (Eq. 12) [m]
-  int phase = 0;                ///< 0 search, 1 approach, 2 stable, 3 lost
-  double link_quality = 0.0;    ///< mean quality of the links it receives on, [0, 1]
-  bool has_target = false;      ///< false: the fields below mean nothing and travel as zeros
-  int target = 0;               ///< index of the target
-  TimeNs target_stamp = 0;      ///< time of the target estimate, not after `generation`
-  Vec3<double> p_WT;            ///< estimated target position [m]
-  Vec3<double> v_WT;            ///< estimated target velocity [m/s]
-  double target_std = 0.0;      ///< standard deviation of the estimate, each component [m]
-  bool saturated = false;       ///< set by Encode when a value did not fit and was clipped
-};
 
 /// A quantity sent as an integer code: values lo + code * resolution, code in [0, steps].
 ///
@@ -44,7 +24,7 @@ struct PacketField {
 
 /// Bounded binary codec for NeighbourState. Every packet has kPacketBytes bytes.
 ///
-/// Layout, least significant bit first: version 4, source 8, generation 16 (1 ms, modulo
+/// Layout kEstimate, least significant bit first: version 4, source 8, generation 16 (1 ms, modulo
 /// 65.536 s), position 3 x 15, velocity 3 x 12, confidence 7, tracking error 14, phase 2, link
 /// quality 7, saturated 1, has_target 1, target 6, target age 15 (1 ms, to 32.767 s), target
 /// position 3 x 15, target velocity 3 x 11, target deviation 8 (logarithmic), CRC-8 8. Ranges
@@ -53,12 +33,14 @@ struct PacketField {
 /// target deviation 1e-5 to 10 half extents. Decoded values are within half the resolution (of
 /// the logarithm for the deviation; half a millisecond for both times) unless `saturated`.
 ///
+/// Layout kMeasurements: see MeasurementPacket.
+///
 /// The checksum (polynomial 0x1D) finds every damage of one or two bits and every burst of up to
 /// eight bits; other damage slips through once in 256 times.
 class PacketCodec {
  public:
   /// Throws UserError when the scenario does not fit the layout (more than 256 AUVs, 64 targets).
-  explicit PacketCodec(const AgentConfig& scenario);
+  explicit PacketCodec(const AgentConfig& scenario, PacketLayout layout = PacketLayout::kEstimate);
 
   /// A non-finite value, a negative generation time or an index out of range is a bug of the
   /// caller and throws std::invalid_argument. Allocates nothing otherwise.
@@ -74,18 +56,14 @@ class PacketCodec {
   std::array<PacketField, kFieldCount> fields() const;
 
  private:
-  /// Linear quantiser of one field.
-  struct Quantiser {
-    double lo = 0.0, hi = 1.0, middle = 0.5;
-    double resolution = 1.0, inverse = 1.0;
-    double steps = 1.0;  ///< largest code
-  };
-  static Quantiser Signed(double limit, int bits);
-  static Quantiser Unsigned(double lo, double hi, int bits);
+  Packet EncodeEstimate(const NeighbourState& state) const;
+  NeighbourState DecodeEstimate(const std::uint8_t* data, std::size_t size, TimeNs now) const;
 
+  PacketLayout layout_;
   int agents_, targets_;
   Quantiser position_, velocity_, unit_, error_, target_velocity_, log_std_;
   std::array<double, 256> std_of_code_{};  ///< exp(log_std_) for every code
+  MeasurementPacket measurements_;
 };
 
 }  // namespace stg::agent

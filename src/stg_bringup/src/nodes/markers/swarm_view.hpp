@@ -4,12 +4,15 @@
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Vector3.h>
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "auv_dynamics/terrain/sea_config.hpp"
 
 /// What a viewer knows of a run: the newest of everything that was published, and a short past.
 /// Lengths [m], frame world; times [s] of simulated time.
@@ -22,6 +25,8 @@ struct SceneConfig {
   double sensing_range_m = 0.45;
   double band_lo_m = 0.010, band_hi_m = 0.015;
   double radius_m = 0.011;
+  double decision_s = 0.1;
+  dynamics::SeaConfig sea;  ///< open: instead of walls
 };
 
 /// Values of auv_msgs/TaskState, and one for an AUV that has not said anything yet.
@@ -33,6 +38,13 @@ struct TrailPoint {
   ShownPhase phase = ShownPhase::kUnknown;
 };
 
+/// The newest measurement of a target by an AUV's own sensor.
+struct DetectionView {
+  double time = -1e9;
+  bool has_range = false, has_bearing = false;
+  double range_m = 0.0, azimuth_rad = 0.0, elevation_rad = 0.0;
+};
+
 struct VehicleView {
   bool seen = false;
   geometry_msgs::Pose pose;
@@ -42,6 +54,8 @@ struct VehicleView {
   bool target_known = false;
   geometry_msgs::Point estimate;  ///< where the AUV believes its target to be
   double estimate_std = 0.0;
+  std::array<double, 6> covariance{};  ///< of it, xx xy xz yy yz zz [m^2]; zero: not told
+  DetectionView detection;
   std::deque<TrailPoint> trail;
 };
 

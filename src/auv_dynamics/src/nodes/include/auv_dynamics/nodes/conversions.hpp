@@ -1,6 +1,9 @@
 #pragma once
 
+#include <auv_msgs/TargetDetection.h>
 #include <nav_msgs/Odometry.h>
+
+#include <cmath>
 
 #include "auv_common/nodes/conversions.hpp"
 #include "auv_dynamics/measurements.hpp"
@@ -38,6 +41,65 @@ inline dynamics::NavState NavOf(const geometry_msgs::Pose& pose, const geometry_
 /// The same of an odometry message, whose stamp is the clock time.
 inline dynamics::NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
   return NavOf(m.pose.pose, m.twist.twist, NsOf(m.header.stamp) - start);
+}
+
+/// Stated deviations as the covariance of a pose. Row-major 6 x 6; what is not stated is zero.
+inline void SetCovariance(const dynamics::NavState& nav, geometry_msgs::PoseWithCovariance* pose) {
+  pose->covariance[0] = pose->covariance[7] = nav.position_std_m * nav.position_std_m;
+  pose->covariance[35] = nav.heading_std_rad * nav.heading_std_rad;
+}
+
+/// All but the header.
+inline void SetDetection(const dynamics::Detection& d, auv_msgs::TargetDetection* m) {
+  const Vec3<double> r = d.p_WT - d.p_WO;
+  const double variance = d.std_m * d.std_m;
+  const bool position = d.kind == dynamics::MeasurementKind::kPosition;
+  m->target = static_cast<std::uint32_t>(d.target);
+  m->kind = static_cast<std::uint8_t>(d.kind);
+  SetVector(r, &m->relative_position);
+  SetVector(d.p_WT, &m->position);
+  SetVector({variance, variance, variance}, &m->variance);
+  m->range = position ? Norm(r) : d.range_m;
+  SetVector(d.p_WO, &m->observer);
+  m->observer_std = d.p_WO_std_m;
+  m->heading_std = d.heading_std_rad;
+  m->range_std = d.range_std_m;
+  m->azimuth = d.azimuth_rad;
+  m->elevation = d.elevation_rad;
+  m->bearing_std = d.bearing_std_rad;
+  m->ambiguous = d.ambiguous;
+  m->mirror_azimuth = d.mirror_azimuth_rad;
+}
+
+/// Whether DetectionOf gives something that a filter can use.
+inline bool UsableDetection(const auv_msgs::TargetDetection& m) {
+  return m.kind <= auv_msgs::TargetDetection::RANGE_BEARING && FiniteVector(m.position) &&
+         FiniteVector(m.variance) && m.variance.x >= 0.0 && FiniteVector(m.observer) &&
+         Finite(m.range) && m.range >= 0.0 && Finite(m.range_std) && m.range_std >= 0.0 &&
+         Finite(m.observer_std) && m.observer_std >= 0.0 && Finite(m.heading_std) &&
+         m.heading_std >= 0.0 && Finite(m.azimuth) && Finite(m.elevation) &&
+         Finite(m.bearing_std) && m.bearing_std >= 0.0 && Finite(m.mirror_azimuth);
+}
+
+/// The inverse of SetDetection; the stamp is the clock time.
+inline dynamics::Detection DetectionOf(const auv_msgs::TargetDetection& m) {
+  dynamics::Detection d;
+  d.stamp = NsOf(m.header.stamp);
+  d.target = static_cast<int>(m.target);
+  d.p_WT = VectorOf(m.position);
+  d.std_m = std::sqrt(m.variance.x);
+  d.kind = static_cast<dynamics::MeasurementKind>(m.kind);
+  d.p_WO = VectorOf(m.observer);
+  d.p_WO_std_m = m.observer_std;
+  d.heading_std_rad = m.heading_std;
+  d.range_m = m.range;
+  d.range_std_m = m.range_std;
+  d.azimuth_rad = m.azimuth;
+  d.elevation_rad = m.elevation;
+  d.bearing_std_rad = m.bearing_std;
+  d.ambiguous = m.ambiguous;
+  d.mirror_azimuth_rad = m.mirror_azimuth;
+  return d;
 }
 
 inline bool FiniteOdometry(const nav_msgs::Odometry& m) {

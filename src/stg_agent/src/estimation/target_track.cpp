@@ -1,4 +1,4 @@
-#include "stg_agent/inbox/target_track.hpp"
+#include "stg_agent/estimation/target_track.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,25 @@
 #pragma once
 
+#include <string>
+
 #include "auv_common/config/field.hpp"
 
 namespace stg::agent {
 
 /// The agents' target filter and their memory of neighbours.
 struct TrackConfig {
+  std::string filter = "kalman";         ///< name in the registry of target filters
   double process_accel_std_mps2 = 0.01;  ///< white acceleration of the target model
   double measurement_std_m = 0.001;      ///< floor of a detection's standard deviation
   double initial_speed_std_mps = 0.01;
   double gate_sigma = 5.0;  ///< own detections beyond it are set aside, three in a row restart
   double lost_std_m = 0.2;  ///< track no better than this counts as lost
   double neighbour_max_age_s = 10.0;  ///< a neighbour is forgotten after this silence
+  // Of the filter `measurements`.
+  double velocity_std_mps = 0.0;    ///< of the target, each component; 0: its largest speed
+  double velocity_memory_s = 60.0;  ///< correlation time of the target's velocity
+  double memory_s = 60.0;           ///< measurements no older than this are taken
+  double share_spacing_s = 5.0;     ///< least time between the measurements in one packet
 };
 
 /// Keys, units and ranges of the section.

@@ -1,0 +1,30 @@
+#include "auv_dynamics/navigation/navigation_system.hpp"
+#include "systems.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// Every vehicle knows its state exactly: the paper's assumption.
+class PerfectNavigation : public NavigationSystem {
+ public:
+  bool perfect() const override { return true; }
+  void Reset(int, int, const EpisodeClock&, const VehicleState<Pack>&) override {}
+  void Step(int, const EpisodeClocks&, const VehicleState<Pack>&, const Vec3<Pack>&,
+            const Terrain&) override {}
+  void Believe(int, Navigation<Pack>*) const override {}
+  Observer At(int, int) const override { return {}; }
+};
+
+}  // namespace
+
+NavigationRegistry& NavigationSystems() {
+  static NavigationRegistry registry(
+      "navigation system",
+      {
+          {"perfect", [](const NavigationSetup&) { return std::make_unique<PerfectNavigation>(); }},
+          {"dead_reckoning", MakeDeadReckoning},
+      });
+  return registry;
+}
+
+}  // namespace stg::dynamics

@@ -1,0 +1,27 @@
+#include <cmath>
+
+#include "sensors.hpp"
+
+namespace stg::dynamics {
+
+bool LooksNow(const SensingConfig& config, const Look& look) {
+  if (config.period_s <= 0.0) return true;
+  return look.stamp % static_cast<TimeNs>(std::llround(config.period_s * 1e9)) == 0;
+}
+
+bool Blind(const SensingConfig& config, const Look& look) {
+  if (config.dropout_rate_hz <= 0.0) return false;
+  const auto slot = static_cast<std::uint32_t>(look.time_s / config.dropout_duration_s);
+  Random random = look.clock.DrawAt(Stream::kDetection, slot, look.pair | 0x800000U);
+  return random.Uniform() < 1.0 - std::exp(-config.dropout_rate_hz * config.dropout_duration_s);
+}
+
+void SetObserver(const Look& look, Detection* out) {
+  out->stamp = look.stamp;
+  out->target = look.target;
+  out->p_WO = look.observer.p_WO;
+  out->p_WO_std_m = look.observer.position_std_m;
+  out->heading_std_rad = look.observer.heading_std_rad;
+}
+
+}  // namespace stg::dynamics

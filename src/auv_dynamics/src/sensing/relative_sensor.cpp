@@ -1,0 +1,133 @@
+#include <cmath>
+
+#include "sensors.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// Range, bearing or both of a target, from the true geometry, with normal noise: of the range its
+/// deviation is a + b r, of azimuth and elevation it is constant. An outlier and a false alarm are
+/// uniform in range and direction.
+class RelativeSensor : public TargetSensor {
+ public:
+  RelativeSensor(const SensingConfig& config, MeasurementKind kind)
+      : config_(config),
+        kind_(kind),
+        bearing_std_(config.bearing_std_deg * kPi / 180.0),
+        cos_half_view_(std::cos(0.5 * config.field_of_view_deg * kPi / 180.0)) {}
+
+  MeasurementKind kind() const override { return kind_; }
+
+  bool Sense(const Look& look, Detection* out) const override {
+    if (!LooksNow(config_, look)) return false;
+    Measured m;
+    if (!Measure(look, &m) && !FalseAlarm(look, &m)) return false;
+    out->kind = kind_;
+    SetObserver(look, out);
+    Tell(look, m, out);
+    return true;
+  }
+
+ private:
+  /// Azimuth and elevation in true world axes.
+  struct Measured {
+    double range_m, azimuth_rad, elevation_rad;
+  };
+
+  bool Measure(const Look& look, Measured* m) const {
+    const Vec3<double> r = look.p_WT() - look.p_WB();
+    const double range = Norm(r);
+    if (range > config_.range_m || range < 1e-9) return false;
+    if (config_.field_of_view_deg < 360.0) {
+      const Mat3<Pack>& R = look.vehicle_state.R_WB;
+      const double ahead = Lane(R.m[0][0], look.lane) * r.x + Lane(R.m[1][0], look.lane) * r.y +
+                           Lane(R.m[2][0], look.lane) * r.z;
+      if (ahead < cos_half_view_ * range) return false;
+    }
+    if (Blind(config_, look)) return false;
+    Random random = look.clock.Draw(Stream::kMeasurement, look.pair);
+    const double share = range / config_.range_m;
+    const double probability = config_.detection_probability *
+                               (1.0 - (1.0 - config_.probability_at_range) * share * share);
+    if (random.Uniform() >= probability) return false;
+    if (random.Uniform() < config_.outlier_probability) {
+      *m = Anywhere(&random);
+      return true;
+    }
+    const double range_std = config_.range_std_m + config_.range_std_share * range;
+    m->range_m = std::abs(range + range_std * random.Normal());
+    m->azimuth_rad = std::atan2(r.y, r.x) + bearing_std_ * random.Normal();
+    m->elevation_rad = std::asin(Clip(r.z / range, -1.0, 1.0)) + bearing_std_ * random.Normal();
+    return true;
+  }
+
+  bool FalseAlarm(const Look& look, Measured* m) const {
+    if (config_.false_alarm_probability <= 0.0) return false;
+    Random random = look.clock.Draw(Stream::kFalseAlarm, look.pair);
+    if (random.Uniform() >= config_.false_alarm_probability) return false;
+    *m = Anywhere(&random);
+    return true;
+  }
+
+  Measured Anywhere(Random* random) const {
+    return {random->Uniform(0.0, config_.range_m), random->Uniform(-kPi, kPi),
+            random->Uniform(-0.5 * kPi, 0.5 * kPi)};
+  }
+
+  /// The measurement in the frame of the vehicle's own navigation.
+  void Tell(const Look& look, const Measured& m, Detection* out) const {
+    const bool has_range = kind_ != MeasurementKind::kBearing;
+    const bool has_bearing = kind_ != MeasurementKind::kRange;
+    out->p_WT = out->p_WO;
+    out->std_m = config_.range_m;
+    out->range_m = out->range_std_m = 0.0;
+    out->azimuth_rad = out->elevation_rad = out->bearing_std_rad = out->mirror_azimuth_rad = 0.0;
+    out->ambiguous = false;
+    if (has_range) {
+      out->range_m = m.range_m;
+      out->range_std_m = config_.range_std_m + config_.range_std_share * m.range_m;
+    }
+    if (!has_bearing) return;
+    out->azimuth_rad = WrapAngle(m.azimuth_rad + look.observer.heading_error_rad);
+    out->elevation_rad = m.elevation_rad;
+    out->bearing_std_rad = bearing_std_;
+    if (config_.ambiguous) TellBothSides(look, out);
+    if (!has_range) return;
+    const double c = std::cos(out->elevation_rad);
+    out->p_WT += Vec3<double>{c * std::cos(out->azimuth_rad), c * std::sin(out->azimuth_rad),
+                              std::sin(out->elevation_rad)} *
+                 m.range_m;
+    out->std_m = Max(out->range_std_m, m.range_m * bearing_std_);
+  }
+
+  /// Port first, whichever is true.
+  static void TellBothSides(const Look& look, Detection* out) {
+    const Mat3<Pack>& R = look.vehicle_state.R_WB;
+    const double heading = std::atan2(Lane(R.m[1][0], look.lane), Lane(R.m[0][0], look.lane)) +
+                           look.observer.heading_error_rad;
+    const double off = std::abs(WrapAngle(out->azimuth_rad - heading));
+    out->ambiguous = true;
+    out->azimuth_rad = WrapAngle(heading + off);
+    out->mirror_azimuth_rad = WrapAngle(heading - off);
+  }
+
+  SensingConfig config_;
+  MeasurementKind kind_;
+  double bearing_std_, cos_half_view_;
+};
+
+}  // namespace
+
+std::unique_ptr<const TargetSensor> MakeRangeSensor(const SensingConfig& config) {
+  return std::make_unique<RelativeSensor>(config, MeasurementKind::kRange);
+}
+
+std::unique_ptr<const TargetSensor> MakeBearingSensor(const SensingConfig& config) {
+  return std::make_unique<RelativeSensor>(config, MeasurementKind::kBearing);
+}
+
+std::unique_ptr<const TargetSensor> MakeRangeBearingSensor(const SensingConfig& config) {
+  return std::make_unique<RelativeSensor>(config, MeasurementKind::kRangeBearing);
+}
+
+}  // namespace stg::dynamics

@@ -1,0 +1,245 @@
+// Dead reckoning against the closed forms of its error model, over many episodes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "physics.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+/// A vehicle that flies as told in open water with dead reckoning that has no errors yet.
+WorldConfig DriftScenario() {
+  WorldConfig s = QuietScenario(1);
+  s.vehicle.model = "kinematic";
+  s.vehicle.max_velocity_mps = {2.0, 0.5, 0.5};
+  s.vehicle.kinematic.min_speed_mps = 0.0;
+  s.vehicle.kinematic.speed_lag_s = 0.1;
+  s.workspace.half_extent_m = 5000.0;
+  s.reset.start_half_extent_m = 5000.0;
+  s.sea.open = true;
+  s.sea.bottom_m = 120.0;
+  NavigationConfig& n = s.navigation;
+  n.kind = "dead_reckoning";
+  n.dvl_scale_std = n.dvl_noise_mps = n.heading_std_deg = n.gyro_walk_deg_per_sqrt_h = 0.0;
+  n.depth_std_m = n.start_std_m = n.current_std_mps = 0.0;
+  return s;
+}
+
+/// Horizontal error along and across the way, and what was stated, of every episode.
+struct Drift {
+  std::vector<double> along, across, stated, squared;  ///< squared: error over variance, 2 numbers
+  double distance_m = 0.0;
+};
+
+double Rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// Flies `seconds` at 2 m/s and a turn rate in `rounds` times kLanes episodes.
+Drift Fly(const WorldConfig& s, double seconds, double turn_radps, int rounds,
+          double depth = 40.0) {
+  Drift drift;
+  World world(s);
+  const auto steps = static_cast<int>(std::lround(seconds / s.time.dt_s));
+  for (int round = 0; round < rounds; ++round) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      world.Reset(lane, static_cast<std::uint64_t>(1000 + round * kLanes + lane), 0,
+                  ResetStage::kMedium);
+    }
+    VehicleState<Pack>& v = world.mutable_vehicle(0);
+    v.p_WB.z = Pack(-depth);
+    const Vec3<Pack> start = v.p_WB;
+    const std::vector<Pack> command{Pack(2.0), Pack(turn_radps), Pack(0.0)};
+    for (int k = 0; k < steps; ++k) world.Step(command);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Vec3<double> p_WB = Lane(world.vehicle(0).p_WB, lane), way = p_WB - Lane(start, lane);
+      const NavState nav = world.Nav(lane, 0);
+      const Vec3<double> error = nav.p_WB - p_WB;
+      const double length = std::max(1e-9, std::hypot(way.x, way.y));
+      drift.along.push_back((error.x * way.x + error.y * way.y) / length);
+      drift.across.push_back((error.y * way.x - error.x * way.y) / length);
+      drift.stated.push_back(nav.position_std_m);
+      drift.squared.push_back((error.x * error.x + error.y * error.y) /
+                              (nav.position_std_m * nav.position_std_m));
+      drift.distance_m = length;
+    }
+  }
+  return drift;
+}
+
+constexpr int kRounds = 100;
+/// Five standard deviations of a standard deviation that is estimated from so many episodes.
+double Tolerance(double std) { return 5.0 * std / std::sqrt(2.0 * kRounds * kLanes); }
+
+TEST(DeadReckoning, WithoutErrorsItIsTheTruth) {
+  const Drift drift = Fly(DriftScenario(), 100.0, 0.02, 1);
+  for (std::size_t e = 0; e < drift.along.size(); ++e) {
+    EXPECT_NEAR(drift.along[e], 0.0, 1e-9);
+    EXPECT_NEAR(drift.across[e], 0.0, 1e-9);
+    EXPECT_EQ(drift.stated[e], 0.0);
+  }
+}
+
+TEST(DeadReckoning, ScaleErrorGrowsWithTheDistanceAlongTheWay) {
+  WorldConfig s = DriftScenario();
+  s.navigation.dvl_scale_std = 0.01;
+  for (const double seconds : {100.0, 400.0}) {
+    const Drift drift = Fly(s, seconds, 0.0, kRounds);
+    const double expected = 0.01 * drift.distance_m;
+    EXPECT_NEAR(Rms(drift.along), expected, Tolerance(expected));
+    EXPECT_LT(Rms(drift.across), 1e-6 * drift.distance_m);
+    EXPECT_NEAR(drift.stated.front(), expected, 0.05 * expected);
+  }
+}
+
+TEST(DeadReckoning, HeadingErrorTurnsTheWay) {
+  WorldConfig s = DriftScenario();
+  s.navigation.heading_std_deg = 0.5;
+  const Drift drift = Fly(s, 400.0, 0.0, kRounds);
+  const double expected = 0.5 * kPi / 180.0 * drift.distance_m;
+  EXPECT_NEAR(Rms(drift.across), expected, Tolerance(expected));
+  EXPECT_NEAR(drift.stated.front(), expected, 0.05 * expected);
+  World world(s);
+  world.Reset(0, 3, 0, ResetStage::kMedium);
+  const NavState nav = world.Nav(0, 0), truth = world.Truth(0, 0);
+  const double yaw =
+      2.0 * std::atan2(nav.q_WB[3], nav.q_WB[0]) - 2.0 * std::atan2(truth.q_WB[3], truth.q_WB[0]);
+  EXPECT_GT(std::abs(yaw), 1e-6);
+  EXPECT_LT(std::abs(yaw), 5.0 * 0.5 * kPi / 180.0);
+  EXPECT_NEAR(nav.heading_std_rad, 0.5 * kPi / 180.0, 1e-12);
+}
+
+TEST(DeadReckoning, NoiseOfPingsIsARandomWalk) {
+  WorldConfig s = DriftScenario();
+  s.navigation.dvl_noise_mps = 0.05;
+  s.navigation.period_s = 2.0;
+  const Drift drift = Fly(s, 400.0, 0.01, kRounds);
+  const double expected = 0.05 * 2.0 * std::sqrt(200.0);
+  EXPECT_NEAR(Rms(drift.along), expected, Tolerance(expected));
+  EXPECT_NEAR(Rms(drift.across), expected, Tolerance(expected));
+  EXPECT_NEAR(drift.stated.front(), expected, 1e-9);
+}
+
+TEST(DeadReckoning, GyroWalkGrowsWithThePowerThreeHalvesOfTime) {
+  WorldConfig s = DriftScenario();
+  s.navigation.gyro_walk_deg_per_sqrt_h = 2.0;
+  const Drift drift = Fly(s, 400.0, 0.0, kRounds);
+  // Integral of a Wiener process of the heading times the speed: q v T^(3/2) / sqrt(3).
+  const double expected = 2.0 * kPi / 180.0 / 60.0 * 2.0 * std::pow(400.0, 1.5) / std::sqrt(3.0);
+  EXPECT_NEAR(Rms(drift.across), expected, Tolerance(expected) + 0.01 * expected);
+  EXPECT_NEAR(drift.stated.front(), expected, 0.02 * expected);
+}
+
+TEST(DeadReckoning, CurrentDriftsItWhereTheLogHasNoBottom) {
+  WorldConfig s = DriftScenario();
+  s.current.velocity_mps = {0.2, 0.0, 0.0};
+  s.navigation.current_std_mps = 0.2;
+  const auto drifted = [&](double altitude_m) {
+    s.navigation.dvl_altitude_m = altitude_m;
+    return Fly(s, 100.0, 0.02, 1);
+  };
+  const Drift over_ground = drifted(100.0), in_water = drifted(50.0);
+  EXPECT_NEAR(std::hypot(over_ground.along[0], over_ground.across[0]), 0.0, 1e-9);
+  // It finds out with its first ping.
+  EXPECT_NEAR(std::hypot(in_water.along[0], in_water.across[0]), 0.2 * 99.0, 1e-9);
+  EXPECT_NEAR(in_water.stated[0], 0.2 * 99.0, 1e-9);
+}
+
+TEST(DeadReckoning, AFixAtTheSurfaceBoundsTheError) {
+  WorldConfig s = DriftScenario();
+  s.navigation.start_std_m = 100.0;
+  s.navigation.gps_std_m = 3.0;
+  const Drift drift = Fly(s, 10.0, 0.0, kRounds, 0.1);
+  // Ten fixes and a prior.
+  const double expected = 1.0 / std::sqrt(10.0 / 9.0 + 1e-4);
+  EXPECT_NEAR(Rms(drift.along), expected, Tolerance(expected));
+  EXPECT_NEAR(drift.stated.front(), expected, 1e-9);
+  EXPECT_NEAR(Fly(s, 10.0, 0.0, 1, 5.0).stated.front(), 100.0, 1e-9);
+}
+
+TEST(DeadReckoning, DepthIsThePressureGauges) {
+  WorldConfig s = DriftScenario();
+  s.navigation.depth_std_m = 0.2;
+  s.navigation.gps_std_m = 3.0;
+  World world(s);
+  std::vector<double> errors;
+  for (int k = 0; k < 500; ++k) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      world.Reset(lane, static_cast<std::uint64_t>(k * kLanes + lane), 0, ResetStage::kMedium);
+      errors.push_back(world.Nav(lane, 0).p_WB.z - world.Truth(lane, 0).p_WB.z);
+    }
+  }
+  EXPECT_NEAR(Rms(errors), 0.2, 5.0 * 0.2 / std::sqrt(2.0 * 500 * kLanes));
+}
+
+TEST(DeadReckoning, StatesWhatItIsOffBy) {
+  // Everything at once, straight on and in circles; the stated deviation is that of the worst
+  // direction, so the squared error over it is at most two on the mean.
+  WorldConfig s = DriftScenario();
+  NavigationConfig defaults;
+  defaults.kind = "dead_reckoning";
+  s.navigation = defaults;
+  const double deviations = 5.0 * 2.0 / std::sqrt(static_cast<double>(kRounds * kLanes));
+  for (const double turn : {0.0, 0.02}) {
+    const Drift drift = Fly(s, 1000.0, turn, kRounds);
+    double mean = 0.0;
+    for (const double d : drift.squared) mean += d / static_cast<double>(drift.squared.size());
+    EXPECT_LT(mean, 2.0 + deviations) << turn;
+    EXPECT_GT(mean, 0.8) << turn;
+  }
+}
+
+TEST(DeadReckoning, VelocityIsThatOfThePosition) {
+  WorldConfig s = DriftScenario();
+  NavigationConfig defaults;
+  defaults.kind = "dead_reckoning";
+  s.navigation = defaults;
+  World world(s);
+  for (int lane = 0; lane < kLanes; ++lane) world.Reset(lane, 5, 0, ResetStage::kMedium);
+  const std::vector<Pack> command{Pack(2.0), Pack(0.0), Pack(0.0)};
+  for (int k = 0; k < 95; ++k) world.Step(command);
+  const NavState a = world.Nav(0, 0);
+  world.Step(command);
+  const NavState b = world.Nav(0, 0);
+  const Vec3<double> v_W = RotationOf(b.q_WB) * b.v_WB_B;
+  EXPECT_NEAR(v_W.x, (b.p_WB.x - a.p_WB.x) / s.time.dt_s, 1e-6);
+  EXPECT_NEAR(v_W.y, (b.p_WB.y - a.p_WB.y) / s.time.dt_s, 1e-6);
+}
+
+TEST(DeadReckoning, LanesAreEpisodesOfTheirOwn) {
+  WorldConfig s = DriftScenario();
+  NavigationConfig defaults;
+  defaults.kind = "dead_reckoning";
+  s.navigation = defaults;
+  World together(s), alone(s);
+  const std::vector<Pack> command{Pack(2.0), Pack(0.05), Pack(0.1)};
+  for (int lane = 0; lane < kLanes; ++lane) together.Reset(lane, 7, 0, ResetStage::kMedium);
+  for (int k = 0; k < 33; ++k) together.Step(command);
+  together.Reset(0, 11, 2, ResetStage::kMedium);  // the others are in the middle of a ping
+  for (int k = 0; k < 57; ++k) together.Step(command);
+  for (int lane = 0; lane < kLanes; ++lane) alone.Reset(lane, 11, 2, ResetStage::kMedium);
+  for (int k = 0; k < 57; ++k) alone.Step(command);
+  const NavState a = together.Nav(0, 0), b = alone.Nav(0, 0);
+  EXPECT_EQ(Norm(a.p_WB - b.p_WB), 0.0);
+  EXPECT_EQ(Norm(a.v_WB_B - b.v_WB_B), 0.0);
+  EXPECT_EQ(a.position_std_m, b.position_std_m);
+}
+
+TEST(PerfectNavigation, TellsTheTruth) {
+  World world(QuietScenario(2));
+  for (int lane = 0; lane < kLanes; ++lane) world.Reset(lane, 1, 0, ResetStage::kMedium);
+  world.Step(NoForce(2));
+  const NavState nav = world.Nav(0, 1), truth = world.Truth(0, 1);
+  EXPECT_EQ(Norm(nav.p_WB - truth.p_WB), 0.0);
+  EXPECT_EQ(nav.position_std_m, 0.0);
+  EXPECT_EQ(nav.heading_std_rad, 0.0);
+}
+
+}  // namespace
+}  // namespace stg::dynamics

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+
+#include "stg_agent/agent_config.hpp"
+#include "stg_agent/packet/neighbour_state.hpp"
+#include "stg_agent/packet/quantiser.hpp"
+
+namespace stg::agent {
+
+/// The packet that carries measurements instead of an estimate.
+///
+/// Layout, least significant bit first: version 4, source 8, generation 18 (1 ms, modulo 262.144
+/// s), position 3 x 15, velocity 3 x 8, deviation of the position 6 (logarithmic, rounded up; 0 is
+/// exact), tracking error 7 (logarithmic), confidence 4, phase 2, link quality 4, saturated 1; two
+/// measurements of 62; one bit to spare; CRC-8 8. A measurement: there 1, target 5, age 10 (an
+/// eighth of a decision), then
+/// - range: where the observer was, against its position now, 9 + 9 + 7; range 14;
+/// - bearing: the same 25; azimuth 11; elevation 10;
+/// - position, range_bearing: the point 3 x 15, as the position.
+/// Of a sensor that cannot tell port from starboard there is one measurement in both places: the
+/// same 25, range 14, azimuth 14, elevation 12, mirrored azimuth 14.
+///
+/// Ranges follow the scenario: positions 1.25 workspace half extents, velocities the vehicle's
+/// limit plus the current, offsets what it can go in the largest age shared, deviation 1e-5 to 1
+/// half extents, tracking error 1e-4 to the workspace diagonal, range 1.25 times that of the
+/// sensor, azimuth a circle, elevation +-2 rad.
+class MeasurementPacket {
+ public:
+  explicit MeasurementPacket(const AgentConfig& scenario);
+
+  /// As PacketCodec::Encode and Decode.
+  Packet Encode(const NeighbourState& state) const;
+  NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now) const;
+
+  /// Largest error of a decoded number: half the distance of two codes.
+  double position_error_m() const { return 0.5 * position_.resolution; }
+  double offset_error_m() const { return 0.5 * offset_.resolution; }
+  double range_error_m() const { return 0.5 * range_.resolution; }
+  double azimuth_error_rad() const { return 0.5 * azimuth_.resolution; }
+  double elevation_error_rad() const { return 0.5 * elevation_.resolution; }
+  /// Distance of two ages [ns].
+  TimeNs age_step() const { return age_step_; }
+
+ private:
+  struct Writer;
+  struct Reader;
+  /// Logarithmic with a zero.
+  struct Logarithm {
+    double lo, inverse;
+    int codes;
+    double step;
+    std::uint64_t Code(double value, double rounding, bool* saturated) const;
+    double Value(std::uint64_t code) const;
+    static Logarithm Of(double lo, double hi, int bits);
+  };
+  void WriteSighting(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
+  void ReadSighting(const NeighbourState& s, Reader* r, dynamics::Detection* d) const;
+  void SetDeviations(const NeighbourState& s, dynamics::Detection* d) const;
+
+  int agents_, targets_;
+  dynamics::MeasurementKind kind_;
+  bool ambiguous_;
+  dynamics::SensingConfig sensing_;
+  double heading_variance_, heading_walk_;  // [rad^2], [rad^2/s]
+  TimeNs age_step_;
+  Quantiser position_, velocity_, unit_, offset_, rise_, range_, azimuth_, elevation_;
+  Quantiser fine_azimuth_, fine_elevation_;
+  Logarithm deviation_, error_;
+};
+
+}  // namespace stg::agent

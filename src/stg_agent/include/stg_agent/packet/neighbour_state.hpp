@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "auv_dynamics/measurements.hpp"
+
+/// What one AUV tells its neighbours.
+namespace stg::agent {
+
+inline constexpr int kPacketBytes = 32;
+using Packet = std::array<std::uint8_t, kPacketBytes>;
+
+/// What packets say about the target.
+enum class PacketLayout {
+  kEstimate,     ///< the sender's estimate
+  kMeasurements  ///< what it measured itself
+};
+
+/// Measurements in one packet.
+inline constexpr int kSightings = 2;
+
+/// State of one AUV and its target estimate, as its neighbours learn it. World axes (ENU).
+struct NeighbourState {
+  int source = 0;               ///< index of the AUV, 0-based
+  TimeNs generation = 0;        ///< time at which this state was true
+  Vec3<double> p_W;             ///< position [m]
+  Vec3<double> v_W;             ///< velocity over ground [m/s]
+  double confidence = 0.0;      ///< observation confidence c (Eq. 13), [0, 1]
+  double tracking_error = 0.0;  ///< tracking error e (Eq. 12) [m]
+  int phase = 0;                ///< 0 search, 1 approach, 2 stable, 3 lost
+  double link_quality = 0.0;    ///< mean quality of the links it receives on, [0, 1]
+  bool has_target = false;      ///< false: the fields below mean nothing and travel as zeros
+  int target = 0;               ///< index of the target
+  TimeNs target_stamp = 0;      ///< time of the target estimate, not after `generation`
+  Vec3<double> p_WT;            ///< estimated target position [m]
+  Vec3<double> v_WT;            ///< estimated target velocity [m/s]
+  double target_std = 0.0;      ///< standard deviation of the estimate, each component [m]
+  // Of the layout kMeasurements, in place of the estimate.
+  double position_std_m = 0.0;  ///< of each horizontal component of p_W, as navigation states it
+  int sightings = 0;            ///< how many of the following mean something
+  /// Own measurements of the target, newest first. Deviations do not travel: everybody knows the
+  /// sensor. Those of the observer's position and heading are the sender's at `generation`.
+  std::array<dynamics::Detection, kSightings> sighting;
+  bool saturated = false;  ///< set by Encode when a value did not fit and was clipped
+};
+
+}  // namespace stg::agent

@@ -1,0 +1,152 @@
+#include "gaussian_mixture.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace stg::agent {
+namespace {
+
+constexpr double kLeastWeight = 1e-4;
+/// Two components this close, in units of the heavier one's covariance of the position and weighed
+/// by the smaller share of the two, are told apart by nothing that is measured.
+constexpr double kTooClose = 0.1;
+/// A third of a normal distribution: weights, offset in deviations, kept share of the variance.
+/// The offsets are those of the best fit in L2 (DeMars, Bishop, Jah 2013); the kept variance is
+/// such that the split has the variance of what it splits.
+constexpr double kOuterWeight = 0.2252246249;
+constexpr double kOffset = 1.0575154615;
+constexpr double kKept = 1.0 - 2.0 * kOuterWeight * kOffset * kOffset;
+
+}  // namespace
+
+GaussianMixture::GaussianMixture(int states, int capacity)
+    : states_(states),
+      stride_((states + 3) & ~3),  // whole registers
+      capacity_(capacity),
+      step_(static_cast<std::size_t>(1 + stride_ + stride_ * stride_)),
+      data_(new double[step_ * static_cast<std::size_t>(capacity)]) {}
+
+GaussianMixture::GaussianMixture(const GaussianMixture& other)
+    : GaussianMixture(other.states_, other.capacity_) {
+  *this = other;
+}
+
+GaussianMixture& GaussianMixture::operator=(const GaussianMixture& other) {
+  assert(step_ == other.step_ && other.size_ <= capacity_);
+  if (this == &other) return *this;
+  size_ = other.size_;
+  std::copy_n(other.data_.get(), static_cast<std::size_t>(size_) * step_, data_.get());
+  return *this;
+}
+
+Gaussian GaussianMixture::Add() {
+  assert(!full());
+  const Gaussian g = at(size_++);
+  std::fill_n(g.weight, step_, 0.0);
+  *g.weight = 1.0;
+  return g;
+}
+
+Gaussian GaussianMixture::Copy(int k) {
+  assert(!full());
+  const Gaussian from = at(k), to = at(size_++);
+  std::copy_n(from.weight, step_, to.weight);
+  return to;
+}
+
+void GaussianMixture::Remove(int k) {
+  --size_;
+  if (k < size_) std::copy_n(at(size_).weight, step_, at(k).weight);
+}
+
+void GaussianMixture::Normalise() {
+  double sum = 0.0;
+  for (int k = 0; k < size_; ++k) sum += *at(k).weight;
+  // All of them impossible: none is more so than the others.
+  const bool none = !(sum > 0.0) || !std::isfinite(sum);
+  for (int k = 0; k < size_; ++k) *at(k).weight = none ? 1.0 / size_ : *at(k).weight / sum;
+}
+
+void GaussianMixture::Split(int k, const double* Pa, double variance) {
+  const double scale = 1.0 / std::sqrt(variance);
+  const Gaussian middle = at(k);
+  for (int r = 0; r < states_; ++r) {
+    const double f = (1.0 - kKept) * scale * scale * Pa[r];
+    double* row = middle.P + r * stride_;
+    for (int c = 0; c < states_; ++c) row[c] -= f * Pa[c];
+  }
+  const double weight = *middle.weight;
+  for (const double side : {-1.0, 1.0}) {
+    const Gaussian outer = Copy(k);
+    *outer.weight = weight * kOuterWeight;
+    for (int r = 0; r < states_; ++r) outer.x[r] += side * kOffset * scale * Pa[r];
+  }
+  *middle.weight = weight * (1.0 - 2.0 * kOuterWeight);
+}
+
+double GaussianMixture::Separation(int i, int j) const {
+  const Gaussian a = at(i), b = at(j);
+  const int s = stride_;
+  const auto sum = [&](int r, int c) {
+    return (*a.weight * a.P[r * s + c] + *b.weight * b.P[r * s + c]) / (*a.weight + *b.weight);
+  };
+  const double xx = sum(0, 0), xy = sum(0, 1), xz = sum(0, 2), yy = sum(1, 1), yz = sum(1, 2),
+               zz = sum(2, 2);
+  const double dx = a.x[0] - b.x[0], dy = a.x[1] - b.x[1], dz = a.x[2] - b.x[2];
+  // Solve by elimination.
+  const double l1 = xy / xx, l2 = xz / xx;
+  const double y2 = yy - l1 * xy, yz2 = yz - l1 * xz;
+  const double l3 = yz2 / y2, z2 = zz - l2 * xz - l3 * yz2;
+  const double ey = dy - l1 * dx, ez = dz - l2 * dx - l3 * ey;
+  const double distance = dx * dx / xx + ey * ey / y2 + ez * ez / z2;
+  const double share = *a.weight * *b.weight / (*a.weight + *b.weight);
+  return distance * share / std::max(*a.weight, *b.weight);
+}
+
+void GaussianMixture::Merge(int into, int from) {
+  const Gaussian a = at(into), b = at(from);
+  const double sum = *a.weight + *b.weight, wa = *a.weight / sum, wb = *b.weight / sum;
+  const double spread = wa * wb;
+  for (int r = 0; r < states_; ++r) {
+    const double dr = a.x[r] - b.x[r];
+    for (int c = 0; c < states_; ++c) {
+      const int i = r * stride_ + c;
+      a.P[i] = wa * a.P[i] + wb * b.P[i] + spread * dr * (a.x[c] - b.x[c]);
+    }
+  }
+  for (int r = 0; r < states_; ++r) a.x[r] = wa * a.x[r] + wb * b.x[r];
+  *a.weight = sum;
+  Remove(from);
+}
+
+void GaussianMixture::Reduce(int most) {
+  if (size_ <= 1) return;
+  for (int k = size_ - 1; k >= 0 && size_ > 1; --k) {
+    if (*at(k).weight < kLeastWeight) Remove(k);
+  }
+  Normalise();
+  for (int i = 0; i < size_; ++i) {
+    for (int j = size_ - 1; j > i; --j) {
+      if (Separation(i, j) < kTooClose) Merge(i, j);
+    }
+  }
+  while (size_ > most) MergeNearest();
+}
+
+void GaussianMixture::MergeNearest() {
+  int a = 0, b = 1;
+  double least = Separation(0, 1);
+  for (int i = 0; i < size_; ++i) {
+    for (int j = i + 1; j < size_; ++j) {
+      const double s = Separation(i, j);
+      if (s >= least) continue;
+      least = s;
+      a = i;
+      b = j;
+    }
+  }
+  Merge(a, b);
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,314 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "filters.hpp"
+#include "observers.hpp"
+
+namespace stg::agent {
+namespace {
+
+using dynamics::Detection;
+
+constexpr int kMostComponents = 28;  ///< while a detection is taken
+constexpr int kKeptComponents = 12;  ///< after it
+constexpr int kSnapshots = 16;
+constexpr std::size_t kMostSightings = 512;
+constexpr std::size_t kOwnSightings = 16;
+
+/// A detection and who made it.
+struct Sighting {
+  Detection detection;
+  int source = 0;
+};
+
+/// The filter at a time, all sightings up to it taken.
+struct Snapshot {
+  Snapshot(const StateLayout& layout, int self, int capacity)
+      : mixture(layout.states(), capacity), observers(layout, self) {}
+
+  TimeNs covers = -1;  ///< sightings up to this time are in it
+  TimeNs stamp = 0;    ///< time of the state
+  TimeNs information = 0;
+  bool observed = false;
+  GaussianMixture mixture;  ///< empty: nothing is known of the target
+  Observers observers;
+};
+
+/// Gaussian-sum filter of one target from measurements of any kind, own and shared, whose sharers'
+/// navigation errors are states of it. Sightings lie in a list by time; one that comes late takes
+/// the filter back to a snapshot before it, from where the list is played again. So the result
+/// depends on the set of sightings that came, not on when and in what order they did.
+class MeasurementFilter : public TargetFilter {
+ public:
+  MeasurementFilter(const AgentConfig& s, int self)
+      : model_(s),
+        self_(self),
+        same_(std::max<TimeNs>(1, s.decision_period() / 16)),
+        memory_(static_cast<TimeNs>(s.track.memory_s * 1e9)),
+        spacing_(static_cast<TimeNs>(s.track.share_spacing_s * 1e9)),
+        oldest_shared_(std::min(memory_, 127 * s.decision_period())),
+        now_(model_.layout(), self, kMostComponents),
+        view_(model_.layout().states(), kKeptComponents) {
+    snapshots_.reserve(kSnapshots);
+    for (int k = 0; k < kSnapshots; ++k) {
+      snapshots_.emplace_back(model_.layout(), self, kKeptComponents);
+    }
+    sightings_.reserve(kMostSightings + 1);
+    own_.reserve(kOwnSightings + 1);
+  }
+
+  bool Takes(dynamics::MeasurementKind, bool) const override { return true; }
+  PacketLayout layout() const override { return PacketLayout::kMeasurements; }
+
+  void Clear() override {
+    sightings_.clear();
+    own_.clear();
+    played_ = 0;
+    now_.covers = -1;
+    now_.stamp = now_.information = 0;
+    now_.observed = false;
+    now_.mixture.Clear();
+    now_.observers.Clear();
+    first_ = 0;
+    kept_ = 0;
+    Keep();
+    belief_ = TargetBelief();
+    estimate_ = TargetEstimate();
+  }
+
+  void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp) override {
+    now_.mixture.Clear();
+    model_.Datum(p_WT, std_m, now_.mixture.Add(), now_.mixture.stride());
+    now_.stamp = now_.information = stamp;
+    now_.covers = stamp - 1;
+    now_.observed = false;
+    played_ = 0;
+    first_ = kept_ = 0;
+    Keep();
+  }
+
+  void Hear(const NeighbourState& packet) override {
+    for (int k = 0; k < packet.sightings; ++k) {
+      Insert({packet.sighting[static_cast<std::size_t>(k)], packet.source});
+    }
+  }
+
+  void Predict(TimeNs) override {}
+
+  void Detect(const Detection& detection) override {
+    Insert({detection, self_});
+    if (own_.size() == kOwnSightings) own_.erase(own_.begin());
+    own_.push_back(detection);
+  }
+
+  void Settle(TimeNs now) override {
+    while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= now) Play();
+    while (!sightings_.empty() && played_ > 0 &&
+           sightings_.front().detection.stamp <= Kept(0).covers) {
+      sightings_.erase(sightings_.begin());
+      --played_;
+    }
+    Tell(now);
+  }
+
+  TargetEstimate estimate() const override { return estimate_; }
+  TargetBelief belief() const override { return belief_; }
+
+  void Tell(bool, NeighbourState* state) const override {
+    state->sightings = 0;
+    for (auto d = own_.rbegin(); d != own_.rend() && state->sightings < kSightings; ++d) {
+      if (state->generation - d->stamp > oldest_shared_) break;
+      if (state->sightings > 0 && state->sighting[0].stamp - d->stamp < spacing_) continue;
+      state->sighting[static_cast<std::size_t>(state->sightings++)] = *d;
+    }
+    state->has_target = state->sightings > 0;
+  }
+
+ private:
+  Snapshot& Kept(int k) { return snapshots_[static_cast<std::size_t>((first_ + k) % kSnapshots)]; }
+
+  void Keep() {
+    if (kept_ == kSnapshots) {
+      first_ = (first_ + 1) % kSnapshots;
+      --kept_;
+    }
+    Kept(kept_++) = now_;
+  }
+
+  static bool Before(const Sighting& a, const Sighting& b) {
+    if (a.detection.stamp != b.detection.stamp) return a.detection.stamp < b.detection.stamp;
+    return a.source < b.source;
+  }
+
+  void Insert(const Sighting& s) {
+    const TimeNs stamp = s.detection.stamp;
+    if (stamp <= Kept(0).covers || stamp < belief_.stamp - memory_) return;
+    const auto at = std::lower_bound(sightings_.begin(), sightings_.end(), s, Before);
+    // The same one again comes with the next packet of its source.
+    for (auto it = at; it != sightings_.end() && it->detection.stamp - stamp < same_; ++it) {
+      if (it->source == s.source) return;
+    }
+    for (auto it = at; it != sightings_.begin();) {
+      --it;
+      if (stamp - it->detection.stamp >= same_) break;
+      if (it->source == s.source) return;
+    }
+    if (sightings_.size() == kMostSightings) return;
+    const auto index = static_cast<std::size_t>(at - sightings_.begin());
+    sightings_.insert(at, s);
+    if (index < played_) Rewind(stamp);
+  }
+
+  /// To a snapshot before a time.
+  void Rewind(TimeNs stamp) {
+    while (kept_ > 1 && Kept(kept_ - 1).covers >= stamp) --kept_;
+    now_ = Kept(kept_ - 1);
+    played_ = 0;
+    while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= now_.covers) {
+      ++played_;
+    }
+  }
+
+  /// Takes the next sighting of the list.
+  void Play() {
+    const Sighting& next = sightings_[played_];
+    const TimeNs stamp = next.detection.stamp;
+    // A snapshot covers whole instants.
+    if (now_.covers < stamp && stamp - Kept(kept_ - 1).covers > memory_ / (kSnapshots - 1) &&
+        now_.covers > Kept(kept_ - 1).covers) {
+      Keep();
+    }
+    ++played_;
+    Take(next);
+    now_.covers = stamp;
+  }
+
+  void Take(const Sighting& s) {
+    const Detection& d = s.detection;
+    GaussianMixture& mixture = now_.mixture;
+    const bool fresh = mixture.size() == 0;
+    if (fresh) {
+      model_.Seed(d, &mixture);
+      now_.observers.Clear();
+    } else {
+      model_.Predict(Seconds(d.stamp - now_.stamp), &mixture);
+    }
+    now_.stamp = d.stamp;
+    const int slot =
+        now_.observers.Admit(s.source, d.stamp, d.p_WO_std_m, d.heading_std_rad, &mixture);
+    if (!fresh) SplitFor(d, slot);
+    const int ways = d.ambiguous ? 2 : 1;
+    if (ways == 2) {
+      if (mixture.size() > kMostComponents / 2) mixture.Reduce(kMostComponents / 2);
+      for (int k = mixture.size() - 1; k >= 0; --k) mixture.Copy(k);
+    }
+    const int one_way = mixture.size() / ways;
+    for (int k = 0; k < mixture.size(); ++k) model_.Update(d, slot, k >= one_way, &mixture, k);
+    mixture.Normalise();
+    mixture.Reduce(kKeptComponents);
+    now_.observed = true;
+    now_.information = d.stamp;
+  }
+
+  /// Splits what is too wide for a linear view of a detection, the weightiest first.
+  void SplitFor(const Detection& d, int slot) {
+    GaussianMixture& mixture = now_.mixture;
+    std::array<double, kMostComponents> excess;
+    double Pa[64], variance = 0.0;
+    const auto measure = [&](int k) {
+      excess[static_cast<std::size_t>(k)] = model_.Excess(d, slot, mixture, k, Pa, &variance);
+    };
+    for (int k = 0; k < mixture.size(); ++k) measure(k);
+    while (mixture.size() + 2 <= mixture.capacity()) {
+      int worst = -1;
+      double most = 0.0;
+      for (int k = 0; k < mixture.size(); ++k) {
+        const double e = excess[static_cast<std::size_t>(k)];
+        const double matters = *mixture.at(k).weight * e;
+        if (e > 1.0 && matters > most) {
+          most = matters;
+          worst = k;
+        }
+      }
+      if (worst < 0) return;
+      measure(worst);  // for its column
+      mixture.Split(worst, Pa, variance);
+      measure(worst);
+      measure(mixture.size() - 2);
+      measure(mixture.size() - 1);
+    }
+  }
+
+  /// The estimate at a time.
+  void Tell(TimeNs now) {
+    belief_ = TargetBelief();
+    estimate_ = TargetEstimate();
+    belief_.stamp = estimate_.stamp = now;
+    belief_.started = now_.mixture.size() > 0;
+    if (!belief_.started) return;
+    belief_.information = now_.information;
+    belief_.observed = now_.observed;
+    view_ = now_.mixture;
+    model_.Predict(Seconds(now - now_.stamp), &view_);
+    const int own = model_.layout().per_observer > 0 ? model_.layout().block(0) : -1;
+    const int stride = view_.stride();
+    Vec3<double> shift;
+    for (int k = 0; k < view_.size(); ++k) {
+      const Gaussian g = view_.at(k);
+      const double w = *g.weight;
+      belief_.p_WT += Vec3<double>{g.x[0], g.x[1], g.x[2]} * w;
+      belief_.v_WT += Vec3<double>{g.x[3], g.x[4], g.x[5]} * w;
+      if (own >= 0) shift += Vec3<double>{g.x[own], g.x[own + 1], 0.0} * w;
+    }
+    Covariance3& P = belief_.P_WT;
+    for (int k = 0; k < view_.size(); ++k) {
+      const Gaussian g = view_.at(k);
+      const double w = *g.weight;
+      const Vec3<double> e = Vec3<double>{g.x[0], g.x[1], g.x[2]} - belief_.p_WT;
+      const auto cov = [&](int r, int c) { return g.P[r * stride + c]; };
+      P.xx += w * (cov(0, 0) + e.x * e.x);
+      P.xy += w * (cov(0, 1) + e.x * e.y);
+      P.xz += w * (cov(0, 2) + e.x * e.z);
+      P.yy += w * (cov(1, 1) + e.y * e.y);
+      P.yz += w * (cov(1, 2) + e.y * e.z);
+      P.zz += w * (cov(2, 2) + e.z * e.z);
+      // Of the estimate: what the vehicle steers by moves with its own navigation.
+      Vec3<double> f = e;
+      double own_x = cov(0, 0), own_y = cov(1, 1);
+      if (own >= 0) {
+        f += Vec3<double>{g.x[own], g.x[own + 1], 0.0} - shift;
+        own_x += 2.0 * cov(0, own) + cov(own, own);
+        own_y += 2.0 * cov(1, own + 1) + cov(own + 1, own + 1);
+      }
+      estimate_.pp += w * (own_x + own_y + cov(2, 2) + Dot(f, f)) / 3.0;
+      estimate_.vv += w * (cov(3, 3) + cov(4, 4) + cov(5, 5)) / 3.0;
+      estimate_.pv += w * (cov(0, 3) + cov(1, 4) + cov(2, 5)) / 3.0;
+    }
+    estimate_.p_WT = belief_.p_WT + shift;
+    estimate_.v_WT = belief_.v_WT;
+  }
+
+  SightingModel model_;
+  int self_;
+  TimeNs same_;  // two sightings of one source closer than this are one
+  TimeNs memory_, spacing_, oldest_shared_;
+  std::vector<Sighting> sightings_;  // by time, then by source
+  std::size_t played_ = 0;           // so many of them are in now_
+  std::vector<Detection> own_;       // by time, newest last
+  Snapshot now_;
+  std::vector<Snapshot> snapshots_;  // a ring
+  int first_ = 0, kept_ = 0;
+  GaussianMixture view_;
+  TargetBelief belief_;
+  TargetEstimate estimate_;
+};
+
+}  // namespace
+
+std::unique_ptr<TargetFilter> MakeMeasurementFilter(const AgentConfig& scenario, const int& self) {
+  return std::make_unique<MeasurementFilter>(scenario, self);
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,35 @@
+#include "stg_agent/estimation/track_config.hpp"
+
+#include "stg_agent/estimation/target_filter.hpp"
+
+namespace stg::agent {
+
+void Describe(TrackConfig* c, config::Table* t) {
+  t->Section("track");
+  t->Add("process_accel_std_mps2", &c->process_accel_std_mps2, config::Positive(100), "m/s^2",
+         "acoustic mode: white acceleration of the target model");
+  t->Add("measurement_std_m", &c->measurement_std_m, config::Positive(1e4), "m",
+         "smallest standard deviation given to a detection");
+  t->Add("initial_speed_std_mps", &c->initial_speed_std_mps, config::Positive(100), "m/s",
+         "standard deviation of each velocity component of a new track");
+  t->Add("gate_sigma", &c->gate_sigma, config::Positive(1e3), "-",
+         "own detections farther off are set aside, three in a row restart the track");
+  t->Add("lost_std_m", &c->lost_std_m, config::Positive(1e4), "m",
+         "a track whose position is no better than this counts as lost");
+  t->Add("neighbour_max_age_s", &c->neighbour_max_age_s, config::Positive(1e5), "s",
+         "a neighbour is forgotten after this silence");
+  t->AddOptional(
+      "filter", config::Name(&c->filter, TargetFilters().Names()), "kalman", config::kNone, "-",
+      "target filter: of positions and shared estimates, or of measurements of any kind");
+  t->AddOptional("velocity_std_mps", &c->velocity_std_mps, "0.0", config::NonNegative(100), "m/s",
+                 "measurements: standard deviation of each component of the target's velocity; 0: "
+                 "target.max_speed_mps");
+  t->AddOptional("velocity_memory_s", &c->velocity_memory_s, "60.0", config::Positive(1e5), "s",
+                 "measurements: correlation time of the target's velocity");
+  t->AddOptional("memory_s", &c->memory_s, "60.0", config::Positive(1e5), "s",
+                 "measurements: oldest measurement that is still taken");
+  t->AddOptional("share_spacing_s", &c->share_spacing_s, "5.0", config::NonNegative(1e5), "s",
+                 "measurements: least time between the two measurements in one packet");
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,297 @@
+#include "stg_agent/packet/measurement_packet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "auv_common/error.hpp"
+#include "auv_common/numbers/attitude.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
+#include "auv_dynamics/sensing/target_sensor.hpp"
+#include "bits.hpp"
+
+namespace stg::agent {
+
+using dynamics::Detection;
+using dynamics::MeasurementKind;
+
+namespace {
+
+constexpr std::uint64_t kMeasurementVersion = 2;
+constexpr int kSourceBits = 8, kGenerationBits = 18, kTargetBits = 5, kAgeBits = 10;
+constexpr int kPlaceBits = 15, kSpeedBits = 8, kUnitBits = 4, kDeviationBits = 6, kErrorBits = 7;
+constexpr int kOffsetBits = 9, kRiseBits = 7, kRangeBits = 14, kAzimuthBits = 11;
+constexpr int kElevationBits = 10, kFineAzimuthBits = 14, kFineElevationBits = 12;
+constexpr int kCrcFirst = 8 * kPacketBytes - 8;
+constexpr int kFirstSighting = 4 + kSourceBits + kGenerationBits + 3 * kPlaceBits + 3 * kSpeedBits +
+                               kDeviationBits + kErrorBits + kUnitBits + 2 + kUnitBits + 1;
+constexpr int kSightingBits = 62;
+static_assert(kFirstSighting + kSightings * kSightingBits <= kCrcFirst, "both measurements fit");
+constexpr double kPlaceMargin = 1.25;
+
+double Length(const std::array<double, 3>& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+[[noreturn]] void RefusePacket(const std::string& why) { throw UserError("packet: " + why); }
+
+}  // namespace
+
+/// Fields one after the other.
+struct MeasurementPacket::Writer {
+  Words words{};
+  int at = 0;
+  bool saturated = false;
+
+  void Bits(std::uint64_t code, int count) {
+    Put(&words, {at, count}, code);
+    at += count;
+  }
+  void Number(const Quantiser& q, double value, int count) {
+    Bits(Code(q, value, &saturated), count);
+  }
+  void Vector(const Quantiser& q, const Vec3<double>& v, int count) {
+    Number(q, v.x, count);
+    Number(q, v.y, count);
+    Number(q, v.z, count);
+  }
+};
+
+struct MeasurementPacket::Reader {
+  Words words{};
+  int at = 0;
+  bool unused_code = false;
+
+  std::uint64_t Bits(int count) {
+    const std::uint64_t code = Get(words, {at, count});
+    at += count;
+    return code;
+  }
+  double Number(const Quantiser& q, int count) { return Value(q, Bits(count), &unused_code); }
+  Vec3<double> Vector(const Quantiser& q, int count) {
+    const double x = Number(q, count), y = Number(q, count);
+    return {x, y, Number(q, count)};
+  }
+};
+
+MeasurementPacket::Logarithm MeasurementPacket::Logarithm::Of(double lo, double hi, int bits) {
+  const int codes = (1 << bits) - 1;  // besides zero
+  const double step = std::log(hi / lo) / (codes - 1);
+  return {lo, 1.0 / step, codes, step};
+}
+
+std::uint64_t MeasurementPacket::Logarithm::Code(double value, double rounding,
+                                                 bool* saturated) const {
+  if (value <= 0.0) return 0;
+  const double code = 1.0 + std::floor(std::log(value / lo) * inverse + rounding);
+  if (code > codes) *saturated = true;
+  return static_cast<std::uint64_t>(Clip(code, 1.0, static_cast<double>(codes)));
+}
+
+double MeasurementPacket::Logarithm::Value(std::uint64_t code) const {
+  return code == 0 ? 0.0 : lo * std::exp(step * static_cast<double>(code - 1));
+}
+
+MeasurementPacket::MeasurementPacket(const AgentConfig& s)
+    : agents_(s.agents), targets_(s.target.count), sensing_(s.sensing) {
+  const double half = s.workspace.half_extent_m;
+  const double current = Length(s.current.velocity_mps);
+  const double speed = Length(s.vehicle.max_velocity_mps) + current;
+  const double longest = std::min(s.track.memory_s, 127.0 * s.decision_dt_s());
+  const auto sensor = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing);
+  const auto navigation =
+      dynamics::NavigationSystems().Make(s.navigation.kind, {s.navigation, s.agents, s.time.dt_s});
+  kind_ = sensor->kind();
+  ambiguous_ = s.sensing.ambiguous &&
+               (kind_ == MeasurementKind::kBearing || kind_ == MeasurementKind::kRangeBearing);
+  const double degree = kPi / 180.0;
+  heading_variance_ = heading_walk_ = 0.0;
+  if (!navigation->perfect()) {
+    heading_variance_ = std::pow(s.navigation.heading_std_deg * degree, 2);
+    heading_walk_ = std::pow(s.navigation.gyro_walk_deg_per_sqrt_h * degree, 2) / 3600.0;
+  }
+  age_step_ = std::max<TimeNs>(1, s.decision_period() / 8);
+  position_ = Quantiser::Signed(kPlaceMargin * half, kPlaceBits);
+  velocity_ = Quantiser::Signed(speed, kSpeedBits);
+  unit_ = Quantiser::Unsigned(0.0, 1.0, kUnitBits);
+  offset_ = Quantiser::Signed(speed * longest, kOffsetBits);
+  rise_ = Quantiser::Signed((s.vehicle.max_velocity_mps[2] + current) * longest, kRiseBits);
+  range_ = Quantiser::Unsigned(0.0, 1.25 * s.sensing.range_m, kRangeBits);
+  azimuth_ = Quantiser::Signed(kPi, kAzimuthBits);
+  elevation_ = Quantiser::Signed(2.0, kElevationBits);
+  fine_azimuth_ = Quantiser::Signed(kPi, kFineAzimuthBits);
+  fine_elevation_ = Quantiser::Signed(2.0, kFineElevationBits);
+  deviation_ = Logarithm::Of(1e-5 * half, half, kDeviationBits);
+  error_ = Logarithm::Of(1e-4 * half, 2.0 * std::sqrt(3.0) * half, kErrorBits);
+}
+
+Packet MeasurementPacket::Encode(const NeighbourState& s) const {
+  if (!Finite(s.p_W) || !Finite(s.v_W) ||
+      !std::isfinite(s.confidence + s.tracking_error + s.link_quality + s.position_std_m)) {
+    throw std::invalid_argument("PacketCodec::Encode: non-finite value");
+  }
+  if (s.source < 0 || s.source >= agents_ || s.phase < 0 || s.phase > 3 || s.generation < 0 ||
+      s.sightings < 0 || s.sightings > kSightings) {
+    throw std::invalid_argument("PacketCodec::Encode: value without a code");
+  }
+  Writer w;
+  w.Bits(kMeasurementVersion, 4);
+  w.Bits(static_cast<std::uint64_t>(s.source), kSourceBits);
+  w.Bits(static_cast<std::uint64_t>(Ticks(s.generation)) & ((1U << kGenerationBits) - 1),
+         kGenerationBits);
+  w.Vector(position_, s.p_W, kPlaceBits);
+  w.Vector(velocity_, s.v_W, kSpeedBits);
+  w.Bits(deviation_.Code(s.position_std_m, 1.0 - 1e-9, &w.saturated), kDeviationBits);
+  w.Bits(error_.Code(s.tracking_error, 0.5, &w.saturated), kErrorBits);
+  w.Number(unit_, s.confidence, kUnitBits);
+  w.Bits(static_cast<std::uint64_t>(s.phase), 2);
+  w.Number(unit_, s.link_quality, kUnitBits);
+  const int saturated_bit = w.at;
+  if (s.has_target) {
+    const int fit = ambiguous_ ? 1 : kSightings;
+    for (int k = 0; k < std::min(s.sightings, fit); ++k) {
+      w.at = kFirstSighting + k * kSightingBits;
+      WriteSighting(s, s.sighting[static_cast<std::size_t>(k)], &w);
+    }
+  }
+  w.at = saturated_bit;
+  w.Bits(w.saturated ? 1 : 0, 1);
+  w.at = kCrcFirst;
+  w.Bits(Checksum(w.words), 8);
+  Packet packet;
+  std::memcpy(packet.data(), w.words.data(), packet.size());
+  return packet;
+}
+
+void MeasurementPacket::WriteSighting(const NeighbourState& s, const Detection& d,
+                                      Writer* w) const {
+  if (d.target < 0 || d.target >= targets_ || d.kind != kind_ || d.stamp > s.generation) {
+    throw std::invalid_argument("PacketCodec::Encode: value without a code");
+  }
+  const TimeNs steps = (s.generation - d.stamp + age_step_ / 2) / age_step_;
+  constexpr TimeNs kMost = (1 << kAgeBits) - 1;
+  w->saturated |= steps > kMost;
+  w->Bits(1, 1);
+  w->Bits(static_cast<std::uint64_t>(d.target), kTargetBits);
+  w->Bits(static_cast<std::uint64_t>(std::min(steps, kMost)), kAgeBits);
+  const bool point = kind_ == MeasurementKind::kPosition || kind_ == MeasurementKind::kRangeBearing;
+  if (point && !ambiguous_) {
+    w->Vector(position_, d.p_WT, kPlaceBits);
+    return;
+  }
+  const Vec3<double> offset = d.p_WO - s.p_W;
+  w->Number(offset_, offset.x, kOffsetBits);
+  w->Number(offset_, offset.y, kOffsetBits);
+  w->Number(rise_, offset.z, kRiseBits);
+  if (ambiguous_) {
+    w->Number(range_, d.range_m, kRangeBits);
+    w->Number(fine_azimuth_, WrapAngle(d.azimuth_rad), kFineAzimuthBits);
+    w->Number(fine_elevation_, d.elevation_rad, kFineElevationBits);
+    w->Number(fine_azimuth_, WrapAngle(d.mirror_azimuth_rad), kFineAzimuthBits);
+  } else if (kind_ == MeasurementKind::kRange) {
+    w->Number(range_, d.range_m, kRangeBits);
+  } else {
+    w->Number(azimuth_, WrapAngle(d.azimuth_rad), kAzimuthBits);
+    w->Number(elevation_, d.elevation_rad, kElevationBits);
+  }
+}
+
+NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t size,
+                                         TimeNs now) const {
+  if (size != kPacketBytes) {
+    RefusePacket(std::to_string(size) + " bytes instead of " + std::to_string(kPacketBytes));
+  }
+  Reader r;
+  std::memcpy(r.words.data(), data, size);
+  if (Checksum(r.words) != Get(r.words, {kCrcFirst, 8})) RefusePacket("wrong checksum");
+  const std::uint64_t version = r.Bits(4);
+  if (version != kMeasurementVersion) {
+    RefusePacket("version " + std::to_string(version) + " is unknown");
+  }
+  NeighbourState s;
+  s.source = static_cast<int>(r.Bits(kSourceBits));
+  if (s.source >= agents_) RefusePacket("source " + std::to_string(s.source) + " does not exist");
+  const std::int64_t ticks = Ticks(now);
+  const std::int64_t behind = (ticks - static_cast<std::int64_t>(r.Bits(kGenerationBits))) &
+                              ((std::int64_t{1} << kGenerationBits) - 1);
+  if (ticks - behind < 0) RefusePacket("generated after the receiver's clock");
+  s.generation = std::min((ticks - behind) * kTick, now);
+  s.p_W = r.Vector(position_, kPlaceBits);
+  s.v_W = r.Vector(velocity_, kSpeedBits);
+  s.position_std_m = deviation_.Value(r.Bits(kDeviationBits));
+  s.tracking_error = error_.Value(r.Bits(kErrorBits));
+  s.confidence = r.Number(unit_, kUnitBits);
+  s.phase = static_cast<int>(r.Bits(2));
+  s.link_quality = r.Number(unit_, kUnitBits);
+  s.saturated = r.Bits(1) != 0;
+  const int fit = ambiguous_ ? 1 : kSightings;
+  for (int k = 0; k < fit; ++k) {
+    r.at = kFirstSighting + k * kSightingBits;
+    if (r.Bits(1) == 0) continue;
+    ReadSighting(s, &r, &s.sighting[static_cast<std::size_t>(s.sightings++)]);
+  }
+  s.has_target = s.sightings > 0;
+  if (s.has_target) {
+    s.target = s.sighting[0].target;
+    s.target_stamp = s.sighting[0].stamp;
+  }
+  if (r.unused_code) RefusePacket("a field holds an unused code");
+  return s;
+}
+
+void MeasurementPacket::ReadSighting(const NeighbourState& s, Reader* r, Detection* d) const {
+  *d = Detection();
+  d->kind = kind_;
+  d->ambiguous = ambiguous_;
+  d->target = static_cast<int>(r->Bits(kTargetBits));
+  if (d->target >= targets_) {
+    RefusePacket("target " + std::to_string(d->target) + " does not exist");
+  }
+  const TimeNs age = static_cast<TimeNs>(r->Bits(kAgeBits)) * age_step_;
+  d->stamp = s.generation - age;
+  if (d->stamp < 0) RefusePacket("measured before the start");
+  const bool point = kind_ == MeasurementKind::kPosition || kind_ == MeasurementKind::kRangeBearing;
+  if (point && !ambiguous_) {
+    d->p_WT = r->Vector(position_, kPlaceBits);
+    // Where it was does not travel; only the directions of the deviations depend on it.
+    d->p_WO = s.p_W - s.v_W * Seconds(age);
+    const Vec3<double> line = d->p_WT - d->p_WO;
+    d->range_m = Norm(line);
+    d->azimuth_rad = std::atan2(line.y, line.x);
+    d->elevation_rad = std::atan2(line.z, std::hypot(line.x, line.y));
+  } else {
+    const double x = r->Number(offset_, kOffsetBits), y = r->Number(offset_, kOffsetBits);
+    d->p_WO = s.p_W + Vec3<double>{x, y, r->Number(rise_, kRiseBits)};
+    d->p_WT = d->p_WO;
+    if (ambiguous_) {
+      d->range_m = r->Number(range_, kRangeBits);
+      d->azimuth_rad = r->Number(fine_azimuth_, kFineAzimuthBits);
+      d->elevation_rad = r->Number(fine_elevation_, kFineElevationBits);
+      d->mirror_azimuth_rad = r->Number(fine_azimuth_, kFineAzimuthBits);
+    } else if (kind_ == MeasurementKind::kRange) {
+      d->range_m = r->Number(range_, kRangeBits);
+    } else {
+      d->azimuth_rad = r->Number(azimuth_, kAzimuthBits);
+      d->elevation_rad = r->Number(elevation_, kElevationBits);
+    }
+  }
+  SetDeviations(s, d);
+}
+
+void MeasurementPacket::SetDeviations(const NeighbourState& s, Detection* d) const {
+  d->p_WO_std_m = s.position_std_m;
+  d->heading_std_rad = std::sqrt(heading_variance_ + heading_walk_ * Seconds(d->stamp));
+  d->bearing_std_rad = kind_ == MeasurementKind::kBearing || kind_ == MeasurementKind::kRangeBearing
+                           ? sensing_.bearing_std_deg * kPi / 180.0
+                           : 0.0;
+  d->range_std_m = kind_ == MeasurementKind::kRange || kind_ == MeasurementKind::kRangeBearing
+                       ? sensing_.range_std_m + sensing_.range_std_share * d->range_m
+                       : 0.0;
+  d->std_m = kind_ == MeasurementKind::kPosition
+                 ? sensing_.noise_std_m
+                 : std::max(d->range_std_m, d->range_m * d->bearing_std_rad);
+}
+
+}  // namespace stg::agent
