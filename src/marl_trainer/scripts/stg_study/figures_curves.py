@@ -130,7 +130,7 @@ def per_seed(study, results, scenario, folder):
     styles = ["-", "--", ":", "-."]
     for axis, (name, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
         drawn = []
-        for method in methods:
+        for method in comparable(methods, metric):
             for i, seed in enumerate(results.seeds(scenario, method.name)):
                 values = np.array(results.curve(scenario, method.name, seed, metric))
                 drawn.append(values)
