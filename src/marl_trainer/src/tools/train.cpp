@@ -123,10 +123,9 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
                                   app.count("--train-on") + app.count("--set") >
                               0;
   const bool kept = earlier && !names_scenario;
-  const stg::Scenario scenario =
-      kept ? earlier->scenario
-           : stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, condition,
-                                    overrides);
+  const stg::Scenario scenario = kept ? earlier->scenario
+                                      : stg::LoadNamedScenario(stg::config::ScenarioFolder(),
+                                                               scenario_name, condition, overrides);
   stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;

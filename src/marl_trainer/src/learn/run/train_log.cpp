@@ -145,7 +145,8 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   const double left = static_cast<double>(std::max<std::int64_t>(total_steps_ - r.env_steps, 0));
   char text[400];
   std::snprintf(text, sizeof text, "%5.1f%% %9" PRId64 " steps %6.1f s  %6.0f steps/s  ETA %4.0f s",
-                PercentDone(r.env_steps, total_steps_), r.env_steps, r.wall_seconds, rate, left / std::max(rate, 1.0));
+                PercentDone(r.env_steps, total_steps_), r.env_steps, r.wall_seconds, rate,
+                left / std::max(rate, 1.0));
   *lines_ << text;
   if (r.validated) {
     std::snprintf(text, sizeof text, " | return %7.1f tail %.4f m lost %.3f contacts %.2f",
