@@ -59,8 +59,9 @@ class VehicleCommands {
   std::vector<double> Efforts() const;
 
   Hear hear_;
-  std::string vehicle_;
-  dynamics::Space actuators_;
+  dynamics::VehicleConfig vehicle_;
+  std::vector<dynamics::Space> actuators_;  ///< [agents]
+  std::size_t row_;                         ///< numbers of an AUV in values_
   bool steered_;  ///< by autopilots, which command actuators
   std::unique_ptr<dynamics::Helm> helm_;  ///< of those on board, else null
   int parts_;
@@ -68,7 +69,7 @@ class VehicleCommands {
   std::vector<ros::Subscriber> subscribers_;
   std::vector<dynamics::Wrench<double>> wrenches_;
   std::vector<dynamics::Wrench<Pack>> wrenches_of_lanes_;
-  std::vector<double> values_;  ///< [agents, actuators]
+  std::vector<double> values_;  ///< [agents, row_]
   std::vector<Pack> values_of_lanes_;
   std::vector<Vec3<Pack>> v_des_W_;  ///< [agents], for the helm
 };

@@ -29,8 +29,8 @@ visualization_msgs::MarkerArray BuildMarkers(const SwarmView& view, const Marker
 /// in a view of a whole field, or of a band around a target.
 inline double UnitOf(const SwarmView& view, const MarkerStyle& style) {
   const double unit = view.scene.radius_m * style.vehicle_scale;
-  return std::max(unit, style.whole_workspace ? 0.03 * view.scene.half_extent_m
-                                              : 0.06 * view.scene.band_hi_m);
+  return std::max(
+      unit, style.whole_workspace ? 0.03 * view.scene.half_extent_m : 0.06 * view.scene.band_hi_m);
 }
 /// Height of letters [m].
 inline double LettersOf(const SwarmView& view, const MarkerStyle& style) {
