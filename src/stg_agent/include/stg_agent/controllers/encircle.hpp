@@ -18,14 +18,14 @@ struct EncircleOptions {
   double lead_s = 4.0;             ///< the vehicle is taken to be where it will be then
   double spread_gain = 0.5;        ///< change of speed per radian off the middle of the gap
   double spread_limit = 0.35;      ///< largest such change
-  double clearance_m = 50.0;       ///< others are to be missed by this, in the plane
+  double clearance_m = 60.0;       ///< others are to be missed by this, in the plane
   double doubt_mps = 0.5;          ///< and by this times the age of what they said
   double mate_clearance_m = 25.0;  ///< the same of others on the own circle, whom spread keeps off
   double horizon_s = 45.0;         ///< closest approaches later than this do not matter
   double layer_m = 20.0;           ///< others this much above or below do not matter
   double depth_gain_ps = 0.06;     ///< climb rate per missing depth
   double climb_mps = 0.25;         ///< largest climb rate that is asked for
-  double ring = 0.22;              ///< two circles, this share inside and outside of d*
+  double ring = 0.2;               ///< two circles, this share inside and outside of d*
   double ring_team = 10.0;         ///< of teams larger than this
 };
 
