@@ -35,6 +35,18 @@ REASONS = (
 )  # fmt: skip
 ODOM = re.compile(r"^/(auv|target)_(\d+)/odom$")
 TASK = re.compile(r"^/auv_(\d+)/task_state$")
+# Of episodes in open water; empty in others.
+FIELD = (
+    "estimate_rmse nees estimate_known information_age band_share time_lost time_to_reacquire"
+    " losses spread near_pairs min_altitude min_clearance groundings collisions packets"
+    " packet_loss modem_energy"
+).split()
+EPISODE = (
+    "episode t seed scenario policy_id steps complete episode_return tail_distance"
+    " tracking_error lost_rate action_norm saturation_rate control_cost"
+    " communication_quality band_rate colliding_pairs tail_colliding_pairs min_separation"
+    " time_to_band deadline_misses channel_misses"
+).split()
 TABLES = {
     "poses": "episode t auv x y z qw qx qy qz u v w p q r distance".split(),
     "targets": "episode t target x y z vx vy vz".split(),
@@ -49,12 +61,7 @@ TABLES = {
     "steps": (
         "episode t step reward mean_distance colliding_pairs smallest_separation truncated"
     ).split(),
-    "episodes": (
-        "episode t seed scenario policy_id steps complete episode_return tail_distance"
-        " tracking_error lost_rate action_norm saturation_rate control_cost"
-        " communication_quality band_rate colliding_pairs tail_colliding_pairs min_separation"
-        " time_to_band deadline_misses channel_misses"
-    ).split(),
+    "episodes": EPISODE + FIELD,
 }
 
 
@@ -228,7 +235,9 @@ def add_step(run, m):
 def add_summary(run, m):
     """Adds one EpisodeSummary."""
     # Older bags lack the newest columns.
-    values = {name: getattr(m, name) for name in TABLES["episodes"][2:-1]}
+    values = {name: getattr(m, name) for name in EPISODE[2:-1]}
+    field = getattr(m, "field", False)
+    values.update({name: getattr(m, name) if field else "" for name in FIELD})
     values["channel_misses"] = getattr(m, "channel_misses", "")
     values["complete"] = int(m.complete)
     run.add("episodes", episode=m.episode, t=m.header.stamp.to_sec(), **values)

@@ -77,6 +77,7 @@ class WholeBag(WithFolder):
         self.assertEqual(len(read_table(self.out, "steps")), 50)
         (episode,) = read_table(self.out, "episodes")
         self.assertEqual(float(episode["episode_return"]), 100.0)
+        self.assertEqual(float(episode["spread"]), 0.75)
 
     def test_figure_is_written_in_both_formats(self):
         synthetic_bag.write(str(self.bag), 3.0)
