@@ -77,8 +77,8 @@ void World::Step(const std::vector<Pack>& commands) {
     const int id = static_cast<int>(i);
     if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
     fleet_[id].Step(commands.data() + i * inputs,
-                 {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
-                 internal_.data() + i * internals);
+                    {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
+                    internal_.data() + i * internals);
     if (open_) {
       sea_.Apply(id, &vehicles_[i]);
     } else {

@@ -76,9 +76,10 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   if (auto violation = FindConflict(s.sensing, s.decision_dt_s())) return violation;
   for (const std::string& model : s.vehicle.models) {
     if (Autopilots().Has(model) == Autopilots().Has(s.vehicle.models[0])) continue;
-    return Violation{{"vehicle.models"},
-                     "vehicles that autopilots steer fly with their like, not with those that force "
-                     "and moment command"};
+    return Violation{
+        {"vehicle.models"},
+        "vehicles that autopilots steer fly with their like, not with those that force "
+        "and moment command"};
   }
   if (Autopilots().Has(s.vehicle.model_of(0))) {
     if (s.control.interface != ActionInterface::kVelocity3) {

@@ -46,12 +46,12 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
                         const T& matters) const {
   const T zero(0.0), one(1.0);
   const Level<T> closing = w - v;
-  const T time = Clip(-Dot(r, closing) / Max(Dot(closing, closing), T(1e-4)), zero,
-                      T(options.horizon_s));
+  const T time =
+      Clip(-Dot(r, closing) / Max(Dot(closing, closing), T(1e-4)), zero, T(options.horizon_s));
   const Level<T> miss = r + closing * time;
   const T distance = Norm(miss);
-  const T strength = matters * Max(one - distance / clearance, zero) *
-                     (one - time * T(1.0 / options.horizon_s));
+  const T strength =
+      matters * Max(one - distance / clearance, zero) * (one - time * T(1.0 / options.horizon_s));
   // Head-on there is no side to pass it on: then to starboard.
   const T range = Max(Norm(r), T(1e-3));
   const Level<T> starboard{r.y / range, -r.x / range};

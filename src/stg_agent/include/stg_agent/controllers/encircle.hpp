@@ -12,21 +12,21 @@ namespace stg::agent {
 
 /// Constants of the law. Lengths and speeds are those of the sea.
 struct EncircleOptions {
-  double slow_mps = 1.0;        ///< over ground, on the side of the circle that runs back
-  double fast_mps = 2.1;        ///< over ground, on the way to the circle and at most
-  double inward_gain = 3.0;     ///< how steeply the way to the circle points at it
-  double lead_s = 4.0;          ///< the vehicle is taken to be where it will be then
-  double spread_gain = 0.5;     ///< change of speed per radian off the middle of the gap
-  double spread_limit = 0.35;   ///< largest such change
-  double clearance_m = 50.0;    ///< others are to be missed by this, in the plane
-  double doubt_mps = 0.5;       ///< and by this times the age of what they said
+  double slow_mps = 1.0;           ///< over ground, on the side of the circle that runs back
+  double fast_mps = 2.1;           ///< over ground, on the way to the circle and at most
+  double inward_gain = 3.0;        ///< how steeply the way to the circle points at it
+  double lead_s = 4.0;             ///< the vehicle is taken to be where it will be then
+  double spread_gain = 0.5;        ///< change of speed per radian off the middle of the gap
+  double spread_limit = 0.35;      ///< largest such change
+  double clearance_m = 60.0;       ///< others are to be missed by this, in the plane
+  double doubt_mps = 0.5;          ///< and by this times the age of what they said
   double mate_clearance_m = 25.0;  ///< the same of others on the own circle, whom spread keeps off
-  double horizon_s = 45.0;      ///< closest approaches later than this do not matter
-  double layer_m = 20.0;        ///< others this much above or below do not matter
-  double depth_gain_ps = 0.06;  ///< climb rate per missing depth
-  double climb_mps = 0.25;      ///< largest climb rate that is asked for
-  double ring = 0.22;           ///< two circles, this share inside and outside of d*
-  double ring_team = 10.0;      ///< of teams larger than this
+  double horizon_s = 45.0;         ///< closest approaches later than this do not matter
+  double layer_m = 20.0;           ///< others this much above or below do not matter
+  double depth_gain_ps = 0.06;     ///< climb rate per missing depth
+  double climb_mps = 0.25;         ///< largest climb rate that is asked for
+  double ring = 0.2;               ///< two circles, this share inside and outside of d*
+  double ring_team = 10.0;         ///< of teams larger than this
 };
 
 /// Calls visit(name, field, largest) for every constant that a user may set.
@@ -77,9 +77,9 @@ T Norm(const Level<T>& a) {
 template <class T>
 struct Circler {
   T on_circle;  ///< 1 or 0
-  Level<T> q;  ///< position [m]
-  Level<T> w;  ///< velocity over ground [m/s]
-  T z;         ///< height in the world [m]
+  Level<T> q;   ///< position [m]
+  Level<T> w;   ///< velocity over ground [m/s]
+  T z;          ///< height in the world [m]
 };
 
 /// @param p_WT, v_T of the target now, as this AUV believes
@@ -97,10 +97,11 @@ Circler<T> CircleOn(const NeighbourSight<T>& n, const Vec3<T>& p_WT, const Level
   const Level<T> straight{n.p_WN.x - p_WT.x, n.p_WN.y - p_WT.y};
   const Level<T> relative = v - v_T;
   const Level<T> turned{c * relative.x - s * relative.y, s * relative.x + c * relative.y};
-  return {Select(near, T(1.0), T(0.0)),
-          {Select(near, c * q.x - s * q.y, straight.x), Select(near, s * q.x + c * q.y, straight.y)},
-          {turned.x + v_T.x, turned.y + v_T.y},
-          n.p_WN.z};
+  return {
+      Select(near, T(1.0), T(0.0)),
+      {Select(near, c * q.x - s * q.y, straight.x), Select(near, s * q.x + c * q.y, straight.y)},
+      {turned.x + v_T.x, turned.y + v_T.y},
+      n.p_WN.z};
 }
 
 /// The largest u for which |v_T + u direction| is `speed`; `otherwise` where there is none.
@@ -114,10 +115,9 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
 /// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
 /// its own. On the circle it speeds up or slows down towards the middle between the one ahead and
 /// the one behind, as their packets and the time since tell; off it, it comes in on a spiral. It
-/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart, which
-/// is the scenario. In a team that is too large for one
-/// circle every other AUV flies inside, the others outside of d*. Without open water it keeps to
-/// the target's depth.
+/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart,
+/// which is the scenario. In a team that is too large for one circle every other AUV flies inside,
+/// the others outside of d*. Without open water it keeps to the target's depth.
 ///
 /// Vehicles that need flow over their fins turn as tightly as their ground speed over the turn rate
 /// allows: on the side where the circle runs against the target's way the radius over ground is

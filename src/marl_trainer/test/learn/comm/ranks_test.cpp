@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "auv_common/error.hpp"
-#include "comm/thread_ranks.hpp"
+#include "learn/comm/thread_ranks.hpp"
 #include "learn/trainer_fixture.hpp"
 
 /// Training among several ranks, which here are threads; mpi_test.cpp has processes.
