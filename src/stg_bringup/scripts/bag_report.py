@@ -3,7 +3,7 @@
 
 Writes into the output folder: poses.csv, targets.csv, tasks.csv, links.csv, steps.csv,
 episodes.csv, and report_episode_<n>.png and .svg with trajectories, distances, phases, link
-quality and age of information. Lengths are metres, times seconds of simulated time.
+quality and age of information. A column's name ends with its unit; times are simulated.
 
 The chunks of a compressed bag carry a checksum, as record:=true writes them. In an uncompressed one
 nothing tells a number that the disk has changed from a good one; the last line says so.
@@ -63,6 +63,19 @@ TABLES = {
     ).split(),
     "episodes": EPISODE + FIELD,
 }
+
+
+# What stands behind a column's name in the files.
+UNITS = {
+    "_s": "t neighbour_age delay age average_age peak_age time_to_band",
+    "_m": (
+        "x y z distance mean_distance tail_distance tracking_error estimate_x estimate_y estimate_z"
+        " estimate_std smallest_separation min_separation"
+    ),
+    "_mps": "u v w vx vy vz",
+    "_radps": "p q r",
+}
+UNIT_OF = {name: unit for unit, names in UNITS.items() for name in names.split()}
 
 
 class Run:
@@ -235,7 +248,7 @@ def write_tables(run, folder):
     for name, columns in TABLES.items():
         with open(os.path.join(folder, f"{name}.csv"), "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
-            writer.writerow(columns)
+            writer.writerow(name + UNIT_OF.get(name, "") for name in columns)
             writer.writerows(run.rows[name])
 
 

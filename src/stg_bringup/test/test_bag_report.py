@@ -60,12 +60,12 @@ class WholeBag(WithFolder):
         poses = read_table(self.out, "poses")
         self.assertEqual(len(poses), 50 * synthetic_bag.AGENTS)
         for row in poses:
-            t = float(row["t"]) - 1.0
+            t = float(row["t_s"]) - 1.0
             expected = synthetic_bag.auv_at(int(row["auv"]), t)
             for name, value in zip("xyz", expected):
-                self.assertAlmostEqual(float(row[name]), value, delta=1e-12)
+                self.assertAlmostEqual(float(row[name + "_m"]), value, delta=1e-12)
             self.assertAlmostEqual(
-                float(row["distance"]), synthetic_bag.distance_at(t), delta=1e-12
+                float(row["distance_m"]), synthetic_bag.distance_at(t), delta=1e-12
             )
         tasks = read_table(self.out, "tasks")
         self.assertEqual({row["phase"] for row in tasks}, {"search", "approach"})
@@ -132,8 +132,8 @@ class DamagedBag(WithFolder):
         self.assertGreater(len(poses), 40)
         self.assertLess(len(poses), 40 * synthetic_bag.AGENTS)
         for row in poses:
-            expected = synthetic_bag.auv_at(int(row["auv"]), float(row["t"]) - 1.0)
-            self.assertAlmostEqual(float(row["x"]), expected[0], delta=1e-12)
+            expected = synthetic_bag.auv_at(int(row["auv"]), float(row["t_s"]) - 1.0)
+            self.assertAlmostEqual(float(row["x_m"]), expected[0], delta=1e-12)
 
     def test_overwritten_middle_is_reported(self):
         synthetic_bag.write(str(self.bag), 4.0)

@@ -2,7 +2,9 @@
 
 namespace stg::dynamics {
 
-bool Helm::Steers(const WorldConfig& scenario) { return Autopilots().Has(scenario.vehicle.model_of(0)); }
+bool Helm::Steers(const WorldConfig& scenario) {
+  return Autopilots().Has(scenario.vehicle.model_of(0));
+}
 
 Helm::Helm(const WorldConfig& scenario)
     : steps_(scenario.control.autopilot.period_steps),

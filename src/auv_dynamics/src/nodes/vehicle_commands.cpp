@@ -34,13 +34,12 @@ VehicleCommands::VehicleCommands(const dynamics::WorldConfig& scenario,
 }
 
 template <class Message>
-void VehicleCommands::Subscribe(int i, void (VehicleCommands::*take)(
-                                           int, const boost::shared_ptr<Message const>&)) {
+void VehicleCommands::Subscribe(
+    int i, void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&)) {
   const boost::function<void(const boost::shared_ptr<Message const>&)> callback =
       [this, i, take](const auto& message) { (this->*take)(i, message); };
-  subscribers_.push_back(ros::NodeHandle().subscribe<Message>(topics::AuvTopic(i, topic()),
-                                                              kCommandQueue, callback,
-                                                              ros::VoidConstPtr(), NoDelay()));
+  subscribers_.push_back(ros::NodeHandle().subscribe<Message>(
+      topics::AuvTopic(i, topic()), kCommandQueue, callback, ros::VoidConstPtr(), NoDelay()));
 }
 
 void VehicleCommands::Listen() {
@@ -154,8 +153,7 @@ void VehicleCommands::OnActuators(int i, const auv_msgs::ActuatorCommand::ConstP
   const bool finite =
       std::all_of(values.begin(), values.end(), [](double value) { return Finite(value); });
   if (!Counts(i, message->header, frames::Body(i), finite)) return;
-  std::copy(values.begin(), values.end(),
-            values_.begin() + static_cast<std::ptrdiff_t>(u * row_));
+  std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(u * row_));
 }
 
 void VehicleCommands::OnVelocity(int i, const geometry_msgs::TwistStamped::ConstPtr& message) {

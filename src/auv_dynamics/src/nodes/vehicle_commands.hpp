@@ -54,7 +54,8 @@ class VehicleCommands {
   void OnActuators(int i, const auv_msgs::ActuatorCommand::ConstPtr& message);
   void OnVelocity(int i, const geometry_msgs::TwistStamped::ConstPtr& message);
   template <class Message>
-  void Subscribe(int i, void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&));
+  void Subscribe(int i,
+                 void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&));
   bool Counts(int i, const std_msgs::Header& header, const std::string& frame, bool finite);
   std::vector<double> Efforts() const;
 
@@ -62,8 +63,8 @@ class VehicleCommands {
   dynamics::VehicleConfig vehicle_;
   std::vector<dynamics::Space> actuators_;  ///< [agents]
   std::size_t row_;                         ///< numbers of an AUV in values_
-  bool steered_;  ///< by autopilots, which command actuators
-  std::unique_ptr<dynamics::Helm> helm_;  ///< of those on board, else null
+  bool steered_;                            ///< by autopilots, which command actuators
+  std::unique_ptr<dynamics::Helm> helm_;    ///< of those on board, else null
   int parts_;
   std::vector<Refusals> refused_;
   std::vector<ros::Subscriber> subscribers_;

@@ -129,7 +129,8 @@ TEST(VehicleKinds, MixedFleetsFlyAsEachKindAloneBitForBit) {
   };
   for (int i = 0; i < 3; ++i) {
     World alone(Sea(mixed.vehicle.model_of(i), 1));
-    alone.Place(0, {Line(3)[static_cast<std::size_t>(i)]}, {{100.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
+    alone.Place(0, {Line(3)[static_cast<std::size_t>(i)]}, {{100.0, 0.0, -30.0}},
+                {{0.0, 0.0, 0.0}});
     Launch(&fleet, 0);
     for (int k = 0; k < 400; ++k) {
       std::vector<Pack> all, own;

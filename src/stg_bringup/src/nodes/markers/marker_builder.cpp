@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "belief_markers.hpp"
-#include "marker_list.hpp"
-#include "network_markers.hpp"
+#include "parts/belief_markers.hpp"
+#include "parts/network_markers.hpp"
+#include "shapes/marker_list.hpp"
 
 namespace stg::nodes {
 namespace {

@@ -31,10 +31,10 @@
 #include "auv_dynamics/terrain/seascape.hpp"
 #include "marker_builder.hpp"
 #include "message_views.hpp"
+#include "parts/terrain_markers.hpp"
 #include "scene.hpp"
+#include "shapes/swarm_view.hpp"
 #include "stg_agent/nodes/topics.hpp"
-#include "swarm_view.hpp"
-#include "terrain_markers.hpp"
 #include "topics.hpp"
 
 namespace stg::nodes {

@@ -3,7 +3,7 @@
 #include <auv_msgs/TargetDetection.h>
 #include <nav_msgs/Odometry.h>
 
-#include "swarm_view.hpp"
+#include "shapes/swarm_view.hpp"
 
 /// From messages to what is drawn of them.
 namespace stg::nodes {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <limits>
 
-#include "marker_list.hpp"
+#include "shapes/marker_list.hpp"
 
 namespace stg::nodes {
 namespace {

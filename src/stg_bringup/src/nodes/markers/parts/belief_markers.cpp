@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "marker_list.hpp"
+#include "shapes/marker_list.hpp"
 
 namespace stg::nodes {
 namespace {
