@@ -70,6 +70,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const double most = s.vehicle.max_velocity_mps[0];
   const double slow = std::min(most, std::max(o.slow_mps, s.control.autopilot.min_speed_mps));
   const double fast = std::max(std::min(most, o.fast_mps), slow);
+  const double cruise = std::clamp(o.cruise_mps, slow, fast);
 
   const Level<T> v_T = [&] {
     const Level<T> v{k.v_WT.x, k.v_WT.y};
@@ -115,7 +116,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
 
   // Relative speed: enough on the side that runs back, more on the way to the circle.
   const T hurry = Clip((rho - R) * T(1.0 / d) - T(0.3), zero, one);
-  const T on_it = (T(slow) + Norm(v_T)) * (one + spread);
+  const T on_it = (T(cruise) + Norm(v_T)) * (one + spread);
   T u = on_it + (T(fast) - on_it) * hurry;
   u = Min(u, SpeedAlong(v_T, direction, T(fast), u));
   u = Max(u, SpeedAlong(v_T, direction, T(slow), u));

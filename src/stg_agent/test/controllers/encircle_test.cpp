@@ -56,12 +56,12 @@ NeighbourSight<double> Sight(const Vec3<double>& p, const Vec3<double>& v, doubl
   return n;
 }
 
-TEST(Encircle, CirclesAnticlockwiseAtTheSlowSpeedAndPointsAtATargetFarOff) {
+TEST(Encircle, CirclesAnticlockwiseAtTheCruiseSpeedAndPointsAtATargetFarOff) {
   EncircleOptions o;
   o.lead_s = 0.0;
   const Vec3<double> on = Velocity(Sea(), Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), o);
   EXPECT_NEAR(on.x, 0.0, 1e-9);
-  EXPECT_NEAR(on.y, o.slow_mps, 1e-9);
+  EXPECT_NEAR(on.y, o.cruise_mps, 1e-9);
   EXPECT_NEAR(on.z, 0.0, 1e-9);
   const Vec3<double> far = Velocity(Sea(), Near({5000.0, 0.0, 0.0}, {-2.0, 0.0, 0.0}), o);
   EXPECT_NEAR(far.x, -o.fast_mps, 0.001);
@@ -94,6 +94,7 @@ TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
 TEST(Encircle, MakesForTheMiddleBetweenThoseAheadAndBehind) {
   EncircleOptions o;
   o.lead_s = 0.0;
+  o.cruise_mps = 1.0;
   o.clearance_m = o.mate_clearance_m = 1.0;
   const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
   const auto at = [](double degrees) {

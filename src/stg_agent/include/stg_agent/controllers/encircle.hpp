@@ -12,7 +12,8 @@ namespace stg::agent {
 
 /// Constants of the law. Lengths and speeds are those of the sea.
 struct EncircleOptions {
-  double slow_mps = 1.0;           ///< over ground, on the side of the circle that runs back
+  double cruise_mps = 1.15;        ///< over ground, on the side of the circle that runs back
+  double slow_mps = 0.9;           ///< over ground, at least
   double fast_mps = 2.1;           ///< over ground, on the way to the circle and at most
   double inward_gain = 3.0;        ///< how steeply the way to the circle points at it
   double lead_s = 4.0;             ///< the vehicle is taken to be where it will be then
@@ -20,7 +21,7 @@ struct EncircleOptions {
   double spread_limit = 0.35;      ///< largest such change
   double clearance_m = 60.0;       ///< others are to be missed by this, in the plane
   double doubt_mps = 0.5;          ///< and by this times the age of what they said
-  double mate_clearance_m = 25.0;  ///< the same of others on the own circle, whom spread keeps off
+  double mate_clearance_m = 40.0;  ///< the same of others on the own circle, whom spread keeps off
   double horizon_s = 45.0;         ///< closest approaches later than this do not matter
   double layer_m = 20.0;           ///< others this much above or below do not matter
   double depth_gain_ps = 0.06;     ///< climb rate per missing depth
@@ -32,6 +33,7 @@ struct EncircleOptions {
 /// Calls visit(name, field, largest) for every constant that a user may set.
 template <class Visitor>
 void VisitEncircleOptions(EncircleOptions& o, Visitor&& visit) {
+  visit("cruise", o.cruise_mps, 100.0);
   visit("slow", o.slow_mps, 100.0);
   visit("fast", o.fast_mps, 100.0);
   visit("inward", o.inward_gain, 1e3);
@@ -121,7 +123,8 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
 ///
 /// Vehicles that need flow over their fins turn as tightly as their ground speed over the turn rate
 /// allows: on the side where the circle runs against the target's way the radius over ground is
-/// R (1 - v_T / u)^2 at the relative speed u, so that u is kept at v_T + slow or more.
+/// R (1 - v_T / u)^2 at the relative speed u, which is v_T + cruise, and never less than v_T +
+/// slow.
 struct Encircle {
   EncircleOptions options;
 
