@@ -92,7 +92,7 @@ function(stg_test target)
 endfunction()
 
 # stg_plain_python(TARGET FOLDER MODULE FILE ...): without catkin, puts the files of python/MODULE
-# beside the extension TARGET in FOLDER/MODULE, as links, and installs both with the scenarios.
+# beside the extension TARGET in FOLDER/MODULE, as links, and installs both.
 function(stg_plain_python target folder module)
   set(destination ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages/${module})
   file(MAKE_DIRECTORY ${folder}/${module})
@@ -102,9 +102,6 @@ function(stg_plain_python target folder module)
     install(FILES ${source} DESTINATION ${destination})
   endforeach()
   install(TARGETS ${target} LIBRARY DESTINATION ${destination})
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/../stg_bringup/scenarios
-    DESTINATION share/stg_bringup
-  )
 endfunction()
 
 # stg_node_target(TARGET [LIBRARY ...]): a library or program with ROS in it, on top of libraries of

@@ -53,6 +53,7 @@ class Watch(roslaunch.pmon.ProcessListener):
         nodes = {(node.namespace + node.name).strip("/"): node for node in config.nodes}
         parameters = {name: parameter.value for name, parameter in config.params.items()}
         run_checks.check_numbers(parameters)
+        run_checks.check_bags_are_there(config.nodes)
         if run_checks.master_is_online(config.master.uri):
             run_checks.check_names_are_free(config.master.uri, ["/" + name for name in nodes])
         self.required |= {name for name, node in nodes.items() if node.required}

@@ -103,6 +103,16 @@ def bag_of(node):
     return None
 
 
+def check_bags_are_there(nodes):
+    """Refuses to play bags that are no files."""
+    for node in nodes:
+        if (node.package, node.type) != ("rosbag", "play"):
+            continue
+        for word in shlex.split(node.args):
+            if not word.startswith("-") and not os.path.isfile(word):
+                raise Refusal(f"bag '{word}': no such file")
+
+
 class Outputs:
     """The files that a run is asked for."""
 

@@ -69,11 +69,18 @@ fi
 [[ -f "$bag" ]] || { tail -n 20 "$work"/*.log >&2 || true; fail "no bag $bag"; }
 bag=$(readlink -f "$bag")
 
-# The picture shows the scene alone: no panels, and a margin for menu and tool bar that is cut off.
+# The picture shows the scene alone: a margin for menu and tool bar is cut off.
 width=${size%x*} height=${size#*x} margin=120
-sed -e '/^Panels:/,/^Preferences:/{/^Panels:/{s/.*/Panels: []/;b};/^Preferences:/b;d}' \
-  -e "s/^  Height: .*/  Height: $((height + margin))/" -e "s/^  Width: .*/  Width: $((width + 32))/" \
-  -e 's/^  X: .*/  X: 0/' -e 's/^  Y: .*/  Y: 0/' "$root/rviz/$view.rviz" >"$work/shot.rviz"
+/usr/bin/python3 - "$bag" "$work/scenario.yaml" <<'PYTHON'
+import sys
+import rosbag
+
+with rosbag.Bag(sys.argv[1]) as bag, open(sys.argv[2], "w") as out:
+    out.write(next((m.data for _, m, _ in bag.read_messages("/scenario")), "{}"))
+PYTHON
+"$root/src/stg_bringup/scripts/view.py" "$view" --scenario-file "$work/scenario.yaml" --write "$work/view.rviz"
+sed -e "s/^  Height: .*/  Height: $((height + margin))/" -e "s/^  Width: .*/  Width: $((width + 32))/" \
+  "$work/view.rviz" >"$work/shot.rviz"
 
 # rviz needs a moment to start. The run is played from its beginning, for the sake of the trails, up
 # to the moment wanted, and then stands still.

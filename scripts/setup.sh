@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of packages.txt that are missing and makes this folder a workspace.
-# Does nothing, quickly, when nothing is missing.
+# Does nothing, quickly, when nothing is missing. STG_ANY_RELEASE=1: whatever the system is.
 set -euo pipefail
 export LC_ALL=C
 
@@ -22,7 +22,14 @@ missing_packages() {
   comm -23 <(echo "$wanted") <(echo "$installed")
 }
 
-command -v dpkg-query >/dev/null || die "this needs Debian 12 (no dpkg-query here)"
+# The name of the system, from os-release. STG_OS_RELEASE is another such file, for tests.
+# shellcheck disable=SC1090
+release=$(. "${STG_OS_RELEASE:-/etc/os-release}" 2>/dev/null && echo "${ID:-unknown} ${VERSION_ID:-system}") || true
+if [[ "$release" != "debian 12" && -z "${STG_ANY_RELEASE:-}" ]]; then
+  die "this needs Debian 12, and here is ${release:-an unknown system}; docs/platforms.md has a" \
+    "container for other systems (STG_ANY_RELEASE=1 tries all the same)"
+fi
+command -v dpkg-query >/dev/null || die "this needs Debian's packages (no dpkg-query here)"
 mapfile -t missing < <(missing_packages)
 
 if ((${#missing[@]} > 0)); then

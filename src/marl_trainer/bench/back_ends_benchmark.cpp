@@ -1,15 +1,19 @@
 #include <benchmark/benchmark.h>
+#include <torch/nn.h>
+#include <torch/optim/adam.h>
 #include <torch/utils.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
+#include "marl_trainer/learn/nn/adam.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
-#include "marl_trainer/learn/nn/mlp.hpp"
 #include "marl_trainer/learn/nn/torch/torch_network.hpp"
 
-/// The kernels against libtorch on the actor of the presets, one thread: what docs/adr/009 quotes.
+/// The kernels against libtorch on the networks of the presets, one thread: what docs/adr/009
+/// quotes.
 namespace stg::learn {
 namespace {
 
@@ -101,6 +105,123 @@ void TorchTraining(benchmark::State& state) {
   Report(state, rows, spec.training_products());
 }
 
+/// Random samples of a minibatch of four AUVs, and networks of the presets' sizes.
+struct Minibatch {
+  static constexpr int kSamples = 1600, kAgents = 4, kActions = 3, kFeatures = 74, kState = 82;
+  static constexpr int kRows = kSamples * kAgents;
+
+  explicit Minibatch(int width) : networks(MakeProblem(), MakeConfig(width)) {
+    for (float& x : old) x -= 3.0F;
+  }
+  static Problem MakeProblem() {
+    Problem problem;
+    problem.agents = kAgents;
+    problem.observation_size = kFeatures;
+    problem.state_size = kState;
+    problem.action_size = kActions;
+    return problem;
+  }
+  static MappoConfig MakeConfig(int width) {
+    MappoConfig config;
+    config.actor_hidden = config.critic_hidden = {width, width};
+    config.activation = width == 64 ? "tanh" : "relu";
+    return config;
+  }
+  double products() const {
+    return kAgents * networks.actor.mean().spec().training_products() +
+           networks.critic.spec().training_products();
+  }
+
+  const ActorCritic networks;
+  std::vector<float> parameters = networks.Initialise(1, -1.0);
+  std::vector<float> observations = Draw(Size(kRows, kFeatures)),
+                     states = Draw(Size(kSamples, kState));
+  std::vector<float> actions = Draw(Size(kRows, kActions)), old = Draw(kRows);
+  std::vector<float> advantages = Draw(kSamples), targets = Draw(kSamples);
+};
+
+/// One gradient step as PpoUpdate makes it, without gathering: blocks of 64 samples.
+void KernelsStep(benchmark::State& state) {
+  UseOneBlasThread();
+  const int width = static_cast<int>(state.range(0));
+  constexpr int kBlock = 64;
+  Minibatch m(width);
+  const MappoConfig config = Minibatch::MakeConfig(width);
+  PpoLoss loss(m.networks, config, 1.0, kBlock, Minibatch::kAgents);
+  AdamState adam(m.networks.parameters());
+  std::vector<float> gradient(m.networks.parameters());
+  const std::size_t split = m.networks.critic_offset(), count = gradient.size();
+  for (auto _ : state) {
+    std::fill(gradient.begin(), gradient.end(), 0.0F);
+    for (int first = 0; first < Minibatch::kSamples; first += kBlock) {
+      PpoBatch batch;
+      batch.count = kBlock;
+      batch.agents = Minibatch::kAgents;
+      const int row = first * Minibatch::kAgents;
+      batch.observations = m.observations.data() + Size(row, Minibatch::kFeatures);
+      batch.actions = m.actions.data() + Size(row, Minibatch::kActions);
+      batch.log_prob = m.old.data() + row;
+      batch.states = m.states.data() + Size(first, Minibatch::kState);
+      batch.advantages = m.advantages.data() + first;
+      batch.targets = m.targets.data() + first;
+      loss.AddGradient(m.parameters.data(), batch, Minibatch::kSamples, gradient.data());
+    }
+    const Adam step(1e-5, &adam);
+    step.Apply(0, split, 1e-4, ShrinkTo(5.0, GradientNorm(gradient.data(), 0, split)),
+               gradient.data(), m.parameters.data());
+    step.Apply(split, count, 1e-4, ShrinkTo(5.0, GradientNorm(gradient.data(), split, count)),
+               gradient.data(), m.parameters.data());
+  }
+  Report(state, Minibatch::kSamples, m.products());
+}
+
+/// The same step by automatic differentiation and libtorch's Adam, on blocks of `block` samples.
+void TorchStep(benchmark::State& state) {
+  torch::set_num_threads(1);
+  const auto block = state.range(1);
+  Minibatch m(static_cast<int>(state.range(0)));
+  TorchNetwork actor(m.networks.actor.mean().spec()), critic(m.networks.critic.spec());
+  SetParameters(m.parameters.data(), actor.get());
+  SetParameters(m.parameters.data() + m.networks.critic_offset(), critic.get());
+  torch::Tensor log_std = torch::full({Minibatch::kActions}, -1.0F).requires_grad_(true);
+  std::vector<torch::Tensor> actors = actor->parameters(), all;
+  actors.push_back(log_std);
+  all = actors;
+  for (const torch::Tensor& p : critic->parameters()) all.push_back(p);
+  torch::optim::Adam adam(all, torch::optim::AdamOptions(1e-4).eps(1e-5));
+  const auto view = [](std::vector<float>& v, std::vector<std::int64_t> shape) {
+    return torch::from_blob(v.data(), shape);
+  };
+  const std::int64_t samples = Minibatch::kSamples, agents = Minibatch::kAgents;
+  const auto observations = view(m.observations, {samples * agents, Minibatch::kFeatures});
+  const auto states = view(m.states, {samples, Minibatch::kState});
+  const auto actions = view(m.actions, {samples * agents, Minibatch::kActions});
+  const auto old = view(m.old, {samples * agents});
+  const auto advantages = view(m.advantages, {samples}), targets = view(m.targets, {samples});
+  for (auto _ : state) {
+    adam.zero_grad();
+    for (std::int64_t first = 0; first < samples; first += block) {
+      const auto rows = [&](const torch::Tensor& t) {
+        return t.narrow(0, first * agents, block * agents);
+      };
+      const auto mean = actor->forward(rows(observations));
+      const auto z = (rows(actions) - mean) / log_std.exp();
+      const auto log_prob = (-0.5 * z * z - log_std - 0.9189385).sum(1);
+      const auto ratio = (log_prob - rows(old)).exp();
+      const auto a = advantages.narrow(0, first, block).repeat_interleave(agents);
+      const auto gain = torch::min(ratio * a, ratio.clamp(0.8, 1.2) * a).sum();
+      const auto error = critic->forward(states.narrow(0, first, block)).squeeze(1) -
+                         targets.narrow(0, first, block);
+      const auto loss = 0.5 * error.pow(2).sum() / samples - gain / (samples * agents);
+      loss.backward();
+    }
+    torch::nn::utils::clip_grad_norm_(actors, 5.0);
+    torch::nn::utils::clip_grad_norm_(critic->parameters(), 5.0);
+    adam.step();
+  }
+  Report(state, Minibatch::kSamples, m.products());
+}
+
 void Arguments(benchmark::internal::Benchmark* b) {
   b->ArgNames({"width", "rows"});
   // A shard's decision (16 environments, 4 AUVs), an update's block, and a whole minibatch.
@@ -113,6 +234,8 @@ BENCHMARK(KernelsForward)->Apply(Arguments);
 BENCHMARK(TorchForward)->Apply(Arguments);
 BENCHMARK(KernelsTraining)->Apply(Arguments);
 BENCHMARK(TorchTraining)->Apply(Arguments);
+BENCHMARK(KernelsStep)->ArgName("width")->Arg(64)->Arg(128);
+BENCHMARK(TorchStep)->ArgNames({"width", "block"})->ArgsProduct({{64, 128}, {64, 1600}});
 
 }  // namespace
 }  // namespace stg::learn

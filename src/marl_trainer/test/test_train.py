@@ -4,6 +4,7 @@ import csv
 import hashlib
 import json
 import pathlib
+import re
 import signal
 import subprocess
 import tempfile
@@ -63,6 +64,43 @@ class Train(unittest.TestCase):
         self.assertEqual(after[-1], before[-1] + 1000)
         summary = json.loads((self.run_folder / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["stopped"], "finished")
+
+    def test_resume_takes_configuration_and_seed_from_the_folder(self):
+        status, output = self.train("--steps", "400", "--seed", "7", "--gamma", "0.8",
+                                    "--train-on", "nominal,fast_target", "--set",
+                                    "reward.weights.separation=0.3")
+        self.assertEqual(status, 0, output)
+        before = self.state()
+        resumed = subprocess.run(
+            [self.program, "--resume", "--out", str(self.run_folder), "--steps", "650"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+        self.assertEqual(resumed.returncode, 0, resumed.stdout)
+        self.assertEqual(self.steps(), [100, 200, 300, 400, 500, 600, 700])
+        after = self.state()
+        self.assertEqual(after.pop("config.json"), dict(before.pop("config.json"), steps=650))
+        self.assertEqual(after, before)
+        self.assertEqual(len(after), 3)
+        # More steps than asked for are no more than all of them.
+        shown = re.findall(r"([0-9.]+)% +[0-9]+ steps", resumed.stdout)
+        self.assertEqual(shown[-1], "100.0", resumed.stdout)
+
+    def state(self):
+        """Returns what the folder says of the run."""
+        files = {path.name: path.read_text(encoding="utf-8")
+                 for path in [*self.run_folder.glob("*.yaml"), self.run_folder / "config.json"]}
+        return {name: json.loads(text) if name.endswith("json") else text
+                for name, text in files.items()}
+
+    def test_resume_says_what_is_missing(self):
+        status, output = self.train("--resume")
+        self.assertEqual(status, 2, output)
+        self.assertIn("no run to resume: it has no config.json", output)
+        self.assertFalse(self.run_folder.exists())
+        self.run_folder.mkdir()
+        (self.run_folder / "config.json").write_text("[]", encoding="utf-8")
+        status, output = self.train("--resume")
+        self.assertEqual(status, 2, output)
+        self.assertIn("config.json: no configuration of a training", output)
 
     def test_another_configuration_is_refused_by_name_and_nothing_is_lost(self):
         status, output = self.train("--steps", "300")

@@ -14,6 +14,9 @@ void Describe(TaskConfig* c, config::Table* t) {
          "desired distance d* from the target");
   t->Add("lost_distance_m", &c->lost_distance_m, config::Positive(1e5), "m",
          "farther from the target than this, it counts as lost");
+  t->AddOptional("lost_error_m", &c->lost_error_m, "0.0", config::NonNegative(1e5), "m",
+                 "in open water a target whose own estimate is off by more counts as lost, too; 0: "
+                 "no matter how far off");
   t->Moved("reward.desired_distance_m", "task.desired_distance_m");
   t->Moved("reward.lost_distance_m", "task.lost_distance_m");
 }

@@ -1,24 +1,18 @@
 """What the tests of the running graph share: waiting, and the newest message of each topic."""
 
 import os
+import pathlib
 import signal
-import time
+import sys
 
 import rosgraph
 import rosnode
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "auv_common/test"))
 
-def wait_for(condition, timeout_s, what):
-    """Returns condition()'s first true value; fails after `timeout_s` seconds of wall time."""
-    end = time.monotonic() + timeout_s
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.05)
-    raise AssertionError(f"not within {timeout_s:.0f} s: {what}")
+from waiting import wait_for  # noqa: E402  (of all packages' tests)
 
 
 class Latest:

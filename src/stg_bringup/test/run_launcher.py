@@ -20,8 +20,10 @@ def free_port():
         return listener.getsockname()[1]
 
 
-def launch(folder, *arguments, port=None):
+def launch(folder, *arguments, port=None, program=LAUNCH):
     """Starts a launch as `./stg run` does, by default with a master of its own.
+
+    Another program, such as roslaunch, is given the same arguments.
 
     Returns (process, environment).
     """
@@ -29,7 +31,7 @@ def launch(folder, *arguments, port=None):
     environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
                        ROS_HOME=str(folder / "ros_home"), PWD=str(folder))
     process = subprocess.Popen(
-        [str(LAUNCH), "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
+        [str(program), "-p", str(port), "stg_bringup", *arguments], cwd=folder, env=environment,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
     return process, environment
 

@@ -4,34 +4,24 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import tempfile
 import unittest
+
+import roslib.packages
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 # Headers that only ROS has, wherever it is installed.
 ROS_HEADER = re.compile(
     r"/(ros|rosbag|diagnostic_updater|tf2\w*|\w+_msgs|std_srvs|message_filters|xmlrpcpp)/[^/]+\.h"
 )
-USER = """
-cmake_minimum_required(VERSION 3.16)
-project(user LANGUAGES CXX)
-find_package(stg REQUIRED)
-add_executable(user user.cpp)
-target_link_libraries(user PRIVATE stg::auv_dynamics stg::acoustic_channel)
-"""
 CATKIN_USER = """
 cmake_minimum_required(VERSION 3.16)
 project(user LANGUAGES CXX)
 find_package(auv_common REQUIRED)
 get_directory_property(options COMPILE_OPTIONS)
 message(STATUS "flags: ${options}")
-"""
-USER_SOURCE = """
-#include "auv_common/names.hpp"
-#include "auv_common/numbers/lanes.hpp"
-
-int main() { return stg::IsName("auv_0") ? 0 : 1; }
 """
 
 
@@ -98,14 +88,22 @@ class PlainCMake(unittest.TestCase):
 
     def test_2_a_user_of_the_installed_libraries_is_compiled_alike(self):
         run("cmake", "--install", self.build)
+        # As if the repository were not there.
         user = self.folder / "user"
-        user.mkdir()
-        (user / "CMakeLists.txt").write_text(USER, encoding="utf-8")
-        (user / "user.cpp").write_text(USER_SOURCE, encoding="utf-8")
+        shutil.copytree(ROOT / "examples" / "own_project", user)
         run("cmake", "-S", user, "-B", user / "build", "-G", "Ninja",
             f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")  # fmt: skip
         run("cmake", "--build", user / "build")
-        run(user / "build" / "user")
+        printed = run(user / "build" / "spiral").splitlines()
+        flown = {line.split()[0]: [float(x) for x in line.split()[1:]] for line in printed}
+        self.assertEqual(set(flown), {"spiral:speed=0.3", "pursuit_separated"})
+        # Packs that were laid out otherwise here than in the libraries would fly otherwise.
+        (evaluate,) = roslib.packages.find_node("marl_trainer", "evaluate")
+        told = run(evaluate, "--policy", "pursuit_separated", "--episodes", "4",
+                   STG_SCENARIOS=str(ROOT / "src" / "stg_bringup" / "scenarios"))  # fmt: skip
+        numbers = json.loads(told.splitlines()[-1])
+        self.assertEqual(flown["pursuit_separated"], [numbers["return"], numbers["tail_distance"]])
+        self.assertGreater(flown["spiral:speed=0.3"][0], 0.0)
         commands = []
         for build in (self.build, user / "build"):
             entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))

@@ -63,17 +63,9 @@ FILES = {
             agents: list
             possible_agents: list
 
-            @property
-            def num_agents(self):
-                return len(self.agents)
-
-            @property
-            def max_num_agents(self):
-                return len(self.possible_agents)
-
-            @property
-            def unwrapped(self):
-                return self
+            num_agents = property(lambda self: len(self.agents))
+            max_num_agents = property(lambda self: len(self.possible_agents))
+            unwrapped = property(lambda self: self)
 
             def state(self):
                 raise NotImplementedError

@@ -29,47 +29,49 @@ Profile Ideal() {
   return std::make_unique<ModemProfile>(p);
 }
 
-/// WHOI Micromodem, FSK with frequency hopping at 80 bit/s: one frame of 32 bytes.
-Profile MicromodemFsk() {
+/// Noncoherent FSK, whose only gain is that of its spreading.
+void DetectNoncoherently(ModemProfile* p) {
+  p->errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
+  p->errors.processing_gain_db = p->spreading_db = SpreadingDb(*p);
+}
+
+/// What a WHOI Micromodem is, whatever it sends.
+ModemProfile Micromodem(const std::string& waveform, int rate) {
   ModemProfile p;
-  p.name = "micromodem_fsk_r0";
-  p.waveform = "micromodem_fsk";
-  p.centre_khz = 22.0;
-  p.bandwidth_khz = 4.0;
+  p.waveform = "micromodem_" + waveform;
+  p.name = p.waveform + "_r" + std::to_string(rate);
   p.source_level_db = 185.0;
-  p.frame_s = 3.2;
-  p.frame_bytes = 32;
   p.acquisition_db = -10.0;
   p.implementation_db = 3.0;
-  p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
-  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
   p.turnaround_s = 0.05;
   p.transmit_w = 50.0;
-  p.receive_w = 0.2;
   p.idle_w = 0.1;
+  return p;
+}
+
+/// FSK with frequency hopping at 80 bit/s: one frame of 32 bytes.
+Profile MicromodemFsk() {
+  ModemProfile p = Micromodem("fsk", 0);
+  p.centre_khz = 22.0;
+  p.bandwidth_khz = 4.0;
+  p.frame_s = 3.2;
+  p.frame_bytes = 32;
+  DetectNoncoherently(&p);
+  p.receive_w = 0.2;
   return std::make_unique<ModemProfile>(p);
 }
 
-/// WHOI Micromodem, coded PSK at 5 kHz. A set of frames takes the published time; one of fewer
-/// frames its share.
+/// Coded PSK at 5 kHz. A set of frames takes the published time; one of fewer frames its share.
 Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, double set_s) {
-  ModemProfile p;
-  p.name = "micromodem_psk_r" + std::to_string(rate);
-  p.waveform = "micromodem_psk";
+  ModemProfile p = Micromodem("psk", rate);
   p.centre_khz = 25.0;
   p.bandwidth_khz = 5.0;
-  p.source_level_db = 185.0;
   p.frame_s = set_s / static_cast<double>(frames);
   p.frame_bytes = frame_bytes;
   p.max_frames = frames;
-  p.acquisition_db = -10.0;
-  p.implementation_db = 3.0;
   p.errors = CodedPskCurve(rate);
   p.spreading_db = SpreadingDb(p);
-  p.turnaround_s = 0.05;
-  p.transmit_w = 50.0;
   p.receive_w = 2.0;
-  p.idle_w = 0.1;
   return std::make_unique<ModemProfile>(p);
 }
 
@@ -86,8 +88,7 @@ Profile Janus() {
   p.frame_bytes = 8;
   p.acquisition_db = -8.0;
   p.implementation_db = 3.0;
-  p.errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
-  p.errors.processing_gain_db = p.spreading_db = SpreadingDb(p);
+  DetectNoncoherently(&p);
   p.turnaround_s = 0.1;
   p.transmit_w = 40.0;
   p.receive_w = 0.5;

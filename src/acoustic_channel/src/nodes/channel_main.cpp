@@ -1,5 +1,5 @@
+#include "acoustic_channel/nodes/channel_node.hpp"
 #include "auv_common/nodes/node_main.hpp"
-#include "channel_node.hpp"
 
 int main(int argc, char** argv) {
   return stg::nodes::RunNode<stg::nodes::ChannelNode>(argc, argv, "channel",

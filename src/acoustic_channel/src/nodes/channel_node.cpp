@@ -1,10 +1,11 @@
-#include "channel_node.hpp"
+#include "acoustic_channel/nodes/channel_node.hpp"
 
 #include <std_msgs/Header.h>
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "acoustic_channel/nodes/conversions.hpp"
 #include "acoustic_channel/nodes/topics.hpp"
@@ -26,9 +27,9 @@ std::vector<int> IndicesOf(int agents) {
 
 }  // namespace
 
-ChannelNode::ChannelNode()
+ChannelNode::ChannelNode(acoustics::LineOfSight line_of_sight)
     : scenario_(LoadScenarioParameters<acoustics::NetworkConfig>()),
-      channel_(acoustics::MakeChannel(scenario_.channel, scenario_)),
+      channel_(acoustics::MakeChannel(scenario_.channel, scenario_, std::move(line_of_sight))),
       period_(scenario_.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
@@ -237,7 +238,9 @@ void ChannelNode::PublishLinks(TimeNs now) {
   m.header.stamp = TimeOf(barrier_.stamp());
   m.header.frame_id = frames::kWorld;
   m.links.clear();
+  m.energy.clear();
   for (int i = 0; i < scenario_.agents; ++i) {
+    m.energy.push_back(channel_->EnergyJ(i, now));
     for (int j = 0; j < scenario_.agents; ++j) {
       if (i == j) continue;
       auv_msgs::LinkState& link = m.links.emplace_back();

@@ -104,10 +104,8 @@ TEST(CsmaNetwork, WaitsWhileItHearsACarrierAndSendsAfterwards) {
   Bench b(2);
   b.config.access = "csma";
   b.medium->SetDelay(0, 1, 0.1);
-  b.Start();
-  b.Offer(0, 1.0);  // at node 1 from 1.1 to 2.1
-  b.Offer(1, 1.5);
-  b.network->Advance(20 * kSecond);
+  // Node 0's: at node 1 from 1.1 to 2.1.
+  b.Play({{0, 1.0}, {1, 1.5}});
   EXPECT_EQ(b.log.Of(0, 1).reason, DropReason::kNone);
   EXPECT_EQ(b.log.Of(1, 0).reason, DropReason::kNone);
   ASSERT_EQ(b.log.sent.size(), 2u);
@@ -119,10 +117,7 @@ TEST(CsmaNetwork, HearsNothingOfACarrierThatIsStillOnItsWay) {
   b.config.access = "csma";
   for (const int i : {0, 1}) b.medium->SetDelay(i, 2, 1.0);
   b.medium->SetDelay(0, 1, 1.0);
-  b.Start();
-  b.Offer(0, 1.0);
-  b.Offer(1, 1.5);
-  b.network->Advance(20 * kSecond);
+  b.Play({{0, 1.0}, {1, 1.5}});
   EXPECT_EQ(b.log.Of(0, 2).reason, DropReason::kCollision);
   EXPECT_EQ(b.log.Of(1, 2).reason, DropReason::kCollision);
 }

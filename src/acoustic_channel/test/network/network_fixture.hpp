@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "acoustic_channel/network/network.hpp"
@@ -166,6 +167,13 @@ struct Bench {
     packet.tag = tag;
     packet.payload = {bytes, std::min(sizeof(bytes), network->max_payload())};
     network->Offer(packet);
+  }
+
+  /// Starts, offers packets (source, time [s]) and lets 20 s pass.
+  void Play(const std::vector<std::pair<int, double>>& offers) {
+    Start();
+    for (const auto& [source, t_s] : offers) Offer(source, t_s);
+    network->Advance(Ns(20.0));
   }
 
   RunConfig run;

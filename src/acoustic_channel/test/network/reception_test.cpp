@@ -9,10 +9,9 @@ namespace {
 TEST(HalfDuplex, WhoSendsHearsNothingThatBegins) {
   Bench b(2);
   b.medium->SetDelay(0, 1, 0.5);
-  b.Start();
-  b.Offer(0, 1.0);  // at node 1 from 1.5 to 2.5
-  b.Offer(1, 1.2);  // leaves until 2.2
-  b.network->Advance(10 * kSecond);
+  // Node 0's: at node 1 from 1.5 to 2.5.
+  // Node 1's: leaves until 2.2.
+  b.Play({{0, 1.0}, {1, 1.2}});
   EXPECT_EQ(b.log.Of(0, 1).reason, DropReason::kHalfDuplex);
   EXPECT_EQ(b.log.Of(1, 0).reason, DropReason::kHalfDuplex) << "from 1.7, node 0 sends until 2.0";
 }
@@ -20,10 +19,9 @@ TEST(HalfDuplex, WhoSendsHearsNothingThatBegins) {
 TEST(HalfDuplex, OwnTransmissionAbortsAReception) {
   Bench b(2);
   b.medium->SetDelay(0, 1, 0.5);
-  b.Start();
-  b.Offer(0, 1.0);  // at node 1 from 1.5 to 2.5
-  b.Offer(1, 2.4);  // at node 0 from 2.9
-  b.network->Advance(10 * kSecond);
+  // Node 0's: at node 1 from 1.5 to 2.5.
+  // Node 1's: at node 0 from 2.9.
+  b.Play({{0, 1.0}, {1, 2.4}});
   const PacketFate lost = b.log.Of(0, 1);
   EXPECT_EQ(lost.reason, DropReason::kHalfDuplex);
   EXPECT_EQ(lost.begin, Ns(1.5));
@@ -33,10 +31,7 @@ TEST(HalfDuplex, OwnTransmissionAbortsAReception) {
 TEST(HalfDuplex, ATransmissionAtTheVeryEndOfAReceptionCostsNothing) {
   Bench b(2);
   b.medium->SetDelay(0, 1, 0.5);
-  b.Start();
-  b.Offer(0, 1.0);
-  b.Offer(1, 2.5);
-  b.network->Advance(10 * kSecond);
+  b.Play({{0, 1.0}, {1, 2.5}});
   EXPECT_EQ(b.log.Of(0, 1).reason, DropReason::kNone);
   EXPECT_EQ(b.log.Of(0, 1).arrival, Ns(2.5));
 }
@@ -47,10 +42,7 @@ TEST(Collision, IsWhereBothArriveTogetherAndNowhereElse) {
   b.medium->SetDelay(1, 2, 1.0);
   b.medium->SetDelay(0, 3, 4.0);
   b.medium->SetDelay(1, 3, 2.0);
-  b.Start();
-  b.Offer(0, 1.0);
-  b.Offer(1, 1.0);
-  b.network->Advance(20 * kSecond);
+  b.Play({{0, 1.0}, {1, 1.0}});
   EXPECT_EQ(b.log.Of(0, 2).reason, DropReason::kCollision);
   EXPECT_EQ(b.log.Of(1, 2).reason, DropReason::kCollision);
   EXPECT_EQ(b.log.Of(0, 3).reason, DropReason::kNone);
@@ -62,10 +54,7 @@ TEST(Collision, OfTwoThatBeginTogetherTheStrongerIsAcquiredWhateverItsNumber) {
     Bench b(3);
     b.medium->SetLevel(strong, 2, 60.0);
     b.medium->SetLevel(1 - strong, 2, 30.0);
-    b.Start();
-    b.Offer(0, 1.0);
-    b.Offer(1, 1.0);
-    b.network->Advance(5 * kSecond);
+    b.Play({{0, 1.0}, {1, 1.0}});
     EXPECT_EQ(b.log.Of(strong, 2).reason, DropReason::kNone);
     EXPECT_EQ(b.log.Of(1 - strong, 2).reason, DropReason::kCollision);
   }
@@ -75,10 +64,7 @@ TEST(Capture, TheFirstThatWasAcquiredIsKeptAgainstAWeakerOne) {
   Bench b(3);
   b.medium->SetLevel(0, 2, 40.0);
   b.medium->SetLevel(1, 2, 10.0);
-  b.Start();
-  b.Offer(0, 1.0);
-  b.Offer(1, 1.5);
-  b.network->Advance(5 * kSecond);
+  b.Play({{0, 1.0}, {1, 1.5}});
   const PacketFate kept = b.log.Of(0, 2);
   EXPECT_EQ(kept.reason, DropReason::kNone);
   // Noise of power 1, and of 10 for half of the packet.
@@ -90,10 +76,7 @@ TEST(Capture, AStrongerOneThatComesLaterDestroysTheFirstAndIsLostToo) {
   Bench b(3);
   b.medium->SetLevel(0, 2, 40.0);
   b.medium->SetLevel(1, 2, 50.0);
-  b.Start();
-  b.Offer(0, 1.0);
-  b.Offer(1, 1.5);
-  b.network->Advance(5 * kSecond);
+  b.Play({{0, 1.0}, {1, 1.5}});
   EXPECT_EQ(b.log.Of(0, 2).reason, DropReason::kCollision);
   EXPECT_EQ(b.log.Of(1, 2).reason, DropReason::kCollision);
 }
@@ -109,11 +92,9 @@ TEST(Interference, ExponentsOfPiecesAddUp) {
   b.medium->SetLevel(0, 3, 20.0);
   b.medium->SetLevel(1, 3, 10.0 * std::log10(9.0));
   b.medium->SetLevel(2, 3, 10.0 * std::log10(4.0));
-  b.Start();
-  b.Offer(0, 1.0);
-  b.Offer(1, 1.5);   // from 0.5 of the packet on
-  b.Offer(2, 1.75);  // from 0.75 on
-  b.network->Advance(5 * kSecond);
+  // Node 1's: from 0.5 of the packet on.
+  // Node 2's: from 0.75 on.
+  b.Play({{0, 1.0}, {1, 1.5}, {2, 1.75}});
   const double expected = 1.0 - std::exp(0.5 * Exponent(100.0) + 0.25 * Exponent(100.0 / 10.0) +
                                          0.25 * Exponent(100.0 / 14.0));
   EXPECT_NEAR(b.log.Of(0, 3).loss_probability, expected, 1e-12);
@@ -125,10 +106,7 @@ TEST(Interference, APacketThatIsGrazedIsNotAsLostAsOneThatIsCovered) {
     Bench b(3);
     b.medium->SetLevel(0, 2, 20.0);
     b.medium->SetLevel(1, 2, 10.0 * std::log10(9.0));
-    b.Start();
-    b.Offer(0, 1.0);
-    b.Offer(1, begin);
-    b.network->Advance(5 * kSecond);
+    b.Play({{0, 1.0}, {1, begin}});
     return b.log.Of(0, 2).loss_probability;
   };
   EXPECT_NEAR(loss(1.9), 1.0 - std::pow(2.0, -0.1), 1e-6);
@@ -142,9 +120,7 @@ TEST(Interference, ABurstThatBeginsWithinAPacketCountsFromThere) {
   b.medium->burst_begin = Ns(1.6);
   b.medium->burst_end = Ns(1.8);
   b.medium->burst_db = 10.0;
-  b.Start();
-  b.Offer(0, 1.0);
-  b.network->Advance(5 * kSecond);
+  b.Play({{0, 1.0}});
   EXPECT_NEAR(b.log.Of(0, 1).loss_probability,
               1.0 - std::exp(0.8 * Exponent(100.0) + 0.2 * Exponent(10.0)), 1e-12);
 }
@@ -179,9 +155,7 @@ DropReason Reason(double level_db, double steady_db, double clear_db, double bur
     b.medium->burst_end = 100 * kSecond;
     b.medium->burst_db = burst_db;
   }
-  b.Start();
-  b.Offer(0, 1.0);
-  b.network->Advance(5 * kSecond);
+  b.Play({{0, 1.0}});
   return b.log.Of(0, 1).reason;
 }
 
@@ -224,10 +198,7 @@ TEST(Waveforms, AreUnderstoodByTheirOwnKindAndNoiseToOthers) {
   b.medium->SetLevel(0, 1, 20.0);
   b.medium->SetLevel(2, 1, 15.0);
   b.config.modem.packet_bytes = 32;
-  b.Start();
-  b.Offer(2, 0.5);
-  b.Offer(0, 1.0);
-  b.network->Advance(20 * kSecond);
+  b.Play({{2, 0.5}, {0, 1.0}});
   EXPECT_EQ(b.log.Of(2, 1).reason, DropReason::kNotAcquired);
   EXPECT_EQ(b.log.Of(2, 0).reason, DropReason::kNotAcquired);
   // 22.5 to 24 kHz of its 4 kHz fall into the band.

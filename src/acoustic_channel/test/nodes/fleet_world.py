@@ -1,5 +1,7 @@
 """What the tests of the channel by itself share: a clock, vehicles on it, and waiting."""
 
+import pathlib
+import sys
 import threading
 import time
 
@@ -9,16 +11,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "auv_common/test"))
 
-def wait_for(condition, timeout_s, what):
-    """Returns condition()'s first true value; fails after `timeout_s` seconds of wall time."""
-    end = time.monotonic() + timeout_s
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.02)
-    raise AssertionError(f"not within {timeout_s:.0f} s: {what}")
+from waiting import wait_for  # noqa: E402  (of all packages' tests)
 
 
 class Diagnostics:

@@ -98,11 +98,18 @@ Source NamedSource(const std::string& folder, const std::string& scenario,
   }
   if (condition == "nominal") return {file.string(), {}, overrides};
   if (IsPath(condition)) return {file.string(), {condition}, overrides};
+  std::string there = "nominal";
+  for (const std::string& name : NamesOfBases(file.string())) {
+    const fs::path own = root / "conditions" / name;
+    const fs::path overlay = own / (condition + ".yaml");
+    if (fs::exists(overlay, error)) return {file.string(), {overlay.string()}, overrides};
+    if (IsFolder(own)) there += ", " + ListNames(own, "");
+  }
   const std::string stage = FindScalar(file.string(), "reset.stage").value_or("medium") + "_";
   const fs::path overlay = root / "conditions" / (stage + condition + ".yaml");
   if (!fs::exists(overlay, error)) {
     throw UserError("condition " + Quoted(condition) + ": no file " + overlay.string() +
-                    "; there are nominal, " + ListNames(root / "conditions", stage));
+                    "; there are " + there + ", " + ListNames(root / "conditions", stage));
   }
   return {file.string(), {overlay.string()}, overrides};
 }

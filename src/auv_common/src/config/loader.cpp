@@ -118,7 +118,8 @@ void Loader::ApplyBase(const std::string& path, const YamlTree::Entry& entry) {
                     " leads back to itself");
   }
   if (error || !fs::is_regular_file(base, error)) {
-    throw UserError(Where(path, entry.line) + "base: " + base + " is not a file");
+    throw UserError(Where(path, entry.line) + "base: " + base + " is not a file" +
+                    ShippedHint(fs::path(base).filename().string()));
   }
   ApplyFile(base);
 }

@@ -5,6 +5,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 #include "yaml_files.hpp"
 
 namespace stg::config {
@@ -118,6 +119,21 @@ std::optional<std::string> FindScalar(const std::string& file, const std::string
   return node->scalar;
 }
 
+std::vector<std::string> NamesOfBases(const std::string& file) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names;
+  std::string path = file;
+  while (names.size() <= kMaxBases) {
+    names.push_back(fs::path(path).stem().string());
+    const YamlTree root = ReadMap(path);
+    const auto base = std::find_if(root.entries.begin(), root.entries.end(),
+                                   [](const auto& entry) { return entry.key == "base"; });
+    if (base == root.entries.end()) break;
+    path = BaseOf(path, *base);
+  }
+  return names;
+}
+
 YamlTree ParseMap(const std::string& text, const std::string& origin) {
   YamlTree root = ParseYaml(text, origin);
   if (root.kind == YamlTree::Kind::kNull) throw UserError(origin + ":1: the file is empty");
@@ -147,6 +163,23 @@ std::string BaseOf(const std::string& path, const YamlTree::Entry& entry) {
     // There are no shipped files here: the one beside is what is missing.
   }
   return beside.string();
+}
+
+std::string ShippedHint(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> shipped;
+  try {
+    std::error_code error;
+    for (fs::directory_iterator it(ScenarioFolder(), error), end; !error && it != end;
+         it.increment(error)) {
+      shipped.push_back(it->path().filename().string());
+    }
+  } catch (const UserError&) {
+    return "";  // there are none
+  }
+  std::sort(shipped.begin(), shipped.end());
+  const std::string nearest = NearestName(name, shipped);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
 std::string OverrideOrigin(const std::string& text) { return "--set " + Quoted(text); }

@@ -159,6 +159,13 @@ struct Assign {
     const auto values = ToDoubles(node, 2);
     *v = {values[0], values[1]};
   }
+  void operator()(const RowsRef& v) const {
+    if (node.kind != YamlTree::Kind::kSequence) {
+      throw Refusal{"expected a sequence of rows, found " + KindName(node)};
+    }
+    v.rows->clear();
+    for (const YamlTree& row : node.items) v.rows->push_back(ToDoubles(row, v.columns));
+  }
   void operator()(const NamesRef& v) const {
     if (node.kind != YamlTree::Kind::kSequence) {
       throw Refusal{"expected a sequence of names, found " + KindName(node)};
@@ -214,6 +221,14 @@ std::string FormatValue(const ValueRef& value) {
                                const double ends[] = {v->lo, v->hi};
                                return FormatNumbers(ends, 2);
                              },
+                             [](const RowsRef& v) {
+                               std::string text;
+                               for (const auto& row : *v.rows) {
+                                 text += (text.empty() ? "" : ", ") +
+                                         FormatNumbers(row.data(), static_cast<int>(row.size()));
+                               }
+                               return "[" + text + "]";
+                             },
                              [](const NamesRef& v) { return FormatWords(*v.list); }},
                     value);
 }
@@ -229,6 +244,9 @@ std::string FormatRange(const Field& field) {
                [](const EnumRef& v) { return JoinNames(v.names); },
                [&](const NumbersRef&) { return range; },
                [&](Interval*) { return range + ", low <= high"; },
+               [&](const RowsRef& v) {
+                 return "any number of rows of " + std::to_string(v.columns) + " in " + range;
+               },
                [](const NamesRef& v) { return "any number of " + JoinNames(v.names); }},
       field.value);
 }
@@ -256,6 +274,16 @@ std::optional<std::string> CheckValue(const Field& field) {
                  if (auto message = CheckNumbers(field, ends, 2)) return message;
                  if (v->lo > v->hi)
                    return "low " + FormatNumber(v->lo) + " is above high " + FormatNumber(v->hi);
+                 return {};
+               },
+               [&](const RowsRef& v) -> Result {
+                 for (const auto& row : *v.rows) {
+                   if (static_cast<int>(row.size()) != v.columns) {
+                     return "a row has " + std::to_string(row.size()) + " numbers, not " +
+                            std::to_string(v.columns);
+                   }
+                   if (auto message = CheckNumbers(field, row.data(), v.columns)) return message;
+                 }
                  return {};
                },
                [](const NamesRef& v) -> Result {

@@ -18,6 +18,9 @@ YamlTree ReadMap(const std::string& path);
 /// Path of the file that the entry `base` of file `path` names.
 std::string BaseOf(const std::string& path, const YamlTree::Entry& entry);
 
+/// "; did you mean medium.yaml?" where a shipped scenario has nearly that file name, else "".
+std::string ShippedHint(const std::string& name);
+
 /// Key and value of `key.path=value`; UserError when there is none.
 std::pair<std::string, std::string> SplitOverride(const std::string& text);
 /// How messages name an override.

@@ -6,6 +6,7 @@
 #include <ros/this_node.h>
 
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -84,6 +85,25 @@ int IntegerParameter(const std::string& name, int fallback, int lo, int hi) {
   const double number = NumberParameter(name, fallback, lo, hi);
   if (number != std::floor(number)) Refuse(name, "a whole number");
   return static_cast<int>(number);
+}
+
+void RequireIndices(const std::string& name, int count) {
+  XmlRpc::XmlRpcValue value;
+  if (!Find(name, &value)) return;
+  XmlRpc::XmlRpcValue list = value;
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeArray) {
+    list = XmlRpc::XmlRpcValue();
+    list[0] = value;
+  }
+  std::set<int> seen;
+  for (int i = 0; i < list.size(); ++i) {
+    const bool is_number = list[i].getType() == XmlRpc::XmlRpcValue::TypeInt;
+    const int index = is_number ? static_cast<int>(list[i]) : -1;
+    if (index < 0 || index >= count || !seen.insert(index).second) {
+      Refuse(name, "a list of different numbers from 0 to " + std::to_string(count - 1) +
+                       ", the indices of the AUVs");
+    }
+  }
 }
 
 bool SimulatedTimeParameter() {

@@ -15,47 +15,62 @@ constexpr std::uint32_t kCommandQueue = 20;
 }  // namespace
 
 VehicleCommands::VehicleCommands(const dynamics::WorldConfig& scenario,
-                                 const dynamics::World& world, Hear hear)
+                                 const dynamics::World& world, bool onboard, Hear hear)
     : hear_(std::move(hear)),
       vehicle_(scenario.vehicle.model),
       actuators_(world.model().actuators()),
       steered_(dynamics::Helm::Steers(scenario)),
-      parts_(steered_ ? scenario.time.decision_steps / scenario.control.autopilot.period_steps : 1),
+      helm_(steered_ && onboard ? std::make_unique<dynamics::Helm>(scenario) : nullptr),
+      parts_(steered_ && !onboard
+                 ? scenario.time.decision_steps / scenario.control.autopilot.period_steps
+                 : 1),
       refused_(static_cast<std::size_t>(scenario.agents)),
       wrenches_(steered_ ? 0 : refused_.size()),
       wrenches_of_lanes_(wrenches_.size()),
-      values_(steered_ ? refused_.size() * actuators_.size() : 0),
-      values_of_lanes_(values_.size(), Pack(0.0)) {}
+      values_(steered_ && !onboard ? refused_.size() * actuators_.size() : 0),
+      values_of_lanes_(values_.size(), Pack(0.0)),
+      v_des_W_(helm_ != nullptr ? refused_.size() : 0) {}
+
+template <class Message>
+void VehicleCommands::Subscribe(int i, void (VehicleCommands::*take)(
+                                           int, const boost::shared_ptr<Message const>&)) {
+  const boost::function<void(const boost::shared_ptr<Message const>&)> callback =
+      [this, i, take](const auto& message) { (this->*take)(i, message); };
+  subscribers_.push_back(ros::NodeHandle().subscribe<Message>(topics::AuvTopic(i, topic()),
+                                                              kCommandQueue, callback,
+                                                              ros::VoidConstPtr(), NoDelay()));
+}
 
 void VehicleCommands::Listen() {
-  ros::NodeHandle node;
   for (int i = 0; i < static_cast<int>(refused_.size()); ++i) {
-    if (steered_) {
-      const boost::function<void(const auv_msgs::ActuatorCommand::ConstPtr&)> callback =
-          [this, i](const auto& message) { OnActuators(i, message); };
-      subscribers_.push_back(node.subscribe<auv_msgs::ActuatorCommand>(
-          topics::AuvTopic(i, topics::kActuators), kCommandQueue, callback, ros::VoidConstPtr(),
-          NoDelay()));
+    if (helm_ != nullptr) {
+      Subscribe(i, &VehicleCommands::OnVelocity);
+    } else if (steered_) {
+      Subscribe(i, &VehicleCommands::OnActuators);
     } else {
-      const boost::function<void(const geometry_msgs::WrenchStamped::ConstPtr&)> callback =
-          [this, i](const auto& message) { OnWrench(i, message); };
-      subscribers_.push_back(node.subscribe<geometry_msgs::WrenchStamped>(
-          topics::AuvTopic(i, topics::kWrench), kCommandQueue, callback, ros::VoidConstPtr(),
-          NoDelay()));
+      Subscribe(i, &VehicleCommands::OnWrench);
     }
   }
 }
 
 const char* VehicleCommands::topic() const {
+  if (helm_ != nullptr) return topics::kCmdVel;
   return steered_ ? topics::kActuators : topics::kWrench;
 }
 
 void VehicleCommands::Clear() {
   wrenches_.assign(wrenches_.size(), dynamics::Wrench<double>());
   values_.assign(values_.size(), 0.0);
+  v_des_W_.assign(v_des_W_.size(), {});
+  if (helm_ == nullptr) return;
+  for (int lane = 0; lane < kLanes; ++lane) helm_->Reset(lane);
 }
 
 void VehicleCommands::Move(int steps, dynamics::World* world) {
+  if (helm_ != nullptr) {
+    helm_->Drive(v_des_W_, world);
+    return;
+  }
   if (steered_) {
     std::copy(values_.begin(), values_.end(), values_of_lanes_.begin());
     for (int k = 0; k < steps; ++k) world->Step(values_of_lanes_);
@@ -69,23 +84,36 @@ void VehicleCommands::Move(int steps, dynamics::World* world) {
 
 void VehicleCommands::Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,
                            WorldPublisher* publisher) const {
-  if (!steered_) {
+  if (steered_) {
+    publisher->SetEfforts(Efforts(), fresh, channel_fresh);
+  } else {
     publisher->SetWrenches(wrenches_, fresh, channel_fresh);
-    return;
   }
-  const std::size_t most = dynamics::kWrenchSize, size = actuators_.size();
-  std::vector<double> efforts(refused_.size() * most, 0.0);
+}
+
+/// Shares of the actuators' limits, kWrenchSize of each AUV.
+std::vector<double> VehicleCommands::Efforts() const {
+  constexpr std::size_t kMost = dynamics::kWrenchSize;
+  const std::size_t size = actuators_.size();
+  std::vector<double> efforts(refused_.size() * kMost, 0.0);
   for (std::size_t i = 0; i < refused_.size(); ++i) {
-    for (std::size_t k = 0; k < std::min(size, most); ++k) {
-      efforts[i * most + k] = values_[i * size + k] / dynamics::LargestOf(actuators_[k]);
+    if (helm_ != nullptr) {
+      Pack shares[kMost] = {};
+      helm_->WriteShares(static_cast<int>(i), shares);
+      for (std::size_t k = 0; k < kMost; ++k) efforts[i * kMost + k] = Lane(shares[k], 0);
+      continue;
+    }
+    for (std::size_t k = 0; k < std::min(size, kMost); ++k) {
+      efforts[i * kMost + k] = values_[i * size + k] / dynamics::LargestOf(actuators_[k]);
     }
   }
-  publisher->SetEfforts(efforts, fresh, channel_fresh);
+  return efforts;
 }
 
 /// Whether a command is the first of this AUV for the open step, and well-formed.
-bool VehicleCommands::Counts(int i, const std_msgs::Header& header, bool finite) {
-  if (header.frame_id != frames::Body(i)) {
+bool VehicleCommands::Counts(int i, const std_msgs::Header& header, const std::string& frame,
+                             bool finite) {
+  if (header.frame_id != frame) {
     refused(i).Add(Refusals::kFrame);
     return false;
   }
@@ -109,7 +137,7 @@ bool VehicleCommands::Counts(int i, const std_msgs::Header& header, bool finite)
 
 void VehicleCommands::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message) {
   const bool finite = FiniteVector(message->wrench.force) && FiniteVector(message->wrench.torque);
-  if (!Counts(i, message->header, finite)) return;
+  if (!Counts(i, message->header, frames::Body(i), finite)) return;
   wrenches_[static_cast<std::size_t>(i)] = {VectorOf(message->wrench.force),
                                             VectorOf(message->wrench.torque)};
 }
@@ -122,10 +150,16 @@ void VehicleCommands::OnActuators(int i, const auv_msgs::ActuatorCommand::ConstP
   }
   const bool finite =
       std::all_of(values.begin(), values.end(), [](double value) { return Finite(value); });
-  if (!Counts(i, message->header, finite)) return;
+  if (!Counts(i, message->header, frames::Body(i), finite)) return;
   std::copy(values.begin(), values.end(),
             values_.begin() +
                 static_cast<std::ptrdiff_t>(i) * static_cast<std::ptrdiff_t>(actuators_.size()));
+}
+
+void VehicleCommands::OnVelocity(int i, const geometry_msgs::TwistStamped::ConstPtr& message) {
+  const bool finite = FiniteVector(message->twist.linear);
+  if (!Counts(i, message->header, frames::kWorld, finite)) return;
+  v_des_W_[static_cast<std::size_t>(i)] = Broadcast(VectorOf(message->twist.linear));
 }
 
 }  // namespace stg::nodes

@@ -1,28 +1,34 @@
 #pragma once
 
 #include <auv_msgs/ActuatorCommand.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/step/step_barrier.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 #include "auv_dynamics/world/world.hpp"
 #include "world_publisher.hpp"
 
 namespace stg::nodes {
 
-/// The newest command of each AUV, and what it does to the world: force and moment, or values of
-/// actuators where vehicles are steered by autopilots.
+/// The newest command of each AUV, and what it does to the world: force and moment; or, of vehicles
+/// that are steered by autopilots, values of actuators, or a velocity where the autopilots are on
+/// board, which is in this process.
 class VehicleCommands {
  public:
   /// What an AUV's word about the step at this stamp is worth; called for well-formed commands.
   using Hear = std::function<StepBarrier::Word(int auv, TimeNs stamp)>;
 
-  VehicleCommands(const dynamics::WorldConfig& scenario, const dynamics::World& world, Hear hear);
+  /// @param onboard autopilots run here, and take a command for each decision
+  VehicleCommands(const dynamics::WorldConfig& scenario, const dynamics::World& world, bool onboard,
+                  Hear hear);
   VehicleCommands(const VehicleCommands&) = delete;
   VehicleCommands& operator=(const VehicleCommands&) = delete;
 
@@ -37,7 +43,7 @@ class VehicleCommands {
   /// @param channel_fresh the acoustic channel had closed it
   void Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,
             WorldPublisher* publisher) const;
-  /// In which a decision is flown: periods of the autopilots.
+  /// In which a decision is flown: periods of autopilots that are not on board.
   int parts() const { return parts_; }
   /// Name of the topic below an AUV.
   const char* topic() const;
@@ -46,12 +52,17 @@ class VehicleCommands {
  private:
   void OnWrench(int i, const geometry_msgs::WrenchStamped::ConstPtr& message);
   void OnActuators(int i, const auv_msgs::ActuatorCommand::ConstPtr& message);
-  bool Counts(int i, const std_msgs::Header& header, bool finite);
+  void OnVelocity(int i, const geometry_msgs::TwistStamped::ConstPtr& message);
+  template <class Message>
+  void Subscribe(int i, void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&));
+  bool Counts(int i, const std_msgs::Header& header, const std::string& frame, bool finite);
+  std::vector<double> Efforts() const;
 
   Hear hear_;
   std::string vehicle_;
   dynamics::Space actuators_;
   bool steered_;  ///< by autopilots, which command actuators
+  std::unique_ptr<dynamics::Helm> helm_;  ///< of those on board, else null
   int parts_;
   std::vector<Refusals> refused_;
   std::vector<ros::Subscriber> subscribers_;
@@ -59,6 +70,7 @@ class VehicleCommands {
   std::vector<dynamics::Wrench<Pack>> wrenches_of_lanes_;
   std::vector<double> values_;  ///< [agents, actuators]
   std::vector<Pack> values_of_lanes_;
+  std::vector<Vec3<Pack>> v_des_W_;  ///< [agents], for the helm
 };
 
 }  // namespace stg::nodes

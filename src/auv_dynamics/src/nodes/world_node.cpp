@@ -6,6 +6,7 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
+#include "auv_dynamics/nodes/autopilot_parameter.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
@@ -35,7 +36,8 @@ WorldNode::WorldNode()
     : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
       world_(scenario_),
       period_(scenario_.decision_period()),
-      commands_(scenario_, world_, [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
+      commands_(scenario_, world_, AutopilotOnBoardParameter(),
+                [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
       pacer_(PacerParameters(period_ / commands_.parts())),
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
       episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
@@ -47,9 +49,12 @@ WorldNode::WorldNode()
       fresh_(static_cast<std::size_t>(scenario_.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.agents);
+  // Of no use here; but no other node sees all that a launch says of them.
+  RequireIndices("external", scenario_.agents);
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
+  if (FlagParameter("instruments", false)) instruments_ = std::make_unique<Instruments>(scenario_);
   commands_.Listen();
   subscribers_.push_back(
       node.subscribe(topics::kChannelDone, kQueue, &WorldNode::OnChannelDone, this, NoDelay()));
@@ -211,6 +216,7 @@ void WorldNode::OpenStep() {
   opened_ = WallSeconds();
   SetNodeTime(TimeOf(Now()));
   publisher_->PublishSensors(world_, start_, episode_, step_);
+  if (instruments_ != nullptr) instruments_->Publish(world_, Now(), step_ == 0);
   // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
   if (pacer_.lockstep()) publisher_->PublishSwarm();
   shown_ = false;

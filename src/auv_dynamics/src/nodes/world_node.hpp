@@ -17,6 +17,7 @@
 #include "auv_common/step/step_barrier.hpp"
 #include "auv_dynamics/world/world.hpp"
 #include "auv_dynamics/world/world_config.hpp"
+#include "instruments.hpp"
 #include "vehicle_commands.hpp"
 #include "world_publisher.hpp"
 
@@ -102,6 +103,7 @@ class WorldNode {
   std::vector<std::uint8_t> fresh_;  ///< the command was for the last step
   bool channel_fresh_ = false;       ///< the channel had closed it
   std::unique_ptr<WorldPublisher> publisher_;
+  std::unique_ptr<Instruments> instruments_;  ///< null: not asked for
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   Health health_;

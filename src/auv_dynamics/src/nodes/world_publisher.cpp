@@ -158,6 +158,13 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
     SetVector(Lane(world.target(k).p_WT, 0), &swarm_message_.target_positions[u]);
     SetVector(Lane(world.target(k).v_WT, 0), &swarm_message_.target_velocities[u]);
   }
+  swarm_message_.groundings.clear();
+  swarm_message_.collisions.clear();
+  for (int i = 0; world.open_water() && i < world.agents(); ++i) {
+    const auto whole = [](const Pack& x) { return static_cast<std::uint32_t>(Lane(x, 0)); };
+    swarm_message_.groundings.push_back(whole(world.sea().groundings(i)));
+    swarm_message_.collisions.push_back(whole(world.sea().collisions(i)));
+  }
   swarm_message_.header.stamp = TimeOf(now);
   swarm_message_.run = run_;
   swarm_message_.episode = episode;

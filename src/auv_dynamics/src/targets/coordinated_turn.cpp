@@ -4,7 +4,8 @@
 namespace stg::dynamics {
 namespace {
 
-/// Turns about an axis at a rate, both drawn anew every turn period.
+/// Turns about an axis at a rate, both drawn anew every turn period; in open water to port or to
+/// starboard.
 class CoordinatedTurn : public SteeredMotion {
  public:
   using SteeredMotion::SteeredMotion;
@@ -18,7 +19,8 @@ class CoordinatedTurn : public SteeredMotion {
     const double rate =
         Clip(2.0 * random.Uniform() * config().turn_rate_radps, 0.0, config().max_turn_rate_radps);
     const Vec3<double> axis{random.Normal(), random.Normal(), random.Normal()};
-    return TurnTowards(now.v_WT, Cross(axis, now.v_WT), rate * dt());
+    const Vec3<double> upright{0.0, 0.0, axis.z};
+    return TurnTowards(now.v_WT, Cross(open_water() ? upright : axis, now.v_WT), rate * dt());
   }
 };
 

@@ -6,7 +6,8 @@
 namespace stg::dynamics {
 namespace {
 
-/// Away from every vehicle in range, the closer the stronger; straight on while none is.
+/// Away from every vehicle in range, the closer the stronger, in open water at its depth; straight
+/// on while none is.
 class Evasive : public SteeredMotion {
  public:
   using SteeredMotion::SteeredMotion;
@@ -17,9 +18,10 @@ class Evasive : public SteeredMotion {
     Vec3<double> away;
     double closest = range;
     for (const VehicleState<Pack>& vehicle : now.vehicles) {
-      const Vec3<double> r = now.p_WT - Lane(vehicle.p_WB, now.lane);
+      Vec3<double> r = now.p_WT - Lane(vehicle.p_WB, now.lane);
       const double d = std::max(Norm(r), 1e-6);
       if (d >= range) continue;
+      if (open_water()) r.z = 0.0;
       away += r * (1.0 / (d * d));
       closest = std::min(closest, d);
     }

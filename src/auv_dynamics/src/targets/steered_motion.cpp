@@ -28,7 +28,8 @@ SteeredMotion::SteeredMotion(const MotionSetup& setup)
 void SteeredMotion::Step(const EpisodeClocks& clocks,
                          const std::vector<VehicleState<Pack>>& vehicles,
                          std::vector<TargetState<Pack>>* targets) {
-  const double margin = 0.85 * half_extent_;
+  const bool open = open_water();
+  const double margin = 0.85 * (open ? region_ : half_extent_);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (size_t k = 0; k < targets->size(); ++k) {
       TargetState<Pack>& t = (*targets)[k];
@@ -41,8 +42,9 @@ void SteeredMotion::Step(const EpisodeClocks& clocks,
       const Vec3<double>&p = now.p_WT, &v = now.v_WT;
       const bool near_wall = (std::abs(p.x) > margin && p.x * v.x > 0.0) ||
                              (std::abs(p.y) > margin && p.y * v.y > 0.0) ||
-                             (std::abs(p.z) > margin && p.z * v.z > 0.0);
-      Vec3<double> next = near_wall ? TurnTowards(v, -p, largest_turn()) : Steer(now);
+                             (!open && std::abs(p.z) > margin && p.z * v.z > 0.0);
+      const Vec3<double> centre{-p.x, -p.y, open ? 0.0 : -p.z};
+      Vec3<double> next = near_wall ? TurnTowards(v, centre, largest_turn()) : Steer(now);
       const double speed = Norm(next);
       if (speed > config_.max_speed_mps) next = next * (config_.max_speed_mps / speed);
       SetLane(&t.v_WT, lane, next);

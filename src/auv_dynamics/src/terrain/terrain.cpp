@@ -32,6 +32,40 @@ double Obstacle::Distance(const Vec3<double>& p) const {
   return std::hypot(side, end);
 }
 
+Pack Obstacle::Inside(const Vec3<Pack>& p) const {
+  const Pack dx = p.x - Pack(p_W.x), dy = p.y - Pack(p_W.y), dz = p.z - Pack(p_W.z);
+  const Pack zero(0.0), one(1.0), square(radius_m * radius_m), level = dx * dx + dy * dy;
+  if (kind == Kind::kSphere) return Select(level + dz * dz < square, one, zero);
+  return Select((level < square) && (dz > zero) && (dz < Pack(height_m)), one, zero);
+}
+
+Vec3<double> Obstacle::Expel(Vec3<double>* p) const {
+  const Vec3<double> d = *p - p_W;
+  // The very centre or axis has no nearest place: any will do.
+  const auto outward = [](const Vec3<double>& r) {
+    const double length = Norm(r);
+    return length > 1e-9 ? r * (1.0 / length) : Vec3<double>{1.0, 0.0, 0.0};
+  };
+  if (kind == Kind::kSphere) {
+    const Vec3<double> out = outward(d);
+    *p = p_W + out * radius_m;
+    return out;
+  }
+  const Vec3<double> level{d.x, d.y, 0.0};
+  const double side = radius_m - Norm(level), top = height_m - d.z;
+  if (top < side && top < d.z) {
+    p->z = p_W.z + height_m;
+    return {0.0, 0.0, 1.0};
+  }
+  if (d.z < side) {
+    p->z = p_W.z;
+    return {0.0, 0.0, -1.0};
+  }
+  const Vec3<double> out = outward(level);
+  *p = Vec3<double>{p_W.x, p_W.y, p->z} + out * radius_m;
+  return out;
+}
+
 bool Obstacle::Blocks(const Vec3<double>& a, const Vec3<double>& b) const {
   const Vec3<double> from = a - p_W, along = b - a;
   if (kind == Kind::kSphere) {

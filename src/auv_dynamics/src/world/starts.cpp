@@ -22,8 +22,8 @@ bool Inside(const Vec3<double>& p, double half_extent) {
          std::abs(p.z) <= half_extent;
 }
 
-/// Nobody starts closer to the bottom [m].
-constexpr double kClearOfBottom_m = 5.0;
+/// Nobody starts closer to the bottom or an obstacle [m].
+constexpr double kClearOfAll_m = 5.0;
 
 Vec3<double> LevelDirection(Random* random) {
   const double angle = random->Uniform(0.0, 2.0 * kPi);
@@ -50,7 +50,7 @@ void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, 
     }
     if (!placed) {
       throw UserError("reset: no room for " + std::to_string(p_WB.size()) +
-                      " vehicles at reset.min_separation_m, clear of walls and bottom");
+                      " vehicles at reset.min_separation_m, clear of walls, bottom and obstacles");
     }
   }
 }
@@ -76,7 +76,7 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
       [](const Vec3<double>&) { return true; }, start);
 }
 
-void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Terrain& terrain,
+void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascape& scape,
                   ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start) {
   const ResetStageConfig& r = config.stages[static_cast<size_t>(stage)];
   Random random(seed, Stream::kReset, episode, 0, 0);
@@ -84,8 +84,8 @@ void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Terrain
     p.z = -draw->Uniform(depth_m.lo, depth_m.hi);
     return p;
   };
-  const auto clear = [&terrain](const Vec3<double>& p) {
-    return terrain.Altitude(p) > kClearOfBottom_m;
+  const auto clear = [&scape](const Vec3<double>& p) {
+    return scape.Altitude(p) > kClearOfAll_m && scape.Clearance(p) > kClearOfAll_m;
   };
   for (auto& target : start->targets) {
     bool placed = false;
@@ -96,8 +96,8 @@ void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Terrain
     }
     if (!placed) {
       throw UserError(
-          "reset: every start of a target lies in the bottom; see sea.target_depth_m, "
-          "sea.latitude_deg, sea.longitude_deg");
+          "reset: every start of a target lies in the bottom or an obstacle; see "
+          "sea.target_depth_m, sea.latitude_deg, sea.longitude_deg");
     }
     const double speed = random.Uniform(r.target_speed_mps.lo, r.target_speed_mps.hi);
     target.v_WT = LevelDirection(&random) * speed;

@@ -166,17 +166,34 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
 
 void World::Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStage stage) {
   if (open_) {
-    DrawSeaStart(reset_, depths_, sea_.terrain(), stage, seed, episode, &start_);
+    DrawSeaStart(reset_, depths_, sea_.scape(), stage, seed, episode, &start_);
   } else {
     DrawStart(reset_, stage, seed, episode, &start_);
   }
   StartLane(lane, seed, episode, start_);
 }
 
+void World::RequireWater(const std::string& who, const Vec3<double>& p) const {
+  const bool bottom = sea_.scape().Altitude(p) < 0.0, obstacle = sea_.scape().Clearance(p) < 0.0;
+  if (!bottom && !obstacle && p.z <= 0.0) return;
+  throw UserError(who + " would start " +
+                  (bottom     ? "inside the bottom"
+                   : obstacle ? "inside an obstacle"
+                              : "above the surface") +
+                  ", at x " + std::to_string(p.x) + ", y " + std::to_string(p.y) + ", z " +
+                  std::to_string(p.z) + " m");
+}
+
 void World::Place(int lane, const std::vector<Vec3<double>>& p_WB,
                   const std::vector<Vec3<double>>& p_WT, const std::vector<Vec3<double>>& v_WT) {
   assert(static_cast<int>(p_WB.size()) == agents());
   assert(static_cast<int>(p_WT.size()) == targets() && p_WT.size() == v_WT.size());
+  for (std::size_t i = 0; open_ && i < p_WB.size(); ++i) {
+    RequireWater("AUV " + std::to_string(i), p_WB[i]);
+  }
+  for (std::size_t k = 0; open_ && k < p_WT.size(); ++k) {
+    RequireWater("target " + std::to_string(k), p_WT[k]);
+  }
   start_.p_WB = p_WB;
   for (size_t k = 0; k < p_WT.size(); ++k) start_.targets[k] = {p_WT[k], v_WT[k]};
   StartLane(lane, 0, 0, start_);
@@ -204,6 +221,10 @@ NavState World::Nav(int lane, int i) const { return LaneOfNav(Nav(i), lane); }
 NavState World::Truth(int lane, int i) const { return LaneOfNav(TrueNav(i), lane); }
 
 bool World::Sense(int lane, int i, int k, Detection* out) const {
+  if (open_ && !sea_.scape().clear() &&
+      !sea_.scape().Sees(Lane(vehicle(i).p_WB, lane), Lane(target(k).p_WT, lane))) {
+    return false;
+  }
   const auto pair = static_cast<std::uint32_t>(i * targets() + k);
   Observer observer;
   if (perfect_) {

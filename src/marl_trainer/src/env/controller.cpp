@@ -66,6 +66,7 @@ Controller MakeController(const std::string& name, const Scenario& scenario) {
   c.name = name;
   c.builtin = agent::MakeController(name);
   if (c.builtin) return c;
+  agent::RequirePolicyFileName(name);
   std::string last;
   for (int i = 0; i < scenario.agents; ++i) {
     const std::string file = agent::PolicyFileOf(name, i);

@@ -28,6 +28,7 @@ Environment::Environment(const Scenario& scenario)
   tau_.assign(static_cast<std::size_t>(scenario.agents), zero);
   action_ = tau_;
   wrench_.resize(tau_.size());
+  if (scenario.sea.open) field_.resize(tau_.size());
   if (dynamics::Helm::Steers(scenario)) {
     helm_ = std::make_unique<dynamics::Helm>(scenario);
     v_des_W_.resize(tau_.size());
@@ -67,6 +68,7 @@ void Environment::Place(int lane, const std::vector<Vec3<double>>& p_WB,
 void Environment::Begin(const LaneSet& lanes) {
   source_->Start(world_, lanes);
   source_->Observe(world_, lanes);
+  LookAround();
   task_.Start(lanes.mask(), Swarm(), length_);
 }
 
@@ -100,11 +102,30 @@ void Environment::Steer() {
 
 void Environment::Judge() {
   source_->Observe(world_, LaneSet::All());
+  LookAround();
   // The link quality that is rewarded is the one after the step.
   if (scenario_.reward.kind == task::RewardKind::kPaper) {
     link_quality_ = source_->LinkQuality(world_);
   }
   task_.Step(Swarm());
+}
+
+/// Where the AUVs stand in open water, and what they believe there.
+void Environment::LookAround() {
+  const dynamics::Sea& sea = world_.sea();
+  for (std::size_t i = 0; i < field_.size(); ++i) {
+    const int id = static_cast<int>(i);
+    task::FieldState<Pack>& f = field_[i];
+    source_->Tell(world_, id, &f);
+    f.groundings = sea.groundings(id);
+    f.collisions = sea.collisions(id);
+    const Vec3<Pack>& p_WB = world_.vehicle(id).p_WB;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Vec3<double> p = Lane(p_WB, lane);
+      SetLane(&f.altitude_m, lane, sea.scape().Altitude(p));
+      SetLane(&f.clearance_m, lane, sea.scape().Clearance(p));
+    }
+  }
 }
 
 agent::Knowledge<Pack> Environment::Truth(int i) const {
@@ -134,7 +155,8 @@ task::SwarmState<Pack> Environment::Swarm() const {
           world_.separations(),
           tau_,
           action_,
-          link_quality_};
+          link_quality_,
+          field_.empty() ? nullptr : &field_};
 }
 
 void Environment::WriteObservations(int lanes, float* rows) const {

@@ -51,6 +51,7 @@ class Environment {
   void Steer();
   void Zero(int lane, int episode_steps);
   task::SwarmState<Pack> Swarm() const;
+  void LookAround();
 
   Scenario scenario_;
   dynamics::World world_;
@@ -61,6 +62,7 @@ class Environment {
   Pack link_quality_ = Pack(0.0);
   task::Efforts<Pack> tau_, action_;
   std::vector<dynamics::Wrench<Pack>> wrench_;
+  std::vector<task::FieldState<Pack>> field_;  // [agents] in open water; else empty
   // Of vehicles that are steered by autopilots; else null.
   std::unique_ptr<dynamics::Helm> helm_;
   std::vector<Vec3<Pack>> v_des_W_;

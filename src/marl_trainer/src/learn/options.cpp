@@ -1,5 +1,6 @@
 #include "marl_trainer/learn/options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -32,7 +33,15 @@ struct RangeCheck {
   }
   void operator()(const std::uint64_t*) const {}
   void operator()(const bool*) const {}
-  void operator()(const std::string*) const {}
+  void operator()(const std::string* value) const {
+    const std::vector<std::string>& choices = option.choices;
+    if (choices.empty() || std::find(choices.begin(), choices.end(), *value) != choices.end()) {
+      return;
+    }
+    std::string known = choices.front();
+    for (std::size_t k = 1; k < choices.size(); ++k) known += " or " + choices[k];
+    RequireOption(false, option.name, "'" + *value + "' is not " + known);
+  }
 };
 
 }  // namespace
@@ -43,6 +52,7 @@ void RequireOption(bool ok, const std::string& option, const std::string& what) 
 
 void OptionTable::RequireRanges() const {
   for (const Option& option : options_) std::visit(RangeCheck{option}, option.value);
+  for (const auto& check : checks_) check();
 }
 
 void OptionTable::Dump(nlohmann::ordered_json* json) const {

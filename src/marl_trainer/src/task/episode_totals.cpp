@@ -13,6 +13,7 @@ EpisodeTotals<T>::EpisodeTotals(const JudgeConfig& s)
       tail_steps_(s.time.tail_steps),
       decision_dt_s_(s.decision_dt_s()),
       band_m_(s.reward.band_m),
+      field_(s),
       entered_(static_cast<std::size_t>(s.agents), T(-1.0)) {}
 
 template <class T>
@@ -31,6 +32,7 @@ void EpisodeTotals<T>::Start(const Mask<T>& lanes, const T& episode_steps) {
     restart(sum, zero);
   }
   for (T& entered : entered_) restart(&entered, T(-1.0));
+  field_.Start(lanes);
 }
 
 template <class T>
@@ -64,6 +66,8 @@ void EpisodeTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Trackin
   }
   s.pairs += swarm.separations.colliding_pairs();
   separation_ = Min(separation_, swarm.separations.smallest());
+  in_field_ = swarm.field != nullptr;
+  if (in_field_) field_.Add(swarm, tracking);
   const auto tail = steps_ > length_ - T(static_cast<double>(tail_steps_));
   if (Any(tail)) AddTail(tail, swarm, tracking);
 }
@@ -117,6 +121,7 @@ EpisodeMetrics EpisodeTotals<T>::Metrics(int lane) const {
   m.reward_communication = at(sums_.communication) / all;
   m.reward_semantic = at(sums_.semantic) / all;
   m.reward_separation = at(sums_.crowding) / all;
+  if (in_field_) m.field = field_.Metrics(lane, steps);
   return m;
 }
 

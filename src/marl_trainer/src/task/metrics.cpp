@@ -5,8 +5,29 @@
 
 namespace stg::task {
 
+std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
+  return {{"estimate_rmse", estimate_rmse},
+          {"nees", nees},
+          {"estimate_known", estimate_known},
+          {"information_age", information_age},
+          {"band_share", band_share},
+          {"time_lost", time_lost},
+          {"time_to_reacquire", time_to_reacquire},
+          {"losses", losses},
+          {"spread", spread},
+          {"near_pairs", near_pairs},
+          {"min_altitude", min_altitude},
+          {"min_clearance", min_clearance},
+          {"groundings", groundings},
+          {"collisions", collisions},
+          {"packets", packets},
+          {"packet_loss", packet_loss},
+          {"modem_energy", modem_energy}};
+}
+
 std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
-  return {{"return", episode_return},
+  std::vector<std::pair<std::string, double>> items{
+          {"return", episode_return},
           {"tail_distance", tail_distance},
           {"tracking_error", tracking_error},
           {"lost_rate", lost_rate},
@@ -27,6 +48,9 @@ std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
           {"reward_communication", reward_communication},
           {"reward_semantic", reward_semantic},
           {"reward_separation", reward_separation}};
+  if (!field) return items;
+  for (const auto& item : field->Items()) items.push_back(item);
+  return items;
 }
 
 double MetricSummary::Mean(const std::string& name) const {
@@ -37,7 +61,8 @@ double MetricSummary::Mean(const std::string& name) const {
 MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes) {
   MetricSummary s;
   s.episodes = static_cast<int>(episodes.size());
-  for (const auto& item : EpisodeMetrics{}.Items()) s.names.push_back(item.first);
+  const EpisodeMetrics any = episodes.empty() ? EpisodeMetrics{} : episodes.front();
+  for (const auto& item : any.Items()) s.names.push_back(item.first);
   s.mean.assign(s.names.size(), 0.0);
   s.std.assign(s.names.size(), 0.0);
   const double n = static_cast<double>(episodes.size());

@@ -9,6 +9,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/env/evaluation.hpp"
+#include "marl_trainer/env/seed_blocks.hpp"
 #include "marl_trainer/learn/variants.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
@@ -41,7 +42,7 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 3000;
   const stg::agent::PursuitOptions tuned;
   bool privileged = false;
-  app.add_option("--policy", policy, "ONNX file, or pursuit, pursuit_separated, idle")->required();
+  app.add_option("--policy", policy, "ONNX file, or encircle, pursuit, pursuit_separated, idle")->required();
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
   app.add_option("--condition", condition,
                  "nominal, fast_target, far_initialization, limited_sensing, "
@@ -54,7 +55,9 @@ int main(int argc, char** argv) {
   app.add_option("--episodes", episodes, "number of episodes")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_option("--seed", seed, "episode e is drawn from seed + e")->capture_default_str();
+  app.add_option("--seed", seed, "episode e is drawn from seed + e; from " +
+                     std::to_string(stg::env::kReportingSeeds.first) +
+                     " on, what nothing was chosen by")->capture_default_str();
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
   app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256));
   app.add_option("--csv", csv, "write one row per episode to this file");
@@ -90,11 +93,16 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "\n");
     if (!csv.empty()) WriteCsv(csv, metrics, seed);
     const stg::task::MetricSummary summary = stg::task::Summarise(metrics);
+    const std::string block =
+        stg::env::SeedBlockOf(seed, static_cast<std::uint64_t>(episodes));
     nlohmann::json json = {{"policy", policy},       {"scenario", scenario},
                            {"condition", condition}, {"episodes", episodes},
-                           {"seed", seed},           {"scenario_hash", stg::ScenarioHash(s)}};
-    std::printf("%s on %s, %s: %d episodes from seed %llu\n", policy.c_str(), scenario.c_str(),
-                condition.c_str(), episodes, static_cast<unsigned long long>(seed));
+                           {"seed", seed},           {"scenario_hash", stg::ScenarioHash(s)},
+                           {"seed_block", block}};
+    std::printf("%s on %s, %s: %d episodes from seed %llu, of %s block\n", policy.c_str(),
+                scenario.c_str(), condition.c_str(), episodes,
+                static_cast<unsigned long long>(seed),
+                block == "no" ? "no" : ("the " + block).c_str());
     for (size_t k = 0; k < summary.names.size(); ++k) {
       std::printf("  %-24s %12.5f +- %.5f\n", summary.names[k].c_str(), summary.mean[k],
                   summary.std[k]);

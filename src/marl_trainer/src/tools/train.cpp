@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstring>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include "auv_common/config/files.hpp"
@@ -32,6 +34,10 @@ std::string Argument(int argc, char** argv, const std::string& option,
   return fallback;
 }
 
+bool HasFlag(int argc, char** argv, const std::string& flag) {
+  return std::find(argv + 1, argv + argc, flag) != argv + argc;
+}
+
 /// Declares one option of the table.
 struct Declare {
   CLI::App& app;
@@ -46,8 +52,17 @@ struct Declare {
 };
 
 int Train(int argc, char** argv) {
-  stg::learn::TrainSetup setup(Argument(argc, argv, "--algorithm", stg::learn::DefaultAlgorithm()),
-                               Argument(argc, argv, "--preset", "fast"));
+  // A resumed run is what its folder says; options may repeat it.
+  std::optional<stg::learn::RunSetup> earlier;
+  const std::string folder = Argument(argc, argv, "--out", "");
+  if (HasFlag(argc, argv, "--resume") && !folder.empty()) {
+    earlier = stg::learn::ReadRunSetup(folder);
+  }
+  stg::learn::TrainSetup setup =
+      earlier ? earlier->setup
+              : stg::learn::TrainSetup(
+                    Argument(argc, argv, "--algorithm", stg::learn::DefaultAlgorithm()),
+                    Argument(argc, argv, "--preset", "fast"));
   std::string scenario_name = "medium", condition = "nominal", out;
   std::vector<std::string> overrides, mix;
   bool resume = false;
@@ -70,7 +85,9 @@ int Train(int argc, char** argv) {
   app.add_option("--variant", setup.common.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
       ->capture_default_str();
   app.add_option("--out", out, "folder for checkpoints, policies and logs")->required();
-  app.add_flag("--resume", resume, "go on from the folder's newest good checkpoint");
+  app.add_flag("--resume", resume,
+               "go on from the folder's newest good checkpoint, with what the folder says of "
+               "scenario, options and seed");
   app.add_option("--workers", workers, "threads; results do not depend on them")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -87,13 +104,20 @@ int Train(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
 
+  const bool names_scenario = app.count("--scenario") + app.count("--condition") +
+                                  app.count("--train-on") + app.count("--set") >
+                              0;
+  const bool kept = earlier && !names_scenario;
   const stg::Scenario scenario =
-      stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, condition, overrides);
+      kept ? earlier->scenario
+           : stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, condition,
+                                    overrides);
   stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;
   options.workers = workers;
   options.log = &std::cout;
+  if (kept) options.mix = earlier->mix;
   for (const std::string& name : mix) {
     options.mix.push_back(
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, name, overrides));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "algorithms/game.hpp"
+#include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithm_config.hpp"
 
 /// What every registered algorithm promises, whatever it learns.
@@ -75,6 +76,28 @@ TEST_P(Conformance, ExportsThePolicyThatItFlies) {
     }
   }
   EXPECT_TRUE(moves);
+}
+
+TEST_P(Conformance, PresetsAreValidAndSurviveJson) {
+  for (const char* preset : {"fast", "paper"}) {
+    const TrainSetup setup(GetParam(), preset);
+    EXPECT_NO_THROW(setup.ValidateOrThrow()) << preset;
+    EXPECT_EQ(ToJson(TrainSetupFromJson(ToJson(setup))), ToJson(setup)) << preset;
+  }
+  EXPECT_NE(ToJson(TrainSetup(GetParam(), "paper")), ToJson(TrainSetup(GetParam(), "fast")));
+  EXPECT_THROW(TrainSetup(GetParam(), "slow"), UserError);
+}
+
+TEST_P(Conformance, ImitationIsLearntOrRefused) {
+  TrainSetup setup(GetParam(), "fast");
+  setup.common.imitation.controller = "pursuit";
+  setup.common.imitation.steps = 1000;
+  const bool on_policy = GetParam().find("ppo") != std::string::npos;
+  if (on_policy) {
+    EXPECT_NO_THROW(setup.ValidateOrThrow());
+  } else {
+    EXPECT_THROW(setup.ValidateOrThrow(), UserError);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Conformance, ::testing::ValuesIn(Algorithms().Names()),

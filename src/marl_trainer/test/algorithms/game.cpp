@@ -68,7 +68,7 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
   const auto rows = envs * static_cast<std::size_t>(game_.agents);
   std::vector<float> states(envs), next_states(envs), final_states(envs);
   std::vector<float> seen(rows), next_seen(rows), final_seen(rows), actions(rows), log_prob(rows);
-  std::vector<float> rewards(rows), team(envs);
+  std::vector<float> rewards(rows), team(envs), taught(game_.teacher ? rows : 0);
   std::vector<std::uint8_t> truncated(envs);
   const auto show = [&](const std::vector<float>& from, std::vector<float>* to) {
     for (std::size_t r = 0; r < rows; ++r) {
@@ -105,6 +105,11 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
       *reward += static_cast<double>(team[e]);
     }
     show(team, &rewards);
+    for (std::size_t r = 0; r < taught.size(); ++r) {
+      const auto agents = static_cast<std::size_t>(game_.agents);
+      taught[r] = static_cast<float>(
+          game_.teacher(static_cast<double>(states[r / agents]), static_cast<int>(r % agents)));
+    }
     Transition transition;
     transition.shard = index;
     transition.step = t;
@@ -113,6 +118,7 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
     transition.states = states.data();
     transition.actions = actions.data();
     transition.log_prob = log_prob.data();
+    transition.teacher = game_.teacher ? taught.data() : nullptr;
     transition.rewards = rewards.data();
     transition.team_rewards = team.data();
     transition.truncated = truncated.data();
@@ -131,6 +137,7 @@ double Training::Run(int collections) {
     Collection collection;
     collection.number = collection_++;
     collection.steps = setup_.common.horizon;
+    collection.taught = game_.teacher != nullptr;
     for (int first = 0; first < setup_.common.envs; first += kShardEnvs) {
       collection.shards.push_back({first, std::min(kShardEnvs, setup_.common.envs - first)});
     }
@@ -139,7 +146,9 @@ double Training::Run(int collections) {
     pool_.Run(static_cast<int>(rewards.size()), [&](int shard, int worker) {
       PlayShard(collection, shard, worker, &rewards[static_cast<std::size_t>(shard)]);
     });
-    report_ = algorithm_->Update(UpdateContext());
+    UpdateContext context;
+    context.imitation = game_.teacher ? 1.0 : 0.0;
+    report_ = algorithm_->Update(context);
     last = 0.0;
     for (const double reward : rewards) last += reward;
     last /= setup_.common.envs * setup_.common.horizon;

@@ -63,10 +63,13 @@ TEST_P(Penalty, ReachesTheOptimum) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Algorithms, Penalty,
-                         ::testing::Values(Case{"mappo", {}, 100}, Case{"ippo", {}, 100},
-                                           Case{"happo", {}, 100}, Case{"maddpg", {}, 150},
-                                           Case{"matd3", {}, 150}));
+INSTANTIATE_TEST_SUITE_P(
+    Algorithms, Penalty,
+    ::testing::Values(Case{"mappo", {}, 100}, Case{"ippo", {}, 100}, Case{"happo", {}, 100},
+                      Case{"maddpg", {{"others", "buffer"}, {"noise-max", 0.5}}, 150},
+                      Case{"matd3", {{"others", "buffer"}, {"noise-max", 0.5}}, 150},
+                      Case{"masac", {}, 150}, Case{"madqn", {{"bins", 3}}, 150},
+                      Case{"madqn", {{"heads", "joint"}}, 150}));
 
 class Quadratic : public ::testing::TestWithParam<Case> {};
 
@@ -86,6 +89,25 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, Quadratic,
                                            Case{"happo", {}, 300},
                                            Case{"maddpg", {{"action-gain", 1.0}}, 300},
                                            Case{"matd3", {}, 300}, Case{"masac", {}, 300}));
+
+TEST(Imitation, OnPolicyActorsDoWhatTheTeacherDoes) {
+  for (const char* algorithm : {"mappo", "ippo", "happo"}) {
+    // Only actors of their own can tell who they are.
+    const bool own = std::string(algorithm) == "happo";
+    Game game;
+    game.reward = [](double, const float*) { return 0.0; };
+    game.teacher = [own](double x, int agent) { return own && agent == 1 ? -0.4 * x : 0.4 * x; };
+    Training training(game, GameSetup(algorithm));
+    training.Run(100);
+    for (const double x : {-0.8, -0.2, 0.3, 0.9}) {
+      const std::vector<float> actions = training.Act(x);
+      for (int agent = 0; agent < 2; ++agent) {
+        EXPECT_NEAR(actions[static_cast<std::size_t>(agent)], game.teacher(x, agent), 0.05)
+            << algorithm << " at " << x;
+      }
+    }
+  }
+}
 
 TEST(Quadratic, TheBestBinsAreChosen) {
   const Game game = QuadraticTeam();

@@ -60,7 +60,9 @@ TEST(Masac, TheWeightDrivesTheEntropyToItsTarget) {
 TEST(Masac, WithoutTheWeightTheEntropyMissesTheTarget) {
   Game game;
   game.reward = [](double, const float* a) { return -static_cast<double>(a[0] * a[0]); };
-  Training training(game, GameSetup("masac", {{"initial-alpha", 1e-6}, {"alpha-lr", 0.0}}));
+  Training training(
+      game,
+      GameSetup("masac", {{"initial-alpha", 1e-6}, {"alpha-lr", 0.0}, {"target-entropy", -1.0}}));
   training.Run(200);
   EXPECT_GT(std::abs(training.Reported("entropy") + 1.0), 0.3);
 }

@@ -105,26 +105,29 @@ TEST_F(TrainerTest, WeightsDoNotDependOnTheNumberOfWorkers) {
 }
 
 TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
-  // Aligned episodes, a horizon that does not divide the episode, and staggered ends.
-  for (int kind = 0; kind < 3; ++kind) {
+  // Aligned episodes, a horizon that does not divide the episode, and staggered ends; stopped where
+  // all environments start an episode, and in the middle of episodes.
+  for (int kind = 0; kind < 6; ++kind) {
     TrainSetup setup = SmallSetup();
-    if (kind == 1) setup.common.horizon = 15;
-    if (kind == 2) setup.common.stagger = true;
+    if (kind % 3 == 1) setup.common.horizon = 15;
+    if (kind % 3 == 2) setup.common.stagger = true;
     const std::string name = std::to_string(kind);
+    const std::int64_t halt = setup.common.steps / 2 + (kind < 3 ? 0 : 1);
     const Scenario scenario = ShortScenario();
     Trainer whole(scenario, setup, Options("whole" + name));
     EXPECT_TRUE(whole.Run());
     {
       Trainer::Options options = Options("halves" + name);
-      options.halt_after = setup.common.steps / 2;
+      options.halt_after = halt;
       Trainer first(scenario, setup, options);
       EXPECT_FALSE(first.Run());
       EXPECT_LT(first.state().env_steps, setup.common.steps);
+      EXPECT_LT(first.state().env_steps, halt + setup.common.envs * setup.common.horizon);
     }
     Trainer::Options options = Options("halves" + name, 2);
     options.resume = true;
     Trainer second(scenario, setup, options);
-    EXPECT_GE(second.state().env_steps, setup.common.steps / 2);
+    EXPECT_GE(second.state().env_steps, halt);
     EXPECT_TRUE(second.Run());
     ExpectSameBits(whole.state(), second.state());
     EXPECT_EQ(Bytes(folder_ / ("whole" + name) / "policy_last.onnx"),
@@ -132,18 +135,18 @@ TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
   }
 }
 
-TEST_F(TrainerTest, StopSavesAtTheNextBoundaryAndLeavesALoadablePolicy) {
+TEST_F(TrainerTest, StopSavesAfterTheCollectionAndLeavesALoadablePolicy) {
   const std::atomic<int> stop{2};
   Trainer::Options options = Options("run");
   options.stop = &stop;
   Trainer trainer(ShortScenario(), SmallSetup(), options);
   EXPECT_FALSE(trainer.Run());
-  EXPECT_EQ(trainer.state().env_steps, 2 * 640);
+  EXPECT_EQ(trainer.state().env_steps, 640);
   const agent::Policy policy =
       agent::Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
   EXPECT_NO_THROW(policy.RequireFits(ShortScenario()));
   EXPECT_TRUE(fs::exists(folder_ / "run" / "summary.json"));
-  EXPECT_NO_THROW(LoadCheckpoint(CheckpointPath((folder_ / "run").string(), 1280)));
+  EXPECT_NO_THROW(LoadCheckpoint(CheckpointPath((folder_ / "run").string(), 640)));
 }
 
 TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {

@@ -156,6 +156,23 @@ TEST(NamedScenario, ConditionFollowsTheStageOfTheFileAndOverridesComeLast) {
             0.020);
 }
 
+TEST(NamedScenario, ConditionsOfAFileComeBeforeThoseOfItsStage) {
+  EXPECT_EQ(LoadNamedScenario(kFolder, "field", "fast_target").target.max_speed_mps, 1.3);
+  EXPECT_EQ(LoadNamedScenario(kFolder, "field8", "fast_target").target.max_speed_mps, 1.3);
+  std::set<std::string> hashes{ScenarioHash(LoadNamedScenario(kFolder, "field"))};
+  const auto names = Names(kFolder + "/conditions/field");
+  for (const std::string& name : names) {
+    hashes.insert(ScenarioHash(LoadNamedScenario(kFolder, "field", name)));
+  }
+  EXPECT_EQ(hashes.size(), names.size() + 1);
+  try {
+    LoadNamedScenario(kFolder, "field", "storm");
+    ADD_FAILURE();
+  } catch (const UserError& e) {
+    EXPECT_NE(std::string(e.what()).find("strong_current"), std::string::npos) << e.what();
+  }
+}
+
 TEST(NamedScenario, UnknownNamesListWhatThereIs) {
   const auto error = [](const std::string& scenario, const std::string& condition) {
     try {
@@ -193,7 +210,7 @@ const char* const kSections[] = {
     "auv_dynamics/include/auv_dynamics/vehicle/vehicle_config",
     "auv_dynamics/include/auv_dynamics/world/surroundings_config",
     "auv_dynamics/include/auv_dynamics/world/reset_config",
-    "auv_dynamics/include/auv_dynamics/world/sea_config",
+    "auv_dynamics/include/auv_dynamics/terrain/sea_config",
     "auv_dynamics/include/auv_dynamics/world/world_config",
     "auv_dynamics/include/auv_dynamics/sensing/sensing_config",
     "auv_dynamics/include/auv_dynamics/targets/target_config",

@@ -51,6 +51,9 @@ bool Change(const config::Field& field) {
   }
   if (auto v = std::get_if<config::NumbersRef>(&field.value)) v->data[v->size - 1] += 0.5;
   if (auto v = std::get_if<config::Interval*>(&field.value)) (*v)->hi += 0.5;
+  if (auto v = std::get_if<config::RowsRef>(&field.value)) {
+    v->rows->emplace_back(static_cast<std::size_t>(v->columns), 1.0);
+  }
   if (auto v = std::get_if<config::NamesRef>(&field.value)) v->list->push_back(v->names[0]);
   return true;
 }

@@ -188,7 +188,8 @@ TEST_F(CommandLine, BenchEnvEndsWithItsRate) {
   ASSERT_EQ(r.code, 0) << r.err;
   const nlohmann::json json = r.Json();
   ASSERT_TRUE(json.is_object()) << r.out;
-  EXPECT_GT(json["env_steps_per_second"], 1000.0);
+  const double rate = json["env_steps_per_second"];
+  EXPECT_TRUE(std::isfinite(rate) && rate > 0.0) << rate;  // how fast is the benchmarks' business
 }
 
 TEST_F(CommandLine, CheckTraceSucceedsWithinAndFailsPastTheTolerance) {

@@ -13,6 +13,7 @@ namespace stg::agent {
 struct TaskConfig {
   double desired_distance_m = 0.015;  ///< d*
   double lost_distance_m = 0.65;      ///< farther from the target than this, it counts as lost
+  double lost_error_m = 0.0;  ///< judged: so does a target whose estimate is off by more; 0: no
 };
 
 /// What an agent needs to know: its vehicle and world, the network, and its own sections.

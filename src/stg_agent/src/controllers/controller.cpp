@@ -61,4 +61,16 @@ std::shared_ptr<const Controller> MakeController(const std::string& text) {
   return controller;
 }
 
+void RequirePolicyFileName(const std::string& text) {
+  const std::string ending = ".onnx";
+  if (text.size() > ending.size() &&
+      text.compare(text.size() - ending.size(), ending.size(), ending) == 0) {
+    return;
+  }
+  std::vector<std::string> names = Controllers().Names();
+  const std::string nearest = NearestName(text.substr(0, text.find(':')), names);
+  throw UserError("policy '" + text + "': neither an .onnx file nor one of " + JoinNames(names) +
+                  (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+}
+
 }  // namespace stg::agent

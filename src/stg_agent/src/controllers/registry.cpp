@@ -1,4 +1,5 @@
 #include "stg_agent/controllers/controller.hpp"
+#include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/idle.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
@@ -6,6 +7,7 @@ namespace stg::agent {
 
 ControllerRegistry& Controllers() {
   static ControllerRegistry registry("controller", {
+                                                       {"encircle", MakeEncircle},
                                                        {"idle", MakeIdle},
                                                        {"pursuit", MakePursuit},
                                                        {"pursuit_separated", MakePursuitSeparated},

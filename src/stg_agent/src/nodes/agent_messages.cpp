@@ -10,17 +10,20 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
                   auv_msgs::TaskState* m) {
   const agent::TaskView task = agent.task();
   const agent::Knowledge<double>& k = agent.knowledge();
-  const agent::TargetEstimate target = agent.estimate();
+  const agent::TargetBelief target = agent.belief();
+  const agent::Covariance3& P = target.P_WT;
   std::copy(task.z_track.begin(), task.z_track.end(), m->z_track.begin());
   std::copy(task.graph.begin(), task.graph.end(), m->graph_summary.begin());
   m->phase = static_cast<std::uint8_t>(task.phase);
   m->quality = static_cast<std::uint8_t>(task.quality);
   m->role = task.role;
   m->action.assign(output.action, output.action + agent.scenario().action_size());
-  m->target_known = agent.belief().started;
+  m->target_known = target.started;
   SetVector(target.p_WT, &m->target_position);
   SetVector(target.v_WT, &m->target_velocity);
-  m->target_std = target.position_std_m();
+  m->target_std = agent.estimate().position_std_m();
+  m->target_covariance = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
+  m->target_age = Seconds(target.stamp - target.information);
   m->target_distance = k.distance;
   m->tracking_error = k.error;
   m->confidence = k.confidence;

@@ -10,6 +10,7 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "auv_dynamics/helm/helm.hpp"
+#include "auv_dynamics/nodes/autopilot_parameter.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -18,16 +19,6 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-
-/// Whether the agent's process also turns velocities into wrenches.
-bool OnboardParameter(const dynamics::WorldConfig& scenario) {
-  const std::string autopilot = TextParameter("autopilot", "external");
-  if (autopilot == "external") return false;
-  if (autopilot != "onboard") throw UserError("parameter autopilot: must be external or onboard");
-  if (!dynamics::Helm::Steers(scenario)) return true;
-  throw UserError("parameter autopilot: vehicle.model " + scenario.vehicle.model +
-                  " is no vehicle for onboard, as it is not commanded by force and moment");
-}
 
 }  // namespace
 
@@ -44,7 +35,8 @@ AgentNode::AgentNode()
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
       commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
-      commands_wrench_(!commands_velocity_ || OnboardParameter(scenario_)),
+      commands_wrench_(!commands_velocity_ ||
+                       (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(scenario_))),
       pending_(id_, scenario_.target.count),
       tracker_(period_, scenario_.time.episode_steps),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
@@ -58,6 +50,9 @@ AgentNode::AgentNode()
       node.subscribe(own(topics::kAcousticRx), kQueue, &AgentNode::OnReception, this, NoDelay()));
   load_policy_ =
       ros::NodeHandle("~").advertiseService(topics::kLoadPolicy, &AgentNode::OnLoadPolicy, this);
+  const std::string file = decider_->file();
+  ROS_INFO("agent %d: flies '%s'%s%s", id_, decider_->id().c_str(), file.empty() ? "" : " of ",
+           file.c_str());
 }
 
 void AgentNode::Advertise() {

@@ -26,13 +26,9 @@ Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario, 
     id_ = name;
     return;
   }
-  if (name.size() < 5 || name.substr(name.size() - 5) != ".onnx") {
-    std::string names;
-    for (const std::string& builtin : agent::Controllers().Names()) names += builtin + ", ";
-    throw UserError("policy '" + name + "': neither of " + names + "nor an .onnx file");
-  }
-  policy_ = std::make_unique<const agent::Policy>(
-      agent::Policy::LoadOnnx(agent::PolicyFileOf(name, agent)));
+  agent::RequirePolicyFileName(name);
+  file_ = agent::PolicyFileOf(name, agent);
+  policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(file_));
   policy_->RequireFits(scenario);
   id_ = policy_->metadata().id;
 }

@@ -30,9 +30,11 @@ class Decider {
   float Explore(std::uint64_t seed, std::uint32_t step, int agent, float* action) const;
 
   const std::string& id() const { return id_; }
+  /// Where the policy was read from; empty for a built-in controller.
+  const std::string& file() const { return file_; }
 
  private:
-  std::string id_;
+  std::string id_, file_;
   std::unique_ptr<const agent::Policy> policy_;  // null: builtin_
   std::shared_ptr<const agent::Controller> builtin_;
 };

@@ -9,7 +9,7 @@
 namespace stg::agent {
 namespace {
 
-const std::vector<std::string> kBuiltIn = {"idle", "pursuit", "pursuit_separated"};
+const std::vector<std::string> kBuiltIn = {"encircle", "idle", "pursuit", "pursuit_separated"};
 
 /// An agent that has flown a while among neighbours.
 Agent Experienced(const AgentConfig& s) {

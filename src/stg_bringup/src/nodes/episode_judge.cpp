@@ -15,10 +15,17 @@ EpisodeJudge::EpisodeJudge(const Scenario& scenario)
       targets_(static_cast<std::size_t>(scenario.target.count)),
       separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
       tau_(vehicles_.size()),
-      action_(vehicles_.size()) {}
+      action_(vehicles_.size()) {
+  if (!scenario.sea.open) return;
+  scape_ =
+      std::make_unique<const dynamics::Seascape>(scenario.sea, scenario.workspace.half_extent_m);
+  field_.resize(vehicles_.size());
+}
 
 task::SwarmState<double> EpisodeJudge::Swarm() const {
-  return {vehicles_, targets_, separations_, tau_, action_, link_quality_};
+  return {vehicles_, targets_,      separations_,
+          tau_,      action_,       link_quality_,
+          field_.empty() ? nullptr : &field_};
 }
 
 std::vector<float> EpisodeJudge::CriticState() const {
@@ -97,6 +104,37 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
     if (task) sum += task->graph_summary[1];
   }
   link_quality_ = sum / static_cast<double>(frame.tasks.size());
+  if (!field_.empty()) SetField(frame);
+}
+
+void EpisodeJudge::SetField(const SwarmFrame& frame) {
+  const auv_msgs::SwarmState& truth = *frame.truth;
+  for (std::size_t i = 0; i < field_.size(); ++i) {
+    task::FieldState<double>& f = field_[i];
+    f.altitude_m = scape_->Altitude(vehicles_[i].p_WB);
+    f.clearance_m = scape_->Clearance(vehicles_[i].p_WB);
+    if (i < truth.groundings.size()) f.groundings = truth.groundings[i];
+    if (i < truth.collisions.size()) f.collisions = truth.collisions[i];
+    const auto& task = frame.tasks[i];
+    if (!task) continue;
+    f.known = task->target_known ? 1.0 : 0.0;
+    f.p_WT = VectorOf(task->target_position);
+    std::copy(task->target_covariance.begin(), task->target_covariance.end(), f.covariance);
+    f.age_s = task->target_age;
+  }
+}
+
+void EpisodeJudge::SetLinks(const auv_msgs::LinkStates& links) {
+  double delivered = 0.0, dropped = 0.0;
+  for (const auv_msgs::LinkState& link : links.links) {
+    delivered += link.delivered;
+    dropped += link.dropped;
+  }
+  for (std::size_t i = 0; i < field_.size(); ++i) {
+    field_[i].received = delivered / scenario_.agents;
+    field_[i].missed = dropped / scenario_.agents;
+    if (i < links.energy.size()) field_[i].modem_energy_j = links.energy[i];
+  }
 }
 
 /// What acted on the AUVs until this frame.
@@ -155,6 +193,14 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
     m.distances.push_back(task_.tracking(i).distance);
     m.reward += m.agent_rewards.back() / scenario_.agents;
   }
+  for (std::size_t i = 0; i < field_.size(); ++i) {
+    const task::FieldState<double>& f = field_[i];
+    const auto target = static_cast<std::size_t>(scenario_.target_of(static_cast<int>(i)));
+    const double error = Norm(f.p_WT - targets_[target].p_WT);
+    m.estimate_errors.push_back(f.known > 0.5 ? error : -1.0);
+    m.altitudes.push_back(f.altitude_m);
+    m.clearances.push_back(f.clearance_m);
+  }
   m.colliding_pairs = static_cast<std::uint32_t>(separations_.colliding_pairs());
   m.smallest_separation = scenario_.agents > 1 ? separations_.smallest() : 0.0;
 }
@@ -185,6 +231,27 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetric
   m.tail_colliding_pairs = e.tail_colliding_pairs;
   m.min_separation = e.min_separation;
   m.time_to_band = e.time_to_band;
+  m.field = e.field.has_value();
+  if (e.field) {
+    const task::FieldMetrics& f = *e.field;
+    m.estimate_rmse = f.estimate_rmse;
+    m.nees = f.nees;
+    m.estimate_known = f.estimate_known;
+    m.information_age = f.information_age;
+    m.band_share = f.band_share;
+    m.time_lost = f.time_lost;
+    m.time_to_reacquire = f.time_to_reacquire;
+    m.losses = f.losses;
+    m.spread = f.spread;
+    m.near_pairs = f.near_pairs;
+    m.min_altitude = f.min_altitude;
+    m.min_clearance = f.min_clearance;
+    m.groundings = f.groundings;
+    m.collisions = f.collisions;
+    m.packets = f.packets;
+    m.packet_loss = f.packet_loss;
+    m.modem_energy = f.modem_energy;
+  }
   m.deadline_misses = deadline_misses_;
   m.channel_misses = channel_misses_;
 }

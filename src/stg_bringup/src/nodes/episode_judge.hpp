@@ -1,8 +1,10 @@
 #pragma once
 
 #include <auv_msgs/EpisodeSummary.h>
+#include <auv_msgs/LinkStates.h>
 #include <auv_msgs/StepReport.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,10 @@ class EpisodeJudge {
   /// Frames come in order of time. A frame without truth ends the episode it belongs to.
   Verdict Judge(const SwarmFrame& frame);
 
+  /// Packets delivered to and lost on the way to all AUVs, and energy of their modems, in this
+  /// episode up to now; of open water.
+  void SetLinks(const auv_msgs::LinkStates& links);
+
   /// Present truth, for display.
   const task::Tracking<double>& tracking(int i) const { return task_.tracking(i); }
   std::uint32_t episode() const { return episode_; }
@@ -37,6 +43,7 @@ class EpisodeJudge {
 
  private:
   void SetTruth(const SwarmFrame& frame);
+  void SetField(const SwarmFrame& frame);
   void TakeWrenches(const auv_msgs::SwarmState& truth);
   void TakeActions(const SwarmFrame& frame);
   task::SwarmState<double> Swarm() const;
@@ -54,6 +61,9 @@ class EpisodeJudge {
   dynamics::Separations<double> separations_;
   task::Efforts<double> tau_, action_;
   double link_quality_ = 0.0;
+  // In open water; else null and empty.
+  std::unique_ptr<const dynamics::Seascape> scape_;
+  std::vector<task::FieldState<double>> field_;
   std::vector<float> state_;  // the critic's, at the present frame
   bool started_ = false;      ///< an episode is being judged
   bool complete_ = true;      ///< no step of it is missing

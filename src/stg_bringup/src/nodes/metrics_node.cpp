@@ -132,7 +132,9 @@ bool MetricsNode::Near(TimeNs stamp) const {
 }
 
 bool MetricsNode::Usable(const auv_msgs::TaskState& m) const {
-  return Finite(m.graph_summary[1]) && std::all_of(m.action.begin(), m.action.end(), Finite);
+  return Finite(m.graph_summary[1]) && std::all_of(m.action.begin(), m.action.end(), Finite) &&
+         FiniteVector(m.target_position) && Finite(m.target_age) &&
+         std::all_of(m.target_covariance.begin(), m.target_covariance.end(), Finite);
 }
 
 bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
@@ -173,6 +175,7 @@ double MetricsNode::Work() {
 
 void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
   table_.SetLinks(*message);
+  judge_.SetLinks(*message);
 }
 
 void MetricsNode::JudgeFrames() {

@@ -1,8 +1,10 @@
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "bind.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "marl_trainer/task/critic_state.hpp"
@@ -29,6 +31,7 @@ struct Cast {
   py::object operator()(const config::Interval* x) const {
     return py::cast(std::vector<double>{x->lo, x->hi});
   }
+  py::object operator()(const config::RowsRef& x) const { return py::cast(*x.rows); }
   template <class Names>
   auto operator()(const Names& x) const -> decltype(py::object(py::cast(*x.list))) {
     return py::cast(*x.list);
@@ -61,6 +64,22 @@ py::list Layout(const Scenario& scenario) {
   return blocks;
 }
 
+/// Heights of the bottom of open water on a grid over the region.
+py::array_t<double> Bottom(const Scenario& s, int points) {
+  if (!s.sea.open) throw UserError("scenario '" + s.name + "' has no open water (sea.open)");
+  if (points < 2 || points > 4096) throw py::value_error("points: must be 2 to 4096");
+  const double half = s.workspace.half_extent_m, step = 2.0 * half / (points - 1);
+  const dynamics::Seascape sea(s.sea, half);
+  py::array_t<double> heights({points, points});
+  auto at = heights.mutable_unchecked<2>();
+  for (int j = 0; j < points; ++j) {
+    for (int i = 0; i < points; ++i) {
+      at(j, i) = sea.terrain.Height(i * step - half, j * step - half);
+    }
+  }
+  return heights;
+}
+
 }  // namespace
 
 void BindScenario(py::module_& module) {
@@ -91,6 +110,10 @@ void BindScenario(py::module_& module) {
              if (!values.contains(key)) throw py::key_error(key);
              return values[py::str(key)];
            })
+      .def("bottom", &Bottom, py::arg("points") = 65,
+           "Heights [points, points] of the bottom of open water, world z [m], on a grid from "
+           "-half_extent_m to half_extent_m: rows from south to north, columns from west to east.\n"
+           "Raises UserError where there is no open water, or no bathymetry to be had.")
       .def("__repr__",
            [](const Scenario& s) {
              return "<stg.Scenario '" + s.name + "', " + std::to_string(s.agents) + " AUVs>";

@@ -69,6 +69,12 @@ NumbersRef Numbers(std::array<double, N>* values) {
   return {values->data(), static_cast<int>(N)};
 }
 
+/// Any number of rows of as many numbers each, written as a sequence of sequences.
+struct RowsRef {
+  std::vector<std::vector<double>>* rows = nullptr;
+  int columns = 0;
+};
+
 /// Any number of names out of a list, written as a sequence.
 struct NamesRef {
   std::vector<std::string>* list = nullptr;
@@ -76,7 +82,7 @@ struct NamesRef {
 };
 
 using ValueRef = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef,
-                              NumbersRef, Interval*, NamesRef>;
+                              NumbersRef, Interval*, NamesRef, RowsRef>;
 
 /// One key of a file and the member of the struct that it fills.
 struct Field {

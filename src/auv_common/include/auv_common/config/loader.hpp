@@ -136,4 +136,7 @@ std::string ResolvedText(const Source& source);
 /// The value of one scalar key in the file or the nearest base that states it, unchecked.
 std::optional<std::string> FindScalar(const std::string& file, const std::string& path);
 
+/// Names, without folder and ending, of the file, its base, the base's base and so on.
+std::vector<std::string> NamesOfBases(const std::string& file);
+
 }  // namespace stg::config

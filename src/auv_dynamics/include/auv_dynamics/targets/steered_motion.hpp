@@ -9,8 +9,9 @@ namespace stg::dynamics {
 /// Velocity v turned towards a direction by at most `angle` [rad], at its own speed.
 Vec3<double> TurnTowards(const Vec3<double>& v, const Vec3<double>& direction, double angle);
 
-/// A motion that steers one target at a time: near a wall it turns for the centre, elsewhere it
-/// does what the derived class says, never faster than `target.max_speed_mps`.
+/// A motion that steers one target at a time: near a wall, or in open water near the edge of the
+/// region, it turns for the centre, elsewhere it does what the derived class says, never faster
+/// than `target.max_speed_mps`.
 class SteeredMotion : public TargetMotion {
  public:
   explicit SteeredMotion(const MotionSetup& setup);

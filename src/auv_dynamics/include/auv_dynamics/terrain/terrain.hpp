@@ -19,6 +19,10 @@ struct Obstacle {
 
   /// Distance of a point from its surface [m], negative inside.
   double Distance(const Vec3<double>& p_W) const;
+  /// 1 where a point lies inside, else 0.
+  Pack Inside(const Vec3<Pack>& p_W) const;
+  /// Moves a point inside to the nearest place on its surface; the direction outward there.
+  Vec3<double> Expel(Vec3<double>* p_W) const;
   /// Whether it touches the segment from a to b.
   bool Blocks(const Vec3<double>& a, const Vec3<double>& b) const;
 };

@@ -3,40 +3,45 @@
 #include <vector>
 
 #include "auv_dynamics/targets/target_state.hpp"
-#include "auv_dynamics/terrain/terrain.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "auv_dynamics/vehicle/vehicle_state.hpp"
-#include "auv_dynamics/world/sea_config.hpp"
 
 namespace stg::dynamics {
 
-/// Surface and bottom of open water. A vehicle that reaches either stops there: its height is
-/// clamped and the vertical part of its velocity, over ground, is taken from it; a slope does not
-/// stop it, and where the bottom is above the surface it goes on along the surface, aground. Coming
-/// to the bottom is an event, counted once until the vehicle is off it again.
+/// Open water as vehicles and targets meet it: surface, bottom, obstacles. A vehicle that reaches
+/// surface or bottom stops there: its height is clamped and the vertical part of its velocity, over
+/// ground, is taken from it; a slope does not stop it, and where the bottom is above the surface it
+/// goes on along the surface, aground. One that meets an obstacle is held at its surface and keeps
+/// the part of its velocity that does not lead into it. Coming to the bottom and coming to an
+/// obstacle are events, counted once until the vehicle is off it again.
 class Sea {
  public:
-  /// @param region_m half the size of the square around the origin whose bottom is read. Throws
-  /// UserError when its bathymetry cannot be had (Bathymetry::Load, Terrain).
+  /// @param region_m as for Seascape, which says what it throws
   Sea(const SeaConfig& config, int vehicles, double region_m);
 
   /// An episode starts in one lane.
   void Reset(int lane);
-  /// Keeps vehicle i between bottom and surface.
+  /// Keeps vehicle i in the water.
   void Apply(int i, VehicleState<Pack>* vehicle);
-  /// Keeps targets within their depths.
+  /// Keeps targets within their depths, and out of what stands there: they slide along it.
   void Apply(std::vector<TargetState<Pack>>* targets) const;
 
-  const Terrain& terrain() const { return terrain_; }
+  const Seascape& scape() const { return scape_; }
+  const Terrain& terrain() const { return scape_.terrain; }
   /// How often vehicle i has come to the bottom in this episode, and whether it lies on it now (1).
   const Pack& groundings(int i) const { return groundings_[static_cast<std::size_t>(i)]; }
   const Pack& aground(int i) const { return aground_[static_cast<std::size_t>(i)]; }
+  /// How often it has come to an obstacle, and whether it touches one now (1).
+  const Pack& collisions(int i) const { return collisions_[static_cast<std::size_t>(i)]; }
+  const Pack& touching(int i) const { return touching_[static_cast<std::size_t>(i)]; }
 
  private:
   Pack Bottom(const Vec3<Pack>& p_WB) const;
+  void MeetObstacles(int i, VehicleState<Pack>* vehicle);
 
   SeaConfig config_;
-  Terrain terrain_;
-  std::vector<Pack> groundings_, aground_;
+  Seascape scape_;
+  std::vector<Pack> groundings_, aground_, collisions_, touching_;
 };
 
 }  // namespace stg::dynamics

@@ -4,9 +4,8 @@
 #include <vector>
 
 #include "auv_dynamics/targets/target_state.hpp"
-#include "auv_dynamics/terrain/terrain.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
-#include "auv_dynamics/world/sea_config.hpp"
 
 namespace stg::dynamics {
 
@@ -25,8 +24,8 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
 
 /// The same in open water: distances and directions in the horizontal plane, depths uniform within
-/// those of `sea`, targets level. Nobody starts within 5 m of the bottom.
-void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Terrain& terrain,
+/// those of `sea`, targets level. Nobody starts within 5 m of the bottom or of an obstacle.
+void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascape& scape,
                   ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start);
 
 }  // namespace stg::dynamics

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "auv_dynamics/measurements.hpp"
@@ -41,7 +42,8 @@ class World {
   void Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStage stage);
 
   /// Starts an episode in one lane from given world positions and target
-  /// velocities, vehicles at rest with zero attitude (golden traces, tests).
+  /// velocities, vehicles at rest with zero attitude (golden traces, tests). Throws UserError for a
+  /// place inside the bottom or an obstacle of open water, or above its surface.
   void Place(int lane, const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
              const std::vector<Vec3<double>>& v_WT);
 
@@ -83,7 +85,8 @@ class World {
   std::uint32_t episode(int lane) const { return clock(lane).episode; }
   std::uint64_t seed(int lane) const { return clock(lane).seed; }
 
-  /// Detection of target k by vehicle i at the current step; false when there is none. Draws
+  /// Detection of target k by vehicle i at the current step; false when there is none, as where
+  /// bottom or obstacles of open water stand between them. Draws
   /// depend on (seed, episode, step, i, k) only.
   bool Sense(int lane, int i, int k, Detection* out) const;
   /// Datum that vehicle i starts the episode with.
@@ -94,14 +97,17 @@ class World {
   const Pack& colliding_pairs() const { return separations_.colliding_pairs(); }
   const Pack& smallest_separation() const { return separations_.smallest(); }
 
-  /// Surface and bottom; of scenarios in open water.
+  /// Surface, bottom and obstacles; of scenarios in open water.
   const Sea& sea() const { return sea_; }
+  bool open_water() const { return open_; }
 
  private:
   const EpisodeClock& clock(int lane) const { return clocks_[static_cast<size_t>(lane)]; }
   Pack Time() const;
   Navigation<Pack> TrueNav(int i) const;
   void Navigate();
+  /// @param who with its number, for the message
+  void RequireWater(const std::string& who, const Vec3<double>& p_W) const;
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start);
 
   double dt_s_;

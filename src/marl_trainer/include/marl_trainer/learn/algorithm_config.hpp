@@ -40,6 +40,15 @@ class AlgorithmConfig {
                                           WorkerPool* pool) const = 0;
 };
 
+/// What a configuration `Config` derives from, that extends `Base`, to be able to copy itself.
+template <class Config, class Base = AlgorithmConfig>
+class CopyableConfig : public Base {
+ public:
+  std::unique_ptr<AlgorithmConfig> Clone() const override {
+    return std::make_unique<Config>(static_cast<const Config&>(*this));
+  }
+};
+
 /// Algorithms by the name that --algorithm takes.
 using AlgorithmRegistry = Registry<AlgorithmConfig>;
 AlgorithmRegistry& Algorithms();

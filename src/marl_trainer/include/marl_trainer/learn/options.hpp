@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ struct Option {
   Value value;       ///< points into the struct that the table was made for
   Range range;       ///< of numbers; unused for flags and texts
   std::string meaning;
+  std::vector<std::string> choices;  ///< of a text; empty: any
 };
 
 /// All options of a training: the common ones, then the algorithm's. Command line, ROS parameters,
@@ -31,13 +33,18 @@ class OptionTable {
  public:
   template <class T>
   void Add(std::string name, T* value, Range range, std::string meaning) {
-    options_.push_back({std::move(name), value, range, std::move(meaning)});
+    options_.push_back({std::move(name), value, range, std::move(meaning), {}});
   }
   void Add(std::string name, bool* value, std::string meaning) {
     Add(std::move(name), value, Range(), std::move(meaning));
   }
   void Add(std::string name, std::string* value, std::string meaning) {
     Add(std::move(name), value, Range(), std::move(meaning));
+  }
+  /// One of several texts, which the meaning explains.
+  void Add(std::string name, std::string* value, std::vector<std::string> choices,
+           std::string meaning) {
+    options_.push_back({std::move(name), value, Range(), std::move(meaning), std::move(choices)});
   }
   /// Any 64-bit seed.
   void Add(std::string name, std::uint64_t* value, std::string meaning) {
@@ -46,7 +53,11 @@ class OptionTable {
 
   const std::vector<Option>& options() const { return options_; }
 
-  /// Throws UserError that names the option: "--lr: ...".
+  /// Adds what options must be to each other; `check` throws UserError as RequireOption does.
+  void Check(std::function<void()> check) { checks_.push_back(std::move(check)); }
+
+  /// Throws UserError that names the option, "--lr: ...", for a value out of range, a text that is
+  /// no choice, and what Check forbids.
   void RequireRanges() const;
 
   /// Adds every option to the object, by name.
@@ -57,6 +68,7 @@ class OptionTable {
 
  private:
   std::vector<Option> options_;
+  std::vector<std::function<void()>> checks_;
 };
 
 /// Throws UserError "--option: what" unless ok.

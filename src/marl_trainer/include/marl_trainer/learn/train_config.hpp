@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "marl_trainer/env/seed_blocks.hpp"
 #include "marl_trainer/learn/algorithm_config.hpp"
 #include "marl_trainer/learn/collect/imitation.hpp"
 #include "marl_trainer/learn/options.hpp"
@@ -56,9 +57,13 @@ nlohmann::ordered_json ToJson(const TrainSetup& setup);
 /// Inverse of ToJson; UserError on a missing or unknown field.
 TrainSetup TrainSetupFromJson(const nlohmann::ordered_json& json);
 
-/// First validation episode's seed; episode r uses this + r. Evaluations start
-/// at 3000 and trainings at TrainingSeed, so that the three never share a draw.
-inline constexpr std::uint64_t kValidationSeed = 900000;
-inline std::uint64_t TrainingSeed(std::uint64_t seed) { return (seed + 1) * 1000000000ULL; }
+/// First validation episode's seed; episode r uses this + r. Validation chooses policy_best.
+inline constexpr std::uint64_t kValidationSeed = 900'000;
+static_assert(kValidationSeed >= env::kChoosingSeeds.first &&
+              kValidationSeed <= env::kChoosingSeeds.last);
+/// First seed of the episodes that a training with this seed flies.
+inline std::uint64_t TrainingSeed(std::uint64_t seed) {
+  return (seed + 1) * env::kTrainingSeeds.first;
+}
 
 }  // namespace stg::learn

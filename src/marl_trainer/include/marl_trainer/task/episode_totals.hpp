@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "marl_trainer/task/field_totals.hpp"
 #include "marl_trainer/task/judge_config.hpp"
 #include "marl_trainer/task/metrics.hpp"
 #include "marl_trainer/task/reward.hpp"
@@ -43,6 +44,8 @@ class EpisodeTotals {
   T steps_ = T(0.0), length_ = T(0.0), counted_tail_ = T(0.0);
   T separation_ = T(1e9);
   Sums sums_;
+  FieldTotals<T> field_;
+  bool in_field_ = false;   // the last decision had a field
   std::vector<T> entered_;  // decision at which each AUV first was within d_u; -1: not yet
 };
 

@@ -1,10 +1,34 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace stg::task {
+
+/// Metrics of one episode in open water, beside the others; of the whole episode.
+struct FieldMetrics {
+  double estimate_rmse = 0.0;    ///< of the own estimate against the truth, where there is one [m]
+  double nees = 0.0;             ///< mean normalised square of its error; 3 where it is consistent
+  double estimate_known = 0.0;   ///< share of AUV decisions with an estimate
+  double information_age = 0.0;  ///< mean age of the newest observation in the estimates [s]
+  double band_share = 0.0;       ///< share of AUV decisions inside [d_l, d_u]
+  double time_lost = 0.0;        ///< mean over AUVs [s]
+  double time_to_reacquire = 0.0;  ///< mean length of the spells of loss that ended [s]; 0: none did
+  double losses = 0.0;             ///< spells of loss, per AUV
+  double spread = 0.0;  ///< mean circular variance of the AUVs' bearings around their target
+  double near_pairs = 0.0;  ///< pairs nearer than the separation distance, per decision
+  double min_altitude = 0.0;   ///< [m]
+  double min_clearance = 0.0;  ///< to an obstacle [m]; 1e9: there is none
+  double groundings = 0.0;     ///< of all AUVs
+  double collisions = 0.0;     ///< with obstacles, of all AUVs
+  double packets = 0.0;        ///< received, per AUV
+  double packet_loss = 0.0;    ///< share of those sent to each that was lost
+  double modem_energy = 0.0;   ///< per AUV [J]
+
+  std::vector<std::pair<std::string, double>> Items() const;
+};
 
 /// Metrics of one episode (Table S1 and what the paper leaves out). Tail: the
 /// last tail_steps decisions. Means over AUVs and decisions unless named.
@@ -28,8 +52,9 @@ struct EpisodeMetrics {
   double reward_track = 0.0, reward_observation = 0.0, reward_coordination = 0.0,
          reward_communication = 0.0, reward_semantic = 0.0, reward_separation = 0.0;
   int steps = 0;
+  std::optional<FieldMetrics> field;  ///< in open water
 
-  /// Name and value of every metric, in the order of tables and JSON.
+  /// Name and value of every metric, in the order of tables and JSON; those of open water last.
   std::vector<std::pair<std::string, double>> Items() const;
 };
 

@@ -16,6 +16,25 @@ template <class T>
 using Efforts = std::vector<Effort<T>>;
 static_assert(dynamics::kMaxActionSize <= dynamics::kWrenchSize, "an action is an Effort");
 
+/// Of one AUV in open water, beside its state: what it believes of its target, what is around it,
+/// what its modem did.
+template <class T>
+struct FieldState {
+  T known = T(0.0);  ///< 1: it has an estimate of its target; 0: the next three mean nothing
+  Vec3<T> p_WT;      ///< its estimate of the target's position, world axes [m]
+  /// Covariance of it, xx xy xz yy yz zz [m^2], what its navigation may be off included; all zero
+  /// where it knows the truth.
+  T covariance[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+  T age_s = T(0.0);            ///< of the newest observation in the estimate
+  T altitude_m = T(1e9);       ///< above the bottom
+  T clearance_m = T(1e9);      ///< to the nearest obstacle
+  T groundings = T(0.0);       ///< of this episode up to now, as the next four
+  T collisions = T(0.0);       ///< with obstacles
+  T received = T(0.0);         ///< packets that it received, and that were lost on the way to it,
+  T missed = T(0.0);           ///< mean over the AUVs
+  T modem_energy_j = T(0.0);   ///< electric, of its modem
+};
+
 /// The true state of a swarm when a decision is due, and what the decision before led to it with:
 /// all that a task judges. A view; it says nothing of who moved the swarm. T = double: one swarm.
 /// T = Pack: kLanes swarms.
@@ -28,6 +47,8 @@ struct SwarmState {
   const Efforts<T>& action;  ///< [agents], executed action in [-1, 1]; zero when an episode starts
   /// Mean link quality of the swarm now, in [0, 1]: what the communication term rewards (Eq. 33).
   T link_quality = T(0.0);
+  /// [agents], of scenarios in open water; null: there is none.
+  const std::vector<FieldState<T>>* field = nullptr;
 };
 
 /// How one AUV stands to its target, truly.

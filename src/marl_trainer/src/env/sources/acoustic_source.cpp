@@ -9,8 +9,9 @@ AcousticSource::AcousticSource(const Scenario& scenario) : scenario_(scenario) {
   const auto constants = std::make_shared<const agent::AgentConstants>(scenario_);
   agents_.reserve(n);
   for (int i = 0; i < scenario.agents; ++i) agents_.emplace_back(constants, i);
+  const auto shadows = dynamics::ShadowsOf(scenario.sea, scenario.workspace.half_extent_m);
   for (int lane = 0; lane < kLanes; ++lane) {
-    channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_));
+    channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_, shadows));
   }
   packets_.resize(n);
   offered_.reserve(n);
@@ -90,6 +91,25 @@ Pack AcousticSource::LinkQuality(const dynamics::World&) const {
   Pack sum(0.0);
   for (const agent::AgentLanes& a : agents_) sum += a.knowledge().mean_quality;
   return sum / Pack(scenario_.agents);
+}
+
+void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const auto u = static_cast<std::size_t>(i);
+    const TimeNs now = world.time(lane);
+    const agent::TargetBelief belief = agents_[u].inbox(lane).belief();
+    const agent::Covariance3& P = belief.P_WT;
+    SetLane(&f->known, lane, belief.started ? 1.0 : 0.0);
+    SetLane(&f->p_WT, lane, belief.p_WT);
+    const double covariance[6] = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
+    for (std::size_t k = 0; k < 6; ++k) SetLane(&f->covariance[k], lane, covariance[k]);
+    SetLane(&f->age_s, lane, Seconds(now - belief.information));
+    const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
+    SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));
+    const acoustics::ChannelTotals& totals = channel.totals();
+    SetLane(&f->received, lane, static_cast<double>(totals.delivered) / scenario_.agents);
+    SetLane(&f->missed, lane, static_cast<double>(totals.dropped) / scenario_.agents);
+  }
 }
 
 }  // namespace stg::env

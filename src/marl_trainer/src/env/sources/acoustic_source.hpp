@@ -27,6 +27,7 @@ class AcousticSource : public InformationSource {
   /// Mean over all ordered pairs of the link quality that the agents know; of an unheard neighbour
   /// it is 0.
   Pack LinkQuality(const dynamics::World& world) const override;
+  void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
 
   const agent::AgentLanes& agent(int i) const { return agents_[static_cast<std::size_t>(i)]; }
   const acoustics::Channel& channel(int lane) const {

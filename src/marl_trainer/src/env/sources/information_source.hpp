@@ -63,6 +63,9 @@ class InformationSource {
   virtual const agent::Knowledge<Pack>& knowledge(int i) const = 0;
   /// Mean link quality of the swarm now (Eq. 33).
   virtual Pack LinkQuality(const dynamics::World& world) const = 0;
+  /// What AUV i believes of its target, and what its modem did: those members of `state`, in every
+  /// lane.
+  virtual void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const = 0;
 };
 
 }  // namespace stg::env

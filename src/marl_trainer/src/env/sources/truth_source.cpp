@@ -114,4 +114,9 @@ Pack TruthSource::LinkQuality(const dynamics::World& world) const {
   return sum / Max(edges, one);
 }
 
+void TruthSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
+  f->known = Pack(1.0);
+  f->p_WT = world.target(scenario_.target_of(i)).p_WT;
+}
+
 }  // namespace stg::env

@@ -23,6 +23,7 @@ class TruthSource : public InformationSource {
     return minds_[static_cast<std::size_t>(i)].knowledge;
   }
   Pack LinkQuality(const dynamics::World& world) const override;
+  void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
 
  private:
   void Think(const dynamics::World& world);

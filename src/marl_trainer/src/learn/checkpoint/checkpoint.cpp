@@ -35,6 +35,7 @@ TrainState FromArchive(const Archive& archive) {
   s.scenario = archive.Text("scenario");
   s.log = archive.Text("log");
   s.algorithm = archive.Part("algorithm");
+  s.episodes = archive.Part("episodes");
   return s;
 }
 
@@ -57,6 +58,7 @@ void SaveCheckpoint(const TrainState& s, const std::string& path) {
   archive.Put("scenario", s.scenario);
   archive.Put("log", s.log);
   archive.PutPart("algorithm", s.algorithm);
+  archive.PutPart("episodes", s.episodes);
   WriteArchive(archive, path);
 }
 

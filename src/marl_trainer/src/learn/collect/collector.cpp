@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
+#include "auv_common/error.hpp"
 #include "marl_trainer/env/controller.hpp"
 #include "marl_trainer/env/vector_env.hpp"
 #include "marl_trainer/learn/clock.hpp"
@@ -20,6 +22,12 @@ Problem ProblemOf(const Scenario& scenario) {
   problem.workspace_half_extent_m = scenario.workspace.half_extent_m;
   return problem;
 }
+
+namespace {
+
+std::string PastName(const Shard& shard) { return "actions_" + std::to_string(shard.first_env); }
+
+}  // namespace
 
 /// The environments of one shard, and memory for one step.
 class Collector::Unit {
@@ -46,9 +54,18 @@ class Collector::Unit {
   void Collect(std::uint32_t number, int steps, bool teach, int index, int worker,
                Algorithm* algorithm);
 
-  void RestartAt(std::uint64_t k) { env_.RestartAt(k, now_.arrays()); }
+  void RestartAt(std::uint64_t k) {
+    env_.RestartAt(k, now_.arrays());
+    past_.clear();
+  }
+  void ForgetPast() { past_.clear(); }
+  /// Actions since the last start, step by step.
+  const std::vector<float>& past() const { return past_; }
+  /// Does what was done.
+  void Repeat(const std::vector<float>& actions);
   const env::VectorEnv& env() const { return env_; }
   const Shard& shard() const { return shard_; }
+  std::size_t decision_size() const { return actions_.size(); }
   const CollectionReport& report() const { return report_; }
 
  private:
@@ -68,7 +85,7 @@ class Collector::Unit {
   const Shard shard_;
   env::VectorEnv env_;
   env::EnvMemory now_, next_;
-  std::vector<float> actions_, log_prob_, taught_;
+  std::vector<float> actions_, log_prob_, taught_, past_;
   std::optional<env::Controller> teacher_;
   std::vector<double> teacher_actions_;
   CollectionReport report_;  // its reward is the sum
@@ -90,6 +107,7 @@ void Collector::Unit::Collect(std::uint32_t number, int steps, bool teach, int i
     report_.inference_seconds += watch.Lap();
 
     env_.Step(actions_.data(), next_.arrays());
+    past_.insert(past_.end(), actions_.begin(), actions_.end());
     for (int e = 0; e < shard_.envs; ++e) {
       const auto i = static_cast<std::size_t>(e);
       report_.reward += static_cast<double>(next_.team_rewards[i]);
@@ -115,6 +133,14 @@ void Collector::Unit::Collect(std::uint32_t number, int steps, bool teach, int i
     std::swap(now_, next_);
     report_.env_seconds += watch.Lap();
   }
+}
+
+void Collector::Unit::Repeat(const std::vector<float>& actions) {
+  for (std::size_t from = 0; from < actions.size(); from += actions_.size()) {
+    env_.Step(actions.data() + from, next_.arrays());
+    std::swap(now_, next_);
+  }
+  past_ = actions;
 }
 
 void Collector::Unit::AskTeacher() {
@@ -165,6 +191,29 @@ CollectionReport Collector::Collect(std::uint32_t number, bool teach, Algorithm*
 
 void Collector::RestartAt(std::uint64_t k) {
   for (auto& unit : units_) unit->RestartAt(k);
+}
+
+void Collector::ForgetPast() {
+  for (auto& unit : units_) unit->ForgetPast();
+}
+
+void Collector::Save(Archive* archive) const {
+  for (const auto& unit : units_) archive->Put(PastName(unit->shard()), unit->past());
+}
+
+void Collector::Load(const Archive& archive) {
+  if (archive.arrays().empty()) return;  // taken at a start
+  for (const auto& unit : units_) {
+    const std::vector<float>& past = archive.Floats(PastName(unit->shard()));
+    if (past.size() % unit->decision_size() != 0) {
+      throw UserError("the actions of environments " + std::to_string(unit->shard().first_env) +
+                      " and on are no whole decisions");
+    }
+  }
+  pool_->Run(static_cast<int>(units_.size()), [&](int u, int) {
+    Unit& unit = *units_[static_cast<std::size_t>(u)];
+    unit.Repeat(archive.Floats(PastName(unit.shard())));
+  });
 }
 
 std::uint64_t Collector::round() const {

@@ -11,6 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string MixFile(std::size_t k) { return "train_on_" + std::to_string(k) + ".yaml"; }
+
+void WriteScenario(const fs::path& file, const Scenario& scenario) {
+  std::ofstream(file) << ToYaml(scenario);
+}
+
 }  // namespace
 
 RunFolder::RunFolder(std::string path, std::ostream* log) : path_(std::move(path)), log_(log) {
@@ -28,9 +34,12 @@ bool RunFolder::HoldsRun() const {
   return false;
 }
 
-void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario) const {
-  std::ofstream(fs::path(path_) / "config.json") << config.dump(2) << "\n";
-  std::ofstream(fs::path(path_) / "scenario.yaml") << ToYaml(scenario);
+void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
+                           const std::vector<Scenario>& mix) const {
+  const fs::path folder(path_);
+  std::ofstream(folder / "config.json") << config.dump(2) << "\n";
+  WriteScenario(folder / "scenario.yaml", scenario);
+  for (std::size_t k = 0; k < mix.size(); ++k) WriteScenario(folder / MixFile(k), mix[k]);
 }
 
 void RunFolder::Save(const TrainState& state, int keep) const {
@@ -47,6 +56,22 @@ void RunFolder::SavePolicies(const std::vector<agent::Policy>& policies,
 
 std::string RunFolder::PolicyPath(const std::string& name) const {
   return fs::absolute(fs::path(path_) / (name + ".onnx")).string();
+}
+
+RunSetup ReadRunSetup(const std::string& folder) {
+  const fs::path config = fs::path(folder) / "config.json";
+  std::ifstream in(config);
+  if (!in) throw UserError(folder + ": no run to resume: it has no config.json");
+  const auto json = nlohmann::ordered_json::parse(in, nullptr, false);
+  if (!json.is_object()) throw UserError(config.string() + ": no configuration of a training");
+  const auto scenario = [&](const std::string& name) {
+    return LoadScenario((fs::path(folder) / name).string());
+  };
+  RunSetup run{TrainSetupFromJson(json), scenario("scenario.yaml"), {}};
+  for (std::size_t k = 0; fs::exists(fs::path(folder) / MixFile(k)); ++k) {
+    run.mix.push_back(scenario(MixFile(k)));
+  }
+  return run;
 }
 
 void RequireSameRun(const TrainState& state, const nlohmann::ordered_json& ours,

@@ -38,6 +38,11 @@ std::string Number(double value) {
   return text;
 }
 
+/// Whole collections are made, so that the last one may go past the end.
+double PercentDone(std::int64_t steps, std::int64_t total) {
+  return 100.0 * std::min(1.0, static_cast<double>(steps) / static_cast<double>(total));
+}
+
 /// Rows from before an interruption that a resumed run does not repeat.
 std::string KeptRows(const std::string& path, std::int64_t resume_at) {
   std::ifstream in(path);
@@ -140,8 +145,7 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   const double left = static_cast<double>(std::max<std::int64_t>(total_steps_ - r.env_steps, 0));
   char text[400];
   std::snprintf(text, sizeof text, "%5.1f%% %9" PRId64 " steps %6.1f s  %6.0f steps/s  ETA %4.0f s",
-                100.0 * static_cast<double>(r.env_steps) / static_cast<double>(total_steps_),
-                r.env_steps, r.wall_seconds, rate, left / std::max(rate, 1.0));
+                PercentDone(r.env_steps, total_steps_), r.env_steps, r.wall_seconds, rate, left / std::max(rate, 1.0));
   *lines_ << text;
   if (r.validated) {
     std::snprintf(text, sizeof text, " | return %7.1f tail %.4f m lost %.3f contacts %.2f",

@@ -76,7 +76,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
     StartFrom(setup_.common.start_from);
   }
   ScheduleNext();
-  folder_.WriteSetup(ToJson(setup_), scenario_);
+  folder_.WriteSetup(ToJson(setup_), scenario_, options.mix);
   log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
                                     options_.resume ? state_.env_steps : -1, setup_.common.steps,
                                     options_.log);
@@ -111,7 +111,13 @@ void Trainer::Resume() {
   state_ = *loaded;
   state_.config = config;
   state_.algorithm = Archive();
+  state_.episodes = Archive();
   collector_.RestartAt(state_.round);
+  try {
+    collector_.Load(loaded->episodes);
+  } catch (const UserError& error) {
+    throw UserError(where + ": " + error.what());
+  }
 }
 
 void Trainer::ScheduleNext() {
@@ -124,6 +130,7 @@ TrainState Trainer::state() const {
   state.wall_seconds = Elapsed();
   state.log = log_->Save();
   algorithm_->Save(&state.algorithm);
+  collector_.Save(&state.episodes);
   return state;
 }
 
@@ -137,7 +144,7 @@ bool Trainer::Run() {
     if (finished || state_.env_steps >= next_validation_) RunValidation(&record);
     record.wall_seconds = Elapsed();
     log_->Add(record);
-    if (!AtBoundary(finished)) continue;
+    AlignEpisodes(finished);
     stopped = Stopped();
     if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
   }
@@ -193,18 +200,19 @@ void Trainer::RunValidation(TrainRecord* record) {
   record->validation_seconds = watch.seconds();
 }
 
-bool Trainer::AtBoundary(bool force) {
+void Trainer::AlignEpisodes(bool force) {
   const TrainConfig& config = setup_.common;
   const int episode = std::max(1, scenario_.time.episode_steps / config.horizon);
   // Cutting staggered episodes at every boundary would undo the staggering.
   const int every = config.stagger ? 2 * episode : episode;
-  if (state_.collections % every != 0 && !force) return false;
+  if (state_.collections % every != 0 && !force) return;
   state_.round = collector_.round();
   if (config.stagger || !collector_.at_episode_start()) {
     ++state_.round;
     collector_.RestartAt(state_.round);
+  } else {
+    collector_.ForgetPast();
   }
-  return true;
 }
 
 void Trainer::Save() {

@@ -33,6 +33,25 @@ class Builder : private MarkerList {
  private:
   void Workspace() {
     const double h = view_.scene.half_extent_m;
+    if (!view_.scene.sea.open) Walls(h);
+    // From each AUV and target a thread to the floor, or to the sea's surface: depth is hard to see
+    // otherwise.
+    Marker threads =
+        Lines("workspace", 2, Marker::LINE_LIST, 0.002 * h, Color(0.7, 0.75, 0.8, 0.25));
+    const auto thread = [&](const Point& p) {
+      threads.points.push_back(p);
+      threads.points.push_back(At(p.x, p.y, view_.scene.sea.open ? 0.0 : -h));
+    };
+    for (const VehicleView& v : view_.vehicles) {
+      if (v.seen) thread(v.pose.position);
+    }
+    for (const MovingTarget& t : view_.targets) {
+      if (t.seen) thread(t.position);
+    }
+    Add(std::move(threads));
+  }
+
+  void Walls(double h) {
     Marker walls =
         Lines("workspace", 0, Marker::LINE_LIST, 0.004 * h, Color(0.55, 0.62, 0.72, 0.8));
     for (const double a : {-h, h}) {
@@ -50,20 +69,6 @@ class Builder : private MarkerList {
                           {At(s, -h, -h), At(s, h, -h), At(-h, s, -h), At(h, s, -h)});
     }
     Add(std::move(floor));
-    // Beneath each AUV and target a thread to the floor: depth is hard to see otherwise.
-    Marker threads =
-        Lines("workspace", 2, Marker::LINE_LIST, 0.002 * h, Color(0.7, 0.75, 0.8, 0.25));
-    const auto thread = [&](const Point& p) {
-      threads.points.push_back(p);
-      threads.points.push_back(At(p.x, p.y, -h));
-    };
-    for (const VehicleView& v : view_.vehicles) {
-      if (v.seen) thread(v.pose.position);
-    }
-    for (const MovingTarget& t : view_.targets) {
-      if (t.seen) thread(t.position);
-    }
-    Add(std::move(threads));
   }
 
   void Targets() {
@@ -72,10 +77,10 @@ class Builder : private MarkerList {
       if (!t.seen) continue;
       const int id = static_cast<int>(k);
       const Point& p = t.position;
-      Sphere("target", id, p, style_.whole_workspace ? 0.5 * unit_ : view_.scene.band_lo_m,
-             Color(1, 0.15, 0.45));
+      const bool point = style_.whole_workspace || view_.scene.sea.open;
+      Sphere("target", id, p, point ? 0.5 * unit_ : view_.scene.band_lo_m, Color(1, 0.15, 0.45));
       Marker arrow = New("target_velocity", id, Marker::ARROW, Color(1, 0.15, 0.45, 0.9));
-      const double s = style_.prediction_s;
+      const double s = view_.scene.sea.open ? 100.0 * view_.scene.decision_s : style_.prediction_s;
       arrow.points = {p, Sum(p, At(s * t.velocity.x, s * t.velocity.y, s * t.velocity.z))};
       arrow.scale.x = 0.06 * unit_;
       arrow.scale.y = 0.2 * unit_;
@@ -99,9 +104,10 @@ class Builder : private MarkerList {
   void Trail(const char* name, int id, const std::deque<TrailPoint>& trail, ColorRGBA color,
              bool by_phase) {
     Marker m = Lines(name, id, Marker::LINE_STRIP, 0.07 * unit_, Color(1, 1, 1));
+    const double reach_s = TrailSecondsOf(view_, style_);
     const double count = static_cast<double>(std::max<size_t>(trail.size(), 1));
     for (size_t k = 0; k < trail.size(); ++k) {
-      if (trail[k].time < view_.now - style_.trail_s) continue;
+      if (trail[k].time < view_.now - reach_s) continue;
       const double alpha = 0.15 + 0.75 * static_cast<double>(k + 1) / count;
       m.points.push_back(trail[k].position);
       if (by_phase) color = PhaseColor(trail[k].phase);
@@ -182,12 +188,15 @@ class Builder : private MarkerList {
       text += std::string(" ") + PhaseName(v.phase) + (v.leader ? ", leads" : "");
       if (v.distance >= 0.0) {
         char number[32];
-        std::snprintf(number, sizeof(number), "  %.3f m", v.distance);
+        std::snprintf(number, sizeof(number), "  %.*f m", Digits(), v.distance);
         text += number;
       }
     }
     Text("label", id, Sum(end, At(0, 0, 0.6 * text_)), text_, text, Color(1, 1, 1, 0.95));
   }
+
+  /// Of lengths in text.
+  int Digits() const { return view_.scene.band_hi_m < 1.0 ? 3 : 0; }
 
   bool Seen(int i) const {
     return i >= 0 && i < static_cast<int>(view_.vehicles.size()) &&
@@ -221,15 +230,17 @@ class Builder : private MarkerList {
     std::snprintf(lines[0], sizeof(lines[0]), "%s  episode %u  step %u  t %.1f s",
                   view_.scene.name.c_str(), view_.episode, view_.step, view_.now);
     std::snprintf(lines[1], sizeof(lines[1]),
-                  "distance %.4f m  link quality %.2f  age %.2f s  packets lost %.0f %%",
-                  distance / std::max(vehicles, 1), quality / links, age / links,
+                  "distance %.*f m  link quality %.2f  age %.2f s  packets lost %.0f %%",
+                  Digits() + 1, distance / std::max(vehicles, 1), quality / links, age / links,
                   100.0 * static_cast<double>(dropped) / packets);
     const double h = view_.scene.half_extent_m;
     Point top = At(0, 0, 1.25 * h);
     double height = 1.4 * text_;
     if (!style_.whole_workspace) {
       if (view_.targets.empty() || !view_.targets[0].seen) return;
-      top = Sum(view_.targets[0].position, At(0, 0, 7.5 * unit_));
+      const double above = std::max(7.5 * view_.scene.radius_m * style_.vehicle_scale,
+                                    1.4 * view_.scene.band_hi_m);
+      top = Sum(view_.targets[0].position, At(0, 0, above));
       height = text_;
     }
     for (int k = 0; k < 2; ++k) {

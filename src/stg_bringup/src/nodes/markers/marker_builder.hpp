@@ -25,15 +25,22 @@ struct MarkerStyle {
 /// where there is nothing to show, so that a view never keeps what is gone.
 visualization_msgs::MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style);
 
-/// Radius of a vehicle as drawn [m]; every size that scales is a multiple. In a view of a whole
-/// field it is large enough to be seen.
+/// Radius of a vehicle as drawn [m]; every size that scales is a multiple. Large enough to be seen
+/// in a view of a whole field, or of a band around a target.
 inline double UnitOf(const SwarmView& view, const MarkerStyle& style) {
   const double unit = view.scene.radius_m * style.vehicle_scale;
-  return style.whole_workspace ? std::max(unit, 0.03 * view.scene.half_extent_m) : unit;
+  return std::max(unit, style.whole_workspace ? 0.03 * view.scene.half_extent_m
+                                              : 0.06 * view.scene.band_hi_m);
 }
 /// Height of letters [m].
 inline double LettersOf(const SwarmView& view, const MarkerStyle& style) {
-  return style.whole_workspace ? 0.05 * view.scene.half_extent_m : 0.36 * UnitOf(view, style);
+  return style.whole_workspace ? 0.05 * view.scene.half_extent_m
+                               : std::max(0.36 * UnitOf(view, style), 0.08 * view.scene.band_hi_m);
+}
+/// Simulated time that trails reach back: longer where decisions are.
+inline double TrailSecondsOf(const SwarmView& view, const MarkerStyle& style) {
+  if (!view.scene.sea.open) return style.trail_s;
+  return std::max(style.trail_s, (style.whole_workspace ? 1500.0 : 300.0) * view.scene.decision_s);
 }
 inline constexpr int kManyVehicles = 8;  ///< beyond this, labels are numbers only
 

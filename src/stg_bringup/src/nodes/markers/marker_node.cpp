@@ -26,9 +26,12 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "marker_builder.hpp"
+#include "scene.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "swarm_view.hpp"
+#include "terrain_markers.hpp"
 #include "topics.hpp"
 
 namespace stg::nodes {
@@ -36,26 +39,6 @@ namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
 constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
-
-/// Reads what is drawn and takes the default for the rest: a bag may be older than this program.
-/// Throws YAML::Exception for text that is no scenario at all.
-SceneConfig ReadScene(const std::string& yaml) {
-  const YAML::Node root = YAML::Load(yaml);
-  SceneConfig scene;
-  const auto number = [&](const char* group, const char* key, double fallback) {
-    const double value = root[group] ? root[group][key].as<double>(fallback) : fallback;
-    return std::isfinite(value) && value > 0.0 ? value : fallback;
-  };
-  scene.name = root["name"].as<std::string>("");
-  scene.half_extent_m = number("workspace", "half_extent_m", scene.half_extent_m);
-  scene.sensing_range_m = number("sensing", "range_m", scene.sensing_range_m);
-  scene.radius_m = number("vehicle", "radius_m", scene.radius_m);
-  if (root["reward"] && root["reward"]["band_m"]) {
-    scene.band_lo_m = root["reward"]["band_m"][0].as<double>(scene.band_lo_m);
-    scene.band_hi_m = root["reward"]["band_m"][1].as<double>(scene.band_hi_m);
-  }
-  return scene;
-}
 
 bool Finite(const geometry_msgs::Point& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -77,6 +60,8 @@ class MarkerNode {
     const double rate_hz = NumberParameter("rate_hz", 20.0, 0.01, 1000.0);
 
     overview_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kOverview, 1);
+    terrain_pub_ =
+        private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kTerrain, 2, true);
     close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kClose, 1);
     scenario_sub_ = nh_.subscribe(topics::kScenario, 1, &MarkerNode::OnScenario, this);
     packets_sub_ = nh_.subscribe(topics::kPackets, 50, &MarkerNode::OnPackets, this);
@@ -102,9 +87,23 @@ class MarkerNode {
     OnScenario(text);
   }
 
+  /// Of open water; without its file (a bag of another machine) the rest is shown all the same.
+  void ShowTerrain() {
+    const SceneConfig& scene = view_.scene;
+    terrain_pub_.publish(NoTerrain());
+    if (!scene.sea.open) return;
+    try {
+      terrain_pub_.publish(
+          BuildTerrain(scene, dynamics::Seascape(scene.sea, scene.half_extent_m)));
+    } catch (const UserError& e) {
+      ROS_WARN("the bottom of the sea is not shown: %s", e.what());
+    }
+  }
+
   void OnScenario(const std_msgs::String& text) {
     try {
       view_.scene = ReadScene(text.data);
+      ShowTerrain();
     } catch (const YAML::Exception& e) {
       ROS_ERROR("/scenario is not a scenario, walls and bands are the default ones: %s", e.what());
     }
@@ -166,12 +165,14 @@ class MarkerNode {
     view_.now = 0.0;
   }
 
-  double TrailSeconds() const { return std::max(overview_.trail_s, close_.trail_s); }
+  double TrailSeconds() const {
+    return std::max(TrailSecondsOf(view_, overview_), TrailSecondsOf(view_, close_));
+  }
 
   void Extend(std::deque<TrailPoint>* trail, const geometry_msgs::Point& p, ShownPhase phase) {
     if (!trail->empty()) {
       const geometry_msgs::Point& q = trail->back().position;
-      const double step = 0.1 * view_.scene.radius_m;
+      const double step = std::max(0.1 * view_.scene.radius_m, 1e-3 * view_.scene.band_hi_m);
       if (std::hypot(p.x - q.x, p.y - q.y, p.z - q.z) < step) return;
     }
     trail->push_back({view_.now, p, phase});
@@ -309,7 +310,7 @@ class MarkerNode {
   ros::NodeHandle nh_, private_nh_;
   MarkerStyle overview_, close_;
   SwarmView view_;
-  ros::Publisher overview_pub_, close_pub_;
+  ros::Publisher overview_pub_, close_pub_, terrain_pub_;
   ros::Subscriber scenario_sub_, links_sub_, packets_sub_;
   bool told_of_packets_ = false;
   std::vector<ros::Subscriber> subscribers_;

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "auv_dynamics/terrain/sea_config.hpp"
+
 /// What a viewer knows of a run: the newest of everything that was published, and a short past.
 /// Lengths [m], frame world; times [s] of simulated time.
 namespace stg::nodes {
@@ -22,6 +24,8 @@ struct SceneConfig {
   double sensing_range_m = 0.45;
   double band_lo_m = 0.010, band_hi_m = 0.015;
   double radius_m = 0.011;
+  double decision_s = 0.1;
+  dynamics::SeaConfig sea;  ///< open: instead of walls
 };
 
 /// Values of auv_msgs/TaskState, and one for an AUV that has not said anything yet.

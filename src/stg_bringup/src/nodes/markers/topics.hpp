@@ -5,5 +5,6 @@ namespace stg::topics {
 
 inline constexpr char kOverview[] = "overview";
 inline constexpr char kClose[] = "close";
+inline constexpr char kTerrain[] = "terrain";
 
 }  // namespace stg::topics

@@ -9,20 +9,20 @@
 
 namespace stg::learn {
 
-/// Everything a training run needs to go on as if it had never stopped. It is
-/// taken where every environment starts an episode, so the environments are
-/// described by the number of that episode; random draws are counter-based and
-/// need no state.
+/// Everything a training run needs to go on as if it had never stopped. The environments are
+/// described by the number of an episode that all of them started together and by what was done in
+/// them since: they are deterministic, and random draws are counter-based and need no state.
 struct TrainState {
   std::int64_t env_steps = 0;
   std::int64_t collections = 0;
-  std::uint64_t round = 0;  ///< episode that every environment starts
+  std::uint64_t round = 0;  ///< episode that all environments started together last
   double best_return = -1e300;
   double wall_seconds = 0.0;
   std::string config;    ///< ToJson(TrainSetup), text
   std::string scenario;  ///< ToYaml(Scenario)
   std::string log;       ///< TrainLog's state, JSON text
   Archive algorithm;     ///< what Algorithm::Save wrote
+  Archive episodes;      ///< what Collector::Save wrote
 };
 
 /// See WriteArchive.

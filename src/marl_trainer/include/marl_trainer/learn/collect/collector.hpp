@@ -41,6 +41,13 @@ class Collector {
 
   /// Starts the k-th episode of every environment.
   void RestartAt(std::uint64_t k);
+  /// Takes the present, where every environment starts an episode, for the last such start.
+  void ForgetPast();
+  /// What was done since the last common start of an episode, which is enough to get back here.
+  void Save(Archive* archive) const;
+  /// After RestartAt of that start: goes to where Save was called. Throws UserError for an archive
+  /// of other environments.
+  void Load(const Archive& archive);
   /// The largest k of an episode that runs.
   std::uint64_t round() const;
   /// True when every environment stands at the start of an episode.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/checkpoint/checkpoint.hpp"
+#include "marl_trainer/learn/train_config.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/policy/policy.hpp"
 
@@ -23,8 +24,9 @@ class RunFolder {
   /// leaves nothing worth keeping.
   bool HoldsRun() const;
 
-  /// Writes config.json and scenario.yaml.
-  void WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario) const;
+  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml.
+  void WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
+                  const std::vector<Scenario>& mix) const;
 
   std::optional<TrainState> Newest() const { return LoadNewestCheckpoint(path_, log_); }
   /// Writes a checkpoint and removes all but the newest `keep`.
@@ -39,6 +41,16 @@ class RunFolder {
   const std::string path_;
   std::ostream* log_;
 };
+
+/// What a run was started with, as RunFolder::WriteSetup has written it.
+struct RunSetup {
+  TrainSetup setup;
+  Scenario scenario;
+  std::vector<Scenario> mix;  ///< empty: trained on the scenario alone
+};
+
+/// Reads a run's folder again; UserError that names the file when one is missing or damaged.
+RunSetup ReadRunSetup(const std::string& folder);
 
 /// Throws UserError, beginning with `where`, unless the checkpoint's run has the configuration
 /// `ours`, except for more or fewer steps, and the same scenario.

@@ -16,11 +16,11 @@ namespace stg::learn {
 
 /// Collect, update, validate, save: one instance per run, of any algorithm.
 ///
-/// Weights depend on scenario, setup and seed only, not on the number
-/// of workers. A run and one that was stopped and resumed are the same bit for
-/// bit: checkpoints are taken at boundaries where every environment starts an
-/// episode. With `stagger`, or a horizon that does not divide the episode, the
-/// running episodes are cut there, in every run, stopped or not.
+/// Weights depend on scenario, setup and seed only, not on the number of workers. A run and one
+/// that was stopped and resumed are the same bit for bit: a checkpoint, taken between any two
+/// collections, holds what was done since all environments started an episode together. With
+/// `stagger`, or a horizon that does not divide the episode, the running episodes are cut for such
+/// a start, in every run, stopped or not.
 class Trainer {
  public:
   struct Options {
@@ -28,7 +28,7 @@ class Trainer {
     bool resume = false;  ///< go on from the newest good checkpoint of `out`
     int workers = 1;
     std::ostream* log = nullptr;
-    /// Set non-zero (by a signal) to save at the next boundary and return.
+    /// Set non-zero (by a signal) to save after the collection and return.
     const std::atomic<int>* stop = nullptr;
     /// Scenarios that the training environments cycle through, e.g.
     /// stress conditions; empty: the scenario alone. Validation is on the scenario.
@@ -54,9 +54,9 @@ class Trainer {
   void ScheduleNext();
   void Iterate(TrainRecord* record);
   void RunValidation(TrainRecord* record);
-  /// Restarts what is not at the start of an episode; true at a boundary, or
-  /// anywhere with `force` (the end of a run).
-  bool AtBoundary(bool force);
+  /// Where it is time for all environments to start an episode together, or with `force` (the end
+  /// of a run), restarts what is not at the start of one.
+  void AlignEpisodes(bool force);
   bool Stopped() const;
   void Save();
   void SavePolicy(const std::string& name) const;

@@ -15,19 +15,15 @@ std::string ActorName(std::size_t agent) { return "actor_" + std::to_string(agen
 
 }  // namespace
 
-struct Happo::Scratch {
-  explicit Scratch(const ActorCritic& networks) : actor(networks.actor.mean(), 0) {}
-  Mlp::Workspace actor;
-  std::vector<float> own, observations;  // of one AUV in all environments; of all, normalised
-};
-
 Happo::Happo(const HappoConfig& config, const TrainConfig& common, const Problem& problem,
              WorkerPool* pool)
     : config_(config),
       problem_(problem),
       networks_(problem, config),
       update_(networks_, config, common, problem.agents, pool),
-      rollouts_(problem, config, networks_.critic, pool) {
+      rollouts_(problem, config, networks_.critic, pool),
+      acting_(PassesOf(networks_.actor.mean(), pool->workers())),
+      own_(acting_.size()) {
   for (int i = 0; i < problem.agents; ++i) {
     std::vector<float> actor(networks_.actor.parameters());
     // Network 1 is the critic's.
@@ -39,12 +35,7 @@ Happo::Happo(const HappoConfig& config, const TrainConfig& common, const Problem
   parameters_.critic.resize(networks_.critic.parameters());
   InitialiseOrthogonally(networks_.critic.spec(), common.seed, 1, parameters_.critic.data());
   parameters_.critic_adam = AdamState(parameters_.critic.size());
-  for (int w = 0; w < pool->workers(); ++w) {
-    scratch_.push_back(std::make_unique<Scratch>(networks_));
-  }
 }
-
-Happo::~Happo() = default;
 
 void Happo::Begin(const Collection& collection) {
   collection_ = collection.number;
@@ -52,28 +43,23 @@ void Happo::Begin(const Collection& collection) {
 }
 
 void Happo::Act(const Decision& decision, const Actions& out) {
-  Scratch& s = *scratch_[static_cast<std::size_t>(decision.worker)];
-  const Mlp& mean = networks_.actor.mean();
+  ObservedPass& acting = acting_[static_cast<std::size_t>(decision.worker)];
+  std::vector<float>& own = own_[static_cast<std::size_t>(decision.worker)];
   const int envs = decision.envs, agents = problem_.agents, size = networks_.action_size();
-  const auto inputs = static_cast<std::size_t>(mean.inputs());
-  const auto rows = static_cast<std::size_t>(envs * agents);
-  if (s.actor.rows() < envs) s.actor = Mlp::Workspace(mean, envs);
-  s.observations.resize(rows * inputs);
-  s.own.resize(static_cast<std::size_t>(envs) * inputs);
-  rollouts_.scales().observations.Apply(decision.observations, static_cast<int>(rows),
-                                        s.observations.data());
+  const auto inputs = static_cast<std::size_t>(networks_.actor.inputs());
+  own.resize(static_cast<std::size_t>(envs) * inputs);
   for (int i = 0; i < agents; ++i) {
     const float* actor = parameters_.actors[static_cast<std::size_t>(i)].data();
     for (int e = 0; e < envs; ++e) {
-      std::copy_n(s.observations.data() + static_cast<std::size_t>(e * agents + i) * inputs, inputs,
-                  s.own.data() + static_cast<std::size_t>(e) * inputs);
+      std::copy_n(decision.observations + static_cast<std::size_t>(e * agents + i) * inputs, inputs,
+                  own.data() + static_cast<std::size_t>(e) * inputs);
     }
-    mean.Forward(actor, s.own.data(), envs, &s.actor);
+    const float* mean = acting.Evaluate(actor, rollouts_.scales().observations, own.data(), envs);
     const float* log_std = actor + networks_.actor.log_std_offset();
     for (int e = 0; e < envs; ++e) {
       const int row = e * agents + i;
       float* action = out.actions + static_cast<std::ptrdiff_t>(row) * size;
-      std::copy_n(s.actor.output() + static_cast<std::ptrdiff_t>(e) * size, size, action);
+      std::copy_n(mean + static_cast<std::ptrdiff_t>(e) * size, size, action);
       if (decision.explore == nullptr) continue;
       const DrawKeys& keys = *decision.explore;
       Random random(keys.seed, Stream::kPolicy, keys.collection, keys.step,
@@ -104,27 +90,15 @@ UpdateReport Happo::Update(const UpdateContext& context) {
   for (const double f : update_.factors()) factor += std::abs(f - 1.0) / factors;
   UpdateReport report;
   report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
-  report.values = {config_.lr * rate,
-                   ppo.sums.kl / ppo.sums.rows,
-                   ppo.sums.clipped / ppo.sums.rows,
-                   ppo.sums.actor_loss / ppo.sums.rows,
-                   ppo.sums.value_loss / ppo.sums.samples,
-                   entropy,
-                   explained_variance,
-                   sigma,
-                   ppo.actor_norm,
-                   ppo.critic_norm,
-                   factor};
+  report.values = PpoValues(ppo, config_.lr * rate, entropy, explained_variance, sigma);
+  report.values.push_back(factor);
   return report;
 }
 
 std::vector<ReportColumn> Happo::Columns() const {
-  return {{"learning_rate", "", 0},        {"kl", "KL", 4},
-          {"clip_fraction", "clip", 3},    {"actor_loss", "", 0},
-          {"value_loss", "", 0},           {"entropy", "H", 2},
-          {"explained_variance", "EV", 3}, {"sigma", "sigma", 3},
-          {"actor_gradient_norm", "", 0},  {"critic_gradient_norm", "", 0},
-          {"joint_ratio_miss", "|M-1|", 3}};
+  std::vector<ReportColumn> columns = PpoColumns();
+  columns.push_back({"joint_ratio_miss", "|M-1|", 3});
+  return columns;
 }
 
 void Happo::Save(Archive* archive) const {

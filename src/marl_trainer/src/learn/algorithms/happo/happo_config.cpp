@@ -6,19 +6,13 @@
 
 namespace stg::learn {
 
-std::unique_ptr<AlgorithmConfig> HappoConfig::Clone() const {
-  return std::make_unique<HappoConfig>(*this);
-}
-
 void HappoConfig::Describe(OptionTable* t) {
   MappoConfig::Describe(t);
   t->Add("sequential", &sequential,
          "each AUV's update knows those before it; off: MAPPO with an actor for each AUV");
-}
-
-void HappoConfig::ValidateOrThrow(const TrainConfig& common) const {
-  MappoConfig::ValidateOrThrow(common);
-  RequireOption(wall_units == 0.0, "wall-units", "is for an actor that all AUVs share");
+  t->Check([this] {
+    RequireOption(wall_units == 0.0, "wall-units", "is for an actor that all AUVs share");
+  });
 }
 
 void HappoConfig::ApplyRecordings(const TrainConfig&) {

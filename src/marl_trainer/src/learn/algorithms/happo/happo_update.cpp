@@ -18,22 +18,16 @@ constexpr std::uint32_t kOrderDraw = 1;
 
 }  // namespace
 
-/// Gathered rows of one block, and the networks' scratch memory.
+/// One worker's memory for a block.
 struct HappoUpdate::Scratch {
   Scratch(const ActorCritic& networks, const MappoConfig& config, double focus)
       : loss(networks, config, focus, kBlock, 1),
         actor(networks.actor.mean(), kBlock),
-        observations(static_cast<std::size_t>(kBlock * networks.actor.inputs())),
-        actions(static_cast<std::size_t>(kBlock * networks.action_size())),
-        teacher(actions.size()),
-        log_prob(kBlock),
-        states(static_cast<std::size_t>(kBlock * networks.critic.inputs())),
-        advantages(kBlock),
-        targets(kBlock) {}
+        rows(networks, kBlock, 1) {}
 
   PpoLoss loss;
   Mlp::Workspace actor;
-  std::vector<float> observations, actions, teacher, log_prob, states, advantages, targets;
+  PpoRows rows;
 };
 
 HappoUpdate::HappoUpdate(const ActorCritic& networks, const HappoConfig& config,
@@ -62,7 +56,7 @@ void HappoUpdate::DrawOrder(std::uint32_t collection) {
   }
 }
 
-PpoBatch HappoUpdate::Gather(int from, int to, int agent, Scratch* s) {
+PpoBatch HappoUpdate::Gather(int from, int to, int agent, PpoRows* s) {
   const auto inputs = static_cast<std::size_t>(networks_.actor.inputs());
   const auto action = static_cast<std::size_t>(networks_.action_size());
   const auto state = static_cast<std::size_t>(networks_.critic.inputs());
@@ -87,18 +81,23 @@ PpoBatch HappoUpdate::Gather(int from, int to, int agent, Scratch* s) {
     s->advantages[at] =
         static_cast<float>(factor * static_cast<double>(samples_.advantage(sample)));
   }
-  PpoBatch batch;
-  batch.count = to - from;
-  batch.agents = 1;
-  batch.observations = s->observations.data();
-  batch.actions = s->actions.data();
-  batch.log_prob = s->log_prob.data();
-  batch.states = s->states.data();
-  batch.advantages = s->advantages.data();
-  batch.targets = s->targets.data();
-  batch.teacher = s->teacher.data();
-  batch.imitation = imitation_;
-  return batch;
+  return s->Batch(to - from, imitation_);
+}
+
+/// @param agent whose rows to gather; less than 0: the critic's
+void HappoUpdate::ComputeGradient(int first, int agent, const BlockLoss& add,
+                                  SlicedGradient* gradient, PpoSums* sums) {
+  gradient->Compute(
+      first, config_.minibatch, [&](int slice, int worker, int begin, int end, float* into) {
+        Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
+        PpoSums& part = sums_[static_cast<std::size_t>(slice)];
+        part = PpoSums();
+        for (int from = begin; from < end; from += kBlock) {
+          const PpoBatch batch = Gather(from, std::min(end, from + kBlock), agent, &s.rows);
+          add(&s.loss, batch, into, &part);
+        }
+      });
+  for (const PpoSums& part : sums_) sums->Add(part);
 }
 
 int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* actor,
@@ -109,18 +108,12 @@ int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* a
     samples_.Shuffle(seed_, collection_, turn * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
     sums = PpoSums();
     for (int first = 0; first < samples_.size(); first += config_.minibatch) {
-      actor_gradient_.Compute(
-          first, config_.minibatch,
-          [&](int slice, int worker, int begin, int end, float* gradient) {
-            Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
-            PpoSums& part = sums_[static_cast<std::size_t>(slice)];
-            part = PpoSums();
-            for (int from = begin; from < end; from += kBlock) {
-              const PpoBatch batch = Gather(from, std::min(end, from + kBlock), agent, &s);
-              s.loss.AddActor(actor->data(), batch, config_.minibatch, gradient, &part);
-            }
-          });
-      for (const PpoSums& part : sums_) sums.Add(part);
+      ComputeGradient(
+          first, agent,
+          [&](PpoLoss* loss, const PpoBatch& batch, float* gradient, PpoSums* part) {
+            loss->AddActor(actor->data(), batch, config_.minibatch, gradient, part);
+          },
+          &actor_gradient_, &sums);
       const Adam step(config_.adam_eps, adam);
       report->actor_norm +=
           actor_gradient_.Apply(step, 0, actor->size(), config_.lr * learning_rate_scale_,
@@ -148,18 +141,12 @@ void HappoUpdate::TrainCritic(std::vector<float>* critic, AdamState* adam, PpoRe
         static_cast<std::uint32_t>(agents_) * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
     report->sums.value_loss = report->sums.samples = 0.0;
     for (int first = 0; first < samples_.size(); first += config_.minibatch) {
-      critic_gradient_.Compute(
-          first, config_.minibatch,
-          [&](int slice, int worker, int begin, int end, float* gradient) {
-            Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
-            PpoSums& part = sums_[static_cast<std::size_t>(slice)];
-            part = PpoSums();
-            for (int from = begin; from < end; from += kBlock) {
-              const PpoBatch batch = Gather(from, std::min(end, from + kBlock), -1, &s);
-              s.loss.AddCritic(critic->data(), batch, config_.minibatch, gradient, &part);
-            }
-          });
-      for (const PpoSums& part : sums_) report->sums.Add(part);
+      ComputeGradient(
+          first, -1,
+          [&](PpoLoss* loss, const PpoBatch& batch, float* gradient, PpoSums* part) {
+            loss->AddCritic(critic->data(), batch, config_.minibatch, gradient, part);
+          },
+          &critic_gradient_, &report->sums);
       const Adam step(config_.adam_eps, adam);
       report->critic_norm +=
           critic_gradient_.Apply(step, 0, critic->size(), config_.critic_lr * learning_rate_scale_,
@@ -177,12 +164,12 @@ void HappoUpdate::MultiplyFactors(int agent, const float* actor) {
   pool_->Run(blocks, [&](int block, int worker) {
     Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
     const int from = block * kBlock, to = std::min(samples_.size(), from + kBlock);
-    Gather(from, to, agent, &s);
-    networks_.actor.mean().Forward(actor, s.observations.data(), to - from, &s.actor);
+    Gather(from, to, agent, &s.rows);
+    networks_.actor.mean().Forward(actor, s.rows.observations.data(), to - from, &s.actor);
     for (int k = 0; k < to - from; ++k) {
       const double now = agent::GaussianLogDensity(s.actor.output() + k * size, log_std,
-                                                   s.actions.data() + k * size, size);
-      const double then = static_cast<double>(s.log_prob[static_cast<std::size_t>(k)]);
+                                                   s.rows.actions.data() + k * size, size);
+      const double then = static_cast<double>(s.rows.log_prob[static_cast<std::size_t>(k)]);
       factors_[samples_.at(from + k)] *= std::exp(now - then);
     }
   });

@@ -25,10 +25,6 @@ MappoConfig PerAgent(const IppoConfig& config, int agents) {
 
 }  // namespace
 
-std::unique_ptr<AlgorithmConfig> IppoConfig::Clone() const {
-  return std::make_unique<IppoConfig>(*this);
-}
-
 void IppoConfig::ApplyRecordings(const TrainConfig&) {
   throw UserError("ippo does not learn from recordings: they lack the last observations");
 }

@@ -1,7 +1,6 @@
 #include "marl_trainer/learn/algorithms/maddpg/maddpg.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "auv_common/numbers/random.hpp"
@@ -40,54 +39,35 @@ struct Maddpg::Scratch {
   std::vector<float> states, actions, d_actions, d_own, values;
 };
 
-struct Maddpg::Acting {
-  explicit Acting(const Mlp& network) : actor(network, 0) {}
-  Mlp::Workspace actor;
-  std::vector<float> observations;  // normalised
-};
-
 Maddpg::Maddpg(const ReplayOptions& options, const DeterministicOptions& own,
                const TrainConfig& common, const Problem& problem, WorkerPool* pool)
-    : ReplayLearner(options, common, problem, pool),
+    : CentralCriticLearner(options, DeterministicSpec(problem, options), own.critics, common,
+                           problem, pool),
       own_(own),
-      actor_(DeterministicSpec(problem, options)),
-      critics_(problem, options, own.critics, common.seed),
-      actor_parameters_(actor_.parameters()),
-      actor_adam_(actor_.parameters()),
-      critic_adam_(critics_.parameters().size()),
-      actor_gradient_(actor_.parameters(), pool),
-      critic_gradient_(critics_.parameters().size(), pool) {
-  InitialiseOrthogonally(actor_.spec(), common.seed, 0, actor_parameters_.data());
-  actor_target_ = actor_parameters_;
+      actor_target_(actor_parameters()) {
+  Keep("target_actor", &actor_target_);
   for (int s = 0; s < SlicedGradient::kSlices; ++s) {
     scratch_.push_back(std::make_unique<Scratch>(
-        actor_, critics_, problem.agents, problem.agents * problem.action_size, slice_rows()));
+        actor(), critics(), problem.agents, problem.agents * problem.action_size, slice_rows()));
   }
-  for (int w = 0; w < pool->workers(); ++w) acting_.push_back(std::make_unique<Acting>(actor_));
 }
 
 Maddpg::~Maddpg() = default;
 
 void Maddpg::Act(const Decision& decision, const Actions& out) {
-  Acting& s = *acting_[static_cast<std::size_t>(decision.worker)];
   const int agents = problem().agents, size = problem().action_size;
   const int rows = decision.envs * agents;
   const float scale = scales().action;
-  if (s.actor.rows() < rows) s.actor = Mlp::Workspace(actor_, rows);
-  s.observations.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(actor_.inputs()));
-  scales().observations.Apply(decision.observations, rows, s.observations.data());
-  actor_.Forward(actor_parameters_.data(), s.observations.data(), rows, &s.actor);
-  const float* mean = s.actor.output();
+  const float* mean =
+      acting(decision.worker)
+          .Evaluate(actor_parameters().data(), scales().observations, decision.observations, rows);
   for (int i = 0; i < rows * size; ++i) out.actions[i] = scale * mean[i];
   if (decision.explore == nullptr) return;
   const DrawKeys& keys = *decision.explore;
   for (int r = 0; r < rows; ++r) {
     Random random(keys.seed, Stream::kPolicy, keys.collection, keys.step,
                   static_cast<std::uint32_t>(keys.first_env * agents + r));
-    const double rank = Rank(keys.first_env + r / agents);
-    const double noise = own_.noise_max > 0.0
-                             ? own_.noise_min * std::pow(own_.noise_max / own_.noise_min, rank)
-                             : 0.0;
+    const double noise = own_.noise.At(Rank(keys.first_env + r / agents));
     float* action = out.actions + static_cast<std::ptrdiff_t>(r) * size;
     for (int a = 0; a < size; ++a) {
       const float x = warming_up()
@@ -98,11 +78,11 @@ void Maddpg::Act(const Decision& decision, const Actions& out) {
   }
 }
 
-double Maddpg::AddCriticGradient(const StepContext& step, int slice, float* gradient) {
+void Maddpg::AddCriticGradient(const StepContext& step, int slice, float* gradient, Sums* sums) {
   const ReplayBatch& batch = batches()[static_cast<std::size_t>(slice)];
   Scratch& s = *scratch_[static_cast<std::size_t>(slice)];
   const int rows = batch.count * problem().agents;
-  actor_.Forward(actor_target_.data(), batch.next_observations.data(), rows, &s.actor);
+  actor().Forward(actor_target_.data(), batch.next_observations.data(), rows, &s.actor);
   const int count = rows * problem().action_size;
   std::copy_n(s.actor.output(), count, s.actions.data());
   if (own_.target_noise > 0.0) {
@@ -114,38 +94,24 @@ double Maddpg::AddCriticGradient(const StepContext& step, int slice, float* grad
       action = Clip(action + noise, 1.0F);
     }
   }
-  critics_.Target(batch.next_states.data(), s.actions.data(), batch.count, &s.critics,
-                  s.values.data());
+  critics().Target(batch.next_states.data(), s.actions.data(), batch.count, &s.critics,
+                   s.values.data());
   for (int r = 0; r < batch.count; ++r) {
     const auto i = static_cast<std::size_t>(r);
     s.values[i] = batch.rewards[i] + batch.discounts[i] * s.values[i];
   }
-  return critics_.AddGradient(batch, s.values.data(), 1.0F / static_cast<float>(base().batch),
-                              &s.critics, gradient);
-}
-
-double Maddpg::TrainCritics(const StepContext& step) {
-  std::array<double, SlicedGradient::kSlices> squares{};
-  critic_gradient_.Compute(0, base().batch, [&](int slice, int, int, int, float* gradient) {
-    squares[static_cast<std::size_t>(slice)] = AddCriticGradient(step, slice, gradient);
-  });
-  const Adam adam(base().adam_eps, &critic_adam_);
-  critic_norm_ +=
-      critic_gradient_.Apply(adam, 0, critics_.parameters().size(), base().critic_lr * step.rate,
-                             base().grad_clip, critics_.parameters().data());
-  double sum = 0.0;
-  for (const double part : squares) sum += part;
-  return sum / base().batch;
+  sums->squares = critics().AddGradient(
+      batch, s.values.data(), 1.0F / static_cast<float>(base().batch), &s.critics, gradient);
 }
 
 /// The joint actions that each AUV's loss is about: its own from the actor, and the others'.
-double Maddpg::AddActorGradient(int slice, float* gradient) {
+void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Sums* sums) {
   const ReplayBatch& batch = batches()[static_cast<std::size_t>(slice)];
   Scratch& s = *scratch_[static_cast<std::size_t>(slice)];
   const int agents = problem().agents, size = problem().action_size, joint = agents * size;
   const int state = problem().state_size;
-  actor_.Forward(actor_parameters_.data(), batch.observations.data(), batch.count * agents,
-                 &s.actor);
+  actor().Forward(actor_parameters().data(), batch.observations.data(), batch.count * agents,
+                  &s.actor);
   const float* own = s.actor.output();
   int rows = batch.count;
   if (own_.others == "policy") {
@@ -164,9 +130,9 @@ double Maddpg::AddActorGradient(int slice, float* gradient) {
     }
   }
   // The loss is minus the value, the mean over samples.
-  critics_.ActionGradient(s.states.data(), s.actions.data(), rows,
-                          -1.0F / static_cast<float>(base().batch), false, &s.critics,
-                          s.values.data(), s.d_actions.data());
+  critics().ActionGradient(s.states.data(), s.actions.data(), rows,
+                           -1.0F / static_cast<float>(base().batch), false, &s.critics,
+                           s.values.data(), s.d_actions.data());
   const float* d_own = s.d_actions.data();
   if (rows != batch.count) {
     for (int r = 0; r < rows; ++r) {
@@ -175,95 +141,36 @@ double Maddpg::AddActorGradient(int slice, float* gradient) {
     }
     d_own = s.d_own.data();
   }
-  actor_.Backward(actor_parameters_.data(), batch.observations.data(), d_own, batch.count * agents,
-                  &s.actor, gradient);
+  actor().Backward(actor_parameters().data(), batch.observations.data(), d_own,
+                   batch.count * agents, &s.actor, gradient);
   double sum = 0.0;
   for (int r = 0; r < rows; ++r) sum += static_cast<double>(s.values[static_cast<std::size_t>(r)]);
-  return sum / rows * batch.count;
-}
-
-void Maddpg::TrainActor(const StepContext& step) {
-  std::array<double, SlicedGradient::kSlices> values{};
-  actor_gradient_.Compute(0, base().batch, [&](int slice, int, int, int, float* gradient) {
-    values[static_cast<std::size_t>(slice)] = AddActorGradient(slice, gradient);
-  });
-  const Adam adam(base().adam_eps, &actor_adam_);
-  actor_norm_ += actor_gradient_.Apply(adam, 0, actor_.parameters(), base().lr * step.rate,
-                                       base().grad_clip, actor_parameters_.data());
-  for (const double part : values) values_ += part / base().batch;
-  ++actor_steps_;
+  sums->value = sum / rows * batch.count;
 }
 
 void Maddpg::Step(const StepContext& step) {
-  rate_ = step.rate;
-  squares_ += TrainCritics(step);
+  TrainCritics(step);
   if (step.number % static_cast<std::uint32_t>(own_.policy_delay) != 0) return;
   TrainActor(step);
-  critics_.MoveTargets(base().tau);
-  MoveTowards(actor_parameters_, base().tau, &actor_target_);
+  critics().MoveTargets(base().tau);
+  MoveTowards(actor_parameters(), base().tau, &actor_target_);
 }
 
-UpdateReport Maddpg::Report(int steps) {
-  const double critic = std::max(steps, 1), actor = std::max(actor_steps_, 1);
-  const Problem& p = problem();
-  UpdateReport report;
-  report.values = {base().lr * rate_, squares_ / critic,
-                   static_cast<double>(scales().reward_std) * (values_ / actor) +
-                       static_cast<double>(scales().value_mean),
-                   actor_norm_ / actor, critic_norm_ / critic};
-  const NetworkSpec& q = critics_.network().spec();
-  const double per_critic_step = own_.critics * (q.forward_products() + q.training_products()) +
-                                 p.agents * actor_.spec().forward_products();
-  const double per_actor_step =
-      p.agents * actor_.spec().training_products() +
-      2.0 * q.forward_products() * (own_.others == "policy" ? 1 : p.agents);
-  report.flops = 2.0 * base().batch * (steps * per_critic_step + actor_steps_ * per_actor_step);
-  squares_ = values_ = actor_norm_ = critic_norm_ = 0.0;
-  actor_steps_ = 0;
-  return report;
-}
-
-std::vector<ReportColumn> Maddpg::Columns() const {
-  return {{"learning_rate", "", 0},
-          {"critic_loss", "TD", 5},
-          {"value", "Q", 2},
-          {"actor_gradient_norm", "|dA|", 4},
-          {"critic_gradient_norm", "", 0}};
-}
-
-void Maddpg::Save(Archive* archive) const {
-  ReplayLearner::Save(archive);
-  critics_.Save(archive);
-  archive->Put("actor", actor_parameters_);
-  archive->Put("target_actor", actor_target_);
-  actor_adam_.Save("actor_adam", archive);
-  critic_adam_.Save("critic_adam", archive);
-}
-
-void Maddpg::Load(const Archive& archive) {
-  const std::vector<float>& actor = archive.Floats("actor", actor_parameters_.size());
-  const std::vector<float>& target = archive.Floats("target_actor", actor_target_.size());
-  critics_.Load(archive);
-  actor_adam_.Load("actor_adam", archive);
-  critic_adam_.Load("critic_adam", archive);
-  ReplayLearner::Load(archive);
-  actor_parameters_ = actor;
-  actor_target_ = target;
-}
-
-void Maddpg::StartFrom(const Archive& archive) {
-  ReplayLearner::StartFrom(archive);
-  critics_.Load(archive);
-  actor_parameters_ = archive.Floats("actor", actor_parameters_.size());
-  actor_target_ = archive.Floats("target_actor", actor_target_.size());
+Maddpg::Products Maddpg::ProductsPerSample() const {
+  const int agents = problem().agents;
+  const NetworkSpec& q = critics().network().spec();
+  return {own_.critics * (q.forward_products() + q.training_products()) +
+              agents * actor().spec().forward_products(),
+          agents * actor().spec().training_products() +
+              2.0 * q.forward_products() * (own_.others == "policy" ? 1 : agents)};
 }
 
 std::vector<agent::Policy> Maddpg::Policies(const agent::PolicyMetadata& metadata) const {
-  NetworkSpec spec = actor_.spec();
+  NetworkSpec spec = actor().spec();
   spec.squash = scales().action;
-  std::vector<float> parameters = actor_parameters_;
+  std::vector<float> parameters = actor_parameters();
   // What a graph explores with.
-  const double noise = std::max(own_.noise_min, 1e-3) * static_cast<double>(scales().action);
+  const double noise = std::max(own_.noise.min, 1e-3) * static_cast<double>(scales().action);
   parameters.insert(parameters.end(), static_cast<std::size_t>(problem().action_size),
                     static_cast<float>(std::log(noise)));
   return {GaussianActor(spec).ToPolicy(parameters.data(), scales().observations, metadata)};

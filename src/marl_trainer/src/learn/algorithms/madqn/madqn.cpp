@@ -84,12 +84,6 @@ struct Madqn::Scratch {
   double squares = 0.0, values = 0.0;
 };
 
-struct Madqn::Acting {
-  explicit Acting(const Mlp& q) : network(q, 0) {}
-  Mlp::Workspace network;
-  std::vector<float> observations;  // normalised
-};
-
 Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
              const Problem& problem, WorkerPool* pool)
     : ReplayLearner(options, common, problem, pool),
@@ -98,32 +92,31 @@ Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfi
       network_(QSpec(problem, options, codebook_)),
       parameters_(network_.parameters()),
       adam_(network_.parameters()),
-      gradient_(network_.parameters(), pool) {
+      gradient_(network_.parameters(), pool),
+      acting_(PassesOf(network_, pool->workers())),
+      chosen_(acting_.size(), std::vector<int>(static_cast<std::size_t>(codebook_.heads))) {
   InitialiseOrthogonally(network_.spec(), common.seed, 0, parameters_.data());
   target_ = parameters_;
+  Keep("network", &parameters_);
+  Keep("target_network", &target_);
+  Keep("adam", &adam_);
   for (int s = 0; s < SlicedGradient::kSlices; ++s) {
     scratch_.push_back(
         std::make_unique<Scratch>(network_, slice_rows() * problem.agents, problem.agents));
   }
-  for (int w = 0; w < pool->workers(); ++w) acting_.push_back(std::make_unique<Acting>(network_));
 }
 
 Madqn::~Madqn() = default;
 
 void Madqn::Act(const Decision& decision, const Actions& out) {
-  Acting& s = *acting_[static_cast<std::size_t>(decision.worker)];
   const int agents = problem().agents, rows = decision.envs * agents;
-  if (s.network.rows() < rows) s.network = Mlp::Workspace(network_, rows);
-  s.observations.resize(static_cast<std::size_t>(rows) *
-                        static_cast<std::size_t>(network_.inputs()));
-  scales().observations.Apply(decision.observations, rows, s.observations.data());
-  network_.Forward(parameters_.data(), s.observations.data(), rows, &s.network);
+  const float* outputs = acting_[static_cast<std::size_t>(decision.worker)].Evaluate(
+      parameters_.data(), scales().observations, decision.observations, rows);
   const Codebook& book = codebook_;
+  std::vector<int>& chosen = chosen_[static_cast<std::size_t>(decision.worker)];
   float* action = out.actions;
   for (int r = 0; r < rows; ++r) {
-    const float* advantages =
-        s.network.output() + static_cast<std::ptrdiff_t>(r) * network_.outputs() + 1;
-    std::vector<int> chosen(static_cast<std::size_t>(book.heads));
+    const float* advantages = outputs + static_cast<std::ptrdiff_t>(r) * network_.outputs() + 1;
     for (int h = 0; h < book.heads; ++h) {
       chosen[static_cast<std::size_t>(h)] = Best(advantages + h * book.count, book.count);
     }
@@ -131,11 +124,7 @@ void Madqn::Act(const Decision& decision, const Actions& out) {
       const DrawKeys& keys = *decision.explore;
       Random random(keys.seed, Stream::kPolicy, keys.collection, keys.step,
                     static_cast<std::uint32_t>(keys.first_env * agents + r));
-      const double rank = Rank(keys.first_env + r / agents);
-      double epsilon = 0.0;
-      if (own_.epsilon_max > 0.0) {
-        epsilon = own_.epsilon_min * std::pow(own_.epsilon_max / own_.epsilon_min, rank);
-      }
+      const double epsilon = own_.epsilon.At(Rank(keys.first_env + r / agents));
       for (int& choice : chosen) {
         if (!warming_up() && random.Uniform() >= epsilon) continue;
         choice = static_cast<int>(random.Uniform() * book.count);
@@ -243,28 +232,6 @@ std::vector<ReportColumn> Madqn::Columns() const {
           {"critic_loss", "TD", 5},
           {"value", "Q", 2},
           {"gradient_norm", "|d|", 4}};
-}
-
-void Madqn::Save(Archive* archive) const {
-  ReplayLearner::Save(archive);
-  archive->Put("network", parameters_);
-  archive->Put("target_network", target_);
-  adam_.Save("adam", archive);
-}
-
-void Madqn::Load(const Archive& archive) {
-  const std::vector<float>& network = archive.Floats("network", parameters_.size());
-  const std::vector<float>& target = archive.Floats("target_network", target_.size());
-  adam_.Load("adam", archive);
-  ReplayLearner::Load(archive);
-  parameters_ = network;
-  target_ = target;
-}
-
-void Madqn::StartFrom(const Archive& archive) {
-  ReplayLearner::StartFrom(archive);
-  parameters_ = archive.Floats("network", parameters_.size());
-  target_ = archive.Floats("target_network", target_.size());
 }
 
 std::vector<agent::Policy> Madqn::Policies(const agent::PolicyMetadata& metadata) const {

@@ -16,12 +16,6 @@ constexpr double kStartCount = 10000.0;
 
 }  // namespace
 
-struct Mappo::Scratch {
-  explicit Scratch(const ActorCritic& networks) : actor(networks.actor.mean(), 0) {}
-  Mlp::Workspace actor;
-  std::vector<float> observations;  // normalised
-};
-
 Mappo::Mappo(const MappoConfig& config, const TrainConfig& common, const Problem& problem,
              WorkerPool* pool)
     : config_(config),
@@ -31,13 +25,8 @@ Mappo::Mappo(const MappoConfig& config, const TrainConfig& common, const Problem
       update_(networks_, config, common, problem.agents, pool),
       rollouts_(problem, config, networks_.critic, pool),
       parameters_(networks_.Initialise(seed_, config.initial_log_std)),
-      adam_(networks_.parameters()) {
-  for (int w = 0; w < pool->workers(); ++w) {
-    scratch_.push_back(std::make_unique<Scratch>(networks_));
-  }
-}
-
-Mappo::~Mappo() = default;
+      adam_(networks_.parameters()),
+      acting_(PassesOf(networks_.actor.mean(), pool->workers())) {}
 
 void Mappo::Begin(const Collection& collection) {
   collection_ = collection.number;
@@ -45,17 +34,10 @@ void Mappo::Begin(const Collection& collection) {
 }
 
 void Mappo::Act(const Decision& decision, const Actions& out) {
-  Scratch& s = *scratch_[static_cast<std::size_t>(decision.worker)];
-  const Mlp& actor = networks_.actor.mean();
   const int size = networks_.action_size(), rows = decision.envs * problem_.agents;
-  if (s.actor.rows() < rows) {
-    s.actor = Mlp::Workspace(actor, rows);
-    s.observations.resize(static_cast<std::size_t>(rows) *
-                          static_cast<std::size_t>(actor.inputs()));
-  }
-  scales().observations.Apply(decision.observations, rows, s.observations.data());
-  actor.Forward(parameters_.data(), s.observations.data(), rows, &s.actor);
-  std::copy_n(s.actor.output(), rows * size, out.actions);
+  const float* mean = acting_[static_cast<std::size_t>(decision.worker)].Evaluate(
+      parameters_.data(), scales().observations, decision.observations, rows);
+  std::copy_n(mean, rows * size, out.actions);
   if (decision.explore == nullptr) return;
   const DrawKeys& keys = *decision.explore;
   const float* log_std = parameters_.data() + networks_.actor.log_std_offset();
@@ -87,24 +69,8 @@ UpdateReport Mappo::Update(const UpdateContext& context) {
   }
   UpdateReport report;
   report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
-  report.values = {config_.lr * rate,
-                   ppo.sums.kl / ppo.sums.rows,
-                   ppo.sums.clipped / ppo.sums.rows,
-                   ppo.sums.actor_loss / ppo.sums.rows,
-                   ppo.sums.value_loss / ppo.sums.samples,
-                   entropy,
-                   explained_variance,
-                   sigma,
-                   ppo.actor_norm,
-                   ppo.critic_norm};
+  report.values = PpoValues(ppo, config_.lr * rate, entropy, explained_variance, sigma);
   return report;
-}
-
-std::vector<ReportColumn> Mappo::Columns() const {
-  return {{"learning_rate", "", 0},        {"kl", "KL", 4},       {"clip_fraction", "clip", 3},
-          {"actor_loss", "", 0},           {"value_loss", "", 0}, {"entropy", "H", 2},
-          {"explained_variance", "EV", 3}, {"sigma", "sigma", 3}, {"actor_gradient_norm", "", 0},
-          {"critic_gradient_norm", "", 0}};
 }
 
 void Mappo::Save(Archive* archive) const {

@@ -9,16 +9,12 @@
 
 namespace stg::learn {
 
-std::unique_ptr<AlgorithmConfig> MappoConfig::Clone() const {
-  return std::make_unique<MappoConfig>(*this);
-}
-
 void MappoConfig::Describe(OptionTable* t) {
   t->Add("epochs", &epochs, {1, 1000}, "passes over the collected steps per update");
   t->Add("minibatch", &minibatch, {1, 1e9}, "environment steps per gradient step");
   t->Add("actor-hidden", &actor_hidden, {1, 4096}, "widths of the actor's hidden layers");
   t->Add("critic-hidden", &critic_hidden, {1, 4096}, "widths of the critic's hidden layers");
-  t->Add("activation", &activation, "of the hidden layers: tanh or relu");
+  t->Add("activation", &activation, {"tanh", "relu"}, "of the hidden layers: tanh or relu");
   t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of the actor at the start");
   t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critic at the start");
   t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
@@ -69,8 +65,6 @@ void MappoConfig::ValidateOrThrow(const TrainConfig& common) const {
   const std::int64_t samples = static_cast<std::int64_t>(common.envs) * common.horizon;
   RequireOption(samples % minibatch == 0, "minibatch",
                 "must divide envs times horizon, " + std::to_string(samples));
-  RequireOption(activation == "tanh" || activation == "relu", "activation",
-                "'" + activation + "' is not tanh or relu");
   RequireOption(min_log_std <= max_log_std, "max-log-std", "is below --min-log-std");
   RequireOption(min_log_std <= initial_log_std && initial_log_std <= max_log_std, "initial-log-std",
                 "is not between --min-log-std and --max-log-std");

@@ -3,23 +3,38 @@
 #include <algorithm>
 #include <cassert>
 
+#include "marl_trainer/learn/algorithms/mappo/ppo_rows.hpp"
+
 namespace stg::learn {
 
-/// Gathered rows of one block, and the networks' scratch memory.
+std::vector<ReportColumn> PpoColumns() {
+  return {{"learning_rate", "", 0},        {"kl", "KL", 4},       {"clip_fraction", "clip", 3},
+          {"actor_loss", "", 0},           {"value_loss", "", 0}, {"entropy", "H", 2},
+          {"explained_variance", "EV", 3}, {"sigma", "sigma", 3}, {"actor_gradient_norm", "", 0},
+          {"critic_gradient_norm", "", 0}};
+}
+
+std::vector<double> PpoValues(const PpoReport& report, double learning_rate, double entropy,
+                              double explained_variance, double sigma) {
+  const PpoSums& sums = report.sums;
+  return {learning_rate,
+          sums.kl / sums.rows,
+          sums.clipped / sums.rows,
+          sums.actor_loss / sums.rows,
+          sums.value_loss / sums.samples,
+          entropy,
+          explained_variance,
+          sigma,
+          report.actor_norm,
+          report.critic_norm};
+}
+
+/// One worker's memory for a block.
 struct PpoUpdate::Scratch {
   Scratch(const ActorCritic& networks, const MappoConfig& config, double focus, int agents)
-      : loss(networks, config, focus, kBlock, agents) {
-    const auto rows = static_cast<std::size_t>(kBlock * agents);
-    observations.resize(rows * static_cast<std::size_t>(networks.actor.inputs()));
-    actions.resize(rows * static_cast<std::size_t>(networks.action_size()));
-    log_prob.resize(rows);
-    teacher.resize(actions.size());
-    states.resize(static_cast<std::size_t>(kBlock * networks.critic.inputs()));
-    advantages.resize(kBlock);
-    targets.resize(kBlock);
-  }
+      : loss(networks, config, focus, kBlock, agents), rows(networks, kBlock, agents) {}
   PpoLoss loss;
-  std::vector<float> observations, actions, teacher, log_prob, states, advantages, targets;
+  PpoRows rows;
 };
 
 PpoUpdate::PpoUpdate(const ActorCritic& networks, const MappoConfig& config,
@@ -38,6 +53,7 @@ PpoUpdate::~PpoUpdate() = default;
 
 PpoSums PpoUpdate::Slice(const float* parameters, int begin, int end, int worker, float* gradient) {
   Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
+  PpoRows& rows = s.rows;
   PpoSums sums;
   const auto row = static_cast<std::size_t>(agents_ * networks_.actor.inputs());
   const auto action = static_cast<std::size_t>(agents_ * networks_.action_size());
@@ -52,28 +68,18 @@ PpoSums PpoUpdate::Slice(const float* parameters, int begin, int end, int worker
       const RolloutBuffer& b = samples_.rollout(sample);
       const std::size_t i = samples_.index(sample);
       const auto at = static_cast<std::size_t>(k - from);
-      std::copy_n(b.observations.data() + i * row, row, s.observations.data() + at * row);
-      std::copy_n(b.actions.data() + i * action, action, s.actions.data() + at * action);
+      std::copy_n(b.observations.data() + i * row, row, rows.observations.data() + at * row);
+      std::copy_n(b.actions.data() + i * action, action, rows.actions.data() + at * action);
       if (imitation_ > 0.0F) {
-        std::copy_n(b.teacher.data() + i * action, action, s.teacher.data() + at * action);
+        std::copy_n(b.teacher.data() + i * action, action, rows.teacher.data() + at * action);
       }
-      std::copy_n(b.log_prob.data() + i * agents, agents, s.log_prob.data() + at * agents);
-      std::copy_n(b.states.data() + i * state, state, s.states.data() + at * state);
-      s.advantages[at] = samples_.advantage(sample);
-      s.targets[at] = samples_.target(sample);
+      std::copy_n(b.log_prob.data() + i * agents, agents, rows.log_prob.data() + at * agents);
+      std::copy_n(b.states.data() + i * state, state, rows.states.data() + at * state);
+      rows.advantages[at] = samples_.advantage(sample);
+      rows.targets[at] = samples_.target(sample);
     }
-    PpoBatch batch;
-    batch.count = to - from;
-    batch.agents = agents_;
-    batch.observations = s.observations.data();
-    batch.actions = s.actions.data();
-    batch.log_prob = s.log_prob.data();
-    batch.states = s.states.data();
-    batch.advantages = s.advantages.data();
-    batch.targets = s.targets.data();
-    batch.teacher = s.teacher.data();
-    batch.imitation = imitation_;
-    sums.Add(s.loss.AddGradient(parameters, batch, config_.minibatch, gradient));
+    sums.Add(s.loss.AddGradient(parameters, s.rows.Batch(to - from, imitation_), config_.minibatch,
+                                gradient));
   }
   return sums;
 }

@@ -4,10 +4,6 @@
 
 namespace stg::learn {
 
-std::unique_ptr<AlgorithmConfig> MasacConfig::Clone() const {
-  return std::make_unique<MasacConfig>(*this);
-}
-
 void MasacConfig::Describe(OptionTable* t) {
   ReplayConfig::Describe(t);
   DescribeCritics(t);
@@ -18,6 +14,13 @@ void MasacConfig::Describe(OptionTable* t) {
          "entropy that it aims at, of each AUV and action dimension in [-1, 1]");
   t->Add("min-log-std", &min_log_std, {-20, 2}, "lower bound of log sigma before the squash");
   t->Add("max-log-std", &max_log_std, {-20, 2}, "upper bound of log sigma before the squash");
+}
+
+void MasacConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
+  ReplayConfig::ApplyPreset(preset, common);
+  if (preset != "paper") return;
+  initial_alpha = 0.01;
+  target_entropy = -1.0;
 }
 
 void MasacConfig::ValidateOrThrow(const TrainConfig& common) const {

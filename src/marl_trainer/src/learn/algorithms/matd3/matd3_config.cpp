@@ -5,11 +5,12 @@ namespace stg::learn {
 Matd3Config::Matd3Config() {
   critics = 2;
   policy_delay = 2;
-  target_noise = 0.2;
+  target_noise = 0.05;
 }
 
-std::unique_ptr<AlgorithmConfig> Matd3Config::Clone() const {
-  return std::make_unique<Matd3Config>(*this);
+void Matd3Config::ApplyPreset(const std::string& preset, TrainConfig* common) {
+  MaddpgConfig::ApplyPreset(preset, common);
+  if (preset == "paper") target_noise = 0.2;
 }
 
 void Matd3Config::Describe(OptionTable* t) {

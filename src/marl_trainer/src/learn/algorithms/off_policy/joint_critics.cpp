@@ -132,15 +132,4 @@ void JointCritics::RescaleValues(double ratio, double shift) {
 
 void JointCritics::MoveTargets(double tau) { MoveTowards(parameters_, tau, &targets_); }
 
-void JointCritics::Save(Archive* archive) const {
-  archive->Put("critics", parameters_);
-  archive->Put("target_critics", targets_);
-}
-
-void JointCritics::Load(const Archive& archive) {
-  const std::vector<float>& parameters = archive.Floats("critics", parameters_.size());
-  targets_ = archive.Floats("target_critics", targets_.size());
-  parameters_ = parameters;
-}
-
 }  // namespace stg::learn

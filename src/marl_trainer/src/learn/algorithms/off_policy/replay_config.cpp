@@ -16,7 +16,7 @@ void ReplayConfig::Describe(OptionTable* t) {
   t->Add("tau", &tau, {1e-6, 1}, "how far the target networks move at each gradient step");
   t->Add("actor-hidden", &actor_hidden, {1, 4096},
          "widths of the hidden layers of what decides on an observation");
-  t->Add("activation", &activation, "of the hidden layers: tanh or relu");
+  t->Add("activation", &activation, {"tanh", "relu"}, "of the hidden layers: tanh or relu");
   t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of what decides, at the start");
   t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
   t->Add("adam-eps", &adam_eps, {1e-12, 1}, "Adam's epsilon");
@@ -36,15 +36,16 @@ void ReplayConfig::DescribeCritics(OptionTable* t) {
 }
 
 void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
-  common->envs = 256;
+  common->envs = 128;
   common->horizon = 20;
   // A checkpoint holds the replayed steps: some hundred megabytes.
   common->keep_checkpoints = 1;
-  common->checkpoint_interval = 500000;
+  common->checkpoint_interval = 200000;
   if (preset == "fast") return;
   if (preset != "paper") throw UserError("--preset: '" + preset + "' is not fast or paper");
   common->steps = 2000000;
   batch = 1024;
+  replayed = 2.0;
   n_step = 1;
   gamma = 0.95;
   tau = 0.005;
@@ -56,8 +57,6 @@ void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 }
 
 void ReplayConfig::ValidateOrThrow(const TrainConfig& common) const {
-  RequireOption(activation == "tanh" || activation == "relu", "activation",
-                "'" + activation + "' is not tanh or relu");
   RequireOption(common.imitation.controller.empty(), "imitate",
                 "is for methods that learn from their own actions: mappo, ippo, happo");
   const std::int64_t collection = static_cast<std::int64_t>(common.envs) * common.horizon;

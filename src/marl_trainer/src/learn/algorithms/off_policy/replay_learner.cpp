@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMomentStride = 4;  // the normalisers take in every n-th decision
 /// Rewards that the scale of the values remembers [environment steps].
-constexpr double kRewardMemory = 100000.0;
+constexpr double kRewardMemory = 30000.0;
 /// Rewards that hardly differ must not be blown up.
 constexpr double kSmallestRewardStd = 0.01;
 
@@ -118,7 +118,17 @@ UpdateReport ReplayLearner::Update(const UpdateContext& context) {
   return Report(steps);
 }
 
+void ReplayLearner::Keep(const std::string& name, std::vector<float>* numbers, bool start) {
+  kept_.push_back({name, numbers, start});
+}
+
+void ReplayLearner::Keep(const std::string& name, AdamState* adam) {
+  kept_adams_.emplace_back(name, adam);
+}
+
 void ReplayLearner::Save(Archive* archive) const {
+  for (const Kept& kept : kept_) archive->Put(kept.name, *kept.numbers);
+  for (const auto& [name, adam] : kept_adams_) adam->Save(name, archive);
   archive->Put("observation_moments", observations_.Save());
   archive->Put("state_moments", states_.Save());
   archive->Put("reward_moments", rewards_.Save());
@@ -142,14 +152,23 @@ void ReplayLearner::Load(const Archive& archive) {
   const std::int64_t seen = archive.Integer("seen");
   const std::int64_t steps = archive.Integer("gradient_steps");
   const double due = archive.Number("due");
+  // What throws comes first.
+  for (const Kept& kept : kept_) archive.Floats(kept.name, kept.numbers->size());
+  for (const auto& [name, adam] : kept_adams_) adam->Load(name, archive);
   replay_.Load(archive);
   LoadMoments(archive);
+  for (const Kept& kept : kept_) *kept.numbers = archive.Floats(kept.name, kept.numbers->size());
   seen_ = seen;
   gradient_steps_ = steps;
   due_ = due;
 }
 
-void ReplayLearner::StartFrom(const Archive& archive) { LoadMoments(archive); }
+void ReplayLearner::StartFrom(const Archive& archive) {
+  LoadMoments(archive);
+  for (const Kept& kept : kept_) {
+    if (kept.start) *kept.numbers = archive.Floats(kept.name, kept.numbers->size());
+  }
+}
 
 void MoveTowards(const std::vector<float>& online, double tau, std::vector<float>* target) {
   const auto t = static_cast<float>(tau);

@@ -12,6 +12,12 @@ inline constexpr char kTargetDetection[] = "target_detection";
 inline constexpr char kCmdVel[] = "cmd_vel";
 inline constexpr char kWrench[] = "wrench";
 inline constexpr char kActuators[] = "actuators";
+// Its instruments, as marine software knows them.
+inline constexpr char kImu[] = "imu";
+inline constexpr char kPressure[] = "pressure";
+inline constexpr char kDvl[] = "dvl";
+inline constexpr char kAltitude[] = "altitude";
+inline constexpr char kGps[] = "gps";
 
 // Of the whole run.
 inline std::string TargetOdom(int k) { return "/target_" + std::to_string(k) + "/odom"; }

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/happo/happo_update.hpp"
 #include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
+#include "marl_trainer/learn/nn/observed_pass.hpp"
 
 namespace stg::learn {
 
@@ -16,7 +16,6 @@ class Happo : public Algorithm {
  public:
   Happo(const HappoConfig& config, const TrainConfig& common, const Problem& problem,
         WorkerPool* pool);
-  ~Happo() override;
 
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
@@ -37,15 +36,14 @@ class Happo : public Algorithm {
   const HappoUpdate& update() const { return update_; }
 
  private:
-  struct Scratch;  // per worker
-
   const HappoConfig config_;
   const Problem problem_;
   const ActorCritic networks_;
   HappoUpdate update_;
   ValuedRollouts rollouts_;
   HappoParameters parameters_;
-  std::vector<std::unique_ptr<Scratch>> scratch_;
+  std::vector<ObservedPass> acting_;     // by worker
+  std::vector<std::vector<float>> own_;  // by worker: one AUV's observations in all environments
   std::uint32_t collection_ = 0;
 };
 

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
+#include "marl_trainer/learn/algorithms/mappo/ppo_rows.hpp"
 #include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
 
 namespace stg::learn {
@@ -48,7 +50,13 @@ class HappoUpdate {
                  PpoReport* report);
   void TrainCritic(std::vector<float>* critic, AdamState* adam, PpoReport* report);
   /// Fills a batch with what the loss needs of the samples at these places.
-  PpoBatch Gather(int from, int to, int agent, Scratch* scratch);
+  PpoBatch Gather(int from, int to, int agent, PpoRows* rows);
+  /// Adds the gradient of one block's loss.
+  using BlockLoss =
+      std::function<void(PpoLoss* loss, const PpoBatch& batch, float* gradient, PpoSums* sums)>;
+  /// The gradient of the minibatch that begins at place `first`; adds its sums.
+  void ComputeGradient(int first, int agent, const BlockLoss& add, SlicedGradient* gradient,
+                       PpoSums* sums);
   /// Multiplies the factors by the ratio of an AUV's densities.
   void MultiplyFactors(int agent, const float* actor);
 

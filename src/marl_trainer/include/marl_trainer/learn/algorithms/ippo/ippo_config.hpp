@@ -8,8 +8,7 @@ namespace stg::learn {
 
 /// Configuration of IPPO: MAPPO's options and presets; the critic's are those of the value of one
 /// AUV's own observation.
-struct IppoConfig : MappoConfig {
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
+struct IppoConfig : CopyableConfig<IppoConfig, MappoConfig> {
   void ApplyRecordings(const TrainConfig& common) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   WorkerPool* pool) const override;

@@ -3,25 +3,24 @@
 #include <memory>
 #include <string>
 
+#include "marl_trainer/learn/algorithms/off_policy/exploration_ramp.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
 
 namespace stg::learn {
 
 /// Options of methods with a deterministic actor.
 struct DeterministicOptions {
-  double noise_min = 0.05, noise_max = 0.5;
-  std::string others = "buffer";
+  ExplorationRamp noise{0.02, 0.2};  ///< in shares of the action's scale
+  std::string others = "policy";
   int critics = 1;
   int policy_delay = 1;
   double target_noise = 0.0, target_noise_clip = 0.5;
 };
 
 /// Configuration of MADDPG.
-struct MaddpgConfig : ReplayConfig, DeterministicOptions {
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
+struct MaddpgConfig : CopyableConfig<MaddpgConfig, ReplayConfig>, DeterministicOptions {
   void Describe(OptionTable* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
-  void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   WorkerPool* pool) const override;
 };

@@ -5,6 +5,7 @@
 
 #include "marl_trainer/learn/algorithms/madqn/madqn_config.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_learner.hpp"
+#include "marl_trainer/learn/nn/observed_pass.hpp"
 
 namespace stg::learn {
 
@@ -30,9 +31,6 @@ class Madqn : public ReplayLearner {
   ~Madqn() override;
 
   void Act(const Decision& decision, const Actions& out) override;
-  void Save(Archive* archive) const override;
-  void Load(const Archive& archive) override;
-  void StartFrom(const Archive& archive) override;
   /// The greedy one.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
@@ -46,7 +44,6 @@ class Madqn : public ReplayLearner {
 
  private:
   struct Scratch;  // per slice
-  struct Acting;   // per worker
 
   void AddGradient(int slice, float* gradient);
 
@@ -57,7 +54,8 @@ class Madqn : public ReplayLearner {
   AdamState adam_;
   SlicedGradient gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
-  std::vector<std::unique_ptr<Acting>> acting_;
+  std::vector<ObservedPass> acting_;      // by worker
+  std::vector<std::vector<int>> chosen_;  // by worker: what each head of one AUV chose
   // Since the last report.
   double squares_ = 0.0, values_ = 0.0, norm_ = 0.0;
   double rate_ = 1.0;

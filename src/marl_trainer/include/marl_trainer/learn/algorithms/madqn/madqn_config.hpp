@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "marl_trainer/learn/algorithms/off_policy/exploration_ramp.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
 
 namespace stg::learn {
@@ -12,15 +13,13 @@ struct QOptions {
   int bins = 5;
   double bin_power = 1.0;
   std::string heads = "separate";
-  double epsilon_min = 0.02, epsilon_max = 0.5;
+  ExplorationRamp epsilon{0.02, 0.5};  ///< share of random choices
 };
 
 /// Configuration of MADQN.
-struct MadqnConfig : ReplayConfig, QOptions {
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
+struct MadqnConfig : CopyableConfig<MadqnConfig, ReplayConfig>, QOptions {
   void Describe(OptionTable* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
-  void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   WorkerPool* pool) const override;
 };

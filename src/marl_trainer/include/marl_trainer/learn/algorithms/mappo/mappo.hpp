@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
 #include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
+#include "marl_trainer/learn/nn/observed_pass.hpp"
 
 namespace stg::learn {
 
@@ -15,7 +15,6 @@ class Mappo : public Algorithm {
  public:
   Mappo(const MappoConfig& config, const TrainConfig& common, const Problem& problem,
         WorkerPool* pool);
-  ~Mappo() override;
 
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
@@ -28,15 +27,13 @@ class Mappo : public Algorithm {
   void StartFrom(const agent::Policy& policy) override;
 
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
-  std::vector<ReportColumn> Columns() const override;
+  std::vector<ReportColumn> Columns() const override { return PpoColumns(); }
 
   const ActorCritic& networks() const { return networks_; }
   const std::vector<float>& parameters() const { return parameters_; }
   const Scales& scales() const { return rollouts_.scales(); }
 
  private:
-  struct Scratch;  // per worker
-
   const MappoConfig config_;
   const Problem problem_;
   const std::uint64_t seed_;
@@ -45,7 +42,7 @@ class Mappo : public Algorithm {
   ValuedRollouts rollouts_;
   std::vector<float> parameters_;
   AdamState adam_;
-  std::vector<std::unique_ptr<Scratch>> scratch_;
+  std::vector<ObservedPass> acting_;  // by worker
   std::uint32_t collection_ = 0;
 };
 

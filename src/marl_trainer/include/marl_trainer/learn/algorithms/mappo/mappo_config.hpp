@@ -9,7 +9,7 @@
 namespace stg::learn {
 
 /// Configuration of MAPPO, its presets `fast` (ours) and `paper` (Table S2).
-struct MappoConfig : AlgorithmConfig {
+struct MappoConfig : CopyableConfig<MappoConfig> {
   int epochs = 3;
   int minibatch = 1600;
   std::vector<int> actor_hidden{64, 64};
@@ -36,7 +36,6 @@ struct MappoConfig : AlgorithmConfig {
   /// The normalisers take in every n-th decision; no option of the command line.
   int moment_stride = 4;
 
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
   void Describe(OptionTable* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;

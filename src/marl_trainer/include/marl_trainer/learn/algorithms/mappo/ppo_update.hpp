@@ -21,6 +21,12 @@ struct PpoReport {
   double flops = 0.0;  ///< floating-point operations in matrix products
 };
 
+/// What all methods of this family report, in the order of the columns.
+/// @param sigma, entropy of the exploration, the mean over actors
+std::vector<ReportColumn> PpoColumns();
+std::vector<double> PpoValues(const PpoReport& report, double learning_rate, double entropy,
+                              double explained_variance, double sigma);
+
 /// Epochs of minibatch gradient steps over one collection.
 class PpoUpdate {
  public:

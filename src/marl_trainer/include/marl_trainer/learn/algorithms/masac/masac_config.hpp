@@ -9,16 +9,16 @@ namespace stg::learn {
 
 /// Options of MASAC's own.
 struct SoftOptions {
-  double initial_alpha = 0.01;
+  double initial_alpha = 0.002;
   double alpha_lr = 1e-3;
-  double target_entropy = -1.0;
+  double target_entropy = -1.5;
   double min_log_std = -5.0, max_log_std = 1.0;
 };
 
 /// Configuration of MASAC.
-struct MasacConfig : ReplayConfig, SoftOptions {
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
+struct MasacConfig : CopyableConfig<MasacConfig, ReplayConfig>, SoftOptions {
   void Describe(OptionTable* table) override;
+  void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   WorkerPool* pool) const override;

@@ -9,10 +9,10 @@ namespace stg::learn {
 
 /// Configuration of MATD3: MADDPG with the smaller of two critics, targets that are smoothed by
 /// noise, and an actor that learns at every other step (Fujimoto et al. 2018).
-struct Matd3Config : MaddpgConfig {
+struct Matd3Config : CopyableConfig<Matd3Config, MaddpgConfig> {
   Matd3Config();
-  std::unique_ptr<AlgorithmConfig> Clone() const override;
   void Describe(OptionTable* table) override;
+  void ApplyPreset(const std::string& preset, TrainConfig* common) override;
 };
 
 }  // namespace stg::learn

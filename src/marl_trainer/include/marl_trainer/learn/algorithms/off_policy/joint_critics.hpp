@@ -48,9 +48,7 @@ class JointCritics {
   int count() const { return count_; }
   std::vector<float>& parameters() { return parameters_; }
   const std::vector<float>& parameters() const { return parameters_; }
-
-  void Save(Archive* archive) const;
-  void Load(const Archive& archive);
+  std::vector<float>& targets() { return targets_; }
 
  private:
   void Fill(const float* states, const float* actions, int rows, Scratch* scratch) const;

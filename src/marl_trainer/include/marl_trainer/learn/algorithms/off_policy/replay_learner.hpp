@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
@@ -14,8 +15,8 @@
 namespace stg::learn {
 
 /// What all off-policy methods share: the replayed transitions, the normalisers, when a gradient
-/// step is due and on which samples. A method adds its networks: how to act, what a gradient step
-/// does, and what a checkpoint holds of them.
+/// step is due and on which samples, and checkpoints. A method adds its networks: how to act and
+/// what a gradient step does.
 class ReplayLearner : public Algorithm {
  public:
   ReplayLearner(const ReplayOptions& options, const TrainConfig& common, const Problem& problem,
@@ -27,7 +28,6 @@ class ReplayLearner : public Algorithm {
 
   void Save(Archive* archive) const override;
   void Load(const Archive& archive) override;
-  /// The normalisers; a method adds its networks.
   void StartFrom(const Archive& archive) override;
 
   /// Environment steps that it has seen.
@@ -40,6 +40,12 @@ class ReplayLearner : public Algorithm {
     std::uint32_t number = 0;
     double rate = 1.0;
   };
+
+  /// What checkpoints hold of the method, by name; the arrays have their size and outlive this
+  /// object.
+  /// @param start whether StartFrom takes it too
+  void Keep(const std::string& name, std::vector<float>* numbers, bool start = true);
+  void Keep(const std::string& name, AdamState* adam);
 
   /// One gradient step on the samples in batches(), one for each slice.
   virtual void Step(const StepContext& step) = 0;
@@ -81,6 +87,13 @@ class ReplayLearner : public Algorithm {
   std::int64_t collected_steps_ = 0;
   std::int64_t seen_ = 0;
   std::int64_t gradient_steps_ = 0;
+  struct Kept {
+    std::string name;
+    std::vector<float>* numbers;
+    bool start;
+  };
+  std::vector<Kept> kept_;
+  std::vector<std::pair<std::string, AdamState*>> kept_adams_;
   double due_ = 0.0;  // gradient steps
 };
 

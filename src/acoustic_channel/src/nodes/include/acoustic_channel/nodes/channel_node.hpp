@@ -31,7 +31,8 @@ namespace stg::nodes {
 class ChannelNode {
  public:
   /// Throws UserError.
-  ChannelNode();
+  /// @param line_of_sight of who knows what stands in the water; empty: all lines are free
+  explicit ChannelNode(acoustics::LineOfSight line_of_sight = {});
   void Spin();
 
  private:

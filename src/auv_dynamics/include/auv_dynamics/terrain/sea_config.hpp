@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "auv_common/config/field.hpp"
 
@@ -18,11 +19,16 @@ struct SeaConfig {
   double longitude_deg = 0.0;
   config::Interval auv_depth_m{20.0, 60.0};     ///< where AUVs start
   config::Interval target_depth_m{20.0, 60.0};  ///< where targets start and stay
+  /// Rows of x, y, z of the centre and radius [m], world axes.
+  std::vector<std::vector<double>> spheres;
+  /// Upright: rows of x, y, z of the foot, radius and height [m], world axes.
+  std::vector<std::vector<double>> cylinders;
 };
 
 /// Keys, units and ranges of the section `sea`, which a file may leave out.
 void Describe(SeaConfig* c, config::Table* t);
-/// The file of a bathymetry by its name: <name>.nc in a folder of $STG_TERRAINS (several with
+/// The file of a bathymetry: the name itself where it ends in .nc; else <name>.nc in a folder of
+/// $STG_TERRAINS (several with
 /// colons between them), else in `terrain` beside the folder of the shipped scenarios. Throws
 /// UserError that names the folders when there is none.
 std::string TerrainFile(const std::string& name);

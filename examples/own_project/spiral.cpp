@@ -1,0 +1,65 @@
+// A program outside the repository: it adds a controller of its own, flies it against a shipped one
+// on the same episodes, and prints both. See docs/how_to/README.md.
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/env/evaluation.hpp"
+#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_agent/controllers/controller.hpp"
+
+namespace {
+
+using namespace stg;
+
+/// Towards the target and around it at once: the nearer, the more around.
+struct Spiral {
+  double speed = 0.5;  // of the largest velocity, [0, 1]
+
+  template <class T>
+  void Act(const agent::ControllerInput<T>& in, T* action) const {
+    const agent::Knowledge<T>& k = in.knowledge;
+    const Vec3<T> ahead = k.r_BT_W * (T(1.0) / Max(k.distance, T(1e-9)));
+    const T near = Max(T(1.0) - k.distance, T(0.0));
+    const Vec3<T> velocity = (ahead + Vec3<T>{ahead.y, -ahead.x, T(0.0)} * near) * T(speed);
+    const T wanted[3] = {Clip(velocity.x, T(-1.0), T(1.0)), Clip(velocity.y, T(-1.0), T(1.0)),
+                         Clip(velocity.z, T(-1.0), T(1.0))};
+    agent::AskForVelocity(in, wanted, action);
+  }
+};
+
+std::unique_ptr<agent::Controller> MakeSpiral(agent::ControllerConstants& constants) {
+  Spiral spiral;
+  constants.Read("speed", 1.0, &spiral.speed);
+  return std::make_unique<agent::ControllerOf<Spiral>>(spiral);
+}
+
+int Fly() {
+  agent::Controllers().Add("spiral", MakeSpiral);
+  const Scenario scenario = LoadNamedScenario(STG_SCENARIOS, "medium", "nominal", {});
+  WorkerPool pool(2);
+  env::EvaluationOptions options;
+  options.episodes = 4;
+  for (const std::string name : {"spiral:speed=0.3", "pursuit_separated"}) {
+    const auto episodes =
+        env::Evaluate(scenario, env::MakeController(name, scenario), options, &pool);
+    const task::MetricSummary summary = task::Summarise(episodes);
+    std::printf("%s %.17g %.17g\n", name.c_str(), summary.Mean("return"),
+                summary.Mean("tail_distance"));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main() {
+  try {
+    return Fly();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spiral: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,75 @@
+#!/usr/bin/python3
+"""Flies the classical controllers through every condition of the field, with messages and without.
+
+Usage: tables.py OUT [--episodes N] [--evaluate FILE] [--controllers NAME ...] [--workers N], in a
+built and sourced workspace. Writes OUT/field.md and OUT/field.csv; OUT/flights.jsonl keeps what was
+flown, and a run that is started again goes on from there.
+"""
+
+import argparse
+import csv
+import os
+import sys
+
+import flights
+
+SEED = 3000
+# Name in the JSON, heading, digits.
+COLUMNS = (
+    ("band_share", "in band", 3), ("whole_lost_rate", "lost", 3), ("time_to_reacquire", "reacquire [s]", 0),
+    ("tracking_error", "error, tail [m]", 1), ("estimate_rmse", "estimate RMSE [m]", 1), ("nees", "NEES", 1),
+    ("information_age", "age [s]", 1), ("spread", "spread", 2), ("min_separation", "smallest separation [m]", 0),
+    ("near_pairs", "pairs < 20 m", 4), ("colliding_pairs", "contact", 5), ("min_altitude", "altitude [m]", 0),
+    ("groundings", "groundings", 2), ("packets", "packets", 0), ("packet_loss", "packet loss", 2),
+    ("modem_energy", "modem [J]", 0),
+)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("out")
+    parser.add_argument("--episodes", type=int, default=100)
+    parser.add_argument("--evaluate", default="evaluate", help="program, where not rosrun's")
+    parser.add_argument("--controllers", nargs="+", default=["encircle", "pursuit_separated", "pursuit"])
+    parser.add_argument("--scenarios", nargs="+", default=["field"])
+    parser.add_argument("--workers", type=int, default=1)
+    arguments = parser.parse_args()
+    known = flights.Flights(
+        os.path.join(arguments.out, "flights.jsonl"), arguments.evaluate, arguments.workers
+    )
+    rows = []
+    for scenario in arguments.scenarios:
+        for condition in flights.CONDITIONS:
+            for controller in arguments.controllers:
+                for messages, overrides in (("yes", ()), ("no", flights.SILENCE)):
+                    found = known.fly(
+                        controller, scenario, condition, arguments.episodes, SEED, overrides
+                    )
+                    rows.append([scenario, condition, controller, messages, found])
+                    print(*rows[-1][:4], f"{found['band_share']:.3f}", file=sys.stderr)
+    with open(os.path.join(arguments.out, "field.csv"), "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file)
+        names = [name for column, _, _ in COLUMNS for name in (column, column + "_std")]
+        table.writerow(["scenario", "condition", "controller", "messages", "episodes", *names])
+        for *cell, found in rows:
+            table.writerow([*cell, found["episodes"], *(found[name] for name in names)])
+    with open(os.path.join(arguments.out, "field.md"), "w", encoding="utf-8") as file:
+        file.write(
+            f"# The field, flown by classical controllers\n{arguments.episodes} episodes a cell from "
+            f"seed {SEED}, means over episodes; by `scripts/field/tables.py`. Metrics: "
+            "[field.md](../../field.md#metrics).\n"
+        )
+        for scenario in arguments.scenarios:
+            heads = ["condition", "controller", "messages"] + [head for _, head, _ in COLUMNS]
+            file.write(f"\n## {scenario}\n| " + " | ".join(heads) + " |\n")
+            file.write("|---|---|---|" + "---:|" * len(COLUMNS) + "\n")
+            for name, condition, controller, messages, found in rows:
+                if name != scenario:
+                    continue
+                values = [f"{found[column]:.{digits}f}" for column, _, digits in COLUMNS]
+                cells = [condition, f"`{controller}`", messages, *values]
+                file.write("| " + " | ".join(cells) + " |\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <geometry_msgs/TwistWithCovarianceStamped.h>
+#include <sensor_msgs/FluidPressure.h>
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/NavSatFix.h>
+#include <sensor_msgs/Range.h>
+
+#include <vector>
+
+#include "auv_common/nodes/on_demand.hpp"
+#include "auv_dynamics/terrain/datum.hpp"
+#include "auv_dynamics/world/world.hpp"
+#include "auv_dynamics/world/world_config.hpp"
+
+namespace stg::nodes {
+
+/// The instruments that marine ROS software listens to, of every AUV of lane 0 in open water, at
+/// each decision:
+///   imu       attitude and body rates as the navigation has them; the specific force is the mean
+///             since the decision before, from the change of true velocity over ground
+///   pressure  absolute, of the depth that the navigation has: p_atm + rho g depth
+///   dvl       velocity over ground in body axes as the navigation has it
+///   altitude  of the body's origin above the bottom, straight down; +Inf where it is out of range
+///             (REP 117)
+///   gps       within kSurface_m of the surface, where an aerial is out of the water
+/// Costs nothing while nobody listens.
+class Instruments {
+ public:
+  static constexpr double kDensity_kgpm3 = 1026.0, kGravity_mps2 = 9.81;
+  static constexpr double kAtmosphere_Pa = 101325.0;
+  static constexpr double kSurface_m = 0.5;
+  static constexpr double kAltimeter_m[2] = {0.3, 100.0};  ///< its range
+
+  /// Throws UserError for a scenario without open water, where there is neither depth nor place.
+  explicit Instruments(const dynamics::WorldConfig& scenario);
+
+  /// @param now clock time of the decision; `first` of an episode: nothing moved there
+  void Publish(const dynamics::World& world, TimeNs now, bool first);
+
+ private:
+  struct Auv {
+    OnDemand<sensor_msgs::Imu> imu;
+    OnDemand<sensor_msgs::FluidPressure> pressure;
+    OnDemand<geometry_msgs::TwistWithCovarianceStamped> dvl;
+    OnDemand<sensor_msgs::Range> altitude;
+    OnDemand<sensor_msgs::NavSatFix> gps;
+    std_msgs::Header header;
+    dynamics::NavState nav;
+    Vec3<double> v_WB, specific_force_B;
+    double altitude_m = 0.0;
+  };
+  void Advertise(int i);
+
+  double period_s_;
+  dynamics::Datum datum_;
+  std::vector<Auv> auvs_;
+};
+
+}  // namespace stg::nodes

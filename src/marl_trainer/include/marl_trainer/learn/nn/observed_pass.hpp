@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "marl_trainer/learn/nn/mlp.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
+
+namespace stg::learn {
+
+/// One thread's memory to ask a network about raw observations; it grows with the rows asked for.
+class ObservedPass {
+ public:
+  /// @param network must outlive this object.
+  explicit ObservedPass(const Mlp& network) : network_(&network), workspace_(network, 0) {}
+
+  /// Outputs [rows, outputs] for observations [rows, inputs]; valid until the next call.
+  const float* Evaluate(const float* parameters, const Normaliser& scale, const float* observations,
+                        int rows);
+
+ private:
+  const Mlp* network_;
+  Mlp::Workspace workspace_;
+  std::vector<float> normalised_;
+};
+
+/// One for each worker.
+std::vector<ObservedPass> PassesOf(const Mlp& network, int workers);
+
+}  // namespace stg::learn

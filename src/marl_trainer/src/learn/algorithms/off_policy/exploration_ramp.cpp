@@ -1,0 +1,25 @@
+#include "marl_trainer/learn/algorithms/off_policy/exploration_ramp.hpp"
+
+#include <cmath>
+
+namespace stg::learn {
+
+double ExplorationRamp::At(double place) const {
+  return max > 0.0 ? min * std::pow(max / min, place) : 0.0;
+}
+
+void ExplorationRamp::Describe(const std::string& name, double limit, const std::string& what,
+                               OptionTable* table) {
+  table->Add(name + "-min", &min, {0, limit},
+             what +
+                 " in the first environment; between it and the last one it grows by equal "
+                 "factors");
+  table->Add(name + "-max", &max, {0, limit}, what + " in the last environment");
+  table->Check([this, name] {
+    RequireOption(min <= max, name + "-max", "is below --" + name + "-min");
+    RequireOption(min > 0.0 || max == 0.0, name + "-min",
+                  "must not be 0 where --" + name + "-max is not");
+  });
+}
+
+}  // namespace stg::learn

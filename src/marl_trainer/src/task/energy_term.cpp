@@ -1,0 +1,22 @@
+#include "terms.hpp"
+
+namespace stg::task {
+namespace {
+
+/// Minus the cube of the first actuator's share of its limit: of a propeller or a commanded speed,
+/// what the power of propulsion goes with. In [-1, 0].
+struct EnergyTerm : TermOf<EnergyTerm> {
+  template <class T>
+  T Of(const TermInput<T>& in) const {
+    const T share = Abs(in.swarm.tau[static_cast<std::size_t>(in.agent)][0]);
+    return -(share * share * share);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<const RewardTerm> MakeEnergyTerm(const JudgeConfig&) {
+  return std::make_unique<EnergyTerm>();
+}
+
+}  // namespace stg::task

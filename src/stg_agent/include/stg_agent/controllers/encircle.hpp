@@ -1,0 +1,153 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+
+#include "auv_common/numbers/attitude.hpp"
+#include "auv_common/numbers/vector.hpp"
+#include "stg_agent/controllers/controller.hpp"
+
+/// Controller of open water: vehicles that must keep moving circle the target.
+namespace stg::agent {
+
+/// Constants of the law. Lengths and speeds are those of the sea.
+struct EncircleOptions {
+  double slow_mps = 1.0;        ///< over ground, on the side of the circle that runs back
+  double fast_mps = 2.1;        ///< over ground, on the way to the circle and at most
+  double inward_gain = 3.0;     ///< how steeply the way to the circle points at it
+  double lead_s = 4.0;          ///< the vehicle is taken to be where it will be then
+  double spread_gain = 0.5;     ///< change of speed per radian off the middle of the gap
+  double spread_limit = 0.35;   ///< largest such change
+  double clearance_m = 50.0;    ///< others are to be missed by this, in the plane
+  double horizon_s = 45.0;      ///< closest approaches later than this do not matter
+  double layer_m = 20.0;        ///< others this much above or below do not matter
+  double depth_gain_ps = 0.06;  ///< climb rate per missing depth
+  double climb_mps = 0.25;      ///< largest climb rate that is asked for
+  double ring = 0.22;           ///< two circles, this share inside and outside of d*
+  double ring_team = 10.0;      ///< of teams larger than this
+};
+
+/// Calls visit(name, field, largest) for every constant that a user may set.
+template <class Visitor>
+void VisitEncircleOptions(EncircleOptions& o, Visitor&& visit) {
+  visit("slow", o.slow_mps, 100.0);
+  visit("fast", o.fast_mps, 100.0);
+  visit("inward", o.inward_gain, 1e3);
+  visit("lead", o.lead_s, 1e3);
+  visit("spread", o.spread_gain, 1e3);
+  visit("spread-limit", o.spread_limit, 1.0);
+  visit("clearance", o.clearance_m, 1e4);
+  visit("horizon", o.horizon_s, 1e4);
+  visit("layer", o.layer_m, 1e4);
+  visit("depth-gain", o.depth_gain_ps, 1e3);
+  visit("climb", o.climb_mps, 100.0);
+  visit("ring", o.ring, 0.9);
+  visit("ring-team", o.ring_team, 1e4);
+}
+
+/// A vector in the plane.
+template <class T>
+struct Level {
+  T x = T(0.0), y = T(0.0);
+
+  friend Level operator+(const Level& a, const Level& b) { return {a.x + b.x, a.y + b.y}; }
+  friend Level operator-(const Level& a, const Level& b) { return {a.x - b.x, a.y - b.y}; }
+  friend Level operator*(const Level& a, const T& s) { return {a.x * s, a.y * s}; }
+};
+template <class T>
+T Dot(const Level<T>& a, const Level<T>& b) {
+  return a.x * b.x + a.y * b.y;
+}
+/// Positive where b lies anticlockwise of a.
+template <class T>
+T Cross(const Level<T>& a, const Level<T>& b) {
+  return a.x * b.y - a.y * b.x;
+}
+template <class T>
+T Norm(const Level<T>& a) {
+  return Sqrt(Dot(a, a));
+}
+
+/// Another vehicle now, by the circle around the target that its report shows it on; farther from
+/// the target by dead reckoning. Relative to the target, in the plane.
+template <class T>
+struct Circler {
+  Level<T> q;  ///< position [m]
+  Level<T> w;  ///< velocity over ground [m/s]
+  T z;         ///< height in the world [m]
+};
+
+/// @param p_WT, v_WT of the target now, as this AUV believes
+/// @param reach_m    farther from the target than this nobody circles it [m]
+template <class T>
+Circler<T> CircleOn(const NeighbourSight<T>& n, const Vec3<T>& p_WT, const Level<T>& v_T,
+                    double reach_m) {
+  const Level<T> q{n.p_W.x - p_WT.x + v_T.x * n.age_s, n.p_W.y - p_WT.y + v_T.y * n.age_s};
+  const Level<T> v{n.v_W.x, n.v_W.y};
+  const T square = Max(Dot(q, q), T(1.0));
+  const auto near = square < T(reach_m * reach_m);
+  const T angle = Select(near, Cross(q, v - v_T) / square * n.age_s, T(0.0));
+  T s, c;
+  SinCos(angle, &s, &c);
+  const Level<T> straight{n.p_WN.x - p_WT.x, n.p_WN.y - p_WT.y};
+  const Level<T> relative = v - v_T;
+  const Level<T> turned{c * relative.x - s * relative.y, s * relative.x + c * relative.y};
+  return {{Select(near, c * q.x - s * q.y, straight.x), Select(near, s * q.x + c * q.y, straight.y)},
+          {turned.x + v_T.x, turned.y + v_T.y},
+          n.p_WN.z};
+}
+
+/// The largest u for which |v_T + u direction| is `speed`; `otherwise` where there is none.
+template <class T>
+T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, const T& otherwise) {
+  const T b = Dot(v_T, direction);
+  const T square = b * b + speed * speed - Dot(v_T, v_T);
+  return Select(square > T(0.0), Sqrt(Max(square, T(0.0))) - b, otherwise);
+}
+
+/// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
+/// its own. On the circle it speeds up or slows down towards the middle between the one ahead and
+/// the one behind, as their packets and the time since tell; off it, it comes in on a spiral. It
+/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart, which
+/// is the scenario. In a team that is too large for one
+/// circle every other AUV flies inside, the others outside of d*. Without open water it keeps to
+/// the target's depth.
+///
+/// Vehicles that need flow over their fins turn as tightly as their ground speed over the turn rate
+/// allows: on the side where the circle runs against the target's way the radius over ground is
+/// R (1 - v_T / u)^2 at the relative speed u, so that u is kept at v_T + slow or more.
+struct Encircle {
+  EncircleOptions options;
+
+  template <class T>
+  void Act(const ControllerInput<T>& in, T* action) const {
+    const dynamics::VehicleConfig& vehicle = in.scenario.vehicle;
+    const Vec3<T> v = Velocity(in);
+    const auto& vmax = vehicle.max_velocity_mps;
+    const T velocity[3] = {Clip(v.x * T(1.0 / vmax[0]), T(-1.0), T(1.0)),
+                           Clip(v.y * T(1.0 / vmax[1]), T(-1.0), T(1.0)),
+                           Clip(v.z * T(1.0 / vmax[2]), T(-1.0), T(1.0))};
+    AskForVelocity(in, velocity, action);
+  }
+
+ private:
+  /// Desired velocity over ground, world axes [m/s].
+  template <class T>
+  Vec3<T> Velocity(const ControllerInput<T>& in) const;
+  /// Height to fly at [m].
+  template <class T>
+  T Height(const ControllerInput<T>& in) const;
+  /// Radius of the circle in the plane for a difference of height to the target [m].
+  template <class T>
+  T Radius(const ControllerInput<T>& in, const T& dz) const;
+  /// Turns a velocity away from another vehicle or an obstacle that it would pass too closely.
+  /// @param r, w position and velocity of the other relative to the own position and the ground
+  /// @param matters 0 where it does not; else 1
+  template <class T>
+  Level<T> Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
+                const T& matters) const;
+};
+
+std::unique_ptr<Controller> MakeEncircle(ControllerConstants& constants);
+
+}  // namespace stg::agent

@@ -1,0 +1,150 @@
+#include "stg_agent/controllers/encircle.hpp"
+
+namespace stg::agent {
+namespace {
+
+constexpr double kTwoPi = 2.0 * kPi;
+
+/// Of an angle within +-2 pi: the same in [0, 2 pi).
+template <class T>
+T Positive(const T& angle) {
+  return Select(angle < T(0.0), angle + T(kTwoPi), angle);
+}
+
+/// A velocity of the same direction with a speed between two.
+template <class T>
+Level<T> Within(const Level<T>& v, double lo, double hi) {
+  const T speed = Max(Norm(v), T(1e-6));
+  return v * (Clip(speed, T(lo), T(hi)) / speed);
+}
+
+}  // namespace
+
+template <class T>
+T Encircle::Height(const ControllerInput<T>& in) const {
+  const T target = in.knowledge.p_WB.z + in.knowledge.r_BT_W.z;
+  const AgentConfig& s = in.scenario;
+  if (!s.sea.open) return target;
+  const config::Interval& band = s.sea.auv_depth_m;
+  const double share = s.agents > 1 ? static_cast<double>(in.id) / (s.agents - 1) : 0.5;
+  return T(-(band.lo + share * (band.hi - band.lo)));
+}
+
+template <class T>
+T Encircle::Radius(const ControllerInput<T>& in, const T& dz) const {
+  const AgentConfig& s = in.scenario;
+  const int team = (s.agents + s.target.count - 1) / s.target.count;
+  double d = s.task.desired_distance_m;
+  if (team > options.ring_team) {
+    d *= (in.id / s.target.count) % 2 == 0 ? 1.0 - options.ring : 1.0 + options.ring;
+  }
+  return Sqrt(Max(T(d * d) - dz * dz, T(0.25 * d * d)));
+}
+
+template <class T>
+Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
+                        const T& matters) const {
+  const T zero(0.0), one(1.0);
+  const Level<T> closing = w - v;
+  const T time = Clip(-Dot(r, closing) / Max(Dot(closing, closing), T(1e-4)), zero,
+                      T(options.horizon_s));
+  const Level<T> miss = r + closing * time;
+  const T distance = Norm(miss);
+  const T strength = matters * Max(one - distance / clearance, zero) *
+                     (one - time * T(1.0 / options.horizon_s));
+  // Head-on there is no side to pass it on: then to starboard.
+  const T range = Max(Norm(r), T(1e-3));
+  const Level<T> starboard{r.y / range, -r.x / range};
+  const T side = Select(Dot(miss, starboard) > T(0.5), -one, one);
+  const Level<T> away = r * (-distance / (range * clearance));
+  const T speed = Norm(v);
+  return (starboard * side + away) * (T(1.5) * strength * speed);
+}
+
+template <class T>
+Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
+  const AgentConfig& s = in.scenario;
+  const EncircleOptions& o = options;
+  const Knowledge<T>& k = in.knowledge;
+  const T zero(0.0), one(1.0);
+  const double most = s.vehicle.max_velocity_mps[0];
+  const double slow = std::min(most, std::max(o.slow_mps, s.control.autopilot.min_speed_mps));
+  const double fast = std::max(std::min(most, o.fast_mps), slow);
+
+  const Level<T> v_T = [&] {
+    const Level<T> v{k.v_WT.x, k.v_WT.y};
+    return v * (Min(Norm(v), T(s.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
+  }();
+  const Vec3<T> p_WT = k.p_WB + k.r_BT_W;
+  const T z = Height(in);
+  const T R = Radius(in, z - p_WT.z);
+
+  // Where the vehicle will be: commands take effect late, and last a decision.
+  const Level<T> own{k.v_WB.x, k.v_WB.y};
+  const Level<T> now{k.r_BT_W.x, k.r_BT_W.y};
+  const Level<T> r = now + (v_T - own) * T(o.lead_s + 0.5 * s.decision_dt_s());
+  const T rho = Max(Norm(r), T(1e-3));
+  const Level<T> in_W = r * (one / rho);
+  const Level<T> around{in_W.y, -in_W.x};
+  const T radial = T(o.inward_gain) * (rho * rho - R * R), tangential = T(2.0) * rho * R;
+  const T length = one / Max(Sqrt(radial * radial + tangential * tangential), T(1e-6));
+  const Level<T> direction = in_W * (radial * length) + around * (tangential * length);
+
+  // Gaps to those on this circle.
+  const double d = s.task.desired_distance_m;
+  const T phase = Atan2(-now.y, -now.x), distance = Norm(now);
+  const auto on_circle = Abs(distance - R) < T(0.5 * d);
+  T ahead(kTwoPi), behind(kTwoPi);
+  const bool rings = (s.agents + s.target.count - 1) / s.target.count > o.ring_team;
+  const T reach = rings ? T(o.ring * d) : T(0.6 * d);
+  for (int j = 0; j < in.neighbour_count; ++j) {
+    const Circler<T> c = CircleOn(in.neighbours[j], p_WT, v_T, 2.0 * d);
+    const auto with_us = (Abs(Norm(c.q) - R) < reach) && on_circle;
+    const T gap = Positive(Atan2(c.q.y, c.q.x) - phase);
+    ahead = Min(ahead, Select(with_us, gap, T(kTwoPi)));
+    behind = Min(behind, Select(with_us, T(kTwoPi) - gap, T(kTwoPi)));
+  }
+  const T spread =
+      Clip((ahead - behind) * T(0.5 * o.spread_gain), T(-o.spread_limit), T(o.spread_limit));
+
+  // Relative speed: enough on the side that runs back, more on the way to the circle.
+  const T hurry = Clip((rho - R) * T(1.0 / d) - T(0.3), zero, one);
+  const T on_it = (T(slow) + Norm(v_T)) * (one + spread);
+  T u = on_it + (T(fast) - on_it) * hurry;
+  u = Min(u, SpeedAlong(v_T, direction, T(fast), u));
+  u = Max(u, SpeedAlong(v_T, direction, T(slow), u));
+  const Level<T> wanted = Within(v_T + direction * u, slow, fast);
+
+  Level<T> v = wanted;
+  for (int j = 0; j < in.neighbour_count; ++j) {
+    const Circler<T> c = CircleOn(in.neighbours[j], p_WT, v_T, 2.0 * d);
+    const auto beside = Abs(c.z - k.p_WB.z) < T(o.layer_m);
+    const Level<T> miss =
+        Miss(own, c.q + now, c.w, T(o.clearance_m), Select(beside, one, zero));
+    v = v + miss;
+  }
+  // What its chart shows.
+  const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
+    const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));
+    const Level<T> there{T(x) - k.p_WB.x, T(y) - k.p_WB.y};
+    v = v + Miss(own, there, Level<T>{}, T(radius_m + o.clearance_m), Select(beside, one, zero));
+  };
+  for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
+  for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
+  v = Within(v, slow, fast);
+  const T climb = Clip((z - k.p_WB.z) * T(o.depth_gain_ps), T(-o.climb_mps), T(o.climb_mps));
+  return {v.x, v.y, climb};
+}
+
+template Vec3<double> Encircle::Velocity(const ControllerInput<double>& in) const;
+template Vec3<Pack> Encircle::Velocity(const ControllerInput<Pack>& in) const;
+
+std::unique_ptr<Controller> MakeEncircle(ControllerConstants& constants) {
+  EncircleOptions options;
+  VisitEncircleOptions(options, [&](const char* name, double& field, double largest) {
+    constants.Read(name, largest, &field);
+  });
+  return std::make_unique<ControllerOf<Encircle>>(Encircle{options});
+}
+
+}  // namespace stg::agent

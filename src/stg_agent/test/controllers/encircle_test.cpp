@@ -1,0 +1,164 @@
+#include "stg_agent/controllers/encircle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "auv_common/numbers/lane_structs.hpp"
+#include "auv_common/numbers/random.hpp"
+
+namespace stg::agent {
+namespace {
+
+/// Four torpedoes in open water, d* 90 m.
+AgentConfig Sea() {
+  AgentConfig s;
+  s.agents = 4;
+  s.sea.open = true;
+  s.vehicle.max_velocity_mps = {2.5, 2.5, 0.5};
+  s.target.max_speed_mps = 1.0;
+  s.task.desired_distance_m = 90.0;
+  s.control.max_delta = s.control.smoothing = 0.0;
+  s.time.dt_s = 1e-9;  // of a decision
+  return s;
+}
+
+/// AUV 1 of four, at its depth and that of its target, `p` from it, with velocity v.
+Knowledge<double> Near(const Vec3<double>& p, const Vec3<double>& v, const Vec3<double>& v_T = {}) {
+  Knowledge<double> k;
+  k.p_WB = {p.x, p.y, -20.0 - 40.0 / 3.0};
+  k.r_BT_W = {-p.x, -p.y, 0.0};
+  k.v_WB = v;
+  k.v_WT = v_T;
+  k.trig = {0.0, 1.0, 0.0, 1.0, 0.0, 1.0};
+  k.R_WB = RotationOf(k.trig);
+  return k;
+}
+
+/// Of AUV `id` [m/s], world axes.
+Vec3<double> Velocity(const AgentConfig& s, const Knowledge<double>& k, EncircleOptions o = {},
+                      const std::vector<NeighbourSight<double>>& neighbours = {}, int id = 1) {
+  double a[3];
+  ControllerOf<Encircle>(Encircle{o}).Act(
+      {s, id, k, neighbours.data(), static_cast<int>(neighbours.size())}, a);
+  const auto& limit = s.vehicle.max_velocity_mps;
+  return {a[0] * limit[0], a[1] * limit[1], a[2] * limit[2]};
+}
+
+NeighbourSight<double> Sight(const Vec3<double>& p, const Vec3<double>& v, double age_s = 0.0) {
+  NeighbourSight<double> n;
+  n.known = 1.0;
+  n.p_W = p;
+  n.v_W = v;
+  n.age_s = age_s;
+  n.p_WN = p + v * age_s;
+  return n;
+}
+
+TEST(Encircle, CirclesAnticlockwiseAtTheSlowSpeedAndPointsAtATargetFarOff) {
+  EncircleOptions o;
+  o.lead_s = 0.0;
+  const Vec3<double> on = Velocity(Sea(), Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), o);
+  EXPECT_NEAR(on.x, 0.0, 1e-12);
+  EXPECT_NEAR(on.y, o.slow_mps, 1e-12);
+  EXPECT_NEAR(on.z, 0.0, 1e-12);
+  const Vec3<double> far = Velocity(Sea(), Near({5000.0, 0.0, 0.0}, {-2.0, 0.0, 0.0}), o);
+  EXPECT_NEAR(far.x, -o.fast_mps, 0.001);
+  EXPECT_NEAR(far.y, 0.0, 0.03);
+  EXPECT_LT(Velocity(Sea(), Near({110.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), o).x, -0.3);
+  EXPECT_GT(Velocity(Sea(), Near({70.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), o).x, 0.3);
+}
+
+TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
+  const AgentConfig s = Sea();
+  const EncircleOptions o;
+  for (std::uint32_t k = 0; k < 3000; ++k) {
+    Random random(1, Stream::kReset, 0, 0, k);
+    const auto draw = [&random](double most) { return random.Uniform(-most, most); };
+    std::vector<NeighbourSight<double>> others;
+    for (int j = 0; j < 3; ++j) {
+      others.push_back(Sight({draw(200.0), draw(200.0), -40.0}, {draw(2.0), draw(2.0), 0.0},
+                             random.Uniform(0.0, 60.0)));
+    }
+    const Vec3<double> v =
+        Velocity(s, Near({draw(400.0), draw(400.0), 0.0}, {draw(2.0), draw(2.0), 0.0},
+                         {draw(0.9), draw(0.9), 0.0}),
+                 o, others);
+    const double speed = std::hypot(v.x, v.y);
+    ASSERT_GE(speed, o.slow_mps - 1e-9);
+    ASSERT_LE(speed, o.fast_mps + 1e-9);
+  }
+}
+
+TEST(Encircle, MakesForTheMiddleBetweenThoseAheadAndBehind) {
+  EncircleOptions o;
+  o.lead_s = 0.0;
+  o.clearance_m = 1.0;
+  const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+  const auto at = [](double degrees) {
+    const double a = degrees * kPi / 180.0;
+    return Sight({90.0 * std::cos(a), 90.0 * std::sin(a), -60.0},
+                 {-std::sin(a), std::cos(a), 0.0});
+  };
+  EXPECT_NEAR(Velocity(Sea(), k, o, {at(120.0), at(-120.0)}).y, 1.0, 1e-9);
+  EXPECT_NEAR(Velocity(Sea(), k, o, {at(150.0), at(-110.0)}).y, 1.0 + 0.5 * 20.0 * kPi / 180.0,
+              1e-9);
+  // One that follows closely, whose packet is as old as it takes to get here.
+  const double lap_s = 2.0 * kPi * 90.0;
+  NeighbourSight<double> old = at(-40.0);
+  old.age_s = 20.0 / 360.0 * lap_s;
+  EXPECT_NEAR(Velocity(Sea(), k, o, {old}).y, Velocity(Sea(), k, o, {at(-20.0)}).y, 1e-9);
+}
+
+TEST(Encircle, PassesOthersAtLikeDepthAndObstaclesAside) {
+  EncircleOptions o;
+  const Knowledge<double> k = Near({1000.0, 0.0, 0.0}, {-2.0, 0.0, 0.0});
+  const auto aside = [&](double y, double z) {
+    return Velocity(Sea(), k, o, {Sight({960.0, y, z}, {1.5, 0.0, 0.0})}).y;
+  };
+  const double alone = Velocity(Sea(), k, o).y;
+  EXPECT_LT(aside(10.0, -33.0), alone - 0.1); 
+  EXPECT_GT(aside(-10.0, -33.0), alone + 0.1);
+  EXPECT_NEAR(aside(10.0, -60.0), alone, 1e-12);
+  AgentConfig s = Sea();
+  s.sea.cylinders = {{940.0, 10.0, -120.0, 20.0, 120.0}};
+  EXPECT_LT(Velocity(s, k, o).y, alone - 0.1);
+  s.sea.cylinders = {{940.0, 10.0, -120.0, 20.0, 30.0}};
+  EXPECT_NEAR(Velocity(s, k, o).y, alone, 1e-12) << "it ends 57 m below";
+}
+
+TEST(Encircle, SpreadsOverTheDepthsOfTheScenario) {
+  const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+  EXPECT_GT(Velocity(Sea(), k, {}, {}, 0).z, 0.2);   // to 20 m
+  EXPECT_LT(Velocity(Sea(), k, {}, {}, 3).z, -0.2);  // to 60 m
+}
+
+TEST(Encircle, IsTheSameInEveryLane) {
+  const AgentConfig s = Sea();
+  const ControllerOf<Encircle> law(Encircle{});
+  for (std::uint32_t n = 0; n < 200; ++n) {
+    Knowledge<Pack> packed;
+    NeighbourSight<Pack> seen;
+    double expected[kLanes][3];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      Random random(2, Stream::kReset, n, static_cast<std::uint32_t>(lane), 0);
+      const auto draw = [&random](double most) { return random.Uniform(-most, most); };
+      const Knowledge<double> k = Near({draw(300.0), draw(300.0), 0.0},
+                                       {draw(2.0), draw(2.0), 0.0}, {draw(0.9), draw(0.9), 0.0});
+      const NeighbourSight<double> other =
+          Sight({draw(200.0), draw(200.0), -40.0}, {draw(2.0), draw(2.0), 0.0}, 10.0);
+      SetLaneOf(&packed, lane, k);
+      SetLaneOf(&seen, lane, other);
+      law.Act({s, 1, k, &other, 1}, expected[lane]);
+    }
+    Pack a[3];
+    law.Act({s, 1, packed, &seen, 1}, a);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(Lane(a[c], lane), expected[lane][c]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stg::agent

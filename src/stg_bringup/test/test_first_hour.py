@@ -1,0 +1,124 @@
+"""What somebody tries in the first hour is answered in a line that helps."""
+
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+import roslib.packages
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+WORKSPACE = os.environ["CMAKE_PREFIX_PATH"].split(":")[0]  # where ./stg has built it
+
+
+def run(*command, folder=None):
+    """Returns (exit status, output) of a command that is to end soon."""
+    environment = dict(os.environ, STG_BUILD_ROOT=str(pathlib.Path(WORKSPACE).parent))
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, universal_newlines=True, check=False,
+                          cwd=folder, env=environment, timeout=60)
+    return done.returncode, done.stdout
+
+
+def program(name):
+    """Returns the path of a program of the trainer."""
+    (path,) = roslib.packages.find_node("marl_trainer", name)
+    return path
+
+
+class Help(unittest.TestCase):
+    """`./stg COMMAND --help` tells about the command, and builds and starts nothing."""
+
+    def test_every_command_that_is_listed_has_help(self):
+        status, listed = run(ROOT / "stg", "help")
+        self.assertEqual(status, 0, listed)
+        commands = set(re.findall(r"^  ([a-z]+) ", listed.split("\n\n")[1], re.MULTILINE))
+        self.assertLessEqual({"run", "test", "lint", "train", "bench", "reproduce", "setup",
+                              "build"}, commands)
+        for command in sorted(commands - {"help"}):
+            for word in ("--help", "-h"):
+                with self.subTest(command, word=word):
+                    status, output = run(ROOT / "stg", command, word)
+                    self.assertEqual(status, 0, output)
+                    self.assertRegex(output, "(?i)usage:")
+                    self.assertIn(command, output)
+                    for noise in ("ninja:", "setup:", "unknown"):
+                        self.assertNotIn(noise, output)
+
+    def test_help_of_a_scenario_lists_its_arguments(self):
+        status, output = run(ROOT / "stg", "run", "replay", "--help")
+        self.assertEqual(status, 0, output)
+        self.assertRegex(output, r"(?m)^  bag$\n +bag file to replay")
+        self.assertRegex(output, r"(?m)^  rate:=1$")
+        status, output = run(ROOT / "stg", "run", "nowhere", "--help")
+        self.assertEqual(status, 2, output)
+        self.assertIn("no scenario 'nowhere'", output)
+
+
+class Setup(unittest.TestCase):
+    """The set-up knows the system that it is written for."""
+
+    def setup_on(self, release, **environment):
+        """Returns (exit status, output) of the set-up on a system that calls itself so."""
+        with tempfile.NamedTemporaryFile("w", suffix="os-release") as file:
+            file.write(release)
+            file.flush()
+            done = subprocess.run([str(ROOT / "scripts" / "setup.sh")], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, universal_newlines=True, check=False,
+                                  env=dict(os.environ, STG_OS_RELEASE=file.name, **environment))
+        return done.returncode, done.stdout
+
+    def test_another_release_is_refused_by_name(self):
+        for release, name in (('ID=ubuntu\nVERSION_ID="20.04"\n', "ubuntu 20.04"),
+                              ('ID=debian\nVERSION_ID="11"\n', "debian 11"),
+                              ("", "unknown system")):
+            status, output = self.setup_on(release)
+            self.assertEqual(status, 1, output)
+            self.assertIn("setup: this needs Debian 12", output)
+            self.assertIn(name, output)
+
+    def test_the_right_one_and_who_insists_go_on(self):
+        # Nothing is missing where this test runs.
+        for release, insists in (('ID=debian\nVERSION_ID="12"\n', ""),
+                                 ('ID=ubuntu\nVERSION_ID="20.04"\n', "1")):
+            status, output = self.setup_on(release, STG_ANY_RELEASE=insists)
+            self.assertEqual((status, output), (0, ""))
+
+
+class Evaluate(unittest.TestCase):
+    """Names that are nearly right are understood, or corrected."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def evaluate(self, *arguments):
+        """Returns (exit status, output) of one short episode."""
+        return run(program("evaluate"), "--episodes", "1", "--set", "time.episode_steps=20", "--set",
+                   "time.tail_steps=5", *arguments, folder=self.folder)
+
+    def test_own_scenarios_stand_on_shipped_ones(self):
+        (self.folder / "mine.yaml").write_text("base: medium.yaml\nname: mine\n")
+        status, output = self.evaluate("--scenario", "mine.yaml", "--policy", "idle")
+        self.assertEqual(status, 0, output)
+
+    def test_what_is_mistyped_is_refused_with_what_was_meant(self):
+        (self.folder / "mine.yaml").write_text("base: mediun.yaml\nname: mine\n")
+        for arguments, reason in (
+                (("--scenario", "mine.yaml", "--policy", "idle"),
+                 "mine.yaml:1: base: mediun.yaml is not a file; did you mean medium.yaml?"),
+                (("--set", "sensing.rnge=3", "--policy", "idle"),
+                 "sensing.rnge: unknown key, did you mean sensing.range_m?"),
+                (("--policy", "pursuit:capp=3"), "no such constant: capp; did you mean cap?"),
+                (("--policy", "pursiut"), "did you mean pursuit?"),
+                (("--policy", "none.onnx"), "none.onnx: no such policy file")):
+            status, output = self.evaluate(*arguments)
+            self.assertEqual(status, 2, output)
+            self.assertIn(reason, output)
+
+
+if __name__ == "__main__":
+    unittest.main()
