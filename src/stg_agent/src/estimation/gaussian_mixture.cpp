@@ -55,6 +55,16 @@ Gaussian GaussianMixture::Copy(int k) {
   return to;
 }
 
+void GaussianMixture::AddPart(const GaussianMixture& other, int k) {
+  assert(states_ <= other.states_);
+  const Gaussian from = other.at(k), to = Add();
+  *to.weight = *from.weight;
+  std::copy_n(from.x, states_, to.x);
+  for (int r = 0; r < states_; ++r) {
+    std::copy_n(from.P + r * other.stride_, states_, to.P + r * stride_);
+  }
+}
+
 void GaussianMixture::Remove(int k) {
   --size_;
   if (k < size_) std::copy_n(at(size_).weight, step_, at(k).weight);

@@ -13,9 +13,9 @@ using dynamics::Detection;
 
 constexpr int kMostComponents = 28;  ///< while a detection is taken
 constexpr int kKeptComponents = 12;  ///< after it
-constexpr int kSnapshots = 16;
+constexpr int kSnapshots = 24;
 constexpr std::size_t kMostSightings = 512;
-constexpr std::size_t kOwnSightings = 16;
+constexpr std::size_t kForgottenTogether = 32;  ///< sightings, so that the rest moves seldom
 
 /// A detection and who made it.
 struct Sighting {
@@ -50,13 +50,12 @@ class MeasurementFilter : public TargetFilter {
         spacing_(static_cast<TimeNs>(s.track.share_spacing_s * 1e9)),
         oldest_shared_(std::min(memory_, 127 * s.decision_period())),
         now_(model_.layout(), self, kMostComponents),
-        view_(model_.layout().states(), kKeptComponents) {
+        view_(kTargetStates + model_.layout().per_observer, kKeptComponents) {
     snapshots_.reserve(kSnapshots);
     for (int k = 0; k < kSnapshots; ++k) {
       snapshots_.emplace_back(model_.layout(), self, kKeptComponents);
     }
     sightings_.reserve(kMostSightings + 1);
-    own_.reserve(kOwnSightings + 1);
   }
 
   bool Takes(dynamics::MeasurementKind, bool) const override { return true; }
@@ -64,7 +63,6 @@ class MeasurementFilter : public TargetFilter {
 
   void Clear() override {
     sightings_.clear();
-    own_.clear();
     played_ = 0;
     now_.covers = -1;
     now_.stamp = now_.information = 0;
@@ -97,19 +95,11 @@ class MeasurementFilter : public TargetFilter {
 
   void Predict(TimeNs) override {}
 
-  void Detect(const Detection& detection) override {
-    Insert({detection, self_});
-    if (own_.size() == kOwnSightings) own_.erase(own_.begin());
-    own_.push_back(detection);
-  }
+  void Detect(const Detection& detection) override { Insert({detection, self_}); }
 
   void Settle(TimeNs now) override {
     while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= now) Play();
-    while (!sightings_.empty() && played_ > 0 &&
-           sightings_.front().detection.stamp <= Kept(0).covers) {
-      sightings_.erase(sightings_.begin());
-      --played_;
-    }
+    Forget();
     Tell(now);
   }
 
@@ -118,10 +108,12 @@ class MeasurementFilter : public TargetFilter {
 
   void Tell(bool, NeighbourState* state) const override {
     state->sightings = 0;
-    for (auto d = own_.rbegin(); d != own_.rend() && state->sightings < kSightings; ++d) {
-      if (state->generation - d->stamp > oldest_shared_) break;
-      if (state->sightings > 0 && state->sighting[0].stamp - d->stamp < spacing_) continue;
-      state->sighting[static_cast<std::size_t>(state->sightings++)] = *d;
+    for (auto it = sightings_.rbegin(); it != sightings_.rend(); ++it) {
+      const Detection& d = it->detection;
+      if (state->sightings == kSightings || state->generation - d.stamp > oldest_shared_) break;
+      if (it->source != self_ || d.stamp > state->generation) continue;
+      if (state->sightings > 0 && state->sighting[0].stamp - d.stamp < spacing_) continue;
+      state->sighting[static_cast<std::size_t>(state->sightings++)] = d;
     }
     state->has_target = state->sightings > 0;
   }
@@ -135,6 +127,15 @@ class MeasurementFilter : public TargetFilter {
       --kept_;
     }
     Kept(kept_++) = now_;
+  }
+
+  /// Sightings that no snapshot needs any more.
+  void Forget() {
+    std::size_t old = 0;
+    while (old < played_ && sightings_[old].detection.stamp <= Kept(0).covers) ++old;
+    if (old < kForgottenTogether && sightings_.size() < kMostSightings) return;
+    sightings_.erase(sightings_.begin(), sightings_.begin() + static_cast<std::ptrdiff_t>(old));
+    played_ -= old;
   }
 
   static bool Before(const Sighting& a, const Sighting& b) {
@@ -250,7 +251,8 @@ class MeasurementFilter : public TargetFilter {
     if (!belief_.started) return;
     belief_.information = now_.information;
     belief_.observed = now_.observed;
-    view_ = now_.mixture;
+    view_.Clear();
+    for (int k = 0; k < now_.mixture.size(); ++k) view_.AddPart(now_.mixture, k);
     model_.Predict(Seconds(now - now_.stamp), &view_);
     const int own = model_.layout().per_observer > 0 ? model_.layout().block(0) : -1;
     const int stride = view_.stride();
@@ -296,11 +298,10 @@ class MeasurementFilter : public TargetFilter {
   TimeNs memory_, spacing_, oldest_shared_;
   std::vector<Sighting> sightings_;  // by time, then by source
   std::size_t played_ = 0;           // so many of them are in now_
-  std::vector<Detection> own_;       // by time, newest last
   Snapshot now_;
   std::vector<Snapshot> snapshots_;  // a ring
   int first_ = 0, kept_ = 0;
-  GaussianMixture view_;
+  GaussianMixture view_;  // of the target and the own errors, now
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

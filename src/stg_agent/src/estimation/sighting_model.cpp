@@ -27,6 +27,33 @@ constexpr double kLeastFalseShare = 1e-3;
 constexpr int kMostStates = kTargetStates + 3 * kMostObservers;
 constexpr int kMostStride = (kMostStates + 3) & ~3;
 
+/// A distribution this much longer than wide is a cone with its tip at the observer.
+constexpr double kCone = 4.0;
+
+/// Turns the covariance of the target's position as the line to it has turned. What is uncertain
+/// along a line of sight stays so along the new one; a linear update leaves it along the old one,
+/// and the two lines would cross somewhere, which tells of a distance that nothing has measured.
+void Turn(const Vec3<double>& u, const Vec3<double>& v, Gaussian g, int stride) {
+  // Rotation of u to v: 1 + [w] + [w]^2 / (1 + u v), w = u x v.
+  const Vec3<double> w = Cross(u, v);
+  const double f = 1.0 / (1.0 + Dot(u, v));
+  const double R[3][3] = {
+      {1.0 - f * (w.y * w.y + w.z * w.z), f * w.x * w.y - w.z, f * w.x * w.z + w.y},
+      {f * w.x * w.y + w.z, 1.0 - f * (w.x * w.x + w.z * w.z), f * w.y * w.z - w.x},
+      {f * w.x * w.z - w.y, f * w.y * w.z + w.x, 1.0 - f * (w.x * w.x + w.y * w.y)}};
+  const auto turn = [&R](double* a, double* b, double* c) {
+    const double x = *a, y = *b, z = *c;
+    *a = R[0][0] * x + R[0][1] * y + R[0][2] * z;
+    *b = R[1][0] * x + R[1][1] * y + R[1][2] * z;
+    *c = R[2][0] * x + R[2][1] * y + R[2][2] * z;
+  };
+  for (int c = 0; c < stride; ++c) turn(g.P + c, g.P + stride + c, g.P + 2 * stride + c);
+  for (int r = 0; r < stride; ++r) {
+    double* row = g.P + r * stride;
+    turn(row, row + 1, row + 2);
+  }
+}
+
 double NormalDensity(double squared, double variance) {
   return std::exp(-0.5 * squared) / std::sqrt(2.0 * kPi * variance);
 }
@@ -103,7 +130,7 @@ SightingModel::SightingModel(const AgentConfig& s) {
 void SightingModel::Predict(double t, GaussianMixture* mixture) const {
   if (t <= 0.0) return;
   const double T = velocity_memory_s_, s = t / T, q = velocity_variance_;
-  const double a = std::exp(-s), gone = -std::expm1(-s), g = T * gone;
+  const double gone = -std::expm1(-s), a = 1.0 - gone, g = T * gone;
   const double vv = q * gone * (1.0 + a), pv = q * T * gone * gone;
   // 2 s - 3 + 4 a - a^2 loses its digits for short times; its series begins with 2 s^3 / 3.
   const double shape = s > 0.01 ? 2.0 * s - 3.0 + 4.0 * a - a * a
@@ -309,6 +336,7 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   const Gaussian g = mixture->at(k);
   const double noise = d.bearing_std_rad * d.bearing_std_rad;
   Geometry at = GeometryOf(d, slot, *mixture, k);
+  const Vec3<double> before = at.d * (1.0 / at.range);
   Vec3<double> out{at.d.x / at.level, at.d.y / at.level, 0.0};
   const Vec3<double> side{-out.y, out.x, 0.0};
   const double square = at.level * at.level;
@@ -335,6 +363,13 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   *g.weight *= Take(RowOf(up * (1.0 / at.range), slot),
                     d.elevation_rad - std::atan2(at.d.z, at.level) + cross / r2 + 0.5 * turned,
                     noise + rough, 1.0 / kPi, g, mixture->stride());
+
+  at = GeometryOf(d, slot, *mixture, k);
+  const Vec3<double> after = at.d * (1.0 / at.range);
+  const double line = at.Along(after);
+  if (line > kCone * (at.C[0][0] + at.C[1][1] + at.C[2][2] - line)) {
+    Turn(before, after, g, mixture->stride());
+  }
 }
 
 /// What gives a point is linear in the state: along the three axes of its noise.

@@ -28,7 +28,7 @@ void Describe(TrackConfig* c, config::Table* t) {
                  "measurements: correlation time of the target's velocity");
   t->AddOptional("memory_s", &c->memory_s, "60.0", config::Positive(1e5), "s",
                  "measurements: oldest measurement that is still taken");
-  t->AddOptional("share_spacing_s", &c->share_spacing_s, "5.0", config::NonNegative(1e5), "s",
+  t->AddOptional("share_spacing_s", &c->share_spacing_s, "2.0", config::NonNegative(1e5), "s",
                  "measurements: least time between the two measurements in one packet");
 }
 

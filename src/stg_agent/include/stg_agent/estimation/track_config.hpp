@@ -19,7 +19,7 @@ struct TrackConfig {
   double velocity_std_mps = 0.0;    ///< of the target, each component; 0: its largest speed
   double velocity_memory_s = 60.0;  ///< correlation time of the target's velocity
   double memory_s = 60.0;           ///< measurements no older than this are taken
-  double share_spacing_s = 5.0;     ///< least time between the measurements in one packet
+  double share_spacing_s = 2.0;     ///< least time between the measurements in one packet
 };
 
 /// Keys, units and ranges of the section.
