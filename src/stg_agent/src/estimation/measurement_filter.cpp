@@ -17,6 +17,12 @@ constexpr int kSnapshots = 24;
 constexpr std::size_t kMostSightings = 512;
 constexpr std::size_t kForgottenTogether = 32;  ///< sightings, so that the rest moves seldom
 
+/// Two ranges leave two places, mirrored at the line between the observers, and the filter may have
+/// taken the wrong one when the target crossed that line: the other one gets a chance so often.
+constexpr TimeNs kMirrorPeriod = 5'000'000'000;
+constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer, who tells the two apart
+constexpr double kMirrorWeight = 0.03;
+
 /// A detection and who made it.
 struct Sighting {
   Detection detection;
@@ -32,6 +38,10 @@ struct Snapshot {
   TimeNs stamp = 0;    ///< time of the state
   TimeNs information = 0;
   bool observed = false;
+  Sighting last;            ///< the newest one in it
+  Sighting other;           ///< the newest one of another AUV than that
+  TimeNs third = 0;         ///< when there was last one of a third AUV
+  TimeNs mirrored = 0;      ///< when the mirror image was last given a chance
   GaussianMixture mixture;  ///< empty: nothing is known of the target
   Observers observers;
 };
@@ -67,6 +77,9 @@ class MeasurementFilter : public TargetFilter {
     now_.covers = -1;
     now_.stamp = now_.information = 0;
     now_.observed = false;
+    now_.last.source = now_.other.source = -1;
+    now_.mirrored = 0;
+    now_.third = -kAlone;
     now_.mixture.Clear();
     now_.observers.Clear();
     first_ = 0;
@@ -194,7 +207,9 @@ class MeasurementFilter : public TargetFilter {
       model_.Seed(d, &mixture);
       now_.observers.Clear();
     } else {
-      model_.Predict(Seconds(d.stamp - now_.stamp), &mixture);
+      const double dt_s = Seconds(d.stamp - now_.stamp);
+      model_.Predict(dt_s, &mixture);
+      if (mixture.size() > 1) model_.DoubtTheFast(dt_s, &mixture);
     }
     now_.stamp = d.stamp;
     const int slot =
@@ -209,8 +224,31 @@ class MeasurementFilter : public TargetFilter {
     for (int k = 0; k < mixture.size(); ++k) model_.Update(d, slot, k >= one_way, &mixture, k);
     mixture.Normalise();
     mixture.Reduce(kKeptComponents);
+    if (now_.last.source != s.source) {
+      if (now_.other.source >= 0 && now_.other.source != s.source) {
+        now_.third = now_.other.detection.stamp;
+      }
+      now_.other = now_.last;
+    }
+    now_.last = s;
+    GiveMirrorAChance();
     now_.observed = true;
     now_.information = d.stamp;
+  }
+
+  void GiveMirrorAChance() {
+    const Sighting &a = now_.last, &b = now_.other;
+    if (a.detection.kind != dynamics::MeasurementKind::kRange || b.source < 0 ||
+        a.detection.stamp - b.detection.stamp > kMirrorPeriod ||
+        a.detection.stamp - now_.mirrored < kMirrorPeriod ||
+        a.detection.stamp - now_.third < kAlone || now_.mixture.full()) {
+      return;
+    }
+    now_.mirrored = a.detection.stamp;
+    if (model_.AddMirror(a.detection.p_WO, b.detection.p_WO, kMirrorWeight, &now_.mixture)) {
+      now_.mixture.Normalise();
+      now_.mixture.Reduce(kKeptComponents);
+    }
   }
 
   /// Splits what is too wide for a linear view of a detection, the weightiest first.
