@@ -4,8 +4,9 @@
 include_guard(DIRECTORY)
 
 option(STG_WERROR "Treat warnings in this repository's own code as errors" OFF)
-set(STG_SANITIZE "" CACHE STRING "Sanitizer to build with: address, thread, undefined, or empty")
-set_property(CACHE STG_SANITIZE PROPERTY STRINGS "" address thread undefined)
+set(STG_SANITIZE "" CACHE STRING "Sanitizer to build with: address, thread, undefined, address,undefined, fuzz (with clang: address
+and undefined, and libFuzzer's eyes), or empty")
+set_property(CACHE STG_SANITIZE PROPERTY STRINGS "" address thread undefined address,undefined fuzz)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -84,11 +85,24 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 if(STG_SANITIZE)
-  if(NOT STG_SANITIZE MATCHES "^(address|thread|undefined)$")
-    message(FATAL_ERROR "STG_SANITIZE is '${STG_SANITIZE}', not address, thread or undefined")
+  if(NOT STG_SANITIZE MATCHES "^(address|thread|undefined|address,undefined|fuzz)$")
+    message(FATAL_ERROR
+      "STG_SANITIZE is '${STG_SANITIZE}', not address, thread, undefined, address,undefined or fuzz"
+    )
   endif()
   # Optimised a little and with assertions, whatever the build type says.
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")
-  add_compile_options(-fsanitize=${STG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=${STG_SANITIZE})
+  set(stg_sanitizers ${STG_SANITIZE})
+  set(stg_sanitize_options)
+  if(STG_SANITIZE STREQUAL "fuzz")
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+      message(FATAL_ERROR "STG_SANITIZE=fuzz needs clang: libFuzzer is a part of it")
+    endif()
+    set(stg_sanitizers address,undefined)
+    # The libraries that are not ours have no type information for these two.
+    set(stg_sanitize_options -fsanitize=fuzzer-no-link -fno-sanitize=vptr,function)
+  endif()
+  add_compile_options(-fsanitize=${stg_sanitizers} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer ${stg_sanitize_options})
+  add_link_options(-fsanitize=${stg_sanitizers} ${stg_sanitize_options})
 endif()

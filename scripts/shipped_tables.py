@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Evaluates the shipped policies and the built-in controllers in acoustic mode, side by side.
 
-Usage: shipped_tables.py OUT [SILENT_FOLDER], in a built and sourced workspace. Writes OUT/tables.md
-and OUT/results.csv. SILENT_FOLDER/SCENARIO.onnx, where given, was trained without messages.
+Usage: shipped_tables.py OUT [SILENT_FOLDER], in a built and sourced workspace. Writes OUT/tables.md,
+OUT/results.csv and OUT/summary.md, where each policy stands beside the controller that returns most
+on its own estimates. SILENT_FOLDER/SCENARIO.onnx, where given, was trained without messages.
 """
 
 import csv
@@ -56,6 +57,39 @@ def fliers(scenario, policies, silent):
     ]
 
 
+CONTROLLERS = {  # on their own estimates, with messages: label to a name for the summary
+    "pursuit_separated": "as shipped",
+    "pursuit_separated, retuned": "retuned",
+    "the teacher's law on own estimates": "teacher's law",
+    "pursuit": "pursuit",
+}
+
+
+def summary(rows):
+    """Returns the lines of the summary, from the rows of results.csv without their header."""
+    lines = [
+        "| scenario, condition | return: policy / best controller | which | tail error [mm] "
+        "| contact | contact, tail |",
+        "|---|---:|---|---:|---:|---:|",
+    ]
+    names = [name for name, _ in COLUMNS]
+    cells = {}
+    for scenario, condition, label, *values in rows:
+        cell = cells.setdefault((scenario, condition), {})
+        cell[label] = dict(zip(names, (float(value) for value in values)))
+    for (scenario, condition), cell in cells.items():
+        policy = cell[f"policies/{scenario}.onnx"]
+        best = max(CONTROLLERS, key=lambda label: cell[label]["return"])
+        other = cell[best]
+        pairs = [f"{policy[name] * scale:.{digits}f} / {other[name] * scale:.{digits}f}"
+                 for name, scale, digits in (("return", 1, 1), ("tracking_error", 1000, 2),
+                                             ("colliding_pairs", 1, 3),
+                                             ("tail_colliding_pairs", 1, 3))]  # fmt: skip
+        lines.append(f"| {scenario}, {condition} | {pairs[0]} | {CONTROLLERS[best]} | "
+                     + " | ".join(pairs[1:]) + " |")  # fmt: skip
+    return lines + [""]
+
+
 def write(out, page, lines, table, rows):
     """Writes the lines of a page and the rows of a CSV file, header first, into a folder."""
     os.makedirs(out, exist_ok=True)
@@ -92,6 +126,8 @@ def main():
                 print(lines[-1], file=sys.stderr)
         lines.append("")
     write(out, "tables.md", lines, "results.csv", rows)
+    with open(os.path.join(out, "summary.md"), "w", encoding="utf-8") as file:
+        file.write("\n".join(summary(rows[1:])))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ best trials and the budget are printed.
 
 Search: random within SPACE (uniform; where a range spans a decade or more, of the logarithm), the
 first trial being the shipped constants, the second half of the trials near the best so far. Seeds
-5000 and up; tables are made with 3000 and up, tests with others.
+5000 and up, of the block for choosing; tables are made with those for reporting.
 """
 
 import argparse

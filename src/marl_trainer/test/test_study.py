@@ -11,8 +11,9 @@ import yaml
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 
-from stg_study import jobs, runner, statistics, study, tables  # noqa: E402
+from stg_study import figure_style, jobs, runner, statistics, study, tables  # noqa: E402
 from stg_study.data import Paper  # noqa: E402
+from stg_study.figures_curves import comparable  # noqa: E402
 
 
 class Statistics(unittest.TestCase):
@@ -192,6 +193,54 @@ class PolicyFiles(unittest.TestCase):
             with open(path, "w", encoding="utf-8") as file:
                 file.write("all")
             self.assertEqual(jobs.policy_files(path), [path])
+
+
+class Figures(unittest.TestCase):
+    def test_a_method_has_one_colour_in_all_studies_and_none_of_another(self):
+        tables_of = [figure_style.colours(study.load_study(study.find_study(name)))
+                     for name in ("paper", "acoustic")]
+        for name in set(tables_of[0]) & set(tables_of[1]):
+            self.assertEqual(tables_of[0][name], tables_of[1][name], name)
+        self.assertGreaterEqual(len(set(tables_of[0]) & set(tables_of[1])), 8)
+        for table in tables_of:
+            self.assertEqual(len(set(table.values())), len(table), table)
+
+    def test_a_legend_is_whole_and_below_what_is_drawn(self):
+        plt = figure_style.plt
+        for labels in (["one"], [f"a method with a rather long name, number {i}" for i in range(11)]):
+            figure, axes = plt.subplots(1, 2, figsize=(9.0, 6.0))
+            handles = [axes[0].plot([0, 1], [0, i])[0] for i in range(len(labels))]
+            axes[0].set_xlabel("steps")
+            figure_style.legend_below(figure, handles, labels)
+            figure.canvas.draw()
+            (legend,) = figure.legends
+            box = legend.get_window_extent()
+            self.assertGreaterEqual(box.x0, 0.0)
+            self.assertLessEqual(box.x1, figure.bbox.width)
+            self.assertGreaterEqual(box.y0, 0.0)
+            for axis in axes:
+                self.assertGreaterEqual(axis.get_tightbbox(figure.canvas.get_renderer()).y0, box.y1)
+            self.assertEqual([text.get_text() for text in legend.get_texts()], labels)
+            plt.close(figure)
+
+    def test_a_logarithmic_axis_has_at_least_three_numbers(self):
+        for low, high in ((0.011, 0.05), (0.002, 0.05), (1e-4, 1.0), (0.014, 0.02)):
+            figure, axis = figure_style.plt.subplots()
+            figure_style.logarithmic(axis, low, high)
+            bottom, top = axis.get_ylim()
+            self.assertLess(bottom, low)
+            self.assertGreater(top, high)
+            shown = [t for t in axis.yaxis.get_majorticklocs() if bottom <= t <= top]
+            self.assertGreaterEqual(len(shown), 3, (low, high))
+            figure_style.plt.close(figure)
+
+    def test_returns_of_other_rewards_are_on_no_axis(self):
+        methods = study.load_study(study.find_study("acoustic")).methods
+        names = [m.name for m in comparable(methods, "return")]
+        self.assertNotIn("separated", names)
+        self.assertNotIn("silent", names)
+        self.assertIn("stg", names)
+        self.assertEqual(comparable(methods, "tail_distance"), list(methods))
 
 
 class Studies(unittest.TestCase):

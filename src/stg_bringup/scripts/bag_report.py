@@ -3,7 +3,7 @@
 
 Writes into the output folder: poses.csv, targets.csv, tasks.csv, links.csv, steps.csv,
 episodes.csv, and report_episode_<n>.png and .svg with trajectories, distances, phases, link
-quality and age of information. Lengths are metres, times seconds of simulated time.
+quality and age of information. A column's name ends with its unit; times are simulated.
 
 The chunks of a compressed bag carry a checksum, as record:=true writes them. In an uncompressed one
 nothing tells a number that the disk has changed from a good one; the last line says so.
@@ -35,6 +35,18 @@ REASONS = (
 )  # fmt: skip
 ODOM = re.compile(r"^/(auv|target)_(\d+)/odom$")
 TASK = re.compile(r"^/auv_(\d+)/task_state$")
+# Of episodes in open water; empty in others.
+FIELD = (
+    "estimate_rmse nees estimate_known information_age band_share time_lost time_to_reacquire"
+    " losses spread near_pairs min_altitude min_clearance groundings collisions packets"
+    " packet_loss modem_energy"
+).split()
+EPISODE = (
+    "episode t seed scenario policy_id steps complete episode_return tail_distance"
+    " tracking_error lost_rate action_norm saturation_rate control_cost"
+    " communication_quality band_rate colliding_pairs tail_colliding_pairs min_separation"
+    " time_to_band deadline_misses channel_misses"
+).split()
 TABLES = {
     "poses": "episode t auv x y z qw qx qy qz u v w p q r distance".split(),
     "targets": "episode t target x y z vx vy vz".split(),
@@ -49,13 +61,21 @@ TABLES = {
     "steps": (
         "episode t step reward mean_distance colliding_pairs smallest_separation truncated"
     ).split(),
-    "episodes": (
-        "episode t seed scenario policy_id steps complete episode_return tail_distance"
-        " tracking_error lost_rate action_norm saturation_rate control_cost"
-        " communication_quality band_rate colliding_pairs tail_colliding_pairs min_separation"
-        " time_to_band deadline_misses channel_misses"
-    ).split(),
+    "episodes": EPISODE + FIELD,
 }
+
+
+# What stands behind a column's name in the files.
+UNITS = {
+    "_s": "t neighbour_age delay age average_age peak_age time_to_band",
+    "_m": (
+        "x y z distance mean_distance tail_distance tracking_error estimate_x estimate_y estimate_z"
+        " estimate_std smallest_separation min_separation"
+    ),
+    "_mps": "u v w vx vy vz",
+    "_radps": "p q r",
+}
+UNIT_OF = {name: unit for unit, names in UNITS.items() for name in names.split()}
 
 
 class Run:
@@ -215,7 +235,9 @@ def add_step(run, m):
 def add_summary(run, m):
     """Adds one EpisodeSummary."""
     # Older bags lack the newest columns.
-    values = {name: getattr(m, name) for name in TABLES["episodes"][2:-1]}
+    values = {name: getattr(m, name) for name in EPISODE[2:-1]}
+    field = getattr(m, "field", False)
+    values.update({name: getattr(m, name) if field else "" for name in FIELD})
     values["channel_misses"] = getattr(m, "channel_misses", "")
     values["complete"] = int(m.complete)
     run.add("episodes", episode=m.episode, t=m.header.stamp.to_sec(), **values)
@@ -226,7 +248,7 @@ def write_tables(run, folder):
     for name, columns in TABLES.items():
         with open(os.path.join(folder, f"{name}.csv"), "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
-            writer.writerow(columns)
+            writer.writerow(name + UNIT_OF.get(name, "") for name in columns)
             writer.writerows(run.rows[name])
 
 

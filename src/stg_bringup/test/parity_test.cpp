@@ -138,6 +138,23 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_NEAR(summary.colliding_pairs, m.colliding_pairs, kTolerance);
     EXPECT_NEAR(summary.tail_colliding_pairs, m.tail_colliding_pairs, kTolerance);
     EXPECT_NEAR(summary.min_separation, m.min_separation, kTolerance);
+    ASSERT_EQ(summary.field != 0, m.field.has_value());
+    if (m.field) {
+      const task::FieldMetrics& f = *m.field;
+      EXPECT_NEAR(summary.estimate_rmse, f.estimate_rmse, kTolerance);
+      EXPECT_NEAR(summary.nees, f.nees, kTolerance * (1.0 + f.nees));
+      EXPECT_NEAR(summary.estimate_known, f.estimate_known, kTolerance);
+      EXPECT_NEAR(summary.information_age, f.information_age, kTolerance);
+      EXPECT_NEAR(summary.band_share, f.band_share, kTolerance);
+      EXPECT_NEAR(summary.time_lost, f.time_lost, kTolerance);
+      EXPECT_NEAR(summary.time_to_reacquire, f.time_to_reacquire, kTolerance);
+      EXPECT_NEAR(summary.spread, f.spread, kTolerance);
+      EXPECT_NEAR(summary.near_pairs, f.near_pairs, kTolerance);
+      EXPECT_NEAR(summary.min_altitude, f.min_altitude, kTolerance);
+      EXPECT_NEAR(summary.min_clearance, f.min_clearance, kTolerance);
+      EXPECT_EQ(summary.groundings, f.groundings);
+      EXPECT_EQ(summary.collisions, f.collisions);
+    }
     RecordProperty("worst_difference_" + std::to_string(e), std::to_string(worst));
     std::printf("episode %d: largest difference %.3g\n", e, worst);
   }

@@ -150,6 +150,7 @@ def write(path, seconds=20.0):
         summary = auv_msgs.msg.EpisodeSummary(scenario="synthetic", steps=steps, complete=True)
         summary.header.stamp = end
         summary.episode_return = 0.5 * AGENTS * steps
+        summary.field, summary.spread = True, 0.75
         bag.write("/episode_summary", summary, end)
 
 

@@ -60,12 +60,12 @@ class WholeBag(WithFolder):
         poses = read_table(self.out, "poses")
         self.assertEqual(len(poses), 50 * synthetic_bag.AGENTS)
         for row in poses:
-            t = float(row["t"]) - 1.0
+            t = float(row["t_s"]) - 1.0
             expected = synthetic_bag.auv_at(int(row["auv"]), t)
             for name, value in zip("xyz", expected):
-                self.assertAlmostEqual(float(row[name]), value, delta=1e-12)
+                self.assertAlmostEqual(float(row[name + "_m"]), value, delta=1e-12)
             self.assertAlmostEqual(
-                float(row["distance"]), synthetic_bag.distance_at(t), delta=1e-12
+                float(row["distance_m"]), synthetic_bag.distance_at(t), delta=1e-12
             )
         tasks = read_table(self.out, "tasks")
         self.assertEqual({row["phase"] for row in tasks}, {"search", "approach"})
@@ -77,6 +77,7 @@ class WholeBag(WithFolder):
         self.assertEqual(len(read_table(self.out, "steps")), 50)
         (episode,) = read_table(self.out, "episodes")
         self.assertEqual(float(episode["episode_return"]), 100.0)
+        self.assertEqual(float(episode["spread"]), 0.75)
 
     def test_figure_is_written_in_both_formats(self):
         synthetic_bag.write(str(self.bag), 3.0)
@@ -131,8 +132,8 @@ class DamagedBag(WithFolder):
         self.assertGreater(len(poses), 40)
         self.assertLess(len(poses), 40 * synthetic_bag.AGENTS)
         for row in poses:
-            expected = synthetic_bag.auv_at(int(row["auv"]), float(row["t"]) - 1.0)
-            self.assertAlmostEqual(float(row["x"]), expected[0], delta=1e-12)
+            expected = synthetic_bag.auv_at(int(row["auv"]), float(row["t_s"]) - 1.0)
+            self.assertAlmostEqual(float(row["x_m"]), expected[0], delta=1e-12)
 
     def test_overwritten_middle_is_reported(self):
         synthetic_bag.write(str(self.bag), 4.0)

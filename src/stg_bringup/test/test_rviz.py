@@ -43,7 +43,7 @@ def published_markers():
 def marker_namespaces():
     """Returns the namespaces that the markers are built with."""
     folder = PACKAGE / "src" / "nodes" / "markers"
-    source = "".join(path.read_text() for path in sorted(folder.glob("*.cpp")))
+    source = "".join(path.read_text() for path in sorted(folder.rglob("*.cpp")))
     return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail|Clashes)\("(\w+)"', source))
 
 

@@ -2,18 +2,29 @@
 
 namespace stg::dynamics {
 
-bool Helm::Steers(const WorldConfig& scenario) { return Autopilots().Has(scenario.vehicle.model); }
+bool Helm::Steers(const WorldConfig& scenario) {
+  return Autopilots().Has(scenario.vehicle.model_of(0));
+}
 
 Helm::Helm(const WorldConfig& scenario)
-    : autopilot_(
-          Autopilots().Make(scenario.vehicle.model, scenario.vehicle, scenario.control.autopilot)),
-      actuators_(Vehicles().Make(scenario.vehicle.model, scenario.vehicle)->actuators()),
-      states_(static_cast<std::size_t>(autopilot_->state_size())),
-      steps_(scenario.control.autopilot.period_steps),
+    : steps_(scenario.control.autopilot.period_steps),
       periods_(scenario.time.decision_steps / steps_),
-      dt_s_(scenario.time.dt_s * steps_),
-      state_(static_cast<std::size_t>(scenario.agents) * states_, Pack(0.0)),
-      commands_(static_cast<std::size_t>(scenario.agents) * actuators_.size(), Pack(0.0)) {}
+      dt_s_(scenario.time.dt_s * steps_) {
+  const Fleet fleet(scenario.vehicle, scenario.agents);
+  inputs_ = fleet.command_size();
+  for (int i = 0; i < scenario.agents; ++i) {
+    const std::string& model = scenario.vehicle.model_of(i);
+    auto& autopilot = kinds_[model];
+    if (autopilot == nullptr) {
+      autopilot = Autopilots().Make(model, scenario.vehicle, scenario.control.autopilot);
+    }
+    states_ = std::max(states_, static_cast<std::size_t>(autopilot->state_size()));
+    autopilots_.push_back(autopilot.get());
+    actuators_.push_back(fleet[i].actuators());
+  }
+  state_.assign(autopilots_.size() * states_, Pack(0.0));
+  commands_.assign(autopilots_.size() * inputs_, Pack(0.0));
+}
 
 void Helm::Reset(int lane) {
   for (Pack& x : state_) SetLane(&x, lane, 0.0);
@@ -23,17 +34,18 @@ void Helm::Reset(int lane) {
 void Helm::Drive(const std::vector<Vec3<Pack>>& v_des_W, World* world) {
   for (int period = 0; period < periods_; ++period) {
     for (std::size_t i = 0; i < v_des_W.size(); ++i) {
-      autopilot_->Steer(v_des_W[i], world->Nav(static_cast<int>(i)), dt_s_,
-                        state_.data() + i * states_, commands_.data() + i * actuators_.size());
+      autopilots_[i]->Steer(v_des_W[i], world->Nav(static_cast<int>(i)), dt_s_,
+                            state_.data() + i * states_, commands_.data() + i * inputs_);
     }
     for (int k = 0; k < steps_; ++k) world->Step(commands_);
   }
 }
 
 void Helm::WriteShares(int i, Pack* shares) const {
-  const Pack* command = commands_.data() + static_cast<std::size_t>(i) * actuators_.size();
-  for (std::size_t k = 0; k < std::min<std::size_t>(actuators_.size(), kWrenchSize); ++k) {
-    shares[k] = command[k] / Pack(LargestOf(actuators_[k]));
+  const Pack* command = commands_.data() + static_cast<std::size_t>(i) * inputs_;
+  const Space& axes = actuators_[static_cast<std::size_t>(i)];
+  for (std::size_t k = 0; k < std::min<std::size_t>(axes.size(), kWrenchSize); ++k) {
+    shares[k] = command[k] / Pack(LargestOf(axes[k]));
   }
 }
 

@@ -29,7 +29,7 @@ ControllerNode::ControllerNode()
   }
   ros::NodeHandle node;
   if (dynamics::Helm::Steers(scenario_)) {
-    const std::string& model = scenario_.vehicle.model;
+    const std::string& model = scenario_.vehicle.model_of(id_);
     autopilot_ = dynamics::Autopilots().Make(model, scenario_.vehicle, scenario_.control.autopilot);
     memory_.assign(static_cast<std::size_t>(autopilot_->state_size()), 0.0);
     actuators_.header.frame_id = body_frame_;

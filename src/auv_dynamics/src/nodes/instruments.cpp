@@ -29,16 +29,17 @@ Instruments::Instruments(const dynamics::WorldConfig& scenario)
 void Instruments::Advertise(int i) {
   Auv& auv = auvs_[static_cast<std::size_t>(i)];
   auv.header.frame_id = frames::Body(i);
-  auv.imu.Advertise(topics::AuvTopic(i, topics::kImu), kInstrumentQueue, [&auv](sensor_msgs::Imu* m) {
-    m->header = auv.header;
-    m->orientation.w = auv.nav.q_WB[0];
-    m->orientation.x = auv.nav.q_WB[1];
-    m->orientation.y = auv.nav.q_WB[2];
-    m->orientation.z = auv.nav.q_WB[3];
-    SetVector(auv.nav.w_WB_B, &m->angular_velocity);
-    SetVector(auv.specific_force_B, &m->linear_acceleration);
-    return !m->header.stamp.isZero();
-  });
+  auv.imu.Advertise(topics::AuvTopic(i, topics::kImu), kInstrumentQueue,
+                    [&auv](sensor_msgs::Imu* m) {
+                      m->header = auv.header;
+                      m->orientation.w = auv.nav.q_WB[0];
+                      m->orientation.x = auv.nav.q_WB[1];
+                      m->orientation.y = auv.nav.q_WB[2];
+                      m->orientation.z = auv.nav.q_WB[3];
+                      SetVector(auv.nav.w_WB_B, &m->angular_velocity);
+                      SetVector(auv.specific_force_B, &m->linear_acceleration);
+                      return !m->header.stamp.isZero();
+                    });
   auv.pressure.Advertise(topics::AuvTopic(i, topics::kPressure), kInstrumentQueue,
                          [&auv](sensor_msgs::FluidPressure* m) {
                            m->header = auv.header;
@@ -52,18 +53,18 @@ void Instruments::Advertise(int i) {
                       SetVector(auv.nav.v_WB_B, &m->twist.twist.linear);
                       return !m->header.stamp.isZero();
                     });
-  auv.altitude.Advertise(topics::AuvTopic(i, topics::kAltitude), kInstrumentQueue,
-                         [&auv](sensor_msgs::Range* m) {
-                           m->header = auv.header;
-                           m->radiation_type = sensor_msgs::Range::ULTRASOUND;
-                           m->field_of_view = 0.0F;
-                           m->min_range = static_cast<float>(kAltimeter_m[0]);
-                           m->max_range = static_cast<float>(kAltimeter_m[1]);
-                           const bool heard = auv.altitude_m <= kAltimeter_m[1];
-                           m->range = heard ? static_cast<float>(auv.altitude_m)
-                                            : std::numeric_limits<float>::infinity();
-                           return !m->header.stamp.isZero();
-                         });
+  auv.altitude.Advertise(
+      topics::AuvTopic(i, topics::kAltitude), kInstrumentQueue, [&auv](sensor_msgs::Range* m) {
+        m->header = auv.header;
+        m->radiation_type = sensor_msgs::Range::ULTRASOUND;
+        m->field_of_view = 0.0F;
+        m->min_range = static_cast<float>(kAltimeter_m[0]);
+        m->max_range = static_cast<float>(kAltimeter_m[1]);
+        const bool heard = auv.altitude_m <= kAltimeter_m[1];
+        m->range =
+            heard ? static_cast<float>(auv.altitude_m) : std::numeric_limits<float>::infinity();
+        return !m->header.stamp.isZero();
+      });
   auv.gps.Advertise(topics::AuvTopic(i, topics::kGps), kInstrumentQueue,
                     [this, &auv](sensor_msgs::NavSatFix* m) {
                       if (auv.header.stamp.isZero() || auv.nav.p_WB.z < -kSurface_m) return false;
@@ -85,7 +86,8 @@ void Instruments::Publish(const dynamics::World& world, TimeNs now, bool first) 
     Auv& auv = auvs_[static_cast<std::size_t>(i)];
     const dynamics::VehicleState<Pack>& v = world.vehicle(i);
     const Vec3<double> v_WB = Lane(v.v_WB, 0), p_WB = Lane(v.p_WB, 0);
-    const Vec3<double> acceleration = first ? Vec3<double>() : (v_WB - auv.v_WB) * (1.0 / period_s_);
+    const Vec3<double> acceleration =
+        first ? Vec3<double>() : (v_WB - auv.v_WB) * (1.0 / period_s_);
     auv.specific_force_B = Lane(v.R_WB.TransposeTimes(Broadcast(acceleration + up)), 0);
     auv.v_WB = v_WB;
     auv.header.stamp = TimeOf(now);

@@ -17,8 +17,8 @@ constexpr std::uint32_t kCommandQueue = 20;
 VehicleCommands::VehicleCommands(const dynamics::WorldConfig& scenario,
                                  const dynamics::World& world, bool onboard, Hear hear)
     : hear_(std::move(hear)),
-      vehicle_(scenario.vehicle.model),
-      actuators_(world.model().actuators()),
+      vehicle_(scenario.vehicle),
+      row_(world.command_size()),
       steered_(dynamics::Helm::Steers(scenario)),
       helm_(steered_ && onboard ? std::make_unique<dynamics::Helm>(scenario) : nullptr),
       parts_(steered_ && !onboard
@@ -27,18 +27,19 @@ VehicleCommands::VehicleCommands(const dynamics::WorldConfig& scenario,
       refused_(static_cast<std::size_t>(scenario.agents)),
       wrenches_(steered_ ? 0 : refused_.size()),
       wrenches_of_lanes_(wrenches_.size()),
-      values_(steered_ && !onboard ? refused_.size() * actuators_.size() : 0),
+      values_(steered_ && !onboard ? refused_.size() * row_ : 0),
       values_of_lanes_(values_.size(), Pack(0.0)),
-      v_des_W_(helm_ != nullptr ? refused_.size() : 0) {}
+      v_des_W_(helm_ != nullptr ? refused_.size() : 0) {
+  for (int i = 0; i < scenario.agents; ++i) actuators_.push_back(world.model(i).actuators());
+}
 
 template <class Message>
-void VehicleCommands::Subscribe(int i, void (VehicleCommands::*take)(
-                                           int, const boost::shared_ptr<Message const>&)) {
+void VehicleCommands::Subscribe(
+    int i, void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&)) {
   const boost::function<void(const boost::shared_ptr<Message const>&)> callback =
       [this, i, take](const auto& message) { (this->*take)(i, message); };
-  subscribers_.push_back(ros::NodeHandle().subscribe<Message>(topics::AuvTopic(i, topic()),
-                                                              kCommandQueue, callback,
-                                                              ros::VoidConstPtr(), NoDelay()));
+  subscribers_.push_back(ros::NodeHandle().subscribe<Message>(
+      topics::AuvTopic(i, topic()), kCommandQueue, callback, ros::VoidConstPtr(), NoDelay()));
 }
 
 void VehicleCommands::Listen() {
@@ -94,7 +95,6 @@ void VehicleCommands::Tell(const std::vector<std::uint8_t>& fresh, bool channel_
 /// Shares of the actuators' limits, kWrenchSize of each AUV.
 std::vector<double> VehicleCommands::Efforts() const {
   constexpr std::size_t kMost = dynamics::kWrenchSize;
-  const std::size_t size = actuators_.size();
   std::vector<double> efforts(refused_.size() * kMost, 0.0);
   for (std::size_t i = 0; i < refused_.size(); ++i) {
     if (helm_ != nullptr) {
@@ -103,8 +103,9 @@ std::vector<double> VehicleCommands::Efforts() const {
       for (std::size_t k = 0; k < kMost; ++k) efforts[i * kMost + k] = Lane(shares[k], 0);
       continue;
     }
-    for (std::size_t k = 0; k < std::min(size, kMost); ++k) {
-      efforts[i * kMost + k] = values_[i * size + k] / dynamics::LargestOf(actuators_[k]);
+    const dynamics::Space& axes = actuators_[i];
+    for (std::size_t k = 0; k < std::min<std::size_t>(axes.size(), kMost); ++k) {
+      efforts[i * kMost + k] = values_[i * row_ + k] / dynamics::LargestOf(axes[k]);
     }
   }
   return efforts;
@@ -144,16 +145,15 @@ void VehicleCommands::OnWrench(int i, const geometry_msgs::WrenchStamped::ConstP
 
 void VehicleCommands::OnActuators(int i, const auv_msgs::ActuatorCommand::ConstPtr& message) {
   const std::vector<double>& values = message->values;
-  if (message->vehicle != vehicle_ || values.size() != actuators_.size()) {
+  const auto u = static_cast<std::size_t>(i);
+  if (message->vehicle != vehicle_.model_of(i) || values.size() != actuators_[u].size()) {
     refused(i).Add(Refusals::kMalformed);
     return;
   }
   const bool finite =
       std::all_of(values.begin(), values.end(), [](double value) { return Finite(value); });
   if (!Counts(i, message->header, frames::Body(i), finite)) return;
-  std::copy(values.begin(), values.end(),
-            values_.begin() +
-                static_cast<std::ptrdiff_t>(i) * static_cast<std::ptrdiff_t>(actuators_.size()));
+  std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(u * row_));
 }
 
 void VehicleCommands::OnVelocity(int i, const geometry_msgs::TwistStamped::ConstPtr& message) {

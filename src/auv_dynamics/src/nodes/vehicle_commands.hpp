@@ -54,21 +54,23 @@ class VehicleCommands {
   void OnActuators(int i, const auv_msgs::ActuatorCommand::ConstPtr& message);
   void OnVelocity(int i, const geometry_msgs::TwistStamped::ConstPtr& message);
   template <class Message>
-  void Subscribe(int i, void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&));
+  void Subscribe(int i,
+                 void (VehicleCommands::*take)(int, const boost::shared_ptr<Message const>&));
   bool Counts(int i, const std_msgs::Header& header, const std::string& frame, bool finite);
   std::vector<double> Efforts() const;
 
   Hear hear_;
-  std::string vehicle_;
-  dynamics::Space actuators_;
-  bool steered_;  ///< by autopilots, which command actuators
-  std::unique_ptr<dynamics::Helm> helm_;  ///< of those on board, else null
+  dynamics::VehicleConfig vehicle_;
+  std::vector<dynamics::Space> actuators_;  ///< [agents]
+  std::size_t row_;                         ///< numbers of an AUV in values_
+  bool steered_;                            ///< by autopilots, which command actuators
+  std::unique_ptr<dynamics::Helm> helm_;    ///< of those on board, else null
   int parts_;
   std::vector<Refusals> refused_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<dynamics::Wrench<double>> wrenches_;
   std::vector<dynamics::Wrench<Pack>> wrenches_of_lanes_;
-  std::vector<double> values_;  ///< [agents, actuators]
+  std::vector<double> values_;  ///< [agents, row_]
   std::vector<Pack> values_of_lanes_;
   std::vector<Vec3<Pack>> v_des_W_;  ///< [agents], for the helm
 };

@@ -1,7 +1,10 @@
 #include "classic_header.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+
+#include "auv_common/error.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -9,7 +12,8 @@ namespace {
 /// Reads the header's big-endian numbers one after the other; bad() once it has come to an end.
 class HeaderReader {
  public:
-  explicit HeaderReader(const std::string& path) : in_(path, std::ios::binary) {}
+  explicit HeaderReader(const std::string& path)
+      : in_(path, std::ios::binary), bytes_(std::filesystem::file_size(path)) {}
 
   /// 1, 2 or 5; 0: no classic file.
   int Version() {
@@ -20,6 +24,7 @@ class HeaderReader {
     return version_ == 1 || version_ == 2 || version_ == 5 ? version_ : 0;
   }
   bool bad() const { return !in_; }
+  void Fail() { in_.setstate(std::ios::failbit); }
   std::uint64_t Number(int bytes) {
     std::uint64_t value = 0;
     for (int k = 0; k < bytes; ++k) {
@@ -30,29 +35,40 @@ class HeaderReader {
   }
   /// A count, a length or a size.
   std::uint64_t Count() { return Number(version_ == 5 ? 8 : 4); }
+  /// How many things follow that take so many bytes of the file each.
+  std::uint64_t CountOf(std::uint64_t bytes_each) {
+    const std::uint64_t count = Count();
+    if (count > bytes_ / bytes_each) Fail();
+    return bad() ? 0 : count;
+  }
   /// A place in the file.
   std::uint64_t Offset() { return Number(version_ == 1 ? 4 : 8); }
   void SkipPadded(std::uint64_t bytes) {
-    // No header is that long: the file is damaged.
-    if (bytes > (1U << 30)) in_.setstate(std::ios::failbit);
+    if (bytes > bytes_) Fail();
     if (in_) in_.ignore(static_cast<std::streamsize>((bytes + 3) / 4 * 4));
-    if (in_.peek() == std::ifstream::traits_type::eof()) in_.setstate(std::ios::failbit);
+    if (in_.peek() == std::ifstream::traits_type::eof()) Fail();
   }
   void SkipName() { SkipPadded(Count()); }
-  void SkipAttributes() {
+  /// Bytes of a value, from the type that comes next.
+  std::uint64_t SizeOfType() {
     static constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    const std::uint64_t type = Number(4);
+    if (type == 0 || type >= std::size(kSizes)) Fail();
+    return bad() ? 0 : kSizes[type];
+  }
+  void SkipAttributes() {
     Number(4);  // tag
-    const std::uint64_t count = Count();
+    const std::uint64_t count = CountOf(12);
     for (std::uint64_t k = 0; k < count && !bad(); ++k) {
       SkipName();
-      const std::uint64_t type = Number(4), values = Count();
-      if (type >= std::size(kSizes) || values > (1U << 30)) in_.setstate(std::ios::failbit);
-      if (!bad()) SkipPadded(values * kSizes[type]);
+      const std::uint64_t bytes = SizeOfType(), values = CountOf(1);
+      if (!bad()) SkipPadded(values * bytes);
     }
   }
 
  private:
   std::ifstream in_;
+  std::uint64_t bytes_;  // of the file
   int version_ = 0;
 };
 
@@ -63,7 +79,7 @@ std::optional<std::uint64_t> SmallestClassicSize(const std::string& path) {
   if (header.Version() == 0) return {};
   header.Count();  // records
   header.Number(4);
-  std::uint64_t dimensions = header.Count();
+  const std::uint64_t dimensions = header.CountOf(8);
   std::uint64_t unlimited = UINT64_MAX;
   for (std::uint64_t k = 0; k < dimensions && !header.bad(); ++k) {
     header.SkipName();
@@ -71,17 +87,19 @@ std::optional<std::uint64_t> SmallestClassicSize(const std::string& path) {
   }
   header.SkipAttributes();
   header.Number(4);
-  const std::uint64_t variables = header.Count();
+  const std::uint64_t variables = header.CountOf(28);
   std::uint64_t size = 0;
   for (std::uint64_t k = 0; k < variables && !header.bad(); ++k) {
     header.SkipName();
-    const std::uint64_t rank = header.Count();
+    const std::uint64_t rank = header.CountOf(4);
     bool record = false;
     for (std::uint64_t d = 0; d < rank && !header.bad(); ++d) {
-      record = header.Count() == unlimited || record;
+      const std::uint64_t dimension = header.Count();
+      if (dimension >= dimensions) header.Fail();
+      record = dimension == unlimited || record;
     }
     header.SkipAttributes();
-    header.Number(4);  // type
+    header.SizeOfType();
     const std::uint64_t bytes = header.Count(), begin = header.Offset();
     // Sizes are rounded up to four bytes, the file need not be; those of very large variables do
     // not fit into their field.
@@ -89,7 +107,7 @@ std::optional<std::uint64_t> SmallestClassicSize(const std::string& path) {
       size = std::max(size, begin + bytes - 3);
     }
   }
-  if (header.bad()) return {};
+  if (header.bad()) throw UserError(path + ": damaged: its header does not fit the file");
   return size;
 }
 

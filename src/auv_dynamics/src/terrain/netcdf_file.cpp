@@ -17,14 +17,12 @@ NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
   // libnetcdf also takes addresses; a file is what is meant.
   if (!std::filesystem::is_regular_file(path)) throw UserError(path + ": no such file");
   if (std::filesystem::file_size(path) == 0) throw UserError(path + ": is empty");
-  Check(nc_open(path.c_str(), NC_NOWRITE, &id_), "not a readable NetCDF file");
   const auto least = SmallestClassicSize(path);
   if (least && std::filesystem::file_size(path) < *least) {
-    nc_close(id_);
-    id_ = -1;
     Refuse("damaged: " + std::to_string(std::filesystem::file_size(path)) + " bytes of at least " +
            std::to_string(*least));
   }
+  Check(nc_open(path.c_str(), NC_NOWRITE, &id_), "not a readable NetCDF file");
 }
 
 NetcdfFile::~NetcdfFile() {

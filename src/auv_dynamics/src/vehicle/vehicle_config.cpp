@@ -38,6 +38,10 @@ void Describe(VehicleConfig* c, config::Table* t) {
   t->Section("vehicle");
   t->Add("model", config::Name(&c->model, Vehicles().Names()), config::kNone, "-",
          "what moves an AUV: its equations, actuators and action space");
+  t->AddOptional(
+      "models", config::NamesRef{&c->models, Vehicles().Names()}, "[]", kNone, "-",
+      "kinds of a mixed fleet: AUV i is the i-th of them, from the first again when they "
+      "are used up; empty: all are `model`");
   t->Add("profile", &c->profile, config::kNone, "-", "label of this set of vehicle constants");
   t->Add("mass_kg", &c->mass_kg, config::Positive(1e6), "kg", "mass m");
   t->Add("inertia_kgm2", config::Numbers(&c->inertia_kgm2), config::Positive(1e8), "kg m^2, body",

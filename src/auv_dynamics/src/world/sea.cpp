@@ -98,9 +98,9 @@ void Sea::Apply(std::vector<TargetState<Pack>>* targets) const {
         SetLane(&t.p_WT, lane, p);
         // Aside at its own speed; who comes in at right angles has no side, and turns.
         const double speed = Norm(before), left = Norm(v);
-        SetLane(&t.v_WT, lane,
-                left > 0.01 * speed ? v * (speed / left)
-                                    : Vec3<double>{-before.y, before.x, before.z});
+        SetLane(
+            &t.v_WT, lane,
+            left > 0.01 * speed ? v * (speed / left) : Vec3<double>{-before.y, before.x, before.z});
       }
     }
   }

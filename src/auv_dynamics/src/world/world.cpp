@@ -38,7 +38,7 @@ World::World(const WorldConfig& scenario)
       reset_(scenario.reset),
       depths_(scenario.sea),
       sensing_(scenario.sensing),
-      model_(Vehicles().Make(scenario.vehicle.model, scenario.vehicle)),
+      fleet_(scenario.vehicle, scenario.agents),
       motion_(TargetMotions().Make(
           scenario.target.motion,
           {scenario.target, scenario.wall_m(), dt_s_, scenario.workspace.half_extent_m})),
@@ -54,7 +54,7 @@ World::World(const WorldConfig& scenario)
       open_(scenario.sea.open),
       vehicles_(static_cast<size_t>(scenario.agents)),
       targets_(static_cast<size_t>(scenario.target.count)),
-      internal_(vehicles_.size() * static_cast<size_t>(model_->internal_size()), Pack(0.0)),
+      internal_(vehicles_.size() * fleet_.internal_size(), Pack(0.0)),
       commands_(vehicles_.size() * kWrenchSize, Pack(0.0)),
       start_{std::vector<Vec3<double>>(vehicles_.size()),
              std::vector<TargetState<double>>(targets_.size())} {
@@ -68,8 +68,7 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 
 void World::Step(const std::vector<Pack>& commands) {
-  const size_t inputs = model_->actuators().size();
-  const auto internals = static_cast<size_t>(model_->internal_size());
+  const size_t inputs = fleet_.command_size(), internals = fleet_.internal_size();
   assert(commands.size() == vehicles_.size() * inputs);
   contacts_.Update(vehicles_, separations_);
   disturbance_.Advance(clocks_);
@@ -77,9 +76,9 @@ void World::Step(const std::vector<Pack>& commands) {
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     const int id = static_cast<int>(i);
     if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
-    model_->Step(commands.data() + i * inputs,
-                 {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
-                 internal_.data() + i * internals);
+    fleet_[id].Step(commands.data() + i * inputs,
+                    {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
+                    internal_.data() + i * internals);
     if (open_) {
       sea_.Apply(id, &vehicles_[i]);
     } else {
@@ -102,7 +101,7 @@ void World::Navigate() {
 }
 
 void World::Step(const std::vector<Wrench<Pack>>& tau) {
-  if (model_->actuators().size() != kWrenchSize) {
+  if (fleet_.command_size() != kWrenchSize) {
     throw UserError("vehicle.model: these vehicles are not commanded by force and moment");
   }
   assert(tau.size() == vehicles_.size());
@@ -206,7 +205,7 @@ Navigation<Pack> World::TrueNav(int i) const {
   nav.p_WB = v.p_WB;
   nav.v_WB_B = v.v_WB_B;
   nav.w_WB_B = v.w_WB_B;
-  model_->Orientation(v, &nav.q_WB);
+  fleet_[i].Orientation(v, &nav.q_WB);
   return nav;
 }
 

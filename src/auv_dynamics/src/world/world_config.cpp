@@ -74,7 +74,14 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
   if (auto violation = FindConflict(s.current)) return violation;
   if (auto violation = FindConflict(s.sea)) return violation;
   if (auto violation = FindConflict(s.sensing, s.decision_dt_s())) return violation;
-  if (Autopilots().Has(s.vehicle.model)) {
+  for (const std::string& model : s.vehicle.models) {
+    if (Autopilots().Has(model) == Autopilots().Has(s.vehicle.models[0])) continue;
+    return Violation{
+        {"vehicle.models"},
+        "vehicles that autopilots steer fly with their like, not with those that force "
+        "and moment command"};
+  }
+  if (Autopilots().Has(s.vehicle.model_of(0))) {
     if (s.control.interface != ActionInterface::kVelocity3) {
       return Violation{{"control.interface", "vehicle.model"},
                        "these vehicles are steered by a velocity command: velocity3"};

@@ -179,6 +179,18 @@ TEST_F(GridFile, SaysWhatIsWrongWithAFile) {
   Write(Layout());
   fs::resize_file(file_, fs::file_size(file_) - 60);
   says(Refusal(), "damaged");
+  // A header that promises more than the file holds, for which libnetcdf would take memory first:
+  // the number of dimensions, then the length of the first one's name.
+  for (const int at : {12, 16}) {
+    Write(Layout());
+    std::fstream(file_, std::ios::in | std::ios::out | std::ios::binary)
+        .seekp(at)
+        .write("\x7f\xff\xff\xf0", 4);
+    says(Refusal(), "its header does not fit the file");
+  }
+  Write(Layout());
+  fs::resize_file(file_, 30);
+  says(Refusal(), "its header does not fit the file");
   Layout l;
   l.coordinates = false;
   says(Refusal(l), "has no coordinates");

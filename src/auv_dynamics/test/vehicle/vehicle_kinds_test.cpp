@@ -116,6 +116,43 @@ TEST(VehicleKinds, ScalarTorpedoEqualsTheWorldBitForBit) {
   EXPECT_EQ(Norm(world.Nav(0, 0).w_WB_B - s.w_WB_B), 0.0);
 }
 
+TEST(VehicleKinds, MixedFleetsFlyAsEachKindAloneBitForBit) {
+  WorldConfig mixed = Sea("torpedo", 3);
+  mixed.vehicle.models = {"torpedo", "kinematic"};
+  World fleet(mixed);
+  ASSERT_EQ(&fleet.model(0), &fleet.model(2));
+  ASSERT_NE(&fleet.model(0), &fleet.model(1));
+  const std::size_t row = fleet.command_size();
+  const auto command = [&](int i, int k, std::size_t a) {
+    const Space& axes = fleet.model(i).actuators();
+    return a < axes.size() ? Pack(Command(i, k, static_cast<int>(a), axes[a])) : Pack(0.0);
+  };
+  for (int i = 0; i < 3; ++i) {
+    World alone(Sea(mixed.vehicle.model_of(i), 1));
+    alone.Place(0, {Line(3)[static_cast<std::size_t>(i)]}, {{100.0, 0.0, -30.0}},
+                {{0.0, 0.0, 0.0}});
+    Launch(&fleet, 0);
+    for (int k = 0; k < 400; ++k) {
+      std::vector<Pack> all, own;
+      for (int j = 0; j < 3; ++j) {
+        for (std::size_t a = 0; a < row; ++a) all.push_back(command(j, k, a));
+      }
+      for (std::size_t a = 0; a < alone.command_size(); ++a) own.push_back(command(i, k, a));
+      fleet.Step(all);
+      alone.Step(own);
+    }
+    EXPECT_EQ(Norm(fleet.Nav(0, i).p_WB - alone.Nav(0, 0).p_WB), 0.0) << i;
+    EXPECT_EQ(Norm(fleet.Nav(0, i).v_WB_B - alone.Nav(0, 0).v_WB_B), 0.0) << i;
+    EXPECT_GT(Norm(fleet.Nav(0, i).p_WB - Line(3)[static_cast<std::size_t>(i)]), 1.0) << i;
+  }
+}
+
+TEST(VehicleKinds, SteeredVehiclesDoNotFlyWithThoseThatForceCommands) {
+  WorldConfig mixed = Sea("torpedo", 2);
+  mixed.vehicle.models = {"torpedo", "fully_actuated"};
+  EXPECT_THROW(World{mixed}, UserError);
+}
+
 TEST(VehicleKinds, TorpedoFeelsContactAndDisturbance) {
   WorldConfig scenario = Sea("torpedo", 2);
   scenario.vehicle.radius_m = 1.0;

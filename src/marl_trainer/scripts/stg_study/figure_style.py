@@ -9,8 +9,21 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the backend)
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 # Okabe and Ito's colours, which the colour-blind can tell apart.
-METHOD_COLOURS = ["#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9"]
-CONTROLLER_COLOURS = ["#222222", "#777777", "#999999", "#bbbbbb"]
+OTHER_COLOURS = ["#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9"]
+OTHER_GREYS = ["#222222", "#777777", "#999999", "#bbbbbb"]
+# The shipped studies' methods and controllers look the same in all of them.
+KNOWN = {
+    "stg": "#0072B2",
+    "semantic": "#009E73",
+    "velocity3": "#E69F00",
+    "tau6": "#D55E00",
+    "separated": "#CC79A7",
+    "silent": "#56B4E9",
+    "pursuit_separated": "#222222",
+    "pursuit": "#777777",
+    "pursuit_simple": "#999999",
+    "idle": "#bbbbbb",
+}
 PAPER_COLOUR = "#dddddd"
 UNIT = "Distances in workspace units (labelled km in the paper)"
 
@@ -31,16 +44,27 @@ plt.rcParams.update(
 
 
 def colours(study):
-    """Colour of every method and controller by its name."""
-    table = {m.name: METHOD_COLOURS[i % 6] for i, m in enumerate(study.methods)}
-    table.update({c.name: CONTROLLER_COLOURS[i % 4] for i, c in enumerate(study.controllers)})
+    """Colour of every method and controller by its name, the same in every study."""
+    table = {}
+    for entries, others in ((study.methods, OTHER_COLOURS), (study.controllers, OTHER_GREYS)):
+        free = [c for c in others if c not in [KNOWN.get(e.name) for e in entries]] or others
+        unknown = [e.name for e in entries if e.name not in KNOWN]
+        table.update({e.name: KNOWN[e.name] for e in entries if e.name in KNOWN})
+        table.update({name: free[i % len(free)] for i, name in enumerate(unknown)})
     return table
 
 
-def logarithmic(axis):
-    """A logarithmic y axis with plain numbers at 1, 2 and 5."""
+def logarithmic(axis, low, high):
+    """A logarithmic y axis from below `low` to above `high`, with at least three plain numbers."""
+    low, high = low / 1.25, high * 1.25
     axis.set_yscale("log")
-    axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_ylim(low, high)
+    subs = (1.0, 2.0, 5.0)
+    if high < 8.0 * low:
+        subs = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    if high < 2.5 * low:
+        subs = (1.0, 1.2, 1.5, 1.8, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
+    axis.yaxis.set_major_locator(LogLocator(subs=subs))
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
 
@@ -60,5 +84,13 @@ def save(figure, folder, name):
 
 
 def legend_below(figure, handles, labels, columns=4):
-    """One legend for all panels, under them."""
-    figure.legend(handles, labels, loc="lower center", ncol=min(columns, len(labels)))
+    """One legend for all panels, whole, under them; lays the figure out above it."""
+    figure.canvas.draw()
+    width = figure.bbox.width
+    for count in range(min(columns, len(labels)), 0, -1):
+        legend = figure.legend(handles, labels, loc="lower center", ncol=count)
+        box = legend.get_window_extent(figure.canvas.get_renderer())
+        if box.width <= width or count == 1:
+            break
+        legend.remove()
+    figure.tight_layout(rect=(0, box.height / figure.bbox.height + 0.01, 1, 1))

@@ -5,6 +5,7 @@ from matplotlib.ticker import MaxNLocator
 
 from stg_study import figure_style as style
 from stg_study.figure_style import PAPER_COLOUR, colours, plt, save, title
+from stg_study.figures_curves import comparable
 from stg_study.tables import PAPER_NAME, condition_label
 
 FINAL = [
@@ -19,6 +20,9 @@ ABLATION = [FINAL[0], FINAL[1], FINAL[3], ("Saturated actions, share", "saturati
 def _value(study, results, scenario, name, metric):
     """Final stage of a method, nominal evaluation of a controller; (mean, std) or None."""
     value = results.final_over_seeds(scenario, name, metric)
+    others = {m.name for m in study.methods} - {m.name for m in comparable(study.methods, metric)}
+    if name in others:
+        return None
     if value is None:
         value = results.over_seeds(scenario, "nominal", name, metric)
     if value is None or metric != "return":
@@ -121,6 +125,8 @@ def final_boxes(study, results, scenario, folder):
     for axis, (name, metric, _) in zip(axes, FINAL):
         scale = 1.0 / study.agents if metric == "return" else 1.0
         for place, method in enumerate(study.methods):
+            if method not in comparable(study.methods, metric):
+                continue
             points = [
                 results.final_points(scenario, method.name, seed, metric)
                 for seed in results.seeds(scenario, method.name)
@@ -129,11 +135,12 @@ def final_boxes(study, results, scenario, folder):
                 _box(axis, place, scale * np.concatenate(points), colour[method.name])
         if metric == "whole_lost_rate":
             axis.set_ylim(-0.002, max(0.02, axis.get_ylim()[1]))
-        axis.set_xticks(range(len(study.methods)))
-        axis.set_xticklabels([m.label for m in study.methods], rotation=28, ha="right", fontsize=8)
-        axis.set_title(name)
+        axis.set_xticks([])
+        axis.set_xlim(-0.6, len(study.methods) - 0.4)
+        axis.set_title(name.replace(", ", ",\n"))
     title(figure, f"{scenario}: validations of the last 20 %, all seeds")
-    figure.tight_layout()
+    boxes = [plt.Rectangle((0, 0), 1, 1, fc=colour[m.name], alpha=0.65) for m in study.methods]
+    style.legend_below(figure, boxes, [m.label for m in study.methods], columns=6)
     return save(figure, folder, f"final_boxes_{scenario}")
 
 
@@ -151,7 +158,7 @@ def stress_boxes(study, results, paper, scenario, table, folder):
     width = 0.84 / (len(names) + 1)
     handles = {}
     for axis, (panel, metric) in zip(axes, panels):
-        centres = []
+        centres, lowest, highest = [], np.inf, 0.0
         for group, condition in enumerate(study.conditions):
             for place, name in enumerate(names):
                 scores = results.scores(scenario, condition, name, metric)
@@ -161,14 +168,16 @@ def stress_boxes(study, results, paper, scenario, table, folder):
                 _box(axis, x, scores.ravel(), colour[name], 0.85 * width)
                 handles[labels[name]] = plt.Rectangle((0, 0), 1, 1, fc=colour[name], alpha=0.65)
                 centres.append(float(np.median(scores)))
+                lowest = min(lowest, float(scores.min()))
+                highest = max(highest, float(scores.max()))
             theirs = paper.get(table, "STG-MAPPO", metric, condition)
             if theirs is not None:
                 x = group - 0.42 + width * (len(names) + 0.5)
                 handles["STG-MAPPO (paper), mean ± std"] = axis.errorbar(
                     x, theirs[0], yerr=theirs[1], fmt="D", ms=4, color="#B22222", capsize=2, lw=1
                 )
-        if metric == "tail_distance":
-            style.logarithmic(axis)
+        if metric == "tail_distance" and centres:
+            style.logarithmic(axis, lowest, highest)
         if metric == "return" and centres:
             axis.set_ylim(bottom=max(axis.get_ylim()[0], min(centres) - 150.0))
         axis.set_title(panel)
@@ -177,5 +186,4 @@ def stress_boxes(study, results, paper, scenario, table, folder):
     axes[-1].set_xlim(-0.5, len(study.conditions) - 0.5)
     title(figure, f"{scenario}: best checkpoints, episodes of all seeds")
     style.legend_below(figure, list(handles.values()), list(handles), columns=5)
-    figure.tight_layout(rect=(0, 0.06, 1, 0.99))
     return save(figure, folder, f"stress_{scenario}")

@@ -50,6 +50,14 @@ def _step_axis(axis):
     axis.set_xlim(left=0)
 
 
+def comparable(methods, metric):
+    """The methods whose trainings' validations can stand on one axis: each returns what its own
+    training rewards."""
+    if metric != "return":
+        return list(methods)
+    return [m for m in methods if not any(key.startswith("reward.") for key in m.train_set)]
+
+
 def _scale(study, metric):
     return 1.0 / study.agents if metric == "return" else 1.0
 
@@ -70,7 +78,7 @@ def convergence(study, results, paper, scenario, table, folder):
     handles = {}
     for axis, (name, label, metric, is_logarithmic) in zip(axes.flat, PANELS):
         bands, references = [], []
-        for method in study.methods:
+        for method in comparable(study.methods, metric):
             band = curve_band(results, scenario, method.name, metric, _scale(study, metric))
             if band is None:
                 continue
@@ -97,8 +105,10 @@ def convergence(study, results, paper, scenario, table, folder):
             handles["STG-MAPPO (paper), final stage"] = line
         axis.set_title(name)
         axis.set_ylabel(label)
-        if is_logarithmic:
-            logarithmic(axis)
+        if is_logarithmic and bands:
+            # By the means: one seed that strays early would stretch the axis over decades.
+            means = np.concatenate([mean for _, mean, _ in bands] + [references])
+            logarithmic(axis, max(float(means.min()), FLOOR), float(means.max()))
         elif metric == "whole_lost_rate":
             top = max(0.02, axis.get_ylim()[1])
             axis.set_ylim(-0.03 * top, top)
@@ -107,7 +117,6 @@ def convergence(study, results, paper, scenario, table, folder):
         _step_axis(axis)
     title(figure, f"{scenario}: validations during training, mean ± std over seeds")
     legend_below(figure, list(handles.values()), list(handles))
-    figure.tight_layout(rect=(0, 0.08, 1, 1))
     return save(figure, folder, f"convergence_{scenario}")
 
 
@@ -120,9 +129,11 @@ def per_seed(study, results, scenario, folder):
     handles = {}
     styles = ["-", "--", ":", "-."]
     for axis, (name, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
-        for method in methods:
+        drawn = []
+        for method in comparable(methods, metric):
             for i, seed in enumerate(results.seeds(scenario, method.name)):
                 values = np.array(results.curve(scenario, method.name, seed, metric))
+                drawn.append(values)
                 axis.plot(
                     results.curve(scenario, method.name, seed, "env_steps"),
                     values * _scale(study, metric),
@@ -133,14 +144,14 @@ def per_seed(study, results, scenario, folder):
                 handles[method.label] = Line2D([], [], color=colour[method.name], lw=3.0)
         axis.set_title(name)
         axis.set_ylabel(label)
-        if is_logarithmic:
-            logarithmic(axis)
+        if is_logarithmic and drawn:
+            values = np.concatenate(drawn)
+            logarithmic(axis, max(float(values.min()), FLOOR), float(values.max()))
         _step_axis(axis)
     for i, seed in enumerate(study.seeds):
         handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=styles[i % 4])
     title(figure, f"{scenario}: every training")
     legend_below(figure, list(handles.values()), list(handles))
-    figure.tight_layout(rect=(0, 0.04 + 0.05 * ((len(handles) + 3) // 4), 1, 1))
     return save(figure, folder, f"per_seed_{scenario}")
 
 

@@ -11,7 +11,9 @@ PAPER_TABLES = {"medium": ("1", "S3", "S4", "S7"), "hard": ("2", "S5", "S6", "S8
 
 CONVENTIONS = """\
 - Distances are in workspace units, which this simulator reads as metres and the paper labels km.
-- The return is the scenario's own reward for every method, whatever it was trained with.
+- The return of an evaluation is the scenario's own reward for every method, whatever it was trained
+  with; that of a validation is the training's reward. So figures of the training leave out the
+  return of methods that train with another reward, and final stages tell it as the training's own.
   Evaluations (Tables 1, 2, S7, S8, comparison, interquartile means) **sum** it over the AUVs,
   training curves and final stages (Tables S3-S6, S9, curves, bars) **average** it over them, as the
   paper does; the two differ by the number of AUVs, {agents}.

@@ -11,6 +11,11 @@
 
 namespace stg::learn {
 
+void Algorithm::Join(Communicator*) {
+  throw UserError(
+      "this algorithm learns in one process only; mappo, ippo and happo learn in several");
+}
+
 void Algorithm::StartFrom(const Archive&) {
   throw UserError("this algorithm cannot start from the networks of another run");
 }

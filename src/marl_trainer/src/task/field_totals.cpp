@@ -23,8 +23,10 @@ T Spread(const JudgeConfig& s, const SwarmState<T>& swarm, int target) {
 template <class T>
 T NormalisedSquare(const Vec3<T>& r, const T (&P)[6]) {
   // By the adjugate.
-  const T a = P[3] * P[5] - P[4] * P[4], b = P[2] * P[4] - P[1] * P[5], c = P[1] * P[4] - P[2] * P[3];
-  const T d = P[0] * P[5] - P[2] * P[2], e = P[1] * P[2] - P[0] * P[4], f = P[0] * P[3] - P[1] * P[1];
+  const T a = P[3] * P[5] - P[4] * P[4], b = P[2] * P[4] - P[1] * P[5],
+          c = P[1] * P[4] - P[2] * P[3];
+  const T d = P[0] * P[5] - P[2] * P[2], e = P[1] * P[2] - P[0] * P[4],
+          f = P[0] * P[3] - P[1] * P[1];
   const T determinant = P[0] * a + P[1] * b + P[2] * c;
   const auto positive = (determinant > T(0.0)) && (P[0] > T(0.0)) && (f > T(0.0));
   const T square = r.x * (a * r.x + b * r.y + c * r.z) + r.y * (b * r.x + d * r.y + e * r.z) +
@@ -55,7 +57,8 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
   const T zero(0.0), one(1.0);
   const config::Interval& band = scenario_.reward.band_m;
   Sums& s = sums_;
-  s.groundings = s.collisions = s.received = s.missed = s.modem_energy = zero;  // counted by their owners
+  s.groundings = s.collisions = s.received = s.missed = s.modem_energy =
+      zero;  // counted by their owners
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const FieldState<T>& f = (*swarm.field)[i];
     const Tracking<T>& k = tracking[i];

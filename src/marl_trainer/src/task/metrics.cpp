@@ -27,27 +27,27 @@ std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
 
 std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
   std::vector<std::pair<std::string, double>> items{
-          {"return", episode_return},
-          {"tail_distance", tail_distance},
-          {"tracking_error", tracking_error},
-          {"lost_rate", lost_rate},
-          {"action_norm", action_norm},
-          {"saturation_rate", saturation_rate},
-          {"control_cost", control_cost},
-          {"communication_quality", communication_quality},
-          {"band_rate", band_rate},
-          {"colliding_pairs", colliding_pairs},
-          {"tail_colliding_pairs", tail_colliding_pairs},
-          {"min_separation", min_separation},
-          {"time_to_band", time_to_band},
-          {"mean_error", mean_error},
-          {"whole_lost_rate", whole_lost_rate},
-          {"reward_track", reward_track},
-          {"reward_observation", reward_observation},
-          {"reward_coordination", reward_coordination},
-          {"reward_communication", reward_communication},
-          {"reward_semantic", reward_semantic},
-          {"reward_separation", reward_separation}};
+      {"return", episode_return},
+      {"tail_distance", tail_distance},
+      {"tracking_error", tracking_error},
+      {"lost_rate", lost_rate},
+      {"action_norm", action_norm},
+      {"saturation_rate", saturation_rate},
+      {"control_cost", control_cost},
+      {"communication_quality", communication_quality},
+      {"band_rate", band_rate},
+      {"colliding_pairs", colliding_pairs},
+      {"tail_colliding_pairs", tail_colliding_pairs},
+      {"min_separation", min_separation},
+      {"time_to_band", time_to_band},
+      {"mean_error", mean_error},
+      {"whole_lost_rate", whole_lost_rate},
+      {"reward_track", reward_track},
+      {"reward_observation", reward_observation},
+      {"reward_coordination", reward_coordination},
+      {"reward_communication", reward_communication},
+      {"reward_semantic", reward_semantic},
+      {"reward_separation", reward_separation}};
   if (!field) return items;
   for (const auto& item : field->Items()) items.push_back(item);
   return items;

@@ -77,7 +77,8 @@ void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
     k.lost = Select(d > T(scenario_.task.lost_distance_m), one, zero);
     if (swarm.field != nullptr && scenario_.task.lost_error_m > 0.0) {
       const FieldState<T>& f = (*swarm.field)[i];
-      const auto off = (f.known < T(0.5)) || (Norm(f.p_WT - t.p_WT) > T(scenario_.task.lost_error_m));
+      const auto off =
+          (f.known < T(0.5)) || (Norm(f.p_WT - t.p_WT) > T(scenario_.task.lost_error_m));
       k.lost = Select(off, one, k.lost);
     }
   }

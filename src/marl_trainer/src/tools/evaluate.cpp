@@ -42,7 +42,8 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 3000;
   const stg::agent::PursuitOptions tuned;
   bool privileged = false;
-  app.add_option("--policy", policy, "ONNX file, or encircle, pursuit, pursuit_separated, idle")->required();
+  app.add_option("--policy", policy, "ONNX file, or encircle, pursuit, pursuit_separated, idle")
+      ->required();
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
   app.add_option("--condition", condition,
                  "nominal, fast_target, far_initialization, limited_sensing, "
@@ -55,9 +56,11 @@ int main(int argc, char** argv) {
   app.add_option("--episodes", episodes, "number of episodes")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_option("--seed", seed, "episode e is drawn from seed + e; from " +
+  app.add_option("--seed", seed,
+                 "episode e is drawn from seed + e; from " +
                      std::to_string(stg::env::kReportingSeeds.first) +
-                     " on, what nothing was chosen by")->capture_default_str();
+                     " on, what nothing was chosen by")
+      ->capture_default_str();
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
   app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256));
   app.add_option("--csv", csv, "write one row per episode to this file");
@@ -93,8 +96,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "\n");
     if (!csv.empty()) WriteCsv(csv, metrics, seed);
     const stg::task::MetricSummary summary = stg::task::Summarise(metrics);
-    const std::string block =
-        stg::env::SeedBlockOf(seed, static_cast<std::uint64_t>(episodes));
+    const std::string block = stg::env::SeedBlockOf(seed, static_cast<std::uint64_t>(episodes));
     nlohmann::json json = {{"policy", policy},       {"scenario", scenario},
                            {"condition", condition}, {"episodes", episodes},
                            {"seed", seed},           {"scenario_hash", stg::ScenarioHash(s)},

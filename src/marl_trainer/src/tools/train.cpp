@@ -1,14 +1,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <thread>
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
@@ -21,6 +24,18 @@ extern "C" void OnSignal(int signal) {
   stop_signal = signal;
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+}
+
+bool Leads(const stg::learn::Communicator* ranks) { return ranks == nullptr || ranks->rank() == 0; }
+
+/// Says what went wrong and ends all ranks.
+int Fail(const stg::learn::Communicator* ranks, const std::exception& error, int status) {
+  // What is wrong with all of them is told by one, who ends the others meanwhile.
+  if (!Leads(ranks)) std::this_thread::sleep_for(std::chrono::seconds(2));
+  std::cerr << "train" << (Leads(ranks) ? "" : " (rank " + std::to_string(ranks->rank()) + ")")
+            << ": " << error.what() << std::endl;
+  stg::learn::AbortRanks(status);
+  return status;
 }
 
 /// Value of an option before the others are declared with defaults that depend on it.
@@ -51,7 +66,7 @@ struct Declare {
   }
 };
 
-int Train(int argc, char** argv) {
+int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   // A resumed run is what its folder says; options may repeat it.
   std::optional<stg::learn::RunSetup> earlier;
   const std::string folder = Argument(argc, argv, "--out", "");
@@ -108,15 +123,17 @@ int Train(int argc, char** argv) {
                                   app.count("--train-on") + app.count("--set") >
                               0;
   const bool kept = earlier && !names_scenario;
-  const stg::Scenario scenario =
-      kept ? earlier->scenario
-           : stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, condition,
-                                    overrides);
+  const stg::Scenario scenario = kept ? earlier->scenario
+                                      : stg::LoadNamedScenario(stg::config::ScenarioFolder(),
+                                                               scenario_name, condition, overrides);
   stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;
   options.workers = workers;
-  options.log = &std::cout;
+  std::ostream nowhere(nullptr);
+  std::ostream& lines = Leads(ranks) ? std::cout : nowhere;
+  options.log = &lines;
+  options.ranks = ranks;
   if (kept) options.mix = earlier->mix;
   for (const std::string& name : mix) {
     options.mix.push_back(
@@ -125,23 +142,25 @@ int Train(int argc, char** argv) {
   options.stop = &stop_signal;
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
+  // What SLURM and mpirun pass on.
+  std::signal(SIGUSR1, OnSignal);
   stg::learn::Trainer trainer(scenario, setup, options);
   if (trainer.Run()) return 0;
-  std::cout << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
-            << std::endl;
+  lines << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
+        << std::endl;
   return 130;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::unique_ptr<stg::learn::Communicator> ranks;
   try {
-    return Train(argc, argv);
+    ranks = stg::learn::JoinRanks(&argc, &argv);
+    return Train(argc, argv, ranks.get());
   } catch (const stg::UserError& error) {
-    std::cerr << "train: " << error.what() << std::endl;
-    return 2;
+    return Fail(ranks.get(), error, 2);
   } catch (const std::exception& error) {
-    std::cerr << "train: " << error.what() << std::endl;
-    return 1;
+    return Fail(ranks.get(), error, 1);
   }
 }

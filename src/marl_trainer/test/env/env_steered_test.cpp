@@ -44,8 +44,7 @@ TEST(SteeredEnv, PursuersReachTheirTargetAndKeepGoing) {
           // Under way, all of them: fins need flow. Full rudder takes a third of the slowest speed,
           // and only a hull in contact may be stopped.
           if (k > 20 && Norm(env.nav(e, i).v_WB_B) < 0.55) {
-            EXPECT_LT(k - touched[static_cast<std::size_t>(4 * e + i)], 20)
-                << model;
+            EXPECT_LT(k - touched[static_cast<std::size_t>(4 * e + i)], 20) << model;
           }
           for (int j = 0; j < env.agents(); ++j) {
             const double gap = Norm(env.nav(e, i).p_WB - env.nav(e, j).p_WB);

@@ -9,6 +9,7 @@
 
 #include "auv_common/error.hpp"
 #include "env/env_fixture.hpp"
+#include "marl_trainer/env/seed_blocks.hpp"
 
 namespace stg::env {
 namespace {

@@ -10,6 +10,9 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/checkpoint/checkpoint.hpp"
+#include "marl_trainer/learn/nn/adam.hpp"
+#include "marl_trainer/learn/nn/normaliser.hpp"
 
 namespace stg::learn {
 namespace {
@@ -183,6 +186,71 @@ TEST_F(ArchiveTest, LyingSizesWithARightChecksumAreRefusedWithoutAllocating) {
     Write(c.payload);
     EXPECT_NE(Refusal().find(c.reason), std::string::npos) << c.reason;
   }
+}
+
+/// What Load says of the archive; "accepted" when it says nothing.
+template <class Load>
+std::string RefusalOf(const Load& load) {
+  try {
+    load();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_F(ArchiveTest, CountsAreCounts) {
+  Archive archive;
+  archive.PutInteger("all", Archive::kMaxCount);
+  archive.PutInteger("more", Archive::kMaxCount + 1);
+  archive.PutInteger("less", -1);
+  EXPECT_EQ(archive.Count("all"), 1LL << 53);
+  EXPECT_EQ(RefusalOf([&] { archive.Count("more"); }),
+            "'more' is 9007199254740993, which is no count");
+  EXPECT_EQ(RefusalOf([&] { archive.Count("less"); }), "'less' is -1, which is no count");
+}
+
+TEST_F(ArchiveTest, ATrainingOfNegativeStepsIsRefused) {
+  const auto refusal = [this](const auto& change) {
+    TrainState state;
+    change(&state);
+    SaveCheckpoint(state, path_);
+    return RefusalOf([this] { LoadCheckpoint(path_); });
+  };
+  EXPECT_EQ(refusal([](TrainState*) {}), "accepted");
+  EXPECT_NE(refusal([](TrainState* s) {
+              s->env_steps = -4000000000;
+            }).find("'env_steps' is -4000000000, which is no count"),
+            std::string::npos);
+  EXPECT_NE(refusal([](TrainState* s) { s->collections = -1; }).find("'collections'"),
+            std::string::npos);
+  EXPECT_NE(refusal([](TrainState* s) { s->round = 1ULL << 63; }).find("'round'"),
+            std::string::npos);
+  EXPECT_NE(refusal([](TrainState* s) { s->wall_seconds = -1.0; }).find("'wall_seconds'"),
+            std::string::npos);
+}
+
+TEST_F(ArchiveTest, MomentsThatWouldBecomeNaNAreRefused) {
+  Archive archive;
+  archive.Put("a_first", std::vector<float>{1.0F});
+  archive.Put("a_second", std::vector<float>{-1.0F});
+  archive.PutInteger("a_steps", 1);
+  AdamState state;
+  state.first = state.second = {0.5F};
+  EXPECT_NE(RefusalOf([&] { state.Load("a", archive); }).find("negative square"),
+            std::string::npos);
+  EXPECT_EQ(state.first[0], 0.5F);
+  Archive steps;
+  steps.Put("a_first", std::vector<float>{1.0F});
+  steps.Put("a_second", std::vector<float>{1.0F});
+  steps.PutInteger("a_steps", -1);
+  EXPECT_NE(RefusalOf([&] { state.Load("a", steps); }).find("no count"), std::string::npos);
+
+  RunningMoments moments(1);
+  EXPECT_EQ(RefusalOf([&] { moments.Load({2.0, -5.0, 1.0}); }), "accepted");
+  EXPECT_NE(RefusalOf([&] { moments.Load({-1.0, 0.0, 1.0}); }).find("negative"), std::string::npos);
+  EXPECT_NE(RefusalOf([&] { moments.Load({2.0, 0.0, -1.0}); }).find("negative"), std::string::npos);
+  EXPECT_EQ(moments.mean(0), -5.0);
 }
 
 TEST_F(ArchiveTest, AFileThatCannotBeWrittenIsNamed) {

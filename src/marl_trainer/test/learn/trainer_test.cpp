@@ -1,84 +1,13 @@
-#include "marl_trainer/learn/run/trainer.hpp"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
-#include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "learn/mappo_setup.hpp"
+#include "learn/trainer_fixture.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
 #include "marl_trainer/learn/variants.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 
 namespace stg::learn {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// Two small collections per episode of 40 decisions.
-TrainSetup SmallSetup() {
-  TrainSetup setup("mappo", "fast");
-  MappoConfig& own = Own(setup);
-  own.minibatch = 160;
-  own.epochs = 2;
-  own.actor_hidden = {16, 16};
-  own.critic_hidden = {16};
-  TrainConfig& common = setup.common;
-  common.envs = 32;
-  common.horizon = 20;
-  common.stagger = false;
-  common.validation_episodes = 4;
-  common.validation_interval = 2560;
-  common.checkpoint_interval = 1280;
-  common.steps = 5120;
-  return setup;
-}
-
-Scenario ShortScenario(const std::string& name = "medium_release") {
-  return LoadNamedScenario(config::ScenarioFolder(), name, "nominal",
-                           {"time.episode_steps=40", "time.tail_steps=10"});
-}
-
-std::string Bytes(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-class TrainerTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "trainer_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Trainer::Options Options(const std::string& name, int workers = 1) {
-    Trainer::Options options;
-    options.out = (folder_ / name).string();
-    options.workers = workers;
-    options.log = &log_;
-    return options;
-  }
-
-  fs::path folder_;
-  std::ostringstream log_;
-};
-
-void ExpectSameBits(const TrainState& a, const TrainState& b) {
-  EXPECT_TRUE(a.algorithm == b.algorithm);
-  EXPECT_EQ(a.env_steps, b.env_steps);
-  EXPECT_EQ(a.round, b.round);
-  EXPECT_EQ(a.best_return, b.best_return);
-}
 
 const std::vector<float>& Parameters(Trainer& trainer) {
   return dynamic_cast<Mappo&>(trainer.algorithm()).parameters();

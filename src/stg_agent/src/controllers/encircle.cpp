@@ -46,12 +46,12 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
                         const T& matters) const {
   const T zero(0.0), one(1.0);
   const Level<T> closing = w - v;
-  const T time = Clip(-Dot(r, closing) / Max(Dot(closing, closing), T(1e-4)), zero,
-                      T(options.horizon_s));
+  const T time =
+      Clip(-Dot(r, closing) / Max(Dot(closing, closing), T(1e-4)), zero, T(options.horizon_s));
   const Level<T> miss = r + closing * time;
   const T distance = Norm(miss);
-  const T strength = matters * Max(one - distance / clearance, zero) *
-                     (one - time * T(1.0 / options.horizon_s));
+  const T strength =
+      matters * Max(one - distance / clearance, zero) * (one - time * T(1.0 / options.horizon_s));
   // Head-on there is no side to pass it on: then to starboard.
   const T range = Max(Norm(r), T(1e-3));
   const Level<T> starboard{r.y / range, -r.x / range};
@@ -90,19 +90,25 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const T length = one / Max(Sqrt(radial * radial + tangential * tangential), T(1e-6));
   const Level<T> direction = in_W * (radial * length) + around * (tangential * length);
 
-  // Gaps to those on this circle.
+  // Gaps to those on this circle, and what is due to everybody else.
   const double d = s.task.desired_distance_m;
   const T phase = Atan2(-now.y, -now.x), distance = Norm(now);
   const auto on_circle = Abs(distance - R) < T(0.5 * d);
   T ahead(kTwoPi), behind(kTwoPi);
+  Level<T> aside;
   const bool rings = (s.agents + s.target.count - 1) / s.target.count > o.ring_team;
   const T reach = rings ? T(o.ring * d) : T(0.6 * d);
   for (int j = 0; j < in.neighbour_count; ++j) {
-    const Circler<T> c = CircleOn(in.neighbours[j], p_WT, v_T, 2.0 * d);
-    const auto with_us = (Abs(Norm(c.q) - R) < reach) && on_circle;
+    const NeighbourSight<T>& n = in.neighbours[j];
+    const Circler<T> c = CircleOn(n, p_WT, v_T, R, reach);
+    const auto with_us = (c.on_circle > T(0.5)) && on_circle;
     const T gap = Positive(Atan2(c.q.y, c.q.x) - phase);
     ahead = Min(ahead, Select(with_us, gap, T(kTwoPi)));
     behind = Min(behind, Select(with_us, T(kTwoPi) - gap, T(kTwoPi)));
+    const auto beside = Abs(c.z - k.p_WB.z) < T(o.layer_m);
+    const T clearance =
+        Select(with_us, T(o.mate_clearance_m), T(o.clearance_m) + n.age_s * T(o.doubt_mps));
+    aside = aside + Miss(own, c.q + now, c.w, clearance, Select(beside, one, zero));
   }
   const T spread =
       Clip((ahead - behind) * T(0.5 * o.spread_gain), T(-o.spread_limit), T(o.spread_limit));
@@ -115,14 +121,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   u = Max(u, SpeedAlong(v_T, direction, T(slow), u));
   const Level<T> wanted = Within(v_T + direction * u, slow, fast);
 
-  Level<T> v = wanted;
-  for (int j = 0; j < in.neighbour_count; ++j) {
-    const Circler<T> c = CircleOn(in.neighbours[j], p_WT, v_T, 2.0 * d);
-    const auto beside = Abs(c.z - k.p_WB.z) < T(o.layer_m);
-    const Level<T> miss =
-        Miss(own, c.q + now, c.w, T(o.clearance_m), Select(beside, one, zero));
-    v = v + miss;
-  }
+  Level<T> v = wanted + aside;
   // What its chart shows.
   const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
     const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));

@@ -11,7 +11,6 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   const agent::TaskView task = agent.task();
   const agent::Knowledge<double>& k = agent.knowledge();
   const agent::TargetBelief target = agent.belief();
-  const agent::Covariance3& P = target.P_WT;
   std::copy(task.z_track.begin(), task.z_track.end(), m->z_track.begin());
   std::copy(task.graph.begin(), task.graph.end(), m->graph_summary.begin());
   m->phase = static_cast<std::uint8_t>(task.phase);
@@ -21,8 +20,10 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   m->target_known = target.started;
   SetVector(target.p_WT, &m->target_position);
   SetVector(target.v_WT, &m->target_velocity);
-  m->target_std = agent.estimate().position_std_m();
-  m->target_covariance = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
+  m->target_std = target.position_std_m();
+  const agent::Covariance3& P = target.P_WT;
+  const double covariance[6] = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
+  std::copy(covariance, covariance + 6, m->target_covariance.begin());
   m->target_age = Seconds(target.stamp - target.information);
   m->target_distance = k.distance;
   m->tracking_error = k.error;

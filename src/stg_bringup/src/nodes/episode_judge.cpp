@@ -23,8 +23,12 @@ EpisodeJudge::EpisodeJudge(const Scenario& scenario)
 }
 
 task::SwarmState<double> EpisodeJudge::Swarm() const {
-  return {vehicles_, targets_,      separations_,
-          tau_,      action_,       link_quality_,
+  return {vehicles_,
+          targets_,
+          separations_,
+          tau_,
+          action_,
+          link_quality_,
           field_.empty() ? nullptr : &field_};
 }
 

@@ -11,7 +11,8 @@ namespace stg::config {
 /// Finds shipped files by name: `medium` is <folder>/medium.yaml, condition `fast_target` of it is
 /// <folder>/conditions/<name>/fast_target.yaml, where name is that of the file or of the nearest of
 /// its bases that has one, else <folder>/conditions/<stage>_fast_target.yaml, where stage is the
-/// file's reset.stage (nominal: no overlay). A name with a slash or ending in .yaml is taken as a path. Throws UserError.
+/// file's reset.stage (nominal: no overlay). A name with a slash or ending in .yaml is taken as a
+/// path. Throws UserError.
 Source NamedSource(const std::string& folder, const std::string& scenario,
                    const std::string& condition = "nominal",
                    const std::vector<std::string>& overrides = {});

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "auv_dynamics/autopilot/autopilot.hpp"
@@ -35,13 +37,14 @@ class Helm {
   void WriteShares(int i, Pack* shares) const;
 
  private:
-  std::unique_ptr<const Autopilot> autopilot_;
-  Space actuators_;
-  std::size_t states_;
+  std::map<std::string, std::unique_ptr<const Autopilot>> kinds_;
+  std::vector<const Autopilot*> autopilots_;  // [agents]
+  std::vector<Space> actuators_;              // [agents]
+  std::size_t states_ = 0, inputs_;           // numbers of a row
   int steps_, periods_;
   double dt_s_;
   std::vector<Pack> state_;     // [agents, states_]
-  std::vector<Pack> commands_;  // [agents, actuators]
+  std::vector<Pack> commands_;  // [agents, inputs_]
 };
 
 }  // namespace stg::dynamics

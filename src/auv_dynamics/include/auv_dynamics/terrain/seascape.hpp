@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "auv_dynamics/terrain/terrain.hpp"
 #include "auv_dynamics/terrain/sea_config.hpp"
+#include "auv_dynamics/terrain/terrain.hpp"
 
 namespace stg::dynamics {
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "auv_common/config/field.hpp"
 #include "auv_dynamics/vehicle/kinematic_config.hpp"
@@ -21,6 +22,7 @@ enum class AddedMassCoriolis { kFull, kNoMunk, kOff };
 /// of the actuators, are those of `fully_actuated`; other models have sections of their own.
 struct VehicleConfig {
   std::string model = "fully_actuated";  ///< name in the registry of vehicles
+  std::vector<std::string> models;       ///< of a mixed fleet, one after the other; else empty
   std::string profile = "remus100";
   double mass_kg = 31.9;
   std::array<double, 3> inertia_kgm2{0.16, 4.10, 4.10};
@@ -44,6 +46,11 @@ struct VehicleConfig {
   double radius_m = 0.011;    ///< collision radius
   TorpedoConfig torpedo;      ///< read by that model alone
   KinematicConfig kinematic;  ///< read by that model alone
+
+  /// Name of what AUV i is.
+  const std::string& model_of(int i) const {
+    return models.empty() ? model : models[static_cast<std::size_t>(i) % models.size()];
+  }
 };
 
 /// Keys, units and ranges of the section.

@@ -9,7 +9,7 @@
 #include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 #include "auv_dynamics/targets/target_motion.hpp"
-#include "auv_dynamics/vehicle/vehicle.hpp"
+#include "auv_dynamics/vehicle/fleet.hpp"
 #include "auv_dynamics/world/contacts.hpp"
 #include "auv_dynamics/world/current.hpp"
 #include "auv_dynamics/world/disturbance.hpp"
@@ -50,7 +50,8 @@ class World {
   /// One physics step of dt: steps each vehicle under its command, contacts, current and
   /// disturbance, applies walls, moves targets. A non-finite command is a bug of the caller.
   ///
-  /// @param commands [agents, model().actuators().size()], row-major
+  /// @param commands [agents, command_size()], row-major; a vehicle takes as many numbers of its
+  /// row as it has actuators
   void Step(const std::vector<Pack>& commands);
   /// The same for vehicles that are commanded by a generalised force, one for each. Throws
   /// UserError when the scenario's vehicles are not.
@@ -62,7 +63,9 @@ class World {
 
   int agents() const { return static_cast<int>(vehicles_.size()); }
   int targets() const { return static_cast<int>(targets_.size()); }
-  const Vehicle& model() const { return *model_; }
+  /// What vehicle i is.
+  const Vehicle& model(int i = 0) const { return fleet_[i]; }
+  std::size_t command_size() const { return fleet_.command_size(); }
   const TargetSensor& sensor() const { return *sensor_; }
   const VehicleState<Pack>& vehicle(int i) const { return vehicles_[static_cast<size_t>(i)]; }
   VehicleState<Pack>& mutable_vehicle(int i) { return vehicles_[static_cast<size_t>(i)]; }
@@ -104,10 +107,10 @@ class World {
  private:
   const EpisodeClock& clock(int lane) const { return clocks_[static_cast<size_t>(lane)]; }
   Pack Time() const;
-  Navigation<Pack> TrueNav(int i) const;
-  void Navigate();
   /// @param who with its number, for the message
   void RequireWater(const std::string& who, const Vec3<double>& p_W) const;
+  Navigation<Pack> TrueNav(int i) const;
+  void Navigate();
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start);
 
   double dt_s_;
@@ -117,7 +120,7 @@ class World {
   ResetConfig reset_;
   SeaConfig depths_;
   SensingConfig sensing_;
-  std::unique_ptr<const Vehicle> model_;
+  Fleet fleet_;
   std::unique_ptr<TargetMotion> motion_;
   std::unique_ptr<const TargetSensor> sensor_;
   std::unique_ptr<NavigationSystem> navigation_;
@@ -130,7 +133,7 @@ class World {
   bool open_;  // sea, not walls
   std::vector<VehicleState<Pack>> vehicles_;
   std::vector<TargetState<Pack>> targets_;
-  std::vector<Pack> internal_;  // [agents, model_->internal_size()]
+  std::vector<Pack> internal_;  // [agents, fleet_.internal_size()]
   std::vector<Pack> commands_;  // [agents, actuators], of the last generalised forces
   Start start_;                 // scratch of Reset
   EpisodeClocks clocks_{};

@@ -8,9 +8,9 @@
 #include "auv_dynamics/navigation/navigation_config.hpp"
 #include "auv_dynamics/sensing/sensing_config.hpp"
 #include "auv_dynamics/targets/target_config.hpp"
+#include "auv_dynamics/terrain/sea_config.hpp"
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 #include "auv_dynamics/world/reset_config.hpp"
-#include "auv_dynamics/terrain/sea_config.hpp"
 #include "auv_dynamics/world/surroundings_config.hpp"
 
 namespace stg::dynamics {

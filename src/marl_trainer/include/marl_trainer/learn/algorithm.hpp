@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/checkpoint/archive.hpp"
+#include "marl_trainer/learn/comm/communicator.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::learn {
@@ -24,6 +25,9 @@ struct Problem {
 struct Shard {
   int first_env = 0;  ///< index of its first environment among all
   int envs = 0;
+  // Among several ranks:
+  int group = 0;                      ///< GroupShare's
+  int home_first = 0, home_envs = 0;  ///< the shard that a process alone has them in
 };
 
 /// One collection: every environment makes `steps` decisions. Episodes go on in the next one.
@@ -116,6 +120,11 @@ class Algorithm {
   virtual void Observe(const Transition& transition) = 0;
   /// Learns from what it observed since Begin, and whatever it keeps.
   virtual UpdateReport Update(const UpdateContext& context) = 0;
+
+  /// Learns together with other ranks, each of which observes environments of its own and ends up
+  /// with the same state; called first, if at all. UserError where the algorithm cannot.
+  /// @param ranks must outlive this object.
+  virtual void Join(Communicator* ranks);
 
   /// Everything that an uninterrupted run would have and a fresh object has not, weights,
   /// optimiser, normalisers, replayed transitions; called between Update and Begin.

@@ -34,10 +34,10 @@ class FieldTotals {
 
  private:
   struct Sums {
-    T square = T(0.0), nees = T(0.0), judged = T(0.0), known = T(0.0), age = T(0.0),
-      band = T(0.0), lost = T(0.0), losses = T(0.0), recovered = T(0.0), recovered_steps = T(0.0),
-      spread = T(0.0), near_pairs = T(0.0), groundings = T(0.0), collisions = T(0.0),
-      received = T(0.0), missed = T(0.0), modem_energy = T(0.0);
+    T square = T(0.0), nees = T(0.0), judged = T(0.0), known = T(0.0), age = T(0.0), band = T(0.0),
+      lost = T(0.0), losses = T(0.0), recovered = T(0.0), recovered_steps = T(0.0), spread = T(0.0),
+      near_pairs = T(0.0), groundings = T(0.0), collisions = T(0.0), received = T(0.0),
+      missed = T(0.0), modem_energy = T(0.0);
     T min_altitude = T(1e9), min_clearance = T(1e9);
   };
 

@@ -15,10 +15,11 @@ struct FieldMetrics {
   double information_age = 0.0;  ///< mean age of the newest observation in the estimates [s]
   double band_share = 0.0;       ///< share of AUV decisions inside [d_l, d_u]
   double time_lost = 0.0;        ///< mean over AUVs [s]
-  double time_to_reacquire = 0.0;  ///< mean length of the spells of loss that ended [s]; 0: none did
-  double losses = 0.0;             ///< spells of loss, per AUV
-  double spread = 0.0;  ///< mean circular variance of the AUVs' bearings around their target
-  double near_pairs = 0.0;  ///< pairs nearer than the separation distance, per decision
+  double time_to_reacquire =
+      0.0;                     ///< mean length of the spells of loss that ended [s]; 0: none did
+  double losses = 0.0;         ///< spells of loss, per AUV
+  double spread = 0.0;         ///< mean circular variance of the AUVs' bearings around their target
+  double near_pairs = 0.0;     ///< pairs nearer than the separation distance, per decision
   double min_altitude = 0.0;   ///< [m]
   double min_clearance = 0.0;  ///< to an obstacle [m]; 1e9: there is none
   double groundings = 0.0;     ///< of all AUVs

@@ -25,14 +25,14 @@ struct FieldState {
   /// Covariance of it, xx xy xz yy yz zz [m^2], what its navigation may be off included; all zero
   /// where it knows the truth.
   T covariance[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
-  T age_s = T(0.0);            ///< of the newest observation in the estimate
-  T altitude_m = T(1e9);       ///< above the bottom
-  T clearance_m = T(1e9);      ///< to the nearest obstacle
-  T groundings = T(0.0);       ///< of this episode up to now, as the next four
-  T collisions = T(0.0);       ///< with obstacles
-  T received = T(0.0);         ///< packets that it received, and that were lost on the way to it,
-  T missed = T(0.0);           ///< mean over the AUVs
-  T modem_energy_j = T(0.0);   ///< electric, of its modem
+  T age_s = T(0.0);           ///< of the newest observation in the estimate
+  T altitude_m = T(1e9);      ///< above the bottom
+  T clearance_m = T(1e9);     ///< to the nearest obstacle
+  T groundings = T(0.0);      ///< of this episode up to now, as the next four
+  T collisions = T(0.0);      ///< with obstacles
+  T received = T(0.0);        ///< packets that it received, and that were lost on the way to it,
+  T missed = T(0.0);          ///< mean over the AUVs
+  T modem_energy_j = T(0.0);  ///< electric, of its modem
 };
 
 /// The true state of a swarm when a decision is due, and what the decision before led to it with:

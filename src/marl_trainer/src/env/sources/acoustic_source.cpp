@@ -98,11 +98,11 @@ void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<
     const auto u = static_cast<std::size_t>(i);
     const TimeNs now = world.time(lane);
     const agent::TargetBelief belief = agents_[u].inbox(lane).belief();
-    const agent::Covariance3& P = belief.P_WT;
     SetLane(&f->known, lane, belief.started ? 1.0 : 0.0);
     SetLane(&f->p_WT, lane, belief.p_WT);
+    const agent::Covariance3& P = belief.P_WT;
     const double covariance[6] = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
-    for (std::size_t k = 0; k < 6; ++k) SetLane(&f->covariance[k], lane, covariance[k]);
+    for (int k = 0; k < 6; ++k) SetLane(&f->covariance[k], lane, covariance[k]);
     SetLane(&f->age_s, lane, Seconds(now - belief.information));
     const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
     SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));

@@ -80,6 +80,14 @@ std::int64_t Archive::Integer(const std::string& name) const {
   return array.front();
 }
 
+std::int64_t Archive::Count(const std::string& name) const {
+  const std::int64_t count = Integer(name);
+  if (count < 0 || count > kMaxCount) {
+    throw UserError("'" + name + "' is " + std::to_string(count) + ", which is no count");
+  }
+  return count;
+}
+
 double Archive::Number(const std::string& name) const { return Doubles(name, 1).front(); }
 
 const std::vector<float>& Archive::Floats(const std::string& name, std::size_t size) const {

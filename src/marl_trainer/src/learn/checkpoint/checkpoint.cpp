@@ -26,11 +26,12 @@ std::vector<fs::path> Checkpoints(const std::string& folder) {
 
 TrainState FromArchive(const Archive& archive) {
   TrainState s;
-  s.env_steps = archive.Integer("env_steps");
-  s.collections = archive.Integer("collections");
-  s.round = static_cast<std::uint64_t>(archive.Integer("round"));
+  s.env_steps = archive.Count("env_steps");
+  s.collections = archive.Count("collections");
+  s.round = static_cast<std::uint64_t>(archive.Count("round"));
   s.best_return = archive.Number("best_return");
   s.wall_seconds = archive.Number("wall_seconds");
+  if (s.wall_seconds < 0.0) throw UserError("'wall_seconds' is negative");
   s.config = archive.Text("config");
   s.scenario = archive.Text("scenario");
   s.log = archive.Text("log");

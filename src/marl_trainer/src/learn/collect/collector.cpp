@@ -8,6 +8,7 @@
 #include "marl_trainer/env/controller.hpp"
 #include "marl_trainer/env/vector_env.hpp"
 #include "marl_trainer/learn/clock.hpp"
+#include "marl_trainer/learn/nn/sliced_gradient.hpp"
 
 namespace stg::learn {
 
@@ -25,7 +26,7 @@ Problem ProblemOf(const Scenario& scenario) {
 
 namespace {
 
-std::string PastName(const Shard& shard) { return "actions_" + std::to_string(shard.first_env); }
+std::string PastName(int first_env) { return "actions_" + std::to_string(first_env); }
 
 }  // namespace
 
@@ -149,11 +150,27 @@ void Collector::Unit::AskTeacher() {
                  [](double a) { return static_cast<float>(a); });
 }
 
-Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool)
-    : horizon_(config.horizon), pool_(pool) {
-  for (int first = 0; first < config.envs; first += kShardEnvs) {
-    const Shard shard{first, std::min(kShardEnvs, config.envs - first)};
-    units_.push_back(std::make_unique<Unit>(mix, config, shard));
+Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool,
+                     Communicator* ranks)
+    : horizon_(config.horizon), pool_(pool), ranks_(ranks) {
+  GroupShare share;
+  share.groups = share.count = 1;
+  if (ranks != nullptr) {
+    RequireOption(config.envs >= ranks->size(), "envs", "must be one for each rank at least");
+    share = GroupShare::Of(*ranks, SlicedGradient::kSlices);
+  }
+  for (int group = share.first; group < share.first + share.count; ++group) {
+    const int end = share.FirstEnv(group + 1, config.envs);
+    for (int first = share.FirstEnv(group, config.envs); first < end;) {
+      Shard shard;
+      shard.first_env = first;
+      shard.group = group;
+      shard.home_first = first / kShardEnvs * kShardEnvs;
+      shard.home_envs = std::min(kShardEnvs, config.envs - shard.home_first);
+      first = std::min(shard.home_first + kShardEnvs, end);
+      shard.envs = first - shard.first_env;
+      units_.push_back(std::make_unique<Unit>(mix, config, shard));
+    }
   }
 }
 
@@ -181,6 +198,15 @@ CollectionReport Collector::Collect(std::uint32_t number, bool teach, Algorithm*
     report.inference_seconds += part.inference_seconds;
     steps += static_cast<double>(unit->shard().envs) * horizon_;
   }
+  if (ranks_ != nullptr) {
+    report.finished = ranks_->Gather(report.finished);
+    const std::vector<double> sums = ranks_->Gather(std::vector<double>{report.reward, steps});
+    report.reward = steps = 0.0;
+    for (std::size_t k = 0; k < sums.size(); k += 2) {
+      report.reward += sums[k];
+      steps += sums[k + 1];
+    }
+  }
   report.reward /= steps;
   const double wall = watch.seconds();
   const double share = report.env_seconds / (report.env_seconds + report.inference_seconds);
@@ -198,13 +224,31 @@ void Collector::ForgetPast() {
 }
 
 void Collector::Save(Archive* archive) const {
-  for (const auto& unit : units_) archive->Put(PastName(unit->shard()), unit->past());
+  if (ranks_ == nullptr) {
+    for (const auto& unit : units_) archive->Put(PastName(unit->shard().first_env), unit->past());
+    return;
+  }
+  std::vector<int> places;  // first environment and size of each unit's
+  std::vector<float> past;
+  for (const auto& unit : units_) {
+    places.push_back(unit->shard().first_env);
+    places.push_back(static_cast<int>(unit->past().size()));
+    past.insert(past.end(), unit->past().begin(), unit->past().end());
+  }
+  const std::vector<int> all_places = ranks_->Gather(places);
+  const std::vector<float> all = ranks_->Gather(past);
+  auto from = all.begin();
+  for (std::size_t k = 0; k < all_places.size(); k += 2) {
+    const auto end = from + all_places[k + 1];
+    archive->Put(PastName(all_places[k]), std::vector<float>(from, end));
+    from = end;
+  }
 }
 
 void Collector::Load(const Archive& archive) {
   if (archive.arrays().empty()) return;  // taken at a start
   for (const auto& unit : units_) {
-    const std::vector<float>& past = archive.Floats(PastName(unit->shard()));
+    const std::vector<float>& past = archive.Floats(PastName(unit->shard().first_env));
     if (past.size() % unit->decision_size() != 0) {
       throw UserError("the actions of environments " + std::to_string(unit->shard().first_env) +
                       " and on are no whole decisions");
@@ -212,7 +256,7 @@ void Collector::Load(const Archive& archive) {
   }
   pool_->Run(static_cast<int>(units_.size()), [&](int u, int) {
     Unit& unit = *units_[static_cast<std::size_t>(u)];
-    unit.Repeat(archive.Floats(PastName(unit.shard())));
+    unit.Repeat(archive.Floats(PastName(unit.shard().first_env)));
   });
 }
 
@@ -221,16 +265,19 @@ std::uint64_t Collector::round() const {
   for (const auto& unit : units_) {
     for (int e = 0; e < unit->shard().envs; ++e) round = std::max(round, unit->env().round(e));
   }
-  return round;
+  if (ranks_ == nullptr) return round;
+  const std::vector<std::uint64_t> all = ranks_->Gather(std::vector<std::uint64_t>{round});
+  return *std::max_element(all.begin(), all.end());
 }
 
 bool Collector::at_episode_start() const {
+  bool at_start = true;
   for (const auto& unit : units_) {
-    for (int e = 0; e < unit->shard().envs; ++e) {
-      if (unit->env().step(e) != 0) return false;
-    }
+    for (int e = 0; e < unit->shard().envs; ++e) at_start = at_start && unit->env().step(e) == 0;
   }
-  return true;
+  if (ranks_ == nullptr) return at_start;
+  const std::vector<char> all = ranks_->Gather(std::vector<char>{at_start ? '1' : '0'});
+  return std::count(all.begin(), all.end(), '0') == 0;
 }
 
 }  // namespace stg::learn

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "auv_common/error.hpp"
+
 namespace stg::learn {
 
 void AdamState::Save(const std::string& name, Archive* archive) const {
@@ -13,9 +15,14 @@ void AdamState::Save(const std::string& name, Archive* archive) const {
 
 void AdamState::Load(const std::string& name, const Archive& archive) {
   const std::vector<float>& theirs = archive.Floats(name + "_first", first.size());
-  second = archive.Floats(name + "_second", second.size());
+  const std::vector<float>& squares = archive.Floats(name + "_second", second.size());
+  const std::int64_t count = archive.Count(name + "_steps");
+  if (std::any_of(squares.begin(), squares.end(), [](float x) { return x < 0.0F; })) {
+    throw UserError("'" + name + "_second' has a negative square");
+  }
   first = theirs;
-  steps = archive.Integer(name + "_steps");
+  second = squares;
+  steps = count;
 }
 
 Adam::Adam(double eps, AdamState* state) : state_(state), eps_(static_cast<float>(eps)) {

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "auv_common/error.hpp"
+
 namespace stg::learn {
 
 RunningMoments::RunningMoments(int size)
@@ -77,9 +79,13 @@ std::vector<double> RunningMoments::Save() const {
 void RunningMoments::Load(const std::vector<double>& data) {
   const std::size_t n = mean_.size();
   assert(data.size() == 1 + 2 * n);
+  const auto squares = data.begin() + 1 + static_cast<std::ptrdiff_t>(n);
+  if (data[0] < 0.0 || std::any_of(squares, data.end(), [](double x) { return x < 0.0; })) {
+    throw UserError("moments with a negative count or square");
+  }
   count_ = data[0];
   std::copy_n(data.begin() + 1, n, mean_.begin());
-  std::copy_n(data.begin() + 1 + static_cast<std::ptrdiff_t>(n), n, squares_.begin());
+  std::copy_n(squares, n, squares_.begin());
 }
 
 Normaliser Normaliser::From(const RunningMoments& moments, float floor, float clip) {

@@ -23,22 +23,35 @@ void SlicedGradient::ForRanges(std::size_t count,
   });
 }
 
-void SlicedGradient::Compute(int first, int count, const Part& part) {
-  pool_->Run(kSlices, [&](int slice, int worker) {
-    std::vector<float>& gradient = parts_[static_cast<std::size_t>(slice)];
+std::vector<int> SlicedGradient::EqualSlices(int first, int count) {
+  std::vector<int> bounds(kSlices + 1);
+  for (int slice = 0; slice <= kSlices; ++slice) {
+    bounds[static_cast<std::size_t>(slice)] = first + count * slice / kSlices;
+  }
+  return bounds;
+}
+
+void SlicedGradient::Compute(const std::vector<int>& bounds, const Part& part) {
+  const std::size_t slices = bounds.size() - 1;
+  assert(slices <= parts_.size());
+  pool_->Run(static_cast<int>(slices), [&](int slice, int worker) {
+    const auto s = static_cast<std::size_t>(slice);
+    std::vector<float>& gradient = parts_[s];
     std::fill(gradient.begin(), gradient.end(), 0.0F);
-    part(slice, worker, first + count * slice / kSlices, first + count * (slice + 1) / kSlices,
-         gradient.data());
+    part(slice, worker, bounds[s], bounds[s + 1], gradient.data());
   });
   ForRanges(sum_.size(), [&](std::size_t begin, std::size_t end) {
+    if (ranks_ != nullptr) SumInPairs(&parts_, slices, begin, end);
     std::copy(parts_[0].begin() + static_cast<std::ptrdiff_t>(begin),
               parts_[0].begin() + static_cast<std::ptrdiff_t>(end),
               sum_.begin() + static_cast<std::ptrdiff_t>(begin));
-    for (int slice = 1; slice < kSlices; ++slice) {
-      const float* g = parts_[static_cast<std::size_t>(slice)].data();
+    if (ranks_ != nullptr) return;
+    for (std::size_t slice = 1; slice < slices; ++slice) {
+      const float* g = parts_[slice].data();
       for (std::size_t i = begin; i < end; ++i) sum_[i] += g[i];
     }
   });
+  if (ranks_ != nullptr) ranks_->Sum(sum_.data(), sum_.size());
 }
 
 double SlicedGradient::Apply(const Adam& adam, std::size_t begin, std::size_t end,

@@ -145,7 +145,8 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   const double left = static_cast<double>(std::max<std::int64_t>(total_steps_ - r.env_steps, 0));
   char text[400];
   std::snprintf(text, sizeof text, "%5.1f%% %9" PRId64 " steps %6.1f s  %6.0f steps/s  ETA %4.0f s",
-                PercentDone(r.env_steps, total_steps_), r.env_steps, r.wall_seconds, rate, left / std::max(rate, 1.0));
+                PercentDone(r.env_steps, total_steps_), r.env_steps, r.wall_seconds, rate,
+                left / std::max(rate, 1.0));
   *lines_ << text;
   if (r.validated) {
     std::snprintf(text, sizeof text, " | return %7.1f tail %.4f m lost %.3f contacts %.2f",
@@ -167,13 +168,20 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   line_env_ = line_inference_ = line_update_ = 0.0;
 }
 
-void TrainLog::WriteSummary(int workers, double peak_flops, const std::string& stopped) const {
+void TrainLog::WriteSummary(int workers, double peak_flops, const std::string& stopped,
+                            const Communicator* ranks) const {
   nlohmann::ordered_json json;
   json["stopped"] = stopped;
   json["env_steps"] = env_steps_;
   json["wall_seconds"] = wall_seconds_;
   json["env_steps_per_second"] = static_cast<double>(env_steps_) / std::max(wall_seconds_, 1e-9);
   json["workers"] = workers;
+  if (ranks != nullptr) {
+    const Communicator::Traffic& traffic = ranks->traffic();
+    json["ranks"] = ranks->size();
+    json["communication"] = {
+        {"bytes_sent", traffic.bytes}, {"calls", traffic.calls}, {"seconds", traffic.seconds}};
+  }
   for (const char* name : {"no_loss", "1000", "1020", "1030", "1040"}) {
     const auto found = reached_.find(name);
     if (found == reached_.end()) {

@@ -63,11 +63,12 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
       problem_(ProblemOf(train_scenario_)),
       pool_(options.workers),
       algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
-      collector_(mix_, setup_.common, &pool_),
+      collector_(mix_, setup_.common, &pool_, options.ranks),
       folder_(options.out, options.log) {
   UseOneBlasThread();
   state_.config = ToJson(setup_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
+  JoinRanks();
   if (options_.resume) {
     Resume();
   } else if (folder_.HoldsRun()) {
@@ -76,11 +77,28 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
     StartFrom(setup_.common.start_from);
   }
   ScheduleNext();
+  // Before anybody writes, all have seen what was there.
+  if (options_.ranks != nullptr) options_.ranks->GatherBytes({});
+  if (!leads()) return;
   folder_.WriteSetup(ToJson(setup_), scenario_, options.mix);
   log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
                                     options_.resume ? state_.env_steps : -1, setup_.common.steps,
                                     options_.log);
   if (!state_.log.empty()) log_->Load(state_.log);
+}
+
+void Trainer::JoinRanks() {
+  if (options_.ranks == nullptr) return;
+  const int size = options_.ranks->size();
+  if ((size & (size - 1)) != 0) {
+    throw UserError("started with " + std::to_string(size) +
+                    " ranks: their number must be a power of two");
+  }
+  try {
+    algorithm_->Join(options_.ranks);
+  } catch (const UserError& error) {
+    throw UserError("--algorithm " + setup_.algorithm + ": " + error.what());
+  }
 }
 
 void Trainer::StartFrom(const std::string& folder) {
@@ -107,6 +125,14 @@ void Trainer::Resume() {
   } catch (const UserError& error) {
     throw UserError(where + ": " + error.what());
   }
+  if (options_.ranks != nullptr) {
+    for (const std::int64_t steps :
+         options_.ranks->Gather(std::vector<std::int64_t>{loaded->env_steps})) {
+      if (steps != loaded->env_steps) {
+        throw UserError(where + ": the ranks see different checkpoints; the folder must be one");
+      }
+    }
+  }
   const std::string config = state_.config;
   state_ = *loaded;
   state_.config = config;
@@ -128,7 +154,7 @@ void Trainer::ScheduleNext() {
 TrainState Trainer::state() const {
   TrainState state = state_;
   state.wall_seconds = Elapsed();
-  state.log = log_->Save();
+  if (leads()) state.log = log_->Save();
   algorithm_->Save(&state.algorithm);
   collector_.Save(&state.episodes);
   return state;
@@ -143,18 +169,25 @@ bool Trainer::Run() {
     finished = state_.env_steps >= setup_.common.steps;
     if (finished || state_.env_steps >= next_validation_) RunValidation(&record);
     record.wall_seconds = Elapsed();
-    log_->Add(record);
+    if (leads()) log_->Add(record);
     AlignEpisodes(finished);
     stopped = Stopped();
     if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
   }
-  log_->WriteSummary(pool_.workers(), PeakFlops(&pool_), finished ? "finished" : "signal");
+  if (leads()) {
+    log_->WriteSummary(pool_.workers(), PeakFlops(&pool_), finished ? "finished" : "signal",
+                       options_.ranks);
+  }
   return finished;
 }
 
 bool Trainer::Stopped() const {
-  return (options_.stop != nullptr && *options_.stop != 0) ||
-         (options_.halt_after > 0 && state_.env_steps >= options_.halt_after);
+  const bool asked = options_.stop != nullptr && *options_.stop != 0;
+  if (options_.halt_after > 0 && state_.env_steps >= options_.halt_after) return true;
+  if (options_.ranks == nullptr) return asked;
+  // One is asked, all stop.
+  const std::vector<char> all = options_.ranks->GatherBytes({asked ? '1' : '0'});
+  return std::count(all.begin(), all.end(), '1') > 0;
 }
 
 void Trainer::Iterate(TrainRecord* record) {
@@ -188,8 +221,9 @@ void Trainer::Iterate(TrainRecord* record) {
 
 void Trainer::RunValidation(TrainRecord* record) {
   const Stopwatch watch;
-  last_validation_ = task::Summarise(
-      Validate(validation_scenario_, setup_.common.validation_episodes, algorithm_.get(), &pool_));
+  last_validation_ =
+      task::Summarise(Validate(validation_scenario_, setup_.common.validation_episodes,
+                               algorithm_.get(), &pool_, options_.ranks));
   record->validated = true;
   record->validation = last_validation_;
   if (last_validation_.Mean("return") > state_.best_return) {
@@ -216,12 +250,14 @@ void Trainer::AlignEpisodes(bool force) {
 }
 
 void Trainer::Save() {
-  folder_.Save(state(), setup_.common.keep_checkpoints);
+  const TrainState now = state();
+  if (leads()) folder_.Save(now, setup_.common.keep_checkpoints);
   SavePolicy("policy_last");
   next_checkpoint_ = NextMultiple(state_.env_steps, setup_.common.checkpoint_interval);
 }
 
 void Trainer::SavePolicy(const std::string& name) const {
+  if (!leads()) return;
   const TrainConfig& config = setup_.common;
   const std::string id = scenario_.name + "-" + config.variant + "-" + config.preset + "-seed" +
                          std::to_string(config.seed) + "-" + std::to_string(state_.env_steps);

@@ -1,5 +1,7 @@
 #include "marl_trainer/learn/run/validation.hpp"
 
+#include <algorithm>
+
 #include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 
@@ -11,7 +13,8 @@ constexpr int kBlock = 16;  // environments whose actions one pass through the n
 }  // namespace
 
 std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
-                                           Algorithm* algorithm, WorkerPool* pool) {
+                                           Algorithm* algorithm, WorkerPool* pool,
+                                           Communicator* ranks) {
   const env::ActFactory make_act = [algorithm](const env::VectorEnv& env,
                                                int worker) -> env::ActFunction {
     std::vector<float> chosen(
@@ -30,7 +33,19 @@ std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episode
   options.episodes = episodes;
   options.seed = kValidationSeed;
   options.block = kBlock;
-  return env::Evaluate(scenario, make_act, options, pool);
+  if (ranks == nullptr) return env::Evaluate(scenario, make_act, options, pool);
+
+  // Whole blocks, so that what is computed for a block does not depend on who does it.
+  const int blocks = (episodes + kBlock - 1) / kBlock;
+  const auto first = [&](int rank) {
+    return std::min(episodes, blocks * rank / ranks->size() * kBlock);
+  };
+  const int begin = first(ranks->rank());
+  options.episodes = first(ranks->rank() + 1) - begin;
+  options.seed += static_cast<std::uint64_t>(begin);
+  std::vector<task::EpisodeMetrics> own;
+  if (options.episodes > 0) own = env::Evaluate(scenario, make_act, options, pool);
+  return ranks->Gather(own);
 }
 
 }  // namespace stg::learn

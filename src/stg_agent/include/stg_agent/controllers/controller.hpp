@@ -107,8 +107,8 @@ std::string DefaultController();
 /// an unknown constant, or one that is not a number in range.
 std::shared_ptr<const Controller> MakeController(const std::string& text);
 
-/// Throws UserError, with the controllers' names, for what is neither one of them nor has the ending
-/// of a policy file.
+/// Throws UserError, with the controllers' names, for what is neither one of them nor has the
+/// ending of a policy file.
 void RequirePolicyFileName(const std::string& text);
 
 }  // namespace stg::agent

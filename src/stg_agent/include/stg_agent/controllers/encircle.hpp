@@ -12,19 +12,21 @@ namespace stg::agent {
 
 /// Constants of the law. Lengths and speeds are those of the sea.
 struct EncircleOptions {
-  double slow_mps = 1.0;        ///< over ground, on the side of the circle that runs back
-  double fast_mps = 2.1;        ///< over ground, on the way to the circle and at most
-  double inward_gain = 3.0;     ///< how steeply the way to the circle points at it
-  double lead_s = 4.0;          ///< the vehicle is taken to be where it will be then
-  double spread_gain = 0.5;     ///< change of speed per radian off the middle of the gap
-  double spread_limit = 0.35;   ///< largest such change
-  double clearance_m = 50.0;    ///< others are to be missed by this, in the plane
-  double horizon_s = 45.0;      ///< closest approaches later than this do not matter
-  double layer_m = 20.0;        ///< others this much above or below do not matter
-  double depth_gain_ps = 0.06;  ///< climb rate per missing depth
-  double climb_mps = 0.25;      ///< largest climb rate that is asked for
-  double ring = 0.22;           ///< two circles, this share inside and outside of d*
-  double ring_team = 10.0;      ///< of teams larger than this
+  double slow_mps = 1.0;           ///< over ground, on the side of the circle that runs back
+  double fast_mps = 2.1;           ///< over ground, on the way to the circle and at most
+  double inward_gain = 3.0;        ///< how steeply the way to the circle points at it
+  double lead_s = 4.0;             ///< the vehicle is taken to be where it will be then
+  double spread_gain = 0.5;        ///< change of speed per radian off the middle of the gap
+  double spread_limit = 0.35;      ///< largest such change
+  double clearance_m = 60.0;       ///< others are to be missed by this, in the plane
+  double doubt_mps = 0.5;          ///< and by this times the age of what they said
+  double mate_clearance_m = 25.0;  ///< the same of others on the own circle, whom spread keeps off
+  double horizon_s = 45.0;         ///< closest approaches later than this do not matter
+  double layer_m = 20.0;           ///< others this much above or below do not matter
+  double depth_gain_ps = 0.06;     ///< climb rate per missing depth
+  double climb_mps = 0.25;         ///< largest climb rate that is asked for
+  double ring = 0.2;               ///< two circles, this share inside and outside of d*
+  double ring_team = 10.0;         ///< of teams larger than this
 };
 
 /// Calls visit(name, field, largest) for every constant that a user may set.
@@ -37,6 +39,8 @@ void VisitEncircleOptions(EncircleOptions& o, Visitor&& visit) {
   visit("spread", o.spread_gain, 1e3);
   visit("spread-limit", o.spread_limit, 1.0);
   visit("clearance", o.clearance_m, 1e4);
+  visit("doubt", o.doubt_mps, 100.0);
+  visit("mate-clearance", o.mate_clearance_m, 1e4);
   visit("horizon", o.horizon_s, 1e4);
   visit("layer", o.layer_m, 1e4);
   visit("depth-gain", o.depth_gain_ps, 1e3);
@@ -68,33 +72,36 @@ T Norm(const Level<T>& a) {
   return Sqrt(Dot(a, a));
 }
 
-/// Another vehicle now, by the circle around the target that its report shows it on; farther from
-/// the target by dead reckoning. Relative to the target, in the plane.
+/// Another vehicle now, carried along the own circle if its report shows it there, else dead
+/// reckoned. Relative to the target, in the plane.
 template <class T>
 struct Circler {
-  Level<T> q;  ///< position [m]
-  Level<T> w;  ///< velocity over ground [m/s]
-  T z;         ///< height in the world [m]
+  T on_circle;  ///< 1 or 0
+  Level<T> q;   ///< position [m]
+  Level<T> w;   ///< velocity over ground [m/s]
+  T z;          ///< height in the world [m]
 };
 
-/// @param p_WT, v_WT of the target now, as this AUV believes
-/// @param reach_m    farther from the target than this nobody circles it [m]
+/// @param p_WT, v_T of the target now, as this AUV believes
+/// @param radius, reach of the own circle, and how far off it others count as on it [m]
 template <class T>
 Circler<T> CircleOn(const NeighbourSight<T>& n, const Vec3<T>& p_WT, const Level<T>& v_T,
-                    double reach_m) {
+                    const T& radius, const T& reach) {
   const Level<T> q{n.p_W.x - p_WT.x + v_T.x * n.age_s, n.p_W.y - p_WT.y + v_T.y * n.age_s};
   const Level<T> v{n.v_W.x, n.v_W.y};
   const T square = Max(Dot(q, q), T(1.0));
-  const auto near = square < T(reach_m * reach_m);
+  const auto near = Abs(Sqrt(square) - radius) < reach;
   const T angle = Select(near, Cross(q, v - v_T) / square * n.age_s, T(0.0));
   T s, c;
   SinCos(angle, &s, &c);
   const Level<T> straight{n.p_WN.x - p_WT.x, n.p_WN.y - p_WT.y};
   const Level<T> relative = v - v_T;
   const Level<T> turned{c * relative.x - s * relative.y, s * relative.x + c * relative.y};
-  return {{Select(near, c * q.x - s * q.y, straight.x), Select(near, s * q.x + c * q.y, straight.y)},
-          {turned.x + v_T.x, turned.y + v_T.y},
-          n.p_WN.z};
+  return {
+      Select(near, T(1.0), T(0.0)),
+      {Select(near, c * q.x - s * q.y, straight.x), Select(near, s * q.x + c * q.y, straight.y)},
+      {turned.x + v_T.x, turned.y + v_T.y},
+      n.p_WN.z};
 }
 
 /// The largest u for which |v_T + u direction| is `speed`; `otherwise` where there is none.
@@ -108,10 +115,9 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
 /// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
 /// its own. On the circle it speeds up or slows down towards the middle between the one ahead and
 /// the one behind, as their packets and the time since tell; off it, it comes in on a spiral. It
-/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart, which
-/// is the scenario. In a team that is too large for one
-/// circle every other AUV flies inside, the others outside of d*. Without open water it keeps to
-/// the target's depth.
+/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart,
+/// which is the scenario. In a team that is too large for one circle every other AUV flies inside,
+/// the others outside of d*. Without open water it keeps to the target's depth.
 ///
 /// Vehicles that need flow over their fins turn as tightly as their ground speed over the turn rate
 /// allows: on the side where the circle runs against the target's way the radius over ground is

@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "marker_list.hpp"
-#include "network_markers.hpp"
+#include "parts/belief_markers.hpp"
+#include "parts/network_markers.hpp"
+#include "shapes/marker_list.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -26,6 +27,7 @@ class Builder : private MarkerList {
     Targets();
     for (size_t i = 0; i < view_.vehicles.size(); ++i) Vehicle(static_cast<int>(i));
     Summary();
+    AddBeliefMarkers(view_, style_, &array_);
     AddNetworkMarkers(view_, style_, &array_);
     return std::move(array_);
   }
@@ -145,14 +147,6 @@ class Builder : private MarkerList {
              nearest < 2.0 * view_.scene.radius_m ? Color(1.0, 0.2, 0.2, 0.16)
                                                   : Color(0.8, 0.85, 0.9, 0.07));
     }
-    if (v.target_known) {
-      Sphere("estimate", id, v.estimate, 0.3 * unit_, PhaseColor(v.phase, 0.9));
-      Sphere("estimate_std", id, v.estimate, std::max(2.0 * v.estimate_std, 0.3 * unit_),
-             PhaseColor(v.phase, 0.12));
-    } else {
-      Delete("estimate", id, Marker::SPHERE);
-      Delete("estimate_std", id, Marker::SPHERE);
-    }
     Label(id, v);
   }
 
@@ -238,8 +232,8 @@ class Builder : private MarkerList {
     double height = 1.4 * text_;
     if (!style_.whole_workspace) {
       if (view_.targets.empty() || !view_.targets[0].seen) return;
-      const double above = std::max(7.5 * view_.scene.radius_m * style_.vehicle_scale,
-                                    1.4 * view_.scene.band_hi_m);
+      const double above =
+          std::max(7.5 * view_.scene.radius_m * style_.vehicle_scale, 1.4 * view_.scene.band_hi_m);
       top = Sum(view_.targets[0].position, At(0, 0, above));
       height = text_;
     }

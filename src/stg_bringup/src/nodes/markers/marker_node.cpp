@@ -4,6 +4,8 @@
 #include <auv_msgs/LinkState.h>
 #include <auv_msgs/LinkStates.h>
 #include <auv_msgs/PacketEvents.h>
+#include <auv_msgs/SwarmState.h>
+#include <auv_msgs/TargetDetection.h>
 #include <auv_msgs/TaskState.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
@@ -28,10 +30,11 @@
 #include "auv_dynamics/nodes/topics.hpp"
 #include "auv_dynamics/terrain/seascape.hpp"
 #include "marker_builder.hpp"
+#include "message_views.hpp"
+#include "parts/terrain_markers.hpp"
 #include "scene.hpp"
+#include "shapes/swarm_view.hpp"
 #include "stg_agent/nodes/topics.hpp"
-#include "swarm_view.hpp"
-#include "terrain_markers.hpp"
 #include "topics.hpp"
 
 namespace stg::nodes {
@@ -39,10 +42,6 @@ namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
 constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
-
-bool Finite(const geometry_msgs::Point& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 class MarkerNode {
  public:
@@ -64,6 +63,7 @@ class MarkerNode {
         private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kTerrain, 2, true);
     close_pub_ = private_nh_.advertise<visualization_msgs::MarkerArray>(topics::kClose, 1);
     scenario_sub_ = nh_.subscribe(topics::kScenario, 1, &MarkerNode::OnScenario, this);
+    truth_sub_ = nh_.subscribe(topics::kSwarmState, 20, &MarkerNode::OnTruth, this);
     packets_sub_ = nh_.subscribe(topics::kPackets, 50, &MarkerNode::OnPackets, this);
     links_sub_ = nh_.subscribe(topics::kLinks, 50, &MarkerNode::OnLinks, this);
     const std::string file = TextParameter("scenario_file", "");
@@ -93,8 +93,7 @@ class MarkerNode {
     terrain_pub_.publish(NoTerrain());
     if (!scene.sea.open) return;
     try {
-      terrain_pub_.publish(
-          BuildTerrain(scene, dynamics::Seascape(scene.sea, scene.half_extent_m)));
+      terrain_pub_.publish(BuildTerrain(scene, dynamics::Seascape(scene.sea, scene.half_extent_m)));
     } catch (const UserError& e) {
       ROS_WARN("the bottom of the sea is not shown: %s", e.what());
     }
@@ -136,6 +135,9 @@ class MarkerNode {
       subscribers_.push_back(nh_.subscribe<auv_msgs::TaskState>(
           topics::AuvTopic(id, topics::kTaskState), 20,
           [this, i](const auv_msgs::TaskState::ConstPtr& m) { OnTask(i, *m); }));
+      subscribers_.push_back(nh_.subscribe<auv_msgs::TargetDetection>(
+          topics::AuvTopic(id, topics::kTargetDetection), 20,
+          [this, i](const auv_msgs::TargetDetection::ConstPtr& m) { OnDetection(i, *m); }));
     }
   }
 
@@ -187,10 +189,31 @@ class MarkerNode {
     if (!PossibleStamp(odom.header.stamp)) return refused_.Add(Refusals::kStale);
     SetNodeTime(odom.header.stamp);
     Advance(odom.header.stamp);
+    if (!told_of_truth_) Place(i, odom.pose.pose);
+  }
+
+  /// Where AUVs are; their odometry is where they believe to be.
+  void OnTruth(const auv_msgs::SwarmState& swarm) {
+    told_of_truth_ = true;
+    const std::size_t count = std::min(swarm.poses.size(), view_.vehicles.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (Finite(swarm.poses[i].position)) Place(i, swarm.poses[i]);
+    }
+  }
+
+  void Place(std::size_t i, const geometry_msgs::Pose& pose) {
     VehicleView& v = view_.vehicles[i];
     v.seen = true;
-    v.pose = odom.pose.pose;
-    Extend(&v.trail, v.pose.position, v.phase);
+    v.pose = pose;
+    Extend(&v.trail, pose.position, v.phase);
+  }
+
+  void OnDetection(std::size_t i, const auv_msgs::TargetDetection& m) {
+    const DetectionView d = DetectionOf(m);
+    if (!std::isfinite(d.range_m + d.azimuth_rad + d.elevation_rad)) {
+      return refused_.Add(Refusals::kNotFinite);
+    }
+    view_.vehicles[i].detection = d;
   }
 
   void OnTarget(std::size_t k, const nav_msgs::Odometry& odom) {
@@ -198,14 +221,7 @@ class MarkerNode {
     MovingTarget& t = view_.targets[k];
     t.seen = true;
     t.position = odom.pose.pose.position;
-    // nav_msgs: the twist is in the child frame; turn it into the world.
-    const auto& q = odom.pose.pose.orientation;
-    const auto& v = odom.twist.twist.linear;
-    const double x = 2 * (q.y * v.z - q.z * v.y), y = 2 * (q.z * v.x - q.x * v.z),
-                 z = 2 * (q.x * v.y - q.y * v.x);
-    t.velocity.x = v.x + q.w * x + q.y * z - q.z * y;
-    t.velocity.y = v.y + q.w * y + q.z * x - q.x * z;
-    t.velocity.z = v.z + q.w * z + q.x * y - q.y * x;
+    t.velocity = VelocityOf(odom);
     Extend(&t.trail, t.position, ShownPhase::kUnknown);
   }
 
@@ -226,6 +242,7 @@ class MarkerNode {
     v.distance = v.target_known ? task.target_distance : -1.0;
     v.estimate = task.target_position;
     v.estimate_std = std::isfinite(task.target_std) ? task.target_std : 0.0;
+    std::copy(task.target_covariance.begin(), task.target_covariance.end(), v.covariance.begin());
   }
 
   void OnLinks(const auv_msgs::LinkStates& states) {
@@ -311,7 +328,8 @@ class MarkerNode {
   MarkerStyle overview_, close_;
   SwarmView view_;
   ros::Publisher overview_pub_, close_pub_, terrain_pub_;
-  ros::Subscriber scenario_sub_, links_sub_, packets_sub_;
+  ros::Subscriber scenario_sub_, links_sub_, packets_sub_, truth_sub_;
+  bool told_of_truth_ = false;
   bool told_of_packets_ = false;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer draw_timer_, discover_timer_;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "swarm_view.hpp"
+#include "shapes/swarm_view.hpp"
 
 namespace stg::nodes {
 

@@ -29,6 +29,7 @@ struct RolloutBuffer {
   std::vector<float> advantages;    ///< [T, E]
 
   int steps = 0, envs = 0;
+  Shard shard;
   int samples() const { return steps * envs; }
 
   /// Sizes the arrays for a collection; allocates when it is larger than the one before.

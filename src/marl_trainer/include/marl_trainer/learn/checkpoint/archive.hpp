@@ -29,6 +29,9 @@ class Archive {
   const std::vector<std::int64_t>& Integers(const std::string& name) const;
   const std::string& Text(const std::string& name) const;
   std::int64_t Integer(const std::string& name) const;
+  /// An Integer that counts something: from 0 to kMaxCount.
+  std::int64_t Count(const std::string& name) const;
+  static constexpr std::int64_t kMaxCount = 1LL << 53;  ///< whole in a double
   double Number(const std::string& name) const;
   /// What PutPart added with this prefix.
   Archive Part(const std::string& prefix) const;

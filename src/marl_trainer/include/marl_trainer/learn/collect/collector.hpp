@@ -31,10 +31,13 @@ class Collector {
   static constexpr int kShardEnvs = 16;  ///< of a full shard; the last one may be smaller
 
   /// @param mix scenarios that the environments cycle through, see env::VectorEnv; of one layout.
-  Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool);
+  /// @param ranks that have a share of the environments each; null: this process has them all.
+  Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool,
+            Communicator* ranks = nullptr);
   ~Collector();
 
-  /// `config.horizon` decisions of every environment with exploration, after algorithm->Begin.
+  /// `config.horizon` decisions of every environment of this rank with exploration, after
+  /// algorithm->Begin.
   /// @param number keys the draws of the exploration.
   /// @param teach also ask the controller to imitate, at every state visited.
   CollectionReport Collect(std::uint32_t number, bool teach, Algorithm* algorithm);
@@ -43,14 +46,15 @@ class Collector {
   void RestartAt(std::uint64_t k);
   /// Takes the present, where every environment starts an episode, for the last such start.
   void ForgetPast();
-  /// What was done since the last common start of an episode, which is enough to get back here.
+  /// What was done since the last common start of an episode, which is enough to get back here, in
+  /// all ranks.
   void Save(Archive* archive) const;
   /// After RestartAt of that start: goes to where Save was called. Throws UserError for an archive
   /// of other environments.
   void Load(const Archive& archive);
-  /// The largest k of an episode that runs.
+  /// The largest k of an episode that runs, in any rank.
   std::uint64_t round() const;
-  /// True when every environment stands at the start of an episode.
+  /// True when every environment of all ranks stands at the start of an episode.
   bool at_episode_start() const;
 
  private:
@@ -58,6 +62,7 @@ class Collector {
 
   const int horizon_;
   WorkerPool* pool_;
+  Communicator* ranks_;
   std::vector<std::unique_ptr<Unit>> units_;
 };
 

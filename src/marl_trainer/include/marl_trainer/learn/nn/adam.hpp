@@ -16,7 +16,7 @@ struct AdamState {
 
   /// As arrays name_first, name_second and name_steps.
   void Save(const std::string& name, Archive* archive) const;
-  /// Throws UserError for another number of parameters.
+  /// Throws UserError for another number of parameters, and for moments and steps that cannot be.
   void Load(const std::string& name, const Archive& archive);
 
   std::vector<float> first, second;

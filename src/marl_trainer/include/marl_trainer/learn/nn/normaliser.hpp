@@ -26,6 +26,7 @@ class RunningMoments {
 
   /// Plain data for checkpoints: count, means, squared deviations.
   std::vector<double> Save() const;
+  /// Throws UserError when a count or a square is negative.
   void Load(const std::vector<double>& data);
 
  private:

@@ -5,13 +5,16 @@
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/comm/communicator.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
 
 namespace stg::learn {
 
 /// The gradient of a minibatch, computed by all workers: the samples are cut into kSlices fixed
 /// slices with a gradient each, which are summed in order, so that the result does not depend on
-/// the number of workers.
+/// the number of workers. Among several ranks, a slice is a group of environments and a rank has
+/// the slices of its own; they are summed in pairs, so that the result does not depend on the
+/// number of ranks either.
 class SlicedGradient {
  public:
   static constexpr int kSlices = 16;
@@ -22,8 +25,16 @@ class SlicedGradient {
   /// @param pool must outlive this object.
   SlicedGradient(std::size_t parameters, WorkerPool* pool);
 
-  /// Runs `part` for every slice of the samples first .. first+count-1, then sums.
-  void Compute(int first, int count, const Part& part);
+  /// @param ranks must outlive this object.
+  void Join(Communicator* ranks) { ranks_ = ranks; }
+
+  /// Runs `part` for every slice, samples bounds[s] .. bounds[s + 1] - 1, then sums, over all
+  /// ranks.
+  /// @param bounds of up to kSlices slices, one more than slices
+  void Compute(const std::vector<int>& bounds, const Part& part);
+  /// The same of the samples first .. first+count-1 in equal slices.
+  void Compute(int first, int count, const Part& part) { Compute(EqualSlices(first, count), part); }
+  static std::vector<int> EqualSlices(int first, int count);
 
   /// Runs `work` on ranges that cover 0 .. count-1, on all workers where that pays.
   void ForRanges(std::size_t count,
@@ -39,6 +50,7 @@ class SlicedGradient {
 
  private:
   WorkerPool* pool_;
+  Communicator* ranks_ = nullptr;
   std::vector<std::vector<float>> parts_;  // [kSlices][parameters]
   std::vector<float> sum_;
 };

@@ -42,7 +42,9 @@ class TrainLog {
   void Add(const TrainRecord& record);
   /// Writes summary.json.
   /// @param peak_flops measured rate of the matrix product on all workers.
-  void WriteSummary(int workers, double peak_flops, const std::string& stopped) const;
+  /// @param ranks null: there are none.
+  void WriteSummary(int workers, double peak_flops, const std::string& stopped,
+                    const Communicator* ranks) const;
 
   /// State for checkpoints, as JSON text.
   std::string Save() const;

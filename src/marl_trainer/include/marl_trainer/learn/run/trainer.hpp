@@ -16,11 +16,12 @@ namespace stg::learn {
 
 /// Collect, update, validate, save: one instance per run, of any algorithm.
 ///
-/// Weights depend on scenario, setup and seed only, not on the number of workers. A run and one
-/// that was stopped and resumed are the same bit for bit: a checkpoint, taken between any two
-/// collections, holds what was done since all environments started an episode together. With
-/// `stagger`, or a horizon that does not divide the episode, the running episodes are cut for such
-/// a start, in every run, stopped or not.
+/// Weights depend on scenario, setup and seed only, not on the number of workers, and among ranks
+/// not on theirs (GroupShare); ranks and a process alone differ in the order of sums. Rank 0 alone
+/// writes, into a folder that all ranks can read. A run and one that was stopped and resumed are
+/// the same bit for bit: a checkpoint, taken between any two collections, holds what was done since
+/// all environments started an episode together. With `stagger`, or a horizon that does not divide
+/// the episode, the running episodes are cut for such a start, in every run, stopped or not.
 class Trainer {
  public:
   struct Options {
@@ -28,6 +29,7 @@ class Trainer {
     bool resume = false;  ///< go on from the newest good checkpoint of `out`
     int workers = 1;
     std::ostream* log = nullptr;
+    Communicator* ranks = nullptr;  ///< to train with; null: alone
     /// Set non-zero (by a signal) to save after the collection and return.
     const std::atomic<int>* stop = nullptr;
     /// Scenarios that the training environments cycle through, e.g.
@@ -43,12 +45,13 @@ class Trainer {
   /// True when all steps were made, false when stopped before.
   bool Run();
 
-  /// As of now, and what a checkpoint would hold of the algorithm.
+  /// As of now, what a checkpoint would hold; called by all ranks.
   TrainState state() const;
   Algorithm& algorithm() { return *algorithm_; }
   const Problem& problem() const { return problem_; }
 
  private:
+  void JoinRanks();
   void StartFrom(const std::string& folder);
   void Resume();
   void ScheduleNext();
@@ -60,6 +63,7 @@ class Trainer {
   bool Stopped() const;
   void Save();
   void SavePolicy(const std::string& name) const;
+  bool leads() const { return options_.ranks == nullptr || options_.ranks->rank() == 0; }
   double Elapsed() const { return state_.wall_seconds + watch_.seconds(); }
 
   const Scenario scenario_, train_scenario_, validation_scenario_;
@@ -71,7 +75,7 @@ class Trainer {
   std::unique_ptr<Algorithm> algorithm_;
   Collector collector_;
   RunFolder folder_;
-  std::unique_ptr<TrainLog> log_;
+  std::unique_ptr<TrainLog> log_;  // of the rank that leads
   TrainState state_;
   task::MetricSummary last_validation_;
   Stopwatch watch_;

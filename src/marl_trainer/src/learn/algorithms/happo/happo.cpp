@@ -37,6 +37,11 @@ Happo::Happo(const HappoConfig& config, const TrainConfig& common, const Problem
   parameters_.critic_adam = AdamState(parameters_.critic.size());
 }
 
+void Happo::Join(Communicator* ranks) {
+  update_.Join(ranks);
+  rollouts_.Join(ranks);
+}
+
 void Happo::Begin(const Collection& collection) {
   collection_ = collection.number;
   rollouts_.Begin(collection);

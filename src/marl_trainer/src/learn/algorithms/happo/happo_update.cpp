@@ -46,6 +46,13 @@ HappoUpdate::HappoUpdate(const ActorCritic& networks, const HappoConfig& config,
 
 HappoUpdate::~HappoUpdate() = default;
 
+void HappoUpdate::Join(Communicator* ranks) {
+  actor_gradient_.Join(ranks);
+  critic_gradient_.Join(ranks);
+  samples_.Join(ranks);
+  sums_.Join(ranks);
+}
+
 void HappoUpdate::DrawOrder(std::uint32_t collection) {
   order_.resize(static_cast<std::size_t>(agents_));
   std::iota(order_.begin(), order_.end(), 0);
@@ -86,18 +93,16 @@ PpoBatch HappoUpdate::Gather(int from, int to, int agent, PpoRows* s) {
 
 /// @param agent whose rows to gather; less than 0: the critic's
 void HappoUpdate::ComputeGradient(int first, int agent, const BlockLoss& add,
-                                  SlicedGradient* gradient, PpoSums* sums) {
+                                  SlicedGradient* gradient) {
   gradient->Compute(
-      first, config_.minibatch, [&](int slice, int worker, int begin, int end, float* into) {
+      samples_.Slices(first), [&](int slice, int worker, int begin, int end, float* into) {
         Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
-        PpoSums& part = sums_[static_cast<std::size_t>(slice)];
-        part = PpoSums();
         for (int from = begin; from < end; from += kBlock) {
           const PpoBatch batch = Gather(from, std::min(end, from + kBlock), agent, &s.rows);
-          add(&s.loss, batch, into, &part);
+          add(&s.loss, batch, into, &sums_.slice(slice));
         }
       });
-  for (const PpoSums& part : sums_) sums->Add(part);
+  sums_.EndMinibatch();
 }
 
 int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* actor,
@@ -105,15 +110,15 @@ int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* a
   PpoSums sums;
   int steps = 0, epochs = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
-    samples_.Shuffle(seed_, collection_, turn * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
-    sums = PpoSums();
+    samples_.Shuffle(seed_, collection_, turn * kEpochsOfATurn + static_cast<std::uint32_t>(epoch),
+                     config_.minibatch);
     for (int first = 0; first < samples_.size(); first += config_.minibatch) {
       ComputeGradient(
           first, agent,
           [&](PpoLoss* loss, const PpoBatch& batch, float* gradient, PpoSums* part) {
             loss->AddActor(actor->data(), batch, config_.minibatch, gradient, part);
           },
-          &actor_gradient_, &sums);
+          &actor_gradient_);
       const Adam step(config_.adam_eps, adam);
       report->actor_norm +=
           actor_gradient_.Apply(step, 0, actor->size(), config_.lr * learning_rate_scale_,
@@ -125,6 +130,7 @@ int HappoUpdate::TrainActor(int agent, std::uint32_t turn, std::vector<float>* a
       }
       ++steps;
     }
+    sums = sums_.EndEpoch();
     ++epochs;
     if (config_.target_kl > 0.0 && sums.kl / sums.rows > config_.target_kl) break;
   }
@@ -138,21 +144,24 @@ void HappoUpdate::TrainCritic(std::vector<float>* critic, AdamState* adam, PpoRe
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
     samples_.Shuffle(
         seed_, collection_,
-        static_cast<std::uint32_t>(agents_) * kEpochsOfATurn + static_cast<std::uint32_t>(epoch));
-    report->sums.value_loss = report->sums.samples = 0.0;
+        static_cast<std::uint32_t>(agents_) * kEpochsOfATurn + static_cast<std::uint32_t>(epoch),
+        config_.minibatch);
     for (int first = 0; first < samples_.size(); first += config_.minibatch) {
       ComputeGradient(
           first, -1,
           [&](PpoLoss* loss, const PpoBatch& batch, float* gradient, PpoSums* part) {
             loss->AddCritic(critic->data(), batch, config_.minibatch, gradient, part);
           },
-          &critic_gradient_, &report->sums);
+          &critic_gradient_);
       const Adam step(config_.adam_eps, adam);
       report->critic_norm +=
           critic_gradient_.Apply(step, 0, critic->size(), config_.critic_lr * learning_rate_scale_,
                                  config_.grad_clip, critic->data());
       ++steps;
     }
+    const PpoSums sums = sums_.EndEpoch();
+    report->sums.value_loss = sums.value_loss;
+    report->sums.samples = sums.samples;
   }
   report->critic_norm /= steps;
 }
@@ -160,10 +169,10 @@ void HappoUpdate::TrainCritic(std::vector<float>* critic, AdamState* adam, PpoRe
 void HappoUpdate::MultiplyFactors(int agent, const float* actor) {
   const int size = networks_.action_size();
   const float* log_std = actor + networks_.actor.log_std_offset();
-  const int blocks = (samples_.size() + kBlock - 1) / kBlock;
+  const int blocks = (samples_.own() + kBlock - 1) / kBlock;
   pool_->Run(blocks, [&](int block, int worker) {
     Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
-    const int from = block * kBlock, to = std::min(samples_.size(), from + kBlock);
+    const int from = block * kBlock, to = std::min(samples_.own(), from + kBlock);
     Gather(from, to, agent, &s.rows);
     networks_.actor.mean().Forward(actor, s.rows.observations.data(), to - from, &s.actor);
     for (int k = 0; k < to - from; ++k) {
@@ -183,7 +192,7 @@ PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, co
   imitation_ = static_cast<float>(imitation);
   samples_.Prepare(rollouts, scales);
   assert(samples_.size() % config_.minibatch == 0);
-  factors_.assign(static_cast<std::size_t>(samples_.size()), 1.0);
+  factors_.assign(static_cast<std::size_t>(samples_.own()), 1.0);
   DrawOrder(collection);
   PpoReport report;
   int steps = 0;

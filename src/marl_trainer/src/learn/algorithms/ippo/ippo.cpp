@@ -46,6 +46,8 @@ void Ippo::Begin(const Collection& collection) {
     Shard& shard = singles.shards[s];
     shard.first_env *= agents_;
     shard.envs *= agents_;
+    shard.home_first *= agents_;
+    shard.home_envs *= agents_;
     told_[s].rewards.resize(static_cast<std::size_t>(shard.envs));
     told_[s].truncated.resize(static_cast<std::size_t>(shard.envs));
   }

@@ -28,6 +28,11 @@ Mappo::Mappo(const MappoConfig& config, const TrainConfig& common, const Problem
       adam_(networks_.parameters()),
       acting_(PassesOf(networks_.actor.mean(), pool->workers())) {}
 
+void Mappo::Join(Communicator* ranks) {
+  update_.Join(ranks);
+  rollouts_.Join(ranks);
+}
+
 void Mappo::Begin(const Collection& collection) {
   collection_ = collection.number;
   rollouts_.Begin(collection);

@@ -7,6 +7,24 @@
 
 namespace stg::learn {
 
+void SlicedSums::EndMinibatch() {
+  for (std::size_t s = 0; s < minibatch_.size(); ++s) {
+    (ranks_ != nullptr ? epoch_[s] : total_).Add(minibatch_[s]);
+  }
+  minibatch_ = Slices();
+}
+
+PpoSums SlicedSums::EndEpoch() {
+  if (ranks_ != nullptr) {
+    const std::vector<PpoSums> own(epoch_.begin(), epoch_.end());
+    for (const PpoSums& part : ranks_->Gather(own)) total_.Add(part);
+    epoch_ = Slices();
+  }
+  const PpoSums total = total_;
+  total_ = PpoSums();
+  return total;
+}
+
 std::vector<ReportColumn> PpoColumns() {
   return {{"learning_rate", "", 0},        {"kl", "KL", 4},       {"clip_fraction", "clip", 3},
           {"actor_loss", "", 0},           {"value_loss", "", 0}, {"entropy", "H", 2},
@@ -50,6 +68,12 @@ PpoUpdate::PpoUpdate(const ActorCritic& networks, const MappoConfig& config,
 }
 
 PpoUpdate::~PpoUpdate() = default;
+
+void PpoUpdate::Join(Communicator* ranks) {
+  gradient_.Join(ranks);
+  samples_.Join(ranks);
+  sums_.Join(ranks);
+}
 
 PpoSums PpoUpdate::Slice(const float* parameters, int begin, int end, int worker, float* gradient) {
   Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
@@ -110,18 +134,17 @@ PpoReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, cons
   assert(samples % config_.minibatch == 0);
   int steps = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
-    samples_.Shuffle(seed_, collection, static_cast<std::uint32_t>(epoch));
-    report.sums = PpoSums();
+    samples_.Shuffle(seed_, collection, static_cast<std::uint32_t>(epoch), config_.minibatch);
     for (int first = 0; first < samples; first += config_.minibatch) {
-      gradient_.Compute(first, config_.minibatch,
-                        [&](int slice, int worker, int begin, int end, float* gradient) {
-                          sums_[static_cast<std::size_t>(slice)] =
-                              Slice(parameters->data(), begin, end, worker, gradient);
-                        });
-      for (const PpoSums& sums : sums_) report.sums.Add(sums);
+      gradient_.Compute(
+          samples_.Slices(first), [&](int slice, int worker, int begin, int end, float* gradient) {
+            sums_.slice(slice) = Slice(parameters->data(), begin, end, worker, gradient);
+          });
+      sums_.EndMinibatch();
       Step(learning_rate_scale, parameters, adam, &report);
       ++steps;
     }
+    report.sums = sums_.EndEpoch();
     ++report.epochs;
     if (config_.target_kl > 0.0 && report.sums.kl / report.sums.rows > config_.target_kl) break;
   }

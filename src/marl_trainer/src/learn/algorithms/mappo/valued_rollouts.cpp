@@ -27,6 +27,7 @@ void ValuedRollouts::Begin(const Collection& collection) {
   for (std::size_t s = 0; s < rollouts_.size(); ++s) {
     Rollout& r = rollouts_[s];
     r.buffer.Begin(problem_, collection.steps, collection.shards[s].envs, collection.taught);
+    r.buffer.shard = collection.shards[s];
     r.observations = RunningMoments(problem_.observation_size);
     r.states = RunningMoments(problem_.state_size);
   }
@@ -77,19 +78,55 @@ double ValuedRollouts::Estimate(float* critic) {
              [&](int shard, int worker) { EstimateAdvantages(critic, shard, worker); });
   RunningMoments targets(1), errors(1);
   std::vector<float> target;
+  std::vector<RunningMoments> shards;  // of targets and errors, in turn
   for (const Rollout& r : rollouts_) {
     const RolloutBuffer& b = r.buffer;
     target.resize(b.advantages.size());
     for (std::size_t i = 0; i < target.size(); ++i) target[i] = b.advantages[i] + b.values[i];
-    targets.Add(target.data(), b.samples());
-    errors.Add(b.advantages.data(), b.samples());
+    if (ranks_ == nullptr) {
+      targets.Add(target.data(), b.samples());
+      errors.Add(b.advantages.data(), b.samples());
+      continue;
+    }
+    shards.resize(shards.size() + 2, RunningMoments(1));
+    shards[shards.size() - 2].Add(target.data(), b.samples());
+    shards.back().Add(b.advantages.data(), b.samples());
   }
+  const std::vector<RunningMoments> all = OfAllRanks(shards);
+  for (std::size_t k = 0; k < all.size(); ++k) (k % 2 == 0 ? targets : errors).Merge(all[k]);
   normalisers_.AddTargets(targets, critic_, critic);
   return 1.0 - errors.variance(0) / std::max(targets.variance(0), 1e-12);
 }
 
+std::vector<RunningMoments> ValuedRollouts::OfAllRanks(
+    const std::vector<RunningMoments>& own) const {
+  if (ranks_ == nullptr || own.empty()) return own;
+  std::vector<double> numbers;
+  for (const RunningMoments& moments : own) {
+    const std::vector<double> saved = moments.Save();
+    numbers.insert(numbers.end(), saved.begin(), saved.end());
+  }
+  // Every rank has the same sizes in turn, which those of its own shards repeat.
+  const std::vector<double> gathered = ranks_->Gather(numbers);
+  std::vector<RunningMoments> all;
+  for (auto from = gathered.begin(); from != gathered.end();) {
+    RunningMoments moments(own[all.size() % 2].size());
+    const auto end = from + static_cast<std::ptrdiff_t>(moments.Save().size());
+    moments.Load({from, end});
+    all.push_back(std::move(moments));
+    from = end;
+  }
+  return all;
+}
+
 void ValuedRollouts::UpdateInputScales() {
-  for (const Rollout& r : rollouts_) normalisers_.Add(r.observations, r.states);
+  std::vector<RunningMoments> shards;  // of observations and states, in turn
+  for (const Rollout& r : rollouts_) {
+    shards.push_back(r.observations);
+    shards.push_back(r.states);
+  }
+  const std::vector<RunningMoments> all = OfAllRanks(shards);
+  for (std::size_t k = 0; k < all.size(); k += 2) normalisers_.Add(all[k], all[k + 1]);
   normalisers_.UpdateInputScales();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace stg::learn {
@@ -149,9 +150,10 @@ void ReplayLearner::LoadMoments(const Archive& archive) {
 }
 
 void ReplayLearner::Load(const Archive& archive) {
-  const std::int64_t seen = archive.Integer("seen");
-  const std::int64_t steps = archive.Integer("gradient_steps");
+  const std::int64_t seen = archive.Count("seen");
+  const std::int64_t steps = archive.Count("gradient_steps");
   const double due = archive.Number("due");
+  if (!(due >= 0.0 && due < 1.0)) throw UserError("'due' is no part of an update");
   // What throws comes first.
   for (const Kept& kept : kept_) archive.Floats(kept.name, kept.numbers->size());
   for (const auto& [name, adam] : kept_adams_) adam->Load(name, archive);

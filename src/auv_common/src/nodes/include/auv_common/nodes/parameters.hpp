@@ -36,8 +36,8 @@ void WarnOfOverriddenAgents(int agents);
 double NumberParameter(const std::string& name, double fallback, double lo, double hi);
 /// The same for whole numbers, which the parameter server holds with 32 bits.
 int IntegerParameter(const std::string& name, int fallback, int lo, int hi);
-/// Throws UserError unless a parameter, where it is set, is a list of different whole numbers from 0
-/// to `count` - 1, or one such number.
+/// Throws UserError unless a parameter, where it is set, is a list of different whole numbers from
+/// 0 to `count` - 1, or one such number.
 void RequireIndices(const std::string& name, int count);
 bool FlagParameter(const std::string& name, bool fallback);
 /// A list of texts, or one text of words; empty when nobody has set it.

@@ -17,6 +17,7 @@ class Happo : public Algorithm {
   Happo(const HappoConfig& config, const TrainConfig& common, const Problem& problem,
         WorkerPool* pool);
 
+  void Join(Communicator* ranks) override;
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
   void Observe(const Transition& transition) override { rollouts_.Observe(transition); }

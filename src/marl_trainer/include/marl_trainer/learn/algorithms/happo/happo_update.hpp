@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -30,13 +29,15 @@ class HappoUpdate {
               int agents, WorkerPool* pool);
   ~HappoUpdate();
 
+  void Join(Communicator* ranks);
+
   /// As PpoUpdate::Run.
   PpoReport Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
                 std::uint32_t collection, double learning_rate_scale, double imitation,
                 HappoParameters* parameters);
 
   /// The factors M of the samples after the last AUV of the last Run: the ratio of the joint
-  /// densities, new over old, of the actions taken. In the order of the rollouts.
+  /// densities, new over old, of the actions taken. In the order of the own rollouts.
   const std::vector<double>& factors() const { return factors_; }
   /// The AUVs in the order of the last Run.
   const std::vector<int>& order() const { return order_; }
@@ -54,9 +55,8 @@ class HappoUpdate {
   /// Adds the gradient of one block's loss.
   using BlockLoss =
       std::function<void(PpoLoss* loss, const PpoBatch& batch, float* gradient, PpoSums* sums)>;
-  /// The gradient of the minibatch that begins at place `first`; adds its sums.
-  void ComputeGradient(int first, int agent, const BlockLoss& add, SlicedGradient* gradient,
-                       PpoSums* sums);
+  /// The gradient of the minibatch that begins at sample `first`.
+  void ComputeGradient(int first, int agent, const BlockLoss& add, SlicedGradient* gradient);
   /// Multiplies the factors by the ratio of an AUV's densities.
   void MultiplyFactors(int agent, const float* actor);
 
@@ -67,7 +67,7 @@ class HappoUpdate {
   WorkerPool* pool_;
   SlicedGradient actor_gradient_, critic_gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
-  std::array<PpoSums, SlicedGradient::kSlices> sums_;
+  SlicedSums sums_;
   PpoSamples samples_;
   std::vector<double> factors_;  // by sample
   std::vector<int> order_;

@@ -16,6 +16,7 @@ class Ippo : public Algorithm {
   Ippo(const IppoConfig& config, const TrainConfig& common, const Problem& problem,
        WorkerPool* pool);
 
+  void Join(Communicator* ranks) override { single_.Join(ranks); }
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
   void Observe(const Transition& transition) override;

@@ -16,6 +16,7 @@ class Mappo : public Algorithm {
   Mappo(const MappoConfig& config, const TrainConfig& common, const Problem& problem,
         WorkerPool* pool);
 
+  void Join(Communicator* ranks) override;
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
   void Observe(const Transition& transition) override;

@@ -21,6 +21,25 @@ struct PpoReport {
   double flops = 0.0;  ///< floating-point operations in matrix products
 };
 
+/// Sums of an epoch, in an order that depends neither on workers nor on ranks.
+class SlicedSums {
+ public:
+  /// @param ranks must outlive this object.
+  void Join(Communicator* ranks) { ranks_ = ranks; }
+  /// Of a slice of the minibatch; whoever computes it writes it.
+  PpoSums& slice(int s) { return minibatch_[static_cast<std::size_t>(s)]; }
+  void EndMinibatch();
+  /// Sums of all minibatches of all ranks; the next epoch begins.
+  PpoSums EndEpoch();
+
+ private:
+  using Slices = std::array<PpoSums, SlicedGradient::kSlices>;
+
+  Slices minibatch_, epoch_;
+  PpoSums total_;
+  Communicator* ranks_ = nullptr;
+};
+
 /// What all methods of this family report, in the order of the columns.
 /// @param sigma, entropy of the exploration, the mean over actors
 std::vector<ReportColumn> PpoColumns();
@@ -34,6 +53,9 @@ class PpoUpdate {
   PpoUpdate(const ActorCritic& networks, const MappoConfig& config, const TrainConfig& common,
             int agents, WorkerPool* pool);
   ~PpoUpdate();
+
+  /// As Algorithm::Join.
+  void Join(Communicator* ranks);
 
   /// The number of samples must be a multiple of the minibatch.
   /// @param collection number of the update, for the order of the minibatches.
@@ -57,7 +79,7 @@ class PpoUpdate {
   const int agents_;
   SlicedGradient gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
-  std::array<PpoSums, SlicedGradient::kSlices> sums_;
+  SlicedSums sums_;
   PpoSamples samples_;
   float imitation_ = 0.0F;
 };

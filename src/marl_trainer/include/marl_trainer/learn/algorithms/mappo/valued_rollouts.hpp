@@ -16,6 +16,9 @@ class ValuedRollouts {
   ValuedRollouts(const Problem& problem, const MappoConfig& config, const Mlp& critic,
                  WorkerPool* pool);
 
+  /// As Algorithm::Join.
+  void Join(Communicator* ranks) { ranks_ = ranks; }
+
   void Begin(const Collection& collection);
   void Observe(const Transition& transition);
 
@@ -39,6 +42,8 @@ class ValuedRollouts {
     RunningMoments observations, states;  ///< raw
   };
 
+  /// Moments of each shard, of those of all ranks in their order.
+  std::vector<RunningMoments> OfAllRanks(const std::vector<RunningMoments>& own) const;
   void EstimateAdvantages(const float* critic, int shard, int worker);
   /// Values in units of reward of normalised states [rows, S].
   void EstimateValues(const float* critic, const float* states, int rows, int worker,
@@ -49,6 +54,7 @@ class ValuedRollouts {
   const int moment_stride_;
   const Mlp& critic_;
   WorkerPool* pool_;
+  Communicator* ranks_ = nullptr;
   Normalisers normalisers_;
   std::vector<Mlp::Workspace> workspaces_;  // per worker
   std::vector<Rollout> rollouts_;

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "marker_list.hpp"
+#include "shapes/marker_list.hpp"
 
 namespace stg::nodes {
 namespace {

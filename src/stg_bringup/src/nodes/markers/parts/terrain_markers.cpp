@@ -5,16 +5,16 @@
 #include <iterator>
 #include <limits>
 
-#include "marker_list.hpp"
+#include "shapes/marker_list.hpp"
 
 namespace stg::nodes {
 namespace {
 
 using visualization_msgs::MarkerArray;
 
-constexpr int kCells = 96;        // of the drawn surface, on each side
-constexpr int kLineEvery = 8;     // cells between two lines drawn on it
-constexpr int kScaleSteps = 6;    // colours named in the scale
+constexpr int kCells = 96;            // of the drawn surface, on each side
+constexpr int kLineEvery = 8;         // cells between two lines drawn on it
+constexpr int kScaleSteps = 6;        // colours named in the scale
 constexpr double kLeastSpan_m = 1.0;  // less is a flat bottom, which has one colour
 constexpr double kFlatShare = 0.35;
 
@@ -91,8 +91,8 @@ class TerrainBuilder : private MarkerList {
 
   /// Lines on the bottom, which give its slopes away.
   void Grid() {
-    Marker m = Lines("terrain_grid", 0, Marker::LINE_LIST, 0.0015 * half_,
-                     Color(0.75, 0.85, 0.95, 0.25));
+    Marker m =
+        Lines("terrain_grid", 0, Marker::LINE_LIST, 0.0015 * half_, Color(0.75, 0.85, 0.95, 0.25));
     const double lift = 0.001 * half_;
     for (int line = 0; line <= kCells; line += kLineEvery) {
       for (int k = 0; k < kCells; ++k) {
@@ -106,8 +106,8 @@ class TerrainBuilder : private MarkerList {
   void Frame() {
     Marker m =
         Lines("sea_surface", 0, Marker::LINE_STRIP, 0.003 * half_, Color(0.55, 0.75, 0.95, 0.7));
-    for (const auto& [x, y] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0},
-                               {-1.0, -1.0}}) {
+    for (const auto& [x, y] :
+         {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}, {-1.0, -1.0}}) {
       m.points.push_back(At(x * half_, y * half_, 0.0));
     }
     Add(std::move(m));

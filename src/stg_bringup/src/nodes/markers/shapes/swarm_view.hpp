@@ -4,6 +4,7 @@
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Vector3.h>
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -37,6 +38,13 @@ struct TrailPoint {
   ShownPhase phase = ShownPhase::kUnknown;
 };
 
+/// The newest measurement of a target by an AUV's own sensor.
+struct DetectionView {
+  double time = -1e9;
+  bool has_range = false, has_bearing = false;
+  double range_m = 0.0, azimuth_rad = 0.0, elevation_rad = 0.0;
+};
+
 struct VehicleView {
   bool seen = false;
   geometry_msgs::Pose pose;
@@ -46,6 +54,8 @@ struct VehicleView {
   bool target_known = false;
   geometry_msgs::Point estimate;  ///< where the AUV believes its target to be
   double estimate_std = 0.0;
+  std::array<double, 6> covariance{};  ///< of it, xx xy xz yy yz zz [m^2]; zero: not told
+  DetectionView detection;
   std::deque<TrailPoint> trail;
 };
 

@@ -2,8 +2,8 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
-#include "marker_builder.hpp"
-#include "swarm_view.hpp"
+#include "shapes/marker_style.hpp"
+#include "shapes/swarm_view.hpp"
 
 namespace stg::nodes {
 

@@ -3,7 +3,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include "auv_dynamics/terrain/seascape.hpp"
-#include "swarm_view.hpp"
+#include "shapes/swarm_view.hpp"
 
 namespace stg::nodes {
 

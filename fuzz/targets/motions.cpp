@@ -1,0 +1,16 @@
+#include "auv_dynamics/check/recorded_motion.hpp"
+#include "target.hpp"
+
+/// A table of recorded vehicle motions. Only the reading: a day of flight takes its time.
+bool stg::fuzz::RunMotions(const std::string& bytes) {
+  return LoadAsFile(bytes, [](const std::string& path) {
+    for (const dynamics::RecordedMotion& motion : dynamics::LoadMotions(path)) {
+      Require(!motion.rows.empty(), "a motion without rows");
+      double before = -1.0;
+      for (const dynamics::MotionRow& row : motion.rows) {
+        Require(row.time_s > before, "times that do not increase");
+        before = row.time_s;
+      }
+    }
+  });
+}

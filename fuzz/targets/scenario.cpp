@@ -1,0 +1,13 @@
+#include "marl_trainer/scenario/scenario.hpp"
+
+#include "auv_common/config/loader.hpp"
+#include "target.hpp"
+
+/// A scenario file. What is accepted is the same when it is written and read again.
+bool stg::fuzz::RunScenario(const std::string& bytes) {
+  return LoadAsFile(bytes, [](const std::string& path) {
+    const std::string text = ToYaml(LoadScenario(path));
+    const auto again = config::LoadText<Scenario>(text, "again");
+    Require(ToYaml(again) == text, "a scenario is another one when it is written and read again");
+  });
+}

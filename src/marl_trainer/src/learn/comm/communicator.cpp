@@ -1,0 +1,26 @@
+#include "marl_trainer/learn/comm/communicator.hpp"
+
+#include <algorithm>
+
+namespace stg::learn {
+
+GroupShare GroupShare::Of(const Communicator& ranks, int slices) {
+  GroupShare share;
+  share.groups = std::max(slices, ranks.size());
+  share.count = share.groups / ranks.size();
+  share.first = share.count * ranks.rank();
+  return share;
+}
+
+void SumInPairs(std::vector<std::vector<float>>* parts, std::size_t count, std::size_t begin,
+                std::size_t end) {
+  for (std::size_t stride = 1; stride < count; stride *= 2) {
+    for (std::size_t left = 0; left + stride < count; left += 2 * stride) {
+      float* to = (*parts)[left].data();
+      const float* from = (*parts)[left + stride].data();
+      for (std::size_t i = begin; i < end; ++i) to[i] += from[i];
+    }
+  }
+}
+
+}  // namespace stg::learn

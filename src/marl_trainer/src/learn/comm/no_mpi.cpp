@@ -1,0 +1,17 @@
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/comm/mpi.hpp"
+#include "started_by_mpi.hpp"
+
+namespace stg::learn {
+
+std::unique_ptr<Communicator> JoinRanks(int*, char***) {
+  if (StartedByMpi()) {
+    throw UserError(
+        "started by mpirun or srun, but built without MPI: install libopenmpi-dev and build again");
+  }
+  return nullptr;
+}
+
+void AbortRanks(int) {}
+
+}  // namespace stg::learn

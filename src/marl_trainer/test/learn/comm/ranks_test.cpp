@@ -1,0 +1,121 @@
+#include <cmath>
+
+#include "auv_common/error.hpp"
+#include "learn/comm/thread_ranks.hpp"
+#include "learn/trainer_fixture.hpp"
+
+/// Training among several ranks, which here are threads; mpi_test.cpp has processes.
+namespace stg::learn {
+namespace {
+
+class RanksTest : public TrainerTest {
+ protected:
+  /// A small setup of an algorithm that learns from its own actions.
+  static TrainSetup SetupOf(const std::string& algorithm) {
+    const TrainSetup small = SmallSetup();
+    TrainSetup setup(algorithm, "fast");
+    dynamic_cast<MappoConfig&>(*setup.own) = dynamic_cast<const MappoConfig&>(*small.own);
+    setup.common = small.common;
+    setup.common.steps = 1920;
+    setup.common.validation_episodes = 20;  // a block and a part of one
+    return setup;
+  }
+
+  /// Trains among so many ranks; the state of rank 0.
+  TrainState Train(const TrainSetup& setup, int ranks, int workers, Trainer::Options options) {
+    TrainState first;
+    options.workers = workers;
+    ThreadRanks(ranks).Run([&](Communicator* self) {
+      Trainer::Options own = options;
+      own.ranks = self;
+      Trainer trainer(ShortScenario(), setup, own);
+      trainer.Run();
+      const TrainState state = trainer.state();
+      if (self->rank() == 0) first = state;
+    });
+    return first;
+  }
+
+  std::string Policy(const std::string& name) const {
+    for (const char* file : {"policy_last.onnx", "policy_last_0.onnx"}) {
+      if (fs::exists(folder_ / name / file)) return Bytes(folder_ / name / file);
+    }
+    return "";
+  }
+};
+
+TEST_F(RanksTest, TheirNumberAndThatOfWorkersDoNotMatter) {
+  for (const char* algorithm : {"mappo", "ippo", "happo"}) {
+    const TrainSetup setup = SetupOf(algorithm);
+    const std::string name = algorithm;
+    const TrainState one = Train(setup, 1, 1, Options(name + "1"));
+    const std::string policy = Policy(name + "1");
+    ASSERT_FALSE(policy.empty());
+    for (const auto& [ranks, workers] : {std::pair(1, 2), std::pair(2, 1), std::pair(4, 1)}) {
+      const std::string other = name + std::to_string(ranks) + std::to_string(workers);
+      ExpectSameBits(Train(setup, ranks, workers, Options(other)), one);
+      EXPECT_EQ(Policy(other), policy) << other;
+    }
+  }
+}
+
+TEST_F(RanksTest, OneProcessAloneDiffersInTheOrderOfSumsOnly) {
+  TrainSetup setup = SetupOf("mappo");
+  setup.common.steps = 640;  // one collection, eight gradient steps
+  const TrainState among = Train(setup, 2, 1, Options("among"));
+  Trainer alone(ShortScenario(), setup, Options("alone"));
+  ASSERT_TRUE(alone.Run());
+  const std::vector<float>& a = among.algorithm.Floats("parameters");
+  const TrainState state = alone.state();
+  const std::vector<float>& b = state.algorithm.Floats("parameters");
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 2e-4) << i;
+}
+
+TEST_F(RanksTest, ARunThatWasStoppedGoesOnWithAnotherNumberOfRanks) {
+  TrainSetup setup = SetupOf("mappo");
+  setup.common.stagger = true;
+  const TrainState whole = Train(setup, 1, 1, Options("whole"));
+  Trainer::Options options = Options("halves");
+  options.halt_after = 1;
+  EXPECT_EQ(Train(setup, 2, 1, options).env_steps, 640);
+  options.halt_after = 0;
+  options.resume = true;
+  ExpectSameBits(Train(setup, 4, 1, options), whole);
+}
+
+TEST_F(RanksTest, OnesRequestToStopStopsAll) {
+  const std::atomic<int> stop{2}, go{0};
+  ThreadRanks(2).Run([&](Communicator* self) {
+    Trainer::Options own = Options("run");
+    own.ranks = self;
+    own.stop = self->rank() == 1 ? &stop : &go;
+    Trainer trainer(ShortScenario(), SetupOf("mappo"), own);
+    EXPECT_FALSE(trainer.Run());
+    EXPECT_EQ(trainer.state().env_steps, 640);
+  });
+}
+
+TEST_F(RanksTest, WhatCannotBeSharedIsRefused) {
+  const auto refused = [&](const TrainSetup& setup, int ranks, const std::string& reason) {
+    ThreadRanks(ranks).Run([&](Communicator* self) {
+      Trainer::Options own = Options("refused");
+      own.ranks = self;
+      try {
+        Trainer(ShortScenario(), setup, own);
+        ADD_FAILURE() << "accepted; expected: " << reason;
+      } catch (const UserError& error) {
+        EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+      }
+    });
+  };
+  refused(TrainSetup("masac", "fast"), 2,
+          "--algorithm masac: this algorithm learns in one process");
+  refused(SetupOf("mappo"), 3, "power of two");
+  TrainSetup few = SetupOf("mappo");
+  few.common.envs = 8;
+  refused(few, 16, "--envs");
+}
+
+}  // namespace
+}  // namespace stg::learn

@@ -1,0 +1,102 @@
+#include "belief_markers.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "shapes/marker_list.hpp"
+
+namespace stg::nodes {
+namespace {
+
+class BeliefBuilder : private MarkerList {
+ public:
+  BeliefBuilder(const SwarmView& view, const MarkerStyle& style)
+      : view_(view), unit_(UnitOf(view, style)) {}
+
+  visualization_msgs::MarkerArray Build() {
+    for (std::size_t i = 0; i < view_.vehicles.size(); ++i) {
+      const VehicleView& v = view_.vehicles[i];
+      if (!v.seen) continue;
+      Estimate(static_cast<int>(i), v);
+      Detection(static_cast<int>(i), v);
+    }
+    return std::move(array_);
+  }
+
+ private:
+  void Estimate(int id, const VehicleView& v) {
+    if (!v.target_known) {
+      Delete("estimate", id, Marker::SPHERE);
+      Delete("estimate_std", id, Marker::SPHERE);
+      return;
+    }
+    Sphere("estimate", id, v.estimate, 0.3 * unit_, PhaseColor(v.phase, 0.9));
+    Marker m = New("estimate_std", id, Marker::SPHERE, PhaseColor(v.phase, 0.12));
+    m.pose.position = v.estimate;
+    m.scale.x = m.scale.y = m.scale.z = std::max(2.0 * v.estimate_std, 0.3 * unit_);
+    ShapeAs(v.covariance, &m);
+    Add(std::move(m));
+  }
+
+  /// Turns a sphere into the ellipsoid of one standard deviation, no thinner than can be seen. What
+  /// is no covariance (an old recording has none) changes nothing.
+  void ShapeAs(const std::array<double, 6>& xx_xy_xz_yy_yz_zz, Marker* m) const {
+    const auto& c = xx_xy_xz_yy_yz_zz;
+    Eigen::Matrix3d P;
+    P << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+    if (!P.allFinite() || P.trace() <= 0.0) return;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(P);
+    if (axes.info() != Eigen::Success || axes.eigenvalues().minCoeff() < 0.0) return;
+    Eigen::Matrix3d R = axes.eigenvectors();
+    if (R.determinant() < 0.0) R.col(0) *= -1.0;
+    const Eigen::Quaterniond q(R);
+    m->pose.orientation.w = q.w();
+    m->pose.orientation.x = q.x();
+    m->pose.orientation.y = q.y();
+    m->pose.orientation.z = q.z();
+    const Eigen::Vector3d size = (2.0 * axes.eigenvalues().cwiseSqrt()).cwiseMax(0.3 * unit_);
+    m->scale.x = size.x();
+    m->scale.y = size.y();
+    m->scale.z = size.z();
+  }
+
+  void Detection(int id, const VehicleView& v) {
+    const DetectionView& d = v.detection;
+    const double age = view_.now - d.time;
+    const bool fresh = age >= 0.0 && age <= std::max(kShown_s, 2.0 * view_.step_s);
+    const auto colour = Color(1.0, 0.9, 0.3, 0.55);
+    const Point& p = v.pose.position;
+    if (fresh && d.has_bearing) {
+      Marker ray = Lines("detection_ray", id, Marker::LINE_LIST, 0.03 * unit_, colour);
+      const double length = d.has_range ? d.range_m : view_.scene.sensing_range_m;
+      const double level = std::cos(d.elevation_rad) * length;
+      ray.points = {p, Sum(p, At(level * std::cos(d.azimuth_rad), level * std::sin(d.azimuth_rad),
+                                 length * std::sin(d.elevation_rad)))};
+      Add(std::move(ray));
+    } else {
+      Delete("detection_ray", id, Marker::LINE_LIST);
+    }
+    if (fresh && d.has_range && !d.has_bearing) {
+      Circle("detection_range", id, p, d.range_m, 0.03 * unit_, colour);
+    } else {
+      Delete("detection_range", id, Marker::LINE_STRIP);
+    }
+  }
+
+  static constexpr double kShown_s = 0.3;  ///< of simulated time that a detection stays at least
+
+  const SwarmView& view_;
+  const double unit_;
+};
+
+}  // namespace
+
+void AddBeliefMarkers(const SwarmView& view, const MarkerStyle& style,
+                      visualization_msgs::MarkerArray* array) {
+  const visualization_msgs::MarkerArray beliefs = BeliefBuilder(view, style).Build();
+  array->markers.insert(array->markers.end(), beliefs.markers.begin(), beliefs.markers.end());
+}
+
+}  // namespace stg::nodes
