@@ -42,7 +42,8 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 3000;
   const stg::agent::PursuitOptions tuned;
   bool privileged = false;
-  app.add_option("--policy", policy, "ONNX file, or encircle, pursuit, pursuit_separated, idle")->required();
+  app.add_option("--policy", policy, "ONNX file, or encircle, pursuit, pursuit_separated, idle")
+      ->required();
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
   app.add_option("--condition", condition,
                  "nominal, fast_target, far_initialization, limited_sensing, "
