@@ -7,10 +7,12 @@
 namespace stg::agent {
 namespace {
 
-constexpr double kLeastWeight = 1e-4;
+constexpr double kLeastWeight = 1e-6;
 /// Two components this close, in units of the heavier one's covariance of the position and weighed
 /// by the smaller share of the two, are told apart by nothing that is measured.
 constexpr double kTooClose = 0.1;
+/// However little weight there is on one of them, what lies this far apart is not the same.
+constexpr double kFar = 9.0;
 /// A third of a normal distribution: weights, offset in deviations, kept share of the variance.
 /// The offsets are those of the best fit in L2 (DeMars, Bishop, Jah 2013); the kept variance is
 /// such that the split has the variance of what it splits.
@@ -53,6 +55,16 @@ Gaussian GaussianMixture::Copy(int k) {
   const Gaussian from = at(k), to = at(size_++);
   std::copy_n(from.weight, step_, to.weight);
   return to;
+}
+
+void GaussianMixture::AddPart(const GaussianMixture& other, int k) {
+  assert(states_ <= other.states_);
+  const Gaussian from = other.at(k), to = Add();
+  *to.weight = *from.weight;
+  std::copy_n(from.x, states_, to.x);
+  for (int r = 0; r < states_; ++r) {
+    std::copy_n(from.P + r * other.stride_, states_, to.P + r * stride_);
+  }
 }
 
 void GaussianMixture::Remove(int k) {
@@ -100,8 +112,8 @@ double GaussianMixture::Separation(int i, int j) const {
   const double l3 = yz2 / y2, z2 = zz - l2 * xz - l3 * yz2;
   const double ey = dy - l1 * dx, ez = dz - l2 * dx - l3 * ey;
   const double distance = dx * dx / xx + ey * ey / y2 + ez * ez / z2;
-  const double share = *a.weight * *b.weight / (*a.weight + *b.weight);
-  return distance * share / std::max(*a.weight, *b.weight);
+  const double share = std::min(*a.weight, *b.weight) / (*a.weight + *b.weight);
+  return std::max(distance * share, distance > kFar ? 2.0 * kTooClose : 0.0);
 }
 
 void GaussianMixture::Merge(int into, int from) {

@@ -43,6 +43,8 @@ class GaussianMixture {
   Gaussian Add();
   /// A copy of component k. Not when full.
   Gaussian Copy(int k);
+  /// A copy of the first states of component k of another mixture. Not when full.
+  void AddPart(const GaussianMixture& other, int k);
   void Remove(int k);  ///< the last one takes its place
 
   /// Scales the weights to a sum of one.

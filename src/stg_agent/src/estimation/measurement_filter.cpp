@@ -13,9 +13,15 @@ using dynamics::Detection;
 
 constexpr int kMostComponents = 28;  ///< while a detection is taken
 constexpr int kKeptComponents = 12;  ///< after it
-constexpr int kSnapshots = 16;
+constexpr int kSnapshots = 24;
 constexpr std::size_t kMostSightings = 512;
-constexpr std::size_t kOwnSightings = 16;
+constexpr std::size_t kForgottenTogether = 32;  ///< sightings, so that the rest moves seldom
+
+/// Two ranges leave two places, mirrored at the line between the observers, and the filter may have
+/// taken the wrong one when the target crossed that line: the other one gets a chance so often.
+constexpr TimeNs kMirrorPeriod = 5'000'000'000;
+constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer, who tells the two apart
+constexpr double kMirrorWeight = 0.03;
 
 /// A detection and who made it.
 struct Sighting {
@@ -32,6 +38,10 @@ struct Snapshot {
   TimeNs stamp = 0;    ///< time of the state
   TimeNs information = 0;
   bool observed = false;
+  Sighting last;            ///< the newest one in it
+  Sighting other;           ///< the newest one of another AUV than that
+  TimeNs third = 0;         ///< when there was last one of a third AUV
+  TimeNs mirrored = 0;      ///< when the mirror image was last given a chance
   GaussianMixture mixture;  ///< empty: nothing is known of the target
   Observers observers;
 };
@@ -50,13 +60,12 @@ class MeasurementFilter : public TargetFilter {
         spacing_(static_cast<TimeNs>(s.track.share_spacing_s * 1e9)),
         oldest_shared_(std::min(memory_, 127 * s.decision_period())),
         now_(model_.layout(), self, kMostComponents),
-        view_(model_.layout().states(), kKeptComponents) {
+        view_(kTargetStates + model_.layout().per_observer, kKeptComponents) {
     snapshots_.reserve(kSnapshots);
     for (int k = 0; k < kSnapshots; ++k) {
       snapshots_.emplace_back(model_.layout(), self, kKeptComponents);
     }
     sightings_.reserve(kMostSightings + 1);
-    own_.reserve(kOwnSightings + 1);
   }
 
   bool Takes(dynamics::MeasurementKind, bool) const override { return true; }
@@ -64,11 +73,13 @@ class MeasurementFilter : public TargetFilter {
 
   void Clear() override {
     sightings_.clear();
-    own_.clear();
     played_ = 0;
     now_.covers = -1;
     now_.stamp = now_.information = 0;
     now_.observed = false;
+    now_.last.source = now_.other.source = -1;
+    now_.mirrored = 0;
+    now_.third = -kAlone;
     now_.mixture.Clear();
     now_.observers.Clear();
     first_ = 0;
@@ -97,19 +108,11 @@ class MeasurementFilter : public TargetFilter {
 
   void Predict(TimeNs) override {}
 
-  void Detect(const Detection& detection) override {
-    Insert({detection, self_});
-    if (own_.size() == kOwnSightings) own_.erase(own_.begin());
-    own_.push_back(detection);
-  }
+  void Detect(const Detection& detection) override { Insert({detection, self_}); }
 
   void Settle(TimeNs now) override {
     while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= now) Play();
-    while (!sightings_.empty() && played_ > 0 &&
-           sightings_.front().detection.stamp <= Kept(0).covers) {
-      sightings_.erase(sightings_.begin());
-      --played_;
-    }
+    Forget();
     Tell(now);
   }
 
@@ -118,10 +121,12 @@ class MeasurementFilter : public TargetFilter {
 
   void Tell(bool, NeighbourState* state) const override {
     state->sightings = 0;
-    for (auto d = own_.rbegin(); d != own_.rend() && state->sightings < kSightings; ++d) {
-      if (state->generation - d->stamp > oldest_shared_) break;
-      if (state->sightings > 0 && state->sighting[0].stamp - d->stamp < spacing_) continue;
-      state->sighting[static_cast<std::size_t>(state->sightings++)] = *d;
+    for (auto it = sightings_.rbegin(); it != sightings_.rend(); ++it) {
+      const Detection& d = it->detection;
+      if (state->sightings == kSightings || state->generation - d.stamp > oldest_shared_) break;
+      if (it->source != self_ || d.stamp > state->generation) continue;
+      if (state->sightings > 0 && state->sighting[0].stamp - d.stamp < spacing_) continue;
+      state->sighting[static_cast<std::size_t>(state->sightings++)] = d;
     }
     state->has_target = state->sightings > 0;
   }
@@ -135,6 +140,15 @@ class MeasurementFilter : public TargetFilter {
       --kept_;
     }
     Kept(kept_++) = now_;
+  }
+
+  /// Sightings that no snapshot needs any more.
+  void Forget() {
+    std::size_t old = 0;
+    while (old < played_ && sightings_[old].detection.stamp <= Kept(0).covers) ++old;
+    if (old < kForgottenTogether && sightings_.size() < kMostSightings) return;
+    sightings_.erase(sightings_.begin(), sightings_.begin() + static_cast<std::ptrdiff_t>(old));
+    played_ -= old;
   }
 
   static bool Before(const Sighting& a, const Sighting& b) {
@@ -193,7 +207,9 @@ class MeasurementFilter : public TargetFilter {
       model_.Seed(d, &mixture);
       now_.observers.Clear();
     } else {
-      model_.Predict(Seconds(d.stamp - now_.stamp), &mixture);
+      const double dt_s = Seconds(d.stamp - now_.stamp);
+      model_.Predict(dt_s, &mixture);
+      if (mixture.size() > 1) model_.DoubtTheFast(dt_s, &mixture);
     }
     now_.stamp = d.stamp;
     const int slot =
@@ -208,8 +224,31 @@ class MeasurementFilter : public TargetFilter {
     for (int k = 0; k < mixture.size(); ++k) model_.Update(d, slot, k >= one_way, &mixture, k);
     mixture.Normalise();
     mixture.Reduce(kKeptComponents);
+    if (now_.last.source != s.source) {
+      if (now_.other.source >= 0 && now_.other.source != s.source) {
+        now_.third = now_.other.detection.stamp;
+      }
+      now_.other = now_.last;
+    }
+    now_.last = s;
+    GiveMirrorAChance();
     now_.observed = true;
     now_.information = d.stamp;
+  }
+
+  void GiveMirrorAChance() {
+    const Sighting &a = now_.last, &b = now_.other;
+    if (a.detection.kind != dynamics::MeasurementKind::kRange || b.source < 0 ||
+        a.detection.stamp - b.detection.stamp > kMirrorPeriod ||
+        a.detection.stamp - now_.mirrored < kMirrorPeriod ||
+        a.detection.stamp - now_.third < kAlone || now_.mixture.full()) {
+      return;
+    }
+    now_.mirrored = a.detection.stamp;
+    if (model_.AddMirror(a.detection.p_WO, b.detection.p_WO, kMirrorWeight, &now_.mixture)) {
+      now_.mixture.Normalise();
+      now_.mixture.Reduce(kKeptComponents);
+    }
   }
 
   /// Splits what is too wide for a linear view of a detection, the weightiest first.
@@ -250,7 +289,8 @@ class MeasurementFilter : public TargetFilter {
     if (!belief_.started) return;
     belief_.information = now_.information;
     belief_.observed = now_.observed;
-    view_ = now_.mixture;
+    view_.Clear();
+    for (int k = 0; k < now_.mixture.size(); ++k) view_.AddPart(now_.mixture, k);
     model_.Predict(Seconds(now - now_.stamp), &view_);
     const int own = model_.layout().per_observer > 0 ? model_.layout().block(0) : -1;
     const int stride = view_.stride();
@@ -296,11 +336,10 @@ class MeasurementFilter : public TargetFilter {
   TimeNs memory_, spacing_, oldest_shared_;
   std::vector<Sighting> sightings_;  // by time, then by source
   std::size_t played_ = 0;           // so many of them are in now_
-  std::vector<Detection> own_;       // by time, newest last
   Snapshot now_;
   std::vector<Snapshot> snapshots_;  // a ring
   int first_ = 0, kept_ = 0;
-  GaussianMixture view_;
+  GaussianMixture view_;  // of the target and the own errors, now
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

@@ -19,13 +19,45 @@ namespace {
 constexpr int kMostObservers = 8;
 constexpr int kRing = 24, kRay = 8;  // components of a first range, a first bearing
 /// Share of the noise that the second-order error of a linear view may have.
-constexpr double kBendShare = 0.7;
+constexpr double kBendShare = 0.2;
+/// Ranges that an unknown depth bends alike before it has become another one: so many count as one
+/// as far as that goes.
+constexpr double kBentAlike = 15.0;
 /// Largest deviation of the distance, as a share of it, for a linear view of a bearing.
 constexpr double kDepthShare = 0.5;
+/// A component that is faster than it can be by one deviation has lost e^-1/2 after this time.
+constexpr double kDoubt_s = 5.0;
 /// Every detection is believed with some reserve, or a wrong track would never be given up.
 constexpr double kLeastFalseShare = 1e-3;
 constexpr int kMostStates = kTargetStates + 3 * kMostObservers;
 constexpr int kMostStride = (kMostStates + 3) & ~3;
+
+/// A distribution this much longer than wide is a cone with its tip at the observer.
+constexpr double kCone = 4.0;
+
+/// Turns the covariance of the target's position as the line to it has turned. What is uncertain
+/// along a line of sight stays so along the new one; a linear update leaves it along the old one,
+/// and the two lines would cross somewhere, which tells of a distance that nothing has measured.
+void Turn(const Vec3<double>& u, const Vec3<double>& v, Gaussian g, int stride) {
+  // Rotation of u to v: 1 + [w] + [w]^2 / (1 + u v), w = u x v.
+  const Vec3<double> w = Cross(u, v);
+  const double f = 1.0 / (1.0 + Dot(u, v));
+  const double R[3][3] = {
+      {1.0 - f * (w.y * w.y + w.z * w.z), f * w.x * w.y - w.z, f * w.x * w.z + w.y},
+      {f * w.x * w.y + w.z, 1.0 - f * (w.x * w.x + w.z * w.z), f * w.y * w.z - w.x},
+      {f * w.x * w.z - w.y, f * w.y * w.z + w.x, 1.0 - f * (w.x * w.x + w.y * w.y)}};
+  const auto turn = [&R](double* a, double* b, double* c) {
+    const double x = *a, y = *b, z = *c;
+    *a = R[0][0] * x + R[0][1] * y + R[0][2] * z;
+    *b = R[1][0] * x + R[1][1] * y + R[1][2] * z;
+    *c = R[2][0] * x + R[2][1] * y + R[2][2] * z;
+  };
+  for (int c = 0; c < stride; ++c) turn(g.P + c, g.P + stride + c, g.P + 2 * stride + c);
+  for (int r = 0; r < stride; ++r) {
+    double* row = g.P + r * stride;
+    turn(row, row + 1, row + 2);
+  }
+}
 
 double NormalDensity(double squared, double variance) {
   return std::exp(-0.5 * squared) / std::sqrt(2.0 * kPi * variance);
@@ -86,9 +118,11 @@ SightingModel::SightingModel(const AgentConfig& s) {
   }
   observer_depth_variance_ =
       navigation->perfect() ? 0.0 : s.navigation.depth_std_m * s.navigation.depth_std_m;
-  const double speed =
-      s.track.velocity_std_mps > 0.0 ? s.track.velocity_std_mps : s.target.max_speed_mps;
+  // Of a target that is as fast as it can be, in any horizontal direction.
+  const double speed = s.track.velocity_std_mps > 0.0 ? s.track.velocity_std_mps
+                                                      : s.target.max_speed_mps * std::sqrt(0.5);
   velocity_variance_ = speed * speed;
+  max_speed_mps_ = s.target.max_speed_mps;
   velocity_memory_s_ = s.track.velocity_memory_s;
   const double low = s.sea.open ? -s.sea.target_depth_m.hi : -s.workspace.half_extent_m;
   const double high = s.sea.open ? -s.sea.target_depth_m.lo : s.workspace.half_extent_m;
@@ -103,7 +137,7 @@ SightingModel::SightingModel(const AgentConfig& s) {
 void SightingModel::Predict(double t, GaussianMixture* mixture) const {
   if (t <= 0.0) return;
   const double T = velocity_memory_s_, s = t / T, q = velocity_variance_;
-  const double a = std::exp(-s), gone = -std::expm1(-s), g = T * gone;
+  const double gone = -std::expm1(-s), a = 1.0 - gone, g = T * gone;
   const double vv = q * gone * (1.0 + a), pv = q * T * gone * gone;
   // 2 s - 3 + 4 a - a^2 loses its digits for short times; its series begins with 2 s^3 / 3.
   const double shape = s > 0.01 ? 2.0 * s - 3.0 + 4.0 * a - a * a
@@ -143,7 +177,7 @@ void SightingModel::Predict(double t, GaussianMixture* mixture) const {
       Row row;
       row.Add(2, 1.0);
       Take(row, depth_mean_ - target.x[2], depth_variance_ * depth / (depth - depth_variance_), 0.0,
-           target, stride);
+           0.0, target, stride);
     }
   }
 }
@@ -245,11 +279,10 @@ double SightingModel::Excess(const Detection& d, int slot, const GaussianMixture
   double excess;
   const double across = at.Along(side);
   if (d.kind == MeasurementKind::kRange) {
-    const Vec3<double> u = at.d * (1.0 / at.range);
     // A target straight below: any direction bends the range.
     if (at.level < 0.3 * at.range && at.Along(out) > across) along = out;
-    const double wide = at.C[0][0] + at.C[1][1] + at.C[2][2] - at.Along(u);
-    excess = wide / (2.0 * at.range * kBendShare * std::max(d.range_std_m, floor_std_m_));
+    excess = std::max(across, along.x == out.x ? at.Along(out) : 0.0) /
+             (2.0 * at.range * kBendShare * std::max(d.range_std_m, floor_std_m_));
   } else {
     const double far = at.Along(out), mixed = at.Along(out, side);
     const double bend =
@@ -267,20 +300,24 @@ double SightingModel::Excess(const Detection& d, int slot, const GaussianMixture
 }
 
 /// Returns the likelihood of the innovation; weighs nothing.
-double SightingModel::Take(const Row& row, double innovation, double variance, double clutter,
-                           Gaussian g, int stride) const {
+double SightingModel::Take(const Row& row, double innovation, double variance, double alike,
+                           double clutter, Gaussian g, int stride) const {
   double column[kMostStride];
   const double s = row.Times(g, stride, column) + variance;
-  const double inverse = 1.0 / s, squared = innovation * innovation * inverse;
+  const double squared = innovation * innovation / s;
   double likelihood = 1.0, truth = 1.0;
   if (clutter > 0.0) {
     const double own = (1.0 - false_share_) * NormalDensity(squared, s);
     likelihood = own + false_share_ * clutter;
     truth = own / likelihood;
   }
+  // What many measurements share counts once among them, for the weights as for the gain.
+  if (alike > 0.0) likelihood = std::pow(likelihood, s / (s + alike));
   // Mixture of what is with and without the measurement, by its moments.
+  const double inverse = 1.0 / (s + alike);
   const double gain = truth * inverse * innovation;
-  const double less = (truth - truth * (1.0 - truth) * squared) * inverse;
+  const double spread = innovation * innovation * inverse;
+  const double less = (truth - truth * (1.0 - truth) * spread) * inverse;
   for (int r = 0; r < stride; ++r) {
     g.x[r] += gain * column[r];
     const double f = less * column[r];
@@ -298,10 +335,23 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
   // Second order: a wide target is farther off on the mean than its middle.
   const double wide = std::max(0.0, at.C[0][0] + at.C[1][1] + at.C[2][2] - at.Along(u));
   const double bend = wide / (2.0 * at.range);
+  const double level = at.level / at.range;
+  const double tall = at.C[2][2] * level * level / (2.0 * at.range);
   const double variance = std_m * std_m + 2.0 * bend * bend + u.z * u.z * observer_depth_variance_;
+  const double alike = 2.0 * kBentAlike * tall * tall;
   const Gaussian g = mixture->at(k);
-  *g.weight *= Take(RowOf(u, slot), d.range_m - at.range - bend, variance, 1.0 / range_m_, g,
-                    mixture->stride());
+  const int stride = mixture->stride();
+  // A range sees depth by its square, above and below alike: what it would say of it is not taken.
+  // The depth stays what is known beforehand, and what it does to the rest is reckoned with.
+  double *z = g.P + 2 * stride, *w = g.P + 5 * stride;
+  const double kept[] = {g.x[2], g.x[5], z[2], z[5], w[5]};
+  *g.weight *=
+      Take(RowOf(u, slot), d.range_m - at.range - bend, variance, alike, 1.0 / range_m_, g, stride);
+  g.x[2] = kept[0];
+  g.x[5] = kept[1];
+  z[2] = kept[2];
+  z[5] = w[2] = kept[3];
+  w[5] = kept[4];
 }
 
 void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int slot,
@@ -309,6 +359,7 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   const Gaussian g = mixture->at(k);
   const double noise = d.bearing_std_rad * d.bearing_std_rad;
   Geometry at = GeometryOf(d, slot, *mixture, k);
+  const Vec3<double> before = at.d * (1.0 / at.range);
   Vec3<double> out{at.d.x / at.level, at.d.y / at.level, 0.0};
   const Vec3<double> side{-out.y, out.x, 0.0};
   const double square = at.level * at.level;
@@ -318,8 +369,8 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   const double turned_by = layout_.per_observer > 2 ? g.x[layout_.block(slot) + 2] : 0.0;
   const double expected = std::atan2(at.d.y, at.d.x) - mixed / square + turned_by;
   const double bend = (mixed * mixed + far * across) / (square * square);
-  *g.weight *=
-      Take(row, WrapAngle(azimuth_rad - expected), noise + bend, 0.5 / kPi, g, mixture->stride());
+  *g.weight *= Take(row, WrapAngle(azimuth_rad - expected), noise + bend, 0.0, 0.5 / kPi, g,
+                    mixture->stride());
 
   at = GeometryOf(d, slot, *mixture, k);
   out = {at.d.x / at.level, at.d.y / at.level, 0.0};
@@ -334,7 +385,14 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
                        observer_depth_variance_ / r2;
   *g.weight *= Take(RowOf(up * (1.0 / at.range), slot),
                     d.elevation_rad - std::atan2(at.d.z, at.level) + cross / r2 + 0.5 * turned,
-                    noise + rough, 1.0 / kPi, g, mixture->stride());
+                    noise + rough, 0.0, 1.0 / kPi, g, mixture->stride());
+
+  at = GeometryOf(d, slot, *mixture, k);
+  const Vec3<double> after = at.d * (1.0 / at.range);
+  const double line = at.Along(after);
+  if (line > kCone * (at.C[0][0] + at.C[1][1] + at.C[2][2] - line)) {
+    Turn(before, after, g, mixture->stride());
+  }
 }
 
 /// What gives a point is linear in the state: along the three axes of its noise.
@@ -373,8 +431,53 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
     const double turned = layout_.per_observer > 2 ? turn * g.x[layout_.block(slot) + 2] : 0.0;
     *g.weight *=
         Take(row, Dot(a, r - at.d) - turned, variance[axis] + a.z * a.z * observer_depth_variance_,
-             0.5 / range_m_, g, mixture->stride());
+             0.0, 0.5 / range_m_, g, mixture->stride());
   }
+}
+
+void SightingModel::DoubtTheFast(double dt_s, GaussianMixture* mixture) const {
+  for (int k = 0; k < mixture->size(); ++k) {
+    const Gaussian g = mixture->at(k);
+    const double over = std::hypot(g.x[3], g.x[4]) - max_speed_mps_;
+    if (over <= 0.0) continue;
+    *g.weight *= std::exp(-0.5 * over * over / velocity_variance_ * dt_s / kDoubt_s);
+  }
+  mixture->Normalise();
+}
+
+bool SightingModel::AddMirror(const Vec3<double>& p_WA, const Vec3<double>& p_WB, double weight,
+                              GaussianMixture* mixture) const {
+  int heaviest = 0;
+  for (int k = 1; k < mixture->size(); ++k) {
+    if (*mixture->at(k).weight > *mixture->at(heaviest).weight) heaviest = k;
+  }
+  const int stride = mixture->stride();
+  const Vec3<double> line{p_WB.x - p_WA.x, p_WB.y - p_WA.y, 0.0};
+  const double length = std::hypot(line.x, line.y);
+  if (length < 1e-3) return false;
+  const double nx = -line.y / length, ny = line.x / length;
+  const Gaussian from = mixture->at(heaviest);
+  const double off = nx * (from.x[0] - p_WA.x) + ny * (from.x[1] - p_WA.y);
+  const double variance =
+      nx * nx * from.P[0] + 2.0 * nx * ny * from.P[1] + ny * ny * from.P[stride + 1];
+  if (off * off < 4.0 * variance) return false;
+  const Gaussian g = mixture->Copy(heaviest);
+  *g.weight = weight;
+  g.x[0] -= 2.0 * off * nx;
+  g.x[1] -= 2.0 * off * ny;
+  const auto reflect = [nx, ny](double* x, double* y) {
+    const double along = 2.0 * (nx * *x + ny * *y);
+    *x -= along * nx;
+    *y -= along * ny;
+  };
+  for (int c = 0; c < stride; ++c) reflect(g.P + c, g.P + stride + c);
+  for (int r = 0; r < stride; ++r) reflect(g.P + r * stride, g.P + r * stride + 1);
+  for (int i = 3; i < kTargetStates; ++i) {
+    g.x[i] = 0.0;
+    for (int c = 0; c < stride; ++c) g.P[i * stride + c] = g.P[c * stride + i] = 0.0;
+    g.P[i * stride + i] = velocity_variance_;
+  }
+  return true;
 }
 
 void SightingModel::Update(const Detection& d, int slot, bool mirror, GaussianMixture* mixture,

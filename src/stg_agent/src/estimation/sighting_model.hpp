@@ -45,6 +45,13 @@ class SightingModel {
   void Update(const dynamics::Detection& d, int slot, bool mirror, GaussianMixture* mixture,
               int k) const;
 
+  /// Takes weight from components that are faster than the target can be.
+  void DoubtTheFast(double dt_s, GaussianMixture* mixture) const;
+  /// Adds the mirror image of the heaviest component at the vertical plane through two observers,
+  /// of unknown velocity; false where the two are no different places.
+  bool AddMirror(const Vec3<double>& p_WA, const Vec3<double>& p_WB, double weight,
+                 GaussianMixture* mixture) const;
+
   /// Moments of the depth as far as it is known beforehand [m], [m^2].
   double depth_mean() const { return depth_mean_; }
   double depth_variance() const { return depth_variance_; }
@@ -59,8 +66,8 @@ class SightingModel {
                      GaussianMixture* mixture, int k) const;
   void UpdatePoint(const dynamics::Detection& d, double azimuth_rad, int slot,
                    GaussianMixture* mixture, int k) const;
-  double Take(const Row& row, double innovation, double variance, double clutter, Gaussian g,
-              int stride) const;
+  double Take(const Row& row, double innovation, double variance, double alike, double clutter,
+              Gaussian g, int stride) const;
   Row RowOf(const Vec3<double>& direction, int slot) const;
   void AddHeading(double slope, int slot, Row* row) const;
 
@@ -68,7 +75,7 @@ class SightingModel {
   double velocity_variance_, velocity_memory_s_;
   double depth_mean_, depth_variance_;
   double observer_depth_variance_;
-  double range_m_, floor_std_m_;
+  double range_m_, floor_std_m_, max_speed_mps_;
   double false_share_;  // of detections
 };
 

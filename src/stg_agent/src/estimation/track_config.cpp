@@ -23,12 +23,12 @@ void Describe(TrackConfig* c, config::Table* t) {
       "target filter: of positions and shared estimates, or of measurements of any kind");
   t->AddOptional("velocity_std_mps", &c->velocity_std_mps, "0.0", config::NonNegative(100), "m/s",
                  "measurements: standard deviation of each component of the target's velocity; 0: "
-                 "target.max_speed_mps");
+                 "target.max_speed_mps over the root of 2");
   t->AddOptional("velocity_memory_s", &c->velocity_memory_s, "60.0", config::Positive(1e5), "s",
                  "measurements: correlation time of the target's velocity");
   t->AddOptional("memory_s", &c->memory_s, "60.0", config::Positive(1e5), "s",
                  "measurements: oldest measurement that is still taken");
-  t->AddOptional("share_spacing_s", &c->share_spacing_s, "5.0", config::NonNegative(1e5), "s",
+  t->AddOptional("share_spacing_s", &c->share_spacing_s, "2.0", config::NonNegative(1e5), "s",
                  "measurements: least time between the two measurements in one packet");
 }
 

@@ -46,15 +46,15 @@ TEST_F(MpiTest, OneAndTwoRanksAndTwoWorkersGiveTheSamePolicy) {
 
 TEST_F(MpiTest, ALostRankEndsTheRunAndResumeGoesOn) {
   const std::string options = "--checkpoint-interval 1280 --workers 1 ";
-  ASSERT_EQ(Run(Command(2, "whole", options + "--steps 64000")), 0) << output_;
+  ASSERT_EQ(Run(Command(2, "whole", options + "--steps 32000")), 0) << output_;
   // One is killed when there is a checkpoint.
   const std::string checkpoints = (folder_ / "lost" / "checkpoint_*").string();
   const std::string lose = " & run=$!; until ls " + checkpoints +
                            "; do kill -0 $run || exit 9; sleep 0.02; done;"
                            " kill -9 $(pgrep -P $run train | head -1); wait $run";
-  EXPECT_NE(Run(Command(2, "lost", options + "--steps 64000") + lose), 0) << output_;
+  EXPECT_NE(Run(Command(2, "lost", options + "--steps 32000") + lose), 0) << output_;
   EXPECT_NE(Policy("lost"), Policy("whole"));
-  ASSERT_EQ(Run(Command(2, "lost", options + "--steps 64000 --resume")), 0) << output_;
+  ASSERT_EQ(Run(Command(2, "lost", options + "--steps 32000 --resume")), 0) << output_;
   EXPECT_EQ(Policy("lost"), Policy("whole"));
 }
 

@@ -16,10 +16,10 @@ struct TrackConfig {
   double lost_std_m = 0.2;  ///< track no better than this counts as lost
   double neighbour_max_age_s = 10.0;  ///< a neighbour is forgotten after this silence
   // Of the filter `measurements`.
-  double velocity_std_mps = 0.0;    ///< of the target, each component; 0: its largest speed
+  double velocity_std_mps = 0.0;    ///< of the target, each component; 0: largest speed / root 2
   double velocity_memory_s = 60.0;  ///< correlation time of the target's velocity
   double memory_s = 60.0;           ///< measurements no older than this are taken
-  double share_spacing_s = 5.0;     ///< least time between the measurements in one packet
+  double share_spacing_s = 2.0;     ///< least time between the measurements in one packet
 };
 
 /// Keys, units and ranges of the section.
