@@ -1,9 +1,11 @@
 """Checks the shipped rviz files: they parse, and show only what is published."""
 
+import math
 import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -79,7 +81,7 @@ class RvizFiles(unittest.TestCase):
 
     def test_every_topic_shown_is_published(self):
         published = published_markers()
-        self.assertEqual(len(published), 2)
+        self.assertEqual(len(published), 3)
         shown = set()
         for view in rviz_files().values():
             for display in displays(view["Visualization Manager"]):
@@ -111,7 +113,39 @@ class RvizFiles(unittest.TestCase):
         for view in ("overview", "follow"):
             self.assertTrue((PACKAGE / "rviz" / f"{view}.rviz").is_file())
         text = (PACKAGE / "launch" / "view.launch").read_text()
-        self.assertIn("rviz/$(arg view).rviz", text)
+        self.assertIn('type="view.py" args="$(arg view) ', text)
+
+    def test_the_camera_fits_the_scenario(self):
+        def camera(view, scenario):
+            with tempfile.TemporaryDirectory() as folder:
+                asked, made = pathlib.Path(folder) / "s.yaml", pathlib.Path(folder) / "v.rviz"
+                asked.write_text(yaml.safe_dump(scenario))
+                subprocess.run(
+                    ["/usr/bin/python3", PACKAGE / "scripts" / "view.py", view, "--scenario-file",
+                     asked, "--write", made], check=True,
+                )  # fmt: skip
+                content = yaml.safe_load(made.read_text())
+            return content["Visualization Manager"]["Views"]["Current"]
+
+        def shown_m(view, scenario):
+            """Half the height of what the camera sees at its focal point."""
+            current = camera(view, scenario)
+            return current["Distance"] * math.tan(0.5 * current["Field of View"])
+
+        field = {"workspace": {"half_extent_m": 2000.0}, "vehicle": {"radius_m": 2.5},
+                 "reward": {"band_m": [60.0, 120.0]}, "sea": {"open": True}}  # fmt: skip
+        box = {"workspace": {"half_extent_m": 1.0}, "vehicle": {"radius_m": 0.011},
+               "reward": {"band_m": [0.010, 0.015]}}  # fmt: skip
+        for scenario in (box, field):
+            extent = scenario["workspace"]["half_extent_m"]
+            self.assertLess(extent, shown_m("overview", scenario))
+            self.assertLess(shown_m("overview", scenario), 2.0 * extent)
+        band = field["reward"]["band_m"][1]
+        self.assertLess(1.3 * band, shown_m("follow", field))
+        self.assertLess(shown_m("follow", field), 3.0 * band)
+        shipped = rviz_files()["follow.rviz"]["Visualization Manager"]["Views"]["Current"]
+        self.assertEqual(camera("follow", box)["Distance"], shipped["Distance"])
+        self.assertEqual(camera("follow", {})["Distance"], shipped["Distance"])
 
 
 class Replay(unittest.TestCase):

@@ -78,6 +78,13 @@ TEST(Allocation, NorDoModemsInWater) {
   }
 }
 
+TEST(Allocation, NorDoDriftingAuvsThatShareMeasurements) {
+  EXPECT_EQ(AllocationsAfterWarmUp(Shipped("field", "nominal",
+                                           {"navigation.kind=dead_reckoning",
+                                            "sensing.sensor=range", "track.filter=measurements"})),
+            0);
+}
+
 TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
   for (const char* mode : {"mode=truth", "mode=acoustic"}) {
     EXPECT_EQ(AllocationsAfterWarmUp(

@@ -76,8 +76,8 @@ TEST_P(Sensors, OutliersAndFalseAlarmsAreSetAside) {
   if (std::string(GetParam()) == "position") return;  // has none
   const FleetOptions o = Options(2);
   AgentConfig s = FleetScenario(o);
-  s.sensing.outlier_probability = 0.05;
-  s.sensing.false_alarm_probability = 0.05;
+  s.sensing.outlier_probability = 0.02;
+  s.sensing.false_alarm_probability = 0.02;
   const Consistency c = Judge(o, s);
   for (const double nees : c.nees) EXPECT_LT(nees, kUpper) << o.sensor;
 }

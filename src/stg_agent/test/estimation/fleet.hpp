@@ -16,10 +16,10 @@ namespace stg::agent {
 struct FleetOptions {
   std::string sensor = "range";
   int observers = 2;
-  double loss = 0.0;          ///< share of packets that never come
-  double longest_age_s = 2.0; ///< packets come after a time between 0 and this, in any order
-  double interval_s = 4.0;    ///< between two packets of one AUV
-  bool drift = true;          ///< dead reckoning
+  double loss = 0.0;           ///< share of packets that never come
+  double longest_age_s = 2.0;  ///< packets come after a time between 0 and this, in any order
+  double interval_s = 4.0;     ///< between two packets of one AUV
+  bool drift = true;           ///< dead reckoning
   double seconds = 240.0;
   std::string motion = "coordinated_turn";
   double turn_rate_radps = 0.02;
@@ -62,8 +62,8 @@ inline AgentConfig FleetScenario(const FleetOptions& o) {
 
 /// An estimate of AUV 0 against the truth.
 struct Judgement {
-  double nees = 0.0;     ///< squared error in units of the covariance, 3 degrees of freedom
-  double error_m = 0.0;  ///< horizontal, in the world
+  double nees = 0.0;        ///< squared error in units of the covariance, 3 degrees of freedom
+  double error_m = 0.0;     ///< horizontal, in the world
   double relative_m = 0.0;  ///< horizontal, of the vector that the AUV steers by
   double std_m = 0.0;       ///< stated, of each component
 };
@@ -73,11 +73,7 @@ struct Judgement {
 class Fleet {
  public:
   Fleet(AgentConfig scenario, const FleetOptions& options)
-      : o_(options),
-        s_(std::move(scenario)),
-        codec_(s_, LayoutOf(s_)),
-        world_(s_),
-        random_(17) {
+      : o_(options), s_(std::move(scenario)), codec_(s_, LayoutOf(s_)), world_(s_), random_(17) {
     for (int lane = 0; lane < kLanes; ++lane) {
       for (int i = 0; i < s_.agents; ++i) {
         filters_.push_back(TargetFilters().Make(s_.track.filter, s_, i));
@@ -127,9 +123,7 @@ class Fleet {
     TimeNs arrival;
     Packet packet;
   };
-  std::size_t At(int lane, int i) const {
-    return static_cast<std::size_t>(lane * s_.agents + i);
-  }
+  std::size_t At(int lane, int i) const { return static_cast<std::size_t>(lane * s_.agents + i); }
   double Uniform() { return std::uniform_real_distribution<double>()(random_); }
 
   void Decide(int lane, int k) {

@@ -68,6 +68,8 @@ class SightingModel {
                    GaussianMixture* mixture, int k) const;
   double Take(const Row& row, double innovation, double variance, double alike, double clutter,
               Gaussian g, int stride) const;
+  void Apply(const Row& row, double innovation, double variance, double truth, Gaussian g,
+             int stride) const;
   Row RowOf(const Vec3<double>& direction, int slot) const;
   void AddHeading(double slope, int slot, Row* row) const;
 

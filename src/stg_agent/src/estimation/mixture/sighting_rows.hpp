@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "sighting_model.hpp"
+
+/// What the equations of SightingModel are written in.
+namespace stg::agent {
+
+/// Observers whose errors a filter keeps apart; of larger swarms those heard last.
+inline constexpr int kMostObservers = 8;
+inline constexpr int kMostStates = kTargetStates + 3 * kMostObservers;
+inline constexpr int kMostStride = (kMostStates + 3) & ~3;
+
+/// The line from the observer to the target and its covariance, errors of the observer included.
+struct SightingModel::Geometry {
+  Vec3<double> d;       ///< target minus observer
+  double C[3][3];       ///< covariance of d
+  double range, level;  ///< length, and that of its horizontal part
+
+  double Along(const Vec3<double>& a, const Vec3<double>& b) const {
+    const double u[3] = {a.x, a.y, a.z}, v[3] = {b.x, b.y, b.z};
+    double sum = 0.0;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) sum += u[r] * C[r][c] * v[c];
+    }
+    return sum;
+  }
+  double Along(const Vec3<double>& a) const { return Along(a, a); }
+};
+
+/// The few numbers of a row that are not zero.
+struct SightingModel::Row {
+  std::array<int, 6> index{};
+  std::array<double, 6> value{};
+  int count = 0;
+
+  void Add(int i, double v) {
+    index[static_cast<std::size_t>(count)] = i;
+    value[static_cast<std::size_t>(count++)] = v;
+  }
+  /// P times the row as a column; returns row P column.
+  double Times(const Gaussian& g, int stride, double* column) const {
+    std::fill_n(column, stride, 0.0);
+    for (int k = 0; k < count; ++k) {
+      const double v = value[static_cast<std::size_t>(k)];
+      const double* p = g.P + index[static_cast<std::size_t>(k)] * stride;
+      for (int c = 0; c < stride; ++c) column[c] += v * p[c];
+    }
+    double sum = 0.0;
+    for (int k = 0; k < count; ++k) {
+      sum += value[static_cast<std::size_t>(k)] * column[index[static_cast<std::size_t>(k)]];
+    }
+    return sum;
+  }
+};
+
+}  // namespace stg::agent
