@@ -130,8 +130,8 @@ TEST_F(RelativeSensorTest, FieldOfViewIsAConeAroundTheBow) {
   EXPECT_TRUE(seen(0.0, 0.0));
   EXPECT_TRUE(seen(44.0, 0.0));
   EXPECT_FALSE(seen(46.0, 0.0));
-  EXPECT_TRUE(seen(0.0, 44.0));
-  EXPECT_FALSE(seen(40.0, 30.0));  // 48.4 degrees off the bow
+  EXPECT_TRUE(seen(0.0, -44.0));
+  EXPECT_FALSE(seen(40.0, -30.0));  // 48.4 degrees off the bow
   EXPECT_FALSE(seen(180.0, 0.0));
 }
 

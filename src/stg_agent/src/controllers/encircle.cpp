@@ -97,7 +97,8 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const auto on_circle = Abs(distance - R) < T(0.5 * d);
   T ahead(kTwoPi), behind(kTwoPi);
   Level<T> aside;
-  const bool rings = (s.agents + s.target.count - 1) / s.target.count > o.ring_team;
+  const int team = (s.agents + s.target.count - 1) / s.target.count;
+  const bool rings = team > o.ring_team;
   const T reach = rings ? T(o.ring * d) : T(0.6 * d);
   for (int j = 0; j < in.neighbour_count; ++j) {
     const NeighbourSight<T>& n = in.neighbours[j];

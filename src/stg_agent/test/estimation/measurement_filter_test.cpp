@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <random>
 
@@ -50,6 +51,35 @@ NeighbourState Shared(int source, const dynamics::Detection& d) {
 void Step(TargetFilter* f, TimeNs now) {
   f->Predict(now);
   f->Settle(now);
+}
+
+/// Smallest eigenvalue of the covariance of the position [m^2].
+double Narrowest(const TargetBelief& b) {
+  const Covariance3& P = b.P_WT;
+  Eigen::Matrix3d m;
+  m << P.xx, P.xy, P.xz, P.xy, P.yy, P.yz, P.xz, P.yz, P.zz;
+  return m.allFinite() ? m.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() : -1.0;
+}
+
+TEST(MeasurementFilter, RangesThatAreHalfBelievedLeaveACovariance) {
+  const AgentConfig s = Scenario("range");
+  const Vec3<double> target{0.0, 0.0, -50.0};
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> angle(-kPi, kPi), off(-60.0, 60.0), distance(5.0, 120.0);
+  for (int flight = 0; flight < 50; ++flight) {
+    auto f = Filter(s);
+    f->Start(target, 10.0, 0);
+    for (int k = 0; k < 60; ++k) {
+      const double a = angle(random), r = distance(random);
+      const Vec3<double> p_WO{r * std::cos(a), r * std::sin(a), -20.0};
+      // One in four is wrong by anything.
+      const double wrong = k % 4 == 3 ? off(random) : 0.0;
+      f->Predict(k * kSecond);
+      f->Detect(Range(k * kSecond, p_WO, std::max(1.0, Norm(target - p_WO) + wrong)));
+      f->Settle(k * kSecond);
+      ASSERT_GT(Narrowest(f->belief()), 0.0) << "flight " << flight << ", range " << k;
+    }
+  }
 }
 
 TEST(MeasurementFilter, StartsFromTheCueWithTheDepthThatIsKnown) {

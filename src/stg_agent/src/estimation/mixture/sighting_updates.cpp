@@ -176,6 +176,9 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
       Take(RowOf(u, slot), d.range_m - at.range - bend, variance, alike, 1.0 / range_m_, g, stride);
   g.x[2] = kept[0];
   g.x[5] = kept[1];
+  // A range that is half believed may have widened the depth with the rest: that stays, as the
+  // covariance of a depth that alone is narrower would be none.
+  if (z[2] >= kept[2] && w[5] >= kept[4]) return;
   z[2] = kept[2];
   z[5] = w[2] = kept[3];
   w[5] = kept[4];
