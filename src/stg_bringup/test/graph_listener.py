@@ -8,6 +8,7 @@ import sys
 import rosgraph
 import rosnode
 import rospy
+from auv_msgs.msg import EpisodeSummary
 from diagnostic_msgs.msg import DiagnosticArray
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "auv_common/test"))
@@ -34,6 +35,24 @@ class Latest:
         """Waits for `number` further messages."""
         wanted = self.count + number
         wait_for(lambda: self.count >= wanted, timeout_s, f"more of {self._subscriber.name}")
+
+
+class SummaryOf:
+    """Keeps the summary of the episode of one seed."""
+
+    def __init__(self, seed):
+        self.message, self.seed = None, seed
+        self._subscriber = rospy.Subscriber(
+            "/episode_summary", EpisodeSummary, self._keep, queue_size=100
+        )
+
+    def _keep(self, message):
+        if message.seed == self.seed:
+            self.message = message
+
+    def wait(self, timeout_s):
+        """Returns it."""
+        return wait_for(lambda: self.message, timeout_s, f"summary of seed {self.seed}")
 
 
 class Diagnostics:

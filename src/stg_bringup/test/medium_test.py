@@ -6,8 +6,7 @@ import unittest
 import rosgraph
 import rospy
 import rostest
-from auv_msgs.msg import EpisodeSummary
-from graph_listener import Diagnostics, Latest, wait_for
+from graph_listener import Diagnostics, SummaryOf, wait_for
 
 AGENTS = 4
 
@@ -36,7 +35,7 @@ class Medium(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.diagnostics = Diagnostics()
-        cls.summary = Latest("/episode_summary", EpisodeSummary)
+        cls.summary = SummaryOf(0)
 
     def test_shipped_policy_holds_the_target_and_no_deadline_is_missed(self):
         summary = self.summary.wait(50.0)

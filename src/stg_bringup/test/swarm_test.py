@@ -5,15 +5,15 @@ import unittest
 
 import rospy
 import rostest
-from auv_msgs.msg import EpisodeSummary, LinkStates
-from graph_listener import Latest
+from auv_msgs.msg import LinkStates
+from graph_listener import Latest, SummaryOf
 
 
 class Swarm(unittest.TestCase):
     """One short episode in lockstep."""
 
     def test_twenty_auvs_fly_a_whole_episode(self):
-        summary = Latest("/episode_summary", EpisodeSummary)
+        summary = SummaryOf(0)
         links = Latest("/acoustic_channel/links", LinkStates)
         message = summary.wait(55.0)
         self.assertTrue(message.complete)
