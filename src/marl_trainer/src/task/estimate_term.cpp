@@ -1,3 +1,4 @@
+#include "marl_trainer/task/judge_config.hpp"
 #include "terms.hpp"
 
 namespace stg::task {
