@@ -17,6 +17,21 @@ struct Overload : F... {
 template <class... F>
 Overload(F...) -> Overload<F...>;
 
+/// The unit of a text that may also name a file of a grid.
+constexpr char kNameOrGrid[] = "name or FILE.nc";
+
+/// A path of characters that stand in YAML and in a shell as they are, ending in .nc.
+bool IsGridFile(const std::string& text) {
+  constexpr std::size_t kLongest = 1024;
+  const std::size_t stem = text.size() - std::min<std::size_t>(text.size(), 3);
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.' || c == '/' || c == '+';
+  };
+  return stem > 0 && text.size() <= kLongest && text.compare(stem, 3, ".nc") == 0 &&
+         text[0] != '-' && std::all_of(text.begin(), text.end(), plain);
+}
+
 /// Shortest text that reads back as the same double, always with a point so
 /// that every YAML reader takes it for a real number.
 std::string FormatNumber(double value) {
@@ -261,7 +276,7 @@ std::optional<std::string> CheckValue(const Field& field) {
                },
                [](std::uint64_t*) -> Result { return {}; }, [](bool*) -> Result { return {}; },
                [&](std::string* v) -> Result {
-                 if (IsName(*v)) return {};
+                 if (IsName(*v) || (field.unit == kNameOrGrid && IsGridFile(*v))) return {};
                  return Quoted(*v) + " is no name (" + FormatRange(field) + ", 64 at most)";
                },
                [&](const EnumRef& v) -> Result {

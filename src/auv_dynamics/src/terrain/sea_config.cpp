@@ -11,7 +11,7 @@ void Describe(SeaConfig* c, config::Table* t) {
   t->Section("sea");
   t->AddOptional("open", &c->open, "false", kNone, "-",
                  "open water: a surface at z = 0 and a bottom instead of the walls");
-  t->AddOptional("terrain", &c->terrain, "flat", kNone, "-",
+  t->AddOptional("terrain", &c->terrain, "flat", kNone, "name or FILE.nc",
                  "bottom of open water: flat, or a bathymetry: a FILE.nc, or a NAME whose file "
                  "NAME.nc is in a "
                  "folder of $STG_TERRAINS or shipped");
