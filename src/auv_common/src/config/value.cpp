@@ -255,7 +255,12 @@ std::string FormatRange(const Field& field) {
       Overload{[&](double*) { return range; }, [&](int*) { return range; },
                [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },
                [](bool*) { return std::string("true | false"); },
-               [](std::string*) { return std::string("a letter, then letters, digits, _ or -"); },
+               [&](std::string*) {
+                 const std::string name = "a letter, then letters, digits, _ or -";
+                 return field.unit == kNameOrGrid
+                            ? name + "; or a path without blanks to a .nc file"
+                            : name;
+               },
                [](const EnumRef& v) { return JoinNames(v.names); },
                [&](const NumbersRef&) { return range; },
                [&](Interval*) { return range + ", low <= high"; },

@@ -215,6 +215,24 @@ TEST_F(SeaOverAFile, EpisodesStartClearOfTheBottomOrSayThatTheyCannot) {
   EXPECT_NE(Refusal(s).find("no room for 1 vehicles"), std::string::npos);
 }
 
+TEST_F(SeaOverAFile, TakesAFileByItsPathWhateverItsName) {
+  // As GEBCO names what it cuts out for a user.
+  const std::string file = folder_ + "/gebco_2024_n10.5_s9.5.nc";
+  std::filesystem::copy_file(folder_ + "/slope.nc", file);
+  WorldConfig s = Slope(10.1);
+  s.sea.terrain = file;
+  EXPECT_EQ(Refusal(s), "accepted");
+  s.sea.terrain = folder_ + "/none.nc";
+  EXPECT_NE(Refusal(s).find("no file " + folder_), std::string::npos) << Refusal(s);
+  for (const std::string bad : {"two words.nc", ".nc", "x.nc\n", "../passwd", "-x.nc"}) {
+    s.sea.terrain = bad;
+    EXPECT_NE(Refusal(s).find("is no name"), std::string::npos) << bad;
+  }
+  s = Slope(10.1);
+  s.name = file;  // other texts are names only
+  EXPECT_NE(Refusal(s).find("is no name"), std::string::npos);
+}
+
 TEST_F(SeaOverAFile, SaysWhatIsWrong) {
   WorldConfig s = Slope(10.1);
   EXPECT_EQ(Refusal(s), "accepted");
