@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "algorithms/game.hpp"
 #include "auv_common/error.hpp"
@@ -76,6 +77,40 @@ TEST_P(Conformance, ExportsThePolicyThatItFlies) {
     }
   }
   EXPECT_TRUE(moves);
+}
+
+/// Numbers of a network with two hidden layers of h: weights and biases.
+std::size_t Numbers(std::size_t inputs, std::size_t h, std::size_t outputs) {
+  return (inputs + 1) * h + (h + 1) * h + (h + 1) * outputs;
+}
+
+TEST_P(Conformance, TellsTheSizesOfWhatItTrains) {
+  const std::string name = GetParam();
+  // An observation, a state and an action are one number each; actor-hidden and critic-hidden are
+  // GameSetup's. A Gaussian actor has its spread beside the network.
+  constexpr std::size_t kAgents = 3, kBins = 5;
+  const std::size_t gaussian = Numbers(1, 16, 1) + 1, joint = Numbers(1 + kAgents, 32, 1);
+  const std::map<std::string, std::map<std::string, std::size_t>> expected = {
+      {"mappo", {{"actor", gaussian}, {"critic", Numbers(1, 32, 1)}}},
+      {"ippo", {{"actor", gaussian}, {"critic", Numbers(1, 32, 1)}}},
+      {"happo",
+       {{"actor_0", gaussian},
+        {"actor_1", gaussian},
+        {"actor_2", gaussian},
+        {"critic", Numbers(1, 32, 1)}}},
+      {"maddpg", {{"actor", Numbers(1, 16, 1)}, {"critic", joint}}},
+      {"matd3", {{"actor", Numbers(1, 16, 1)}, {"critic_0", joint}, {"critic_1", joint}}},
+      {"masac",
+       {{"actor", Numbers(1, 16, 2)},
+        {"critic_0", joint},
+        {"critic_1", joint},
+        {"entropy_weight", 1}}},
+      {"madqn", {{"values", Numbers(1, 16, 1 + kBins)}}}};
+  const nlohmann::json options = {{"bins", kBins}};
+  Training training(AnyGame(), GameSetup(name, name == "madqn" ? options : nlohmann::json()));
+  std::map<std::string, std::size_t> told;
+  for (const NetworkSize& size : training.algorithm().Sizes()) told[size.name] = size.parameters;
+  EXPECT_EQ(told, expected.at(name));
 }
 
 TEST_P(Conformance, PresetsAreValidAndSurviveJson) {

@@ -73,6 +73,7 @@ class Recorder : public Algorithm {
   void Load(const Archive&) override {}
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata&) const override { return {}; }
   std::vector<ReportColumn> Columns() const override { return {}; }
+  std::vector<NetworkSize> Sizes() const override { return {}; }
 
   const Collection& collection() const { return collection_; }
   std::vector<Seen> shards;

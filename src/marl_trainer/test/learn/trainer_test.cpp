@@ -1,4 +1,5 @@
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "auv_common/error.hpp"
 #include "learn/trainer_fixture.hpp"
@@ -172,6 +173,28 @@ TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns);
   }
   EXPECT_EQ(row, 8);
+}
+
+TEST_F(TrainerTest, TheSummaryTellsSizesAndWorkOfTheNetworks) {
+  Trainer::Options options = Options("run");
+  options.halt_after = 2560;
+  const Scenario scenario = ShortScenario();
+  const Problem problem = ProblemOf(scenario);
+  Trainer(scenario, SmallSetup(), options).Run();
+  options.halt_after = 0;
+  options.resume = true;
+  Trainer(scenario, SmallSetup(), options).Run();
+  const auto json = nlohmann::json::parse(Bytes(folder_ / "run" / "summary.json"));
+  const int o = problem.observation_size, s = problem.state_size, a = problem.action_size;
+  // Two hidden layers of 16 and a spread; one hidden layer of 16.
+  const nlohmann::json parameters = {{"actor", (o + 1) * 16 + 17 * 16 + 17 * a + a},
+                                     {"critic", (s + 1) * 16 + 17}};
+  EXPECT_EQ(json.at("parameters"), parameters);
+  // Multiply-adds of a row. Backward costs a forward pass for the weights and one for the inputs,
+  // which the first layer needs not.
+  const double actor = o * 16 + 16 * 16 + 16 * a, critic = s * 16 + 16;
+  const double epoch = problem.agents * (3 * actor - o * 16) + (3 * critic - s * 16);
+  EXPECT_DOUBLE_EQ(json.at("update_flops_per_env_step"), 2 * (2 * epoch + critic));
 }
 
 TEST_F(TrainerTest, ARunCanStartFromTheNetworksOfAnother) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -102,6 +103,12 @@ struct UpdateReport {
   double flops = 0.0;  ///< floating-point operations in matrix products
 };
 
+/// How many numbers of a network are trained; targets, which only follow, do not count.
+struct NetworkSize {
+  std::string name;
+  std::size_t parameters = 0;
+};
+
 /// A learning algorithm. Collection, evaluation, logging, checkpoints and export know this
 /// interface only.
 ///
@@ -139,6 +146,8 @@ class Algorithm {
   /// What the AUVs are to fly with: one policy for all or one for each.
   virtual std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const = 0;
   virtual std::vector<ReportColumn> Columns() const = 0;
+  /// Every network that is trained, each once however many AUVs share it.
+  virtual std::vector<NetworkSize> Sizes() const = 0;
 };
 
 }  // namespace stg::learn

@@ -168,7 +168,8 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   line_env_ = line_inference_ = line_update_ = 0.0;
 }
 
-void TrainLog::WriteSummary(int workers, double peak_flops, const std::string& stopped,
+void TrainLog::WriteSummary(const std::vector<NetworkSize>& networks, int workers,
+                            double peak_flops, const std::string& stopped,
                             const Communicator* ranks) const {
   nlohmann::ordered_json json;
   json["stopped"] = stopped;
@@ -176,6 +177,7 @@ void TrainLog::WriteSummary(int workers, double peak_flops, const std::string& s
   json["wall_seconds"] = wall_seconds_;
   json["env_steps_per_second"] = static_cast<double>(env_steps_) / std::max(wall_seconds_, 1e-9);
   json["workers"] = workers;
+  for (const NetworkSize& network : networks) json["parameters"][network.name] = network.parameters;
   if (ranks != nullptr) {
     const Communicator::Traffic& traffic = ranks->traffic();
     json["ranks"] = ranks->size();
@@ -199,6 +201,8 @@ void TrainLog::WriteSummary(int workers, double peak_flops, const std::string& s
                            {"update", update_seconds_},
                            {"validation", validation_seconds_},
                            {"other", std::max(wall_seconds_ - known, 0.0)}};
+  json["update_flops_per_env_step"] =
+      update_flops_ / static_cast<double>(std::max<std::int64_t>(env_steps_, 1));
   const double rate = update_flops_ / std::max(update_seconds_, 1e-9);
   json["update_gflops"] = rate * 1e-9;
   json["peak_sgemm_gflops"] = peak_flops * 1e-9;

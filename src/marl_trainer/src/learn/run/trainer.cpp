@@ -175,8 +175,8 @@ bool Trainer::Run() {
     if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
   }
   if (leads()) {
-    log_->WriteSummary(pool_.workers(), PeakFlops(&pool_), finished ? "finished" : "signal",
-                       options_.ranks);
+    log_->WriteSummary(algorithm_->Sizes(), pool_.workers(), PeakFlops(&pool_),
+                       finished ? "finished" : "signal", options_.ranks);
   }
   return finished;
 }

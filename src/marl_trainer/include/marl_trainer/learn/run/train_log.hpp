@@ -41,10 +41,11 @@ class TrainLog {
 
   void Add(const TrainRecord& record);
   /// Writes summary.json.
+  /// @param networks of the algorithm.
   /// @param peak_flops measured rate of the matrix product on all workers.
   /// @param ranks null: there are none.
-  void WriteSummary(int workers, double peak_flops, const std::string& stopped,
-                    const Communicator* ranks) const;
+  void WriteSummary(const std::vector<NetworkSize>& networks, int workers, double peak_flops,
+                    const std::string& stopped, const Communicator* ranks) const;
 
   /// State for checkpoints, as JSON text.
   std::string Save() const;

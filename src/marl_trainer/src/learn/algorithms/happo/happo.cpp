@@ -94,7 +94,7 @@ UpdateReport Happo::Update(const UpdateContext& context) {
   }
   for (const double f : update_.factors()) factor += std::abs(f - 1.0) / factors;
   UpdateReport report;
-  report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
+  report.flops = ppo.flops + 2.0 * ppo.samples * networks_.critic.spec().forward_products();
   report.values = PpoValues(ppo, config_.lr * rate, entropy, explained_variance, sigma);
   report.values.push_back(factor);
   return report;
@@ -104,6 +104,15 @@ std::vector<ReportColumn> Happo::Columns() const {
   std::vector<ReportColumn> columns = PpoColumns();
   columns.push_back({"joint_ratio_miss", "|M-1|", 3});
   return columns;
+}
+
+std::vector<NetworkSize> Happo::Sizes() const {
+  std::vector<NetworkSize> sizes;
+  for (std::size_t i = 0; i < parameters_.actors.size(); ++i) {
+    sizes.push_back({ActorName(i), networks_.actor.parameters()});
+  }
+  sizes.push_back({"critic", networks_.critic.parameters()});
+  return sizes;
 }
 
 void Happo::Save(Archive* archive) const {

@@ -195,6 +195,7 @@ PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, co
   factors_.assign(static_cast<std::size_t>(samples_.own()), 1.0);
   DrawOrder(collection);
   PpoReport report;
+  report.samples = samples_.size();
   int steps = 0;
   for (std::size_t turn = 0; turn < order_.size(); ++turn) {
     const auto agent = static_cast<std::size_t>(order_[turn]);

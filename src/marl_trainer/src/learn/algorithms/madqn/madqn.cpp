@@ -234,6 +234,8 @@ std::vector<ReportColumn> Madqn::Columns() const {
           {"gradient_norm", "|d|", 4}};
 }
 
+std::vector<NetworkSize> Madqn::Sizes() const { return {{"values", network_.parameters()}}; }
+
 std::vector<agent::Policy> Madqn::Policies(const agent::PolicyMetadata& metadata) const {
   // What is largest does not depend on V: the last layer without its first row.
   NetworkSpec spec = network_.spec();

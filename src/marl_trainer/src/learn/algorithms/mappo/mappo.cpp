@@ -73,7 +73,7 @@ UpdateReport Mappo::Update(const UpdateContext& context) {
     entropy += log_std + agent::kHalfLogTwoPiE;
   }
   UpdateReport report;
-  report.flops = ppo.flops + 2.0 * rollouts_.samples() * networks_.critic.spec().forward_products();
+  report.flops = ppo.flops + 2.0 * ppo.samples * networks_.critic.spec().forward_products();
   report.values = PpoValues(ppo, config_.lr * rate, entropy, explained_variance, sigma);
   return report;
 }
@@ -127,6 +127,10 @@ void Mappo::StartFrom(const agent::Policy& policy) {
 
 std::vector<agent::Policy> Mappo::Policies(const agent::PolicyMetadata& metadata) const {
   return {networks_.actor.ToPolicy(parameters_.data(), scales().observations, metadata)};
+}
+
+std::vector<NetworkSize> Mappo::Sizes() const {
+  return {{"actor", networks_.actor.parameters()}, {"critic", networks_.critic.parameters()}};
 }
 
 }  // namespace stg::learn

@@ -130,7 +130,7 @@ PpoReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, cons
   imitation_ = static_cast<float>(imitation);
   samples_.Prepare(rollouts, scales);
   PpoReport report;
-  const int samples = samples_.size();
+  const int samples = report.samples = samples_.size();
   assert(samples % config_.minibatch == 0);
   int steps = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {

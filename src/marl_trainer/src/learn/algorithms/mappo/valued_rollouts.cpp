@@ -136,10 +136,4 @@ std::vector<const RolloutBuffer*> ValuedRollouts::buffers() const {
   return buffers;
 }
 
-int ValuedRollouts::samples() const {
-  int samples = 0;
-  for (const Rollout& r : rollouts_) samples += r.buffer.samples();
-  return samples;
-}
-
 }  // namespace stg::learn

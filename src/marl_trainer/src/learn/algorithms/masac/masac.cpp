@@ -199,4 +199,10 @@ std::vector<agent::Policy> Masac::Policies(const agent::PolicyMetadata& metadata
   return {GaussianActor(spec).ToPolicy(parameters.data(), scales().observations, metadata)};
 }
 
+std::vector<NetworkSize> Masac::Sizes() const {
+  std::vector<NetworkSize> sizes = CentralCriticLearner::Sizes();
+  sizes.push_back({"entropy_weight", log_alpha_.size()});
+  return sizes;
+}
+
 }  // namespace stg::learn

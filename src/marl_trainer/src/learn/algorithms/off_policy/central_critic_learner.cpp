@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 namespace stg::learn {
 
@@ -93,6 +94,15 @@ std::vector<ReportColumn> CentralCriticLearner::Columns() const {
           {"value", "Q", 2},
           {"actor_gradient_norm", "|dA|", 4},
           {"critic_gradient_norm", "", 0}};
+}
+
+std::vector<NetworkSize> CentralCriticLearner::Sizes() const {
+  std::vector<NetworkSize> sizes = {{"actor", actor_.parameters()}};
+  for (int k = 0; k < critics_.count(); ++k) {
+    sizes.push_back({critics_.count() == 1 ? "critic" : "critic_" + std::to_string(k),
+                     critics_.network().parameters()});
+  }
+  return sizes;
 }
 
 }  // namespace stg::learn

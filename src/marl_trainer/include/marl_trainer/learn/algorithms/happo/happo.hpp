@@ -30,6 +30,7 @@ class Happo : public Algorithm {
   /// One for each AUV.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
+  std::vector<NetworkSize> Sizes() const override;
 
   const ActorCritic& networks() const { return networks_; }
   const HappoParameters& parameters() const { return parameters_; }

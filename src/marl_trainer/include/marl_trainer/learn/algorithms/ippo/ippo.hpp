@@ -31,6 +31,7 @@ class Ippo : public Algorithm {
     return single_.Policies(metadata);
   }
   std::vector<ReportColumn> Columns() const override { return single_.Columns(); }
+  std::vector<NetworkSize> Sizes() const override { return single_.Sizes(); }
 
  private:
   /// What an environment tells of the whole swarm, told to each AUV.

@@ -34,6 +34,7 @@ class Madqn : public ReplayLearner {
   /// The greedy one.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
+  std::vector<NetworkSize> Sizes() const override;
 
   const Mlp& network() const { return network_; }
 

@@ -29,6 +29,7 @@ class Mappo : public Algorithm {
 
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override { return PpoColumns(); }
+  std::vector<NetworkSize> Sizes() const override;
 
   const ActorCritic& networks() const { return networks_; }
   const std::vector<float>& parameters() const { return parameters_; }

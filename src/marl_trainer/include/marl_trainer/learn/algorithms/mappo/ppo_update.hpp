@@ -18,7 +18,8 @@ struct PpoReport {
   PpoSums sums;                                ///< of the last epoch
   double actor_norm = 0.0, critic_norm = 0.0;  ///< mean gradient norms before clipping
   int epochs = 0;
-  double flops = 0.0;  ///< floating-point operations in matrix products
+  int samples = 0;     ///< of all ranks
+  double flops = 0.0;  ///< floating-point operations in matrix products, of all ranks
 };
 
 /// Sums of an epoch, in an order that depends neither on workers nor on ranks.

@@ -30,7 +30,6 @@ class ValuedRollouts {
   void UpdateInputScales();
 
   std::vector<const RolloutBuffer*> buffers() const;
-  int samples() const;
   const Scales& scales() const { return normalisers_.scales(); }
   Normalisers& normalisers() { return normalisers_; }
   const Normalisers& normalisers() const { return normalisers_; }

@@ -21,6 +21,7 @@ class Masac : public CentralCriticLearner {
   /// The mean before the squash, squashed.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
+  std::vector<NetworkSize> Sizes() const override;
 
   double alpha() const;
 

@@ -18,6 +18,7 @@ class CentralCriticLearner : public ReplayLearner {
                        const TrainConfig& common, const Problem& problem, WorkerPool* pool);
 
   std::vector<ReportColumn> Columns() const override;
+  std::vector<NetworkSize> Sizes() const override;
 
   const JointCritics& critics() const { return critics_; }
 
