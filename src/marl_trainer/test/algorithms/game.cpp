@@ -103,8 +103,13 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
       for (float& a : clipped) a = std::min(std::max(a, -1.0F), 1.0F);
       team[e] = static_cast<float>(game_.reward(static_cast<double>(states[e]), clipped.data()));
       *reward += static_cast<double>(team[e]);
+      for (int i = 0; i < game_.agents; ++i) {
+        rewards[e * static_cast<std::size_t>(game_.agents) + static_cast<std::size_t>(i)] =
+            game_.own_reward ? static_cast<float>(game_.own_reward(static_cast<double>(states[e]),
+                                                                   clipped.data(), i))
+                             : team[e];
+      }
     }
-    show(team, &rewards);
     for (std::size_t r = 0; r < taught.size(); ++r) {
       const auto agents = static_cast<std::size_t>(game_.agents);
       taught[r] = static_cast<float>(

@@ -20,6 +20,8 @@ struct Game {
   double scale = 1.0;
   /// Of the actions [agents] at x.
   std::function<double(double x, const float* actions)> reward;
+  /// What an agent calls its own of it; empty: all of it. For methods that learn from that.
+  std::function<double(double x, const float* actions, int agent)> own_reward;
   /// What a teacher would do at x as this agent; empty: nobody teaches.
   std::function<double(double x, int agent)> teacher;
 

@@ -120,6 +120,29 @@ TEST(Quadratic, TheBestBinsAreChosen) {
   }
 }
 
+TEST(OwnReward, IsWhatTheAgentsLearnFromWhereTheyAreTold) {
+  // What one gains the other loses: the team's reward is zero whatever they do, and each would have
+  // the most alone.
+  Game game;
+  game.reward = [](double, const float*) { return 0.0; };
+  game.own_reward = [](double x, const float* a, int agent) {
+    return (x > 0.0 ? 1.0 : -1.0) * static_cast<double>(a[agent] - a[1 - agent]);
+  };
+  const auto greedy = [](const std::vector<float>& actions, float x) {
+    return actions[0] == (x > 0.0F ? 1.0F : -1.0F) && actions[1] == actions[0];
+  };
+  Training own(game, GameSetup("madqn", {{"bins", 3}, {"reward", "own"}}));
+  Training team(game, GameSetup("madqn", {{"bins", 3}, {"reward", "team"}}));
+  own.Run(150);
+  team.Run(150);
+  int same = 0;
+  for (const float x : {-0.9F, -0.5F, 0.5F, 0.9F}) {
+    EXPECT_TRUE(greedy(own.Act(static_cast<double>(x)), x)) << x;
+    same += greedy(team.Act(static_cast<double>(x)), x) ? 1 : 0;
+  }
+  EXPECT_LT(same, 4);
+}
+
 TEST(Differing, AnActorThatAllShareCannotAndActorsOfTheirOwnCan) {
   Training shared(DifferingGame(), GameSetup("mappo"));
   // Two that are alike differ half of the time at best, by chance.

@@ -35,7 +35,8 @@ class ReplayTest : public ::testing::Test {
       const int first = collection.shards[static_cast<std::size_t>(shard)].first_env;
       const int envs = collection.shards[static_cast<std::size_t>(shard)].envs;
       for (int t = 0; t < kSteps; ++t) {
-        std::vector<float> seen, state, next_seen, next_state, final_seen, final_state, reward;
+        std::vector<float> seen, state, next_seen, next_state, final_seen, final_state, reward,
+            rewards;
         std::vector<std::uint8_t> truncated;
         for (int e = first; e < first + envs; ++e) {
           truncated.push_back(e == 2 && t == 1 ? 1 : 0);
@@ -46,6 +47,7 @@ class ReplayTest : public ::testing::Test {
           final_state.push_back(-now);
           for (int agent = 0; agent < 2; ++agent) {
             const float own = 0.25F * static_cast<float>(agent);
+            rewards.push_back(now + own);
             seen.push_back(now + own);
             next_seen.push_back(next + own);
             final_seen.push_back(-now - own);
@@ -58,6 +60,7 @@ class ReplayTest : public ::testing::Test {
         transition.observations = seen.data();
         transition.states = state.data();
         transition.actions = seen.data();
+        transition.rewards = rewards.data();
         transition.team_rewards = reward.data();
         transition.truncated = truncated.data();
         transition.next_observations = next_seen.data();
@@ -69,11 +72,13 @@ class ReplayTest : public ::testing::Test {
     }
   }
 
+  void SaveAndLoad(bool own);
+
   Problem problem_;
 };
 
 TEST_F(ReplayTest, SamplesStopAtEpisodesAndCollectionsAndDiscountWhatTheyHave) {
-  ReplayBuffer replay(problem_, 24, 3, kGamma);
+  ReplayBuffer replay(problem_, 24, 3, kGamma, true);
   Fill(&replay, 1);
   Fill(&replay, 2);
   EXPECT_EQ(replay.size(), 24);
@@ -96,6 +101,10 @@ TEST_F(ReplayTest, SamplesStopAtEpisodesAndCollectionsAndDiscountWhatTheyHave) {
           }
           EXPECT_FLOAT_EQ(s.reward, static_cast<float>(reward));
           EXPECT_FLOAT_EQ(s.weight, static_cast<float>(weight));
+          float own[2];
+          replay.OwnRewards({chunk, shard, static_cast<std::size_t>(t * envs + e)}, own);
+          EXPECT_FLOAT_EQ(own[0], static_cast<float>(reward));
+          EXPECT_FLOAT_EQ(own[1], static_cast<float>(reward + 0.25 * weight));
           EXPECT_FLOAT_EQ(s.discount, static_cast<float>(power));
           const float next = cut ? -Tag(number, 1, env) : Tag(number, last + 1, env);
           EXPECT_EQ(*s.next_state, next);
@@ -124,7 +133,11 @@ TEST_F(ReplayTest, ForgetsTheOldestCollectionAndDrawsEveryStep) {
 }
 
 TEST_F(ReplayTest, IsSavedAndLoadedBitForBit) {
-  ReplayBuffer replay(problem_, 24, 3, kGamma), other(problem_, 24, 3, kGamma);
+  for (const bool own : {false, true}) SaveAndLoad(own);
+}
+
+void ReplayTest::SaveAndLoad(bool own) {
+  ReplayBuffer replay(problem_, 24, 3, kGamma, own), other(problem_, 24, 3, kGamma, own);
   for (int number = 1; number <= 3; ++number) Fill(&replay, number);
   Archive saved, again;
   replay.Save(&saved);
@@ -139,7 +152,7 @@ TEST_F(ReplayTest, IsSavedAndLoadedBitForBit) {
   EXPECT_TRUE(one == two);
   Problem larger = problem_;
   larger.state_size = 2;
-  ReplayBuffer misfit(larger, 24, 3, kGamma);
+  ReplayBuffer misfit(larger, 24, 3, kGamma, own);
   EXPECT_THROW(misfit.Load(saved), UserError);
 }
 

@@ -17,13 +17,15 @@ void Append(const float* from, int count, std::vector<float>* to) {
 
 }  // namespace
 
-ReplayBuffer::ReplayBuffer(const Problem& problem, std::int64_t capacity, int n_step, double gamma)
+ReplayBuffer::ReplayBuffer(const Problem& problem, std::int64_t capacity, int n_step, double gamma,
+                           bool own_rewards)
     : agents_(problem.agents),
       observation_row_(problem.agents * problem.observation_size),
       state_row_(problem.state_size),
       action_row_(problem.agents * problem.action_size),
       capacity_(capacity),
-      n_step_(n_step) {
+      n_step_(n_step),
+      own_row_(own_rewards ? problem.agents : 0) {
   assert(n_step >= 1);
   double power = 1.0;
   for (int k = 0; k <= n_step; ++k, power *= gamma) powers_.push_back(static_cast<float>(power));
@@ -37,6 +39,7 @@ void ReplayBuffer::Resize(Block* block, int steps, int envs) const {
   block->states.resize(Index(samples * state_row_));
   block->actions.resize(Index(samples * action_row_));
   block->rewards.resize(Index(samples));
+  block->own_rewards.resize(Index(samples * own_row_));
   block->end.assign(Index(samples), -1);
   block->end_observations.clear();
   block->end_states.clear();
@@ -70,6 +73,7 @@ void ReplayBuffer::Add(const Transition& t) {
   std::copy_n(t.states, t.envs * state_row_, b.states.data() + first * state_row_);
   std::copy_n(t.actions, t.envs * action_row_, b.actions.data() + first * action_row_);
   std::copy_n(t.team_rewards, t.envs, b.rewards.data() + first);
+  std::copy_n(t.rewards, t.envs * own_row_, b.own_rewards.data() + first * own_row_);
   for (int e = 0; e < t.envs; ++e) {
     const bool truncated = t.truncated[e] != 0;
     if (!truncated && t.step + 1 < b.steps) continue;
@@ -118,6 +122,17 @@ ReplayBuffer::Sample ReplayBuffer::At(const Place& place) const {
   return s;
 }
 
+void ReplayBuffer::OwnRewards(const Place& place, float* rewards) const {
+  const Block& b = chunks_[place.chunk][place.shard];
+  auto at = static_cast<std::int64_t>(place.sample);
+  std::fill_n(rewards, own_row_, 0.0F);
+  for (int k = 0; k < n_step_; ++k, at += b.envs) {
+    const float* own = b.own_rewards.data() + at * own_row_;
+    for (int i = 0; i < own_row_; ++i) rewards[i] += powers_[Index(k)] * own[i];
+    if (b.end[Index(at)] >= 0) return;
+  }
+}
+
 void ReplayBuffer::Save(Archive* archive) const {
   std::vector<std::int64_t> shape{static_cast<std::int64_t>(chunks_.size()),
                                   static_cast<std::int64_t>(newest_)};
@@ -136,6 +151,7 @@ void ReplayBuffer::Save(Archive* archive) const {
       archive->Put(name + "states", b.states);
       archive->Put(name + "actions", b.actions);
       archive->Put(name + "rewards", b.rewards);
+      if (own_row_ > 0) archive->Put(name + "own_rewards", b.own_rewards);
       archive->Put(name + "end", b.end);
       archive->Put(name + "end_observations", b.end_observations);
       archive->Put(name + "end_states", b.end_states);
@@ -167,6 +183,9 @@ void ReplayBuffer::Load(const Archive& archive) {
       b.states = archive.Floats(name + "states", samples * Index(state_row_));
       b.actions = archive.Floats(name + "actions", samples * Index(action_row_));
       b.rewards = archive.Floats(name + "rewards", samples);
+      if (own_row_ > 0) {
+        b.own_rewards = archive.Floats(name + "own_rewards", samples * Index(own_row_));
+      }
       b.end = archive.Integers(name + "end");
       b.end_states = archive.Floats(name + "end_states");
       const std::size_t ends = b.end_states.size() / Index(state_row_);

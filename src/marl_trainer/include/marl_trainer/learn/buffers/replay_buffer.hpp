@@ -19,7 +19,9 @@ class ReplayBuffer {
  public:
   /// @param capacity environment steps; at least the newest collection is kept
   /// @param n_step steps of a sample, >= 1. @param gamma discount of a step
-  ReplayBuffer(const Problem& problem, std::int64_t capacity, int n_step, double gamma);
+  /// @param own_rewards whether to keep the rewards of each AUV, too
+  ReplayBuffer(const Problem& problem, std::int64_t capacity, int n_step, double gamma,
+               bool own_rewards = false);
 
   /// Begins a collection, in place of the oldest ones where the capacity is reached. All
   /// collections of a run have the same shards and steps.
@@ -49,6 +51,8 @@ class ReplayBuffer {
     float discount = 0.0F;  ///< gamma^steps
   };
   Sample At(const Place& place) const;
+  /// Writes Sample::reward of each AUV's own rewards [agents], where they are kept.
+  void OwnRewards(const Place& place, float* rewards) const;
 
   /// Everything, bit for bit.
   void Save(Archive* archive) const;
@@ -60,6 +64,7 @@ class ReplayBuffer {
   struct Block {
     int steps = 0, envs = 0;
     std::vector<float> observations, states, actions, rewards;
+    std::vector<float> own_rewards;  ///< [T, E, agents], or nothing
     /// [T, E]: row of the last observations and states of the segment that ends here, or -1.
     std::vector<std::int64_t> end;
     std::vector<float> end_observations, end_states;
@@ -71,6 +76,7 @@ class ReplayBuffer {
   const int agents_, observation_row_, state_row_, action_row_;
   const std::int64_t capacity_;
   const int n_step_;
+  const int own_row_;          // rewards kept of each AUV: their number, or 0
   std::vector<float> powers_;  // gamma^k, k = 0 .. n_step
   std::vector<Chunk> chunks_;  // a ring
   std::size_t newest_ = 0;

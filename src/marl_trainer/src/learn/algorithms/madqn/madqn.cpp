@@ -86,7 +86,7 @@ struct Madqn::Scratch {
 
 Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
              const Problem& problem, WorkerPool* pool)
-    : ReplayLearner(options, common, problem, pool),
+    : ReplayLearner(options, common, problem, pool, own.reward == "own"),
       own_(own),
       codebook_(problem, own),
       network_(QSpec(problem, options, codebook_)),
@@ -165,7 +165,9 @@ void Madqn::AddGradient(int slice, float* gradient) {
           static_cast<float>(heads);
     }
     const auto sample = static_cast<std::size_t>(r / agents);
-    s.targets[static_cast<std::size_t>(r)] = batch.rewards[sample] + batch.discounts[sample] * next;
+    const float reward = batch.own_rewards.empty() ? batch.rewards[sample]
+                                                   : batch.own_rewards[static_cast<std::size_t>(r)];
+    s.targets[static_cast<std::size_t>(r)] = reward + batch.discounts[sample] * next;
   }
   // The mean over samples, AUVs and heads of (q - target)^2.
   network_.Forward(parameters_.data(), batch.observations.data(), rows, &s.network);

@@ -14,6 +14,8 @@ void MadqnConfig::Describe(OptionTable* t) {
   t->Add("heads", &heads, {"separate", "joint"},
          "separate: a value for each bin of each dimension; joint: one for each of the "
          "bins^dimensions combinations, the paper's codebook");
+  t->Add("reward", &reward, {"team", "own"},
+         "what an AUV learns from: team (the mean over AUVs) or own (its share of it)");
   epsilon.Describe("epsilon", 1.0, "share of random choices", t);
 }
 

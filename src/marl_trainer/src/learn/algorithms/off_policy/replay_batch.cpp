@@ -2,7 +2,7 @@
 
 namespace stg::learn {
 
-ReplayBatch::ReplayBatch(const Problem& problem, int rows)
+ReplayBatch::ReplayBatch(const Problem& problem, int rows, bool own)
     : agents_(problem.agents),
       observation_size_(problem.observation_size),
       state_size_(problem.state_size),
@@ -15,6 +15,7 @@ ReplayBatch::ReplayBatch(const Problem& problem, int rows)
   actions.resize(n * static_cast<std::size_t>(joint_action_));
   rewards.resize(n);
   discounts.resize(n);
+  if (own) own_rewards.resize(n * static_cast<std::size_t>(agents_));
 }
 
 void ReplayBatch::Set(int row, const ReplayBuffer::Sample& sample, const ReplayScales& scales) {
@@ -29,6 +30,14 @@ void ReplayBatch::Set(int row, const ReplayBuffer::Sample& sample, const ReplayS
   const auto i = static_cast<std::size_t>(row);
   rewards[i] = (sample.reward - scales.reward_mean * sample.weight) / scales.reward_std;
   discounts[i] = sample.discount;
+}
+
+void ReplayBatch::ScaleOwnRewards(int row, const ReplayBuffer::Sample& sample,
+                                  const ReplayScales& scales) {
+  float* own = own_rewards.data() + static_cast<std::ptrdiff_t>(row) * agents_;
+  for (int i = 0; i < agents_; ++i) {
+    own[i] = (own[i] - scales.reward_mean * sample.weight) / scales.reward_std;
+  }
 }
 
 }  // namespace stg::learn

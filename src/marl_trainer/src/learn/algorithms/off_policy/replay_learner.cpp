@@ -18,16 +18,19 @@ constexpr double kSmallestRewardStd = 0.01;
 }  // namespace
 
 ReplayLearner::ReplayLearner(const ReplayOptions& options, const TrainConfig& common,
-                             const Problem& problem, WorkerPool* pool)
+                             const Problem& problem, WorkerPool* pool, bool own_rewards)
     : options_(options),
       problem_(problem),
       seed_(common.seed),
+      own_rewards_(own_rewards),
       pool_(pool),
-      replay_(problem, options.replay, options.n_step, options.gamma),
+      replay_(problem, options.replay, options.n_step, options.gamma, own_rewards),
       observations_(problem.observation_size),
       states_(problem.state_size),
       rewards_(1) {
-  for (int s = 0; s < SlicedGradient::kSlices; ++s) batches_.emplace_back(problem, slice_rows());
+  for (int s = 0; s < SlicedGradient::kSlices; ++s) {
+    batches_.emplace_back(problem, slice_rows(), own_rewards);
+  }
   UpdateScales();
 }
 
@@ -55,7 +58,11 @@ void ReplayLearner::Observe(const Transition& t) {
     m.observations.Add(t.observations, t.envs * problem_.agents);
     m.states.Add(t.states, t.envs);
   }
-  m.rewards.Add(t.team_rewards, t.envs);
+  if (own_rewards_) {
+    m.rewards.Add(t.rewards, t.envs * problem_.agents);
+  } else {
+    m.rewards.Add(t.team_rewards, t.envs);
+  }
   replay_.Add(t);
 }
 
@@ -82,7 +89,13 @@ void ReplayLearner::DrawBatch(std::uint32_t number) {
     batch.count = end - begin;
     Random random(seed_, Stream::kReplay, number, 0, static_cast<std::uint32_t>(slice));
     for (int row = 0; row < batch.count; ++row) {
-      batch.Set(row, replay_.At(replay_.Draw(&random)), scales_);
+      const ReplayBuffer::Place place = replay_.Draw(&random);
+      const ReplayBuffer::Sample sample = replay_.At(place);
+      batch.Set(row, sample, scales_);
+      if (!own_rewards_) continue;
+      replay_.OwnRewards(
+          place, batch.own_rewards.data() + static_cast<std::ptrdiff_t>(row) * problem_.agents);
+      batch.ScaleOwnRewards(row, sample, scales_);
     }
   });
 }

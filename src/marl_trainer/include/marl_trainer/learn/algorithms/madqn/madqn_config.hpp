@@ -14,6 +14,7 @@ struct QOptions {
   double bin_power = 1.0;
   std::string heads = "separate";
   ExplorationRamp epsilon{0.02, 0.5};  ///< share of random choices
+  std::string reward = "team";
 };
 
 /// Configuration of MADQN.

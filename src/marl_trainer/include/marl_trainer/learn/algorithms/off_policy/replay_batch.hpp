@@ -22,15 +22,19 @@ struct ReplayScales {
 /// Samples as networks see them: normalised, in rows.
 struct ReplayBatch {
   /// Memory for up to `rows` samples.
-  ReplayBatch(const Problem& problem, int rows);
+  /// @param own_rewards whether they have each AUV's rewards, too
+  ReplayBatch(const Problem& problem, int rows, bool own_rewards = false);
 
   /// Writes sample number `row`.
   void Set(int row, const ReplayBuffer::Sample& sample, const ReplayScales& scales);
+  /// Scales the raw own_rewards of sample number `row`, which Set has set.
+  void ScaleOwnRewards(int row, const ReplayBuffer::Sample& sample, const ReplayScales& scales);
 
   std::vector<float> observations, next_observations;  ///< [rows, agents, observation_size]
   std::vector<float> states, next_states;              ///< [rows, state_size]
   std::vector<float> actions;                          ///< [rows, agents, action_size], in +-1
   std::vector<float> rewards, discounts;               ///< [rows]; q = reward + discount * next q
+  std::vector<float> own_rewards;                      ///< [rows, agents], or nothing
   int count = 0;
 
  private:

@@ -19,8 +19,9 @@ namespace stg::learn {
 /// what a gradient step does.
 class ReplayLearner : public Algorithm {
  public:
+  /// @param own_rewards whether samples have each AUV's own rewards, and values their scale
   ReplayLearner(const ReplayOptions& options, const TrainConfig& common, const Problem& problem,
-                WorkerPool* pool);
+                WorkerPool* pool, bool own_rewards = false);
 
   void Begin(const Collection& collection) override;
   void Observe(const Transition& transition) override;
@@ -74,6 +75,7 @@ class ReplayLearner : public Algorithm {
   const ReplayOptions options_;
   const Problem problem_;
   const std::uint64_t seed_;
+  const bool own_rewards_;
   WorkerPool* pool_;
   ReplayBuffer replay_;
   RunningMoments observations_, states_, rewards_;
