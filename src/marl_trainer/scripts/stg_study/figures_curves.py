@@ -44,7 +44,8 @@ def curve_band(results, scenario, method, metric, scale=1.0):
     return np.array(steps), values.mean(axis=0), std
 
 
-def _step_axis(axis):
+def step_axis(axis):
+    """Environment steps along x."""
     axis.xaxis.set_major_formatter(EngFormatter(sep=""))
     axis.set_xlabel("environment steps")
     axis.set_xlim(left=0)
@@ -114,7 +115,7 @@ def convergence(study, results, paper, scenario, table, folder):
             axis.set_ylim(-0.03 * top, top)
         elif bands:
             _focus_returns(axis, bands, references)
-        _step_axis(axis)
+        step_axis(axis)
     title(figure, f"{scenario}: validations during training, mean ± std over seeds")
     legend_below(figure, list(handles.values()), list(handles))
     return save(figure, folder, f"convergence_{scenario}")
@@ -147,8 +148,8 @@ def per_seed(study, results, scenario, folder):
         if is_logarithmic and drawn:
             values = np.concatenate(drawn)
             logarithmic(axis, max(float(values.min()), FLOOR), float(values.max()))
-        _step_axis(axis)
-    for i, seed in enumerate(study.seeds):
+        step_axis(axis)
+    for i, seed in enumerate(results.all_seeds(scenario)):
         handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=styles[i % 4])
     title(figure, f"{scenario}: every training")
     legend_below(figure, list(handles.values()), list(handles))
@@ -172,7 +173,7 @@ def reward_components(study, results, scenario, folder):
             steps, mean, std = band
             axis.fill_between(steps, mean - std, mean + std, color=shade, alpha=0.18, lw=0)
             axis.plot(steps, mean, color=shade, lw=1.6, label=label)
-        _step_axis(axis)
+        step_axis(axis)
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=3)
     axes[0].set_title("Reward terms before weighting")
     axes[0].set_ylabel("mean over decisions and AUVs")

@@ -38,6 +38,7 @@ CONDITION_LABELS = {
 }
 NOTHING = "–"
 TEXT_COLUMNS = {"Algorithm", "Condition", "Method", "Scenario", "Seed IDs", "Variant", "Who"}
+TEXT_COLUMNS |= {"of these"}
 
 
 def condition_label(condition):
@@ -139,6 +140,7 @@ def seed_table(study, results, paper, scenario, table):
                 scale = 1.0 / study.agents if metric == "return" else 1.0
                 row.append(cell((sum(values) / len(values), None), digits, scale))
             rows.append(row)
+    seeds = study.seeds_of(next(s for s in study.scenarios if s.name == scenario))
     for controller in study.controllers:
         scores = {
             metric: results.scores(scenario, "nominal", controller.name, metric)
@@ -147,7 +149,7 @@ def seed_table(study, results, paper, scenario, table):
         if scores["return"] is None:
             continue
         for block, _ in enumerate(scores["return"]):
-            row = [controller.label, study.seeds[block], NOTHING]
+            row = [controller.label, seeds[block], NOTHING]
             for _, metric, digits in columns:
                 scale = 1.0 / study.agents if metric == "return" else 1.0
                 row.append(cell((scores[metric][block].mean(), None), digits, scale))
