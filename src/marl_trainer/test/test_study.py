@@ -11,7 +11,8 @@ import yaml
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 
-from stg_study import figure_style, jobs, runner, statistics, study, tables  # noqa: E402
+from stg_study import figure_style, jobs, runner, statistics, study  # noqa: E402
+from stg_study import tables, tables_cost  # noqa: E402
 from stg_study.data import Paper  # noqa: E402
 from stg_study.figures_curves import comparable  # noqa: E402
 
@@ -139,6 +140,14 @@ class Cells(unittest.TestCase):
         self.assertEqual(text, "| Algorithm | Return |\n|---|---:|\n| A | 1.5 |\n")
         with self.assertRaises(ValueError):
             tables.markdown(["Algorithm", "Return"], [["A"]])
+
+
+class Cost(unittest.TestCase):
+    def test_networks_that_are_alike_are_counted_together(self):
+        text = "actor_0:9158 actor_1:9158 critic:27265"
+        self.assertEqual(tables_cost.parameters(text), (45581, "2 × actor 9,158, critic 27,265"))
+        self.assertEqual(tables_cost.parameters("values:10"), (10, "values 10"))
+        self.assertEqual(tables_cost.parameters(""), (0, ""))
 
 
 class PaperFigures(unittest.TestCase):

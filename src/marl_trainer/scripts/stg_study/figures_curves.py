@@ -122,13 +122,14 @@ def convergence(study, results, paper, scenario, table, folder):
 
 
 def per_seed(study, results, scenario, folder):
-    """Return and tail distance of every training of STG-MAPPO and of the paper's MAPPO: a colour
-    for each method, a line style for each seed."""
+    """Return and tail distance of every training of the methods that stand in the paper's tables or
+    see what STG-MAPPO sees: a colour for each method, a line style for each of up to four seeds."""
     methods = [m for m in study.methods if m.paper or m.variant == "stg"] or study.methods[:2]
     colour = colours(study)
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.2))
     handles = {}
-    styles = ["-", "--", ":", "-."]
+    seeds = results.all_seeds(scenario)
+    styles = ["-", "--", ":", "-."] if len(seeds) <= 4 else ["-"]
     for axis, (name, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
         drawn = []
         for method in comparable(methods, metric):
@@ -140,7 +141,7 @@ def per_seed(study, results, scenario, folder):
                     values * _scale(study, metric),
                     color=colour[method.name],
                     ls=styles[i % len(styles)],
-                    lw=1.3,
+                    lw=1.3 if len(styles) > 1 else 0.8,
                 )
                 handles[method.label] = Line2D([], [], color=colour[method.name], lw=3.0)
         axis.set_title(name)
@@ -149,8 +150,9 @@ def per_seed(study, results, scenario, folder):
             values = np.concatenate(drawn)
             logarithmic(axis, max(float(values.min()), FLOOR), float(values.max()))
         step_axis(axis)
-    for i, seed in enumerate(results.all_seeds(scenario)):
-        handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=styles[i % 4])
+    if len(styles) > 1:
+        for seed, ls in zip(seeds, styles):
+            handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=ls)
     title(figure, f"{scenario}: every training")
     legend_below(figure, list(handles.values()), list(handles))
     return save(figure, folder, f"per_seed_{scenario}")

@@ -71,10 +71,14 @@ def scenario_page(study, results, paper, scenario, folder):
         _heading(stress, "best checkpoints under every condition"),
         tables.stress_table(study, results, paper, name, stress),
     )
-    section(
-        _heading("S9" if medium else "", "ablation, final stage"),
-        tables.ablation_table(study, results, paper, name, medium),
-    )
+    if tables.ablated(study):
+        section(
+            _heading("S9" if medium else "", "ablation, final stage"),
+            tables.ablation_table(study, results, paper, name, medium),
+            _figure(
+                figures_bars.ablation(study, results, paper, name, figures, medium), "Ablation"
+            ),
+        )
     section(
         "Interquartile means and 95 % bootstrap intervals",
         tables.iqm_table(study, results, name),
@@ -99,9 +103,6 @@ def scenario_page(study, results, paper, scenario, folder):
                 "Final stage",
             ),
             _figure(figures_bars.final_boxes(study, results, name, figures), "Final stage, boxes"),
-            _figure(
-                figures_bars.ablation(study, results, paper, name, figures, medium), "Ablation"
-            ),
             _figure(
                 figures_curves.reward_components(study, results, name, figures), "Reward terms"
             ),

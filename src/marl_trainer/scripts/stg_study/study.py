@@ -22,7 +22,8 @@ class ScenarioEntry:
 
 @dataclasses.dataclass
 class Method:
-    """A way to train. `paper` and `ablation` name its rows in the paper's tables, if any.
+    """A way to train. `paper` and `ablation` name its rows in the paper's tables, if any; what has
+    an `ablation` stands in ours.
 
     `set` overrides scenario keys in training and evaluation, `train_set` in training only (a
     reward), `train` adds options of the train command, `evaluate_set` applies in evaluation only.

@@ -185,11 +185,16 @@ def stress_table(study, results, paper, scenario, table):
     return markdown(["Algorithm", "Condition"] + [c[0] for c in columns], rows)
 
 
+def ablated(study):
+    """The methods of the ablation."""
+    return [method for method in study.methods if method.ablation]
+
+
 def ablation_table(study, results, paper, scenario, with_paper):
     """Table S9: the variants over the final stage; the paper's is of its medium scenario."""
     columns = [c for c in FINAL if c[1] != "mean_error"] + CONTACT
     rows = []
-    for method in reversed(study.methods):
+    for method in reversed(ablated(study)):
         seeds = results.seeds(scenario, method.name)
         row = [method.label, len(seeds), ",".join(map(str, seeds)) or NOTHING]
         rows.append(row + _final_row(study, results, scenario, method.name, columns))

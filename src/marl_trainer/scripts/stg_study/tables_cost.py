@@ -1,5 +1,7 @@
 """Tables of what makes a comparison fair: options, networks, cost, and who is how likely better."""
 
+import re
+
 import numpy as np
 
 from stg_study.collect import THRESHOLDS
@@ -36,9 +38,15 @@ def options_table(study, results):
 
 
 def parameters(text):
-    """Parameters of all networks together and of each, from runs.csv; (0, []) of an empty text."""
-    parts = [part.rsplit(":", 1) for part in text.split()]
-    return sum(int(count) for _, count in parts), [(name, int(count)) for name, count in parts]
+    """Parameters of all networks together, and of each in words, from runs.csv; alike ones, such as
+    actor_0 and actor_1, are counted together. (0, "") of an empty text."""
+    total, alike = 0, {}
+    for name, count in (part.rsplit(":", 1) for part in text.split()):
+        total += int(count)
+        key = (re.sub(r"_\d+$", "", name), int(count))
+        alike[key] = alike.get(key, 0) + 1
+    words = [f"{n} × " * (n > 1) + f"{name} {size:,}" for (name, size), n in alike.items()]
+    return total, ", ".join(words)
 
 
 def cost_table(study, results, scenario):
@@ -52,7 +60,7 @@ def cost_table(study, results, scenario):
             continue
         count, parts = parameters(runs[0]["parameters"])
         row = [method.label, len(runs), f"{count:,}" if count else NOTHING]
-        row.append(", ".join(f"{name} {size:,}" for name, size in parts) or NOTHING)
+        row.append(parts or NOTHING)
         flops = runs[0]["update_flop_per_env_step"]
         row.append(f"{float(flops) / 1e6:.2f}" if flops else NOTHING)
         row.append(f"{int(runs[0]['env_steps']):,}")
