@@ -20,6 +20,10 @@ def option(name, default=None):
 
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "calls"), "a") as calls:
     calls.write(os.path.basename(__file__) + " " + " ".join(sys.argv[1:]) + "\\n")
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "parents"), "a") as parents:
+    parents.write(str(os.getppid()) + "\\n")
+if any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK")):
+    sys.exit("this stub is taken for a rank")
 
 def sample(quality, noise):
     values = {{name: 0.5 + 0.01 * noise for name in METRICS}}
@@ -75,7 +79,8 @@ open(os.path.join(out, "policy_best.onnx"), "w").write(f"{level} {seed}")
 summary = {"stopped": "finished", "env_steps": steps, "wall_seconds": 12.5,
            "env_steps_per_second": steps / 12.5,
            "time_to_threshold": {"no_loss": {"seconds": 3.0, "env_steps": 9}, "1000": None,
-                                 "1030": {"seconds": 50.0 + 20.0 * seed, "env_steps": 9}},
+                                 "1030": None if option("--algorithm") == "madqn" else
+                                         {"seconds": 50.0 + 20.0 * seed, "env_steps": 9}},
            "parameters": {"actor": 1000, "critic": 234}, "update_flops_per_env_step": 2.5e6,
            "best_validation": {"return": 1041.5}, "update_gflops": 20.0,
            "peak_sgemm_gflops": 80.0,

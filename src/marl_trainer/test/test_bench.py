@@ -56,6 +56,21 @@ class Bench(unittest.TestCase):
         )
         self.assertRegex(output, r"maddpg +3\.0 ")
 
+    def test_one_algorithm_alone_and_one_that_never_gets_there(self):
+        status, output = self.bench(
+            *("--only", "algorithms", "--algorithms", "madqn,matd3", "--seeds", "3")
+        )
+        self.assertEqual(status, 0, output)
+        calls = stub_programs.calls(self.folder)
+        self.assertEqual([c.split()[0] for c in calls], ["train", "train"])
+        with open(self.out, encoding="utf-8") as file:
+            report = json.load(file)
+        self.assertEqual(list(report["algorithms"]), ["madqn", "matd3"])
+        self.assertNotIn("environment", report)
+        self.assertIsNone(report["algorithms"]["madqn"]["time_to_threshold"]["1030"])
+        self.assertIn("madqn: never 1030 without a loss in 1,000 steps; best return 1041.5", output)
+        self.assertNotIn("matd3: never", output)
+
     def test_missing_program_is_named(self):
         os.remove(os.path.join(self.folder, "bench_env"))
         status, output = self.bench("--seeds", "")

@@ -1,79 +1,21 @@
 """Tests of the reproduce command with stand-ins for the programs it runs."""
 
-import csv
 import json
 import os
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-REPRODUCE = os.path.join(PACKAGE, "scripts", "reproduce")
 
 import stub_programs  # noqa: E402
-
-STUDY = """
-name: sample
-title: A sample
-seeds: [0, 1]
-steps: 1000
-episodes: 4
-scenarios: [{name: medium_release, paper: medium}]
-conditions: [nominal, combined_stress]
-methods:
-  - {name: stg, label: STG-MAPPO, paper: STG-MAPPO, ablation: STG-MAPPO-full}
-  - {name: tau6, label: raw, variant: tau6, set: ["a.b=1"], train_set: ["reward.c=2"]}
-controllers:
-  - {name: pursuit, label: pursuit (tuned), policy: pursuit}
-  - {name: simple, label: pursuit (simple), policy: pursuit, arguments: ["--gain", "2"]}
-"""
+from study_case import StudyCase  # noqa: E402
 
 
-class Reproduce(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-        stub_programs.write_stubs(self.folder)
-        self.study = os.path.join(self.folder, "study.yaml")
-        with open(self.study, "w", encoding="utf-8") as file:
-            file.write(STUDY)
-        self.out = os.path.join(self.folder, "out")
-
-    def command(self, *arguments):
-        return ["/usr/bin/python3", REPRODUCE, "--study", self.study, "--out", self.out,
-                "--bin", self.folder, "--jobs", "2", *arguments]  # fmt: skip
-
-    def reproduce(self, *arguments, **environment):
-        """Runs the command without a report; (status, output, the stubs' command lines)."""
-        return self.reproduce_all("--no-report", *arguments, **environment)
-
-    def reproduce_all(self, *arguments, **environment):
-        done = subprocess.run(
-            self.command(*arguments),
-            env=dict(os.environ, **environment),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            universal_newlines=True,
-            check=False,
-        )
-        return done.returncode, done.stdout, stub_programs.calls(self.folder)
-
-    def path(self, *parts):
-        return os.path.join(self.out, *parts)
-
-    def read(self, *parts):
-        with open(self.path(*parts), encoding="utf-8") as file:
-            return file.read()
-
-    def rows(self, name):
-        with open(self.path(name), encoding="utf-8", newline="") as file:
-            return list(csv.DictReader(file))
-
+class Reproduce(StudyCase):
     def test_whole_study_then_nothing_to_do_then_only_what_is_missing(self):
         status, output, calls = self.reproduce_all()
         self.assertEqual(status, 0, output)

@@ -2,9 +2,10 @@
 
 import os
 import signal
-import subprocess
 import sys
 import time
+
+from stg_study import ranks
 
 POLL_S = 0.05
 SHOWN_LOG_LINES = 15
@@ -19,29 +20,6 @@ def duration(seconds):
     if seconds < 3600:
         return f"{seconds // 60} min {seconds % 60:02d} s"
     return f"{seconds // 3600} h {seconds % 3600 // 60:02d} min"
-
-
-class _Running:
-    """A job whose process runs. It leads its own session, so that Ctrl-C reaches only us."""
-
-    def __init__(self, job, environment):
-        self.job = job
-        self.start = time.monotonic()
-        self.start_fraction = job.fraction_done()
-        command = job.prepare()
-        os.makedirs(os.path.dirname(job.log), exist_ok=True)
-        with open(job.log, "wb") as log:
-            self.process = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                env=environment,
-                start_new_session=True,
-            )
-
-    def seconds(self):
-        return time.monotonic() - self.start
 
 
 class Estimate:
@@ -84,19 +62,25 @@ class Estimate:
 
 
 class Runner:
-    """Does what is missing of a study. A training's evaluations follow as soon as it is done."""
+    """Does what is missing of a study. A training's evaluations follow as soon as it is done.
+
+    Each process of the crew (ranks.crew) does `parallel` jobs at a time.
+    """
 
     def __init__(self, trainings, evaluations, parallel, stream=sys.stdout):
         self._trainings, self._evaluations = trainings, evaluations
-        self._parallel = parallel
+        self._crew = ranks.crew()
+        # Each process has a place for every job that it does at once; all get one before any gets
+        # two.
+        self._places = self._crew.starters() * parallel
         self._stream = stream
-        self._live = stream.isatty()
+        # What mpirun shows its ranks as a terminal has no width.
+        self._live = stream.isatty() and os.get_terminal_size(stream.fileno()).columns > 0
         self._last_line = 0.0
         self._stops = 0
         self._estimate = Estimate()
         self._total = self._done = 0
         self.failed = []
-        self._environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
 
     def run(self):
         """Returns True when everything ran, False when interrupted; see also `failed`."""
@@ -115,9 +99,9 @@ class Runner:
         self._done = self._total - len(waiting) - len(evaluations)
         self._say(
             f"{self._total} jobs, {self._done} already done, {len(waiting)} trainings and "
-            f"{len(evaluations)} evaluations to do, {self._parallel} at a time"
+            f"{len(evaluations)} evaluations to do, {len(self._places)} at a time"
         )
-        handlers = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
+        handlers = {s: signal.signal(s, self._on_signal) for s in self._crew.STOPPING}
         try:
             return self._loop(waiting, evaluations, finished)
         finally:
@@ -125,22 +109,25 @@ class Runner:
                 signal.signal(number, handler)
 
     def _loop(self, trainings, evaluations, finished):
-        running = []
-        while (trainings or evaluations or running) and not self._stops:
-            while len(running) < self._parallel:
+        at_work = {}  # what runs in which place
+        while (trainings or evaluations or at_work) and not self._stops:
+            for place, start in enumerate(self._places):
+                if place in at_work:
+                    continue
                 job = self._next(trainings, evaluations, finished)
                 if job is None:
                     break
-                running.append(_Running(job, self._environment))
-            if not running:
+                at_work[place] = start(job)
+            if not at_work:
                 break  # what is left waits for trainings that failed
-            self._progress(trainings + evaluations, running)
-            time.sleep(POLL_S)
-            for item in [r for r in running if r.process.poll() is not None]:
-                running.remove(item)
-                self._conclude(item, finished)
+            self._progress(trainings + evaluations, list(at_work.values()))
+            self._wait()
+            for place, item in list(at_work.items()):
+                if item.outcome() is not None:
+                    del at_work[place]
+                    self._conclude(item, finished)
         if self._stops:
-            self._end(running)
+            self._end(list(at_work.values()))
             self._say("stopped; the same command goes on from here")
             return False
         for job in evaluations:
@@ -156,16 +143,8 @@ class Runner:
         return trainings.pop(0) if trainings else None
 
     def _conclude(self, item, finished):
-        job, status = item.job, item.process.returncode
-        problem = f"exit status {status}" if status != 0 else None
-        if problem is None:
-            try:
-                with open(job.log, encoding="utf-8", errors="replace") as log:
-                    job.finish(log.read())
-                problem = None if job.complete() else "its output is incomplete"
-            except (OSError, ValueError, IndexError) as error:
-                problem = f"its output cannot be read: {error}"
-        if problem is None:
+        job, problem = item.job, item.outcome()
+        if not problem:
             finished[id(job)] = True
             self._done += 1
             self._estimate.add(job.kind, item.seconds())
@@ -174,33 +153,33 @@ class Runner:
             return
         self.failed.append(f"{job.name}: {problem} (log: {job.log})")
         self._say(f"FAILED: {self.failed[-1]}")
-        with open(job.log, encoding="utf-8", errors="replace") as log:
-            for line in log.read().splitlines()[-SHOWN_LOG_LINES:]:
-                self._say(f"    | {line}")
+        try:
+            with open(job.log, encoding="utf-8", errors="replace") as log:
+                for line in log.read().splitlines()[-SHOWN_LOG_LINES:]:
+                    self._say(f"    | {line}")
+        except OSError:
+            pass  # it was not started
 
     def _on_signal(self, number, frame):
         self._stops += 1
+
+    def _wait(self):
+        time.sleep(POLL_S)
+        if self._crew.listen():
+            self._stops = max(self._stops, 1)
 
     def _end(self, running):
         """Interrupts the processes, which lets trainings save; a second Ctrl-C kills them."""
         if running:
             self._say(f"stopping {len(running)} jobs, trainings save first (again: kill)")
         for item in running:
-            self._signal(item, signal.SIGINT)
+            item.signal(signal.SIGINT)
         deadline = time.monotonic() + PATIENCE_S
-        while any(item.process.poll() is None for item in running):
+        while any(item.outcome() is None for item in running):
             if self._stops > 1 or time.monotonic() > deadline:
                 for item in running:
-                    self._signal(item, signal.SIGKILL)
-            time.sleep(POLL_S)
-
-    @staticmethod
-    def _signal(item, number):
-        if item.process.poll() is None:
-            try:
-                os.killpg(item.process.pid, number)
-            except ProcessLookupError:
-                pass
+                    item.signal(signal.SIGKILL)
+            self._wait()
 
     def _progress(self, waiting, running):
         """One line, rewritten in place on a terminal and every half minute elsewhere."""
@@ -208,7 +187,7 @@ class Runner:
         if now - self._last_line < (0.5 if self._live else 30.0):
             return
         self._last_line = now
-        left = self._estimate.left(waiting, running, self._parallel)
+        left = self._estimate.left(waiting, running, len(self._places))
         parts = [
             f"{r.job.method}/{r.job.seed} {100 * r.job.fraction_done():.0f}%"
             for r in running

@@ -112,6 +112,43 @@ class CollectorTest : public ::testing::Test {
   Collection collection_;
 };
 
+/// The curriculum is the collection's, so any algorithm learns along it.
+TEST_F(CollectorTest, EpisodesStartInTheStageOfTheCurriculum) {
+  using dynamics::ResetStage;
+  const auto observations = [&](bool curriculum, ResetStage stage, int easy_until,
+                                int medium_until) {
+    Scenario scenario = scenario_;
+    scenario.reset.curriculum = curriculum;
+    scenario.reset.stage = stage;
+    scenario.reset.curriculum_easy_resets = easy_until;
+    scenario.reset.curriculum_medium_resets = medium_until;
+    WorkerPool pool(1);
+    Collector collector({scenario}, config_, &pool);
+    Recorder recorder(problem_);
+    std::vector<std::vector<float>> seen;
+    for (std::uint32_t number = 0; number < 2; ++number) {
+      collector.Collect(number, false, &recorder);
+      for (const Seen& shard : recorder.shards) seen.push_back(shard.observations);
+    }
+    return seen;
+  };
+  // 22 environments reset twice: of each, the first episode and a part of the second are seen.
+  const auto easy = observations(false, ResetStage::kEasy, 0, 0);
+  const auto medium = observations(false, ResetStage::kMedium, 0, 0);
+  const auto hard = observations(false, ResetStage::kHard, 0, 0);
+  EXPECT_NE(easy, hard);
+  EXPECT_EQ(observations(true, ResetStage::kHard, 44, 44), easy);
+  EXPECT_EQ(observations(true, ResetStage::kHard, 0, 44), medium);
+  EXPECT_EQ(observations(true, ResetStage::kEasy, 0, 0), hard);
+  // Easy first episodes, medium second ones: only what comes after the reset differs.
+  const auto both = observations(true, ResetStage::kHard, 22, 44);
+  EXPECT_EQ(both[0], easy[0]);
+  EXPECT_EQ(both[1], easy[1]);
+  EXPECT_NE(both[2], easy[2]);
+  const auto size = static_cast<std::ptrdiff_t>(medium[2].size()) / kHorizon;
+  EXPECT_TRUE(std::equal(both[2].end() - size, both[2].end(), medium[2].end() - size));
+}
+
 TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
   const std::vector<Seen> shards = SecondCollection(2, false);
   ASSERT_EQ(collection_.shards.size(), 2U);
