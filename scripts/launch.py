@@ -109,7 +109,8 @@ class Watch(roslaunch.pmon.ProcessListener):
         if self.failure:
             return
         if node in self.recorders:
-            self.failure = f"/{node} ended before the run, with exit status {exit_code}"
+            full = self.outputs.full_disks()
+            self.failure = f"/{node} ended before the run, with exit status {exit_code}{full}"
         if not exit_code:
             return
         if exit_code == REFUSED:
@@ -148,6 +149,7 @@ def check_arguments(arguments):
     for name in arguments_unknown_to(arguments):
         raise run_checks.Refusal(name)
     run_checks.master_is_online(port)
+    run_checks.check_log_folder()
 
 
 def arguments_unknown_to(arguments):

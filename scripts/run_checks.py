@@ -4,11 +4,13 @@ import http.client
 import os
 import shlex
 import socket
+import tempfile
 import time
 import urllib.parse
 import xmlrpc.client
 
 import rosbag
+import rospkg
 
 PATIENCE_S = 3.0  # with a master or a node that does not answer
 RECORDER_STOPS_AT = 2**30  # bytes free: rosbag record ends its recording below
@@ -93,6 +95,19 @@ def check_numbers(parameters):
             raise Refusal(f"{name.rsplit('/', 1)[1]}: {value} is more than {WHOLE[1]}")
 
 
+def check_log_folder():
+    """Refuses to start where no node could write its log: roslaunch would start none of them."""
+    folder = rospkg.get_log_dir()
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(b"x")
+    except OSError as error:
+        raise Refusal(
+            f"log folder '{folder}': {error.strerror}; ROS_LOG_DIR=FOLDER chooses another"
+        ) from None
+
+
 def bag_of(node):
     """Returns the bag that a node is to record, or None."""
     if (node.package, node.type) != ("rosbag", "record"):
@@ -138,10 +153,18 @@ class Outputs:
         if self.summary:
             self._check_summary()
 
+    def full_disks(self):
+        """Returns what to add where a recorder ended early: the bags whose disks are full, if any."""
+        full = [f"'{bag}'" for bag in self.bags if self._is_short(bag)]
+        return f"; too little space is free on the disk of {', '.join(full)}" if full else ""
+
     @staticmethod
-    def _check_space(bag, why):
+    def _is_short(bag):
         state = os.statvfs(os.path.dirname(bag) or ".")
-        if state.f_bavail * state.f_frsize < RECORDER_STOPS_AT:
+        return state.f_bavail * state.f_frsize < RECORDER_STOPS_AT
+
+    def _check_space(self, bag, why):
+        if self._is_short(bag):
             raise Refusal(f"bag '{bag}': too little space is free on its disk; {why}")
 
     def _check_bag(self, bag):

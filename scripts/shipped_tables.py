@@ -18,9 +18,10 @@ CONDITIONS = (
 )
 with open(os.path.join(os.path.dirname(os.path.realpath(__file__)), "shipped_teacher.txt")) as _file:
     TEACHER = _file.read().strip()
+# The best trial of scripts/controllers/pursuit_separated.yaml, which is in the results.
 RETUNED = (
-    "pursuit_separated:gain=2,cap=0.58,standoff=0.0144,repulsion=1.4,repulsion-range=0.029,"
-    "wall-margin=0.015"
+    "pursuit_separated:gain=3.555,cap=1,standoff=0.01383,repulsion=0.1501,repulsion-range=0.05969,"
+    "feedforward=1.26,approach-speed=0.0006658,approach-gain=0.865,wall-margin=0.02707"
 )
 SILENCE = ("--set", "channel.loss_probability=1.0")
 COLUMNS = (

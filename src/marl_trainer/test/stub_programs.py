@@ -49,7 +49,8 @@ if "--resume" not in sys.argv and os.path.exists(config):
     sys.exit("holds another run")
 random.seed(out)
 os.makedirs(out, exist_ok=True)
-open(config, "w").write("{}")
+algorithm = option("--algorithm", "mappo")
+open(config, "w").write(json.dumps({"algorithm": algorithm, "gamma": 0.9, "lr": 0.003}))
 if os.environ.get("STUB_FAIL", "none") in out:
     sys.exit("this stub fails")
 
@@ -80,6 +81,7 @@ summary = {"stopped": "finished", "env_steps": steps, "wall_seconds": 12.5,
            "time_to_threshold": {"no_loss": {"seconds": 3.0, "env_steps": 9}, "1000": None,
                                  "1030": None if option("--algorithm") == "madqn" else
                                          {"seconds": 50.0 + 20.0 * seed, "env_steps": 9}},
+           "parameters": {"actor": 1000, "critic": 234}, "update_flops_per_env_step": 2.5e6,
            "best_validation": {"return": 1041.5}, "update_gflops": 20.0,
            "peak_sgemm_gflops": 80.0,
            "phase_seconds": {"environment": 2.5, "inference": 2.5, "update": 7.5}}

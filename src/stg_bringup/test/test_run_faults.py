@@ -64,6 +64,11 @@ class Refused(WithFolder):
         self.check_refused("there is no folder", "summary_file:=nowhere/summary.csv")
         self.check_refused("is a folder", f"summary_file:={self.folder}")
 
+    def test_a_log_folder_that_cannot_be_written(self):
+        # Nobody can write there, root included.
+        with unittest.mock.patch.dict(os.environ, ROS_LOG_DIR="/proc/log"):
+            self.check_refused("log folder '/proc/log': .*; ROS_LOG_DIR=FOLDER", *QUICK)
+
     def test_numbers_that_ros_cannot_carry(self):
         self.check_refused("seed: 5000000000 is more than 2147483647", "seed:=5000000000")
         self.check_refused("agents: 'abc' is none of 1 to 255", "agents:=abc")
@@ -228,6 +233,38 @@ class Lost(WithFolder):
         with rosbag.Bag(str(self.folder / "my own run.bag")) as bag:
             self.assertEqual(bag.get_message_count("/episode_summary"), 2)
         self.assertEqual(len((self.folder / "my own summary.csv").read_text().splitlines()), 3)
+
+    def test_bag_on_a_disk_that_gets_full(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        # Recordings start where 1 GiB is free.
+        mount = ["mount", "-t", "tmpfs", "-o", "size=1100M", "tmpfs", str(disk)]
+        if subprocess.run(mount, stderr=subprocess.DEVNULL, check=False).returncode != 0:
+            self.skipTest("may not mount a small disk")
+        self.addCleanup(subprocess.run, ["umount", str(disk)], check=True)
+        process, environment = self.start(*ENDLESS, "record:=true", "bag:=disk/run.bag",
+                                          "episodes:=2", "real_time_factor:=20")
+        process_of("/recorder", environment)
+        end = time.monotonic() + 30.0
+        while not (disk / "run.bag.active").exists() and time.monotonic() < end:
+            time.sleep(0.1)
+        with self.assertRaises(OSError), open(disk / "filler", "wb", buffering=0) as filler:
+            while True:
+                filler.write(bytes(2**20))
+        status, output = self.finish(process)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, "world: 1000 steps in", "the run itself goes on")
+        self.assertRegex(output, "/recorder ended before the run, with exit status -6; "
+                                 "too little space is free on the disk of '.*/disk/run.bag'")
+
+    def test_a_run_without_a_home_is_a_run(self):
+        homeless = self.folder / "homeless"
+        homeless.write_text(f'#!/bin/sh\nunset HOME ROS_HOME\nexec "{LAUNCH}" "$@"\n')
+        homeless.chmod(0o755)
+        process, _ = launch(self.folder, "medium.launch", *QUICK, program=homeless)
+        self.addCleanup(stop, process)
+        status, output = self.finish(process)
+        self.assertEqual(status, 0, output)
 
     def test_summary_on_a_full_disk(self):
         status, output = self.finish(self.start(*QUICK, "summary_file:=/dev/full")[0])

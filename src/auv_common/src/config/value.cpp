@@ -17,18 +17,16 @@ struct Overload : F... {
 template <class... F>
 Overload(F...) -> Overload<F...>;
 
-/// The unit of a text that may also name a file of a grid.
-constexpr char kNameOrGrid[] = "name or FILE.nc";
+constexpr char kNameRule[] = "a letter, then letters, digits, _ or -";
 
-/// A path of characters that stand in YAML and in a shell as they are, ending in .nc.
-bool IsGridFile(const std::string& text) {
+bool IsFile(const std::string& text, const std::string& extension) {
   constexpr std::size_t kLongest = 1024;
-  const std::size_t stem = text.size() - std::min<std::size_t>(text.size(), 3);
+  const std::size_t stem = text.size() - std::min(text.size(), extension.size());
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.' || c == '/' || c == '+';
   };
-  return stem > 0 && text.size() <= kLongest && text.compare(stem, 3, ".nc") == 0 &&
+  return stem > 0 && text.size() <= kLongest && text.compare(stem, text.npos, extension) == 0 &&
          text[0] != '-' && std::all_of(text.begin(), text.end(), plain);
 }
 
@@ -159,6 +157,7 @@ struct Assign {
     }
     *v = node.scalar;
   }
+  void operator()(const NameOrFileRef& v) const { (*this)(v.text); }
   void operator()(const EnumRef& v) const {
     const auto found = std::find(v.names.begin(), v.names.end(), node.scalar);
     if (node.kind != YamlTree::Kind::kScalar || found == v.names.end()) {
@@ -244,7 +243,8 @@ std::string FormatValue(const ValueRef& value) {
                                }
                                return "[" + text + "]";
                              },
-                             [](const NamesRef& v) { return FormatWords(*v.list); }},
+                             [](const NamesRef& v) { return FormatWords(*v.list); },
+                             [](const NameOrFileRef& v) { return FormatWord(*v.text); }},
                     value);
 }
 
@@ -255,11 +255,10 @@ std::string FormatRange(const Field& field) {
       Overload{[&](double*) { return range; }, [&](int*) { return range; },
                [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },
                [](bool*) { return std::string("true | false"); },
-               [&](std::string*) {
-                 const std::string name = "a letter, then letters, digits, _ or -";
-                 return field.unit == kNameOrGrid
-                            ? name + "; or a path without blanks to a .nc file"
-                            : name;
+               [](std::string*) { return std::string(kNameRule); },
+               [](const NameOrFileRef& v) {
+                 return std::string(kNameRule) + "; or a path without blanks to a " + v.extension +
+                        " file";
                },
                [](const EnumRef& v) { return JoinNames(v.names); },
                [&](const NumbersRef&) { return range; },
@@ -281,8 +280,12 @@ std::optional<std::string> CheckValue(const Field& field) {
                },
                [](std::uint64_t*) -> Result { return {}; }, [](bool*) -> Result { return {}; },
                [&](std::string* v) -> Result {
-                 if (IsName(*v) || (field.unit == kNameOrGrid && IsGridFile(*v))) return {};
+                 if (IsName(*v)) return {};
                  return Quoted(*v) + " is no name (" + FormatRange(field) + ", 64 at most)";
+               },
+               [&](const NameOrFileRef& v) -> Result {
+                 if (IsName(*v.text) || IsFile(*v.text, v.extension)) return {};
+                 return Quoted(*v.text) + " is no name (" + FormatRange(field) + ", 64 at most)";
                },
                [&](const EnumRef& v) -> Result {
                  if (v.get() >= 0 && static_cast<std::size_t>(v.get()) < v.names.size()) return {};

@@ -1,6 +1,7 @@
 #include "world_node.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
@@ -41,7 +42,6 @@ WorldNode::WorldNode()
       pacer_(PacerParameters(period_ / commands_.parts())),
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
       episodes_(IntegerParameter("episodes", 0, 0, 1'000'000'000)),
-      awaited_(TextParameter("wait_for_node", "")),
       wait_for_metrics_(FlagParameter("wait_for_metrics", false)),
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
@@ -51,6 +51,8 @@ WorldNode::WorldNode()
   WarnOfOverriddenAgents(scenario_.agents);
   // Of no use here; but no other node sees all that a launch says of them.
   RequireIndices("external", scenario_.agents);
+  const std::string awaited = TextParameter("wait_for_node", "");
+  if (!awaited.empty()) awaited_.emplace(awaited);
   ros::NodeHandle node;
   publisher_ =
       std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
@@ -118,17 +120,17 @@ void WorldNode::Advance() {
 
 /// Who joins while step 0 stands misses nothing, as every topic is latched.
 bool WorldNode::ListenersReady(double now) {
-  if (now > pacer_.deadline_s()) return true;
   // The metrics node announces summaries once it has seen all of step 0.
-  if (wait_for_metrics_ && subscribers_.back().getNumPublishers() == 0) return false;
-  if (awaited_.empty()) return true;
-  if (!awaited_seen_) {
-    ros::V_string nodes;
-    if (!ros::master::getNodes(nodes)) return false;
-    if (std::find(nodes.begin(), nodes.end(), awaited_) == nodes.end()) return false;
-    awaited_seen_ = now;
+  const bool metrics = !wait_for_metrics_ || subscribers_.back().getNumPublishers() > 0;
+  if (metrics && (!awaited_ || awaited_->Settled(now))) return true;
+  if (now <= pacer_.deadline_s()) return false;
+  if (awaited_) {
+    ROS_WARN(
+        "world: %s is still connecting (%d connections), and is waited for no longer: "
+        "it may miss the start of the run",
+        awaited_->node().c_str(), awaited_->connections());
   }
-  return now - *awaited_seen_ > 1.5;
+  return true;
 }
 
 void WorldNode::WarnOfLoss(int party) {

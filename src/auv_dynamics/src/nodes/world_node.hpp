@@ -8,9 +8,9 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "auv_common/nodes/connection_watch.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/step/pacer.hpp"
@@ -80,8 +80,8 @@ class WorldNode {
   int part_ = 0;  ///< of the decision, whose commands are waited for
   Pacer pacer_;
   double summary_timeout_s_;
-  int episodes_;         ///< to run; 0: until stopped
-  std::string awaited_;  ///< node that must be up before the run starts, or empty
+  int episodes_;                            ///< to run; 0: until stopped
+  std::optional<ConnectionWatch> awaited_;  ///< who must hear the run from its start on
   bool wait_for_metrics_;
   std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
   std::uint32_t seed_episode_ = 0;
@@ -94,10 +94,9 @@ class WorldNode {
   Throttle losses_;    ///< of warnings about those who are given up
   bool shown_ = true;  ///< observers have the present step
   EventRate steps_;
-  double began_ = 0.0;      ///< WallSeconds() when the run began
-  double opened_ = 0.0;     ///< when the present step's sensor data began to go out
-  double give_up_s_ = 0.0;  ///< until when the last summary is waited for
-  std::optional<double> awaited_seen_;
+  double began_ = 0.0;            ///< WallSeconds() when the run began
+  double opened_ = 0.0;           ///< when the present step's sensor data began to go out
+  double give_up_s_ = 0.0;        ///< until when the last summary is waited for
   std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
   std::vector<std::uint8_t> fresh_;  ///< the command was for the last step

@@ -11,10 +11,10 @@ void Describe(SeaConfig* c, config::Table* t) {
   t->Section("sea");
   t->AddOptional("open", &c->open, "false", kNone, "-",
                  "open water: a surface at z = 0 and a bottom instead of the walls");
-  t->AddOptional("terrain", &c->terrain, "flat", kNone, "name or FILE.nc",
+  t->AddOptional("terrain", config::NameOrFileRef{&c->terrain, ".nc"}, "flat", kNone,
+                 "name or FILE.nc",
                  "bottom of open water: flat, or a bathymetry: a FILE.nc, or a NAME whose file "
-                 "NAME.nc is in a "
-                 "folder of $STG_TERRAINS or shipped");
+                 "NAME.nc is in a folder of $STG_TERRAINS or shipped");
   t->AddOptional("bottom_m", &c->bottom_m, "120.0", Positive(12000), "m",
                  "depth of the flat bottom");
   t->AddOptional("latitude_deg", &c->latitude_deg, "0.0", Within(-90, 90), "deg, WGS 84",

@@ -9,12 +9,14 @@ FILES = {
     "results": "results.csv",  # scenario, condition, method, seed, metric: mean and std
     "episodes": "episodes.csv",  # every evaluation episode, all metrics
     "curves": "curves.csv",  # every validation of every training, all metrics
-    "runs": "runs.csv",  # every training: steps, times, speed
+    "runs": "runs.csv",  # every training: steps, times, speed, networks
+    "options": "options.csv",  # every method's options of train, as its first training had them
 }
 THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
 
 
-def _csv_text(header, rows):
+def csv_text(header, rows):
+    """A header and rows of values as the text of a CSV file."""
     lines = [",".join(header)]
     lines += [",".join(str(value) for value in row) for row in rows]
     return "\n".join(lines) + "\n"
@@ -25,14 +27,15 @@ def _short(value, digits=6):
     return f"{float(value):.{digits}g}"
 
 
-def _read_rows(path):
+def read_rows(path):
+    """The rows of a CSV file as dictionaries."""
     with open(path, encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def collect(study, trainings, evaluations, out):
-    """Writes the four CSV files into `out` from the complete jobs; returns how many are not."""
-    results, episodes, curves, runs = [], [], [], []
+    """Writes the CSV files into `out` from the complete jobs; returns how many are not."""
+    results, episodes, curves, runs, options = [], [], [], [], {}
     metrics, curve_metrics = [], []
     missing = 0
     for job in evaluations:
@@ -40,7 +43,7 @@ def collect(study, trainings, evaluations, out):
             missing += 1
             continue
         key = (job.scenario, job.condition, job.method, job.seed)
-        rows = _read_rows(job.csv)
+        rows = read_rows(job.csv)
         metrics = metrics or [name for name in rows[0] if name not in ("episode", "seed")]
         for row in rows:
             episodes.append((*key, row["episode"], *(_short(row[name], 5) for name in metrics)))
@@ -53,7 +56,7 @@ def collect(study, trainings, evaluations, out):
             missing += 1
             continue
         key = (job.scenario, job.method, job.seed)
-        for row in _read_rows(os.path.join(job.folder, "progress.csv")):
+        for row in read_rows(os.path.join(job.folder, "progress.csv")):
             names = [n for n in row if n and n.startswith("validation_")]
             names.remove("validation_seconds")
             curve_metrics = curve_metrics or names
@@ -64,12 +67,17 @@ def collect(study, trainings, evaluations, out):
         times = summary.get("time_to_threshold", {})
         reached = [_short(times[t]["seconds"]) if times.get(t) else "" for t in THRESHOLDS]
         speed = [_short(summary[name]) for name in ("wall_seconds", "env_steps_per_second")]
-        runs.append((*key, study.preset, summary["env_steps"], *speed, *reached))
+        # Older runs do not tell the sizes.
+        networks = " ".join(f"{n}:{count}" for n, count in summary.get("parameters", {}).items())
+        flops = summary.get("update_flops_per_env_step")
+        sizes = [networks, "" if flops is None else _short(flops)]
+        runs.append((*key, study.preset, summary["env_steps"], *speed, *reached, *sizes))
+        options.setdefault(job.method, read_json(os.path.join(job.folder, "config.json")))
 
     os.makedirs(out, exist_ok=True)
 
     def write(name, header, rows):
-        write_atomically(os.path.join(out, FILES[name]), _csv_text(header, rows))
+        write_atomically(os.path.join(out, FILES[name]), csv_text(header, rows))
 
     key = ["scenario", "condition", "method", "seed"]
     write("results", key + ["episodes", "metric", "mean", "std"], results)
@@ -79,5 +87,12 @@ def collect(study, trainings, evaluations, out):
     write("curves", run_key + ["env_steps", "wall_seconds"] + names, curves)
     seconds = [f"seconds_to_{name}" for name in THRESHOLDS]
     header = ["preset", "env_steps", "wall_seconds", "env_steps_per_second"] + seconds
-    write("runs", run_key + header, runs)
+    sizes = ["parameters", "update_flop_per_env_step"]
+    write("runs", run_key + header + sizes, runs)
+    rows = [
+        (method, name, ";".join(map(str, value)) if isinstance(value, list) else value)
+        for method, config in options.items()
+        for name, value in config.items()
+    ]
+    write("options", ["method", "option", "value"], rows)
     return missing

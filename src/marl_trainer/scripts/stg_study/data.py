@@ -59,6 +59,9 @@ class Results:
         self._scores = {}  # (scenario, condition, method, seed) -> {metric: values by episode}
         self._curves = {}  # (scenario, method, seed) -> {column: values by validation}
         self.runs = read_csv(os.path.join(folder, FILES["runs"]))
+        self._options = {}  # method -> {option: value as text}
+        for row in read_csv(os.path.join(folder, FILES["options"])):
+            self._options.setdefault(row["method"], {})[row["option"]] = row["value"]
         for row in read_csv(os.path.join(folder, FILES["episodes"])):
             key = (row.pop("scenario"), row.pop("condition"), row.pop("method"), row.pop("seed"))
             self._append(self._scores, (*key[:3], int(key[3])), row)
@@ -84,6 +87,14 @@ class Results:
         episodes = min(len(row) for row in rows)
         return np.array([row[:episodes] for row in rows])
 
+    def option(self, method, name):
+        """An option of a method's training as text, empty where it has none of that name."""
+        return self._options.get(method, {}).get(name, "")
+
+    def runs_of(self, scenario, method):
+        """Rows of the finished trainings of a method."""
+        return [r for r in self.runs if r["scenario"] == scenario and r["method"] == method]
+
     def over_episodes(self, scenario, condition, method, metric):
         """(mean, std) over all episodes of all seeds, as Tables S7 and S8; or None."""
         scores = self.scores(scenario, condition, method, metric)
@@ -97,6 +108,10 @@ class Results:
     def seeds(self, scenario, method):
         """Seeds with a training curve."""
         return sorted(key[2] for key in self._curves if key[:2] == (scenario, method))
+
+    def all_seeds(self, scenario):
+        """Seeds with a training curve of any method."""
+        return sorted({key[2] for key in self._curves if key[0] == scenario})
 
     def curve(self, scenario, method, seed, column):
         """Values of a validation column, one per validation."""

@@ -6,7 +6,7 @@ from matplotlib.ticker import MaxNLocator
 from stg_study import figure_style as style
 from stg_study.figure_style import PAPER_COLOUR, colours, plt, save, title
 from stg_study.figures_curves import comparable
-from stg_study.tables import PAPER_NAME, condition_label
+from stg_study.tables import PAPER_NAME, ablated, condition_label
 
 FINAL = [
     ("Return, mean over AUVs", "return", "{:.1f}"),
@@ -86,10 +86,10 @@ def ablation(study, results, paper, scenario, folder, with_paper):
     rows_of = {}
     for name, metric, _ in ABLATION:
         rows = []
-        for method in study.methods:
+        for method in ablated(study):
             value = _value(study, results, scenario, method.name, metric)
             rows.append((method.label, value, colour[method.name], None))
-            if with_paper and method.ablation:
+            if with_paper and method.ablation in paper.algorithms("S9"):
                 theirs = paper.get("S9", method.ablation, PAPER_NAME.get(metric, metric))
                 rows.append(("(paper)", theirs, PAPER_COLOUR, "///"))
         rows_of[name] = rows

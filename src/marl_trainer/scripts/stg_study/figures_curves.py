@@ -44,7 +44,8 @@ def curve_band(results, scenario, method, metric, scale=1.0):
     return np.array(steps), values.mean(axis=0), std
 
 
-def _step_axis(axis):
+def step_axis(axis):
+    """Environment steps along x."""
     axis.xaxis.set_major_formatter(EngFormatter(sep=""))
     axis.set_xlabel("environment steps")
     axis.set_xlim(left=0)
@@ -114,20 +115,21 @@ def convergence(study, results, paper, scenario, table, folder):
             axis.set_ylim(-0.03 * top, top)
         elif bands:
             _focus_returns(axis, bands, references)
-        _step_axis(axis)
+        step_axis(axis)
     title(figure, f"{scenario}: validations during training, mean ± std over seeds")
     legend_below(figure, list(handles.values()), list(handles))
     return save(figure, folder, f"convergence_{scenario}")
 
 
 def per_seed(study, results, scenario, folder):
-    """Return and tail distance of every training of STG-MAPPO and of the paper's MAPPO: a colour
-    for each method, a line style for each seed."""
+    """Return and tail distance of every training of the methods that stand in the paper's tables or
+    see what STG-MAPPO sees: a colour for each method, a line style for each of up to four seeds."""
     methods = [m for m in study.methods if m.paper or m.variant == "stg"] or study.methods[:2]
     colour = colours(study)
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.2))
     handles = {}
-    styles = ["-", "--", ":", "-."]
+    seeds = results.all_seeds(scenario)
+    styles = ["-", "--", ":", "-."] if len(seeds) <= 4 else ["-"]
     for axis, (name, label, metric, is_logarithmic) in zip(axes, (PANELS[0], PANELS[2])):
         drawn = []
         for method in comparable(methods, metric):
@@ -139,7 +141,7 @@ def per_seed(study, results, scenario, folder):
                     values * _scale(study, metric),
                     color=colour[method.name],
                     ls=styles[i % len(styles)],
-                    lw=1.3,
+                    lw=1.3 if len(styles) > 1 else 0.8,
                 )
                 handles[method.label] = Line2D([], [], color=colour[method.name], lw=3.0)
         axis.set_title(name)
@@ -147,9 +149,10 @@ def per_seed(study, results, scenario, folder):
         if is_logarithmic and drawn:
             values = np.concatenate(drawn)
             logarithmic(axis, max(float(values.min()), FLOOR), float(values.max()))
-        _step_axis(axis)
-    for i, seed in enumerate(study.seeds):
-        handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=styles[i % 4])
+        step_axis(axis)
+    if len(styles) > 1:
+        for seed, ls in zip(seeds, styles):
+            handles[f"seed {seed}"] = Line2D([], [], color="#222222", lw=1.3, ls=ls)
     title(figure, f"{scenario}: every training")
     legend_below(figure, list(handles.values()), list(handles))
     return save(figure, folder, f"per_seed_{scenario}")
@@ -172,7 +175,7 @@ def reward_components(study, results, scenario, folder):
             steps, mean, std = band
             axis.fill_between(steps, mean - std, mean + std, color=shade, alpha=0.18, lw=0)
             axis.plot(steps, mean, color=shade, lw=1.6, label=label)
-        _step_axis(axis)
+        step_axis(axis)
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=3)
     axes[0].set_title("Reward terms before weighting")
     axes[0].set_ylabel("mean over decisions and AUVs")

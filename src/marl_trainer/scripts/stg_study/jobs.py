@@ -198,20 +198,23 @@ def plan(study, work, bin_dir):
     trainings, evaluations = [], []
     for scenario in study.scenarios:
         for controller in study.controllers:
-            for seed in study.seeds:
+            for seed in study.seeds_of(scenario):
                 for condition in study.conditions:
                     evaluations.append(
                         Evaluation(study, scenario, condition, controller, seed, work, bin_dir)
                     )
-    for seed in study.seeds:
-        for scenario in study.scenarios:
-            for method in study.methods:
-                training = Training(study, scenario, method, seed, work, bin_dir)
-                trainings.append(training)
-                for condition in study.conditions:
-                    evaluations.append(
-                        Evaluation(
-                            study, scenario, condition, method, seed, work, bin_dir, training
-                        )
-                    )
+    # A seed of all methods after the other: a study that is cut short has whole comparisons.
+    runs = [
+        (k, scenario, seed)
+        for scenario in study.scenarios
+        for k, seed in enumerate(study.seeds_of(scenario))
+    ]
+    for _, scenario, seed in sorted(runs, key=lambda run: run[0]):
+        for method in study.methods:
+            training = Training(study, scenario, method, seed, work, bin_dir)
+            trainings.append(training)
+            for condition in study.conditions:
+                evaluations.append(
+                    Evaluation(study, scenario, condition, method, seed, work, bin_dir, training)
+                )
     return trainings, evaluations

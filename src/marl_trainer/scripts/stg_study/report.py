@@ -2,7 +2,7 @@
 
 import os
 
-from stg_study import figures_bars, figures_curves, tables
+from stg_study import figures_bars, figures_curves, figures_scores, tables, tables_cost
 from stg_study.data import Paper, Results
 from stg_study.jobs import write_atomically
 
@@ -29,6 +29,7 @@ CONVENTIONS = """\
   means of every seed and condition.
 - Interquartile means with 95 % bootstrap intervals: seeds, then episodes within each seed and
   condition, are drawn again 2000 times. With three seeds the intervals are rough.
+- Probability of improvement: Agarwal et al. 2021; a half for what is equal.
 - Colliding pairs: pairs of AUVs in contact per decision, over the whole episode and over the tail.
   The paper tells neither.
 - Rows marked (paper) are the paper's own figures.
@@ -70,14 +71,26 @@ def scenario_page(study, results, paper, scenario, folder):
         _heading(stress, "best checkpoints under every condition"),
         tables.stress_table(study, results, paper, name, stress),
     )
-    section(
-        _heading("S9" if medium else "", "ablation, final stage"),
-        tables.ablation_table(study, results, paper, name, medium),
-    )
+    if tables.ablated(study):
+        section(
+            _heading("S9" if medium else "", "ablation, final stage"),
+            tables.ablation_table(study, results, paper, name, medium),
+            _figure(
+                figures_bars.ablation(study, results, paper, name, figures, medium), "Ablation"
+            ),
+        )
     section(
         "Interquartile means and 95 % bootstrap intervals",
         tables.iqm_table(study, results, name),
     )
+    section(
+        "Probability of improvement",
+        "How likely a training of the row returns more than one of the column, mean over the "
+        "conditions, with a 95 % bootstrap interval over trainings. Blocks of episodes stand for "
+        "a controller's trainings.\n",
+        tables_cost.improvement_table(study, results, name),
+    )
+    section("Cost", tables_cost.cost_table(study, results, name))
     if any(results.seeds(name, method.name) for method in study.methods):
         section(
             "Figures of the training",
@@ -91,13 +104,15 @@ def scenario_page(study, results, paper, scenario, folder):
             ),
             _figure(figures_bars.final_boxes(study, results, name, figures), "Final stage, boxes"),
             _figure(
-                figures_bars.ablation(study, results, paper, name, figures, medium), "Ablation"
-            ),
-            _figure(
                 figures_curves.reward_components(study, results, name, figures), "Reward terms"
             ),
             _figure(figures_curves.per_seed(study, results, name, figures), "Every training"),
+            _figure(figures_scores.effort(study, results, name, figures), "Time and actions"),
         )
+    section(
+        "Performance profiles",
+        _figure(figures_scores.profiles(study, results, name, figures), "Profiles"),
+    )
     section(
         "Figure of the stress conditions",
         _figure(
@@ -127,9 +142,16 @@ def write_report(study, folder):
         overview.append(tables.comparison_table(study, results, paper, scenario.name, stress))
     overview.append("## Trainings\n")
     overview.append(
-        "Wall time of one worker, several trainings side by side; the times to a return, without a "
-        "loss, are those of the validation that first reached it.\n"
+        "Options of the first training of each method; the networks' parameters that are trained, "
+        "arithmetic of the update in matrix products for each environment step, wall time of one "
+        "worker, several trainings side by side. The times to a return, without a loss, are those "
+        "of the validation that first reached it.\n"
     )
+    overview.append(tables_cost.options_table(study, results))
+    for scenario in study.scenarios:
+        overview.append(f"### {scenario.name}\n")
+        overview.append(tables_cost.cost_table(study, results, scenario.name))
+    overview.append("### Every training\n")
     overview.append(tables.runs_table(study, results))
     overview.append("## How to read the tables\n")
     overview.append(

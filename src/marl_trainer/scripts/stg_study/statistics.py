@@ -1,4 +1,4 @@
-"""Means, deviations, interquartile means and their bootstrap intervals."""
+"""Means, deviations, interquartile means, comparisons of trainings, bootstrap intervals."""
 
 import numpy as np
 
@@ -46,6 +46,35 @@ def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
     low, high = np.percentile(values, [tail, 100.0 - tail])
     point = interquartile_mean(np.concatenate([stratum.ravel() for stratum in strata]))
     return float(point), float(low), float(high)
+
+
+def probability_of_improvement(ours, theirs, resamples=RESAMPLES, confidence=0.95, seed=0):
+    """How likely a training of ours scores more than one of theirs, and its bootstrap interval.
+
+    ours[condition] and theirs[condition] are scores of trainings, one for each seed: the number of
+    seeds may differ. Mean over conditions of P(x > y) + P(x = y) / 2 over all pairs (Agarwal et al.
+    2021, Eq. 3); a resample draws trainings anew, the same in every condition.
+
+    Returns (probability, lower end, upper end).
+    """
+    ours, theirs = np.asarray(ours, dtype=float), np.asarray(theirs, dtype=float)
+    if ours.ndim != 2 or theirs.ndim != 2 or len(ours) != len(theirs):
+        raise ValueError("scores must be [conditions, seeds], of the same conditions")
+    difference = ours[:, :, None] - theirs[:, None, :]
+    better = ((difference > 0.0) + 0.5 * (difference == 0.0)).mean(axis=0)
+    random = np.random.default_rng(seed)
+    rows = random.integers(ours.shape[1], size=(resamples, ours.shape[1]))
+    columns = random.integers(theirs.shape[1], size=(resamples, theirs.shape[1]))
+    values = better[rows[:, :, None], columns[:, None, :]].mean(axis=(1, 2))
+    tail = 100.0 * (1.0 - confidence) / 2.0
+    low, high = np.percentile(values, [tail, 100.0 - tail])
+    return float(better.mean()), float(low), float(high)
+
+
+def performance_profile(scores, thresholds):
+    """Share of the scores, of any shape, that are above each threshold (Agarwal et al. 2021)."""
+    scores = np.asarray(scores, dtype=float).ravel()
+    return (scores[None, :] > np.asarray(thresholds, dtype=float)[:, None]).mean(axis=1)
 
 
 def final_stage(points, share=0.2):

@@ -17,11 +17,13 @@ class ScenarioEntry:
 
     name: str
     paper: Optional[str] = None  # medium | hard
+    seeds: List[int] = dataclasses.field(default_factory=list)  # instead of the study's, if any
 
 
 @dataclasses.dataclass
 class Method:
-    """A way to train. `paper` and `ablation` name its rows in the paper's tables, if any.
+    """A way to train. `paper` and `ablation` name its rows in the paper's tables, if any; what has
+    an `ablation` stands in ours.
 
     `set` overrides scenario keys in training and evaluation, `train_set` in training only (a
     reward), `train` adds options of the train command, `evaluate_set` applies in evaluation only.
@@ -72,6 +74,10 @@ class Study:
         """First evaluation seed of training seed `seed`; episode e uses this + e."""
         return self.evaluation_seed + self.evaluation_seed_stride * seed
 
+    def seeds_of(self, scenario):
+        """Training seeds on a scenario."""
+        return scenario.seeds or self.seeds
+
     def method_names(self):
         """Names of methods, then of controllers, in the order of the tables."""
         return [m.name for m in self.methods] + [c.name for c in self.controllers]
@@ -104,12 +110,12 @@ def _check_type(where, value, expected):
             isinstance(k, str) and isinstance(v, (int, float, str)) for k, v in value.items()
         )
     else:
-        good = isinstance(value, list)
+        good = isinstance(value, dict if expected is dict else list)
     if not good:
         _fail(where, f"{value!r} has the wrong type")
 
 
-def _build(kind, where, data):
+def build(kind, where, data):
     """Makes the dataclass `kind` from the mapping `data`; unknown and missing keys are errors."""
     if not isinstance(data, dict):
         _fail(where, "must be a mapping")
@@ -142,6 +148,9 @@ def _check(study, path):
     ):
         if not values or len(set(values)) != len(values):
             _fail(path, f"{key}: must not be empty and must not repeat")
+    for scenario in study.scenarios:
+        if len(set(scenario.seeds)) != len(scenario.seeds) or min(scenario.seeds, default=0) < 0:
+            _fail(f"{path}: scenarios.{scenario.name}.seeds", "must not be negative or repeat")
     if min(study.steps, study.episodes, study.agents) < 1 or min(study.seeds) < 0:
         _fail(path, "steps, episodes and agents must be positive, seeds not negative")
     if study.evaluation_seed < 0 or study.evaluation_seed_stride < study.episodes:
@@ -162,8 +171,8 @@ def study_from(data, where):
         entries = data.get(key)
         if not isinstance(entries, list):
             _fail(f"{where}: {key}", "must be a list")
-        data[key] = [_build(kind, f"{where}: {key}[{i}]", e) for i, e in enumerate(entries)]
-    study = _build(Study, where, data)
+        data[key] = [build(kind, f"{where}: {key}[{i}]", e) for i, e in enumerate(entries)]
+    study = build(Study, where, data)
     _check(study, where)
     return study
 

@@ -38,6 +38,7 @@ CONDITION_LABELS = {
 }
 NOTHING = "–"
 TEXT_COLUMNS = {"Algorithm", "Condition", "Method", "Scenario", "Seed IDs", "Variant", "Who"}
+TEXT_COLUMNS |= {"of these"}
 
 
 def condition_label(condition):
@@ -139,6 +140,7 @@ def seed_table(study, results, paper, scenario, table):
                 scale = 1.0 / study.agents if metric == "return" else 1.0
                 row.append(cell((sum(values) / len(values), None), digits, scale))
             rows.append(row)
+    seeds = study.seeds_of(next(s for s in study.scenarios if s.name == scenario))
     for controller in study.controllers:
         scores = {
             metric: results.scores(scenario, "nominal", controller.name, metric)
@@ -147,7 +149,7 @@ def seed_table(study, results, paper, scenario, table):
         if scores["return"] is None:
             continue
         for block, _ in enumerate(scores["return"]):
-            row = [controller.label, study.seeds[block], NOTHING]
+            row = [controller.label, seeds[block], NOTHING]
             for _, metric, digits in columns:
                 scale = 1.0 / study.agents if metric == "return" else 1.0
                 row.append(cell((scores[metric][block].mean(), None), digits, scale))
@@ -183,11 +185,16 @@ def stress_table(study, results, paper, scenario, table):
     return markdown(["Algorithm", "Condition"] + [c[0] for c in columns], rows)
 
 
+def ablated(study):
+    """The methods of the ablation."""
+    return [method for method in study.methods if method.ablation]
+
+
 def ablation_table(study, results, paper, scenario, with_paper):
     """Table S9: the variants over the final stage; the paper's is of its medium scenario."""
     columns = [c for c in FINAL if c[1] != "mean_error"] + CONTACT
     rows = []
-    for method in reversed(study.methods):
+    for method in reversed(ablated(study)):
         seeds = results.seeds(scenario, method.name)
         row = [method.label, len(seeds), ",".join(map(str, seeds)) or NOTHING]
         rows.append(row + _final_row(study, results, scenario, method.name, columns))

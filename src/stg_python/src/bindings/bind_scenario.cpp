@@ -32,10 +32,8 @@ struct Cast {
     return py::cast(std::vector<double>{x->lo, x->hi});
   }
   py::object operator()(const config::RowsRef& x) const { return py::cast(*x.rows); }
-  template <class Names>
-  auto operator()(const Names& x) const -> decltype(py::object(py::cast(*x.list))) {
-    return py::cast(*x.list);
-  }
+  py::object operator()(const config::NamesRef& x) const { return py::cast(*x.list); }
+  py::object operator()(const config::NameOrFileRef& x) const { return py::str(*x.text); }
 };
 
 py::object ToPython(const config::ValueRef& value) { return std::visit(Cast{}, value); }

@@ -81,8 +81,15 @@ struct NamesRef {
   std::vector<std::string> names;  ///< allowed ones
 };
 
+/// A name, or the path of a file: the extension, e.g. ".nc", tells them apart. The path consists of
+/// characters that stand in YAML and in a shell as they are.
+struct NameOrFileRef {
+  std::string* text = nullptr;
+  std::string extension;
+};
+
 using ValueRef = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef,
-                              NumbersRef, Interval*, NamesRef, RowsRef>;
+                              NumbersRef, Interval*, NamesRef, RowsRef, NameOrFileRef>;
 
 /// One key of a file and the member of the struct that it fills.
 struct Field {

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Flies the classical controllers through every condition of the field, with messages and without.
 
-Usage: tables.py OUT [--episodes N] [--evaluate FILE] [--controllers NAME ...] [--conditions NAME
+Usage: field_tables.py OUT [--episodes N] [--evaluate FILE] [--controllers NAME ...] [--conditions NAME
 ...] [--scenarios NAME ...] [--workers N], in a
 built and sourced workspace. Writes OUT/field.md and OUT/field.csv; OUT/flights.jsonl keeps what was
 flown, and a run that is started again goes on from there.
@@ -65,7 +65,7 @@ def main():
     with open(os.path.join(arguments.out, "field.md"), "w", encoding="utf-8") as file:
         file.write(
             f"# The field, flown by classical controllers\n{arguments.episodes} episodes a cell from "
-            f"seed {SEED}, means over episodes; by `scripts/field/tables.py`. Metrics: "
+            f"seed {SEED}, means over episodes; by `scripts/controllers/field_tables.py`. Metrics: "
             "[field.md](../../field.md#metrics).\n"
         )
         for scenario in arguments.scenarios:

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Searches for the constants of a controller as policies are trained: on validation seeds only, with
+a budget that is stated.
+
+Usage: tune.py SEARCH.yaml TRIALS.csv [--trials N] [--evaluate FILE] [--workers N], in a built and
+sourced workspace. SEARCH.yaml, such as those beside this file, says what is searched (its keys are
+explained in pursuit_separated.yaml). TRIALS.csv gets a row for each trial, in the order they were
+flown. What was flown is kept beside it in TRIALS.jsonl: started again, a search goes on.
+
+Search: the constants of `start`, then random within `space` (uniform; where a range spans a decade
+or more, of the logarithm), then near the best so far. The same file draws the same constants.
+"""
+
+import argparse
+import csv
+import math
+import os
+import random
+import sys
+
+import flights
+import yaml
+
+KEYS = {
+    "controller", "space", "start", "scenarios", "conditions", "episodes", "seed", "trials",
+    "random_trials", "step", "draws", "score",
+}
+
+
+def read(file):
+    """Returns the search of a file; ends the program where a key is missing or unknown."""
+    with open(file, encoding="utf-8") as text:
+        search = yaml.safe_load(text)
+    wrong = KEYS.symmetric_difference(search)
+    if wrong:
+        sys.exit(f"{file}: missing or unknown: {', '.join(sorted(wrong))}")
+    return search
+
+
+def draw(space, centre, step, rng):
+    """Returns constants: anywhere, or with a centre near it, by `step` of the range."""
+    values = {}
+    for name, (lo, hi) in space.items():
+        logarithmic = lo > 0.0 and hi / lo >= 10.0
+        a, b = (math.log(lo), math.log(hi)) if logarithmic else (lo, hi)
+        if centre is None or name not in centre:
+            x = rng.uniform(a, b)
+        else:
+            x = math.log(centre[name]) if logarithmic else centre[name]
+            x = min(b, max(a, rng.gauss(x, step * (b - a))))
+        values[name] = float(f"{math.exp(x) if logarithmic else x:.4g}")
+    return values
+
+
+def text_of(controller, values):
+    """Returns how `evaluate --policy` takes them."""
+    constants = ",".join(f"{name}={value:g}" for name, value in values.items())
+    return controller + (":" + constants if constants else "")
+
+
+def fly(search, known, values):
+    """Returns (score, means over all cells of what is scored)."""
+    found = [
+        known.fly(text_of(search["controller"], values), scenario, condition, search["episodes"],
+                  search["seed"])
+        for scenario in search["scenarios"] for condition in search["conditions"]
+    ]
+    blocks = {cell["seed_block"] for cell in found}
+    if blocks != {"choosing"}:
+        sys.exit(f"tune: nothing may be chosen by seeds of the {', '.join(sorted(blocks))} block")
+    means = {name: sum(cell[name] for cell in found) / len(found) for name in search["score"]}
+    return sum(weight * means[name] for name, weight in search["score"].items()), means
+
+
+def trials_of(search, known):
+    """Flies the search; yields (trial, score, means, constants) of each trial."""
+    rng = random.Random(search["draws"])
+    best = None
+    first, last = search["step"]
+    start, chance = search["start"], len(search["start"]) + search["random_trials"]
+    for trial in range(search["trials"]):
+        progress = (trial - chance) / max(1, search["trials"] - 1 - chance)
+        if trial < len(start):
+            values = start[trial]
+        elif trial < chance:
+            values = draw(search["space"], None, 0.0, rng)
+        else:
+            values = draw(search["space"], best[1], first * (last / first) ** progress, rng)
+        score, means = fly(search, known, values)
+        if best is None or score > best[0]:
+            best = (score, values)
+            print(f"trial {trial}: {score:.4f} {text_of(search['controller'], values)}")
+        yield trial, score, means, values
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("search")
+    parser.add_argument("out")
+    parser.add_argument("--trials", type=int, help="instead of the file's")
+    parser.add_argument("--evaluate", default="evaluate", help="program, where not rosrun's")
+    parser.add_argument("--workers", type=int, default=1)
+    arguments = parser.parse_args()
+    search = read(arguments.search)
+    search["trials"] = arguments.trials or search["trials"]
+    known = flights.Flights(
+        os.path.splitext(arguments.out)[0] + ".jsonl", arguments.evaluate, arguments.workers
+    )
+    names = list(search["space"])
+    with open(arguments.out, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["trial", "score", *search["score"], *names])
+        for trial, score, means, values in trials_of(search, known):
+            # Empty: the controller's own constant.
+            table.writerow([trial, f"{score:.4f}", *(f"{mean:.6g}" for mean in means.values()),
+                            *(values.get(name, "") for name in names)])  # fmt: skip
+            file.flush()
+    cells = len(search["scenarios"]) * len(search["conditions"])
+    print(f"{search['trials']} trials, {search['trials'] * cells * search['episodes']} episodes")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+"""Where the programs are that a study runs, and where its runs may lie."""
+
+import os
+import sys
+
+from stg_study.study import StudyError
+
+
+def program_folder(given):
+    """Folder that holds the programs train and evaluate."""
+    if given:
+        candidates = [given]
+    else:
+        prefixes = os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
+        candidates = [os.path.join(p, "lib", "marl_trainer") for p in prefixes if p]
+        candidates.append(os.path.dirname(os.path.realpath(sys.argv[0])))
+    for folder in candidates:
+        if all(os.access(os.path.join(folder, name), os.X_OK) for name in ("train", "evaluate")):
+            return os.path.realpath(folder)
+    raise StudyError(
+        f"train and evaluate are not in {', '.join(candidates)}; build and source the workspace, "
+        "or name their folder with --bin"
+    )
+
+
+def own_folder(path):
+    """Makes a folder that git ignores."""
+    os.makedirs(path, exist_ok=True)
+    with open(os.path.join(path, ".gitignore"), "w", encoding="utf-8") as file:
+        file.write("*\n")

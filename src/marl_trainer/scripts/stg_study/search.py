@@ -1,0 +1,179 @@
+"""A random search of every algorithm's options with equal trials, chosen by validation returns."""
+
+import dataclasses
+import math
+import os
+import random
+from typing import Dict
+
+import yaml
+
+from stg_study.jobs import Training, write_atomically
+from stg_study.collect import csv_text, read_rows
+from stg_study.statistics import final_stage
+from stg_study.study import Method, ScenarioEntry, Study, StudyError, build
+
+LOG_DIGITS = 2  # significant digits of a value drawn from an interval
+
+
+@dataclasses.dataclass
+class Search:
+    """What is searched. `algorithms` has for each the options and what they are drawn from: a list
+    of values, or {"log": [least, most]}."""
+
+    scenario: str
+    algorithms: dict
+    preset: str = "fast"
+    steps: int = 256000  # environment steps of a trial
+    trials: int = 10  # of each algorithm; the first is the preset as it is
+    training_seed: int = 1000  # of every trial
+    draw_seed: int = 1
+    train: Dict[str, object] = dataclasses.field(default_factory=dict)  # options of every trial
+    fixed: dict = dataclasses.field(default_factory=dict)  # options of all of an algorithm's trials
+    spaces: dict = dataclasses.field(default_factory=dict)  # anchors for `algorithms`, not read
+
+
+def load_search(path):
+    """Reads a search from a YAML file; StudyError where it cannot be one."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            search = build(Search, path, yaml.safe_load(file))
+    except (OSError, yaml.YAMLError) as error:
+        raise StudyError(f"{path}: {error}") from error
+    if search.trials < 1 or search.steps < 1 or search.training_seed < 0:
+        raise StudyError(f"{path}: trials and steps must be positive, training_seed not negative")
+    for algorithm, space in search.algorithms.items():
+        if not isinstance(space, dict):
+            raise StudyError(f"{path}: algorithms.{algorithm}: must be a mapping")
+        for option, source in space.items():
+            _check_source(f"{path}: algorithms.{algorithm}.{option}", source)
+    return search
+
+
+def _check_source(where, source):
+    """Refuses what nothing can be drawn from."""
+    if isinstance(source, list) and source:
+        return
+    ends = source.get("log") if isinstance(source, dict) and len(source) == 1 else None
+    good = isinstance(ends, list) and len(ends) == 2
+    good = good and all(isinstance(end, (int, float)) for end in ends) and 0.0 < ends[0] < ends[1]
+    if not good:
+        raise StudyError(f"{where}: {source!r} is neither a list of values nor {{log: [low, high]}}")
+
+
+def draw(source, generator):
+    """One value of a list, or of an interval evenly in the logarithm."""
+    if isinstance(source, list):
+        return generator.choice(source)
+    low, high = source["log"]
+    value = math.exp(generator.uniform(math.log(low), math.log(high)))
+    return float(f"{value:.{LOG_DIGITS}g}")
+
+
+def trials_of(search, algorithm):
+    """The options of every trial of an algorithm; they depend on no other algorithm's."""
+    generator = random.Random(f"{search.draw_seed} {algorithm}")
+    space = search.algorithms[algorithm]
+    drawn = [
+        {option: draw(source, generator) for option, source in space.items()}
+        for _ in range(search.trials - 1)
+    ]
+    return [{}] + drawn
+
+
+def plan_search(search, algorithms, work, bin_dir):
+    """Returns {algorithm: [Training]} of all trials."""
+    study = Study(
+        name="search",
+        title="",
+        scenarios=[ScenarioEntry(search.scenario)],
+        conditions=["nominal"],
+        methods=[],
+        controllers=[],
+        preset=search.preset,
+        steps=search.steps,
+        train=search.train,
+    )
+    fixed = search.fixed
+    return {
+        algorithm: [
+            Training(
+                study,
+                study.scenarios[0],
+                Method(f"{algorithm}_{k}", "", train={"algorithm": algorithm, **fixed.get(algorithm, {}), **options}),
+                search.training_seed,
+                work,
+                bin_dir,
+            )
+            for k, options in enumerate(trials_of(search, algorithm))
+        ]
+        for algorithm in algorithms
+    }
+
+
+@dataclasses.dataclass
+class Score:
+    """What a trial is judged by: means over the last fifth of its validations."""
+
+    value: float  # return, summed over the AUVs
+    lost_rate: float
+    wall_seconds: float
+
+
+def score_of(training):
+    """Score of a finished trial, or None."""
+    if not training.complete():
+        return None
+    rows = read_rows(os.path.join(training.folder, "progress.csv"))
+    rows = final_stage([row for row in rows if row.get("validation_return")])
+    return Score(
+        sum(float(row["validation_return"]) for row in rows) / len(rows),
+        sum(float(row["validation_lost_rate"]) for row in rows) / len(rows),
+        float(rows[-1]["wall_seconds"]),
+    )
+
+
+def choose_best(scores):
+    """Index of the trial to choose: the highest return; the earlier of equal ones; None of none."""
+    known = [k for k, score in enumerate(scores) if score is not None]
+    return max(known, key=lambda k: (scores[k].value, -k)) if known else None
+
+
+def write_search(search, trainings, out):
+    """Writes trials.csv, chosen.yaml and report.md into `out`; returns how many trials lack."""
+    rows, chosen, missing = [], {}, 0
+    page = [
+        "# The search before the study of equal terms\n",
+        f"{search.trials} trials of {search.steps:,} environment steps for every algorithm on "
+        f"`{search.scenario}`, training seed {search.training_seed}, drawn at random from "
+        "[what can be chosen](search.yaml); trial 0 is the preset as it is. Score: the return of "
+        "the held-out episodes that a training validates on (of the choosing block), mean over "
+        "the last fifth of its validations. No evaluation of the study took part.\n",
+        "| Algorithm | Trial | Options | Score | Lost | Wall s |",
+        "|---|---:|---|---:|---:|---:|",
+    ]
+    for algorithm, jobs in trainings.items():
+        scores = [score_of(job) for job in jobs]
+        best = choose_best(scores)
+        missing += scores.count(None)
+        for k, (options, score) in enumerate(zip(trials_of(search, algorithm), scores)):
+            text = " ".join(f"--{name} {value}" for name, value in options.items())
+            cells = ["", "", ""]
+            if score is not None:
+                cells = [f"{score.value:.1f}", f"{score.lost_rate:.4f}", f"{score.wall_seconds:.1f}"]
+            rows.append((algorithm, k, text, *cells, int(k == best)))
+            mark = "**" if k == best else ""
+            cells = [f"{mark}{cell or '–'}{mark}" for cell in cells]
+            page.append(f"| {algorithm} | {k} | {text or 'the preset'} | " + " | ".join(cells) + " |")
+        if best is not None:
+            chosen[algorithm] = trials_of(search, algorithm)[best]
+    os.makedirs(out, exist_ok=True)
+    header = ["algorithm", "trial", "options", "return", "lost_rate", "wall_seconds", "chosen"]
+    write_atomically(os.path.join(out, "trials.csv"), csv_text(header, rows))
+    text = "# The options of the best trial of each algorithm; none: the preset as it is.\n"
+    text += yaml.safe_dump(chosen, sort_keys=False)
+    write_atomically(os.path.join(out, "chosen.yaml"), text)
+    text = yaml.safe_dump(dataclasses.asdict(search), sort_keys=False, width=96)
+    write_atomically(os.path.join(out, "search.yaml"), text)
+    write_atomically(os.path.join(out, "report.md"), "\n".join(page) + "\n")
+    return missing

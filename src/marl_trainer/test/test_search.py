@@ -1,0 +1,129 @@
+"""Tests of the search of options: draws, choice, files."""
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import yaml
+
+PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
+sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+
+import stub_programs  # noqa: E402
+from stg_study import search, study  # noqa: E402
+
+SEARCH = """
+scenario: medium_release
+steps: 1000
+trials: 4
+fixed: {masac: {critic-hidden: "128,128"}}
+algorithms:
+  mappo: {lr: {log: [1.0e-4, 1.0e-2]}, epochs: [2, 3]}
+  masac: {tau: [0.01]}
+"""
+
+
+def sample(**changes):
+    return search.Search(**{**yaml.safe_load(SEARCH), **changes})
+
+
+class Draws(unittest.TestCase):
+    def test_the_first_trial_is_the_preset_and_all_lie_in_the_space(self):
+        trials = search.trials_of(sample(trials=40), "mappo")
+        self.assertEqual(len(trials), 40)
+        self.assertEqual(trials[0], {})
+        rates = [trial["lr"] for trial in trials[1:]]
+        self.assertTrue(all(1e-4 <= rate <= 1e-2 for rate in rates))
+        # Evenly in the logarithm: half of them below the geometric mean, 1e-3, +- 4 sigma.
+        below = sum(rate < 1e-3 for rate in rates)
+        self.assertLess(abs(below - 19.5), 4.0 * 39**0.5 / 2.0)
+        self.assertEqual({trial["epochs"] for trial in trials[1:]}, {2, 3})
+
+    def test_draws_depend_on_the_seed_and_on_no_other_algorithm(self):
+        alone = sample(algorithms={"mappo": sample().algorithms["mappo"]})
+        self.assertEqual(search.trials_of(alone, "mappo"), search.trials_of(sample(), "mappo"))
+        other = search.trials_of(sample(draw_seed=2), "mappo")
+        self.assertNotEqual(other, search.trials_of(sample(), "mappo"))
+
+    def test_the_best_is_the_highest_return_and_the_earlier_of_equals(self):
+        scores = [None] + [search.Score(value, 0.0, 1.0) for value in (3.0, 5.0, 5.0)]
+        self.assertEqual(search.choose_best(scores), 2)
+        self.assertIsNone(search.choose_best([None]))
+
+    def test_mistakes_are_refused_by_name(self):
+        for changes, name in (
+            ({"algorithms": {"mappo": {"lr": {"log": [1e-2, 1e-4]}}}}, "mappo.lr"),
+            ({"algorithms": {"mappo": {"lr": []}}}, "mappo.lr"),
+            ({"algorithms": {"mappo": 3}}, "algorithms.mappo"),
+            ({"trials": 0}, "trials"),
+            ({"scenaro": "a"}, "scenaro"),
+        ):
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "search.yaml")
+                with open(path, "w", encoding="utf-8") as file:
+                    yaml.safe_dump({**yaml.safe_load(SEARCH), **changes}, file)
+                with self.assertRaises(study.StudyError) as caught:
+                    search.load_search(path)
+                self.assertIn(name, str(caught.exception))
+                self.assertIn(path, str(caught.exception))
+
+    def test_the_shipped_search_gives_every_algorithm_as_many_trials(self):
+        folder = os.path.join(study.shipped_studies(), "search")
+        shipped = search.load_search(os.path.join(folder, "equal_terms.yaml"))
+        self.assertEqual(len(shipped.algorithms), 7)
+        trained = study.load_study(study.find_study("equal_terms"))
+        self.assertNotIn(shipped.training_seed, trained.seeds)
+
+
+class Tune(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        stub_programs.write_stubs(self.folder)
+        self.search = os.path.join(self.folder, "search.yaml")
+        with open(self.search, "w", encoding="utf-8") as file:
+            file.write(SEARCH)
+
+    def tune(self, *arguments):
+        out = os.path.join(self.folder, "out")
+        return subprocess.run(
+            ["/usr/bin/python3", os.path.join(PACKAGE, "scripts", "tune"), "--search", self.search,
+             "--out", out, "--bin", self.folder, "--jobs", "2", *arguments],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False,
+        )  # fmt: skip
+
+    def test_a_search_writes_its_trials_and_what_it_chose_and_runs_nothing_twice(self):
+        done = self.tune()
+        self.assertEqual(done.returncode, 0, done.stdout)
+        calls = stub_programs.calls(self.folder)
+        self.assertEqual(len(calls), 8)
+        masac = [call for call in calls if "--algorithm masac" in call]
+        self.assertEqual(sum("--critic-hidden 128,128" in call for call in masac), 4)
+        self.assertEqual(sum("--tau 0.01" in call for call in masac), 3)
+        with open(os.path.join(self.folder, "out", "trials.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 8)
+        with open(os.path.join(self.folder, "out", "chosen.yaml"), encoding="utf-8") as file:
+            chosen = yaml.safe_load(file)
+        for algorithm in ("mappo", "masac"):
+            mine = [row for row in rows if row["algorithm"] == algorithm]
+            best = max(mine, key=lambda row: float(row["return"]))
+            self.assertEqual([row for row in mine if row["chosen"] == "1"], [best])
+            trial = search.trials_of(sample(), algorithm)[int(best["trial"])]
+            self.assertEqual(chosen[algorithm], trial)
+        self.assertEqual(self.tune().returncode, 0)
+        self.assertEqual(stub_programs.calls(self.folder), [])
+
+    def test_an_unknown_algorithm_is_refused(self):
+        done = self.tune("--algorithms", "mappoo")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("mappoo", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

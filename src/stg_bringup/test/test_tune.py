@@ -1,0 +1,95 @@
+"""scripts/controllers/tune.py: finds what it searches, keeps every trial, chooses by no other seed."""
+
+import csv
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import yaml
+
+FOLDER = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "controllers"
+# In place of `evaluate`: the return has its peak at gain 2, and a contact costs more than it gives.
+EVALUATE = f"""#!{sys.executable}
+import json, math, sys
+given = dict(zip(sys.argv[1::2], sys.argv[2::2]))
+constants = dict(c.split("=") for c in given["--policy"].partition(":")[2].split(",") if c)
+gain, cap = float(constants.get("gain", 0.1)), float(constants.get("cap", 1.0))
+print(json.dumps({{"return": 100 - math.log(gain / 2) ** 2 + cap, "contact": cap,
+                   "seed_block": "choosing" if int(given["--seed"]) < 1000000 else "reporting"}}))
+"""
+SEARCH = {
+    "controller": "pursuit", "space": {"gain": [0.05, 20.0], "cap": [0.0, 1.0]}, "start": [{}],
+    "scenarios": ["medium"], "conditions": ["nominal"], "episodes": 3, "seed": 7,
+    "trials": 40, "random_trials": 15, "step": [0.2, 0.02], "draws": 4,
+    "score": {"return": 1.0, "contact": -2.0},
+}
+
+
+class Tune(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        evaluate = self.folder / "evaluate"
+        evaluate.write_text(EVALUATE)
+        evaluate.chmod(0o755)
+
+    def run_tune(self, **changes):
+        """Returns the finished program."""
+        search = dict(SEARCH, **changes)
+        (self.folder / "search.yaml").write_text(yaml.safe_dump(search))
+        return subprocess.run(
+            [sys.executable, str(FOLDER / "tune.py"), str(self.folder / "search.yaml"),
+             str(self.folder / "out.csv"), "--evaluate", str(self.folder / "evaluate")],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
+
+    def trials(self):
+        """Returns the rows of the table."""
+        with open(self.folder / "out.csv", encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_finds_the_best_constants_and_keeps_every_trial(self):
+        run = self.run_tune()
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("40 trials, 120 episodes", run.stdout)
+        rows = self.trials()
+        self.assertEqual([int(row["trial"]) for row in rows], list(range(40)))
+        self.assertEqual(rows[0]["gain"], "", "the shipped constants come first")
+        best = max(rows, key=lambda row: float(row["score"]))
+        self.assertAlmostEqual(float(best["gain"]), 2.0, delta=0.4)
+        self.assertLess(float(best["cap"]), 0.1)
+        self.assertAlmostEqual(
+            float(best["score"]), float(best["return"]) - 2.0 * float(best["contact"]), delta=1e-3)
+
+    def test_a_search_that_is_started_again_flies_nothing_twice(self):
+        self.run_tune(trials=5)
+        first = self.trials()
+        (self.folder / "evaluate").write_text("#!/bin/false\n")
+        self.assertEqual(self.run_tune(trials=5).returncode, 0)
+        self.assertEqual(self.trials(), first)
+
+    def test_seeds_for_reporting_are_refused(self):
+        run = self.run_tune(seed=5000000)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("seeds of the reporting block", run.stderr)
+
+    def test_unknown_keys_are_refused(self):
+        run = self.run_tune(trails=3)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("missing or unknown: trails", run.stderr)
+
+    def test_shipped_searches_name_choosing_seeds_and_constants_of_their_space(self):
+        files = sorted(FOLDER.glob("*.yaml"))
+        self.assertGreaterEqual(len(files), 4)
+        for file in files:
+            search = yaml.safe_load(file.read_text())
+            self.assertEqual(set(search), set(SEARCH), file)
+            self.assertLess(search["seed"] + search["episodes"], 1000000, file)
+            for values in search["start"]:
+                self.assertLessEqual(set(values), set(search["space"]), file)
+
+
+if __name__ == "__main__":
+    unittest.main()
