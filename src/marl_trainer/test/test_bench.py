@@ -63,6 +63,9 @@ class Bench(unittest.TestCase):
         self.assertEqual(status, 0, output)
         calls = stub_programs.calls(self.folder)
         self.assertEqual([c.split()[0] for c in calls], ["train", "train"])
+        self.assertIn("--algorithm madqn --reward own --gamma 0.8", calls[0])
+        self.assertNotIn("--gamma", calls[1])
+        self.assertIn("madqn: with --reward own --gamma 0.8", output)
         with open(self.out, encoding="utf-8") as file:
             report = json.load(file)
         self.assertEqual(list(report["algorithms"]), ["madqn", "matd3"])
