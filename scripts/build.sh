@@ -6,7 +6,8 @@ set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 base=${STG_BUILD_ROOT:-$root}
 sanitize=${STG_SANITIZE:-}
-build=$base/build${sanitize:+-$sanitize}
+# A comma in a folder would end an argument that the compiler hands on to the linker.
+build=$base/build${sanitize:+-${sanitize//,/-}}
 
 # Catkin and ROS belong to Debian's Python, whatever else comes first on the PATH.
 export PATH="/usr/bin:$PATH"
