@@ -146,8 +146,9 @@ class Algorithm {
   /// What the AUVs are to fly with: one policy for all or one for each.
   virtual std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const = 0;
   virtual std::vector<ReportColumn> Columns() const = 0;
-  /// Every network that is trained, each once however many AUVs share it.
-  virtual std::vector<NetworkSize> Sizes() const = 0;
+  /// Every network that is trained, each once however many AUVs share it; none where the algorithm
+  /// does not tell.
+  virtual std::vector<NetworkSize> Sizes() const { return {}; }
 };
 
 }  // namespace stg::learn
