@@ -42,6 +42,11 @@ if [[ -n "${STG_MARCH:-}" ]]; then
   options+=("-DSTG_MARCH=$STG_MARCH")
 fi
 
+if [[ -n "${STG_CMAKE_OPTIONS:-}" ]]; then
+  read -ra more <<<"$STG_CMAKE_OPTIONS"
+  options+=("${more[@]}")
+fi
+
 # Ninja configures again by itself when a CMake file changes, but not when a package appears.
 wanted=$(printf '%s\n' "${options[@]}" "$root"/src/*/package.xml)
 stamp=$build/stg_configured
