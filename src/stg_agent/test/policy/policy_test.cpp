@@ -17,11 +17,16 @@ namespace {
 std::atomic<long> allocations{0};
 }
 // Eigen allocates by malloc, so counting operator new would miss it.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// They have a malloc of their own, which is needed before ours could be called.
+extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t) { ++allocations; }
+#else
 extern "C" void* __libc_malloc(std::size_t);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
 }
+#endif
 
 namespace stg::agent {
 namespace {
