@@ -8,9 +8,12 @@
 namespace stg::learn {
 namespace {
 
+// Open MPI leaves memory behind, in plug-ins that are gone by the end and so cannot be named to
+// the leak sanitizer.
 const std::string kMpirun =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 STG_SCENARIOS=" STG_SCENARIO_FOLDER
-    " " STG_MPIRUN " --oversubscribe --bind-to none -n ";
+    "ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 "
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 STG_SCENARIOS=" STG_SCENARIO_FOLDER " " STG_MPIRUN
+    " --oversubscribe --bind-to none -n ";
 
 class MpiTest : public TrainerTest {
  protected:
