@@ -45,6 +45,7 @@ bool Change(const config::Field& field) {
   if (auto v = std::get_if<std::uint64_t*>(&field.value)) **v += 1;
   if (auto v = std::get_if<bool*>(&field.value)) **v = !**v;
   if (auto v = std::get_if<std::string*>(&field.value)) **v += "x";
+  if (auto v = std::get_if<config::NameOrFileRef>(&field.value)) *v->text += "x";
   if (auto v = std::get_if<config::EnumRef>(&field.value)) {
     if (v->names.size() == 1) return false;
     v->set((v->get() + 1) % static_cast<int>(v->names.size()));
