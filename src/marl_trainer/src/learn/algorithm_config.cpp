@@ -12,8 +12,7 @@
 namespace stg::learn {
 
 void Algorithm::Join(Communicator*) {
-  throw UserError(
-      "this algorithm learns in one process only; mappo, ippo and happo learn in several");
+  throw UserError("this algorithm learns in one process only");
 }
 
 void Algorithm::StartFrom(const Archive&) {

@@ -132,6 +132,15 @@ TEST_F(ReplayTest, ForgetsTheOldestCollectionAndDrawsEveryStep) {
   EXPECT_EQ(seen, expected);
 }
 
+TEST_F(ReplayTest, TakesOneDivisionOfTheEnvironmentsOnly) {
+  ReplayBuffer replay(problem_, 2 * 3 * kSteps, 2, kGamma);
+  Fill(&replay, 0);
+  Collection other;
+  other.steps = kSteps;
+  other.shards = {{0, 1}, {1, 2}};  // as many steps, in others' places
+  EXPECT_THROW(replay.Begin(other), UserError);
+}
+
 TEST_F(ReplayTest, IsSavedAndLoadedBitForBit) {
   for (const bool own : {false, true}) SaveAndLoad(own);
 }

@@ -46,10 +46,16 @@ void ReplayBuffer::Resize(Block* block, int steps, int envs) const {
 }
 
 void ReplayBuffer::Begin(const Collection& collection) {
-  first_.assign(1, 0);
+  std::vector<std::int64_t> first(1, 0);
   for (const Shard& shard : collection.shards) {
-    first_.push_back(first_.back() + static_cast<std::int64_t>(collection.steps) * shard.envs);
+    first.push_back(first.back() + static_cast<std::int64_t>(collection.steps) * shard.envs);
   }
+  if (!first_.empty() && first != first_) {
+    throw UserError(
+        "the replayed transitions are of other shards of environments: a run of one process does "
+        "not go on among ranks, nor the other way round");
+  }
+  first_ = std::move(first);
   const std::size_t chunks = Index(std::max<std::int64_t>(1, capacity_ / first_.back()));
   if (chunks_.size() < chunks) {
     newest_ = chunks_.size();
@@ -58,7 +64,6 @@ void ReplayBuffer::Begin(const Collection& collection) {
     newest_ = (newest_ + 1) % chunks_.size();
   }
   Chunk& chunk = chunks_[newest_];
-  assert(chunk.size() == collection.shards.size());
   for (std::size_t s = 0; s < chunk.size(); ++s) {
     Resize(&chunk[s], collection.steps, collection.shards[s].envs);
   }

@@ -31,6 +31,21 @@ std::vector<int> SlicedGradient::EqualSlices(int first, int count) {
   return bounds;
 }
 
+void SlicedGradient::ComputeEqual(int count, const Part& part) {
+  const std::vector<int> bounds = EqualSlices(0, count);
+  if (ranks_ == nullptr) {
+    Compute(bounds, part);
+    return;
+  }
+  const GroupShare share = GroupShare::Of(*ranks_, kSlices);
+  assert(share.groups == kSlices);
+  const auto first = bounds.begin() + share.first;
+  Compute({first, first + share.count + 1},
+          [&](int slice, int worker, int begin, int end, float* gradient) {
+            part(share.first + slice, worker, begin, end, gradient);
+          });
+}
+
 void SlicedGradient::Compute(const std::vector<int>& bounds, const Part& part) {
   const std::size_t slices = bounds.size() - 1;
   assert(slices <= parts_.size());

@@ -61,11 +61,9 @@ TEST_F(MpiTest, ALostRankEndsTheRunAndResumeGoesOn) {
   EXPECT_EQ(Policy("lost"), Policy("whole"));
 }
 
-TEST_F(MpiTest, AnAlgorithmThatCannotSaysSoOnce) {
-  EXPECT_EQ(Run(kMpirun + "2 " STG_TRAIN " --algorithm masac --scenario medium_release --out " +
-                (folder_ / "masac").string()),
-            2);
-  const std::string reason = "train: --algorithm masac: this algorithm learns in one process only";
+TEST_F(MpiTest, WhatCannotBeSharedIsToldOnce) {
+  EXPECT_EQ(Run(Command(3, "three", "")), 2);
+  const std::string reason = "train: started with 3 ranks: their number must be a power of two";
   const std::size_t found = output_.find(reason);
   ASSERT_NE(found, std::string::npos) << output_;
   EXPECT_EQ(output_.find(reason, found + 1), std::string::npos);

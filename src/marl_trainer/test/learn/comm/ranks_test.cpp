@@ -3,6 +3,7 @@
 #include "auv_common/error.hpp"
 #include "learn/comm/thread_ranks.hpp"
 #include "learn/trainer_fixture.hpp"
+#include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
 
 /// Training among several ranks, which here are threads; mpi_test.cpp has processes.
 namespace stg::learn {
@@ -14,7 +15,15 @@ class RanksTest : public TrainerTest {
   static TrainSetup SetupOf(const std::string& algorithm) {
     const TrainSetup small = SmallSetup();
     TrainSetup setup(algorithm, "fast");
-    dynamic_cast<MappoConfig&>(*setup.own) = dynamic_cast<const MappoConfig&>(*small.own);
+    if (auto* mappo = dynamic_cast<MappoConfig*>(setup.own.get())) {
+      *mappo = dynamic_cast<const MappoConfig&>(*small.own);
+    } else {
+      auto& replay = dynamic_cast<ReplayConfig&>(*setup.own);
+      replay.replay = 1280;  // two collections of three
+      replay.warmup = 0;
+      replay.batch = 100;  // slices of 6 and 7
+      replay.actor_hidden = replay.critic_hidden = {8};
+    }
     setup.common = small.common;
     setup.common.steps = 1920;
     setup.common.validation_episodes = 20;  // a block and a part of one
@@ -45,7 +54,7 @@ class RanksTest : public TrainerTest {
 };
 
 TEST_F(RanksTest, TheirNumberAndThatOfWorkersDoNotMatter) {
-  for (const char* algorithm : {"mappo", "ippo", "happo"}) {
+  for (const char* algorithm : {"mappo", "ippo", "happo", "maddpg", "matd3", "masac", "madqn"}) {
     const TrainSetup setup = SetupOf(algorithm);
     const std::string name = algorithm;
     const TrainState one = Train(setup, 1, 1, Options(name + "1"));
@@ -73,15 +82,30 @@ TEST_F(RanksTest, OneProcessAloneDiffersInTheOrderOfSumsOnly) {
 }
 
 TEST_F(RanksTest, ARunThatWasStoppedGoesOnWithAnotherNumberOfRanks) {
-  TrainSetup setup = SetupOf("mappo");
-  setup.common.stagger = true;
-  const TrainState whole = Train(setup, 1, 1, Options("whole"));
-  Trainer::Options options = Options("halves");
+  for (const std::string algorithm : {"mappo", "masac"}) {
+    TrainSetup setup = SetupOf(algorithm);
+    setup.common.stagger = true;
+    const TrainState whole = Train(setup, 1, 1, Options(algorithm + "_whole"));
+    Trainer::Options options = Options(algorithm + "_halves");
+    options.halt_after = 1;
+    EXPECT_EQ(Train(setup, 2, 1, options).env_steps, 640);
+    options.halt_after = 0;
+    options.resume = true;
+    ExpectSameBits(Train(setup, 4, 1, options), whole);
+  }
+}
+
+TEST_F(RanksTest, WhatAProcessAloneReplaysIsNotTakenUp) {
+  const TrainSetup setup = SetupOf("madqn");
+  Trainer::Options options = Options("run");
   options.halt_after = 1;
-  EXPECT_EQ(Train(setup, 2, 1, options).env_steps, 640);
+  ASSERT_FALSE(Trainer(ShortScenario(), setup, options).Run());
   options.halt_after = 0;
   options.resume = true;
-  ExpectSameBits(Train(setup, 4, 1, options), whole);
+  ThreadRanks(1).Run([&](Communicator* self) {
+    options.ranks = self;
+    EXPECT_THROW(Trainer(ShortScenario(), setup, options), UserError);
+  });
 }
 
 TEST_F(RanksTest, OnesRequestToStopStopsAll) {
@@ -109,8 +133,7 @@ TEST_F(RanksTest, WhatCannotBeSharedIsRefused) {
       }
     });
   };
-  refused(TrainSetup("masac", "fast"), 2,
-          "--algorithm masac: this algorithm learns in one process");
+  refused(TrainSetup("masac", "fast"), 32, "--algorithm masac: learns among 16 ranks at most");
   refused(SetupOf("mappo"), 3, "power of two");
   TrainSetup few = SetupOf("mappo");
   few.common.envs = 8;

@@ -5,6 +5,7 @@
 
 #include "auv_common/numbers/random.hpp"
 #include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/learn/comm/communicator.hpp"
 
 namespace stg::learn {
 
@@ -24,10 +25,13 @@ class ReplayBuffer {
                bool own_rewards = false);
 
   /// Begins a collection, in place of the oldest ones where the capacity is reached. All
-  /// collections of a run have the same shards and steps.
+  /// collections of a run have the same shards and steps; throws UserError for others.
   void Begin(const Collection& collection);
   /// Different shards may be added concurrently.
   void Add(const Transition& transition);
+  /// After this rank has added `count` shards of the collection, from number `first` on, and the
+  /// others theirs, by rank: all get all.
+  void Exchange(Communicator* ranks, std::size_t first, std::size_t count);
 
   /// Environment steps that it holds.
   std::int64_t size() const;
@@ -70,6 +74,9 @@ class ReplayBuffer {
     std::vector<float> end_observations, end_states;
   };
   using Chunk = std::vector<Block>;  // by shard
+
+  /// Everything of a block that is no `end`.
+  static std::vector<std::vector<float>*> Numbers(Block* block);
 
   void Resize(Block* block, int steps, int envs) const;
 

@@ -32,8 +32,9 @@ class SlicedGradient {
   /// ranks.
   /// @param bounds of up to kSlices slices, one more than slices
   void Compute(const std::vector<int>& bounds, const Part& part);
-  /// The same of the samples first .. first+count-1 in equal slices.
-  void Compute(int first, int count, const Part& part) { Compute(EqualSlices(first, count), part); }
+  /// The same of the samples 0 .. count-1 in kSlices equal slices, of which every rank has its
+  /// share: of up to kSlices ranks.
+  void ComputeEqual(int count, const Part& part);
   static std::vector<int> EqualSlices(int first, int count);
 
   /// Runs `work` on ranges that cover 0 .. count-1, on all workers where that pays.

@@ -1,6 +1,7 @@
 #include "marl_trainer/learn/algorithms/madqn/madqn.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "auv_common/numbers/random.hpp"
@@ -81,7 +82,6 @@ struct Madqn::Scratch {
   std::vector<float> d_outputs;
   std::vector<int> best;  // [rows, heads]
   std::vector<float> targets, actions;
-  double squares = 0.0, values = 0.0;
 };
 
 Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
@@ -107,6 +107,11 @@ Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfi
 }
 
 Madqn::~Madqn() = default;
+
+void Madqn::Join(Communicator* ranks) {
+  ReplayLearner::Join(ranks);
+  gradient_.Join(ranks);
+}
 
 void Madqn::Act(const Decision& decision, const Actions& out) {
   const int agents = problem().agents, rows = decision.envs * agents;
@@ -139,7 +144,7 @@ void Madqn::Act(const Decision& decision, const Actions& out) {
   }
 }
 
-void Madqn::AddGradient(int slice, float* gradient) {
+Madqn::Sums Madqn::AddGradient(int slice, float* gradient) {
   const ReplayBatch& batch = batches()[static_cast<std::size_t>(slice)];
   Scratch& s = *scratch_[static_cast<std::size_t>(slice)];
   const Codebook& book = codebook_;
@@ -172,7 +177,7 @@ void Madqn::AddGradient(int slice, float* gradient) {
   // The mean over samples, AUVs and heads of (q - target)^2.
   network_.Forward(parameters_.data(), batch.observations.data(), rows, &s.network);
   const float weight = 2.0F / static_cast<float>(base().batch * agents * heads);
-  s.squares = s.values = 0.0;
+  Sums sums;
   for (int r = 0; r < rows; ++r) {
     const float* action =
         batch.actions.data() + static_cast<std::ptrdiff_t>(r) * problem().action_size;
@@ -184,8 +189,8 @@ void Madqn::AddGradient(int slice, float* gradient) {
       const float value = row(r)[0] + advantages[chosen] - Mean(advantages, count);
       const float error = value - s.targets[static_cast<std::size_t>(r)];
       const float d_q = weight * error;
-      s.squares += static_cast<double>(error) * static_cast<double>(error) / (agents * heads);
-      s.values += static_cast<double>(value) / (agents * heads);
+      sums.squares += static_cast<double>(error) * static_cast<double>(error) / (agents * heads);
+      sums.values += static_cast<double>(value) / (agents * heads);
       d[0] += d_q;
       float* d_advantages = d + 1 + h * count;
       std::fill_n(d_advantages, count, -d_q / static_cast<float>(count));
@@ -194,19 +199,21 @@ void Madqn::AddGradient(int slice, float* gradient) {
   }
   network_.Backward(parameters_.data(), batch.observations.data(), s.d_outputs.data(), rows,
                     &s.network, gradient);
+  return sums;
 }
 
 void Madqn::Step(const StepContext& step) {
   rate_ = step.rate;
-  gradient_.Compute(0, base().batch, [&](int slice, int, int, int, float* gradient) {
-    AddGradient(slice, gradient);
+  std::array<Sums, SlicedGradient::kSlices> parts{};
+  gradient_.ComputeEqual(base().batch, [&](int slice, int, int, int, float* gradient) {
+    parts[static_cast<std::size_t>(slice)] = AddGradient(slice, gradient);
   });
   const Adam adam(base().adam_eps, &adam_);
   norm_ += gradient_.Apply(adam, 0, network_.parameters(), base().lr * step.rate, base().grad_clip,
                            parameters_.data());
-  for (const auto& s : scratch_) {
-    squares_ += s->squares / base().batch;
-    values_ += s->values / base().batch;
+  for (const Sums& part : OfAllSlices(parts)) {
+    squares_ += part.squares / base().batch;
+    values_ += part.values / base().batch;
   }
   MoveTowards(parameters_, base().tau, &target_);
 }

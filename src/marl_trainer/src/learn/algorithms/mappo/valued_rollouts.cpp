@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "marl_trainer/learn/buffers/gae.hpp"
+#include "marl_trainer/learn/comm/moments_of_ranks.hpp"
 
 namespace stg::learn {
 namespace {
@@ -92,31 +93,10 @@ double ValuedRollouts::Estimate(float* critic) {
     shards[shards.size() - 2].Add(target.data(), b.samples());
     shards.back().Add(b.advantages.data(), b.samples());
   }
-  const std::vector<RunningMoments> all = OfAllRanks(shards);
+  const std::vector<RunningMoments> all = OfAllRanks(ranks_, shards, 2);
   for (std::size_t k = 0; k < all.size(); ++k) (k % 2 == 0 ? targets : errors).Merge(all[k]);
   normalisers_.AddTargets(targets, critic_, critic);
   return 1.0 - errors.variance(0) / std::max(targets.variance(0), 1e-12);
-}
-
-std::vector<RunningMoments> ValuedRollouts::OfAllRanks(
-    const std::vector<RunningMoments>& own) const {
-  if (ranks_ == nullptr || own.empty()) return own;
-  std::vector<double> numbers;
-  for (const RunningMoments& moments : own) {
-    const std::vector<double> saved = moments.Save();
-    numbers.insert(numbers.end(), saved.begin(), saved.end());
-  }
-  // Every rank has the same sizes in turn, which those of its own shards repeat.
-  const std::vector<double> gathered = ranks_->Gather(numbers);
-  std::vector<RunningMoments> all;
-  for (auto from = gathered.begin(); from != gathered.end();) {
-    RunningMoments moments(own[all.size() % 2].size());
-    const auto end = from + static_cast<std::ptrdiff_t>(moments.Save().size());
-    moments.Load({from, end});
-    all.push_back(std::move(moments));
-    from = end;
-  }
-  return all;
 }
 
 void ValuedRollouts::UpdateInputScales() {
@@ -125,7 +105,7 @@ void ValuedRollouts::UpdateInputScales() {
     shards.push_back(r.observations);
     shards.push_back(r.states);
   }
-  const std::vector<RunningMoments> all = OfAllRanks(shards);
+  const std::vector<RunningMoments> all = OfAllRanks(ranks_, shards, 2);
   for (std::size_t k = 0; k < all.size(); k += 2) normalisers_.Add(all[k], all[k + 1]);
   normalisers_.UpdateInputScales();
 }

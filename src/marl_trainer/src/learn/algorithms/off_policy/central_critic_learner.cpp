@@ -26,29 +26,35 @@ CentralCriticLearner::CentralCriticLearner(const ReplayOptions& options, const N
   Keep("critic_adam", &critic_adam_);
 }
 
+void CentralCriticLearner::Join(Communicator* ranks) {
+  ReplayLearner::Join(ranks);
+  actor_gradient_.Join(ranks);
+  critic_gradient_.Join(ranks);
+}
+
 void CentralCriticLearner::TrainCritics(const StepContext& step) {
   std::array<Sums, SlicedGradient::kSlices> parts{};
-  critic_gradient_.Compute(0, base().batch, [&](int slice, int, int, int, float* gradient) {
+  critic_gradient_.ComputeEqual(base().batch, [&](int slice, int, int, int, float* gradient) {
     AddCriticGradient(step, slice, gradient, &parts[static_cast<std::size_t>(slice)]);
   });
   const Adam adam(base().adam_eps, &critic_adam_);
   critic_norm_ +=
       critic_gradient_.Apply(adam, 0, critics_.parameters().size(), base().critic_lr * step.rate,
                              base().grad_clip, critics_.parameters().data());
-  for (const Sums& part : parts) sums_.squares += part.squares / base().batch;
+  for (const Sums& part : OfAllSlices(parts)) sums_.squares += part.squares / base().batch;
   rate_ = step.rate;
 }
 
 CentralCriticLearner::Sums CentralCriticLearner::TrainActor(const StepContext& step) {
   std::array<Sums, SlicedGradient::kSlices> parts{};
-  actor_gradient_.Compute(0, base().batch, [&](int slice, int, int, int, float* gradient) {
+  actor_gradient_.ComputeEqual(base().batch, [&](int slice, int, int, int, float* gradient) {
     AddActorGradient(step, slice, gradient, &parts[static_cast<std::size_t>(slice)]);
   });
   const Adam adam(base().adam_eps, &actor_adam_);
   actor_norm_ += actor_gradient_.Apply(adam, 0, actor_.parameters(), base().lr * step.rate,
                                        base().grad_clip, actor_parameters_.data());
   Sums means;
-  for (const Sums& part : parts) {
+  for (const Sums& part : OfAllSlices(parts)) {
     means.value += part.value;
     means.entropy += part.entropy;
   }

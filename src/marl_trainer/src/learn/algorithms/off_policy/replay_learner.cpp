@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "marl_trainer/learn/comm/moments_of_ranks.hpp"
 
 namespace stg::learn {
 namespace {
@@ -28,6 +30,7 @@ ReplayLearner::ReplayLearner(const ReplayOptions& options, const TrainConfig& co
       observations_(problem.observation_size),
       states_(problem.state_size),
       rewards_(1) {
+  slices_.groups = slices_.count = SlicedGradient::kSlices;
   for (int s = 0; s < SlicedGradient::kSlices; ++s) {
     batches_.emplace_back(problem, slice_rows(), own_rewards);
   }
@@ -42,13 +45,27 @@ double ReplayLearner::Rank(int env) const {
   return envs_ > 1 ? static_cast<double>(env) / (envs_ - 1) : 0.5;
 }
 
+void ReplayLearner::Join(Communicator* ranks) {
+  if (ranks->size() > SlicedGradient::kSlices) {
+    throw UserError("learns among " + std::to_string(SlicedGradient::kSlices) + " ranks at most");
+  }
+  ranks_ = ranks;
+  slices_ = GroupShare::Of(*ranks, SlicedGradient::kSlices);
+}
+
 void ReplayLearner::Begin(const Collection& collection) {
-  replay_.Begin(collection);
+  Collection all = collection;
+  if (ranks_ != nullptr) {
+    all.shards = ranks_->Gather(collection.shards);
+    const auto counts = ranks_->Gather(std::vector<std::size_t>{collection.shards.size()});
+    first_shard_ = std::accumulate(counts.begin(), counts.begin() + ranks_->rank(), std::size_t{0});
+  }
+  replay_.Begin(all);
   collected_.assign(collection.shards.size(),
                     {RunningMoments(problem_.observation_size), RunningMoments(problem_.state_size),
                      RunningMoments(1)});
   envs_ = 0;
-  for (const Shard& shard : collection.shards) envs_ += shard.envs;
+  for (const Shard& shard : all.shards) envs_ += shard.envs;
   collected_steps_ = static_cast<std::int64_t>(envs_) * collection.steps;
 }
 
@@ -63,7 +80,23 @@ void ReplayLearner::Observe(const Transition& t) {
   } else {
     m.rewards.Add(t.team_rewards, t.envs);
   }
-  replay_.Add(t);
+  Transition numbered = t;
+  numbered.shard += static_cast<int>(first_shard_);
+  replay_.Add(numbered);
+}
+
+void ReplayLearner::TakeInMoments() {
+  constexpr std::size_t kKinds = 3;
+  std::vector<RunningMoments> own;
+  for (const Moments& m : collected_) {
+    own.insert(own.end(), {m.observations, m.states, m.rewards});
+  }
+  const std::vector<RunningMoments> all = OfAllRanks(ranks_, own, kKinds);
+  for (std::size_t k = 0; k < all.size(); k += kKinds) {
+    observations_.Merge(all[k]);
+    states_.Merge(all[k + 1]);
+    rewards_.Merge(all[k + 2]);
+  }
 }
 
 void ReplayLearner::UpdateScales() {
@@ -82,7 +115,8 @@ void ReplayLearner::UpdateScales() {
 }
 
 void ReplayLearner::DrawBatch(std::uint32_t number) {
-  pool_->Run(SlicedGradient::kSlices, [&](int slice, int) {
+  pool_->Run(slices_.count, [&](int own, int) {
+    const int slice = slices_.first + own;
     const int begin = options_.batch * slice / SlicedGradient::kSlices;
     const int end = options_.batch * (slice + 1) / SlicedGradient::kSlices;
     ReplayBatch& batch = batches_[static_cast<std::size_t>(slice)];
@@ -103,11 +137,8 @@ void ReplayLearner::DrawBatch(std::uint32_t number) {
 UpdateReport ReplayLearner::Update(const UpdateContext& context) {
   const ReplayScales before = scales_;
   const bool scaled = rewards_.count() > 0.0;  // else an untrained critic knows no scale yet
-  for (const Moments& m : collected_) {
-    observations_.Merge(m.observations);
-    states_.Merge(m.states);
-    rewards_.Merge(m.rewards);
-  }
+  if (ranks_ != nullptr) replay_.Exchange(ranks_, first_shard_, collected_.size());
+  TakeInMoments();
   rewards_.LimitCount(kRewardMemory);
   UpdateScales();
   const auto old_std = static_cast<double>(before.reward_std);

@@ -33,6 +33,7 @@ class Madqn : public ReplayLearner {
   void Act(const Decision& decision, const Actions& out) override;
   /// The greedy one.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
+  void Join(Communicator* ranks) override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
 
@@ -46,7 +47,11 @@ class Madqn : public ReplayLearner {
  private:
   struct Scratch;  // per slice
 
-  void AddGradient(int slice, float* gradient);
+  /// Summed over a slice's samples, the means over AUVs and heads.
+  struct Sums {
+    double squares = 0.0, values = 0.0;
+  };
+  Sums AddGradient(int slice, float* gradient);
 
   const QOptions own_;
   const Codebook codebook_;

@@ -41,8 +41,6 @@ class ValuedRollouts {
     RunningMoments observations, states;  ///< raw
   };
 
-  /// Moments of each shard, of those of all ranks in their order.
-  std::vector<RunningMoments> OfAllRanks(const std::vector<RunningMoments>& own) const;
   void EstimateAdvantages(const float* critic, int shard, int worker);
   /// Values in units of reward of normalised states [rows, S].
   void EstimateValues(const float* critic, const float* states, int rows, int worker,

@@ -17,6 +17,7 @@ class CentralCriticLearner : public ReplayLearner {
   CentralCriticLearner(const ReplayOptions& options, const NetworkSpec& actor, int critics,
                        const TrainConfig& common, const Problem& problem, WorkerPool* pool);
 
+  void Join(Communicator* ranks) override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
 

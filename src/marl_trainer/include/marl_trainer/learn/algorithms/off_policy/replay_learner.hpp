@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_batch.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
+#include "marl_trainer/learn/comm/communicator.hpp"
 #include "marl_trainer/learn/nn/mlp.hpp"
 #include "marl_trainer/learn/nn/sliced_gradient.hpp"
 #include "marl_trainer/learn/train_config.hpp"
@@ -26,6 +29,9 @@ class ReplayLearner : public Algorithm {
   void Begin(const Collection& collection) override;
   void Observe(const Transition& transition) override;
   UpdateReport Update(const UpdateContext& context) override;
+  /// Every rank keeps what all of them have seen, and computes the gradient of its slices of a
+  /// batch. UserError for more ranks than slices.
+  void Join(Communicator* ranks) override;
 
   void Save(Archive* archive) const override;
   void Load(const Archive& archive) override;
@@ -66,8 +72,20 @@ class ReplayLearner : public Algorithm {
   double Rank(int env) const;
   /// Samples of a slice, at most.
   int slice_rows() const;
+  /// What was computed of each slice: of all ranks, from those of this rank's.
+  template <class T>
+  std::array<T, SlicedGradient::kSlices> OfAllSlices(
+      const std::array<T, SlicedGradient::kSlices>& own) const {
+    if (ranks_ == nullptr) return own;
+    const auto from = own.begin() + slices_.first;
+    const std::vector<T> all = ranks_->Gather(std::vector<T>(from, from + slices_.count));
+    std::array<T, SlicedGradient::kSlices> parts;
+    std::copy(all.begin(), all.end(), parts.begin());
+    return parts;
+  }
 
  private:
+  void TakeInMoments();
   void LoadMoments(const Archive& archive);
   void UpdateScales();
   void DrawBatch(std::uint32_t number);
@@ -77,12 +95,15 @@ class ReplayLearner : public Algorithm {
   const std::uint64_t seed_;
   const bool own_rewards_;
   WorkerPool* pool_;
+  Communicator* ranks_ = nullptr;
+  GroupShare slices_;            // of a batch
+  std::size_t first_shard_ = 0;  // of this rank among those of all
   ReplayBuffer replay_;
   RunningMoments observations_, states_, rewards_;
   struct Moments {
     RunningMoments observations, states, rewards;
   };
-  std::vector<Moments> collected_;  // by shard
+  std::vector<Moments> collected_;  // by shard of this rank
   ReplayScales scales_;
   std::vector<ReplayBatch> batches_;  // by slice
   int envs_ = 1;
