@@ -22,18 +22,19 @@ stage() {
   local resume=()
   if compgen -G "$folder/checkpoint_*.ckpt" >/dev/null; then resume=(--resume); fi
   rosrun marl_trainer train --scenario "$scenario" --out "$folder" --train-on "$conditions" \
-    --envs 96 --actor-hidden 192,192 --activation relu --std-scale 0.3 --min-log-std -8 \
-    --max-log-std -2 --lr-final 0.01 --validation-interval 480000 \
-    --set reward.weights.separation=0.2 \
+    --envs 96 --horizon 100 --epochs 3 --minibatch 1600 --actor-hidden 192,192 \
+    --activation relu --std-scale 0.3 --min-log-std -8 --max-log-std -2 --lr-final 0.01 \
+    --validation-interval 480000 --set reward.weights.separation=0.2 \
     --set reward.separation_distance_m=0.0233 "${resume[@]}" "$@"
 }
 imitation=(--imitate "$teacher" --privileged-teacher true)
 
 # The wall units need settled normalisers, so a short run comes first.
 stage settle "${imitation[@]}" --imitation-steps 1000000000 --steps 1200000 --lr 2e-3 \
-  --initial-log-std -4.5 "$@"
+  --critic-lr 3e-3 --initial-log-std -4.5 "$@"
 stage imitate --start-from "$out/settle" --wall-units 0.015 "${imitation[@]}" \
-  --imitation-steps 1000000000 --steps 6000000 --lr 2e-3 --initial-log-std -4.5 "$@"
+  --imitation-steps 1000000000 --steps 6000000 --lr 2e-3 --critic-lr 3e-3 \
+  --initial-log-std -4.5 "$@"
 stage return --start-from "$out/imitate" --steps 1536000 --lr 1e-4 --critic-lr 1e-3 \
   --initial-log-std -4 "$@"
 stage hold --start-from "$out/return" "${imitation[@]}" --imitation-steps 1000000000 \

@@ -20,7 +20,7 @@ struct TrainConfig {
   std::int64_t steps = 500000;
 
   int envs = 64;
-  int horizon = 100;
+  int horizon = 50;
   bool stagger = true;
   ImitationConfig imitation;
   std::string start_from;  ///< folder of another run; empty: untrained networks

@@ -46,6 +46,7 @@ void MappoConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   if (preset == "fast") return;
   if (preset != "paper") throw UserError("--preset: '" + preset + "' is not fast or paper");
   common->steps = 2000000;
+  common->horizon = 100;
   epochs = 10;
   gamma = 0.95;
   minibatch = 800;
@@ -76,6 +77,7 @@ void MappoConfig::ValidateOrThrow(const TrainConfig& common) const {
 
 void MappoConfig::ApplyRecordings(const TrainConfig& common) {
   epochs = 10;
+  lr = critic_lr = 3e-3;
   lr_final = 1.0;
   target_kl = 0.1;
   minibatch = std::min(500, common.horizon);

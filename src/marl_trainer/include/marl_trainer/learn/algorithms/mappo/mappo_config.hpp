@@ -10,13 +10,13 @@ namespace stg::learn {
 
 /// Configuration of MAPPO, its presets `fast` (ours) and `paper` (Table S2).
 struct MappoConfig : CopyableConfig<MappoConfig> {
-  int epochs = 3;
-  int minibatch = 1600;
+  int epochs = 1;
+  int minibatch = 400;
   std::vector<int> actor_hidden{64, 64};
   std::vector<int> critic_hidden{64, 64};
   std::string activation = "tanh";
-  double lr = 3e-3;
-  double critic_lr = 3e-3;
+  double lr = 5e-3;
+  double critic_lr = 5e-3;
   double lr_final = 0.1;
   double adam_eps = 1e-5;
   double gamma = 0.9;
