@@ -1,15 +1,18 @@
 """What tests of the reproduce command share."""
 
-import csv
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import stub_programs
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
+sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
+from stg_study.collect import read_rows  # noqa: E402
+
 REPRODUCE = os.path.join(PACKAGE, "scripts", "reproduce")
 
 STUDY = """
@@ -68,5 +71,4 @@ class StudyCase(unittest.TestCase):
             return file.read()
 
     def rows(self, name):
-        with open(self.path(name), encoding="utf-8", newline="") as file:
-            return list(csv.DictReader(file))
+        return read_rows(self.path(name))

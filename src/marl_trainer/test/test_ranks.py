@@ -43,8 +43,9 @@ class Ranks(StudyCase):
 
     def results(self):
         """Name and content of everything that the study says."""
-        names = ("episodes.csv", "results.csv", "curves.csv", "runs.csv", "study.yaml")
-        return {name: self.read(name) for name in names}
+        names = ("results.csv", "curves.csv", "runs.csv", "study.yaml")
+        with open(self.path("episodes.csv.gz"), "rb") as file:
+            return {"episodes.csv.gz": file.read(), **{name: self.read(name) for name in names}}
 
     def sleeping(self, process):
         """Waits until two trainings sleep; their folders."""

@@ -23,7 +23,7 @@ class Reproduce(StudyCase):
         self.assertEqual(sum(c.startswith("evaluate ") for c in calls), 16)
 
         # 2 conditions x (2 methods + 2 controllers) x 2 seeds, 4 episodes, all metrics.
-        self.assertEqual(len(self.rows("episodes.csv")), 64)
+        self.assertEqual(len(self.rows("episodes.csv.gz")), 64)
         self.assertEqual(len(self.rows("results.csv")), 16 * len(stub_programs.METRICS))
         self.assertEqual(len(self.rows("curves.csv")), 4 * 20)
         self.assertEqual([r["seconds_to_no_loss"] for r in self.rows("runs.csv")], ["3"] * 4)

@@ -1,13 +1,14 @@
 """Gathers what the jobs of a study left into the CSV files that the report is made of."""
 
 import csv
+import gzip
 import os
 
 from stg_study.jobs import read_json, write_atomically
 
 FILES = {
     "results": "results.csv",  # scenario, condition, method, seed, metric: mean and std
-    "episodes": "episodes.csv",  # every evaluation episode, all metrics
+    "episodes": "episodes.csv.gz",  # every evaluation episode, all metrics
     "curves": "curves.csv",  # every validation of every training, all metrics
     "runs": "runs.csv",  # every training: steps, times, speed, networks
     "options": "options.csv",  # every method's options of train, as its first training had them
@@ -28,9 +29,16 @@ def _short(value, digits=6):
 
 
 def read_rows(path):
-    """The rows of a CSV file as dictionaries."""
-    with open(path, encoding="utf-8", newline="") as file:
+    """The rows of a CSV file, which may be compressed (.gz), as dictionaries."""
+    open_file = gzip.open if path.endswith(".gz") else open
+    with open_file(path, "rt", encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def write_rows(path, header, rows):
+    """Writes what read_rows reads; the same rows make the same file."""
+    data = csv_text(header, rows).encode()
+    write_atomically(path, gzip.compress(data, mtime=0) if path.endswith(".gz") else data)
 
 
 def collect(study, trainings, evaluations, out):
@@ -77,7 +85,7 @@ def collect(study, trainings, evaluations, out):
     os.makedirs(out, exist_ok=True)
 
     def write(name, header, rows):
-        write_atomically(os.path.join(out, FILES[name]), csv_text(header, rows))
+        write_rows(os.path.join(out, FILES[name]), header, rows)
 
     key = ["scenario", "condition", "method", "seed"]
     write("results", key + ["episodes", "metric", "mean", "std"], results)

@@ -1,11 +1,10 @@
 """The results of a study and the paper's figures, read back from their CSV files."""
 
-import csv
 import os
 
 import numpy as np
 
-from stg_study.collect import FILES
+from stg_study.collect import FILES, read_rows
 from stg_study.statistics import final_stage, mean_std
 from stg_study.study import StudyError
 
@@ -15,12 +14,11 @@ PAPER_FILE = os.path.join(
 
 
 def read_csv(path):
-    """The rows of a CSV file as dictionaries."""
+    """The rows of a CSV file as dictionaries; throws StudyError where it cannot be read."""
     try:
-        with open(path, encoding="utf-8", newline="") as file:
-            return list(csv.DictReader(file))
-    except OSError as error:
-        raise StudyError(f"{path}: {error.strerror}") from error
+        return read_rows(path)
+    except (OSError, EOFError) as error:
+        raise StudyError(f"{path}: {getattr(error, 'strerror', None) or error}") from error
 
 
 class Paper:

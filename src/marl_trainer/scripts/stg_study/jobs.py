@@ -8,11 +8,11 @@ import os
 import shutil
 
 
-def write_atomically(path, text):
-    """Writes a file that exists either whole or not at all."""
+def write_atomically(path, content):
+    """Writes a file, of text or bytes, that exists either whole or not at all."""
     temporary = f"{path}.{os.getpid()}.part"
-    with open(temporary, "w", encoding="utf-8") as file:
-        file.write(text)
+    with open(temporary, "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
     os.replace(temporary, path)
 
 
