@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "marl_trainer/learn/buffers/gae.hpp"
-#include "marl_trainer/learn/comm/moments_of_ranks.hpp"
+#include "marl_trainer/learn/nn/moments_of_ranks.hpp"
 
 namespace stg::learn {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/learn/comm/moments_of_ranks.hpp"
+#include "marl_trainer/learn/nn/moments_of_ranks.hpp"
 
 namespace stg::learn {
 namespace {

@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/comm/moments_of_ranks.hpp"
+#include "marl_trainer/learn/nn/moments_of_ranks.hpp"
 
 #include <utility>
 
