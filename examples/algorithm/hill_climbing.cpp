@@ -152,6 +152,7 @@ int main() {
                                               {"time.episode_steps=100", "time.tail_steps=40"});
   TrainSetup setup("hill_climbing", "fast");
   setup.common.envs = 32;
+  setup.common.horizon = 100;  // the episode: a candidate is judged by all of it
   setup.common.stagger = false;
   setup.common.validation_episodes = 16;
   Archive one, two, first;
