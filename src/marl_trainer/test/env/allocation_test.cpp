@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
 #include "env/env_fixture.hpp"
 
 namespace {
-long g_allocations = 0;
+std::atomic<long> g_allocations{0};  // other tests here have threads
 
 void* Allocate(std::size_t size, std::size_t alignment) {
   ++g_allocations;
