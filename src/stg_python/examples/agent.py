@@ -47,7 +47,9 @@ def main():
         else:
             window = message.header.stamp.to_nsec()
             packets += [(window, packet) for packet in message.packets]
-        if frame is None or (frame.step > 0 and window < frame.header.stamp.to_nsec()):
+        # No window ends at step 0; only before the run's first step the modem greets with one.
+        awaited = frame is not None and (frame.step > 0 or frame.episode == 0)
+        if frame is None or (awaited and window < frame.header.stamp.to_nsec()):
             continue
 
         now = frame.header.stamp.to_nsec()

@@ -113,8 +113,16 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     positions_[i] = VectorOf(message->poses[i].position);
     velocities_[i] = WorldVelocity(message->poses[i], message->twists[i]);
   }
+  if (verdict == Verdict::kNewRun && message->step == 0) Greet();
   AskForTransmissions();
   CloseIfDue();
+}
+
+/// Of a latched topic only the last message waits for a subscriber. Agents begin with this one, an
+/// empty window before the run: who has it is connected, and will hear all that follow.
+void ChannelNode::Greet() {
+  received_.clear();
+  for (int i = 0; i < scenario_.agents; ++i) PublishWindow(i, 0);
 }
 
 /// Only of those whose packet can leave in this step, though others may offer one, too.
@@ -198,7 +206,11 @@ void ChannelNode::Close() {
   reports_.Begin(start_);
   channel_->Observe(watched ? &reports_ : nullptr);
   channel_->Step(now, step_, positions_, velocities_, offered_);
-  for (int i = 0; i < scenario_.agents; ++i) PublishReceptions(i, now + period_);
+  for (int i = 0; i < scenario_.agents; ++i) {
+    received_.clear();
+    channel_->Deliver(i, now + period_, &received_);
+    PublishWindow(i, now + period_);
+  }
   std_msgs::Header done;
   done.stamp = TimeOf(barrier_.stamp());
   done.frame_id = frames::kWorld;
@@ -217,9 +229,7 @@ void ChannelNode::PublishPackets() {
   reports_.Clear();
 }
 
-void ChannelNode::PublishReceptions(int i, TimeNs until) {
-  received_.clear();
-  channel_->Deliver(i, until, &received_);
+void ChannelNode::PublishWindow(int i, TimeNs until) {
   auv_msgs::AcousticReception& m = reception_message_;
   m.header.stamp = TimeOf(start_ + until);
   m.header.frame_id = frames::Body(i);

@@ -67,6 +67,7 @@ void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
     refused_odometry_.Add(Refusals::kStale);
   } else {
     SetNodeTime(message->header.stamp);
+    if (has_nav_ && NsOf(message->header.stamp) < nav_.stamp) Forget();  // of another run
     nav_ = NavOf(*message, 0);
     has_nav_ = true;
     Answer();
@@ -99,8 +100,16 @@ void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   const TimeNs stamp = NsOf(message->header.stamp);
   if (stamp == framed_) return;
   framed_ = stamp;
-  if (message->step == 0) memory_.assign(memory_.size(), 0.0);
+  // While nobody was known to send frames, that odometry was answered without.
+  const bool begun = began_ == stamp && answered_ - stamp < period_;
+  if (message->step == 0 && !begun) Forget();
   Answer();
+}
+
+/// What the autopilot has in mind, as a new episode wants it.
+void ControllerNode::Forget() {
+  memory_.assign(memory_.size(), 0.0);
+  began_ = -1;
 }
 
 void ControllerNode::Answer() {
@@ -127,6 +136,7 @@ void ControllerNode::AnswerWithActuators() {
   actuators_.header.stamp = TimeOf(nav_.stamp);
   publisher_.publish(actuators_);
   answered_ = nav_.stamp;
+  if (began_ < 0) began_ = answered_;
   answers_.Add();
 }
 

@@ -38,6 +38,7 @@ class ControllerNode {
   void AnswerWithWrench();
   bool Steerable() const;
   void AnswerWithActuators();
+  void Forget();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   dynamics::WorldConfig scenario_;
@@ -52,6 +53,7 @@ class ControllerNode {
   // Of vehicles that are steered by autopilots; else null.
   std::unique_ptr<const dynamics::Autopilot> autopilot_;
   std::vector<double> memory_;  ///< of the autopilot
+  TimeNs began_ = -1;           ///< stamp of the first odometry that this memory steered by
   auv_msgs::ActuatorCommand actuators_;
   TimeNs framed_ = 0;    ///< stamp of the newest sensor frame
   TimeNs answered_ = 0;  ///< of the newest odometry that was answered

@@ -19,6 +19,8 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
+/// A modem that starts together with the agent is given so long to connect [s].
+constexpr double kStartPatience_s = 5.0;
 
 }  // namespace
 
@@ -123,14 +125,17 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     case StepTracker::Verdict::kNewEpisode:
       break;
   }
-  const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s_);
+  // A run that begins: what the modem says before it is connected would be lost.
+  const bool first = !in_run && message->episode == 0 && message->step == 0;
+  const double patience_s = first ? std::max(patience_s_, kStartPatience_s) : patience_s_;
+  const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s);
   if (opening == StepBarrier::Opening::kRepeated) return;
   if (opening == StepBarrier::Opening::kReplaced) ++skipped_steps_;
   SetNodeTime(message->header.stamp);
   frame_ = message;
   for (const auto& detection : message->detections) pending_.Keep(detection, stamp);
-  // Step 0 has no window before it.
-  if (message->step == 0) barrier_.Excuse(kModem);
+  // No window comes before step 0, but the one that greets.
+  if (message->step == 0 && !first) barrier_.Excuse(kModem);
   HearModem();
   DecideIfDue();
 }

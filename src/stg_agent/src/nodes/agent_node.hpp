@@ -31,7 +31,8 @@ namespace stg::nodes {
 ///
 /// Decides step k when the sensors' frame of t_k is there and the modem's reception window that
 /// ends at t_k. A window that does not come within `patience` seconds is given up, and a silent
-/// modem is not waited for again before it has spoken. Of several open steps only the newest is
+/// modem is not waited for again before it has spoken. The first step of a run waits for the empty
+/// window with which the modem says that it is connected. Of several open steps only the newest is
 /// decided. What cannot be true of the run is refused, see StepTracker.
 class AgentNode {
  public:

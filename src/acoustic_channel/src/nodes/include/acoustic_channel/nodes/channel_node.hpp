@@ -44,6 +44,7 @@ class ChannelNode {
 
   double Work();
   void OnSwarm(const auv_msgs::SwarmState::ConstPtr& message);
+  void Greet();
   void AskForTransmissions();
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
   /// Says nothing, or something that the modem takes.
@@ -52,7 +53,8 @@ class ChannelNode {
   acoustics::Transmission TransmissionOf(const auv_msgs::AcousticPacket& message) const;
   void CloseIfDue();
   void Close();
-  void PublishReceptions(int i, TimeNs until);
+  /// What AUV i received up to a time of the episode [ns]: all of received_.
+  void PublishWindow(int i, TimeNs until);
   void PublishPackets();
   void PublishLinks(TimeNs now);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
