@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "auv_common/error.hpp"
 
@@ -59,9 +60,13 @@ double Bathymetry::At(double latitude, double longitude) const {
   double u = 0.0, v = 0.0;
   const std::size_t row = CellOf(latitudes_, latitude, &v);
   const std::size_t column = CellOf(longitudes_, OntoAxis(longitudes_, longitude), &u);
-  const double south = (1.0 - u) * point(row, column) + u * point(row, column + 1);
-  const double north = (1.0 - u) * point(row + 1, column) + u * point(row + 1, column + 1);
-  return (1.0 - v) * south + v * north;
+  const double corners[] = {point(row, column), point(row, column + 1), point(row + 1, column),
+                            point(row + 1, column + 1)};
+  const double south = (1.0 - u) * corners[0] + u * corners[1];
+  const double north = (1.0 - u) * corners[2] + u * corners[3];
+  // A sum of rounded shares may be a last digit outside of its corners, even on level ground.
+  const auto [lowest, highest] = std::minmax_element(std::begin(corners), std::end(corners));
+  return std::clamp((1.0 - v) * south + v * north, *lowest, *highest);
 }
 
 GeoRegion Bathymetry::region() const {

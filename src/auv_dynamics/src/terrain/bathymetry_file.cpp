@@ -15,6 +15,8 @@ constexpr std::size_t kLongestAxis = 1'000'000;
 constexpr double kAbsurd_m = 15'000.0;
 /// Share of a step by which an axis may be uneven: GEBCO's cells are not whole in binary.
 constexpr double kUneven = 0.01;
+/// A tenth of a millimetre on the ground: what is closer is no grid but damage [degrees].
+constexpr double kFinest_deg = 1e-9;
 
 bool OneOf(const std::string& text, const std::vector<const char*>& words) {
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return text == word; });
@@ -49,9 +51,12 @@ Axis1 ReadAxis(const NetcdfFile& file, const std::vector<Variable>& variables, i
   axis.latitude = north || (!east && named_latitude);
   const double step = (axis.values.back() - axis.values.front()) / static_cast<double>(d.size - 1);
   axis.descending = step < 0.0;
+  if (std::abs(step) < kFinest_deg) {
+    file.Refuse("the points of " + d.name + " are closer than 1e-9 degrees");
+  }
   for (std::size_t k = 0; k < d.size; ++k) {
     const double even = axis.values.front() + step * static_cast<double>(k);
-    if (!(std::abs(axis.values[k] - even) <= kUneven * std::abs(step)) || step == 0.0) {
+    if (!(std::abs(axis.values[k] - even) <= kUneven * std::abs(step))) {
       file.Refuse("the points of " + d.name + " are not evenly spaced");
     }
   }

@@ -30,6 +30,7 @@ struct Layout {
     return 10.0 * (20 + row) - 20.0 * (120 + column) - 3000.0 + 5000.0;
   };
   int rows = 5, columns = 7;
+  double lon_step = 1.0;
 };
 
 class GridFile : public ::testing::Test {
@@ -69,7 +70,7 @@ class GridFile : public ::testing::Test {
     for (int r = 0; r < l.rows; ++r) {
       lats.push_back(20.0 + (l.descending ? l.rows - 1 - r : r) + (l.uneven && r == 2 ? 0.3 : 0.0));
     }
-    for (int c = 0; c < l.columns; ++c) lons.push_back(120.0 + c);
+    for (int c = 0; c < l.columns; ++c) lons.push_back(120.0 + l.lon_step * c);
     for (int i = 0; i < l.rows * l.columns; ++i) {
       const int r = l.transposed ? i % l.rows : i / l.columns;
       const int c = l.transposed ? i / l.rows : i % l.columns;
@@ -153,6 +154,13 @@ TEST_F(GridFile, IsBilinearBetweenItsPoints) {
   EXPECT_EQ(grid.highest(), 200.0);
 }
 
+TEST(LevelGround, IsAsDeepBetweenThePointsAsAtThem) {
+  const Bathymetry grid({0.0, 1.0}, {10.0, 11.0}, {-3856.0F, -3856.0F, -3856.0F, -3856.0F});
+  for (int i = 0; i < 100; ++i) {
+    for (int j = 0; j < 100; ++j) EXPECT_EQ(grid.At(0.01 * i, 10.0 + 0.01 * j), -3856.0);
+  }
+}
+
 TEST_F(GridFile, SavedCropsAreReadBack) {
   Layout l;
   l.type = NC_FLOAT;
@@ -197,6 +205,9 @@ TEST_F(GridFile, SaysWhatIsWrongWithAFile) {
   l = Layout();
   l.uneven = true;
   says(Refusal(l), "not evenly spaced");
+  l = Layout();
+  l.lon_step = 1e-12;
+  says(Refusal(l), "the points of lon are closer than");
   l = Layout();
   l.rows = 1;
   says(Refusal(l), "fewer than two points");
