@@ -5,11 +5,12 @@ import unittest
 
 import rospy
 import rostest
-from auv_msgs.msg import AcousticReception, ActuatorCommand, SensorFrame
-from geometry_msgs.msg import TwistStamped
+from auv_msgs.msg import AcousticReception, ActuatorCommand, SensorFrame, SwarmState
+from geometry_msgs.msg import Pose, Twist, TwistStamped
 from graph_listener import Latest, wait_for
 from nav_msgs.msg import Odometry
 
+AGENTS = 4
 PART_S, PARTS = 0.2, 5  # periods of the autopilot in one of decisions
 BRIEF_S = 1.0  # of the wall clock: longer than the agent's patience, shorter than at the start
 
@@ -109,6 +110,20 @@ class LateConnections(unittest.TestCase):
         greeting.header.stamp, greeting.header.frame_id = stamp_of(1.0), "auv_1/base_link"
         modem.publish(greeting)
         self.assertEqual(commands.wait(3.0).header.stamp, stamp_of(1.0))
+
+    def test_the_channel_greets_before_anybody_has_transmitted(self):
+        receptions = Latest("/auv_2/acoustic/rx", AcousticReception)
+        swarm = rospy.Publisher("/swarm_state", SwarmState, queue_size=10, latch=True)
+        state = SwarmState(run=1, episode=0, step=0, seed=1,
+                           poses=[Pose() for _ in range(AGENTS)],
+                           twists=[Twist() for _ in range(AGENTS)])
+        state.header.stamp, state.header.frame_id = stamp_of(1.0), "world"
+        for k, pose in enumerate(state.poses):
+            pose.position.x, pose.position.z, pose.orientation.w = 100.0 * k, -5.0, 1.0
+        swarm.publish(state)
+        greeting = receptions.wait(10.0)
+        self.assertEqual(greeting.header.stamp, stamp_of(1.0))
+        self.assertEqual(greeting.packets, [])
 
 
 if __name__ == "__main__":
