@@ -42,19 +42,23 @@ bool IsText(const std::string& text) {
   return true;
 }
 
-std::size_t EditDistance(const std::string& a, const std::string& b) {
+std::size_t EditDistance(const std::string& a, const std::string& b, std::size_t enough) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) >= enough) return enough;
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = row[0];
     row[0] = i;
+    std::size_t least = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      least = std::min(least, row[j]);
     }
+    if (least >= enough) return enough;  // later rows are no less
   }
-  return row[b.size()];
+  return std::min(row[b.size()], enough);
 }
 
 std::string NearestName(const std::string& text, const std::vector<std::string>& names) {
@@ -63,7 +67,7 @@ std::string NearestName(const std::string& text, const std::vector<std::string>&
   std::string best;
   std::size_t least = std::max<std::size_t>(2, text.size() / 3) + 1;
   for (const std::string& name : names) {
-    const std::size_t distance = EditDistance(text, name);
+    const std::size_t distance = EditDistance(text, name, least);
     if (distance < least) {
       least = distance;
       best = name;

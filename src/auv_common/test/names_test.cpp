@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 namespace stg {
 namespace {
@@ -23,6 +25,29 @@ TEST(IsText, RefusesControlCharactersAndWhatUnicodeCallsIllFormed) {
     EXPECT_FALSE(IsText(text)) << text;
   }
   EXPECT_FALSE(IsText(std::string(1, '\0')));
+}
+
+/// By the definition, without a table and without an end that comes early.
+std::size_t SlowDistance(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return a.size() + b.size();
+  const std::string c = a.substr(1), d = b.substr(1);
+  if (a[0] == b[0]) return SlowDistance(c, d);
+  return 1 + std::min({SlowDistance(c, b), SlowDistance(a, d), SlowDistance(c, d)});
+}
+
+TEST(EditDistance, IsLevenshteinsUpToWhatIsEnough) {
+  EXPECT_EQ(EditDistance("kitten", "sitting", 100), 3U);
+  EXPECT_EQ(EditDistance("Saturday", "Sunday", 100), 3U);
+  const std::vector<std::string> words = {"",     "a",      "ab",     "ba",    "range",
+                                          "rnge", "rangem", "nearer", "anger", "xxxxx"};
+  for (const std::string& a : words) {
+    for (const std::string& b : words) {
+      const std::size_t whole = SlowDistance(a, b);
+      for (std::size_t enough = 0; enough < 9; ++enough) {
+        EXPECT_EQ(EditDistance(a, b, enough), std::min(whole, enough)) << a << " " << b;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -15,8 +15,9 @@ bool IsName(const std::string& text);
 /// UTF-8 without control characters: what may go into a terminal, a log or a JSON file.
 bool IsText(const std::string& text);
 
-/// Levenshtein distance: the fewest insertions, deletions and replacements of one character.
-std::size_t EditDistance(const std::string& a, const std::string& b);
+/// Levenshtein distance: the fewest insertions, deletions and replacements of one character; or
+/// `enough` where it is that or more, which is found out sooner.
+std::size_t EditDistance(const std::string& a, const std::string& b, std::size_t enough);
 
 /// The name that was probably meant, or "" when none is near.
 std::string NearestName(const std::string& text, const std::vector<std::string>& names);

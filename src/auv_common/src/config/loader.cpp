@@ -23,12 +23,11 @@ std::string Shortened(const std::string& text) {
   return quoted.substr(1, quoted.size() - 2);
 }
 
-/// Edits between what was written and a key, whose unit may have been left out.
-std::size_t SlipDistance(const std::string& text, const std::string& key) {
+/// Edits between what was written and a key, whose unit may have been left out; at most `enough`.
+std::size_t SlipDistance(const std::string& text, const std::string& key, std::size_t enough) {
   const std::size_t unit = key.rfind('_');
-  const std::size_t whole = EditDistance(text, key);
-  return unit == std::string::npos ? whole
-                                   : std::min(whole, EditDistance(text, key.substr(0, unit)));
+  const std::size_t whole = EditDistance(text, key, enough);
+  return unit == std::string::npos ? whole : EditDistance(text, key.substr(0, unit), whole);
 }
 
 }  // namespace
@@ -190,8 +189,9 @@ std::string Loader::Unknown(const std::string& path) const {
   if (path.size() <= 200) {
     std::size_t least = std::max<std::size_t>(2, Leaf(path).size() / 3) + 1;
     for (const std::string& key : keys) {
-      const std::size_t distance = Parent(key) == Parent(path) ? SlipDistance(Leaf(path), Leaf(key))
-                                                               : EditDistance(path, key);
+      const std::size_t distance = Parent(key) == Parent(path)
+                                       ? SlipDistance(Leaf(path), Leaf(key), least)
+                                       : EditDistance(path, key, least);
       if (distance < least) {
         least = distance;
         best = key;
