@@ -192,11 +192,14 @@ std::string ReadBoundedFile(const std::string& path) {
     throw UserError(path + ": cannot be read" +
                     (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
   }
-  std::string text(kMaxBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  // It may grow while it is read.
+  std::string text;
+  char part[4096];
+  while (stream.read(part, sizeof(part)), stream.gcount() > 0) {
+    text.append(part, static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kMaxBytes) throw too_large();
+  }
   if (stream.bad()) throw UserError(path + ": cannot be read");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > kMaxBytes) throw too_large();
   return text;
 }
 
