@@ -22,7 +22,8 @@ namespace stg::nodes {
 /// state between steps. Else the vehicle's autopilot answers every odometry with a command of the
 /// actuators: that of a decision when its velocity is in, those until the next decision at once.
 /// Its memory begins anew with each episode, of which the sensor frame of step 0 tells; on a
-/// vehicle without simulator there is none, and it begins with the node.
+/// vehicle without simulator there is none, and it begins with the node, or when the clock of the
+/// odometry goes back.
 class ControllerNode {
  public:
   /// Throws UserError.
