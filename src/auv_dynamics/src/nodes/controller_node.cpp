@@ -70,6 +70,7 @@ void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
     if (has_nav_ && NsOf(message->header.stamp) < nav_.stamp) Forget();  // of another run
     nav_ = NavOf(*message, 0);
     has_nav_ = true;
+    TakeStray();
     Answer();
   }
 }
@@ -88,11 +89,24 @@ void ControllerNode::OnCommand(const geometry_msgs::TwistStamped::ConstPtr& mess
   // An autopilot also takes one that comes late: better that than the one before.
   const TimeNs late = autopilot_ == nullptr ? 0 : period_ - 1;
   if (has_nav_ && (ahead < -late || ahead > period_)) {
-    refused_commands_.Add(Refusals::kStale);
+    if (stray_) refused_commands_.Add(Refusals::kStale);
+    stray_ = message;
     return;
   }
   command_ = message;
   Answer();
+}
+
+/// A command far from the newest odometry is stale, unless the clock has leapt (another run) and
+/// it was faster than the odometry that it answers.
+void ControllerNode::TakeStray() {
+  if (!stray_) return;
+  if (NsOf(stray_->header.stamp) == nav_.stamp) {
+    command_ = stray_;
+  } else {
+    refused_commands_.Add(Refusals::kStale);
+  }
+  stray_.reset();
 }
 
 void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {

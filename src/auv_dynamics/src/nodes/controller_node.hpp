@@ -35,6 +35,7 @@ class ControllerNode {
   void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
   void OnCommand(const geometry_msgs::TwistStamped::ConstPtr& message);
   void OnFrame(const auv_msgs::SensorFrame::ConstPtr& message);
+  void TakeStray();
   void Answer();
   void AnswerWithWrench();
   bool Steerable() const;
@@ -50,6 +51,7 @@ class ControllerNode {
   bool has_nav_ = false;
   ros::WallTime busy_;
   geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry
+  geometry_msgs::TwistStamped::ConstPtr stray_;    ///< far from the odometry; refused by the next
   geometry_msgs::WrenchStamped wrench_;
   // Of vehicles that are steered by autopilots; else null.
   std::unique_ptr<const dynamics::Autopilot> autopilot_;
