@@ -94,10 +94,7 @@ class Reader {
 /// Without keys of a scenario that this file does not have.
 config::Violation InThisFile(config::Violation violation, const config::Table& table) {
   auto& keys = violation.keys;
-  const auto unknown = [&](const std::string& key) {
-    return std::none_of(table.fields().begin(), table.fields().end(),
-                        [&](const config::Field& field) { return field.path == key; });
-  };
+  const auto unknown = [&](const std::string& key) { return table.Find(key) == nullptr; };
   keys.erase(std::remove_if(keys.begin(), keys.end(), unknown), keys.end());
   if (keys.empty()) keys = {"step_s"};
   return violation;

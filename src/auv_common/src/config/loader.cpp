@@ -32,13 +32,6 @@ std::size_t SlipDistance(const std::string& text, const std::string& key, std::s
 
 }  // namespace
 
-Loader::Loader(const Table& table, Scope scope) : table_(table), scope_(scope) {
-  for (const Field& field : table.fields()) {
-    index_[field.path] = &field;
-    for (std::string p = Parent(field.path); !p.empty(); p = Parent(p)) sections_.insert(p);
-  }
-}
-
 void Loader::Apply(const Source& source) {
   ApplyFile(source.file);
   for (const std::string& overlay : source.overlays) ApplyOverlay(overlay);
@@ -64,7 +57,7 @@ void Loader::Refuse(const Violation& violation) const {
   std::string text = Origin(violation.keys[0]) + violation.keys[0] + ": " + violation.message;
   for (std::size_t i = 1; i < violation.keys.size(); ++i) {
     text += "\n  " + Origin(violation.keys[i]) + violation.keys[i] + " is " +
-            FormatValue(index_.at(violation.keys[i])->value);
+            FormatValue(table_.Find(violation.keys[i])->value);
   }
   throw UserError(text);
 }
@@ -97,9 +90,8 @@ void Loader::ApplyOverlay(const std::string& path) {
 void Loader::ApplyOverride(const std::string& text) {
   const std::string origin = OverrideOrigin(text);
   const auto [path, value] = SplitOverride(text);
-  const auto found = index_.find(path);
-  if (found != index_.end()) {
-    Set(*found->second, ParseYaml(value, origin + ": " + path, false), origin + ": ");
+  if (const Field* field = table_.Find(path)) {
+    Set(*field, ParseYaml(value, origin + ": " + path, false), origin + ": ");
   } else if (!Foreign(path)) {
     throw UserError(origin + ": " + Unknown(path));
   }
@@ -129,11 +121,10 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
     const std::string path = prefix + entry.key;
     if (path == "base") continue;
     const std::string where = Where(file, entry.line);
-    const auto found = index_.find(path);
-    if (found != index_.end()) {
-      Set(*found->second, entry.value, where);
+    if (const Field* field = table_.Find(path)) {
+      Set(*field, entry.value, where);
       given->insert(path);
-    } else if (sections_.count(path) != 0) {
+    } else if (table_.sections().count(path) != 0) {
       const bool empty = entry.value.kind == YamlTree::Kind::kNull;
       if (entry.value.kind != YamlTree::Kind::kMap && !empty) {
         throw UserError(where + path + ": expected a map of keys, found " + KindName(entry.value));
@@ -174,36 +165,40 @@ bool Loader::Foreign(const std::string& path) const {
     if (path == item.first) return false;
   }
   const std::string top = path.substr(0, path.find('.'));
-  return index_.count(top) == 0 && sections_.count(top) == 0;
+  return table_.Find(top) == nullptr && table_.sections().count(top) == 0;
 }
 
-/// The key this was probably meant to be: the same word elsewhere, or a
-/// similar word in the same section.
+/// The key or section this was probably meant to be: the same word elsewhere, or a similar word in
+/// the same section; or "".
+std::string Loader::Nearest(const std::string& path) const {
+  std::vector<const std::string*> keys;
+  for (const std::string& section : table_.sections()) keys.push_back(&section);
+  for (const Field& field : table_.fields()) keys.push_back(&field.path);
+  const std::string section = Parent(path), leaf = Leaf(path);
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, leaf.size() / 3) + 1;
+  for (const std::string* key : keys) {
+    const std::size_t distance = Parent(*key) == section ? SlipDistance(leaf, Leaf(*key), least)
+                                                         : EditDistance(path, *key, least);
+    if (distance < least) {
+      least = distance;
+      best = *key;
+    }
+  }
+  for (const std::string* key : keys) {
+    if (best.empty() && Leaf(*key) == leaf) best = *key;
+  }
+  return best;
+}
+
 std::string Loader::Unknown(const std::string& path) const {
   for (const auto& [from, to] : table_.moved()) {
     if (path == from) return path + ": this key is called " + to;
   }
-  std::set<std::string> keys = sections_;
-  for (const auto& item : index_) keys.insert(item.first);
-  std::string best;
-  if (path.size() <= 200) {
-    std::size_t least = std::max<std::size_t>(2, Leaf(path).size() / 3) + 1;
-    for (const std::string& key : keys) {
-      const std::size_t distance = Parent(key) == Parent(path)
-                                       ? SlipDistance(Leaf(path), Leaf(key), least)
-                                       : EditDistance(path, key, least);
-      if (distance < least) {
-        least = distance;
-        best = key;
-      }
-    }
-    for (const std::string& key : keys) {
-      if (best.empty() && Leaf(key) == Leaf(path)) best = key;
-    }
-  }
+  const std::string best = path.size() <= 200 ? Nearest(path) : "";
   const std::string name = Shortened(path);
   const std::string text = name + ": unknown key";
-  if (sections_.count(path) != 0) return name + ": names a section, not a value";
+  if (table_.sections().count(path) != 0) return name + ": names a section, not a value";
   return best.empty() ? text : text + ", did you mean " + best + "?";
 }
 

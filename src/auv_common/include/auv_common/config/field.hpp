@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -108,27 +110,28 @@ class Table {
  public:
   /// Keys added from here on lie in this section; "" is the top level.
   void Section(const std::string& path) { prefix_ = path.empty() ? "" : path + "."; }
-  void Add(const std::string& key, ValueRef value, Limits limits, const std::string& unit,
-           const std::string& meaning) {
-    fields_.push_back({prefix_ + key, std::move(value), limits, unit, meaning});
-  }
+  void Add(const std::string& key, ValueRef value, Limits limits, std::string unit,
+           std::string meaning);
   /// A key that a file need not state: of things that are registered, for which the files of others
   /// shall not change. The member must have the value `fallback` by default.
   void AddOptional(const std::string& key, ValueRef value, const std::string& fallback,
-                   Limits limits, const std::string& unit, const std::string& meaning) {
-    Add(key, std::move(value), limits, unit, meaning);
-    fields_.back().fallback = fallback;
-  }
+                   Limits limits, std::string unit, std::string meaning);
   /// A key that files of earlier versions may have, and the one that replaces it: the refusal
   /// names it.
   void Moved(const std::string& from, const std::string& to) { moved_.emplace_back(from, to); }
 
   const std::vector<Field>& fields() const { return fields_; }
+  /// The field of a whole path, or null.
+  const Field* Find(const std::string& path) const;
+  /// What keys lie in, at every depth: of "a.b.c", "a" and "a.b".
+  const std::set<std::string>& sections() const { return sections_; }
   const std::vector<std::pair<std::string, std::string>>& moved() const { return moved_; }
 
  private:
   std::string prefix_;
   std::vector<Field> fields_;
+  std::unordered_map<std::string, std::size_t> index_;  ///< of a path's field
+  std::set<std::string> sections_;
   std::vector<std::pair<std::string, std::string>> moved_;
 };
 

@@ -33,7 +33,7 @@ enum class Scope { kWhole, kOwnSections };
 class Loader {
  public:
   /// @param table must outlive this object.
-  Loader(const Table& table, Scope scope);
+  Loader(const Table& table, Scope scope) : table_(table), scope_(scope) {}
   Loader(const Loader&) = delete;
   Loader& operator=(const Loader&) = delete;
 
@@ -57,13 +57,12 @@ class Loader {
   void Set(const Field& field, const YamlTree& value, const std::string& where);
   void RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const;
   bool Foreign(const std::string& path) const;
+  std::string Nearest(const std::string& path) const;
   std::string Unknown(const std::string& path) const;
   std::string Origin(const std::string& key) const;
 
   const Table& table_;
   const Scope scope_;
-  std::map<std::string, const Field*> index_;
-  Keys sections_;
   std::map<std::string, std::string> origin_;  ///< key to "file:line: "
   std::map<std::string, int> section_lines_;
   std::vector<std::string> open_;  ///< files whose bases are being loaded
