@@ -8,7 +8,7 @@ import rosnode
 import rospy
 import rostest
 from auv_msgs.msg import AcousticReception, ActuatorCommand, SensorFrame, SwarmState
-from geometry_msgs.msg import Pose, Twist, TwistStamped
+from geometry_msgs.msg import Pose, TwistStamped, Vector3
 from graph_listener import Latest, wait_for
 from nav_msgs.msg import Odometry
 
@@ -128,7 +128,7 @@ class LateConnections(unittest.TestCase):
         swarm = rospy.Publisher("/swarm_state", SwarmState, queue_size=10, latch=True)
         state = SwarmState(run=1, episode=0, step=0, seed=1,
                            poses=[Pose() for _ in range(AGENTS)],
-                           twists=[Twist() for _ in range(AGENTS)])
+                           velocities=[Vector3() for _ in range(AGENTS)])
         state.header.stamp, state.header.frame_id = stamp_of(1.0), "world"
         for k, pose in enumerate(state.poses):
             pose.position.x, pose.position.z, pose.orientation.w = 100.0 * k, -5.0, 1.0

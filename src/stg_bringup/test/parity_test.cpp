@@ -6,6 +6,7 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -81,6 +82,10 @@ Flight Listen(const Scenario& s) {
 
 double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
 
+bool AtWall(const Vec3<double>& p, double half_extent_m) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) == half_extent_m;
+}
+
 TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
   const Scenario s = LoadScenarioParameters<Scenario>(config::Scope::kWhole);
   const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
@@ -89,6 +94,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
   ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));
 
   const int steps = s.time.episode_steps;
+  int at_wall = 0;
   for (int e = 0; e < kEpisodes; ++e) {
     env::VectorEnvOptions env_options;
     env_options.seed = seed + static_cast<std::uint64_t>(e);
@@ -107,6 +113,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
         const dynamics::NavState& flown = found->second[static_cast<std::size_t>(i)];
         worst = std::max(worst, Distance(truth.p_WB, flown.p_WB));
         worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));
+        at_wall += AtWall(truth.p_WB, s.workspace.half_extent_m) ? 1 : 0;
         ASSERT_EQ(worst, 0.0) << "episode " << e << ", step " << k << ", AUV " << i;
       }
       env::Decide(controller, env, memory.observations.data(), actions.data());
@@ -157,6 +164,10 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     }
     RecordProperty("worst_difference_" + std::to_string(e), std::to_string(worst));
     std::printf("episode %d: largest difference %.3g\n", e, worst);
+  }
+  std::printf("decisions of AUVs at a wall: %d\n", at_wall);
+  if (FlagParameter("walls", false)) {
+    EXPECT_GT(at_wall, 0);
   }
 }
 

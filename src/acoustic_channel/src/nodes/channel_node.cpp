@@ -72,14 +72,14 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     refused_swarm_.Add(Refusals::kFrame);
     return;
   }
-  if (message->poses.size() != auvs_.size() || message->twists.size() != auvs_.size()) {
+  if (message->poses.size() != auvs_.size() || message->velocities.size() != auvs_.size()) {
     refused_swarm_.Add(Refusals::kMalformed);
     return;
   }
   const auto finite_pose = [](const auto& pose) { return FinitePose(pose); };
-  const auto finite_twist = [](const auto& twist) { return FiniteTwist(twist); };
+  const auto finite_vector = [](const auto& vector) { return FiniteVector(vector); };
   if (!std::all_of(message->poses.begin(), message->poses.end(), finite_pose) ||
-      !std::all_of(message->twists.begin(), message->twists.end(), finite_twist)) {
+      !std::all_of(message->velocities.begin(), message->velocities.end(), finite_vector)) {
     refused_swarm_.Add(Refusals::kNotFinite);
     return;
   }
@@ -111,7 +111,7 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   step_ = message->step;
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
-    velocities_[i] = WorldVelocity(message->poses[i], message->twists[i]);
+    velocities_[i] = VectorOf(message->velocities[i]);
   }
   if (verdict == Verdict::kNewRun && message->step == 0) Greet();
   AskForTransmissions();

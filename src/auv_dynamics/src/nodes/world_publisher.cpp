@@ -39,6 +39,7 @@ WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double dis
   swarm_message_.header.frame_id = frames::kWorld;
   swarm_message_.poses.resize(auvs_.size());
   swarm_message_.twists.resize(auvs_.size());
+  swarm_message_.velocities.resize(auvs_.size());
   swarm_message_.wrenches.resize(auvs_.size());
   swarm_message_.fresh.resize(auvs_.size());
   swarm_message_.target_positions.resize(targets_.size());
@@ -145,6 +146,7 @@ void WorldPublisher::PublishSensors(const dynamics::World& world, TimeNs start,
     auv.frame.publish(frame);
     const auto u = static_cast<std::size_t>(i);
     SetNavigation(world.Truth(0, i), &swarm_message_.poses[u], &swarm_message_.twists[u]);
+    SetVector(Lane(world.vehicle(i).v_WB, 0), &swarm_message_.velocities[u]);
   }
   for (AuvTopics& auv : auvs_) {
     auv.odometry.Publish();

@@ -53,6 +53,11 @@ std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
   return items;
 }
 
+bool OfTail(const std::string& metric) {
+  return metric == "tail_distance" || metric == "tracking_error" || metric == "lost_rate" ||
+         metric == "band_rate" || metric == "tail_colliding_pairs";
+}
+
 double MetricSummary::Mean(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? 0.0 : mean[static_cast<size_t>(found - names.begin())];

@@ -15,7 +15,8 @@ EpisodeJudge::EpisodeJudge(const Scenario& scenario)
       targets_(static_cast<std::size_t>(scenario.target.count)),
       separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
       tau_(vehicles_.size()),
-      action_(vehicles_.size()) {
+      action_(vehicles_.size()),
+      policy_ids_(vehicles_.size()) {
   if (!scenario.sea.open) return;
   scape_ =
       std::make_unique<const dynamics::Seascape>(scenario.sea, scenario.workspace.half_extent_m);
@@ -97,6 +98,7 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
     v.v_WB_B = nav.v_WB_B;
     v.w_WB_B = nav.w_WB_B;
     dynamics::FollowQuaternion(&v);
+    v.v_WB = VectorOf(truth.velocities[i]);  // a wall may have turned it back
   }
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     targets_[k].p_WT = VectorOf(truth.target_positions[k]);
@@ -169,8 +171,18 @@ void EpisodeJudge::TakeActions(const SwarmFrame& frame) {
     if (!task) continue;
     std::copy_n(task->action.begin(), std::min<std::size_t>(6, task->action.size()),
                 action_[i].begin());
-    policy_id_ = task->policy_id;
+    policy_ids_[i] = task->policy_id;
   }
+}
+
+std::string EpisodeJudge::policy_id() const {
+  std::string ids;
+  for (std::size_t i = 0; i < policy_ids_.size(); ++i) {
+    const auto own = policy_ids_.begin() + static_cast<std::ptrdiff_t>(i);
+    if (own->empty() || std::find(policy_ids_.begin(), own, *own) != own) continue;
+    ids += (ids.empty() ? "" : "+") + *own;
+  }
+  return ids;
 }
 
 void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
@@ -219,7 +231,7 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetric
   m.episode = episode_;
   m.seed = seed_;
   m.scenario = scenario_.name;
-  m.policy_id = policy_id_;
+  m.policy_id = policy_id();
   m.steps = static_cast<std::uint32_t>(e.steps);
   m.complete = complete_;
   m.episode_return = e.episode_return;

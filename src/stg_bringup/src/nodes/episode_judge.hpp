@@ -39,7 +39,8 @@ class EpisodeJudge {
   std::uint32_t episode() const { return episode_; }
   std::uint32_t step() const { return step_; }
   bool started() const { return started_; }
-  const std::string& policy_id() const { return policy_id_; }
+  /// That of all AUVs, or the different ones in the order of the AUVs, joined by `+`.
+  std::string policy_id() const;
 
  private:
   void SetTruth(const SwarmFrame& frame);
@@ -70,7 +71,7 @@ class EpisodeJudge {
   std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0, channel_misses_ = 0;
   std::uint64_t run_ = 0;
   std::uint64_t seed_ = 0;
-  std::string policy_id_;
+  std::vector<std::string> policy_ids_;  ///< by AUV
 };
 
 }  // namespace stg::nodes

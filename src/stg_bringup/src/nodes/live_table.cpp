@@ -110,8 +110,13 @@ void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s,
       "\nepisode %u, seed %llu, %u steps%s, policy %s, %u deadline misses, %u of the channel\n",
       s.episode + 1, static_cast<unsigned long long>(s.seed), s.steps,
       s.complete ? "" : " (incomplete)", s.policy_id.c_str(), s.deadline_misses, s.channel_misses);
+  const bool cut = metrics.steps <= scenario_.time.episode_steps - scenario_.time.tail_steps;
   for (const auto& item : metrics.Items()) {
-    std::printf("  %-22s %12.5f\n", item.first.c_str(), item.second);
+    if (cut && task::OfTail(item.first)) {
+      std::printf("  %-22s %12s\n", item.first.c_str(), "-");
+    } else {
+      std::printf("  %-22s %12.5f\n", item.first.c_str(), item.second);
+    }
   }
   std::fflush(stdout);
   drawn_lines_ = 0;

@@ -150,11 +150,12 @@ bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
   };
   const bool efforts = m.efforts.empty() || m.efforts.size() == n * dynamics::kWrenchSize;
   return efforts && std::all_of(m.efforts.begin(), m.efforts.end(), Finite) &&
-         m.poses.size() == n && m.twists.size() == n && m.wrenches.size() == n &&
-         m.fresh.size() == n && p.size() == targets && v.size() == targets &&
-         std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
+         m.poses.size() == n && m.twists.size() == n && m.velocities.size() == n &&
+         m.wrenches.size() == n && m.fresh.size() == n && p.size() == targets &&
+         v.size() == targets && std::all_of(m.wrenches.begin(), m.wrenches.end(), finite_wrench) &&
          std::all_of(m.poses.begin(), m.poses.end(), finite_pose) &&
          std::all_of(m.twists.begin(), m.twists.end(), finite_twist) &&
+         std::all_of(m.velocities.begin(), m.velocities.end(), finite) &&
          std::all_of(p.begin(), p.end(), finite) && std::all_of(v.begin(), v.end(), finite);
 }
 

@@ -59,6 +59,9 @@ struct EpisodeMetrics {
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
+/// Whether the metric of that name is of the tail alone, and nothing in an episode without one.
+bool OfTail(const std::string& metric);
+
 /// Mean and sample standard deviation of each metric over episodes.
 struct MetricSummary {
   std::vector<std::string> names;
