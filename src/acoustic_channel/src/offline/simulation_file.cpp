@@ -123,8 +123,11 @@ SimulatedNode ReadNode(const std::string& file, const YamlTree& map, std::size_t
     }
     const auto folder = std::filesystem::path(file).parent_path();
     const std::string path = (folder / track->value.scalar).string();
-    if (!std::filesystem::is_regular_file(path)) reader.Fail("track", path + " is not a file");
-    node.track = Track::Load(path);
+    try {
+      node.track = Track::Load(path);
+    } catch (const UserError& e) {
+      reader.Fail("track", e.what());
+    }
   } else {
     reader.Require("position_m");
     node.track = Track::Line({p[0], p[1], p[2]}, {v[0], v[1], v[2]});

@@ -8,9 +8,17 @@
 
 #include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/regular_file.hpp"
 
 namespace stg::acoustics {
 namespace {
+
+/// As far as a node of a network may be, as fast and for as long.
+constexpr double kFarthest_m = 1e7, kFastest_mps = 100.0, kLongest_s = 1e8;
+
+double Largest(const Vec3<double>& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 std::string_view Trimmed(std::string_view text) {
   while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
@@ -41,6 +49,7 @@ Track Track::Line(const Vec3<double>& p_W, const Vec3<double>& v_W) {
 }
 
 Track Track::Load(const std::string& file) {
+  RequireRegularFile(file);
   std::ifstream in(file);
   if (!in) throw UserError(file + ": cannot be read");
   std::vector<Point> points;
@@ -62,7 +71,17 @@ Track Track::Load(const std::string& file) {
     if (!points.empty() && v[0] <= points.back().t_s) {
       throw UserError(where + "t: times must ascend");
     }
-    points.push_back({v[0], {v[1], v[2], v[3]}});
+    if (std::abs(v[0]) > kLongest_s) throw UserError(where + "t: beyond +-1e8 s");
+    const Vec3<double> p{v[1], v[2], v[3]};
+    if (Largest(p) > kFarthest_m) throw UserError(where + "x, y, z: beyond +-1e7 m");
+    if (!points.empty()) {
+      const Point& from = points.back();
+      const double limit_m = kFastest_mps * (v[0] - from.t_s);
+      if (!(Largest(p - from.p_W) <= limit_m)) {
+        throw UserError(where + "faster than 100 m/s since the point before");
+      }
+    }
+    points.push_back({v[0], p});
   }
   if (points.empty()) throw UserError(file + ": no points");
   return Track(std::move(points));

@@ -118,6 +118,16 @@ TEST_F(TrackFile, BadRowsAreRefusedWithTheirLine) {
   EXPECT_NE(Refusal("t,x,y,z\n").find("no points"), std::string::npos);
 }
 
+TEST_F(TrackFile, WhatNoVehicleDoesIsRefused) {
+  EXPECT_EQ(Refusal("t,x,y,z\n0,1,2,-3\n1e300,1,2,-3\n"), ":3: t: beyond +-1e8 s");
+  EXPECT_EQ(Refusal("t,x,y,z\n-1e9,1,2,-3\n"), ":2: t: beyond +-1e8 s");
+  EXPECT_EQ(Refusal("t,x,y,z\n0,1,-1e300,-3\n"), ":2: x, y, z: beyond +-1e7 m");
+  const std::string fast = ":3: faster than 100 m/s since the point before";
+  EXPECT_EQ(Refusal("t,x,y,z\n0,0,0,0\n1,100,0,0\n"), "");
+  EXPECT_EQ(Refusal("t,x,y,z\n0,0,0,0\n1,0,0,-101\n"), fast);
+  EXPECT_EQ(Refusal("t,x,y,z\n0,0,0,0\n1e-300,1,0,0\n"), fast);
+}
+
 TEST(PacketLog, WritesARowForEveryReceiverWithExactTimes) {
   std::ostringstream out;
   PacketLog log(&out, 3, {"4", "7", "9"}, 100 * kSecond);

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/regular_file.hpp"
 
 namespace stg::config {
 namespace {
@@ -174,18 +175,7 @@ YamlTree ParseYaml(const std::string& text, const std::string& origin, bool with
 }
 
 std::string ReadBoundedFile(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw UserError(path + ": no such file");
-  if (error) throw UserError(path + ": " + error.message());
-  if (fs::is_directory(status)) throw UserError(path + ": is a directory, not a file");
-  if (!fs::is_regular_file(status)) throw UserError(path + ": not a regular file");
-  const auto too_large = [&path] {
-    return UserError(path + ": larger than " + std::to_string(kMaxBytes) +
-                     " bytes, refused before reading");
-  };
-  if (fs::file_size(path, error) > kMaxBytes && !error) throw too_large();
+  RequireRegularFile(path, kMaxBytes);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
@@ -197,7 +187,9 @@ std::string ReadBoundedFile(const std::string& path) {
   char part[4096];
   while (stream.read(part, sizeof(part)), stream.gcount() > 0) {
     text.append(part, static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > kMaxBytes) throw too_large();
+    if (text.size() > kMaxBytes) {
+      throw UserError(path + ": larger than " + std::to_string(kMaxBytes) + " bytes");
+    }
   }
   if (stream.bad()) throw UserError(path + ": cannot be read");
   return text;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "auv_common/error.hpp"
+#include "auv_common/regular_file.hpp"
 #include "classic_header.hpp"
 
 namespace stg::dynamics {
@@ -15,7 +16,7 @@ constexpr std::size_t kLongestText = 4096;
 
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
   // libnetcdf also takes addresses; a file is what is meant.
-  if (!std::filesystem::is_regular_file(path)) throw UserError(path + ": no such file");
+  RequireRegularFile(path);
   if (std::filesystem::file_size(path) == 0) throw UserError(path + ": is empty");
   const auto least = SmallestClassicSize(path);
   if (least && std::filesystem::file_size(path) < *least) {

@@ -34,8 +34,12 @@ Terrain MakeTerrain(const SeaConfig& c, double region_m) {
 }  // namespace
 
 std::string TerrainFile(const std::string& name) {
+  std::error_code error;  // a link to itself is no file either
+  const auto is_file = [&error](const std::string& path) {
+    return std::filesystem::is_regular_file(path, error);
+  };
   if (std::filesystem::path(name).extension() == ".nc") {
-    if (std::filesystem::is_regular_file(name)) return name;
+    if (is_file(name)) return name;
     throw UserError("sea.terrain: no file " + name);
   }
   const char* own = std::getenv("STG_TERRAINS");
@@ -43,10 +47,10 @@ std::string TerrainFile(const std::string& name) {
   std::string file;
   for (std::string folder; std::getline(folders, folder, ':');) {
     file = folder + "/" + name + ".nc";
-    if (!folder.empty() && std::filesystem::is_regular_file(file)) return file;
+    if (!folder.empty() && is_file(file)) return file;
   }
   file = config::ScenarioFolder() + "/../terrain/" + name + ".nc";
-  if (std::filesystem::is_regular_file(file)) return file;
+  if (is_file(file)) return file;
   throw UserError("sea.terrain: no " + name + ".nc in the folders of STG_TERRAINS (" +
                   (own == nullptr ? "not set" : own) + "), and no " + file);
 }

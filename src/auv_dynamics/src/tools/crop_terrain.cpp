@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,7 @@ void Show(const Bathymetry& grid, int columns) {
   const stg::dynamics::GeoRegion r = grid.region();
   const double width = r.east - r.west, height = r.north - r.south;
   // A letter is about twice as high as it is wide.
-  const int rows = std::max(2, static_cast<int>(columns * height / width / 2.0));
+  const int rows = static_cast<int>(std::clamp(columns * height / width / 2.0, 2.0, 400.0));
   const double deepest = std::max(1.0, -grid.lowest());
   std::printf("%.4f to %.4f N, %.4f to %.4f E; %zu x %zu points, %.0f to %.0f m\n", r.south,
               r.north, r.west, r.east, grid.latitudes().size(), grid.longitudes().size(),
@@ -63,7 +64,10 @@ int main(int argc, char** argv) {
                        : Bathymetry::Load(file, {region[0], region[1], region[2], region[3]});
     Show(grid, columns);
     if (!out.empty()) {
-      if (out == file) throw stg::UserError(out + ": is the file that is read");
+      std::error_code error;  // of an output that is not there yet
+      if (std::filesystem::equivalent(out, file, error)) {
+        throw stg::UserError(out + ": is the file that is read");
+      }
       const std::string name = file.substr(file.find_last_of('/') + 1);
       grid.Save(out, "cropped from " + name + " by crop_terrain");
     }

@@ -93,6 +93,12 @@ TEST_F(MotionFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(
       Refusal(title + "1e9,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n").find("column rpm: out of range"),
       std::string::npos);
+  for (const char* far : {"1e300,0,0,0,0,0,0,0,0,0,0,0", "0,0,0,0,-1e300,0,0,0,0,0,0,0",
+                          "0,0,0,0,0,0,0,0,0,0,0,1e300"}) {
+    EXPECT_NE(Refusal(title + "0,0,0,0,0,1," + far + "\n").find(": out of range"),
+              std::string::npos)
+        << far;
+  }
   EXPECT_NE(Refusal(title + "\n" + kRestAt1).find(":2: column rpm"), std::string::npos);
   std::filesystem::remove(file_);
   EXPECT_THROW(LoadMotions(file_), UserError);

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/regular_file.hpp"
 #include "marl_trainer/env/vector_env.hpp"
 
 namespace stg::env {
@@ -38,18 +39,11 @@ const std::set<std::string> kConfigKeys = {"agents",
   throw UserError(file + ":" + std::to_string(line) + ": " + what);
 }
 
-void RequireFile(const std::string& file, std::uintmax_t largest) {
-  if (!std::filesystem::is_regular_file(file)) throw UserError(file + ": no such file");
-  if (std::filesystem::file_size(file) > largest) {
-    throw UserError(file + ": larger than " + std::to_string(largest) + " bytes");
-  }
-}
-
 /// One key of config.yaml, checked.
 class Config {
  public:
   explicit Config(const std::string& file) : file_(file) {
-    RequireFile(file, kLargestConfig);
+    RequireRegularFile(file, kLargestConfig);
     try {
       root_ = YAML::LoadFile(file);
     } catch (const YAML::Exception& e) {
@@ -117,7 +111,7 @@ std::vector<std::string> Split(const std::string& line) {
 }
 
 void ReadSteps(const std::string& file, Trace* trace) {
-  RequireFile(file, kLargestSteps);
+  RequireRegularFile(file, kLargestSteps);
   std::ifstream in(file);
   if (!in) throw UserError(file + ": cannot be read");
   std::string line;

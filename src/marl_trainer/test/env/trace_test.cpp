@@ -194,7 +194,7 @@ TEST_F(BadTrace, MissingFolderAndFilesAreNamed) {
   fs::remove(folder_ + "/config.yaml");
   EXPECT_EQ(Error(), folder_ + "/config.yaml: no such file");
   fs::create_directory(folder_ + "/config.yaml");
-  EXPECT_EQ(Error(), folder_ + "/config.yaml: no such file");
+  EXPECT_EQ(Error(), folder_ + "/config.yaml: is a directory, not a file");
 }
 
 TEST_F(BadTrace, EmptyFilesAreRefused) {

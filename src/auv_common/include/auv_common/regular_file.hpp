@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace stg {
+
+/// Throws UserError unless path names a regular file (or a link to one) of at most `largest` bytes:
+/// what is no file is not opened, because a pipe would wait for ever and a device never ends.
+void RequireRegularFile(const std::string& path,
+                        std::uintmax_t largest = std::numeric_limits<std::uintmax_t>::max());
+
+}  // namespace stg

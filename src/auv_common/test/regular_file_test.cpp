@@ -1,0 +1,56 @@
+#include "auv_common/regular_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "auv_common/error.hpp"
+
+namespace stg {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RegularFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "regular_file_" + std::to_string(::getpid());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string Refusal(const std::string& name) const {
+    const std::string path = folder_ + "/" + name;
+    try {
+      RequireRegularFile(path, 3);
+    } catch (const UserError& e) {
+      return std::string(e.what()).substr(path.size());
+    }
+    return "";
+  }
+
+  std::string folder_;
+};
+
+TEST_F(RegularFile, WhatIsNoneIsToldByItsKindAndNotOpened) {
+  std::ofstream(folder_ + "/small") << "abc";
+  std::ofstream(folder_ + "/large") << "abcd";
+  fs::create_symlink("small", folder_ + "/link");
+  fs::create_symlink("loop", folder_ + "/loop");
+  fs::create_directory(folder_ + "/folder");
+  ASSERT_EQ(::mkfifo((folder_ + "/pipe").c_str(), 0600), 0);
+  EXPECT_EQ(Refusal("small"), "");
+  EXPECT_EQ(Refusal("link"), "");
+  EXPECT_EQ(Refusal("none"), ": no such file");
+  EXPECT_EQ(Refusal("folder"), ": is a directory, not a file");
+  EXPECT_EQ(Refusal("pipe"), ": not a regular file");
+  EXPECT_EQ(Refusal("loop"), ": Too many levels of symbolic links");
+  EXPECT_EQ(Refusal("small/x"), ": no such file");
+  EXPECT_EQ(Refusal("large"), ": larger than 3 bytes, refused before reading");
+}
+
+}  // namespace
+}  // namespace stg

@@ -1,0 +1,66 @@
+// Crops of a bathymetry file, and what may not be lost by writing one.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "auv_common/error.hpp"
+#include "auv_dynamics/terrain/bathymetry.hpp"
+
+namespace stg::dynamics {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Crop : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "crop_" + std::to_string(::getpid());
+    fs::create_directories(folder_);
+    file_ = folder_ + "/grid.nc";
+    fs::copy_file(STG_SHIPPED_TERRAIN "/fig6.nc", file_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Whether the tool writes this file.
+  bool Tool(const std::string& out) const {
+    const std::string command =
+        "'" STG_CROP_TERRAIN "' '" + file_ + "' --out '" + out + "' > /dev/null 2>&1";
+    return std::system(command.c_str()) == 0;
+  }
+
+  std::string folder_, file_;
+};
+
+TEST_F(Crop, APipeIsNotReplacedAndAFileNotByHalfOfOne) {
+  const Bathymetry grid = Bathymetry::Load(file_);
+  const std::string pipe = folder_ + "/pipe.nc", old = folder_ + "/old.nc";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(grid.Save(pipe, ""), UserError);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  std::ofstream(old) << "old";
+  fs::create_directory(old + ".tmp");  // the new file cannot be begun
+  EXPECT_THROW(grid.Save(old, ""), UserError);
+  EXPECT_EQ(fs::file_size(old), 3u);
+  fs::remove(old + ".tmp");
+  grid.Save(old, "");
+  EXPECT_EQ(Bathymetry::Load(old).lowest(), grid.lowest());
+  EXPECT_FALSE(fs::exists(old + ".tmp"));
+}
+
+TEST_F(Crop, TheToolDoesNotWriteOverItsInputByAnotherName) {
+  fs::create_symlink(file_, folder_ + "/link.nc");
+  const auto before = fs::last_write_time(file_);
+  for (const char* name : {"/grid.nc", "/link.nc", "/./grid.nc"}) {
+    EXPECT_FALSE(Tool(folder_ + name)) << name;
+  }
+  EXPECT_EQ(fs::last_write_time(file_), before);
+  EXPECT_TRUE(Tool(folder_ + "/copy.nc"));
+}
+
+}  // namespace
+}  // namespace stg::dynamics
