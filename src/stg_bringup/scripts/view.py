@@ -21,30 +21,15 @@ import std_msgs.msg
 import yaml
 
 HERE = os.path.dirname(os.path.realpath(__file__))
-# Where auv_common has stg_common: in the sources, and installed.
-sys.path += [os.path.join(HERE, up) for up in ("../../auv_common/scripts", "../auv_common")]
-from stg_common.files import Damaged  # noqa: E402  (found by the line above)
-from stg_common.program import run_program  # noqa: E402
+# rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
+sys.path.insert(0, HERE)
+from scenario_reading import sections_of  # noqa: E402  (found by the line above)
+from stg_common.program import run_program  # noqa: E402  (found by scenario_reading)
 from stg_common.yaml_files import parse_yaml, read_yaml  # noqa: E402
 
 WAIT_S = 15.0  # of wall time for a scenario to appear
 HALF_EXTENT_M, RADIUS_M = 1.0, 0.011  # of the scenario that the views are written for
 BANDS_AWAY = 26.0  # factor of the close-up's camera for each metre of the tracking band
-
-
-def check(scenario, name):
-    """Returns a scenario as {section: {key: value}}, as far as the camera depends on it; throws Damaged,
-    with the `name` of its source, where it is none."""
-    if not isinstance(scenario, dict):
-        raise Damaged(name, "is no scenario")
-    sections = {key: scenario.get(key) or {} for key in ("workspace", "vehicle", "reward", "sea")}
-    for key, section in sections.items():
-        if not isinstance(section, dict):
-            raise Damaged(name, f"{key}: is no section")
-    band = sections["reward"].get("band_m") or [0.0, 0.0]
-    if not (isinstance(band, list) and len(band) == 2 and all(type(x) in (int, float) for x in band)):
-        raise Damaged(name, "reward.band_m: is not two numbers")
-    return sections
 
 
 def camera_scale(view, scenario):
@@ -99,9 +84,9 @@ def main():
     arguments, names = parser.parse_known_args()
     file = arguments.scenario_file
     if file:
-        scenario = check(read_yaml(file), file)
+        scenario = sections_of(read_yaml(file), file)
     else:
-        scenario = check(parse_yaml(running_scenario(), "/scenario"), "/scenario")
+        scenario = sections_of(parse_yaml(running_scenario(), "/scenario"), "/scenario")
     package = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
     config = yaml.safe_load((package / "rviz" / f"{arguments.view}.rviz").read_text())
     fit(config, camera_scale(arguments.view, scenario))
