@@ -4,13 +4,14 @@
 Takes roslaunch's arguments and does what it does, with four differences. What can be known not to
 work is refused before anything starts, in one line (run_checks.py). A node that exits with status 2
 refuses its configuration (stg::RunNode): the run ends at once, where respawning would repeat it for
-ever. The exit status is 1 after that, when a required node, the recorder or the master died, or
+ever. So it does, without a word, when nobody reads its output any more. The exit status is 1 after that, when a required node, the recorder or the master died, or
 when a file that was asked for was not written. And nothing is left running when a required node
 dies while others start, where roslaunch gives up before its monitor has stopped them.
 """
 
 import difflib
 import os
+import pathlib
 import re
 import signal
 import sys
@@ -21,6 +22,9 @@ import roslaunch.parent
 import roslaunch.pmon
 import roslib.packages
 import run_checks
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
+from stg_common.program import NOBODY_READS, Unread  # noqa: E402  (found by the line above)
 
 REFUSED, LOST_OUTPUT = 2, 4
 MONITOR_ENDS_S = 30  # a node has 15 s after SIGINT and 2 s after SIGTERM
@@ -41,7 +45,8 @@ class Watch(roslaunch.pmon.ProcessListener):
         self.required = {"master"}
         self.recorders = set()
         self.failure = ""
-        self.refused = False
+        self.over = False  # a node refused its configuration, or nobody reads on
+        self.unread = False
         self.started = False
         self.monitor = None
         self.processes = []
@@ -98,15 +103,20 @@ class Watch(roslaunch.pmon.ProcessListener):
             if process.started and process.is_alive():
                 process.stop([])
 
-    def end_if_refused(self):
+    def end_if_over(self):
         """Ends the run as Ctrl-C does, but not while roslaunch is still starting nodes."""
-        if self.refused and self.started:
+        if self.over and self.started:
             os.kill(os.getpid(), signal.SIGINT)
+
+    def output_unread(self):
+        """Called when what reads the output has left."""
+        self.over = self.unread = True
+        self.end_if_over()
 
     def process_died(self, process_name, exit_code):
         """Called by roslaunch's monitor."""
         node = node_of(process_name)
-        if self.failure:
+        if self.failure or self.unread:
             return
         if node in self.recorders:
             full = self.outputs.full_disks()
@@ -115,14 +125,14 @@ class Watch(roslaunch.pmon.ProcessListener):
             return
         if exit_code == REFUSED:
             self.failure = f"/{node} refuses its configuration (its message is above)"
-            self.refused = True
-            self.end_if_refused()
+            self.over = True
+            self.end_if_over()
         elif node in self.required:
             self.failure = f"/{node} died with exit status {exit_code}"
 
     def judge(self):
         """Looks for what the run was asked to write and has not written."""
-        if self.failure or not self.outputs or not self.started:
+        if self.failure or self.unread or not self.outputs or not self.started:
             return
         for name, popen in self.popens.items():
             if popen and popen.returncode == LOST_OUTPUT:
@@ -191,7 +201,7 @@ def launch(watch):
         def start(self, *arguments, **options):
             super().start(*arguments, **options)
             watch.started = True
-            watch.end_if_refused()
+            watch.end_if_over()
 
     roslaunch.parent.ROSLaunchParent = Parent
     try:
@@ -207,6 +217,9 @@ def main():
     """Launches; returns the exit status."""
     watch = Watch()
     status = 0
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is not None:
+            setattr(sys, name, Unread(getattr(sys, name), watch.output_unread))
     try:
         check_arguments(sys.argv[1:])
         status = launch(watch)
@@ -216,7 +229,7 @@ def main():
     if watch.failure:
         print(f"stg: the run failed: {watch.failure}", file=sys.stderr)
         return 1
-    return status
+    return NOBODY_READS if watch.unread else status
 
 
 if __name__ == "__main__":

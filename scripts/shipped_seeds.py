@@ -10,9 +10,10 @@ import glob
 import os
 import re
 import statistics
+import subprocess
 import sys
 
-from shipped_tables import COLUMNS, CONDITIONS, SILENCE, evaluate, write
+from shipped_tables import COLUMNS, CONDITIONS, SILENCE, evaluate, run_program, write
 
 SCENARIOS = ("medium", "hard")
 METRICS = [(name, digits) for name, digits in COLUMNS if name != "return_std"]
@@ -35,6 +36,7 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     out, runs = sys.argv[1:]
+    os.makedirs(out, exist_ok=True)
     lines = []
     table = [["scenario", "condition", "trained and flown", "seed"] + [name for name, _ in METRICS]]
     policies = {(s, kind): trainings(runs, kind, s) for s in SCENARIOS for kind, _, _ in KINDS}
@@ -63,4 +65,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run_program("shipped_seeds", main, subprocess.CalledProcessError, status=1)

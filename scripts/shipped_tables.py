@@ -9,8 +9,12 @@ on its own estimates. SILENT_FOLDER/SCENARIO.onnx, where given, was trained with
 import csv
 import json
 import os
+import pathlib
 import subprocess
 import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
+from stg_common.program import run_program  # noqa: E402  (found by the line above)
 
 CONDITIONS = (
     "nominal", "fast_target", "far_initialization", "limited_sensing", "degraded_communication",
@@ -107,6 +111,7 @@ def main():
     package = subprocess.run(
         ["rospack", "find", "stg_bringup"], check=True, stdout=subprocess.PIPE, text=True
     ).stdout.strip()
+    os.makedirs(out, exist_ok=True)
     lines = []
     rows = [["scenario", "condition", "who"] + [name for name, _ in COLUMNS]]
     for scenario in ("medium", "hard"):
@@ -132,4 +137,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run_program("shipped_tables", main, subprocess.CalledProcessError, status=1)

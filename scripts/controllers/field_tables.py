@@ -13,6 +13,7 @@ import os
 import sys
 
 import flights
+from stg_common.program import run_program  # found by flights
 
 SEED = 5000000  # of the block for reporting
 # The paper's laws at the lengths of the field, chosen by hand on seeds from 7000.
@@ -81,4 +82,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run_program("field_tables", main, flights.FlightError, status=1)

@@ -3,7 +3,12 @@
 import hashlib
 import json
 import os
+import pathlib
 import subprocess
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "src" / "auv_common" / "scripts"))
+from stg_common.files import Damaged, expect, member, read_text  # noqa: E402  (found by the line above)
 
 CONDITIONS = (
     "nominal", "fast_target", "far_initialization", "limited_sensing", "degraded_communication",
@@ -11,6 +16,10 @@ CONDITIONS = (
 )
 # So much noise at the site that no frame is recognised.
 SILENCE = ("channel.noise.site_db=200.0",)
+
+
+class FlightError(Exception):
+    """Why there is no flight, told in words for the user."""
 
 
 class Flights:
@@ -21,10 +30,13 @@ class Flights:
         self.program = [evaluate] if os.sep in evaluate else ["rosrun", "marl_trainer", evaluate]
         self.known = {}
         if os.path.exists(file):
-            with open(file, encoding="utf-8") as lines:
-                for line in lines:
-                    flight = json.loads(line)
-                    self.known[flight["key"]] = flight["found"]
+            for number, line in enumerate(read_text(file).splitlines(), start=1):
+                try:
+                    flight = expect(file, json.loads(line), dict)
+                except (ValueError, RecursionError):
+                    raise Damaged(file, "is not JSON; delete this line to go on", number) from None
+                key = member(file, flight, "key", str)
+                self.known[key] = member(file, flight, "found", dict)
 
     def fly(self, policy, scenario, condition, episodes, seed, overrides=()):
         """Returns the metrics of `evaluate`: means, and standard deviations as <name>_std."""
@@ -38,8 +50,11 @@ class Flights:
             for override in overrides:
                 command += ["--set", override]
             run = subprocess.run(
-                command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+                command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
             )
+            if run.returncode != 0:
+                said = (run.stderr.strip().splitlines() or ["it said nothing"])[-1]
+                raise FlightError(f"evaluate: exit status {run.returncode}: {said}")
             self.known[key] = json.loads(run.stdout.strip().splitlines()[-1])
             os.makedirs(os.path.dirname(os.path.abspath(self.file)), exist_ok=True)
             with open(self.file, "a", encoding="utf-8") as lines:

@@ -19,21 +19,80 @@ import random
 import sys
 
 import flights
-import yaml
+from stg_common.files import Damaged  # found by flights
+from stg_common.program import run_program
+from stg_common.yaml_files import read_yaml
 
-KEYS = {
-    "controller", "space", "start", "scenarios", "conditions", "episodes", "seed", "trials",
-    "random_trials", "step", "draws", "score",
+
+def is_count(value):
+    """Whether a value is a whole number that is not negative."""
+    return type(value) is int and value >= 0
+
+
+def is_number(value):
+    """Whether a value is a finite number."""
+    return type(value) in (int, float) and abs(value) < math.inf
+
+
+def are_names(value):
+    """Whether a value is a list of names, at least one."""
+    return isinstance(value, list) and bool(value) and all(isinstance(v, str) for v in value)
+
+
+def are_constants(value):
+    """Whether a value is a mapping from names to numbers."""
+    return isinstance(value, dict) and all(
+        isinstance(name, str) and is_number(number) for name, number in value.items()
+    )
+
+
+def is_pair(value):
+    """Whether a value is two numbers."""
+    return isinstance(value, list) and len(value) == 2 and all(map(is_number, value))
+
+
+def is_space(value):
+    """Whether a value maps names to ranges."""
+    return isinstance(value, dict) and all(
+        isinstance(name, str) and is_pair(ends) and ends[0] <= ends[1]
+        for name, ends in value.items()
+    )
+
+
+def are_starts(value):
+    """Whether a value is a list of constants."""
+    return isinstance(value, list) and all(map(are_constants, value))
+
+
+KEYS = {  # what each must be: as a test, and in words
+    "controller": (lambda value: isinstance(value, str), "a name"),
+    "space": (is_space, "a mapping from names to [least, most]"),
+    "start": (are_starts, "a list of mappings from names to numbers"),
+    "scenarios": (are_names, "a list of names"),
+    "conditions": (are_names, "a list of names"),
+    "episodes": (lambda value: is_count(value) and value > 0, "a positive whole number"),
+    "seed": (is_count, "a whole number that is not negative"),
+    "trials": (lambda value: is_count(value) and value > 0, "a positive whole number"),
+    "random_trials": (is_count, "a whole number that is not negative"),
+    "step": (lambda value: is_pair(value) and min(value) > 0.0, "[first, last], positive shares"),
+    "draws": (is_count, "a whole number that is not negative"),
+    "score": (are_constants, "a mapping from names to numbers"),
 }
 
 
 def read(file):
-    """Returns the search of a file; ends the program where a key is missing or unknown."""
-    with open(file, encoding="utf-8") as text:
-        search = yaml.safe_load(text)
-    wrong = KEYS.symmetric_difference(search)
+    """Returns the search of a file; throws FileError where it is none."""
+    search = read_yaml(file)
+    if not isinstance(search, dict):
+        raise Damaged(file, "is no mapping")
+    wrong = set(KEYS).symmetric_difference(search)
     if wrong:
-        sys.exit(f"{file}: missing or unknown: {', '.join(sorted(wrong))}")
+        raise Damaged(file, f"missing or unknown: {', '.join(sorted(map(str, wrong)))}")
+    for key, (good, what) in KEYS.items():
+        if not good(search[key]):
+            raise Damaged(file, f"{key}: is not {what}")
+    if not search["start"] and not search["random_trials"]:
+        raise Damaged(file, "start, random_trials: there is nothing to begin with")
     return search
 
 
@@ -65,9 +124,12 @@ def fly(search, known, values):
                   search["seed"])
         for scenario in search["scenarios"] for condition in search["conditions"]
     ]
-    blocks = {cell["seed_block"] for cell in found}
+    blocks = {str(cell.get("seed_block")) for cell in found}
     if blocks != {"choosing"}:
         sys.exit(f"tune: nothing may be chosen by seeds of the {', '.join(sorted(blocks))} block")
+    unknown = [name for name in search["score"] if not all(is_number(cell.get(name)) for cell in found)]
+    if unknown:
+        sys.exit(f"tune: score: evaluate tells of no {', '.join(unknown)}")
     means = {name: sum(cell[name] for cell in found) / len(found) for name in search["score"]}
     return sum(weight * means[name] for name, weight in search["score"].items()), means
 
@@ -120,4 +182,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run_program("tune", main, flights.FlightError, status=1)

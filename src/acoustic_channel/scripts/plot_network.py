@@ -9,8 +9,6 @@ Exit status: 0 done, 2 wrong usage or a file that cannot be read.
 """
 
 import argparse
-import csv
-import json
 import os
 import sys
 
@@ -20,14 +18,30 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 
+HERE = os.path.dirname(os.path.realpath(__file__))
+# Where auv_common has stg_common: in the sources, and installed.
+sys.path += [os.path.join(HERE, up) for up in ("../../auv_common/scripts", "../auv_common")]
+from stg_common.csv_files import number, table_rows  # noqa: E402  (found by the line above)
+from stg_common.files import Damaged, expect, member, read_json  # noqa: E402
+from stg_common.program import run_program  # noqa: E402
+
 NUMBERS = "offered_s generation_s transmit_s transmit_end_s begin_s arrival_s distance_m".split()
 NAMES = "source destination sequence fate".split()
 GOOD, PARTLY, BAD, GREY = "#2fb457", "#f5a11a", "#e23636", "#9aa3ad"
 MAX_LINKS = 40
+# What a row must tell of a packet that left, of one that found a receiver, and of one that arrived.
+OF_SENT, OF_RECEIVER, OF_DELIVERED = ("transmit_end_s",), ("distance_m",), ("generation_s", "arrival_s")
+plt.rcParams["text.parse_math"] = False  # names of nodes are shown as they are
 
 
-class LogError(Exception):
-    """A log that cannot be read, told in words for the user."""
+def number_or_nan(text):
+    """A number; NaN for an empty cell."""
+    return number(text) if text else np.nan
+
+
+def in_order(names):
+    """Names of nodes, numbers in their order."""
+    return sorted(names, key=lambda n: (not n.isdecimal(), len(n.lstrip("0")) if n.isdecimal() else 0, n))
 
 
 class Log:
@@ -35,24 +49,18 @@ class Log:
 
     def __init__(self, path):
         columns = {name: [] for name in NAMES + NUMBERS}
-        try:
-            with open(path, newline="", encoding="utf-8") as file:
-                reader = csv.DictReader(file)
-                missing = [name for name in columns if name not in (reader.fieldnames or [])]
-                if missing:
-                    raise LogError(f"{path}:1: no column {', '.join(missing)}")
-                for row in reader:
-                    for name in NAMES:
-                        columns[name].append(row[name])
-                    try:
-                        for name in NUMBERS:
-                            columns[name].append(float(row[name]) if row[name] else np.nan)
-                    except (TypeError, ValueError):
-                        raise LogError(f"{path}:{reader.line_num}: {name}: no number") from None
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise LogError(f"{path}: {error}") from None
+        kinds = {**dict.fromkeys(NAMES, str), **dict.fromkeys(NUMBERS, number_or_nan), "offered_s": number}
+        for line, row in enumerate(table_rows(path, kinds), start=2):
+            needed = () if np.isnan(row["transmit_s"]) else OF_SENT
+            needed += OF_RECEIVER if needed and row["fate"] != "left" else ()
+            needed += OF_DELIVERED if row["fate"] == "delivered" else ()
+            for name in needed:
+                if np.isnan(row[name]):
+                    raise Damaged(path, f"{name}: missing", line)
+            for name, values in columns.items():
+                values.append(row[name])
         if not columns["source"]:
-            raise LogError(f"{path}: no packets")
+            raise Damaged(path, "no packets")
         for name in NAMES:
             setattr(self, name, np.array(columns[name], dtype=object))
         for name in NUMBERS:
@@ -63,8 +71,7 @@ class Log:
 
     def nodes(self):
         """All names of nodes, numbers in their order."""
-        names = set(self.source) | set(self.destination)
-        return sorted(names, key=lambda n: (not n.isdigit(), int(n) if n.isdigit() else 0, n))
+        return in_order(set(self.source) | set(self.destination))
 
     def transmissions(self):
         """Start, end, source and share of receivers reached of every packet that left."""
@@ -180,11 +187,11 @@ def draw_drops(axes, log):
 def draw_energy(axes, summary):
     """Energy by node."""
     axes.set_title("energy of the modems")
-    energy = summary.get("energy_j") or {}
+    energy = summary["energy_j"]
     if not energy or not any(energy.values()):
         axes.text(0.5, 0.5, "not known", ha="center", transform=axes.transAxes)
         return
-    nodes = sorted(energy, key=int)
+    nodes = in_order(energy)
     axes.bar(nodes, [energy[node] for node in nodes], color="#4a8cff")
     axes.set_xlabel("node")
     axes.set_ylabel("energy [J]")
@@ -210,6 +217,19 @@ def draw_load(axes, log, sent):
     axes.step(middle, arrived, where="mid", color=GOOD, label="delivered, mean receiver")
     axes.set_ylim(0.0, 1.25 * max(offered.max(), 1e-9))
     axes.legend(loc="upper right", fontsize="small")
+
+
+def read_summary(path):
+    """What summary.json tells, all of it checked; `energy_j` may be empty, the rest be missing."""
+    found = expect(path, read_json(path), dict) if os.path.exists(path) else {}
+    energy = expect(path, found.get("energy_j") or {}, dict, "energy_j")
+    summary = {"energy_j": {name: member(path, energy, name, float) for name in energy}}
+    if "model" in found:
+        for name in ("model", "access"):
+            summary[name] = member(path, found, name, str)
+        for name in ("transmitted", "duration_s", "delivery_ratio"):
+            summary[name] = member(path, found, name, float)
+    return summary
 
 
 def draw(log, summary, window, path):
@@ -251,21 +271,14 @@ def main():
     arguments = parser.parse_args()
     if arguments.window and not arguments.window[1] > arguments.window[0]:
         parser.error("--window: END is not after START")
-    summary = {}
-    try:
-        log = Log(os.path.join(arguments.folder, "packets.csv"))
-        file = os.path.join(arguments.folder, "summary.json")
-        if os.path.exists(file):
-            with open(file, encoding="utf-8") as text:
-                summary = json.load(text)
-        out = arguments.out or os.path.join(arguments.folder, "network.png")
-        draw(log, summary, arguments.window, out)
-    except (LogError, OSError, ValueError) as error:
-        print(f"plot_network: {error}", file=sys.stderr)
-        return 2
+    log = Log(os.path.join(arguments.folder, "packets.csv"))
+    summary = read_summary(os.path.join(arguments.folder, "summary.json"))
+    out = arguments.out or os.path.join(arguments.folder, "network.png")
+    draw(log, summary, arguments.window, out)
     print(out)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    # ValueError: a picture of a kind that there is none of.
+    run_program("plot_network", main, ValueError)

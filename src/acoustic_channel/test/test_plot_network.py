@@ -101,14 +101,43 @@ class PlotNetwork(unittest.TestCase):
             (HEADER, "no packets"),
             ("a,b\n1,2\n", "no column source"),
             (HEADER + row(0, 1, 0, 1.0, 3.0).replace("1500", "far"), "packets.csv:2: distance_m"),
+            (HEADER + row(0, 1, 0, 1.0, 3.0).replace("1500", ""), "packets.csv:2: distance_m"),
+            (HEADER + 2 * row(0, 1, 0, 1.0, 3.0)[:-30], "packets.csv:2: "),
+            (HEADER + "9,2,all,data,,8,,7,,,,,,,,,,,queue\n", "packets.csv:2: offered_s"),
+            (HEADER + "9,2\n", "packets.csv:2: 2 cells"),
         ):
             self.write(text)
             result = self.run_script()
             self.assertEqual(result.returncode, 2, text)
             self.assertIn(message, result.stderr)
+            self.assertRegex(result.stderr, r"^plot_network: [^\n]*\n$")
+        os.remove(os.path.join(self.folder.name, "packets.csv"))
+        os.mkfifo(os.path.join(self.folder.name, "packets.csv"))
+        self.assertEqual(self.run_script().returncode, 2)
         os.remove(os.path.join(self.folder.name, "packets.csv"))
         self.assertEqual(self.run_script().returncode, 2)
         self.assertEqual(self.run_script("--window", "5", "1").returncode, 2)
+
+    def test_refuses_a_damaged_summary(self):
+        self.write(HEADER + row(0, 1, 0, 1.0, 3.0))
+        path = os.path.join(self.folder.name, "summary.json")
+        for text, message in (
+            ("[]", "summary.json: is not an object"),
+            ("{", "summary.json:1: is not JSON"),
+            ("[" * 99999, "summary.json: is nested"),
+            ('{"energy_j": [2.0]}', "energy_j: is not an object"),
+            ('{"energy_j": {"0": "much"}}', "0: is not a finite number"),
+            ('{"model": "physical"}', "access: missing"),
+            ('{"model": "m", "access": "a", "transmitted": null}', "transmitted: is not"),
+        ):
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+            with self.assertRaises(plot_network.Damaged) as caught:
+                plot_network.read_summary(path)
+            self.assertIn(message, str(caught.exception))
+        result = self.run_script()
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, r"^plot_network: [^\n]*summary.json: transmitted[^\n]*\n$")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 """Tests of the reproduce command with stand-ins for the programs it runs."""
 
+import gzip
 import json
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -12,7 +14,7 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
 import stub_programs  # noqa: E402
-from study_case import StudyCase  # noqa: E402
+from study_case import STUDY, StudyCase  # noqa: E402
 
 
 class Reproduce(StudyCase):
@@ -147,6 +149,95 @@ class Reproduce(StudyCase):
         self.assertEqual(set(row.split(" | ")[1:]) - {"– |"}, {"–"})
         self.assertIn("| pursuit (tuned) |", page)
         self.assertNotIn("convergence", page)
+
+    def refused(self, what, *arguments):
+        """The command must end in one line that says `what`."""
+        status, output, calls = self.reproduce_all(*arguments)
+        self.assertEqual((status, calls), (2, []), output)
+        self.assertRegex(output.splitlines()[-1], f"^reproduce: .*{what}")
+        self.assertNotIn("Traceback", output)
+
+    def test_damaged_studies_are_refused_in_one_line(self):
+        for text, what in (
+            (STUDY + "steps: 7\n", rf"study.yaml:{STUDY.count(chr(10)) + 1}: steps: duplicate key"),
+            ("a: \xff", "study.yaml:1: is not text"),
+            ("\n" + "[" * 9999, "study.yaml:2: nested too deeply"),
+            ("name: 2026-99-99\n", "study.yaml:1: this value"),
+            (" " * 2000000, "study.yaml: has 2000000 bytes"),
+        ):
+            with open(self.study, "w", encoding="latin-1") as file:
+                file.write(text)
+            self.refused(what)
+        os.remove(self.study)
+        os.mkfifo(self.study)
+        self.refused("study.yaml: is no regular file")
+
+    def test_damaged_runs_are_refused_in_one_line(self):
+        only = ("--methods", "stg", "--seeds", "0")
+        self.assertEqual(self.reproduce(*only)[0], 0)
+        run = "work/runs/medium_release/stg/seed0"
+        evaluation = "work/evaluations/medium_release/nominal/pursuit_seed0"
+        summary = json.loads(self.read(run, "summary.json"))
+        found = json.loads(self.read(evaluation + ".json"))
+        for name, content, what in (
+            (f"{run}/summary.json", [], "summary.json: is not an object"),
+            (f"{run}/summary.json", {**summary, "env_steps": "1000"}, "env_steps: is not a finite"),
+            (f"{run}/summary.json", {**summary, "wall_seconds": []}, "wall_seconds: is not a finite"),
+            (f"{run}/summary.json", {**summary, "parameters": [1]}, "parameters: is not an object"),
+            (f"{run}/summary.json", {**summary, "time_to_threshold": {"1000": 3}}, "1000: is not an"),
+            (f"{run}/config.json", [1], "config.json: is not an object"),
+            (f"{run}/config.json", {"lr": [[1]]}, "config.json: lr: is neither a value"),
+            (f"{run}/study_job.json", {"arguments": [1]}, "arguments: is not a text"),
+            (f"{evaluation}.json", [found], "pursuit_seed0.json: is not an object"),
+            (f"{evaluation}.json", {**found, "summary": 1}, "summary: is not an object"),
+            (f"{evaluation}.json", {**found, "summary": {}}, "return: missing"),
+        ):
+            whole = self.read(name)
+            with open(self.path(name), "w", encoding="utf-8") as file:
+                json.dump(content, file)
+            self.refused(what, "--no-report", *only)
+            with open(self.path(name), "w", encoding="utf-8") as file:
+                file.write(whole)
+        os.mkfifo(self.path("fifo"))
+        os.replace(self.path("fifo"), self.path(run, "config.json"))
+        self.refused("config.json: is no regular file", "--no-report", *only)
+
+    def test_damaged_results_are_refused_in_one_line(self):
+        self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
+        names = ("episodes.csv.gz", "curves.csv", "runs.csv", "options.csv")
+        whole = {}
+        for name in names:
+            with open(self.path(name), "rb") as file:
+                whole[name] = file.read()
+        curves = whole["curves.csv"].decode()
+        episodes = gzip.decompress(whole["episodes.csv.gz"])
+        for name, content, what in (
+            ("episodes.csv.gz", whole["episodes.csv.gz"][:-200], r"episodes.csv.gz:\d+: damaged"),
+            ("episodes.csv.gz", episodes, "episodes.csv.gz:1: damaged"),
+            ("episodes.csv.gz", gzip.compress(episodes.replace(b",return,", b",gain,")),
+             "episodes.csv.gz:1: no column return"),
+            ("episodes.csv.gz", gzip.compress(episodes.replace(b"nominal,stg,0,", b"nominal,stg,x,")),
+             r"episodes.csv.gz:\d+: seed: 'x'"),
+            ("curves.csv", curves.replace("stg,0,100,", "stg,0,100,many,", 1), r"curves.csv:\d+: "),
+            ("curves.csv", curves.replace("stg,0,100,", "stg,0,many,", 1), "env_steps: 'many'"),
+            ("curves.csv", curves.replace(",tail_distance", ",distance"), "no column tail_distance"),
+            ("curves.csv", b"\xff\n", "curves.csv:1: is not text"),
+            ("runs.csv", "a,b\n", "runs.csv:1: no column scenario"),
+            ("options.csv", "method,option,value\nstg,lr\n", "options.csv:2: 2 cells"),
+        ):
+            with open(self.path(name), "wb") as file:
+                file.write(content if isinstance(content, bytes) else content.encode())
+            self.refused(what, "--report-only")
+            with open(self.path(name), "wb") as file:
+                file.write(whole[name])
+
+    def test_a_reader_that_leaves_ends_it_without_a_word(self):
+        command = " ".join(map(shlex.quote, self.command("--no-report", "--no-training")))
+        run = subprocess.run(
+            ["bash", "-c", f"{command} | head -0; exit ${{PIPESTATUS[0]}}"],
+            stderr=subprocess.PIPE, universal_newlines=True, check=False,
+        )  # fmt: skip
+        self.assertEqual((run.returncode, run.stderr), (141, ""))
 
     def test_results_folder_is_ignored_by_git_where_it_holds_runs(self):
         self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)

@@ -1,7 +1,9 @@
 """Tests of the search of options: draws, choice, files."""
 
 import csv
+import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -62,6 +64,11 @@ class Draws(unittest.TestCase):
             ({"algorithms": {"mappo": 3}}, "algorithms.mappo"),
             ({"trials": 0}, "trials"),
             ({"scenaro": "a"}, "scenaro"),
+            ({"algorithms": {"mappo": {"lr": {"log": [1.0, math.inf]}}}}, "mappo.lr"),
+            ({"algorithms": {"mappo": {"lr": [[1]]}}}, "mappo.lr"),
+            ({"algorithms": {"../mappo": {}}}, "../mappo"),
+            ({"fixed": {"mappo": 3}}, "fixed.mappo"),
+            ({"fixed": {"mappo": {"lr": []}}}, "fixed.mappo.lr"),
         ):
             with tempfile.TemporaryDirectory() as folder:
                 path = os.path.join(folder, "search.yaml")
@@ -118,6 +125,32 @@ class Tune(unittest.TestCase):
             self.assertEqual(chosen[algorithm], trial)
         self.assertEqual(self.tune().returncode, 0)
         self.assertEqual(stub_programs.calls(self.folder), [])
+
+    def test_damaged_runs_are_refused_in_one_line(self):
+        self.assertEqual(self.tune("--algorithms", "masac").returncode, 0)
+        run = os.path.join(self.folder, "out", "work", "runs", "medium_release", "masac_1", "seed1000")
+        with open(os.path.join(run, "progress.csv"), encoding="utf-8") as file:
+            lines = file.read().splitlines(keepends=True)
+        many = lines[:-1] + [lines[-1].replace("1000,", "many,", 1)]
+        for name, content, what in (
+            ("progress.csv", "".join(many), f"progress.csv:{len(many)}: env_steps: 'many'"),
+            ("progress.csv", lines[0], "progress.csv: tells of no validation"),
+            ("progress.csv", lines[1], "progress.csv:1: no column"),
+            ("summary.json", "[]", "summary.json: is not an object"),
+            ("study_job.json", '{"arguments": 3}', "study_job.json: arguments: is not a list"),
+        ):
+            path = os.path.join(run, name)
+            with open(path, encoding="utf-8") as file:
+                whole = file.read()
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(content)
+            done = self.tune("--algorithms", "masac")
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertRegex(done.stdout.splitlines()[-1], f"^tune: .*{re.escape(what)}")
+            self.assertNotIn("Traceback", done.stdout)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(whole)
+        self.assertEqual(self.tune("--algorithms", "masac").returncode, 0)
 
     def test_an_unknown_algorithm_is_refused(self):
         done = self.tune("--algorithms", "mappoo")

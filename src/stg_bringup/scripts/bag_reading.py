@@ -20,6 +20,8 @@ def open_bag(path, salvage):
         raise BagError(f"{path}: no such file")
     if os.path.isdir(path):
         raise BagError(f"{path}: is a folder, not a bag")
+    if not os.path.isfile(path):
+        raise BagError(f"{path}: is no regular file")
     if os.path.getsize(path) == 0:
         raise BagError(f"{path}: is empty")
     try:

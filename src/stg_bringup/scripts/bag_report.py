@@ -20,12 +20,14 @@ import re
 import sys
 from collections import defaultdict
 
-import yaml
-
 # rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from bag_reading import BagError, messages, open_bag  # noqa: E402  (found by the line above)
+from scenario_reading import sections_of  # noqa: E402
+from stg_common.files import FileError  # noqa: E402  (found by scenario_reading)
+from stg_common.program import run_program  # noqa: E402
+from stg_common.yaml_files import parse_yaml  # noqa: E402
 
 PHASES = ("search", "approach", "stable", "lost")
 QUALITIES = ("high", "medium", "low", "unavailable")
@@ -158,13 +160,14 @@ def take_message(run, clock, late, topic, message):
 
 
 def read_scenario(text):
-    """Parses the recorded scenario; one that does not parse is left out."""
+    """Parses the recorded scenario; one that is none is left out."""
     try:
-        scenario = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        print(f"bag_report: /scenario is ignored: {error}", file=sys.stderr)
+        scenario = parse_yaml(text, "/scenario")
+        sections_of(scenario, "/scenario")
+    except FileError as error:
+        print(f"bag_report: {error}; it is ignored", file=sys.stderr)
         return {}
-    return scenario if isinstance(scenario, dict) else {}
+    return scenario
 
 
 def add_late(run, late, episode_at):
@@ -311,4 +314,4 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_program("bag_report", main)

@@ -7,6 +7,7 @@ follow. Everything else is the view as shipped.
 """
 
 import argparse
+import os
 import pathlib
 import signal
 import subprocess
@@ -19,6 +20,13 @@ import rospy
 import std_msgs.msg
 import yaml
 
+HERE = os.path.dirname(os.path.realpath(__file__))
+# rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
+sys.path.insert(0, HERE)
+from scenario_reading import sections_of  # noqa: E402  (found by the line above)
+from stg_common.program import run_program  # noqa: E402  (found by scenario_reading)
+from stg_common.yaml_files import parse_yaml, read_yaml  # noqa: E402
+
 WAIT_S = 15.0  # of wall time for a scenario to appear
 HALF_EXTENT_M, RADIUS_M = 1.0, 0.011  # of the scenario that the views are written for
 BANDS_AWAY = 26.0  # factor of the close-up's camera for each metre of the tracking band
@@ -28,15 +36,15 @@ def camera_scale(view, scenario):
     """Returns how many times farther away than in the shipped view the camera has to be."""
 
     def number(section, key, fallback):
-        value = (scenario.get(section) or {}).get(key)
+        value = scenario[section].get(key)
         return float(value) if isinstance(value, (int, float)) and value > 0 else fallback
 
     if view == "overview":
         return number("workspace", "half_extent_m", HALF_EXTENT_M) / HALF_EXTENT_M
     # In the box the close-up shows hulls, in open water the band around the target.
     hulls = number("vehicle", "radius_m", RADIUS_M) / RADIUS_M
-    band = (scenario.get("reward") or {}).get("band_m")
-    if not (scenario.get("sea") or {}).get("open") or not band:
+    band = scenario["reward"].get("band_m")
+    if not scenario["sea"].get("open") or not band:
         return hulls
     return max(hulls, BANDS_AWAY * float(band[1]))
 
@@ -50,7 +58,7 @@ def fit(config, scale):
 
 
 def running_scenario():
-    """Returns the scenario that the graph tells of, or an empty one after WAIT_S."""
+    """Returns the text of the scenario that the graph tells of, or of an empty one after WAIT_S."""
     heard = threading.Event()
     text = []
 
@@ -64,7 +72,7 @@ def running_scenario():
     heard.wait(WAIT_S)
     subscriber.unregister()
     rospy.signal_shutdown("known")
-    return yaml.safe_load(text[0]) if text else {}
+    return text[0] if text else "{}"
 
 
 def main():
@@ -75,7 +83,10 @@ def main():
     parser.add_argument("--write", metavar="FILE", help="write the view there instead of opening it")
     arguments, names = parser.parse_known_args()
     file = arguments.scenario_file
-    scenario = yaml.safe_load(pathlib.Path(file).read_text()) if file else running_scenario()
+    if file:
+        scenario = sections_of(read_yaml(file), file)
+    else:
+        scenario = sections_of(parse_yaml(running_scenario(), "/scenario"), "/scenario")
     package = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
     config = yaml.safe_load((package / "rviz" / f"{arguments.view}.rviz").read_text())
     fit(config, camera_scale(arguments.view, scenario))
@@ -92,4 +103,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_program("view", main)

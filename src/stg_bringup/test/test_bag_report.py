@@ -50,6 +50,23 @@ class WithFolder(unittest.TestCase):
         self.out = self.folder / "out"
 
 
+class Scenario(unittest.TestCase):
+    """The scenario that is recorded beside the run."""
+
+    def test_one_that_is_none_is_left_out(self):
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            for text in ("a: [", "[" * 9999, "a: 2026-99-99", "3", "reward: [1]",
+                         "reward: {band_m: near}", "a: 1\na: 2"):  # fmt: skip
+                self.assertEqual(bag_report.read_scenario(text), {}, text)
+        lines = said.getvalue().splitlines()
+        self.assertEqual(len(lines), 7)
+        for line in lines:
+            self.assertRegex(line, "^bag_report: /scenario:.*; it is ignored$")
+        whole = {"name": "medium", "reward": {"band_m": [0.01, 0.015]}}
+        self.assertEqual(bag_report.read_scenario(str(whole)), whole)
+
+
 class WholeBag(WithFolder):
     """A bag that was closed properly."""
 

@@ -116,13 +116,15 @@ class Graph(unittest.TestCase):
         self.assertLessEqual({f"/target_{k}/odom" for k in range(16)}, set(recorder.args.split()))
 
 
+SCENARIO_AGENTS = ROOT / "scripts" / "scenario_agents.py"
+
+
 class ScenarioAgents(unittest.TestCase):
     """The number of AUVs of a scenario is found before anything is launched."""
 
     def agents(self, scenario):
         """Returns what the script prints."""
-        script = ROOT / "scripts" / "scenario_agents.py"
-        return subprocess.run([str(script), str(scenario)], stdout=subprocess.PIPE,
+        return subprocess.run([SCENARIO_AGENTS, scenario], stdout=subprocess.PIPE,
                               universal_newlines=True, check=True).stdout.strip()
 
     def test_own_number_counts_else_that_of_the_base(self):
@@ -133,11 +135,28 @@ class ScenarioAgents(unittest.TestCase):
             (folder / "seven.yaml").write_text(f"base: {shipped}/medium.yaml\nagents: 7\n")
             (folder / "heir.yaml").write_text("base: seven.yaml\nname: heir\n")
             (folder / "circle.yaml").write_text("base: circle.yaml\n")
-            (folder / "broken.yaml").write_text("agents: [4\n")
             self.assertEqual(self.agents(folder / "seven.yaml"), "7")
             self.assertEqual(self.agents(folder / "heir.yaml"), "7")
-            for wrong in ("circle", "broken", "missing"):
+            for wrong in ("circle", "missing"):
                 self.assertEqual(self.agents(folder / f"{wrong}.yaml"), "", wrong)
+
+    def test_what_is_no_yaml_is_refused_in_one_line(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            for text in ("agents: 4\nname: [a\n", "\n[" + 5000 * "[", "\nagents: 2026-99-99"):
+                (folder / "file.yaml").write_text(text)
+                self.refused(folder / "file.yaml", "file.yaml:")
+            (folder / "heir.yaml").write_text("base: fifo.yaml\n")
+            os.mkfifo(folder / "fifo.yaml")
+            self.refused(folder / "heir.yaml", "fifo.yaml: is no regular file")
+
+    def refused(self, scenario, what):
+        """The script must end in one line that says `what`."""
+        run = subprocess.run([SCENARIO_AGENTS, scenario], stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, universal_newlines=True, timeout=60,
+                             check=False)  # fmt: skip
+        self.assertEqual((run.returncode, run.stdout), (2, ""))
+        self.assertRegex(run.stderr, rf"^scenario_agents: [^\n]*{what}[^\n]*\n$")
 
 
 if __name__ == "__main__":

@@ -203,6 +203,13 @@ class Ends(WithFolder):
                     self.assertNotIn(word, output)
                 self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {}, output)
 
+    def test_a_reader_that_leaves_ends_it(self):
+        process, environment = self.start(*ENDLESS)
+        process.stdout.readline()
+        process.stdout.close()  # as that of `| head -1`
+        self.assertEqual(process.wait(60), 128 + signal.SIGPIPE)
+        self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {})
+
     def test_a_death_is_told_with_its_signal(self):
         process, environment = self.start(*ENDLESS)
         process_of("/metrics", environment)

@@ -147,6 +147,26 @@ class RvizFiles(unittest.TestCase):
         self.assertEqual(camera("follow", box)["Distance"], shipped["Distance"])
         self.assertEqual(camera("follow", {})["Distance"], shipped["Distance"])
 
+    def test_a_scenario_that_is_none_is_refused_in_one_line(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            texts = ("[1]", "sea: 3", "reward: {band_m: [1]}", "sea: {}\nsea: {}", "a: [", "a: 2026-99-99",
+                     "[" * 5000, None)  # fmt: skip
+            for text in texts:
+                file = folder / "scenario.yaml"
+                if text is None:
+                    file.unlink()
+                    os.mkfifo(file)
+                else:
+                    file.write_text(text)
+                run = subprocess.run(
+                    ["/usr/bin/python3", PACKAGE / "scripts" / "view.py", "follow", "--scenario-file",
+                     file, "--write", folder / "view"], stderr=subprocess.PIPE, check=False,
+                    universal_newlines=True, timeout=60,
+                )  # fmt: skip
+                self.assertEqual(run.returncode, 2, text)
+                self.assertRegex(run.stderr, r"^view: [^\n]*scenario.yaml:[^\n]*\n$")
+
 
 class Replay(unittest.TestCase):
     """replay.launch finds a bag however it is named."""

@@ -1,6 +1,7 @@
 """scripts/controllers/tune.py: finds what it searches, keeps every trial, chooses by no other seed."""
 
 import csv
+import os
 import pathlib
 import subprocess
 import sys
@@ -39,7 +40,14 @@ class Tune(unittest.TestCase):
     def run_tune(self, **changes):
         """Returns the finished program."""
         search = dict(SEARCH, **changes)
-        (self.folder / "search.yaml").write_text(yaml.safe_dump(search))
+        file = self.folder / "search.yaml"
+        if file.is_fifo():
+            file.unlink()
+        file.write_text(yaml.safe_dump(search))
+        return self.run_file()
+
+    def run_file(self):
+        """Returns the finished program, run with the search that is there."""
         return subprocess.run(
             [sys.executable, str(FOLDER / "tune.py"), str(self.folder / "search.yaml"),
              str(self.folder / "out.csv"), "--evaluate", str(self.folder / "evaluate")],
@@ -79,6 +87,37 @@ class Tune(unittest.TestCase):
         run = self.run_tune(trails=3)
         self.assertEqual(run.returncode, 1)
         self.assertIn("missing or unknown: trails", run.stderr)
+
+    def test_damaged_files_are_refused_in_one_line(self):
+        def refused(what, run):
+            self.assertEqual(run.returncode, 1, what)
+            self.assertRegex(run.stderr, rf"^tune: [^\n]*{what}[^\n]*\n$")
+
+        for changes in ({"space": {"gain": 3}}, {"space": {"gain": [2.0, "x"]}}, {"start": 3},
+                        {"start": [{"gain": "x"}]}, {"scenarios": []}, {"trials": "4"},
+                        {"seed": True}, {"score": []}, {"step": [0.1]}, {"controller": 3}):  # fmt: skip
+            refused(f"search.yaml: {list(changes)[0]}: is not", self.run_tune(**changes))
+        refused("search.yaml: start, random", self.run_tune(start=[], random_trials=0))
+        refused("score: evaluate tells of no joy", self.run_tune(score={"joy": 1.0}))
+        file = self.folder / "search.yaml"
+        for text, what in (
+            (yaml.safe_dump(SEARCH) + "trials: 5\n", r"search.yaml:\d+: trials: duplicate key"),
+            ("3", "search.yaml: is no mapping"), ("\n" + "[" * 9999, "search.yaml:2: "),
+        ):  # fmt: skip
+            file.write_text(text)
+            refused(what, self.run_file())
+        file.unlink()
+        os.mkfifo(file)
+        refused("search.yaml: is no regular file", self.run_file())
+        self.run_tune(trials=2)
+        with open(self.folder / "out.jsonl", "a", encoding="utf-8") as flown:
+            flown.write('{"key": "cut o')
+        refused("out.jsonl:3: is not JSON", self.run_tune(trials=2))
+
+    def test_a_flight_that_fails_is_told_in_one_line(self):
+        (self.folder / "evaluate").write_text("#!/bin/sh\necho why >&2\nexit 3\n")
+        run = self.run_tune()
+        self.assertEqual((run.returncode, run.stderr), (1, "tune: evaluate: exit status 3: why\n"))
 
     def test_shipped_searches_name_choosing_seeds_and_constants_of_their_space(self):
         files = sorted(FOLDER.glob("*.yaml"))

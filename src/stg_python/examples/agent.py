@@ -6,6 +6,7 @@ rosrun stg_python agent.py __ns:=auv_2 _id:=2 _policy:=FILE.onnx
 """
 
 import queue
+import sys
 
 import rospy
 from auv_msgs.msg import AcousticPacket, AcousticReception, SensorFrame, TaskState
@@ -85,4 +86,8 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except stg.UserError as error:
+        print(f"agent: {error}", file=sys.stderr)
+        sys.exit(2)  # as the nodes do: the run ends

@@ -2,6 +2,7 @@
 """Flies one episode and plots it: tracks from above and from the side, distances and rewards."""
 
 import argparse
+import sys
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -58,4 +59,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except stg.UserError as error:
+        sys.exit(f"plot_episode: {error}")

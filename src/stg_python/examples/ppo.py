@@ -5,6 +5,7 @@ medium_release after about 100,000 steps, and writes a policy that agents fly.
 
 import argparse
 import json
+import sys
 
 import numpy as np
 import torch
@@ -155,4 +156,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except stg.UserError as error:
+        sys.exit(f"ppo: {error}")

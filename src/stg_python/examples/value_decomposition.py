@@ -8,6 +8,7 @@ infos["state"], independent Q-learning takes infos["agent_rewards"] in place of 
 
 import argparse
 import json
+import sys
 
 import numpy as np
 import torch
@@ -123,4 +124,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except stg.UserError as error:
+        sys.exit(f"value_decomposition: {error}")

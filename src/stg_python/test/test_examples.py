@@ -48,6 +48,15 @@ class Examples(unittest.TestCase):
         run("plot_episode", "--scenario", "two_targets", "--out", "a.png", folder=self.folder)
         self.assertEqual((self.folder / "a.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
+    def test_bad_input_ends_them_in_one_line(self):
+        for name in ("plot_episode", "ppo", "value_decomposition"):
+            done = subprocess.run(
+                [sys.executable, EXAMPLES / f"{name}.py", "--scenario", "nowhere.yaml"],
+                stderr=subprocess.PIPE, universal_newlines=True, check=False,
+            )  # fmt: skip
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, rf"^{name}: nowhere.yaml[^\n]*\n$")
+
 
 if __name__ == "__main__":
     unittest.main()

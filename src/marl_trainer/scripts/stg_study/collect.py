@@ -2,9 +2,13 @@
 
 import csv
 import gzip
+import io
 import os
+import re
 
-from stg_study.jobs import read_json, write_atomically
+from stg_common.csv_files import number, table_rows
+from stg_common.files import Damaged, expect, member, read_json
+from stg_study.jobs import write_atomically
 
 FILES = {
     "results": "results.csv",  # scenario, condition, method, seed, metric: mean and std
@@ -18,9 +22,11 @@ THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
 
 def csv_text(header, rows):
     """A header and rows of values as the text of a CSV file."""
-    lines = [",".join(header)]
-    lines += [",".join(str(value) for value in row) for row in rows]
-    return "\n".join(lines) + "\n"
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(header)
+    table.writerows([str(value) for value in row] for row in rows)
+    return text.getvalue()
 
 
 def _short(value, digits=6):
@@ -29,16 +35,46 @@ def _short(value, digits=6):
 
 
 def read_rows(path):
-    """The rows of a CSV file, which may be compressed (.gz), as dictionaries."""
-    open_file = gzip.open if path.endswith(".gz") else open
-    with open_file(path, "rt", encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    """The rows of a CSV file, which may be compressed (.gz), as dictionaries of texts."""
+    return list(table_rows(path))
 
 
 def write_rows(path, header, rows):
     """Writes what read_rows reads; the same rows make the same file."""
     data = csv_text(header, rows).encode()
     write_atomically(path, gzip.compress(data, mtime=0) if path.endswith(".gz") else data)
+
+
+def _run_cells(job):
+    """What runs.csv says of a complete training: steps, times, speed, networks."""
+    path, summary = job.summary_file, job.summary()
+    speed = [_short(member(path, summary, n, float)) for n in ("wall_seconds", "env_steps_per_second")]
+    times = expect(path, summary.get("time_to_threshold", {}), dict, "time_to_threshold")
+    reached = []
+    for name in THRESHOLDS:
+        moment = expect(path, times.get(name) or {}, dict, f"time_to_threshold.{name}")
+        reached.append(_short(member(path, moment, "seconds", float)) if moment else "")
+    # Older runs do not tell the sizes.
+    sizes = expect(path, summary.get("parameters", {}), dict, "parameters")
+    if any(not re.fullmatch(r"\w+", name) or type(size) is not int for name, size in sizes.items()):
+        raise Damaged(path, "parameters: is not a whole number for each network")
+    networks = " ".join(f"{name}:{size}" for name, size in sizes.items())
+    flops = summary.get("update_flops_per_env_step")
+    flops = "" if flops is None else _short(expect(path, flops, float, "update_flops_per_env_step"))
+    return [summary["env_steps"], *speed, *reached, networks, flops]
+
+
+def _options_of(job):
+    """{option: value} of a complete training, a list as its elements."""
+    path = os.path.join(job.folder, "config.json")
+    options = expect(path, read_json(path), dict)
+    texts = {}
+    for name, value in options.items():
+        parts = value if isinstance(value, list) else [value]
+        if any(isinstance(part, (dict, list)) for part in parts):
+            raise Damaged(path, f"{name}: is neither a value nor a list of values")
+        texts[name] = expect(path, ";".join(map(str, parts)), str, expect(path, name, str))
+    return texts
 
 
 def collect(study, trainings, evaluations, out):
@@ -51,36 +87,27 @@ def collect(study, trainings, evaluations, out):
             missing += 1
             continue
         key = (job.scenario, job.condition, job.method, job.seed)
-        rows = read_rows(job.csv)
+        needed = {"episode": str, **dict.fromkeys(metrics, number)}
+        rows = list(table_rows(job.csv, needed, lambda name: number))
         metrics = metrics or [name for name in rows[0] if name not in ("episode", "seed")]
         for row in rows:
             episodes.append((*key, row["episode"], *(_short(row[name], 5) for name in metrics)))
-        summary = read_json(job.json)["summary"]
+        summary = job.summary()
         for name in metrics:
-            mean, std = _short(summary[name]), _short(summary[name + "_std"])
-            results.append((*key, job.episodes, name, mean, std))
+            of_job = (member(job.json, summary, n, float) for n in (name, name + "_std"))
+            results.append((*key, job.episodes, name, *map(_short, of_job)))
     for job in trainings:
         if not job.complete():
             missing += 1
             continue
         key = (job.scenario, job.method, job.seed)
-        for row in read_rows(os.path.join(job.folder, "progress.csv")):
-            names = [n for n in row if n and n.startswith("validation_")]
-            names.remove("validation_seconds")
-            curve_metrics = curve_metrics or names
-            if row[curve_metrics[0]]:
-                values = (_short(row[name]) for name in curve_metrics)
-                curves.append((*key, row["env_steps"], _short(row["wall_seconds"]), *values))
-        summary = read_json(os.path.join(job.folder, "summary.json"))
-        times = summary.get("time_to_threshold", {})
-        reached = [_short(times[t]["seconds"]) if times.get(t) else "" for t in THRESHOLDS]
-        speed = [_short(summary[name]) for name in ("wall_seconds", "env_steps_per_second")]
-        # Older runs do not tell the sizes.
-        networks = " ".join(f"{n}:{count}" for n, count in summary.get("parameters", {}).items())
-        flops = summary.get("update_flops_per_env_step")
-        sizes = [networks, "" if flops is None else _short(flops)]
-        runs.append((*key, study.preset, summary["env_steps"], *speed, *reached, *sizes))
-        options.setdefault(job.method, read_json(os.path.join(job.folder, "config.json")))
+        for row in job.validations(curve_metrics):
+            curve_metrics = curve_metrics or [n for n in row if n.startswith("validation_")]
+            values = (_short(row[name]) for name in curve_metrics)
+            curves.append((*key, row["env_steps"], _short(row["wall_seconds"]), *values))
+        runs.append((*key, study.preset, *_run_cells(job)))
+        if job.method not in options:
+            options[job.method] = _options_of(job)
 
     os.makedirs(out, exist_ok=True)
 
@@ -97,10 +124,6 @@ def collect(study, trainings, evaluations, out):
     header = ["preset", "env_steps", "wall_seconds", "env_steps_per_second"] + seconds
     sizes = ["parameters", "update_flop_per_env_step"]
     write("runs", run_key + header + sizes, runs)
-    rows = [
-        (method, name, ";".join(map(str, value)) if isinstance(value, list) else value)
-        for method, config in options.items()
-        for name, value in config.items()
-    ]
+    rows = [(method, *item) for method, texts in options.items() for item in texts.items()]
     write("options", ["method", "option", "value"], rows)
     return missing

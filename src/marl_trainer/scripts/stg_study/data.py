@@ -1,24 +1,38 @@
 """The results of a study and the paper's figures, read back from their CSV files."""
 
 import os
+import re
 
 import numpy as np
 
-from stg_study.collect import FILES, read_rows
+from stg_common.csv_files import count, number, optional, table_rows
+from stg_common.files import Damaged
+from stg_study.collect import FILES, THRESHOLDS
 from stg_study.statistics import final_stage, mean_std
-from stg_study.study import StudyError
 
 PAPER_FILE = os.path.join(
     os.path.dirname(os.path.realpath(__file__)), os.pardir, "data", "paper_tables.csv"
 )
 
+NETWORKS = re.compile(r"(\w+:\d{1,12}( \w+:\d{1,12})*)?")
 
-def read_csv(path):
-    """The rows of a CSV file as dictionaries; throws StudyError where it cannot be read."""
-    try:
-        return read_rows(path)
-    except (OSError, EOFError) as error:
-        raise StudyError(f"{path}: {getattr(error, 'strerror', None) or error}") from error
+
+def networks(text):
+    """Networks and the numbers of their parameters, as runs.csv has them: "actor:12 critic:34"."""
+    if not NETWORKS.fullmatch(text):
+        raise ValueError
+    return text
+
+
+RUN = {
+    "scenario": str, "method": str, "seed": str, "env_steps": count, "wall_seconds": number,
+    "env_steps_per_second": number, "parameters": networks,
+    "update_flop_per_env_step": optional(number),
+    **{f"seconds_to_{name}": optional(number) for name in THRESHOLDS},
+}  # fmt: skip
+OPTION = {"method": str, "option": str, "value": str}
+CURVE = {"scenario": str, "method": str, "seed": count}  # and numbers
+EPISODE = {**CURVE, "condition": str}  # and numbers
 
 
 class Paper:
@@ -27,12 +41,11 @@ class Paper:
     def __init__(self, path=PAPER_FILE):
         self._values = {}
         self._algorithms = {}
-        for row in read_csv(path):
+        for row in table_rows(path, {"mean": number, "std": optional(number)}):
             key = (row["table"], row["algorithm"], row["condition"], row["seed"], row["metric"])
             if key in self._values:
-                raise StudyError(f"{path}: {key} stands there twice")
-            std = float(row["std"]) if row["std"] else None
-            self._values[key] = (float(row["mean"]), std)
+                raise Damaged(path, f"{key} stands there twice")
+            self._values[key] = (row["mean"], row["std"])
             names = self._algorithms.setdefault(row["table"], [])
             if row["algorithm"] not in names:
                 names.append(row["algorithm"])
@@ -56,27 +69,33 @@ class Results:
     def __init__(self, folder):
         self._scores = {}  # (scenario, condition, method, seed) -> {metric: values by episode}
         self._curves = {}  # (scenario, method, seed) -> {column: values by validation}
-        self.runs = read_csv(os.path.join(folder, FILES["runs"]))
+        self._path = {kind: os.path.join(folder, name) for kind, name in FILES.items()}
+        self.runs = list(table_rows(self._path["runs"], RUN))
         self._options = {}  # method -> {option: value as text}
-        for row in read_csv(os.path.join(folder, FILES["options"])):
+        for row in table_rows(self._path["options"], OPTION):
             self._options.setdefault(row["method"], {})[row["option"]] = row["value"]
-        for row in read_csv(os.path.join(folder, FILES["episodes"])):
-            key = (row.pop("scenario"), row.pop("condition"), row.pop("method"), row.pop("seed"))
-            self._append(self._scores, (*key[:3], int(key[3])), row)
-        for row in read_csv(os.path.join(folder, FILES["curves"])):
-            key = (row.pop("scenario"), row.pop("method"), int(row.pop("seed")))
+        for row in table_rows(self._path["episodes"], EPISODE, lambda name: number):
+            key = tuple(row.pop(name) for name in ("scenario", "condition", "method", "seed"))
+            self._append(self._scores, key, row)
+        for row in table_rows(self._path["curves"], CURVE, lambda name: number):
+            key = tuple(row.pop(name) for name in ("scenario", "method", "seed"))
             self._append(self._curves, key, row)
 
     @staticmethod
     def _append(table, key, row):
         columns = table.setdefault(key, {name: [] for name in row})
         for name, value in row.items():
-            columns[name].append(float(value))
+            columns[name].append(value)
+
+    def _column(self, kind, columns, name):
+        if name not in columns:
+            raise Damaged(self._path[kind], f"no column {name}", 1)
+        return columns[name]
 
     def scores(self, scenario, condition, method, metric):
         """[seeds, episodes] of an evaluation, or None where there is none."""
         rows = [
-            columns[metric]
+            self._column("episodes", columns, metric)
             for key, columns in sorted(self._scores.items())
             if key[:3] == (scenario, condition, method)
         ]
@@ -113,7 +132,7 @@ class Results:
 
     def curve(self, scenario, method, seed, column):
         """Values of a validation column, one per validation."""
-        return self._curves[(scenario, method, seed)][column]
+        return self._column("curves", self._curves[(scenario, method, seed)], column)
 
     def final_points(self, scenario, method, seed, column):
         """The last fifth of the validations."""

@@ -1,11 +1,13 @@
 """The trainings and evaluations of a study: their command lines and when they are complete."""
 
-import csv
 import glob
 import hashlib
 import json
 import os
 import shutil
+
+from stg_common.csv_files import number, optional, table_rows, written
+from stg_common.files import Damaged, FileError, expect, member, opened, read_json
 
 
 def write_atomically(path, content):
@@ -16,13 +18,16 @@ def write_atomically(path, content):
     os.replace(temporary, path)
 
 
-def read_json(path):
-    """The content of a JSON file, or None where it is missing or cut off."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            return json.load(file)
-    except (OSError, ValueError):
+def read_record(path):
+    """The object in a JSON file, or None where a job that was cut off left none, or part of it; a
+    FileError where the file holds anything else."""
+    if not os.path.exists(path):
         return None
+    try:
+        record = read_json(path)
+    except Damaged:
+        return None
+    return expect(path, record, dict)
 
 
 def policy_files(path):
@@ -38,8 +43,9 @@ def policy_hash(path):
     digest = hashlib.sha256()
     files = policy_files(path)
     for name in files:
-        with open(name, "rb") as file:
-            digest.update(file.read())
+        with opened(name) as file:
+            for block in iter(lambda: file.read(1 << 20), b""):
+                digest.update(block)
     return digest.hexdigest() if files else None
 
 
@@ -63,6 +69,8 @@ class Training:
         self.folder = os.path.join(work, "runs", scenario.name, method.name, f"seed{seed}")
         self.policy = os.path.join(self.folder, "policy_best.onnx")
         self.log = self.folder + ".log"
+        self.summary_file = os.path.join(self.folder, "summary.json")
+        self.progress_file = os.path.join(self.folder, "progress.csv")
         self.steps = study.steps
         self.arguments = [
             *("--scenario", scenario.name, "--preset", study.preset, "--variant", method.variant),
@@ -74,26 +82,63 @@ class Training:
 
     def conflict(self):
         """Why the folder cannot be used, or None: what it holds was made otherwise."""
-        record = read_json(os.path.join(self.folder, self.RECORD))
+        record = self._arguments()
         if record is None and os.path.isdir(self.folder) and os.listdir(self.folder):
             return f"{self.folder} is not empty and not a run of a study"
-        if record is not None and record.get("arguments") != self.arguments:
+        if record is not None and record != self.arguments:
             return (
-                f"{self.folder} was trained with other options ({' '.join(record['arguments'])}); "
+                f"{self.folder} was trained with other options ({' '.join(record)}); "
                 "use another --out, or delete that folder"
             )
         return None
 
+    def _arguments(self):
+        """The options that the folder's run was started with, or None."""
+        path = os.path.join(self.folder, self.RECORD)
+        record = read_record(path)
+        if record is None:
+            return None
+        arguments = member(path, record, "arguments", list)
+        return [expect(path, text, str, "arguments") for text in arguments]
+
+    def summary(self):
+        """What the finished run says of itself, or None."""
+        summary = read_record(self.summary_file)
+        if summary is not None:
+            expect(self.summary_file, summary.get("stopped", ""), str, "stopped")
+            expect(self.summary_file, summary.get("env_steps", 0), float, "env_steps")
+        return summary
+
+    def validations(self, metrics=()):
+        """What progress.csv tells of every validation: `env_steps` as it stands there, and as numbers
+        `wall_seconds` and validation_<metric>, with all of the `metrics`, by such names."""
+        needed = ["validation_return", "validation_lost_rate", *metrics]
+        columns = {
+            "env_steps": written(number), "wall_seconds": number, "validation_seconds": str,
+            **dict.fromkeys(needed, optional(number)),
+        }  # fmt: skip
+        found = []
+        for row in table_rows(
+            self.progress_file,
+            columns,
+            lambda name: optional(number) if name.startswith("validation_") else str,
+        ):
+            del row["validation_seconds"]
+            if row["validation_return"] is None:
+                continue
+            if any(row[name] is None for name in row if name.startswith("validation_")):
+                raise Damaged(self.progress_file, f"half a validation at {row['env_steps']} steps")
+            found.append(row)
+        return found
+
     def complete(self):
         """Whether the run reached its last step and left its policy."""
-        summary = read_json(os.path.join(self.folder, "summary.json"))
-        record = read_json(os.path.join(self.folder, self.RECORD))
+        summary = self.summary()
         return (
             summary is not None
             and summary.get("stopped") == "finished"
             and summary.get("env_steps", 0) >= self.steps
-            and record is not None
-            and record.get("arguments") == self.arguments
+            and self._arguments() == self.arguments
             and bool(policy_files(self.policy))
         )
 
@@ -115,12 +160,12 @@ class Training:
     def fraction_done(self):
         """Share of the steps that the progress file tells of."""
         try:
-            with open(os.path.join(self.folder, "progress.csv"), "rb") as file:
+            with opened(self.progress_file) as file:
                 file.seek(0, os.SEEK_END)
                 file.seek(max(0, file.tell() - 4096))
                 lines = file.read().decode(errors="replace").splitlines()
-            return min(1.0, float(lines[-1].split(",")[0]) / self.steps)
-        except (OSError, ValueError, IndexError):
+            return min(1.0, number(lines[-1].split(",")[0]) / self.steps)
+        except (FileError, ValueError, IndexError):
             return 0.0
 
 
@@ -166,20 +211,25 @@ class Evaluation:
 
     def complete(self):
         """Whether the result is there, whole, and of this policy and these options."""
-        result = read_json(self.json)
+        result = read_record(self.json)
         if result is None or result.get("identity") != self._identity():
             return False
-        try:
-            with open(self.csv, encoding="utf-8", newline="") as file:
-                return sum(1 for _ in csv.DictReader(file)) == self.episodes
-        except OSError:
+        if not os.path.exists(self.csv):
             return False
+        try:
+            return sum(1 for _ in table_rows(self.csv)) == self.episodes
+        except Damaged:
+            return False  # it is evaluated again
 
     def prepare(self):
         """Command that evaluates into a temporary file."""
         os.makedirs(os.path.dirname(self.csv), exist_ok=True)
         command = [self._program, "--policy", self.policy, *self.arguments]
         return command + ["--csv", self.csv + ".part", "--workers", "1"]
+
+    def summary(self):
+        """What the complete result says of its metrics."""
+        return member(self.json, read_json(self.json), "summary", dict)
 
     def finish(self, output):
         """Keeps the result: `output` ends with the JSON object of the evaluate command."""

@@ -5,6 +5,8 @@ import signal
 import subprocess
 import time
 
+from stg_common.files import FileError
+
 # What tells a process that mpirun or srun started it; our jobs are started by us.
 LAUNCHERS = ("OMPI_", "PMIX_", "PMI_")
 
@@ -64,7 +66,7 @@ class JobProcess(Running):
             with open(self.job.log, encoding="utf-8", errors="replace") as log:
                 self.job.finish(log.read())
             return "" if self.job.complete() else "its output is incomplete"
-        except (OSError, ValueError, IndexError) as error:
+        except (FileError, OSError, ValueError, IndexError) as error:
             return f"its output cannot be read: {error}"
 
     def signal(self, number):

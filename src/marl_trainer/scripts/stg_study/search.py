@@ -4,14 +4,17 @@ import dataclasses
 import math
 import os
 import random
+import reprlib
 from typing import Dict
 
 import yaml
 
+from stg_common.files import Damaged
+from stg_common.yaml_files import read_yaml
 from stg_study.jobs import Training, write_atomically
-from stg_study.collect import csv_text, read_rows
+from stg_study.collect import csv_text
 from stg_study.statistics import final_stage
-from stg_study.study import Method, ScenarioEntry, Study, StudyError, build
+from stg_study.study import Method, ScenarioEntry, Study, StudyError, build, is_name, is_option
 
 LOG_DIGITS = 2  # significant digits of a value drawn from an interval
 
@@ -35,30 +38,34 @@ class Search:
 
 def load_search(path):
     """Reads a search from a YAML file; StudyError where it cannot be one."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            search = build(Search, path, yaml.safe_load(file))
-    except (OSError, yaml.YAMLError) as error:
-        raise StudyError(f"{path}: {error}") from error
+    search = build(Search, path, read_yaml(path))
     if search.trials < 1 or search.steps < 1 or search.training_seed < 0:
         raise StudyError(f"{path}: trials and steps must be positive, training_seed not negative")
-    for algorithm, space in search.algorithms.items():
-        if not isinstance(space, dict):
-            raise StudyError(f"{path}: algorithms.{algorithm}: must be a mapping")
-        for option, source in space.items():
-            _check_source(f"{path}: algorithms.{algorithm}.{option}", source)
+    for key, table in (("algorithms", search.algorithms), ("fixed", search.fixed)):
+        for algorithm, options in table.items():
+            where = f"{path}: {key}.{algorithm}"
+            if not isinstance(algorithm, str) or not is_name(algorithm):
+                raise StudyError(f"{where}: must consist of letters, digits, '_' and '-'")
+            if not isinstance(options, dict):
+                raise StudyError(f"{where}: must be a mapping")
+            for option, value in options.items():
+                if key == "algorithms":
+                    _check_source(f"{where}.{option}", value)
+                elif not is_option(option, value):
+                    raise StudyError(f"{where}.{option}: is no value of an option")
     return search
 
 
 def _check_source(where, source):
     """Refuses what nothing can be drawn from."""
-    if isinstance(source, list) and source:
+    if isinstance(source, list) and source and all(is_option("", value) for value in source):
         return
     ends = source.get("log") if isinstance(source, dict) and len(source) == 1 else None
     good = isinstance(ends, list) and len(ends) == 2
-    good = good and all(isinstance(end, (int, float)) for end in ends) and 0.0 < ends[0] < ends[1]
-    if not good:
-        raise StudyError(f"{where}: {source!r} is neither a list of values nor {{log: [low, high]}}")
+    good = good and all(isinstance(end, (int, float)) for end in ends)
+    if not (good and 0.0 < ends[0] < ends[1] < math.inf):
+        shown = reprlib.repr(source)
+        raise StudyError(f"{where}: {shown} is neither a list of values nor {{log: [low, high]}}")
 
 
 def draw(source, generator):
@@ -124,12 +131,14 @@ def score_of(training):
     """Score of a finished trial, or None."""
     if not training.complete():
         return None
-    rows = read_rows(os.path.join(training.folder, "progress.csv"))
-    rows = final_stage([row for row in rows if row.get("validation_return")])
+    rows = training.validations()
+    if not rows:
+        raise Damaged(training.progress_file, "tells of no validation")
+    rows = final_stage(rows)
     return Score(
-        sum(float(row["validation_return"]) for row in rows) / len(rows),
-        sum(float(row["validation_lost_rate"]) for row in rows) / len(rows),
-        float(rows[-1]["wall_seconds"]),
+        sum(row["validation_return"] for row in rows) / len(rows),
+        sum(row["validation_lost_rate"] for row in rows) / len(rows),
+        rows[-1]["wall_seconds"],
     )
 
 

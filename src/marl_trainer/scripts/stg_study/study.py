@@ -2,9 +2,12 @@
 
 import dataclasses
 import os
+import reprlib
 from typing import Dict, List, Optional
 
 import yaml
+
+from stg_common.yaml_files import read_yaml
 
 
 class StudyError(Exception):
@@ -91,6 +94,16 @@ def _fail(where, message):
     raise StudyError(f"{where}: {message}")
 
 
+def is_option(name, value):
+    """Whether an option of the train command can have such a name and value."""
+    return isinstance(name, str) and isinstance(value, (int, float, str))
+
+
+def is_name(text):
+    """Whether a text can be a part of the names of files."""
+    return bool(text) and all(c.isalnum() or c in "_-" for c in text)
+
+
 def _check_type(where, value, expected):
     """Refuses a value of the wrong type; a whole number passes for no other type, nor a bool."""
     if expected is int:
@@ -106,13 +119,11 @@ def _check_type(where, value, expected):
     elif expected == List[str]:
         good = isinstance(value, list) and all(isinstance(v, str) for v in value)
     elif expected == Dict[str, object]:
-        good = isinstance(value, dict) and all(
-            isinstance(k, str) and isinstance(v, (int, float, str)) for k, v in value.items()
-        )
+        good = isinstance(value, dict) and all(is_option(k, v) for k, v in value.items())
     else:
         good = isinstance(value, dict if expected is dict else list)
     if not good:
-        _fail(where, f"{value!r} has the wrong type")
+        _fail(where, f"{reprlib.repr(value)} has the wrong type")
 
 
 def build(kind, where, data):
@@ -138,7 +149,7 @@ def build(kind, where, data):
 def _check(study, path):
     names = study.method_names()
     for name in names + [s.name for s in study.scenarios] + study.conditions:
-        if not name or not all(c.isalnum() or c in "_-" for c in name):
+        if not is_name(name):
             _fail(path, f"'{name}' must consist of letters, digits, '_' and '-'")
     for key, values in (
         ("methods and controllers", names),
@@ -179,12 +190,7 @@ def study_from(data, where):
 
 def load_study(path):
     """Reads a study from a YAML file."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            data = yaml.safe_load(file)
-    except (OSError, yaml.YAMLError) as error:
-        raise StudyError(f"{path}: {error}") from error
-    return study_from(data, path)
+    return study_from(read_yaml(path), path)
 
 
 def save_study(study, path):
@@ -205,7 +211,7 @@ def shipped_studies():
 
 def find_study(name_or_path):
     """Path of a study given as a file or by the name of a shipped one."""
-    if os.path.isfile(name_or_path):
+    if os.path.exists(name_or_path) and not os.path.isdir(name_or_path):
         return name_or_path
     folder = shipped_studies()
     path = os.path.join(folder, name_or_path + ".yaml")

@@ -263,10 +263,10 @@ def runs_table(study, results):
     rows = []
     for run in results.runs:
         row = [run["scenario"], study.labels().get(run["method"], run["method"]), run["seed"]]
-        row += [f"{int(run['env_steps']):,}", f"{float(run['wall_seconds']):.1f}"]
-        row.append(f"{float(run['env_steps_per_second']):,.0f}")
+        row += [f"{run['env_steps']:,}", f"{run['wall_seconds']:.1f}"]
+        row.append(f"{run['env_steps_per_second']:,.0f}")
         for _, name in times:
             value = run[f"seconds_to_{name}"]
-            row.append(f"{float(value):.1f}" if value else NOTHING)
+            row.append(NOTHING if value is None else f"{value:.1f}")
         rows.append(row)
     return markdown(header, rows)

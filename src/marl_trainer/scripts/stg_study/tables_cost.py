@@ -62,13 +62,15 @@ def cost_table(study, results, scenario):
         row = [method.label, len(runs), f"{count:,}" if count else NOTHING]
         row.append(parts or NOTHING)
         flops = runs[0]["update_flop_per_env_step"]
-        row.append(f"{float(flops) / 1e6:.2f}" if flops else NOTHING)
-        row.append(f"{int(runs[0]['env_steps']):,}")
-        row.append(cell(mean_std([float(run["wall_seconds"]) for run in runs]), 0))
+        row.append(NOTHING if flops is None else f"{flops / 1e6:.2f}")
+        row.append(f"{runs[0]['env_steps']:,}")
+        row.append(cell(mean_std([run["wall_seconds"] for run in runs]), 0))
         for name in THRESHOLDS:
-            row.append(f"{sum(bool(run[f'seconds_to_{name}']) for run in runs)}/{len(runs)}")
+            reached = sum(run[f"seconds_to_{name}"] is not None for run in runs)
+            row.append(f"{reached}/{len(runs)}")
         # A training that never gets there takes longer than any that does.
-        times = sorted(float(run["seconds_to_1030"] or "inf") for run in runs)
+        times = [run["seconds_to_1030"] for run in runs]
+        times = sorted(np.inf if time is None else time for time in times)
         middle = float(np.median(times)) if times[-1] < np.inf else times[len(times) // 2]
         row.append(f"{middle:.1f}" if middle < np.inf else "never")
         rows.append(row)

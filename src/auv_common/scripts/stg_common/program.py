@@ -1,0 +1,66 @@
+"""How a program of this repository ends: in one line where a file is at fault, silently where
+nobody reads on."""
+
+import io
+import os
+import signal
+import sys
+
+from stg_common.files import FileError, one_line
+
+NOBODY_READS = 128 + signal.SIGPIPE  # the exit status that a shell gives programs which SIGPIPE ended
+
+
+def discard(stream):
+    """Sends what is still written to a stream nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
+
+
+class Unread(io.TextIOWrapper):
+    """A standard stream that throws nothing when its reader leaves: when_unread() is called once, in
+    the thread that found it out, and the rest goes nowhere."""
+
+    def __init__(self, stream, when_unread):
+        super().__init__(stream.buffer, stream.encoding, stream.errors, line_buffering=True)
+        self._when_unread = when_unread
+
+    def write(self, text):
+        try:
+            return super().write(text)
+        except BrokenPipeError:
+            self._give_up()
+            return len(text)
+
+    def flush(self):
+        try:
+            super().flush()
+        except BrokenPipeError:
+            self._give_up()
+
+    def _give_up(self):
+        discard(self)
+        self._when_unread()
+
+
+def run_program(name, main, *refusals, status=2):
+    """Ends the process with what main() returns; with `status`, and one line, where it throws
+    FileError, another of the `refusals`, or OSError, such as of a folder that is closed to us."""
+    try:
+        code = main()
+        sys.stdout.flush()
+    except BrokenPipeError:
+        discard(sys.stdout)  # which Python flushes when it ends
+        code = NOBODY_READS
+    except (FileError, *refusals) as error:
+        code = _refuse(name, error, status)
+    except OSError as error:
+        place = "" if error.filename is None else f"{error.filename}: "
+        code = _refuse(name, f"{place}{error.strerror or error}", status)
+    sys.exit(code)
+
+
+def _refuse(name, what, status):
+    print(f"{name}: {one_line(what)}", file=sys.stderr)
+    return status
