@@ -120,11 +120,6 @@ void Trainer::Resume() {
   if (!loaded) throw UserError(options_.out + ": no checkpoint to resume from");
   const std::string where = options_.out + ": cannot resume";
   RequireSameRun(*loaded, ToJson(setup_), state_.scenario, where);
-  try {
-    algorithm_->Load(loaded->algorithm);
-  } catch (const UserError& error) {
-    throw UserError(where + ": " + error.what());
-  }
   if (options_.ranks != nullptr) {
     for (const std::int64_t steps :
          options_.ranks->Gather(std::vector<std::int64_t>{loaded->env_steps})) {
@@ -140,7 +135,9 @@ void Trainer::Resume() {
   state_.episodes = Archive();
   collector_.RestartAt(state_.round);
   try {
+    // First: what it says of ranks is why an algorithm would not find what it saved.
     collector_.Load(loaded->episodes);
+    algorithm_->Load(loaded->algorithm);
   } catch (const UserError& error) {
     throw UserError(where + ": " + error.what());
   }
