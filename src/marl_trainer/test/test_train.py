@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+import os
 import pathlib
 import re
 import signal
@@ -24,11 +25,14 @@ class Train(unittest.TestCase):
         self.run_folder = pathlib.Path(folder.name) / "run"
         (self.program,) = roslib.packages.find_node("marl_trainer", "train")
 
-    def start(self, *options):
+    def start(self, *options, **streams):
         """Starts a training in the folder of the run."""
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [self.program, "--out", str(self.run_folder), *SMALL, *options],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+            universal_newlines=True,
+            **{"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, **streams})
+        self.addCleanup(process.kill)
+        return process
 
     def train(self, *options):
         """Returns the exit status and the output of a whole training."""
@@ -44,11 +48,7 @@ class Train(unittest.TestCase):
 
     def test_interrupted_it_saves_and_resume_goes_on(self):
         process = self.start("--steps", "100000000")
-        end = time.monotonic() + 30
-        while process.poll() is None and time.monotonic() < end:
-            if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
-                break
-            time.sleep(0.05)
+        self.wait_for_rows(process)
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, output)
@@ -64,6 +64,41 @@ class Train(unittest.TestCase):
         self.assertEqual(after[-1], before[-1] + 1000)
         summary = json.loads((self.run_folder / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["stopped"], "finished")
+
+    def wait_for_rows(self, process):
+        """Waits until a training has told of three collections."""
+        end = time.monotonic() + 30
+        while process.poll() is None and time.monotonic() < end:
+            if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
+                break
+            time.sleep(0.05)
+
+    def test_special_files_in_the_folder_do_not_hang_it(self):
+        status, output = self.train("--steps", "200")
+        self.assertEqual(status, 0, output)
+        for name in ("config.json", "scenario.yaml", "progress.csv"):
+            path = self.run_folder / name
+            content = path.read_bytes()
+            for make in (os.mkfifo, lambda path: os.symlink("/dev/zero", path)):
+                path.unlink()
+                make(path)
+                status, output = self.train("--resume", "--steps", "400")
+                self.assertEqual(status, 2, output)
+                self.assertEqual(output, f"train: {path}: not a regular file\n")
+            path.unlink()
+            path.write_bytes(content)
+
+    def test_a_configuration_that_was_damaged_is_told_by_file_and_key(self):
+        status, output = self.train("--steps", "200")
+        self.assertEqual(status, 0, output)
+        path = self.run_folder / "config.json"
+        good = json.loads(path.read_text(encoding="utf-8"))
+        for key, value in (("envs", 1e300), ("envs", 0.5), ("steps", -1), ("lr", -1.0),
+                           ("gamma", None), ("actor-hidden", [8.5]), ("algorithm", 3)):
+            path.write_text(json.dumps({**good, key: value}), encoding="utf-8")
+            status, output = self.train("--resume", "--steps", "400")
+            self.assertEqual(status, 2, output)
+            self.assertRegex(output, f"^train: {path}: .*{key}: .*\n$")
 
     def test_resume_takes_configuration_and_seed_from_the_folder(self):
         status, output = self.train("--steps", "400", "--seed", "7", "--gamma", "0.8",

@@ -4,10 +4,12 @@
 #include <cassert>
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/checked_json.hpp"
 
 namespace stg::learn {
 namespace {
@@ -45,7 +47,13 @@ double PercentDone(std::int64_t steps, std::int64_t total) {
 
 /// Rows from before an interruption that a resumed run does not repeat.
 std::string KeptRows(const std::string& path, std::int64_t resume_at) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return "";
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw UserError(path + ": not a regular file");
+  }
   std::ifstream in(path);
+  if (!in) throw UserError(path + ": cannot be read");
   std::string kept, line;
   std::getline(in, line);
   while (std::getline(in, line)) {
@@ -227,7 +235,9 @@ void TrainLog::Load(const std::string& text) {
     const nlohmann::json json = nlohmann::json::parse(text);
     if (json.contains("reached")) {
       for (const auto& [name, value] : json.at("reached").items()) {
-        reached_[name] = {value.at(0).get<double>(), value.at(1).get<std::int64_t>()};
+        Moment& moment = reached_[name];
+        moment.seconds = value.at(0).get<double>();
+        TakeJson(value.at(1), &moment.steps);
       }
     }
     json.at("last").get_to(last_validation_);
@@ -239,8 +249,8 @@ void TrainLog::Load(const std::string& text) {
     validation_seconds_ = s.at(3).get<double>();
     update_flops_ = s.at(4).get<double>();
     wall_seconds_ = s.at(5).get<double>();
-    json.at("env_steps").get_to(env_steps_);
-  } catch (const nlohmann::json::exception& error) {
+    TakeMember(json, "env_steps", &env_steps_);
+  } catch (const std::exception& error) {
     throw UserError(std::string("checkpoint: the log cannot be read: ") + error.what());
   }
 }

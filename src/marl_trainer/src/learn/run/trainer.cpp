@@ -105,7 +105,8 @@ void Trainer::StartFrom(const std::string& folder) {
   const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, options_.log);
   if (!theirs) throw UserError("--start-from: no checkpoint in " + folder);
   const auto config = nlohmann::json::parse(theirs->config, nullptr, false);
-  if (!config.is_object() || config.value("algorithm", "") != setup_.algorithm) {
+  if (!config.is_object() || !config.contains("algorithm") ||
+      config["algorithm"] != setup_.algorithm) {
     throw UserError("--start-from: " + folder + " was not trained with " + setup_.algorithm);
   }
   try {
