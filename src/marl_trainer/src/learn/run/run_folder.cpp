@@ -1,11 +1,11 @@
 #include "marl_trainer/learn/run/run_folder.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 std::string MixFile(std::size_t k) { return "train_on_" + std::to_string(k) + ".yaml"; }
 
 void WriteScenario(const fs::path& file, const Scenario& scenario) {
-  std::ofstream(file) << ToYaml(scenario);
+  WriteDurably(ToYaml(scenario), file.string(), "the scenario");
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ bool RunFolder::HoldsRun() const {
 void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
                            const std::vector<Scenario>& mix) const {
   const fs::path folder(path_);
-  std::ofstream(folder / "config.json") << config.dump(2) << "\n";
+  WriteDurably(config.dump(2) + "\n", (folder / "config.json").string(), "the configuration");
   WriteScenario(folder / "scenario.yaml", scenario);
   for (std::size_t k = 0; k < mix.size(); ++k) WriteScenario(folder / MixFile(k), mix[k]);
 }

@@ -10,6 +10,7 @@
 
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/checked_json.hpp"
+#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {
@@ -82,12 +83,20 @@ std::string ReportText(const std::vector<ReportColumn>& columns,
 
 TrainLog::TrainLog(const std::string& out, std::vector<ReportColumn> columns,
                    std::int64_t resume_at, std::int64_t total_steps, std::ostream* lines)
-    : out_(out), columns_(std::move(columns)), total_steps_(total_steps), lines_(lines) {
-  const std::string path = out + "/progress.csv";
-  const std::string kept = resume_at >= 0 ? KeptRows(path, resume_at) : "";
-  csv_.open(path, std::ios::trunc);
-  csv_ << Header() << kept << std::flush;
-  if (!csv_) throw UserError(path + ": cannot write");
+    : out_(out),
+      csv_path_(out + "/progress.csv"),
+      columns_(std::move(columns)),
+      total_steps_(total_steps),
+      lines_(lines) {
+  // Whole or not at all: a disk that is full now must not take the rows of before.
+  const std::string kept = resume_at >= 0 ? KeptRows(csv_path_, resume_at) : "";
+  WriteDurably(Header() + kept, csv_path_, "the progress");
+  csv_.open(csv_path_, std::ios::app);
+  Flush();
+}
+
+void TrainLog::Flush() {
+  if (!csv_.flush()) throw UserError(csv_path_ + ": cannot write the progress");
 }
 
 std::string TrainLog::Header() const {
@@ -128,7 +137,7 @@ void TrainLog::Add(const TrainRecord& r) {
   csv_ << row;
 
   if (r.validated) {
-    csv_.flush();
+    Flush();
     last_validation_.clear();
     for (std::size_t i = 0; i < r.validation.names.size(); ++i) {
       last_validation_[r.validation.names[i]] = r.validation.mean[i];
@@ -215,7 +224,7 @@ void TrainLog::WriteSummary(const std::vector<NetworkSize>& networks, int worker
   json["update_gflops"] = rate * 1e-9;
   json["peak_sgemm_gflops"] = peak_flops * 1e-9;
   json["update_share_of_peak"] = rate / peak_flops;
-  std::ofstream(out_ + "/summary.json") << json.dump(2) << "\n";
+  WriteDurably(json.dump(2) + "\n", out_ + "/summary.json", "the summary");
 }
 
 std::string TrainLog::Save() const {

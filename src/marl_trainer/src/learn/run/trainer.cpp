@@ -249,7 +249,10 @@ void Trainer::AlignEpisodes(bool force) {
 
 void Trainer::Save() {
   const TrainState now = state();
-  if (leads()) folder_.Save(now, setup_.common.keep_checkpoints);
+  if (leads()) {
+    log_->Flush();  // who resumes finds the rows up to the checkpoint
+    folder_.Save(now, setup_.common.keep_checkpoints);
+  }
   SavePolicy("policy_last");
   next_checkpoint_ = NextMultiple(state_.env_steps, setup_.common.checkpoint_interval);
 }

@@ -24,7 +24,8 @@ class RunFolder {
   /// leaves nothing worth keeping.
   bool HoldsRun() const;
 
-  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml.
+  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml; UserError when that
+  /// fails.
   void WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
                   const std::vector<Scenario>& mix) const;
 
