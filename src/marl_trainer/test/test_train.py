@@ -73,6 +73,20 @@ class Train(unittest.TestCase):
                 break
             time.sleep(0.05)
 
+    def test_two_in_one_folder(self):
+        first = self.start("--steps", "100000000")
+        self.wait_for_rows(first)
+        for options in ((), ("--resume",)):
+            status, output = self.train(*options)
+            self.assertEqual(status, 2, output)
+            self.assertEqual(
+                output, f"train: {self.run_folder}: another program is writing into it\n")
+        first.kill()  # its lock goes with it
+        first.communicate(timeout=30)
+        status, output = self.train()
+        self.assertEqual(status, 2, output)
+        self.assertNotIn("another program", output)
+
     def test_special_files_in_the_folder_do_not_hang_it(self):
         status, output = self.train("--steps", "200")
         self.assertEqual(status, 0, output)

@@ -65,6 +65,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
       algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
       collector_(mix_, setup_.common, &pool_, options.ranks),
       folder_(options.out, options.log) {
+  if (leads()) folder_.Lock();
   UseOneBlasThread();
   state_.config = ToJson(setup_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
