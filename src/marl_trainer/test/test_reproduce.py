@@ -103,18 +103,24 @@ class Reproduce(StudyCase):
         self.assertEqual(status, 0, output)
         self.assertEqual(sorted(c.split()[0] for c in calls), ["evaluate", "evaluate", "train"])
 
-    def test_interrupted_training_saves_and_is_resumed(self):
+    def start(self, *arguments, **options):
+        """The command on a training that sleeps, as soon as it does; the process and its folder."""
         process = subprocess.Popen(
-            self.command("--methods", "stg", "--seeds", "0"),
+            self.command("--methods", "stg", "--seeds", "0", *arguments),
             env=dict(os.environ, STUB_SLEEP="60"),
-            stdout=subprocess.PIPE,
             universal_newlines=True,
+            **{"stdout": subprocess.PIPE, **options},
         )
+        self.addCleanup(process.kill)
         run = self.path("work/runs/medium_release/stg/seed0")
         deadline = time.monotonic() + 60.0
         while not os.path.exists(os.path.join(run, "sleeping")):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
+        return process, run
+
+    def test_interrupted_training_saves_and_is_resumed(self):
+        process, run = self.start()
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, output)
@@ -125,6 +131,18 @@ class Reproduce(StudyCase):
         self.assertEqual(status, 0, output)
         train = [c for c in calls if c.startswith("train ")]
         self.assertEqual([c.endswith("--resume") for c in train], [True])
+
+    def test_a_second_one_in_the_same_folder_is_refused(self):
+        process, _ = self.start()
+        stub_programs.calls(self.folder)
+        status, output, calls = self.reproduce("--methods", "stg", "--seeds", "0")
+        self.assertEqual((status, calls), (1, []), output)
+        self.assertEqual(
+            output, f"reproduce: {self.path('work')}: another program is writing into it\n"
+        )
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
 
     def test_mistakes_on_the_command_line_end_with_status_2(self):
         for arguments in (

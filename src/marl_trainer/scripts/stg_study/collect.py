@@ -4,7 +4,8 @@ import csv
 import gzip
 import os
 
-from stg_study.jobs import read_json, write_atomically
+from stg_study.files import write_atomically
+from stg_study.jobs import read_json
 
 FILES = {
     "results": "results.csv",  # scenario, condition, method, seed, metric: mean and std

@@ -7,13 +7,7 @@ import json
 import os
 import shutil
 
-
-def write_atomically(path, content):
-    """Writes a file, of text or bytes, that exists either whole or not at all."""
-    temporary = f"{path}.{os.getpid()}.part"
-    with open(temporary, "wb") as file:
-        file.write(content.encode() if isinstance(content, str) else content)
-    os.replace(temporary, path)
+from stg_study.files import locked, write_atomically
 
 
 def read_json(path):
@@ -101,7 +95,8 @@ class Training:
         """Command to start or continue the run. A run without a checkpoint starts afresh."""
         resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.ckpt")))
         if not resume and os.path.isdir(self.folder):
-            shutil.rmtree(self.folder)
+            with locked(self.folder):  # a training whose study was killed may still save
+                shutil.rmtree(self.folder)
         os.makedirs(self.folder, exist_ok=True)
         write_atomically(
             os.path.join(self.folder, self.RECORD), json.dumps({"arguments": self.arguments})

@@ -8,7 +8,8 @@ from typing import Dict
 
 import yaml
 
-from stg_study.jobs import Training, write_atomically
+from stg_study.files import write_atomically
+from stg_study.jobs import Training
 from stg_study.collect import csv_text, read_rows
 from stg_study.statistics import final_stage
 from stg_study.study import Method, ScenarioEntry, Study, StudyError, build
