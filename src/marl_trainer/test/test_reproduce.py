@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -143,6 +144,18 @@ class Reproduce(StudyCase):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
         self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
+
+    def test_a_full_disk_is_told_with_the_file(self):
+        self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))  # noqa: E731
+        done = subprocess.run(
+            self.command("--methods", "stg", "--seeds", "0", "--no-report"),
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True,
+            preexec_fn=limit, check=False,
+        )  # fmt: skip
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(done.stderr, f"reproduce: {self.path('study.yaml')}: File too large\n")
+        self.assertIn("medium_release", self.read("study.yaml"))
 
     def test_mistakes_on_the_command_line_end_with_status_2(self):
         for arguments in (

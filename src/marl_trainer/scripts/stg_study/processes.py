@@ -5,6 +5,8 @@ import signal
 import subprocess
 import time
 
+from stg_study.files import told
+
 # What tells a process that mpirun or srun started it; our jobs are started by us.
 LAUNCHERS = ("OMPI_", "PMIX_", "PMI_")
 
@@ -49,7 +51,7 @@ class JobProcess(Running):
                     start_new_session=True,
                 )
         except OSError as error:
-            self._outcome = f"it cannot be started: {error}"
+            self._outcome = f"it cannot be started: {told(error)}"
 
     def outcome(self):
         """None while it runs; then what went wrong, nothing where it left all it should."""
@@ -65,7 +67,7 @@ class JobProcess(Running):
                 self.job.finish(log.read())
             return "" if self.job.complete() else "its output is incomplete"
         except (OSError, ValueError, IndexError) as error:
-            return f"its output cannot be read: {error}"
+            return f"its output cannot be taken over: {told(error)}"
 
     def signal(self, number):
         """Tells the process and its children, if it still runs."""

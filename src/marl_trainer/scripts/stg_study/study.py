@@ -6,6 +6,8 @@ from typing import Dict, List, Optional
 
 import yaml
 
+from stg_study.files import write_atomically
+
 
 class StudyError(Exception):
     """A mistake in a file or an option; the message names both."""
@@ -189,8 +191,7 @@ def load_study(path):
 
 def save_study(study, path):
     """Writes the resolved study, which load_study reads back."""
-    with open(path, "w", encoding="utf-8") as file:
-        yaml.safe_dump(dataclasses.asdict(study), file, sort_keys=False, width=96)
+    write_atomically(path, yaml.safe_dump(dataclasses.asdict(study), sort_keys=False, width=96))
 
 
 def shipped_studies():
