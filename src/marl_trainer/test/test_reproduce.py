@@ -1,5 +1,6 @@
 """Tests of the reproduce command with stand-ins for the programs it runs."""
 
+import fcntl
 import json
 import os
 import resource
@@ -7,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import termios
 import time
 import unittest
 
@@ -132,6 +134,30 @@ class Reproduce(StudyCase):
         self.assertEqual(status, 0, output)
         train = [c for c in calls if c.startswith("train ")]
         self.assertEqual([c.endswith("--resume") for c in train], [True])
+
+    def test_a_closed_terminal_stops_it_as_ctrl_c_does(self):
+        ours, terminal = os.openpty()
+        process, run = self.start(
+            start_new_session=True,
+            stdin=terminal,
+            stdout=terminal,
+            stderr=subprocess.STDOUT,
+            preexec_fn=lambda: fcntl.ioctl(terminal, termios.TIOCSCTTY, 0),
+        )
+        os.close(terminal)
+        os.close(ours)  # what it says now has nowhere to go
+        # It is not the signal that ends it: it waits until the training has saved.
+        self.assertGreater(process.wait(timeout=60), 0)
+        self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.ckpt")))
+
+    def test_a_hangup_that_nohup_ignores_is_ignored(self):
+        process, _ = self.start(preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+            (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
+        self.assertTrue(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
 
     def test_a_second_one_in_the_same_folder_is_refused(self):
         process, _ = self.start()

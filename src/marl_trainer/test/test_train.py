@@ -1,6 +1,7 @@
 """The train command as a user runs it: interrupted, resumed, and refused."""
 
 import csv
+import fcntl
 import hashlib
 import json
 import os
@@ -9,6 +10,7 @@ import re
 import signal
 import subprocess
 import tempfile
+import termios
 import time
 import unittest
 
@@ -72,6 +74,29 @@ class Train(unittest.TestCase):
             if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
                 break
             time.sleep(0.05)
+
+    def test_a_closed_terminal_makes_it_save(self):
+        ours, terminal = os.openpty()
+        process = self.start("--steps", "100000000", start_new_session=True, stdout=terminal,
+                             preexec_fn=lambda: fcntl.ioctl(terminal, termios.TIOCSCTTY, 0))
+        os.close(terminal)
+        self.wait_for_rows(process)
+        os.close(ours)
+        process.send_signal(signal.SIGHUP)  # as the shell does, too
+        self.assertEqual(process.wait(timeout=30), 130)
+        status, output = self.train("--resume", "--steps", str(self.steps()[-1] + 100))
+        self.assertEqual(status, 0, output)
+
+    def test_a_hangup_that_nohup_ignores_is_ignored(self):
+        process = self.start("--steps", "100000000",
+                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.wait_for_rows(process)
+        with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+            (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
+        self.assertTrue(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
 
     def test_two_in_one_folder(self):
         first = self.start("--steps", "100000000")

@@ -78,10 +78,19 @@ class JobProcess(Running):
                 pass
 
 
+def heed(handler):
+    """Has `handler` called when this process is asked to stop; the handlers that were there before.
+
+    A hangup that nohup has it ignore stays ignored.
+    """
+    numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGUSR1]
+    if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
+        numbers.append(signal.SIGHUP)
+    return {number: signal.signal(number, handler) for number in numbers}
+
+
 class Alone:
     """The one process that carries out jobs where no others help."""
-
-    STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 
     def starters(self):
         """One function for each process, which starts a job in it and returns what runs."""
