@@ -139,6 +139,14 @@ class Train(unittest.TestCase):
             self.assertEqual(status, 2, output)
             self.assertRegex(output, f"^train: {path}: .*{key}: .*\n$")
 
+    def test_a_full_disk_under_the_output_is_no_success(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            process = self.start("--steps", "200", stdout=full, stderr=subprocess.PIPE)
+            _, errors = process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("standard output cannot be written", errors)
+        self.assertTrue((self.run_folder / "policy_last.onnx").exists())
+
     def test_resume_takes_configuration_and_seed_from_the_folder(self):
         status, output = self.train("--steps", "400", "--seed", "7", "--gamma", "0.8",
                                     "--train-on", "nominal,fast_target", "--set",

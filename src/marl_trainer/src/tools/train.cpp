@@ -155,7 +155,12 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   options.stop = &stop_signal;
   HeedSignals();
   stg::learn::Trainer trainer(scenario, setup, options);
-  if (trainer.Run()) return 0;
+  if (trainer.Run()) {
+    if (Leads(ranks) && !std::cout.flush()) {
+      throw stg::UserError("all is saved, but standard output cannot be written");
+    }
+    return 0;
+  }
   lines << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
         << std::endl;
   return 130;
