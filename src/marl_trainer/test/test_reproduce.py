@@ -16,6 +16,9 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
 import stub_programs  # noqa: E402
 from study_case import StudyCase  # noqa: E402
+from stg_study.files import locked  # noqa: E402  (study_case makes it known)
+from stg_study.jobs import plan  # noqa: E402
+from stg_study.study import load_study  # noqa: E402
 
 
 class Reproduce(StudyCase):
@@ -170,6 +173,15 @@ class Reproduce(StudyCase):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
         self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
+
+    def test_a_run_that_another_program_writes_into_is_not_removed(self):
+        training = plan(load_study(self.study), self.path("work"), self.folder)[0][0]
+        os.makedirs(training.folder)
+        with locked(training.folder):
+            with self.assertRaisesRegex(OSError, "another program is writing into it"):
+                training.prepare()
+            self.assertTrue(os.path.isdir(training.folder))
+        training.prepare()
 
     def test_a_full_disk_is_told_with_the_file(self):
         self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)

@@ -95,8 +95,9 @@ class Training:
         """Command to start or continue the run. A run without a checkpoint starts afresh."""
         resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.ckpt")))
         if not resume and os.path.isdir(self.folder):
-            with locked(self.folder):  # a training whose study was killed may still save
-                shutil.rmtree(self.folder)
+            with locked(self.folder):
+                pass  # a training whose study was killed may still save
+            shutil.rmtree(self.folder)
         os.makedirs(self.folder, exist_ok=True)
         write_atomically(
             os.path.join(self.folder, self.RECORD), json.dumps({"arguments": self.arguments})
