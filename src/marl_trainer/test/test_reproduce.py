@@ -1,13 +1,16 @@
 """Tests of the reproduce command with stand-ins for the programs it runs."""
 
+import fcntl
 import gzip
 import json
 import os
+import resource
 import shlex
 import shutil
 import signal
 import subprocess
 import sys
+import termios
 import time
 import unittest
 
@@ -15,6 +18,9 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
 import stub_programs  # noqa: E402
 from study_case import STUDY, StudyCase  # noqa: E402
+from stg_study.files import locked  # noqa: E402  (study_case makes it known)
+from stg_study.jobs import plan  # noqa: E402
+from stg_study.study import load_study  # noqa: E402
 
 
 class Reproduce(StudyCase):
@@ -105,18 +111,24 @@ class Reproduce(StudyCase):
         self.assertEqual(status, 0, output)
         self.assertEqual(sorted(c.split()[0] for c in calls), ["evaluate", "evaluate", "train"])
 
-    def test_interrupted_training_saves_and_is_resumed(self):
+    def start(self, *arguments, **options):
+        """The command on a training that sleeps, as soon as it does; the process and its folder."""
         process = subprocess.Popen(
-            self.command("--methods", "stg", "--seeds", "0"),
+            self.command("--methods", "stg", "--seeds", "0", *arguments),
             env=dict(os.environ, STUB_SLEEP="60"),
-            stdout=subprocess.PIPE,
             universal_newlines=True,
+            **{"stdout": subprocess.PIPE, **options},
         )
+        self.addCleanup(process.kill)
         run = self.path("work/runs/medium_release/stg/seed0")
         deadline = time.monotonic() + 60.0
         while not os.path.exists(os.path.join(run, "sleeping")):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
+        return process, run
+
+    def test_interrupted_training_saves_and_is_resumed(self):
+        process, run = self.start()
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, output)
@@ -127,6 +139,63 @@ class Reproduce(StudyCase):
         self.assertEqual(status, 0, output)
         train = [c for c in calls if c.startswith("train ")]
         self.assertEqual([c.endswith("--resume") for c in train], [True])
+
+    def test_a_closed_terminal_stops_it_as_ctrl_c_does(self):
+        ours, terminal = os.openpty()
+        process, run = self.start(
+            start_new_session=True,
+            stdin=terminal,
+            stdout=terminal,
+            stderr=subprocess.STDOUT,
+            preexec_fn=lambda: fcntl.ioctl(terminal, termios.TIOCSCTTY, 0),
+        )
+        os.close(terminal)
+        os.close(ours)  # what it says now has nowhere to go
+        # It is not the signal that ends it: it waits until the training has saved.
+        self.assertGreater(process.wait(timeout=60), 0)
+        self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.ckpt")))
+
+    def test_a_hangup_that_nohup_ignores_is_ignored(self):
+        process, _ = self.start(preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+            (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
+        self.assertTrue(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+
+    def test_a_second_one_in_the_same_folder_is_refused(self):
+        process, _ = self.start()
+        stub_programs.calls(self.folder)
+        status, output, calls = self.reproduce("--methods", "stg", "--seeds", "0")
+        self.assertEqual((status, calls), (1, []), output)
+        self.assertEqual(
+            output, f"reproduce: {self.path('work')}: another program is writing into it\n"
+        )
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
+
+    def test_a_run_that_another_program_writes_into_is_not_removed(self):
+        training = plan(load_study(self.study), self.path("work"), self.folder)[0][0]
+        os.makedirs(training.folder)
+        with locked(training.folder):
+            with self.assertRaisesRegex(OSError, "another program is writing into it"):
+                training.prepare()
+            self.assertTrue(os.path.isdir(training.folder))
+        training.prepare()
+
+    def test_a_full_disk_is_told_with_the_file(self):
+        self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))  # noqa: E731
+        done = subprocess.run(
+            self.command("--methods", "stg", "--seeds", "0", "--no-report"),
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True,
+            preexec_fn=limit, check=False,
+        )  # fmt: skip
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(done.stderr, f"reproduce: {self.path('study.yaml')}: File too large\n")
+        self.assertIn("medium_release", self.read("study.yaml"))
 
     def test_mistakes_on_the_command_line_end_with_status_2(self):
         for arguments in (

@@ -1,13 +1,16 @@
 """The train command as a user runs it: interrupted, resumed, and refused."""
 
 import csv
+import fcntl
 import hashlib
 import json
+import os
 import pathlib
 import re
 import signal
 import subprocess
 import tempfile
+import termios
 import time
 import unittest
 
@@ -24,11 +27,14 @@ class Train(unittest.TestCase):
         self.run_folder = pathlib.Path(folder.name) / "run"
         (self.program,) = roslib.packages.find_node("marl_trainer", "train")
 
-    def start(self, *options):
+    def start(self, *options, **streams):
         """Starts a training in the folder of the run."""
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [self.program, "--out", str(self.run_folder), *SMALL, *options],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+            universal_newlines=True,
+            **{"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, **streams})
+        self.addCleanup(process.kill)
+        return process
 
     def train(self, *options):
         """Returns the exit status and the output of a whole training."""
@@ -44,11 +50,7 @@ class Train(unittest.TestCase):
 
     def test_interrupted_it_saves_and_resume_goes_on(self):
         process = self.start("--steps", "100000000")
-        end = time.monotonic() + 30
-        while process.poll() is None and time.monotonic() < end:
-            if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
-                break
-            time.sleep(0.05)
+        self.wait_for_rows(process)
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, output)
@@ -64,6 +66,86 @@ class Train(unittest.TestCase):
         self.assertEqual(after[-1], before[-1] + 1000)
         summary = json.loads((self.run_folder / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["stopped"], "finished")
+
+    def wait_for_rows(self, process):
+        """Waits until a training has told of three collections."""
+        end = time.monotonic() + 30
+        while process.poll() is None and time.monotonic() < end:
+            if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
+                break
+            time.sleep(0.05)
+
+    def test_a_closed_terminal_makes_it_save(self):
+        ours, terminal = os.openpty()
+        process = self.start("--steps", "100000000", start_new_session=True, stdout=terminal,
+                             preexec_fn=lambda: fcntl.ioctl(terminal, termios.TIOCSCTTY, 0))
+        os.close(terminal)
+        self.wait_for_rows(process)
+        os.close(ours)
+        process.send_signal(signal.SIGHUP)  # as the shell does, too
+        self.assertEqual(process.wait(timeout=30), 130)
+        status, output = self.train("--resume", "--steps", str(self.steps()[-1] + 100))
+        self.assertEqual(status, 0, output)
+
+    def test_a_hangup_that_nohup_ignores_is_ignored(self):
+        process = self.start("--steps", "100000000",
+                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.wait_for_rows(process)
+        with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+            (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
+        self.assertTrue(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+
+    def test_two_in_one_folder(self):
+        first = self.start("--steps", "100000000")
+        self.wait_for_rows(first)
+        for options in ((), ("--resume",)):
+            status, output = self.train(*options)
+            self.assertEqual(status, 2, output)
+            self.assertEqual(
+                output, f"train: {self.run_folder}: another program is writing into it\n")
+        first.kill()  # its lock goes with it
+        first.communicate(timeout=30)
+        status, output = self.train()
+        self.assertEqual(status, 2, output)
+        self.assertNotIn("another program", output)
+
+    def test_special_files_in_the_folder_do_not_hang_it(self):
+        status, output = self.train("--steps", "200")
+        self.assertEqual(status, 0, output)
+        for name in ("config.json", "scenario.yaml", "progress.csv"):
+            path = self.run_folder / name
+            content = path.read_bytes()
+            for make in (os.mkfifo, lambda path: os.symlink("/dev/zero", path)):
+                path.unlink()
+                make(path)
+                status, output = self.train("--resume", "--steps", "400")
+                self.assertEqual(status, 2, output)
+                self.assertEqual(output, f"train: {path}: not a regular file\n")
+            path.unlink()
+            path.write_bytes(content)
+
+    def test_a_configuration_that_was_damaged_is_told_by_file_and_key(self):
+        status, output = self.train("--steps", "200")
+        self.assertEqual(status, 0, output)
+        path = self.run_folder / "config.json"
+        good = json.loads(path.read_text(encoding="utf-8"))
+        for key, value in (("envs", 1e300), ("envs", 0.5), ("steps", -1), ("lr", -1.0),
+                           ("gamma", None), ("actor-hidden", [8.5]), ("algorithm", 3)):
+            path.write_text(json.dumps({**good, key: value}), encoding="utf-8")
+            status, output = self.train("--resume", "--steps", "400")
+            self.assertEqual(status, 2, output)
+            self.assertRegex(output, f"^train: {path}: .*{key}: .*\n$")
+
+    def test_a_full_disk_under_the_output_is_no_success(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            process = self.start("--steps", "200", stdout=full, stderr=subprocess.PIPE)
+            _, errors = process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("standard output cannot be written", errors)
+        self.assertTrue((self.run_folder / "policy_last.onnx").exists())
 
     def test_resume_takes_configuration_and_seed_from_the_folder(self):
         status, output = self.train("--steps", "400", "--seed", "7", "--gamma", "0.8",

@@ -14,6 +14,7 @@
 #include "acoustic_channel/offline/simulation_file.hpp"
 #include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/folder_lock.hpp"
 
 namespace {
 
@@ -28,10 +29,16 @@ void OnSignal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-/// Opens a file in the folder, which is made; UserError when that does not work.
-std::ofstream Create(const std::string& folder, const std::string& name) {
+void MakeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw stg::UserError(folder + ": cannot be written");
+  }
+}
+
+/// Opens a file in the folder; UserError when that does not work.
+std::ofstream Create(const std::string& folder, const std::string& name) {
   std::ofstream out(std::filesystem::path(folder) / name);
   if (!out) throw stg::UserError(folder + "/" + name + ": cannot be written");
   return out;
@@ -111,6 +118,8 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
   const SimulationFile file = stg::acoustics::LoadSimulation(path);
   std::vector<std::string> names;
   for (const auto& node : file.nodes) names.push_back(std::to_string(node.id));
+  MakeFolder(folder);
+  const stg::FolderLock lock(folder);
   std::ofstream input = Create(folder, "simulation.yaml");
   input << stg::config::ReadBoundedFile(path);
   Close(&input, folder, "simulation.yaml");

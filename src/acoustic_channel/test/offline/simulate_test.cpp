@@ -260,12 +260,12 @@ TEST_F(Simulate, CommandLine) {
   EXPECT_EQ(Read(folder_ + "/a/b/simulation.yaml"), Read(good));
 }
 
-TEST_F(Simulate, AnInterruptedRunKeepsWhatItHas) {
+TEST_F(Simulate, ARunHasItsFolderForItselfAndKeepsWhatItHasWhenInterrupted) {
   // Longer than any machine takes until the signal, which follows the first packets.
   const std::string file = Write(Head("", 9e7) + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) +
                                  "traffic:\n"
                                  "  - {source: 0, kind: periodic, period_s: 1000.0, bytes: 32}\n");
-  const std::string out = folder_ + "/out", text = folder_ + "/stdout";
+  const std::string out = folder_ + "/out", text = folder_ + "/interrupted";
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -279,6 +279,12 @@ TEST_F(Simulate, AnInterruptedRunKeepsWhatItHas) {
          std::filesystem::file_size(out + "/packets.csv") == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  const std::string other =
+      Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, "1.0"),
+            "other.yaml");
+  const Result second = Command("'" + other + "' --out '" + out + "'");
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(second.err, "simulate: " + out + ": another program is writing into it\n");
   ::kill(child, SIGINT);
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);

@@ -44,9 +44,10 @@ class Unread(io.TextIOWrapper):
         self._when_unread()
 
 
-def run_program(name, main, *refusals, status=2):
+def run_program(name, main, *refusals, status=2, system_status=None):
     """Ends the process with what main() returns; with `status`, and one line, where it throws
-    FileError, another of the `refusals`, or OSError, such as of a folder that is closed to us."""
+    FileError or another of the `refusals`; with `system_status`, the same by default, where it is
+    OSError, such as of a folder that is closed to us or a disk that is full."""
     try:
         code = main()
         sys.stdout.flush()
@@ -57,7 +58,8 @@ def run_program(name, main, *refusals, status=2):
         code = _refuse(name, error, status)
     except OSError as error:
         place = "" if error.filename is None else f"{error.filename}: "
-        code = _refuse(name, f"{place}{error.strerror or error}", status)
+        what = f"{place}{error.strerror or error}"
+        code = _refuse(name, what, status if system_status is None else system_status)
     sys.exit(code)
 
 

@@ -8,7 +8,7 @@ import re
 
 from stg_common.csv_files import number, table_rows
 from stg_common.files import Damaged, expect, member, read_json
-from stg_study.jobs import write_atomically
+from stg_study.files import write_atomically
 
 FILES = {
     "results": "results.csv",  # scenario, condition, method, seed, metric: mean and std

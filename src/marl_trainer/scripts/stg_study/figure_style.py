@@ -1,5 +1,6 @@
 """Colours, sizes and files of the figures; importing this selects a backend without display."""
 
+import io
 import os
 
 import matplotlib
@@ -7,6 +8,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the backend)
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
+
+from stg_study.files import write_atomically  # noqa: E402
 
 # Okabe and Ito's colours, which the colour-blind can tell apart.
 OTHER_COLOURS = ["#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9"]
@@ -86,8 +89,13 @@ def title(figure, text):
 def save(figure, folder, name):
     """Writes the figure as PNG and SVG, the same bytes for the same content; returns its name."""
     os.makedirs(folder, exist_ok=True)
-    figure.savefig(os.path.join(folder, name + ".png"), dpi=150, metadata={"Software": None})
-    figure.savefig(os.path.join(folder, name + ".svg"), metadata={"Date": None})
+    for kind, options in (
+        ("png", {"dpi": 150, "metadata": {"Software": None}}),
+        ("svg", {"metadata": {"Date": None}}),
+    ):
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format=kind, **options)
+        write_atomically(os.path.join(folder, f"{name}.{kind}"), drawn.getvalue())
     plt.close(figure)
     return name
 

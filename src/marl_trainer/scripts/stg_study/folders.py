@@ -1,8 +1,10 @@
 """Where the programs are that a study runs, and where its runs may lie."""
 
+import contextlib
 import os
 import sys
 
+from stg_study.files import locked, write_atomically
 from stg_study.study import StudyError
 
 
@@ -23,8 +25,10 @@ def program_folder(given):
     )
 
 
+@contextlib.contextmanager
 def own_folder(path):
-    """Makes a folder that git ignores."""
+    """Makes a folder that git ignores, and keeps other studies out of it meanwhile."""
     os.makedirs(path, exist_ok=True)
-    with open(os.path.join(path, ".gitignore"), "w", encoding="utf-8") as file:
-        file.write("*\n")
+    with locked(path):
+        write_atomically(os.path.join(path, ".gitignore"), "*\n")
+        yield

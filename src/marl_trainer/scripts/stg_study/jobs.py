@@ -8,14 +8,7 @@ import shutil
 
 from stg_common.csv_files import number, optional, table_rows, written
 from stg_common.files import Damaged, FileError, expect, member, opened, read_json
-
-
-def write_atomically(path, content):
-    """Writes a file, of text or bytes, that exists either whole or not at all."""
-    temporary = f"{path}.{os.getpid()}.part"
-    with open(temporary, "wb") as file:
-        file.write(content.encode() if isinstance(content, str) else content)
-    os.replace(temporary, path)
+from stg_study.files import locked, write_atomically
 
 
 def read_record(path):
@@ -146,6 +139,8 @@ class Training:
         """Command to start or continue the run. A run without a checkpoint starts afresh."""
         resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.ckpt")))
         if not resume and os.path.isdir(self.folder):
+            with locked(self.folder):
+                pass  # a training whose study was killed may still save
             shutil.rmtree(self.folder)
         os.makedirs(self.folder, exist_ok=True)
         write_atomically(

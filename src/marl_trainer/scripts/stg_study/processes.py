@@ -6,6 +6,7 @@ import subprocess
 import time
 
 from stg_common.files import FileError
+from stg_study.files import told
 
 # What tells a process that mpirun or srun started it; our jobs are started by us.
 LAUNCHERS = ("OMPI_", "PMIX_", "PMI_")
@@ -51,7 +52,7 @@ class JobProcess(Running):
                     start_new_session=True,
                 )
         except OSError as error:
-            self._outcome = f"it cannot be started: {error}"
+            self._outcome = f"it cannot be started: {told(error)}"
 
     def outcome(self):
         """None while it runs; then what went wrong, nothing where it left all it should."""
@@ -67,7 +68,7 @@ class JobProcess(Running):
                 self.job.finish(log.read())
             return "" if self.job.complete() else "its output is incomplete"
         except (FileError, OSError, ValueError, IndexError) as error:
-            return f"its output cannot be read: {error}"
+            return f"its output cannot be taken over: {told(error)}"
 
     def signal(self, number):
         """Tells the process and its children, if it still runs."""
@@ -78,10 +79,19 @@ class JobProcess(Running):
                 pass
 
 
+def heed(handler):
+    """Has `handler` called when this process is asked to stop; the handlers that were there before.
+
+    A hangup that nohup has it ignore stays ignored.
+    """
+    numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGUSR1]
+    if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
+        numbers.append(signal.SIGHUP)
+    return {number: signal.signal(number, handler) for number in numbers}
+
+
 class Alone:
     """The one process that carries out jobs where no others help."""
-
-    STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 
     def starters(self):
         """One function for each process, which starts a job in it and returns what runs."""

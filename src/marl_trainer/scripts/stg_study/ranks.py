@@ -6,12 +6,11 @@ hears how it went.
 
 import functools
 import os
-import signal
 import socket
 import time
 import traceback
 
-from stg_study.processes import Alone, JobProcess, Running
+from stg_study.processes import Alone, JobProcess, Running, heed
 
 POLL_S = 0.05
 START, SIGNAL, END, DONE, STOP = range(5)  # kinds of messages
@@ -119,9 +118,7 @@ class _Helper:
 
     def serve(self):
         """Carries out jobs until rank 0 says that it was the last one; returns 0."""
-        for number in Alone.STOPPING:
-            # Rank 0 decides what is interrupted, and when.
-            signal.signal(number, self._on_signal)
+        heed(self._on_signal)  # rank 0 decides what is interrupted, and when
         try:
             while self._obey():
                 self._report()

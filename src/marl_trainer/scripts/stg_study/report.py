@@ -4,7 +4,7 @@ import os
 
 from stg_study import figures_bars, figures_curves, figures_scores, tables, tables_cost
 from stg_study.data import Paper, Results
-from stg_study.jobs import write_atomically
+from stg_study.files import write_atomically
 
 # The paper's tables: main, final stage, per seed, stress.
 PAPER_TABLES = {"medium": ("1", "S3", "S4", "S7"), "hard": ("2", "S5", "S6", "S8")}

@@ -6,6 +6,7 @@ import sys
 import time
 
 from stg_study import ranks
+from stg_study.processes import heed
 
 POLL_S = 0.05
 SHOWN_LOG_LINES = 15
@@ -101,7 +102,7 @@ class Runner:
             f"{self._total} jobs, {self._done} already done, {len(waiting)} trainings and "
             f"{len(evaluations)} evaluations to do, {len(self._places)} at a time"
         )
-        handlers = {s: signal.signal(s, self._on_signal) for s in self._crew.STOPPING}
+        handlers = heed(self._on_signal)
         try:
             return self._loop(waiting, evaluations, finished)
         finally:
@@ -161,7 +162,8 @@ class Runner:
             pass  # it was not started
 
     def _on_signal(self, number, frame):
-        self._stops += 1
+        # A terminal that is closed may hang up twice, itself and its shell.
+        self._stops = max(self._stops, 1) if number == signal.SIGHUP else self._stops + 1
 
     def _wait(self):
         time.sleep(POLL_S)
@@ -205,5 +207,10 @@ class Runner:
         self._stream.flush()
 
     def _say(self, text):
-        self._stream.write(("\r\x1b[K" if self._live else "") + text + "\n")
-        self._stream.flush()
+        try:
+            self._stream.write(("\r\x1b[K" if self._live else "") + text + "\n")
+            self._stream.flush()
+        except OSError:
+            if not self._stops:
+                raise
+            # The terminal may be gone, which is why we stop: trainings are to save all the same.

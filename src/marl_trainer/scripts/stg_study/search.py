@@ -11,7 +11,8 @@ import yaml
 
 from stg_common.files import Damaged
 from stg_common.yaml_files import read_yaml
-from stg_study.jobs import Training, write_atomically
+from stg_study.files import write_atomically
+from stg_study.jobs import Training
 from stg_study.collect import csv_text
 from stg_study.statistics import final_stage
 from stg_study.study import Method, ScenarioEntry, Study, StudyError, build, is_name, is_option

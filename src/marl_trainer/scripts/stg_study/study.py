@@ -8,6 +8,7 @@ from typing import Dict, List, Optional
 import yaml
 
 from stg_common.yaml_files import read_yaml
+from stg_study.files import write_atomically
 
 
 class StudyError(Exception):
@@ -195,8 +196,7 @@ def load_study(path):
 
 def save_study(study, path):
     """Writes the resolved study, which load_study reads back."""
-    with open(path, "w", encoding="utf-8") as file:
-        yaml.safe_dump(dataclasses.asdict(study), file, sort_keys=False, width=96)
+    write_atomically(path, yaml.safe_dump(dataclasses.asdict(study), sort_keys=False, width=96))
 
 
 def shipped_studies():

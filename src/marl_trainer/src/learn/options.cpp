@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/checked_json.hpp"
 
 namespace stg::learn {
 namespace {
@@ -63,11 +64,7 @@ void OptionTable::Dump(nlohmann::ordered_json* json) const {
 
 void OptionTable::Read(const nlohmann::ordered_json& json) const {
   for (const Option& option : options_) {
-    try {
-      std::visit([&](auto* value) { json.at(option.name).get_to(*value); }, option.value);
-    } catch (const nlohmann::json::exception& error) {
-      throw UserError("training configuration: " + option.name + ": " + error.what());
-    }
+    std::visit([&](auto* value) { TakeMember(json, option.name, value); }, option.value);
   }
 }
 

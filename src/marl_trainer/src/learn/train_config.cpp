@@ -4,6 +4,7 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/lanes.hpp"
+#include "marl_trainer/learn/checked_json.hpp"
 
 namespace stg::learn {
 
@@ -61,17 +62,16 @@ nlohmann::ordered_json ToJson(const TrainSetup& setup) {
 
 TrainSetup TrainSetupFromJson(const nlohmann::ordered_json& json) {
   try {
-    // The values of the preset are all replaced.
-    TrainSetup setup(json.at("algorithm").get<std::string>(), "fast");
-    json.at("preset").get_to(setup.common.preset);
-    json.at("variant").get_to(setup.common.variant);
+    std::string algorithm;
+    TakeMember(json, "algorithm", &algorithm);
+    TrainSetup setup(algorithm, "fast");  // the values of the preset are all replaced
+    TakeMember(json, "preset", &setup.common.preset);
+    TakeMember(json, "variant", &setup.common.variant);
     const OptionTable table = setup.Options();
     table.Read(json);
-    if (json.size() != 3 + table.options().size()) {
-      throw UserError("training configuration: unknown fields");
-    }
+    if (json.size() != 3 + table.options().size()) throw UserError("unknown fields");
     return setup;
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const UserError& error) {
     throw UserError(std::string("training configuration: ") + error.what());
   }
 }

@@ -111,8 +111,10 @@ int main(int argc, char** argv) {
       json[summary.names[k]] = summary.mean[k];
       json[summary.names[k] + "_std"] = summary.std[k];
     }
-    std::fflush(stdout);
-    std::cout << json.dump() << std::endl;
+    std::printf("%s\n", json.dump().c_str());
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw stg::UserError("standard output cannot be written");
+    }
     return 0;
   } catch (const stg::UserError& e) {
     std::cerr << "evaluate: " << e.what() << "\n";

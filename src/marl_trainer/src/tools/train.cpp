@@ -19,11 +19,24 @@ namespace {
 
 std::atomic<int> stop_signal{0};
 
-/// The first signal asks for a clean end, the second one kills.
+/// The first signal asks for a clean end, the second one kills; but what closes a terminal tells so
+/// more than once, itself and by its shell, and ends the session.
 extern "C" void OnSignal(int signal) {
   stop_signal = signal;
+  if (signal == SIGHUP) return;
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+}
+
+void HeedSignals() {
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  // What SLURM and mpirun pass on.
+  std::signal(SIGUSR1, OnSignal);
+  // What nohup has us ignore stays ignored.
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) std::signal(SIGHUP, OnSignal);
 }
 
 bool Leads(const stg::learn::Communicator* ranks) { return ranks == nullptr || ranks->rank() == 0; }
@@ -140,12 +153,14 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, name, overrides));
   }
   options.stop = &stop_signal;
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  // What SLURM and mpirun pass on.
-  std::signal(SIGUSR1, OnSignal);
+  HeedSignals();
   stg::learn::Trainer trainer(scenario, setup, options);
-  if (trainer.Run()) return 0;
+  if (trainer.Run()) {
+    if (Leads(ranks) && !std::cout.flush()) {
+      throw stg::UserError("all is saved, but standard output cannot be written");
+    }
+    return 0;
+  }
   lines << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
         << std::endl;
   return 130;

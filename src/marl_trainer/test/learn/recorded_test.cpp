@@ -289,19 +289,28 @@ TEST_F(RecordedTest, StartsFromAPolicyAndKeepsItsFunction) {
   const RecordedEpisode episode = Episode(2);
   TrainSetup setup = MakeSetup();
   Own(setup).actor_hidden = {32, 32};  // the policy's own shape counts
-  RecordedTrainer other(scenario_, setup, Options("other", trainer_->policy_path()));
-  EXPECT_EQ(other.policy_id(), trainer_->policy_id());
-  ASSERT_EQ(other.Check(episode).flaw, Flaw::kNone);
-  other.Update({episode});
+  {
+    RecordedTrainer other(scenario_, setup, Options("other", trainer_->policy_path()));
+    EXPECT_EQ(other.policy_id(), trainer_->policy_id());
+    ASSERT_EQ(other.Check(episode).flaw, Flaw::kNone);
+    other.Update({episode});
+  }
   EXPECT_THROW(RecordedTrainer(scenario_, MakeSetup(), Options("other", trainer_->policy_path())),
                UserError)
       << "the folder holds another policy's training by now";
+}
+
+TEST_F(RecordedTest, RefusesAFolderThatAnotherTrainerWritesInto) {
+  EXPECT_THROW(RecordedTrainer(scenario_, MakeSetup(), Options("run")), UserError);
+  trainer_.reset();
+  EXPECT_NO_THROW(RecordedTrainer(scenario_, MakeSetup(), Options("run")));
 }
 
 TEST_F(RecordedTest, RefusesAFolderOfAnotherScenarioAndABadMinibatch) {
   trainer_->Update({Episode(0)});
   Scenario other = scenario_;
   other.reward.weights.tracking *= 2.0;
+  trainer_.reset();
   EXPECT_THROW(RecordedTrainer(other, MakeSetup(), Options("run")), UserError);
   TrainSetup setup = MakeSetup();
   Own(setup).minibatch = 7;

@@ -46,6 +46,47 @@ TEST(TrainSetup, EveryFieldSurvivesJson) {
   EXPECT_THROW(TrainSetupFromJson(other), UserError);
 }
 
+TEST(TrainSetup, WhatAnOptionCannotHoldIsRefusedByName) {
+  const nlohmann::ordered_json good = ToJson(TrainSetup("mappo", "fast"));
+  const auto refusal = [&good](const char* name, const nlohmann::ordered_json& value) {
+    nlohmann::ordered_json json = good;
+    json[name] = value;
+    try {
+      TrainSetupFromJson(json);
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    ADD_FAILURE() << name << " takes " << value;
+    return std::string();
+  };
+  const nlohmann::ordered_json texts = nlohmann::ordered_json::parse(
+      R"([1e300, -1e300, 1e19, 2.5, 3000000000, -3000000000, 18446744073709551615, true, null,
+          "7", [7], {}])");
+  for (const auto& value : texts) {
+    EXPECT_EQ(refusal("envs", value).rfind("training configuration: envs: '", 0), 0U) << value;
+    EXPECT_NE(refusal("actor-hidden", {8, value}).find(": actor-hidden: '"), std::string::npos);
+  }
+  EXPECT_EQ(refusal("envs", 1e300),
+            "training configuration: envs: '1e+300' is not a whole number from -2147483648 to "
+            "2147483647");
+  for (const double value : {-1.0, 0.5, 1e300}) {
+    EXPECT_NE(refusal("seed", value).find(": seed: '"), std::string::npos);
+  }
+  refusal("steps", 1e300);
+  refusal("steps", 9223372036854775808ULL);
+  refusal("lr", true);
+  refusal("stagger", 1);
+  refusal("start-from", 1);
+  refusal("algorithm", 1);
+  refusal("preset", 1);
+
+  nlohmann::ordered_json json = good;
+  json["seed"] = 18446744073709551615ULL;
+  json["steps"] = 1e6;  // as one writes it by hand
+  EXPECT_EQ(TrainSetupFromJson(json).common.seed, 18446744073709551615ULL);
+  EXPECT_EQ(TrainSetupFromJson(json).common.steps, 1000000);
+}
+
 TEST(TrainSetup, IsAValue) {
   const TrainSetup setup("mappo", "fast");
   TrainSetup copy = setup;

@@ -82,8 +82,11 @@ TEST_F(TrainerTest, StopSavesAfterTheCollectionAndLeavesALoadablePolicy) {
 TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {
   const TrainSetup setup = SmallSetup();
   const Scenario scenario = ShortScenario();
-  Trainer trainer(scenario, setup, Options("run"));
-  trainer.Run();
+  const TrainState whole = [&] {
+    Trainer trainer(scenario, setup, Options("run"));
+    trainer.Run();
+    return trainer.state();
+  }();
   const std::string folder = (folder_ / "run").string();
   const std::string newest = CheckpointPath(folder, 5120);
   const std::string good = Bytes(newest);
@@ -121,7 +124,7 @@ TEST_F(TrainerTest, BadCheckpointsAreRefusedAndThePreviousOneUsed) {
   Trainer resumed(scenario, setup, options);
   EXPECT_EQ(resumed.state().env_steps, 3840);
   EXPECT_TRUE(resumed.Run());
-  ExpectSameBits(resumed.state(), trainer.state());
+  ExpectSameBits(resumed.state(), whole);
 }
 
 TEST_F(TrainerTest, KeepsTheLastCheckpointsOnlyAndNoTemporaryFile) {
@@ -153,6 +156,23 @@ TEST_F(TrainerTest, RefusesToMixRuns) {
   fs::create_directories(folder_ / "early");
   std::ofstream(folder_ / "early" / "config.json") << "{}";
   EXPECT_NO_THROW(Trainer(scenario, setup, Options("early")));
+}
+
+TEST_F(TrainerTest, AFolderThatATrainingWritesIntoIsRefusedToOthers) {
+  Trainer first(ShortScenario(), SmallSetup(), Options("run"));
+  const auto refused = [&](bool resume) {
+    Trainer::Options options = Options("run");
+    options.resume = resume;
+    try {
+      Trainer(ShortScenario(), SmallSetup(), options);
+      ADD_FAILURE() << "accepted";
+    } catch (const UserError& error) {
+      EXPECT_EQ(std::string(error.what()), options.out + ": another program is writing into it");
+    }
+  };
+  refused(false);
+  ASSERT_TRUE(first.Run());
+  refused(true);
 }
 
 TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {

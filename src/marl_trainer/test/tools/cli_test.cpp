@@ -159,6 +159,15 @@ TEST_F(CommandLine, EvaluateEndsWithTheMetricsOfTheContract) {
   EXPECT_NEAR(sum / 5.0, json["return"].get<double>(), 0.01);
 }
 
+TEST_F(CommandLine, EvaluateFailsWhereItsOutputCannotBeWritten) {
+  const std::string command =
+      "'" STG_EVALUATE "' --policy idle --episodes 1 > /dev/full 2> '" + folder_ + "/stderr'";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;
+  EXPECT_NE(Read(folder_ + "/stderr").find("evaluate: standard output cannot be written"),
+            std::string::npos);
+}
+
 TEST_F(CommandLine, EvaluateTakesTheConstantsOfPursuit) {
   const std::string base =
       "--policy pursuit --scenario medium_release --episodes 4 --set time.episode_steps=150 ";

@@ -62,8 +62,8 @@ class OptionTable {
 
   /// Adds every option to the object, by name.
   void Dump(nlohmann::ordered_json* json) const;
-  /// Fills every option from the object; UserError that names one that is missing or of another
-  /// type.
+  /// Fills every option from the object; UserError that names one that is missing, of another
+  /// type, or that its type cannot hold.
   void Read(const nlohmann::ordered_json& json) const;
 
  private:

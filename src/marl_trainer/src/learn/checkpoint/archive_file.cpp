@@ -1,9 +1,4 @@
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +6,7 @@
 
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/checkpoint/archive.hpp"
+#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {
@@ -132,31 +128,6 @@ Archive Parse(const std::string& payload) {
   return archive;
 }
 
-void WriteDurably(const std::string& bytes, const std::string& path) {
-  const std::string temporary = path + ".tmp";
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  bool ok = file >= 0;
-  for (std::size_t at = 0; ok && at < bytes.size();) {
-    const ssize_t n = ::write(file, bytes.data() + at, bytes.size() - at);
-    ok = n > 0;
-    if (ok) at += static_cast<std::size_t>(n);
-  }
-  ok = ok && ::fsync(file) == 0;
-  if (file >= 0) ok = ::close(file) == 0 && ok;
-  ok = ok && std::rename(temporary.c_str(), path.c_str()) == 0;
-  if (!ok) {
-    const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
-    throw UserError(path + ": cannot write the checkpoint: " + reason);
-  }
-  const std::string parent = fs::path(path).parent_path().string();
-  const int folder = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY);
-  if (folder >= 0) {
-    ::fsync(folder);
-    ::close(folder);
-  }
-}
-
 }  // namespace
 
 void WriteArchive(const Archive& archive, const std::string& path) {
@@ -168,7 +139,7 @@ void WriteArchive(const Archive& archive, const std::string& path) {
   header.checksum = Fnv(payload);
   std::string bytes;
   Append(header, &bytes);
-  WriteDurably(bytes += payload, path);
+  WriteDurably(bytes += payload, path, "the checkpoint");
 }
 
 Archive ReadArchive(const std::string& path) {

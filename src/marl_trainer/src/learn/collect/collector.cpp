@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
 
 #include "auv_common/error.hpp"
 #include "marl_trainer/env/controller.hpp"
@@ -27,6 +26,25 @@ Problem ProblemOf(const Scenario& scenario) {
 namespace {
 
 std::string PastName(int first_env) { return "actions_" + std::to_string(first_env); }
+
+/// The shards of `count` groups from `first` on: cut where groups end, and where full shards do.
+std::vector<Shard> ShardsOf(const GroupShare& share, int first, int count, int envs) {
+  std::vector<Shard> shards;
+  for (int group = first; group < first + count; ++group) {
+    const int end = share.FirstEnv(group + 1, envs);
+    for (int env = share.FirstEnv(group, envs); env < end;) {
+      Shard shard;
+      shard.first_env = env;
+      shard.group = group;
+      shard.home_first = env / Collector::kShardEnvs * Collector::kShardEnvs;
+      shard.home_envs = std::min(Collector::kShardEnvs, envs - shard.home_first);
+      env = std::min(shard.home_first + Collector::kShardEnvs, end);
+      shard.envs = env - shard.first_env;
+      shards.push_back(shard);
+    }
+  }
+  return shards;
+}
 
 }  // namespace
 
@@ -159,18 +177,11 @@ Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config
     RequireOption(config.envs >= ranks->size(), "envs", "must be one for each rank at least");
     share = GroupShare::Of(*ranks, SlicedGradient::kSlices);
   }
-  for (int group = share.first; group < share.first + share.count; ++group) {
-    const int end = share.FirstEnv(group + 1, config.envs);
-    for (int first = share.FirstEnv(group, config.envs); first < end;) {
-      Shard shard;
-      shard.first_env = first;
-      shard.group = group;
-      shard.home_first = first / kShardEnvs * kShardEnvs;
-      shard.home_envs = std::min(kShardEnvs, config.envs - shard.home_first);
-      first = std::min(shard.home_first + kShardEnvs, end);
-      shard.envs = first - shard.first_env;
-      units_.push_back(std::make_unique<Unit>(mix, config, shard));
-    }
+  for (const Shard& shard : ShardsOf(share, share.first, share.count, config.envs)) {
+    units_.push_back(std::make_unique<Unit>(mix, config, shard));
+  }
+  for (const Shard& shard : ShardsOf(share, 0, share.groups, config.envs)) {
+    places_.insert(PastName(shard.first_env));
   }
 }
 
@@ -247,6 +258,13 @@ void Collector::Save(Archive* archive) const {
 
 void Collector::Load(const Archive& archive) {
   if (archive.arrays().empty()) return;  // taken at a start
+  std::set<std::string> theirs;
+  for (const auto& array : archive.arrays()) theirs.insert(array.first);
+  if (theirs != places_) {
+    throw UserError(
+        "its environments are in other shards: a run of one process does not go on among ranks, "
+        "nor the other way round");
+  }
   for (const auto& unit : units_) {
     const std::vector<float>& past = archive.Floats(PastName(unit->shard().first_env));
     if (past.size() % unit->decision_size() != 0) {

@@ -105,6 +105,7 @@ RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainSetup& set
       pool_(options.workers),
       algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
       folder_(options.out, options.log) {
+  folder_.Lock();
   UseOneBlasThread();
   state_.config = ToJson(setup_).dump();
   state_.scenario = ToYaml(scenario_);

@@ -1,10 +1,11 @@
 #include "marl_trainer/learn/run/run_folder.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
+#include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 std::string MixFile(std::size_t k) { return "train_on_" + std::to_string(k) + ".yaml"; }
 
 void WriteScenario(const fs::path& file, const Scenario& scenario) {
-  std::ofstream(file) << ToYaml(scenario);
+  WriteDurably(ToYaml(scenario), file.string(), "the scenario");
 }
 
 }  // namespace
@@ -37,7 +38,7 @@ bool RunFolder::HoldsRun() const {
 void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
                            const std::vector<Scenario>& mix) const {
   const fs::path folder(path_);
-  std::ofstream(folder / "config.json") << config.dump(2) << "\n";
+  WriteDurably(config.dump(2) + "\n", (folder / "config.json").string(), "the configuration");
   WriteScenario(folder / "scenario.yaml", scenario);
   for (std::size_t k = 0; k < mix.size(); ++k) WriteScenario(folder / MixFile(k), mix[k]);
 }
@@ -59,15 +60,27 @@ std::string RunFolder::PolicyPath(const std::string& name) const {
 }
 
 RunSetup ReadRunSetup(const std::string& folder) {
-  const fs::path config = fs::path(folder) / "config.json";
-  std::ifstream in(config);
-  if (!in) throw UserError(folder + ": no run to resume: it has no config.json");
-  const auto json = nlohmann::ordered_json::parse(in, nullptr, false);
-  if (!json.is_object()) throw UserError(config.string() + ": no configuration of a training");
+  const fs::path file = fs::path(folder) / "config.json";
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    throw UserError(folder + ": no run to resume: it has no config.json");
+  }
+  const auto json =
+      nlohmann::ordered_json::parse(config::ReadBoundedFile(file.string()), nullptr, false);
+  if (!json.is_object()) throw UserError(file.string() + ": no configuration of a training");
+  const auto setup = [&] {
+    try {
+      TrainSetup read = TrainSetupFromJson(json);
+      read.ValidateOrThrow();
+      return read;
+    } catch (const UserError& error) {
+      throw UserError(file.string() + ": " + error.what());
+    }
+  };
   const auto scenario = [&](const std::string& name) {
     return LoadScenario((fs::path(folder) / name).string());
   };
-  RunSetup run{TrainSetupFromJson(json), scenario("scenario.yaml"), {}};
+  RunSetup run{setup(), scenario("scenario.yaml"), {}};
   for (std::size_t k = 0; fs::exists(fs::path(folder) / MixFile(k)); ++k) {
     run.mix.push_back(scenario(MixFile(k)));
   }

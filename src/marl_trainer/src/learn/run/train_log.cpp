@@ -4,10 +4,13 @@
 #include <cassert>
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/checked_json.hpp"
+#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {
@@ -45,7 +48,13 @@ double PercentDone(std::int64_t steps, std::int64_t total) {
 
 /// Rows from before an interruption that a resumed run does not repeat.
 std::string KeptRows(const std::string& path, std::int64_t resume_at) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return "";
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw UserError(path + ": not a regular file");
+  }
   std::ifstream in(path);
+  if (!in) throw UserError(path + ": cannot be read");
   std::string kept, line;
   std::getline(in, line);
   while (std::getline(in, line)) {
@@ -74,12 +83,20 @@ std::string ReportText(const std::vector<ReportColumn>& columns,
 
 TrainLog::TrainLog(const std::string& out, std::vector<ReportColumn> columns,
                    std::int64_t resume_at, std::int64_t total_steps, std::ostream* lines)
-    : out_(out), columns_(std::move(columns)), total_steps_(total_steps), lines_(lines) {
-  const std::string path = out + "/progress.csv";
-  const std::string kept = resume_at >= 0 ? KeptRows(path, resume_at) : "";
-  csv_.open(path, std::ios::trunc);
-  csv_ << Header() << kept << std::flush;
-  if (!csv_) throw UserError(path + ": cannot write");
+    : out_(out),
+      csv_path_(out + "/progress.csv"),
+      columns_(std::move(columns)),
+      total_steps_(total_steps),
+      lines_(lines) {
+  // Whole or not at all: a disk that is full now must not take the rows of before.
+  const std::string kept = resume_at >= 0 ? KeptRows(csv_path_, resume_at) : "";
+  WriteDurably(Header() + kept, csv_path_, "the progress");
+  csv_.open(csv_path_, std::ios::app);
+  Flush();
+}
+
+void TrainLog::Flush() {
+  if (!csv_.flush()) throw UserError(csv_path_ + ": cannot write the progress");
 }
 
 std::string TrainLog::Header() const {
@@ -120,7 +137,7 @@ void TrainLog::Add(const TrainRecord& r) {
   csv_ << row;
 
   if (r.validated) {
-    csv_.flush();
+    Flush();
     last_validation_.clear();
     for (std::size_t i = 0; i < r.validation.names.size(); ++i) {
       last_validation_[r.validation.names[i]] = r.validation.mean[i];
@@ -207,7 +224,7 @@ void TrainLog::WriteSummary(const std::vector<NetworkSize>& networks, int worker
   json["update_gflops"] = rate * 1e-9;
   json["peak_sgemm_gflops"] = peak_flops * 1e-9;
   json["update_share_of_peak"] = rate / peak_flops;
-  std::ofstream(out_ + "/summary.json") << json.dump(2) << "\n";
+  WriteDurably(json.dump(2) + "\n", out_ + "/summary.json", "the summary");
 }
 
 std::string TrainLog::Save() const {
@@ -227,7 +244,9 @@ void TrainLog::Load(const std::string& text) {
     const nlohmann::json json = nlohmann::json::parse(text);
     if (json.contains("reached")) {
       for (const auto& [name, value] : json.at("reached").items()) {
-        reached_[name] = {value.at(0).get<double>(), value.at(1).get<std::int64_t>()};
+        Moment& moment = reached_[name];
+        moment.seconds = value.at(0).get<double>();
+        TakeJson(value.at(1), &moment.steps);
       }
     }
     json.at("last").get_to(last_validation_);
@@ -239,8 +258,8 @@ void TrainLog::Load(const std::string& text) {
     validation_seconds_ = s.at(3).get<double>();
     update_flops_ = s.at(4).get<double>();
     wall_seconds_ = s.at(5).get<double>();
-    json.at("env_steps").get_to(env_steps_);
-  } catch (const nlohmann::json::exception& error) {
+    TakeMember(json, "env_steps", &env_steps_);
+  } catch (const std::exception& error) {
     throw UserError(std::string("checkpoint: the log cannot be read: ") + error.what());
   }
 }

@@ -65,6 +65,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
       algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
       collector_(mix_, setup_.common, &pool_, options.ranks),
       folder_(options.out, options.log) {
+  if (leads()) folder_.Lock();
   UseOneBlasThread();
   state_.config = ToJson(setup_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
@@ -105,7 +106,8 @@ void Trainer::StartFrom(const std::string& folder) {
   const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, options_.log);
   if (!theirs) throw UserError("--start-from: no checkpoint in " + folder);
   const auto config = nlohmann::json::parse(theirs->config, nullptr, false);
-  if (!config.is_object() || config.value("algorithm", "") != setup_.algorithm) {
+  if (!config.is_object() || !config.contains("algorithm") ||
+      config["algorithm"] != setup_.algorithm) {
     throw UserError("--start-from: " + folder + " was not trained with " + setup_.algorithm);
   }
   try {
@@ -120,11 +122,6 @@ void Trainer::Resume() {
   if (!loaded) throw UserError(options_.out + ": no checkpoint to resume from");
   const std::string where = options_.out + ": cannot resume";
   RequireSameRun(*loaded, ToJson(setup_), state_.scenario, where);
-  try {
-    algorithm_->Load(loaded->algorithm);
-  } catch (const UserError& error) {
-    throw UserError(where + ": " + error.what());
-  }
   if (options_.ranks != nullptr) {
     for (const std::int64_t steps :
          options_.ranks->Gather(std::vector<std::int64_t>{loaded->env_steps})) {
@@ -140,7 +137,9 @@ void Trainer::Resume() {
   state_.episodes = Archive();
   collector_.RestartAt(state_.round);
   try {
+    // First: what it says of ranks is why an algorithm would not find what it saved.
     collector_.Load(loaded->episodes);
+    algorithm_->Load(loaded->algorithm);
   } catch (const UserError& error) {
     throw UserError(where + ": " + error.what());
   }
@@ -251,7 +250,10 @@ void Trainer::AlignEpisodes(bool force) {
 
 void Trainer::Save() {
   const TrainState now = state();
-  if (leads()) folder_.Save(now, setup_.common.keep_checkpoints);
+  if (leads()) {
+    log_->Flush();  // who resumes finds the rows up to the checkpoint
+    folder_.Save(now, setup_.common.keep_checkpoints);
+  }
   SavePolicy("policy_last");
   next_checkpoint_ = NextMultiple(state_.env_steps, setup_.common.checkpoint_interval);
 }

@@ -95,17 +95,34 @@ TEST_F(RanksTest, ARunThatWasStoppedGoesOnWithAnotherNumberOfRanks) {
   }
 }
 
-TEST_F(RanksTest, WhatAProcessAloneReplaysIsNotTakenUp) {
-  const TrainSetup setup = SetupOf("madqn");
-  Trainer::Options options = Options("run");
-  options.halt_after = 1;
-  ASSERT_FALSE(Trainer(ShortScenario(), setup, options).Run());
-  options.halt_after = 0;
-  options.resume = true;
-  ThreadRanks(1).Run([&](Communicator* self) {
-    options.ranks = self;
-    EXPECT_THROW(Trainer(ShortScenario(), setup, options), UserError);
-  });
+TEST_F(RanksTest, ARunOfOneProcessDoesNotGoOnAmongRanksNorTheOtherWayRound) {
+  const auto refused = [](const auto& resume) {
+    try {
+      resume();
+      ADD_FAILURE() << "accepted";
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("does not go on among ranks"), std::string::npos)
+          << error.what();
+    }
+  };
+  for (const std::string algorithm : {"mappo", "madqn"}) {
+    const TrainSetup setup = SetupOf(algorithm);
+    // In the middle of episodes, at a start of all, and at the end.
+    for (const std::int64_t halt : {1, 1280, 1920}) {
+      Trainer::Options alone = Options(algorithm + "_alone" + std::to_string(halt));
+      Trainer::Options among = Options(algorithm + "_among" + std::to_string(halt));
+      alone.halt_after = among.halt_after = halt;
+      Trainer(ShortScenario(), setup, alone).Run();
+      Train(setup, 2, 1, among);
+      alone.resume = among.resume = true;
+      refused([&] { Trainer(ShortScenario(), setup, among); });
+      ThreadRanks(2).Run([&](Communicator* self) {
+        Trainer::Options own = alone;
+        own.ranks = self;
+        refused([&] { Trainer(ShortScenario(), setup, own); });
+      });
+    }
+  }
 }
 
 TEST_F(RanksTest, OnesRequestToStopStopsAll) {

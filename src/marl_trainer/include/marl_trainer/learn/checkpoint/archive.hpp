@@ -51,8 +51,7 @@ class Archive {
   std::map<std::string, Array> arrays_;
 };
 
-/// Writes a temporary file, syncs it to disk and renames it: a crash leaves the old file or the new
-/// one. UserError when that fails.
+/// Writes a file (WriteDurably); UserError when that fails.
 ///
 /// The file is plain data, little-endian: magic "STGTRAIN", version (u32), 0 (u32), bytes and
 /// FNV-1a checksum of what follows (u64 each), number of arrays (u32), and for each array its type

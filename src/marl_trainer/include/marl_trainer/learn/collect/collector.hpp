@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
@@ -50,7 +52,8 @@ class Collector {
   /// all ranks.
   void Save(Archive* archive) const;
   /// After RestartAt of that start: goes to where Save was called. Throws UserError for an archive
-  /// of other environments.
+  /// of other environments or of other shards, which draw other exploration: a process alone has
+  /// other ones than ranks.
   void Load(const Archive& archive);
   /// The largest k of an episode that runs, in any rank.
   std::uint64_t round() const;
@@ -64,6 +67,7 @@ class Collector {
   WorkerPool* pool_;
   Communicator* ranks_;
   std::vector<std::unique_ptr<Unit>> units_;
+  std::set<std::string> places_;  // names of all ranks' shards in an archive
 };
 
 }  // namespace stg::learn

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "auv_common/folder_lock.hpp"
 #include "marl_trainer/learn/checkpoint/checkpoint.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
@@ -19,12 +20,17 @@ class RunFolder {
   /// Creates the folder; UserError when that fails. @param log where refused checkpoints are told.
   RunFolder(std::string path, std::ostream* log);
 
+  /// Keeps other programs from writing into the folder, as long as this lives; UserError when one
+  /// does already. Among ranks, rank 0 calls it.
+  void Lock() { lock_.emplace(path_); }
+
   const std::string& path() const { return path_; }
   /// Whether it has a checkpoint or a policy: a run that was ended before its first checkpoint
   /// leaves nothing worth keeping.
   bool HoldsRun() const;
 
-  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml.
+  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml; UserError when that
+  /// fails.
   void WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
                   const std::vector<Scenario>& mix) const;
 
@@ -40,6 +46,7 @@ class RunFolder {
  private:
   const std::string path_;
   std::ostream* log_;
+  std::optional<FolderLock> lock_;
 };
 
 /// What a run was started with, as RunFolder::WriteSetup has written it.

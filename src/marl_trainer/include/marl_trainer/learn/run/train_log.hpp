@@ -39,8 +39,11 @@ class TrainLog {
   TrainLog(const std::string& out, std::vector<ReportColumn> columns, std::int64_t resume_at,
            std::int64_t total_steps, std::ostream* lines);
 
+  /// UserError when progress.csv cannot be written; rows may wait for Flush to be.
   void Add(const TrainRecord& record);
-  /// Writes summary.json.
+  /// All rows so far are in the file; UserError when that fails.
+  void Flush();
+  /// Writes summary.json; UserError when that fails.
   /// @param networks of the algorithm.
   /// @param peak_flops measured rate of the matrix product on all workers.
   /// @param ranks null: there are none.
@@ -59,7 +62,7 @@ class TrainLog {
   void PrintLine(const TrainRecord& record);
   std::string Header() const;
 
-  const std::string out_;
+  const std::string out_, csv_path_;
   const std::vector<ReportColumn> columns_;
   const std::int64_t total_steps_;
   std::ostream* lines_;
