@@ -58,7 +58,8 @@ class HappoUpdate {
   /// The gradient of the minibatch that begins at sample `first`.
   void ComputeGradient(int first, int agent, const BlockLoss& add, SlicedGradient* gradient);
   /// Multiplies the factors by the ratio of an AUV's densities.
-  void MultiplyFactors(int agent, const float* actor);
+  void MultiplyFactors(const std::vector<const RolloutBuffer*>& rollouts, int agent,
+                       const float* actor);
 
   const ActorCritic& networks_;
   const HappoConfig config_;
