@@ -47,6 +47,7 @@ HappoUpdate::HappoUpdate(const ActorCritic& networks, const HappoConfig& config,
 HappoUpdate::~HappoUpdate() = default;
 
 void HappoUpdate::Join(Communicator* ranks) {
+  ranks_ = ranks;
   actor_gradient_.Join(ranks);
   critic_gradient_.Join(ranks);
   samples_.Join(ranks);
@@ -208,6 +209,19 @@ void HappoUpdate::MultiplyFactors(const std::vector<const RolloutBuffer*>& rollo
   });
 }
 
+/// Summed shard by shard, so that it does not depend on who has which.
+double HappoUpdate::RatioMiss(const std::vector<const RolloutBuffer*>& rollouts) const {
+  std::vector<double> sums;
+  std::size_t sample = 0;
+  for (const RolloutBuffer* b : rollouts) {
+    double sum = 0.0;
+    for (int i = 0; i < b->samples(); ++i) sum += std::abs(factors_[sample++] - 1.0);
+    sums.push_back(sum);
+  }
+  if (ranks_ != nullptr) sums = ranks_->Gather(sums);
+  return std::accumulate(sums.begin(), sums.end(), 0.0) / samples_.size();
+}
+
 PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
                            std::uint32_t collection, double learning_rate_scale, double imitation,
                            HappoParameters* parameters) {
@@ -228,6 +242,7 @@ PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, co
     MultiplyFactors(rollouts, order_[turn], parameters->actors[agent].data());
   }
   report.actor_norm /= steps;
+  ratio_miss_ = RatioMiss(rollouts);
   TrainCritic(&parameters->critic, &parameters->critic_adam, &report);
   const double actor = networks_.actor.mean().spec().training_products();
   report.flops =
