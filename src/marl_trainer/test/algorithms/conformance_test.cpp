@@ -124,6 +124,42 @@ TEST_P(Conformance, EveryAuvOfEveryEnvironmentExploresOnItsOwn) {
   }
 }
 
+TEST(Exploration, GrowsByEqualFactorsFromTheFirstEnvironmentToTheLast) {
+  const Game game = AnyGame();
+  constexpr double kX = 0.3, kLeast = 0.04, kMost = 0.25;
+  for (const std::string name : {"maddpg", "matd3", "madqn"}) {
+    const bool bins = name == "madqn";
+    const std::string option = bins ? "epsilon" : "noise";
+    const TrainSetup setup =
+        GameSetup(name, {{option + "-min", kLeast}, {option + "-max", kMost}, {"warmup", 0}});
+    Training training(game, setup);
+    training.Run(1);
+    const std::vector<float> means = training.Act(kX), seen(means.size(), static_cast<float>(kX));
+    for (const int env : {0, 8, setup.common.envs - 1}) {
+      double squares = 0.0, others = 0.0;
+      constexpr std::uint32_t kSteps = 4000;
+      for (std::uint32_t t = 0; t < kSteps; ++t) {
+        const DrawKeys keys{0, 100, t, env};
+        Decision decision;
+        decision.envs = 1;
+        decision.observations = seen.data();
+        decision.explore = &keys;
+        std::vector<float> actions(seen.size());
+        training.algorithm().Act(decision, {actions.data(), nullptr});
+        for (std::size_t r = 0; r < actions.size(); ++r) {
+          const double miss = static_cast<double>(actions[r] - means[r]) / game.scale;
+          squares += miss * miss / (kSteps * static_cast<double>(actions.size()));
+          others += (miss != 0.0 ? 1.0 : 0.0) / (kSteps * static_cast<double>(actions.size()));
+        }
+      }
+      // A random one of five bins is the same again at times.
+      const double found = bins ? others * 5.0 / 4.0 : std::sqrt(squares);
+      const double expected = kLeast * std::pow(kMost / kLeast, env / (setup.common.envs - 1.0));
+      EXPECT_NEAR(found, expected, 0.1 * expected) << name << " in environment " << env;
+    }
+  }
+}
+
 TEST_P(Conformance, LearningRatesFallLinearlyToTheirShareAtTheEnd) {
   const nlohmann::json was = ToJson(GameSetup(GetParam()));
   nlohmann::json less;
