@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "algorithms/game.hpp"
 #include "auv_common/error.hpp"
@@ -77,6 +78,105 @@ TEST_P(Conformance, ExportsThePolicyThatItFlies) {
     }
   }
   EXPECT_TRUE(moves);
+}
+
+/// As GameSetup, but that all environments explore alike.
+TrainSetup ExploringSetup(const std::string& name) {
+  nlohmann::json options;
+  for (const char* option : {"noise-min", "noise-max"}) {
+    if (name == "maddpg" || name == "matd3") options[option] = 0.1;
+  }
+  for (const char* option : {"epsilon-min", "epsilon-max"}) {
+    if (name == "madqn") options[option] = 0.5;
+  }
+  return GameSetup(name, options);
+}
+
+TEST_P(Conformance, EveryAuvOfEveryEnvironmentExploresOnItsOwn) {
+  const Game game = AnyGame();
+  constexpr int kEnvs = 12, kSteps = 20;
+  const std::vector<float> seen(static_cast<std::size_t>(kEnvs * game.agents), 0.3F);
+  Training training(game, ExploringSetup(GetParam()));
+  for (const int collections : {1, 9}) {  // the first ones of off-policy methods are random
+    training.Run(collections);
+    std::set<std::vector<float>> sequences;
+    for (const int first_env : {0, kEnvs}) {
+      std::vector<std::vector<float>> by_row(seen.size());
+      for (std::uint32_t t = 0; t < 2 * kSteps; ++t) {
+        const DrawKeys keys{0, 100 + t / kSteps, t % kSteps, first_env};
+        Decision decision;
+        decision.envs = kEnvs;
+        decision.observations = seen.data();
+        decision.explore = &keys;
+        std::vector<float> actions(seen.size()), log_prob(seen.size());
+        training.algorithm().Act(decision, {actions.data(), log_prob.data()});
+        for (std::size_t r = 0; r < seen.size(); ++r) by_row[r].push_back(actions[r]);
+      }
+      // One for each collection, of which no two may be the same.
+      for (const std::vector<float>& row : by_row) {
+        for (const auto from : {row.begin(), row.begin() + kSteps}) {
+          sequences.insert({from, from + kSteps});
+          EXPECT_GT(std::set<float>(from, from + kSteps).size(), 1U);
+        }
+      }
+    }
+    EXPECT_EQ(sequences.size(), 2 * 2 * seen.size());
+  }
+}
+
+TEST(Exploration, GrowsByEqualFactorsFromTheFirstEnvironmentToTheLast) {
+  const Game game = AnyGame();
+  constexpr double kX = 0.3, kLeast = 0.04, kMost = 0.25;
+  for (const std::string name : {"maddpg", "matd3", "madqn"}) {
+    const bool bins = name == "madqn";
+    const std::string option = bins ? "epsilon" : "noise";
+    const TrainSetup setup =
+        GameSetup(name, {{option + "-min", kLeast}, {option + "-max", kMost}, {"warmup", 0}});
+    Training training(game, setup);
+    training.Run(1);
+    const std::vector<float> means = training.Act(kX), seen(means.size(), static_cast<float>(kX));
+    for (const int env : {0, 8, setup.common.envs - 1}) {
+      double squares = 0.0, others = 0.0;
+      constexpr std::uint32_t kSteps = 4000;
+      for (std::uint32_t t = 0; t < kSteps; ++t) {
+        const DrawKeys keys{0, 100, t, env};
+        Decision decision;
+        decision.envs = 1;
+        decision.observations = seen.data();
+        decision.explore = &keys;
+        std::vector<float> actions(seen.size());
+        training.algorithm().Act(decision, {actions.data(), nullptr});
+        for (std::size_t r = 0; r < actions.size(); ++r) {
+          const double miss = static_cast<double>(actions[r] - means[r]) / game.scale;
+          squares += miss * miss / (kSteps * static_cast<double>(actions.size()));
+          others += (miss != 0.0 ? 1.0 : 0.0) / (kSteps * static_cast<double>(actions.size()));
+        }
+      }
+      // A random one of five bins is the same again at times.
+      const double found = bins ? others * 5.0 / 4.0 : std::sqrt(squares);
+      const double expected = kLeast * std::pow(kMost / kLeast, env / (setup.common.envs - 1.0));
+      EXPECT_NEAR(found, expected, 0.1 * expected) << name << " in environment " << env;
+    }
+  }
+}
+
+TEST_P(Conformance, LearningRatesFallLinearlyToTheirShareAtTheEnd) {
+  const nlohmann::json was = ToJson(GameSetup(GetParam()));
+  nlohmann::json less;
+  for (const char* rate : {"lr", "critic-lr", "alpha-lr"}) {
+    if (was.contains(rate)) less[rate] = 0.625 * was[rate].get<double>();
+  }
+  // Half-way from 1 to a quarter.
+  Training falling(AnyGame(), GameSetup(GetParam(), {{"lr-final", 0.25}}));
+  Training lower(AnyGame(), GameSetup(GetParam(), less));
+  falling.Run(12, 0.5);
+  lower.Run(12);
+  EXPECT_TRUE(falling.Save() == lower.Save());
+  EXPECT_DOUBLE_EQ(falling.Reported("learning_rate"), less["lr"]);
+  for (const double progress : {1.0, 1.1}) {  // whole collections may go past the end
+    falling.Run(1, progress);
+    EXPECT_DOUBLE_EQ(falling.Reported("learning_rate"), 0.25 * was["lr"].get<double>());
+  }
 }
 
 /// Numbers of a network with two hidden layers of h: weights and biases.

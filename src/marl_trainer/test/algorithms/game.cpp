@@ -56,7 +56,8 @@ Training::Training(const Game& game, const TrainSetup& setup, int workers)
   UseOneBlasThread();
 }
 
-float Training::Context(int env, std::int64_t time) const {
+float Training::Context(int env, std::int64_t time, std::int64_t step) const {
+  if (game_.path) return static_cast<float>(game_.path(static_cast<int>(step)));
   Random random(setup_.common.seed, Stream::kReset, 0, static_cast<std::uint32_t>(time),
                 static_cast<std::uint32_t>(env));
   return static_cast<float>(random.Uniform(-1.0, 1.0));
@@ -77,13 +78,14 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
   };
   for (int t = 0; t < collection.steps; ++t) {
     const std::int64_t now = std::int64_t{collection.number} * collection.steps + t;
+    const std::int64_t step = now % game_.episode;
     for (int e = 0; e < shard.envs; ++e) {
       const auto i = static_cast<std::size_t>(e);
       // What ends and what begins are told apart by who looks at the wrong one.
-      truncated[i] = (now + 1) % game_.episode == 0 ? 1 : 0;
-      states[i] = Context(shard.first_env + e, 2 * now);
-      next_states[i] = Context(shard.first_env + e, 2 * now + 2);
-      final_states[i] = Context(shard.first_env + e, 2 * now + 1);
+      truncated[i] = step + 1 == game_.episode ? 1 : 0;
+      states[i] = Context(shard.first_env + e, 2 * now, step);
+      next_states[i] = Context(shard.first_env + e, 2 * now + 2, (step + 1) % game_.episode);
+      final_states[i] = Context(shard.first_env + e, 2 * now + 1, step + 1);
     }
     show(states, &seen);
     show(next_states, &next_seen);
@@ -135,7 +137,7 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
   }
 }
 
-double Training::Run(int collections) {
+double Training::Run(int collections, double progress) {
   constexpr int kShardEnvs = 16;
   double last = 0.0;
   for (int c = 0; c < collections; ++c) {
@@ -152,6 +154,7 @@ double Training::Run(int collections) {
       PlayShard(collection, shard, worker, &rewards[static_cast<std::size_t>(shard)]);
     });
     UpdateContext context;
+    context.progress = progress;
     context.imitation = game_.teacher ? 1.0 : 0.0;
     report_ = algorithm_->Update(context);
     last = 0.0;

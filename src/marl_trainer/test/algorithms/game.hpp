@@ -12,12 +12,14 @@
 
 namespace stg::learn {
 
-/// A cooperative game with a known optimum. Everybody sees the same number x, drawn anew in [-1, 1]
-/// at every step whatever was done; nobody is told who it is.
+/// A cooperative game with a known optimum. Everybody sees the same number x, which does not depend
+/// on what was done; nobody is told who it is.
 struct Game {
   int agents = 2;
   int episode = 5;  ///< steps until truncation
   double scale = 1.0;
+  /// x after so many steps of an episode, the last one's included; empty: drawn anew in [-1, 1].
+  std::function<double(int step)> path;
   /// Of the actions [agents] at x.
   std::function<double(double x, const float* actions)> reward;
   /// What an agent calls its own of it; empty: all of it. For methods that learn from that.
@@ -40,7 +42,8 @@ class Training {
   Training(const Game& game, const TrainSetup& setup, int workers = 1);
 
   /// Plays and updates; returns the mean reward of the last collection.
-  double Run(int collections);
+  /// @param progress share of the run that is over, see UpdateContext
+  double Run(int collections, double progress = 0.0);
   /// Actions [agents] of the deterministic policy at x.
   std::vector<float> Act(double x);
   /// What the last update reported under this name.
@@ -56,7 +59,7 @@ class Training {
 
  private:
   void PlayShard(const Collection& collection, int shard, int worker, double* reward);
-  float Context(int env, std::int64_t time) const;
+  float Context(int env, std::int64_t time, std::int64_t step) const;
 
   const Game game_;
   const TrainSetup setup_;

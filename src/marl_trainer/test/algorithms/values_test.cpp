@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/game.hpp"
+#include "learn/draw.hpp"
 #include "marl_trainer/learn/algorithms/happo/happo.hpp"
+#include "marl_trainer/learn/algorithms/madqn/madqn.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
-#include "stg_agent/policy/gaussian.hpp"
+#include "marl_trainer/learn/algorithms/off_policy/central_critic_learner.hpp"
 
 /// What critics learn, against closed forms.
 namespace stg::learn {
@@ -91,60 +94,121 @@ TEST(Endless, TruncationIsNoEndForAnOnPolicyCritic) {
   }
 }
 
-TEST(Happo, TheFactorIsTheRatioOfTheJointDensities) {
+/// Reward 1 at x = 1 and 0 at x = -1, which take turns whatever is done: V(1) = 1 / (1 - gamma^2)
+/// and V(-1) = gamma V(1). An episode of five steps ends at the second and begins at the first, so
+/// that only the state that follows gives these, before a restart the final one.
+Game TakingTurns() {
   Game game;
-  game.agents = 3;
-  game.reward = [](double x, const float* a) {
-    return -std::abs(static_cast<double>(a[0] + 2.0F * a[1] - a[2]) - x);
-  };
-  Training training(game, GameSetup("happo"));
-  training.Run(5);
-  const auto& happo = dynamic_cast<Happo&>(training.algorithm());
-  // The buffers hold what the networks saw and did; the parameters are those after the update.
-  const std::vector<double>& factors = happo.update().factors();
-  const Mlp& mean = happo.networks().actor.mean();
-  Mlp::Workspace workspace(mean, 1);
-  std::size_t sample = 0;
-  double largest = 0.0;
-  for (const RolloutBuffer* b : happo.rollouts().buffers()) {
-    for (int i = 0; i < b->samples(); ++i, ++sample) {
-      double log_ratio = 0.0;
-      for (int agent = 0; agent < game.agents; ++agent) {
-        const auto row = static_cast<std::size_t>(i * game.agents + agent);
-        const float* actor = happo.parameters().actors[static_cast<std::size_t>(agent)].data();
-        mean.Forward(actor, &b->observations[row], 1, &workspace);
-        log_ratio += agent::GaussianLogDensity(workspace.output(),
-                                               actor + happo.networks().actor.log_std_offset(),
-                                               &b->actions[row], 1) -
-                     static_cast<double>(b->log_prob[row]);
-      }
-      EXPECT_NEAR(std::log(factors[sample]), log_ratio, 1e-5);
-      largest = std::max(largest, std::abs(log_ratio));
-    }
-  }
-  ASSERT_EQ(sample, factors.size());
-  EXPECT_GT(largest, 0.01);
-  std::vector<int> order = happo.update().order();
-  std::sort(order.begin(), order.end());
-  EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
+  game.path = [](int step) { return step % 2 == 0 ? 1.0 : -1.0; };
+  game.reward = [](double x, const float*) { return x > 0.0 ? 1.0 : 0.0; };
+  return game;
 }
 
-TEST(Happo, SmallStepsDoNotCostReturn) {
-  Game game;
-  game.reward = [](double, const float* a) {
-    constexpr double kPayoff[3][3] = {{3, 0, 1}, {0, 2, 4}, {1, 4, 8}};
-    return kPayoff[Third(a[0])][Third(a[1])];
-  };
-  Training training(game, GameSetup("happo", {{"lr", 5e-4}, {"critic-lr", 3e-3}}));
-  double before = training.Run(10);
-  const double start = before;
-  for (int part = 0; part < 5; ++part) {
-    double after = 0.0;
-    for (int c = 0; c < 10; ++c) after += training.Run(1) / 10.0;
-    EXPECT_GT(after, before - 0.1 - (part == 0 ? 0.5 : 0.0));  // one collection is noisy
-    before = after;
+/// What the networks of values and their targets say, in units of reward: of all actions where the
+/// outputs are a value and advantages of bins.
+std::vector<double> ReplayedValues(Training* training, const std::vector<float>& inputs) {
+  const auto& learner = dynamic_cast<const ReplayLearner&>(training->algorithm());
+  const auto* q = dynamic_cast<const Madqn*>(&learner);
+  const Mlp& network = q != nullptr
+                           ? q->network()
+                           : dynamic_cast<const CentralCriticLearner&>(learner).critics().network();
+  const Archive archive = training->Save();
+  Mlp::Workspace workspace(network, 1);
+  std::vector<double> values;
+  for (const std::string target : {"", "target_"}) {
+    const std::vector<float>& all = archive.Floats(target + (q != nullptr ? "network" : "critics"));
+    for (std::size_t from = 0; from < all.size(); from += network.parameters()) {
+      network.Forward(all.data() + from, inputs.data(), 1, &workspace);
+      const float* out = workspace.output();
+      float mean = 0.0F;
+      for (int k = 1; k < network.outputs(); ++k) mean += out[k] / (network.outputs() - 1);
+      for (int k = std::min(1, network.outputs() - 1); k < network.outputs(); ++k) {
+        const float value = network.outputs() == 1 ? out[0] : out[0] + out[k] - mean;
+        values.push_back(
+            static_cast<double>(learner.scales().value_mean + learner.scales().reward_std * value));
+      }
+    }
   }
-  EXPECT_GT(before, start + 0.5);
+  return values;
+}
+
+/// MASAC's with hardly any weight on the entropy.
+nlohmann::json PlainValues(const std::string& algorithm, nlohmann::json options) {
+  if (algorithm == "masac") options.update({{"initial-alpha", 1e-6}, {"alpha-lr", 0.0}});
+  return options;
+}
+
+class Replayed : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Replayed, ValuesAreThoseOfTheStateThatFollows) {
+  constexpr double kGamma = 0.7;
+  for (const int n : {1, 3}) {
+    const nlohmann::json options =
+        PlainValues(GetParam(), {{"gamma", kGamma}, {"n-step", n}, {"tau", 0.05}});
+    Training training(TakingTurns(), GameSetup(GetParam(), options));
+    training.Run(100);
+    const auto& scales = dynamic_cast<const ReplayLearner&>(training.algorithm()).scales();
+    for (const float x : {1.0F, -1.0F}) {
+      float seen = 0.0F;
+      (GetParam() == "madqn" ? scales.observations : scales.states).Apply(&x, 1, &seen);
+      const double expected = (x > 0.0F ? 1.0 : kGamma) / (1.0 - kGamma * kGamma);
+      // A critic's other inputs are actions of zero.
+      for (const double value : ReplayedValues(&training, {seen, 0.0F, 0.0F})) {
+        EXPECT_NEAR(value, expected, 0.1) << x << " of " << n << " steps";
+      }
+    }
+  }
+}
+
+TEST_P(Replayed, ValuesStayWhenTheScaleOfRewardsChanges) {
+  Game game;
+  game.reward = [](double x, const float*) { return 10.0 + 3.0 * x; };
+  Training training(game, GameSetup(GetParam(), {{"replayed", 0.0}}));
+  training.Run(1);
+  const std::vector<float> inputs = Draw(3, 1.0F, 1);
+  const ReplayScales before = dynamic_cast<ReplayLearner&>(training.algorithm()).scales();
+  const std::vector<double> values = ReplayedValues(&training, inputs);
+  training.Run(1);
+  const ReplayScales& after = dynamic_cast<ReplayLearner&>(training.algorithm()).scales();
+  EXPECT_GT(std::abs(after.value_mean - before.value_mean), 0.1F);
+  EXPECT_GT(std::abs(after.reward_std - before.reward_std), 0.01F);
+  const std::vector<double> now = ReplayedValues(&training, inputs);
+  for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(now[i], values[i], 1e-4) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(OffPolicy, Replayed,
+                         ::testing::Values("maddpg", "matd3", "masac", "madqn"));
+
+TEST(TakingTurns, AnOnPolicyCriticKnowsTheStateThatFollows) {
+  constexpr double kGamma = 0.7;
+  Training mappo(TakingTurns(), GameSetup("mappo", {{"gamma", kGamma}}));
+  mappo.Run(150);
+  const auto& m = dynamic_cast<Mappo&>(mappo.algorithm());
+  for (const float x : {1.0F, -1.0F}) {
+    EXPECT_NEAR(Value(m.networks().critic, m.parameters().data() + m.networks().critic_offset(),
+                      m.scales(), x),
+                (x > 0.0F ? 1.0 : kGamma) / (1.0 - kGamma * kGamma), 0.05);
+  }
+}
+
+TEST(Normalisers, ValuesStayWhenTheirScaleChanges) {
+  const MappoConfig config;
+  const ActorCritic networks(Problem(), config);
+  Normalisers normalisers(Problem(), config);
+  std::vector<float> critic = Draw(networks.critic.parameters(), 0.3F, 1);
+  const auto add = [&](float mean, float deviation) {
+    RunningMoments targets(1);
+    std::vector<float> numbers = Draw(1000, deviation, 2);
+    for (float& x : numbers) x += mean;
+    targets.Add(numbers.data(), 1000);
+    normalisers.AddTargets(targets, networks.critic, critic.data());
+  };
+  add(3.0F, 2.0F);
+  const double before = Value(networks.critic, critic.data(), normalisers.scales(), 0.4F);
+  add(20.0F, 7.0F);
+  EXPECT_NEAR(normalisers.scales().value_mean, 11.5, 0.5);
+  EXPECT_GT(normalisers.scales().value_std, 8.0F);
+  EXPECT_NEAR(Value(networks.critic, critic.data(), normalisers.scales(), 0.4F), before, 1e-3);
 }
 
 }  // namespace

@@ -51,6 +51,21 @@ class RanksTest : public TrainerTest {
     }
     return "";
   }
+
+  /// progress.csv without the columns that tell times.
+  std::string Progress(const std::string& name) const {
+    std::istringstream rows(Bytes(folder_ / name / "progress.csv"));
+    std::vector<bool> kept;
+    std::string text;
+    for (std::string row, cell; std::getline(rows, row); text += "\n") {
+      std::istringstream cells(row);
+      for (std::size_t i = 0; std::getline(cells, cell, ','); ++i) {
+        if (i == kept.size()) kept.push_back(cell.find("_seconds") == std::string::npos);
+        if (kept[i]) text += cell + ",";
+      }
+    }
+    return text;
+  }
 };
 
 TEST_F(RanksTest, TheirNumberAndThatOfWorkersDoNotMatter) {
@@ -60,10 +75,12 @@ TEST_F(RanksTest, TheirNumberAndThatOfWorkersDoNotMatter) {
     const TrainState one = Train(setup, 1, 1, Options(name + "1"));
     const std::string policy = Policy(name + "1");
     ASSERT_FALSE(policy.empty());
+    const std::string progress = Progress(name + "1");
     for (const auto& [ranks, workers] : {std::pair(1, 2), std::pair(2, 1), std::pair(4, 1)}) {
       const std::string other = name + std::to_string(ranks) + std::to_string(workers);
       ExpectSameBits(Train(setup, ranks, workers, Options(other)), one);
       EXPECT_EQ(Policy(other), policy) << other;
+      EXPECT_EQ(Progress(other), progress) << other;
     }
   }
 }

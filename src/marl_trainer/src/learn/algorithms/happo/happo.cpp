@@ -82,8 +82,7 @@ UpdateReport Happo::Update(const UpdateContext& context) {
                                     context.imitation, &parameters_);
   rollouts_.UpdateInputScales();
 
-  const double factors = static_cast<double>(update_.factors().size());
-  double sigma = 0.0, entropy = 0.0, factor = 0.0;
+  double sigma = 0.0, entropy = 0.0;
   for (const std::vector<float>& actor : parameters_.actors) {
     for (int a = 0; a < networks_.action_size(); ++a) {
       const auto log_std = static_cast<double>(
@@ -92,11 +91,10 @@ UpdateReport Happo::Update(const UpdateContext& context) {
       entropy += (log_std + agent::kHalfLogTwoPiE) / problem_.agents;
     }
   }
-  for (const double f : update_.factors()) factor += std::abs(f - 1.0) / factors;
   UpdateReport report;
   report.flops = ppo.flops + 2.0 * ppo.samples * networks_.critic.spec().forward_products();
   report.values = PpoValues(ppo, config_.lr * rate, entropy, explained_variance, sigma);
-  report.values.push_back(factor);
+  report.values.push_back(update_.ratio_miss());
   return report;
 }
 

@@ -47,6 +47,7 @@ HappoUpdate::HappoUpdate(const ActorCritic& networks, const HappoConfig& config,
 HappoUpdate::~HappoUpdate() = default;
 
 void HappoUpdate::Join(Communicator* ranks) {
+  ranks_ = ranks;
   actor_gradient_.Join(ranks);
   critic_gradient_.Join(ranks);
   samples_.Join(ranks);
@@ -166,22 +167,59 @@ void HappoUpdate::TrainCritic(std::vector<float>* critic, AdamState* adam, PpoRe
   report->critic_norm /= steps;
 }
 
-void HappoUpdate::MultiplyFactors(int agent, const float* actor) {
+/// In blocks that no two shards share: the last digits of a product of matrices may depend on how
+/// many rows there are, and shards do not depend on the number of ranks.
+void HappoUpdate::MultiplyFactors(const std::vector<const RolloutBuffer*>& rollouts, int agent,
+                                  const float* actor) {
+  struct Block {
+    const RolloutBuffer* rollout;
+    int from, to;
+    double* factors;
+  };
+  std::vector<Block> blocks;
+  double* factors = factors_.data();
+  for (const RolloutBuffer* b : rollouts) {
+    for (int from = 0; from < b->samples(); from += kBlock) {
+      blocks.push_back({b, from, std::min(b->samples(), from + kBlock), factors + from});
+    }
+    factors += b->samples();
+  }
+  const auto inputs = static_cast<std::size_t>(networks_.actor.inputs());
   const int size = networks_.action_size();
   const float* log_std = actor + networks_.actor.log_std_offset();
-  const int blocks = (samples_.own() + kBlock - 1) / kBlock;
-  pool_->Run(blocks, [&](int block, int worker) {
+  pool_->Run(static_cast<int>(blocks.size()), [&](int k, int worker) {
+    const Block& block = blocks[static_cast<std::size_t>(k)];
+    const RolloutBuffer& b = *block.rollout;
+    const int rows = block.to - block.from;
     Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
-    const int from = block * kBlock, to = std::min(samples_.own(), from + kBlock);
-    Gather(from, to, agent, &s.rows);
-    networks_.actor.mean().Forward(actor, s.rows.observations.data(), to - from, &s.actor);
-    for (int k = 0; k < to - from; ++k) {
-      const double now = agent::GaussianLogDensity(s.actor.output() + k * size, log_std,
-                                                   s.rows.actions.data() + k * size, size);
-      const double then = static_cast<double>(s.rows.log_prob[static_cast<std::size_t>(k)]);
-      factors_[samples_.at(from + k)] *= std::exp(now - then);
+    const auto row = [&](int i) {
+      return static_cast<std::size_t>((block.from + i) * agents_ + agent);
+    };
+    for (int i = 0; i < rows; ++i) {
+      std::copy_n(b.observations.data() + row(i) * inputs, inputs,
+                  s.rows.observations.data() + static_cast<std::size_t>(i) * inputs);
+    }
+    networks_.actor.mean().Forward(actor, s.rows.observations.data(), rows, &s.actor);
+    for (int i = 0; i < rows; ++i) {
+      const float* action = b.actions.data() + row(i) * static_cast<std::size_t>(size);
+      const double now =
+          agent::GaussianLogDensity(s.actor.output() + i * size, log_std, action, size);
+      block.factors[i] *= std::exp(now - static_cast<double>(b.log_prob[row(i)]));
     }
   });
+}
+
+/// Summed shard by shard, so that it does not depend on who has which.
+double HappoUpdate::RatioMiss(const std::vector<const RolloutBuffer*>& rollouts) const {
+  std::vector<double> sums;
+  std::size_t sample = 0;
+  for (const RolloutBuffer* b : rollouts) {
+    double sum = 0.0;
+    for (int i = 0; i < b->samples(); ++i) sum += std::abs(factors_[sample++] - 1.0);
+    sums.push_back(sum);
+  }
+  if (ranks_ != nullptr) sums = ranks_->Gather(sums);
+  return std::accumulate(sums.begin(), sums.end(), 0.0) / samples_.size();
 }
 
 PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
@@ -201,9 +239,10 @@ PpoReport HappoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, co
     const auto agent = static_cast<std::size_t>(order_[turn]);
     steps += TrainActor(order_[turn], static_cast<std::uint32_t>(turn), &parameters->actors[agent],
                         &parameters->actor_adams[agent], &report);
-    MultiplyFactors(order_[turn], parameters->actors[agent].data());
+    MultiplyFactors(rollouts, order_[turn], parameters->actors[agent].data());
   }
   report.actor_norm /= steps;
+  ratio_miss_ = RatioMiss(rollouts);
   TrainCritic(&parameters->critic, &parameters->critic_adam, &report);
   const double actor = networks_.actor.mean().spec().training_products();
   report.flops =

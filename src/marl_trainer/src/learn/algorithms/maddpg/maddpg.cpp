@@ -113,12 +113,12 @@ void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Su
   actor().Forward(actor_parameters().data(), batch.observations.data(), batch.count * agents,
                   &s.actor);
   const float* own = s.actor.output();
-  int rows = batch.count;
+  const int copies = own_.others == "policy" ? 1 : agents;  // joint actions of a sample
+  const int rows = batch.count * copies;
   if (own_.others == "policy") {
     std::copy_n(own, batch.count * joint, s.actions.data());
     std::copy_n(batch.states.data(), batch.count * state, s.states.data());
   } else {
-    rows = batch.count * agents;
     for (int r = 0; r < rows; ++r) {
       const int sample = r / agents, agent = r % agents;
       float* actions = s.actions.data() + static_cast<std::ptrdiff_t>(r) * joint;
@@ -129,12 +129,12 @@ void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Su
                   s.states.data() + static_cast<std::ptrdiff_t>(r) * state);
     }
   }
-  // The loss is minus the value, the mean over samples.
+  // The loss is minus the value: the sum over AUVs, the mean over samples.
   critics().ActionGradient(s.states.data(), s.actions.data(), rows,
                            -1.0F / static_cast<float>(base().batch), false, &s.critics,
                            s.values.data(), s.d_actions.data());
   const float* d_own = s.d_actions.data();
-  if (rows != batch.count) {
+  if (copies > 1) {
     for (int r = 0; r < rows; ++r) {
       std::copy_n(s.d_actions.data() + static_cast<std::ptrdiff_t>(r) * joint + (r % agents) * size,
                   size, s.d_own.data() + static_cast<std::ptrdiff_t>(r) * size);
@@ -145,7 +145,7 @@ void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Su
                    batch.count * agents, &s.actor, gradient);
   double sum = 0.0;
   for (int r = 0; r < rows; ++r) sum += static_cast<double>(s.values[static_cast<std::size_t>(r)]);
-  sums->value = sum / rows * batch.count;
+  sums->value = sum / copies;
 }
 
 void Maddpg::Step(const StepContext& step) {

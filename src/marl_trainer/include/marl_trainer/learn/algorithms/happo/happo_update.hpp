@@ -39,6 +39,8 @@ class HappoUpdate {
   /// The factors M of the samples after the last AUV of the last Run: the ratio of the joint
   /// densities, new over old, of the actions taken. In the order of the own rollouts.
   const std::vector<double>& factors() const { return factors_; }
+  /// Mean |M - 1| over the samples of all ranks.
+  double ratio_miss() const { return ratio_miss_; }
   /// The AUVs in the order of the last Run.
   const std::vector<int>& order() const { return order_; }
 
@@ -58,18 +60,22 @@ class HappoUpdate {
   /// The gradient of the minibatch that begins at sample `first`.
   void ComputeGradient(int first, int agent, const BlockLoss& add, SlicedGradient* gradient);
   /// Multiplies the factors by the ratio of an AUV's densities.
-  void MultiplyFactors(int agent, const float* actor);
+  void MultiplyFactors(const std::vector<const RolloutBuffer*>& rollouts, int agent,
+                       const float* actor);
+  double RatioMiss(const std::vector<const RolloutBuffer*>& rollouts) const;
 
   const ActorCritic& networks_;
   const HappoConfig config_;
   const std::uint64_t seed_;
   const int agents_;
   WorkerPool* pool_;
+  Communicator* ranks_ = nullptr;
   SlicedGradient actor_gradient_, critic_gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   SlicedSums sums_;
   PpoSamples samples_;
   std::vector<double> factors_;  // by sample
+  double ratio_miss_ = 0.0;
   std::vector<int> order_;
   // Of the run.
   std::uint32_t collection_ = 0;
