@@ -51,7 +51,7 @@ class Help(unittest.TestCase):
         status, output = run(ROOT / "stg", "run", "replay", "--help")
         self.assertEqual(status, 0, output)
         self.assertRegex(output, r"(?m)^  bag$\n +bag file to replay")
-        self.assertRegex(output, r"(?m)^  rate:=1$")
+        self.assertRegex(output, r"(?m)^  rate:=1.0$")
         status, output = run(ROOT / "stg", "run", "nowhere", "--help")
         self.assertEqual(status, 2, output)
         self.assertIn("no scenario 'nowhere'", output)
