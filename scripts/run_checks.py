@@ -186,9 +186,11 @@ class Outputs:
         self.began = time.time()
 
     def check_before(self):
-        """Refuses what is known not to work."""
+        """Refuses what is known not to work, and tells what will be lost."""
         for bag in self.bags:
             check_file_can_be_written("bag", bag)
+            if os.path.exists(bag):
+                print(f"stg: bag '{bag}' is there already; the recording replaces it", flush=True)
             self._check_space(bag, "the recorder needs 1 GiB")
         if self.summary:
             check_file_can_be_written("summary_file", self.summary)

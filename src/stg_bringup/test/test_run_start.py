@@ -1,10 +1,13 @@
 """A run starts as it was asked to, or not at all, and beside others; Ctrl-C ends it at any time."""
 
+import contextlib
+import io
 import pathlib
 import signal
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 import rosgraph
@@ -60,6 +63,24 @@ class Arguments(unittest.TestCase):
             for name, default in run_arguments.declared(file).items():
                 if default and "$(" not in default:
                     run_arguments.check([file.parents[1].name, file.name, f"{name}:={default}"])
+
+
+class Bags(unittest.TestCase):
+    """Recordings of before."""
+
+    def test_one_that_is_replaced_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag = pathlib.Path(folder) / "run.bag"
+            recorder = types.SimpleNamespace(package="rosbag", type="record",
+                                             args=f"--output-name='{bag}' /tf")
+            said = []
+            for _ in range(2):
+                with contextlib.redirect_stdout(io.StringIO()) as output:
+                    run_checks.Outputs([recorder], {}).check_before()
+                said.append(output.getvalue())
+                bag.touch()
+        self.assertEqual(said, ["", f"stg: bag '{bag}' is there already; the recording replaces "
+                                    "it\n"])
 
 
 class WithFolder(unittest.TestCase):
