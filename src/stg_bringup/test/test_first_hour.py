@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import roslib.packages
+import stg
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 WORKSPACE = os.environ["CMAKE_PREFIX_PATH"].split(":")[0]  # where ./stg has built it
@@ -115,6 +116,18 @@ class Evaluate(unittest.TestCase):
         (self.folder / "mine.yaml").write_text("base: medium.yaml\nname: mine\n")
         status, output = self.evaluate("--scenario", "mine.yaml", "--policy", "idle")
         self.assertEqual(status, 0, output)
+
+    def test_negative_seeds_are_refused(self):
+        for command in ((program("evaluate"), "--policy", "idle"), (program("train"), "--out", "o")):
+            for option in (("--seed", "-1"), ("--seed=-1",)):
+                status, output = run(*command, *option, folder=self.folder)
+                self.assertEqual(status, 2, output)
+                self.assertIn("--seed: a seed is a whole number from 0, not -1\n", output)
+        with self.assertRaisesRegex(ValueError, "seed: -1 is not in"):
+            stg.evaluate("idle", episodes=1, seed=-1)
+        with self.assertRaisesRegex(ValueError, "seed: -1 is not in"):
+            stg.parallel_env().reset(seed=-1)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_what_is_mistyped_is_refused_with_what_was_meant(self):
         (self.folder / "mine.yaml").write_text("base: mediun.yaml\nname: mine\n")
