@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -128,6 +129,25 @@ class Evaluate(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "seed: -1 is not in"):
             stg.parallel_env().reset(seed=-1)
         self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_a_start_from_nothing_leaves_nothing_behind(self):
+        for start in ("nowhere", "none.onnx"):
+            status, output = run(program("train"), "--out", "o", "--start-from", start,
+                                 folder=self.folder)
+            self.assertEqual((status, output), (2, f"train: --start-from: no checkpoint in {start}\n"))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_a_training_stopped_before_its_first_validation_says_what_there_is(self):
+        with subprocess.Popen([program("train"), "--out", "o", "--steps", "1000000000",
+                               "--validation-interval", "1000000000"], cwd=self.folder,
+                              stdout=subprocess.PIPE, universal_newlines=True) as training:
+            training.stdout.readline()
+            training.send_signal(signal.SIGINT)
+            output = training.stdout.read()
+        self.assertEqual(training.returncode, 130, output)
+        self.assertIn("no policy_best yet: none was validated before 1000000000 steps; "
+                      "policy_last is what was learned", output)
+        self.assertTrue((self.folder / "o" / "policy_last.onnx").exists())
 
     def test_what_is_mistyped_is_refused_with_what_was_meant(self):
         (self.folder / "mine.yaml").write_text("base: mediun.yaml\nname: mine\n")
