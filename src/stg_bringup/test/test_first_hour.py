@@ -149,6 +149,12 @@ class Evaluate(unittest.TestCase):
                       "policy_last is what was learned", output)
         self.assertTrue((self.folder / "o" / "policy_last.onnx").exists())
 
+    def test_a_blank_terrain_is_told(self):
+        status, output = self.evaluate("--scenario", "field", "--policy", "idle", "--set",
+                                       "sea.terrain=' '")
+        self.assertEqual(status, 2, output)
+        self.assertIn("' ' is blank, neither a name nor a path to a .nc file", output)
+
     def test_what_is_mistyped_is_refused_with_what_was_meant(self):
         (self.folder / "mine.yaml").write_text("base: mediun.yaml\nname: mine\n")
         for arguments, reason in (
