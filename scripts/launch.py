@@ -1,36 +1,47 @@
-#!/usr/bin/python3
+#!/usr/bin/env -S --block-signal=INT /usr/bin/python3
 """roslaunch that tells by its exit status whether the run went well.
 
-Takes roslaunch's arguments and does what it does, with four differences. What can be known not to
-work is refused before anything starts, in one line (run_checks.py). A node that exits with status 2
-refuses its configuration (stg::RunNode): the run ends at once, where respawning would repeat it for
-ever. So it does, without a word, when nobody reads its output any more. The exit status is 1 after that, when a required node, the recorder or the master died, or
-when a file that was asked for was not written. And nothing is left running when a required node
-dies while others start, where roslaunch gives up before its monitor has stopped them.
+Takes roslaunch's arguments and does what it does, with these differences. What can be known not to
+work is refused before anything starts, in one line (run_arguments.py, run_checks.py). A node that
+exits with status 2 refuses its configuration (stg::RunNode): the run ends at once, where respawning
+would repeat it for ever. So it does, without a word, when nobody reads its output any more. The exit
+status is 1 after that, when a required node, the recorder or the master died, or when a file that
+was asked for was not written; it is 130 after a Ctrl-C that came before everything was started. And
+nothing is left running when the start ends early, where roslaunch gives up before its monitor has
+stopped what runs.
 """
 
-import difflib
 import os
-import pathlib
-import re
 import signal
-import sys
-import xml.etree.ElementTree as ElementTree
 
-import roslaunch
-import roslaunch.parent
-import roslaunch.pmon
-import roslib.packages
-import run_checks
+# Python itself answers a Ctrl-C while it loads with a traceback: until here the signal is blocked.
+INTERRUPTED = 130
+signal.signal(signal.SIGINT, lambda *_: os._exit(INTERRUPTED))
+signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+
+import argparse  # noqa: E402  (after the lines above)
+import pathlib  # noqa: E402
+import re  # noqa: E402
+import sys  # noqa: E402
+
+import rosgraph.network  # noqa: E402
+import roslaunch  # noqa: E402
+import roslaunch.parent  # noqa: E402
+import roslaunch.pmon  # noqa: E402
+import run_arguments  # noqa: E402
+import run_checks  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
 from stg_common.program import NOBODY_READS, Unread  # noqa: E402  (found by the line above)
 
 REFUSED, LOST_OUTPUT = 2, 4
 MONITOR_ENDS_S = 30  # a node has 15 s after SIGINT and 2 s after SIGTERM
-MOST_AGENTS = 255
 # Each AUV includes the launch file of the next one.
-sys.setrecursionlimit(100 * MOST_AGENTS)
+sys.setrecursionlimit(100 * run_arguments.MOST_AGENTS)
+
+
+class Interrupted(BaseException):
+    """Ctrl-C while a launch starts. roslaunch catches every Exception."""
 
 
 def node_of(process_name):
@@ -48,6 +59,8 @@ class Watch(roslaunch.pmon.ProcessListener):
         self.over = False  # a node refused its configuration, or nobody reads on
         self.unread = False
         self.started = False
+        self.interrupted = False  # by Ctrl-C, before all was started
+        self.names = []
         self.monitor = None
         self.processes = []
         self.popens = {}  # {name: the newest}, which roslaunch forgets with the process
@@ -57,10 +70,11 @@ class Watch(roslaunch.pmon.ProcessListener):
         """Notes what a launch is about to start; refuses what cannot work."""
         nodes = {(node.namespace + node.name).strip("/"): node for node in config.nodes}
         parameters = {name: parameter.value for name, parameter in config.params.items()}
+        self.names = ["/" + name for name in nodes]
         run_checks.check_numbers(parameters)
         run_checks.check_bags_are_there(config.nodes)
         if run_checks.master_is_online(config.master.uri):
-            run_checks.check_names_are_free(config.master.uri, ["/" + name for name in nodes])
+            run_checks.check_names_are_free(config.master.uri, self.names)
         self.required |= {name for name, node in nodes.items() if node.required}
         self.recorders = {name for name, node in nodes.items() if run_checks.bag_of(node)}
         self.outputs = run_checks.Outputs(config.nodes, parameters)
@@ -69,6 +83,8 @@ class Watch(roslaunch.pmon.ProcessListener):
     def observe(self, monitor):
         """Remembers what the monitor is given to look after."""
         self.monitor = monitor
+        # roslaunch does the same with its first process, and would call what was there before.
+        signal.signal(signal.SIGINT, roslaunch.pmon.rl_signal)
         for name in ("register", "register_core_proc"):
             setattr(monitor, name, self.remembering(getattr(monitor, name)))
 
@@ -76,6 +92,7 @@ class Watch(roslaunch.pmon.ProcessListener):
         """Returns the function, made to remember the processes it is given."""
 
         def remember(process):
+            self.end_if_interrupted()
             if process not in self.processes:
                 self.processes.append(process)
                 self.keep_popen(process)
@@ -102,6 +119,28 @@ class Watch(roslaunch.pmon.ProcessListener):
         for process in reversed(self.processes):  # the master came first and ends last
             if process.started and process.is_alive():
                 process.stop([])
+
+    def stopping(self, stop):
+        """Returns roslaunch's answer to signals, made not to leave behind what is just starting."""
+
+        def stop_or_wait(number, frame):
+            if number == signal.SIGINT and not self.started:
+                self.interrupted = True
+            else:
+                stop(number, frame)
+
+        return stop_or_wait
+
+    def end_if_interrupted(self):
+        """Ends a start that Ctrl-C has interrupted."""
+        if self.interrupted:
+            raise Interrupted
+
+    def start_ended(self):
+        """Called when roslaunch has started all; does what could not be done meanwhile."""
+        self.end_if_interrupted()
+        self.started = True
+        self.end_if_over()
 
     def end_if_over(self):
         """Ends the run as Ctrl-C does, but not while roslaunch is still starting nodes."""
@@ -144,43 +183,33 @@ class Watch(roslaunch.pmon.ProcessListener):
             self.failure = str(refusal)
 
 
-def check_arguments(arguments):
-    """Refuses what roslaunch would stumble over or hang on."""
-    port = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
-    for k, argument in enumerate(arguments):
-        if argument.startswith("agents:="):
-            number = argument[len("agents:=") :]
-            if not number.isdigit() or not 1 <= int(number) <= MOST_AGENTS:
-                raise run_checks.Refusal(f"agents: '{number}' is none of 1 to {MOST_AGENTS}")
-        if argument.startswith("bag:=") and "'" in argument:
-            raise run_checks.Refusal("bag: a name with ' in it cannot be given to the recorder")
-        if argument in ("-p", "--port") and k + 1 < len(arguments):
-            port = f"http://127.0.0.1:{arguments[k + 1]}"
-    for name in arguments_unknown_to(arguments):
-        raise run_checks.Refusal(name)
-    run_checks.master_is_online(port)
+def master_of(words):
+    """Returns the address of the master that a command line means, and has roslaunch mean it.
+
+    It would ask the master of the environment, whatever the port, which run it belongs to.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("-p", "--port")
+    port = parser.parse_known_args(words)[0].port
+    if port:
+        os.environ["ROS_MASTER_URI"] = rosgraph.network.create_local_xmlrpc_uri(port)
+    return os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
+
+
+def check_before_loading(words):
+    """Refuses what roslaunch would stumble over or hang on; returns the address of the master."""
+    run_arguments.check(words)
+    master = master_of(words)
+    run_checks.master_is_online(master)
     run_checks.check_log_folder()
+    return master
 
 
-def arguments_unknown_to(arguments):
-    """Yields what is wrong with the names that a launch file is given: roslaunch would ignore them."""
-    names = [a for a in arguments if ":=" not in a and not a.startswith("-")]
-    if len(names) < 2:
-        return
-    found = roslib.packages.find_resource(names[-2], names[-1])
-    if not found:
-        return
-    declared = [arg.get("name") for arg in ElementTree.parse(found[0]).getroot().findall("arg")
-                if arg.get("value") is None]  # fmt: skip
-    for name in (a.split(":=", 1)[0] for a in arguments if ":=" in a):
-        if name not in declared and not name.startswith("_"):
-            near = difflib.get_close_matches(name, declared, 1)
-            hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(declared)}"
-            yield f"{names[-1]} has no argument '{name}'; {hint}"
+def launch(watch, turn):
+    """Runs roslaunch under watch; returns its exit status.
 
-
-def launch(watch):
-    """Runs roslaunch under watch; returns its exit status."""
+    @param turn  to start on the master; given up when all is started
+    """
 
     class Parent(roslaunch.parent.ROSLaunchParent):
         """The parent of a launch, watched from its first process on."""
@@ -199,15 +228,22 @@ def launch(watch):
             watch.observe(self.pm)
 
         def start(self, *arguments, **options):
-            super().start(*arguments, **options)
-            watch.started = True
-            watch.end_if_over()
+            try:
+                super().start(*arguments, **options)
+                watch.start_ended()
+            except Interrupted:
+                self.shutdown()
+                raise
+            turn.give_up_when_known(self.config.master.uri, watch.names)
 
     roslaunch.parent.ROSLaunchParent = Parent
+    roslaunch.pmon.rl_signal = watch.stopping(roslaunch.pmon.rl_signal)
     try:
         roslaunch.main()
     except SystemExit as gave_up:
         return gave_up.code
+    except Interrupted:
+        return INTERRUPTED
     finally:
         watch.stop_the_rest()
     return 0
@@ -221,8 +257,9 @@ def main():
         if getattr(sys, name) is not None:
             setattr(sys, name, Unread(getattr(sys, name), watch.output_unread))
     try:
-        check_arguments(sys.argv[1:])
-        status = launch(watch)
+        master = check_before_loading(sys.argv[1:])
+        with run_checks.Turn(master) as turn:
+            status = launch(watch, turn)
         watch.judge()
     except run_checks.Refusal as refusal:
         watch.failure = str(refusal)

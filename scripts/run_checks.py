@@ -5,6 +5,7 @@ import os
 import shlex
 import socket
 import tempfile
+import threading
 import time
 import urllib.parse
 import xmlrpc.client
@@ -77,6 +78,52 @@ def check_names_are_free(uri, names):
     )
 
 
+class Turn:
+    """The right to start on a master: who starts at the same moment waits until it is given up.
+
+    Two that start their masters on one port, or their nodes of one name, would end each other.
+    """
+
+    PATIENCE_S = 30.0  # longer than any start; then this one goes on as if it were alone
+    KNOWN_S = 5.0  # for the nodes that were started to tell the master their names
+
+    def __init__(self, uri):
+        # The name of a socket without a file goes with its process, however that ends.
+        self._name = f"\0stg-start-{urllib.parse.urlparse(uri).port}"
+        self._socket = socket.socket(socket.AF_UNIX)
+
+    def __enter__(self):
+        end = time.monotonic() + self.PATIENCE_S
+        while time.monotonic() < end:
+            try:
+                self._socket.bind(self._name)
+                break
+            except OSError:
+                time.sleep(0.1)
+        return self
+
+    def __exit__(self, *_):
+        self._socket.close()
+
+    def give_up_when_known(self, uri, names):
+        """Lets others start as soon as they could see, at the master, what was started."""
+
+        def wait():
+            end = time.monotonic() + self.KNOWN_S
+            while time.monotonic() < end and not all(_is_known(uri, name) for name in names):
+                time.sleep(0.1)
+            self._socket.close()
+
+        threading.Thread(target=wait, daemon=True).start()
+
+
+def _is_known(uri, name):
+    try:
+        return _call(uri, "lookupNode", name)[0] == 1
+    except Exception:  # it has ended
+        return False
+
+
 def check_file_can_be_written(what, path):
     """Refuses a file whose folder is not there or closed to us."""
     folder = os.path.dirname(path) or "."
@@ -139,9 +186,11 @@ class Outputs:
         self.began = time.time()
 
     def check_before(self):
-        """Refuses what is known not to work."""
+        """Refuses what is known not to work, and tells what will be lost."""
         for bag in self.bags:
             check_file_can_be_written("bag", bag)
+            if os.path.exists(bag):
+                print(f"stg: bag '{bag}' is there already; the recording replaces it", flush=True)
             self._check_space(bag, "the recorder needs 1 GiB")
         if self.summary:
             check_file_can_be_written("summary_file", self.summary)

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Two scripted vehicles that chat. Needs: roslaunch acoustic_channel channel.launch vehicles:="[alpha, beta]"."""
 
+import argparse
+
 import rospy
 from auv_msgs.msg import AcousticPacket, AcousticReception, TransmitStatus
 from nav_msgs.msg import Odometry
@@ -38,6 +40,7 @@ class Vehicle:
         rospy.loginfo("%s, packet %d: %s", self.name, status.sequence, status.text)
 
 
+argparse.ArgumentParser(description=__doc__).parse_args(rospy.myargv()[1:])
 rospy.init_node("chat")
 alpha, beta = Vehicle("alpha", 0.0), Vehicle("beta", 600.0)
 rospy.Timer(rospy.Duration(5.0), lambda _: alpha.say("where are you?"))

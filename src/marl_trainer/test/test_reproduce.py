@@ -29,6 +29,7 @@ class Reproduce(StudyCase):
         self.assertEqual(status, 0, output)
         self.assertEqual(sum(c.startswith("train ") for c in calls), 4)
         self.assertEqual(sum(c.startswith("evaluate ") for c in calls), 16)
+        self.assertIn("\n20/20 jobs (100 %), 0 failed\n", output)
 
         # 2 conditions x (2 methods + 2 controllers) x 2 seeds, 4 episodes, all metrics.
         self.assertEqual(len(self.rows("episodes.csv.gz")), 64)

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 """Writes the meshes of the vehicle that rviz shows: binary STL, length 1, bow along +x.
 
-Usage: make_meshes.py [FOLDER]. `auv_hull.stl` takes the colour of the task phase,
+`auv_hull.stl` takes the colour of the task phase,
 `auv_fittings.stl` (fins, propeller, mast) stays dark. Scaled by twice the collision radius, the
 whole vehicle lies inside its collision sphere.
 """
 
+import argparse
 import math
 import pathlib
 import struct
-import sys
 
 RADIUS = 0.105
 SEGMENTS = 28
@@ -110,7 +110,10 @@ def meshes():
 def main():
     """Writes the files to the folder given, or to the package's meshes/."""
     default = pathlib.Path(__file__).resolve().parents[1] / "meshes"
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", nargs="?", type=pathlib.Path, default=default,
+                        help="to write them to (default: the meshes of the package)")  # fmt: skip
+    folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in meshes().items():
         (folder / name).write_bytes(content)

@@ -3,11 +3,13 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import tempfile
 import unittest
 
 import roslib.packages
+import stg
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 WORKSPACE = os.environ["CMAKE_PREFIX_PATH"].split(":")[0]  # where ./stg has built it
@@ -51,10 +53,21 @@ class Help(unittest.TestCase):
         status, output = run(ROOT / "stg", "run", "replay", "--help")
         self.assertEqual(status, 0, output)
         self.assertRegex(output, r"(?m)^  bag$\n +bag file to replay")
-        self.assertRegex(output, r"(?m)^  rate:=1$")
+        self.assertRegex(output, r"(?m)^  rate:=1.0$")
         status, output = run(ROOT / "stg", "run", "nowhere", "--help")
         self.assertEqual(status, 2, output)
         self.assertIn("no scenario 'nowhere'", output)
+
+
+    def test_scripts_tell_their_usage_without_a_master(self):
+        for script in ("auv_common/scripts/ends_launch", "acoustic_channel/scripts/chat.py",
+                       "stg_bringup/scripts/make_meshes.py", "stg_bringup/scripts/view.py",
+                       "stg_bringup/scripts/bag_report.py", "stg_python/examples/agent.py",
+                       "stg_python/examples/random_actions.py", "stg_python/examples/ppo.py"):
+            with self.subTest(script):
+                status, output = run("/usr/bin/python3", ROOT / "src" / script, "--help")
+                self.assertEqual(status, 0, output)
+                self.assertRegex(output, "(?i)usage: *" + pathlib.Path(script).name)
 
 
 class Setup(unittest.TestCase):
@@ -104,6 +117,43 @@ class Evaluate(unittest.TestCase):
         (self.folder / "mine.yaml").write_text("base: medium.yaml\nname: mine\n")
         status, output = self.evaluate("--scenario", "mine.yaml", "--policy", "idle")
         self.assertEqual(status, 0, output)
+
+    def test_negative_seeds_are_refused(self):
+        for command in ((program("evaluate"), "--policy", "idle"), (program("train"), "--out", "o")):
+            for option in (("--seed", "-1"), ("--seed=-1",)):
+                status, output = run(*command, *option, folder=self.folder)
+                self.assertEqual(status, 2, output)
+                self.assertIn("--seed: a seed is a whole number from 0, not -1\n", output)
+        with self.assertRaisesRegex(ValueError, "seed: -1 is not in"):
+            stg.evaluate("idle", episodes=1, seed=-1)
+        with self.assertRaisesRegex(ValueError, "seed: -1 is not in"):
+            stg.parallel_env().reset(seed=-1)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_a_start_from_nothing_leaves_nothing_behind(self):
+        for start in ("nowhere", "none.onnx"):
+            status, output = run(program("train"), "--out", "o", "--start-from", start,
+                                 folder=self.folder)
+            self.assertEqual((status, output), (2, f"train: --start-from: no checkpoint in {start}\n"))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_a_training_stopped_before_its_first_validation_says_what_there_is(self):
+        with subprocess.Popen([program("train"), "--out", "o", "--steps", "1000000000",
+                               "--validation-interval", "1000000000"], cwd=self.folder,
+                              stdout=subprocess.PIPE, universal_newlines=True) as training:
+            training.stdout.readline()
+            training.send_signal(signal.SIGINT)
+            output = training.stdout.read()
+        self.assertEqual(training.returncode, 130, output)
+        self.assertIn("no policy_best yet: none was validated before 1000000000 steps; "
+                      "policy_last is what was learned", output)
+        self.assertTrue((self.folder / "o" / "policy_last.onnx").exists())
+
+    def test_a_blank_terrain_is_told(self):
+        status, output = self.evaluate("--scenario", "field", "--policy", "idle", "--set",
+                                       "sea.terrain=' '")
+        self.assertEqual(status, 2, output)
+        self.assertIn("' ' is blank, neither a name nor a path to a .nc file", output)
 
     def test_what_is_mistyped_is_refused_with_what_was_meant(self):
         (self.folder / "mine.yaml").write_text("base: mediun.yaml\nname: mine\n")

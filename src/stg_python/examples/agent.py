@@ -5,6 +5,7 @@ roslaunch stg_bringup medium.launch external:=[2]
 rosrun stg_python agent.py __ns:=auv_2 _id:=2 _policy:=FILE.onnx
 """
 
+import argparse
 import queue
 import sys
 
@@ -23,6 +24,8 @@ def xyz(v):
 
 def main():
     """Decides whenever the sensors' frame of a step and the modem's window before it are there."""
+    shape = argparse.RawDescriptionHelpFormatter
+    argparse.ArgumentParser(description=__doc__, formatter_class=shape).parse_args(rospy.myargv()[1:])
     rospy.init_node("agent")
     me, graph = rospy.get_param("~id"), rospy.get_param
     changes = [f"agents={graph('/agents')}", *graph("/overrides", []), "mode=acoustic"]

@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 """One episode of random actions."""
 
+import argparse
+
 import stg
 
+argparse.ArgumentParser(description=__doc__).parse_args()
 env = stg.parallel_env("medium", seed=0)
 observations, infos = env.reset()
 total = 0.0

@@ -2,14 +2,18 @@
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 
+import numpy as np
+
 import stg
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
+PAGE = EXAMPLES.parents[2] / "docs" / "python.md"
 
 
 def run(name, *arguments, folder="."):
@@ -21,6 +25,32 @@ def run(name, *arguments, folder="."):
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-3000:]
     return done.stdout.splitlines()[-1]
+
+
+class Learner:
+    """Stands in for the reader's, which holds still."""
+
+    @staticmethod
+    def act(observations, _):
+        return np.zeros((*observations.shape[:2], 3), np.float32)
+
+    @staticmethod
+    def bootstrap(observations, states):
+        assert len(observations) == len(states) > 0
+
+
+class Page(unittest.TestCase):
+    """The code of docs/python.md runs as it is written there, in a fresh Python each."""
+
+    def test_environments_and_their_other_forms(self):
+        blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+        self.assertGreater(len(blocks), 3)
+        before = ("", "from test_examples import Learner, stg; learner = Learner()",
+                  "import stg; env = stg.parallel_env()")  # fmt: skip
+        for names, code in zip(before, blocks):
+            with self.subTest(code):
+                subprocess.run([sys.executable, "-c", names + "\n" + code], check=True,
+                               cwd=pathlib.Path(__file__).parent)  # fmt: skip
 
 
 class Examples(unittest.TestCase):

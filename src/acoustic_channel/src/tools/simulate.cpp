@@ -48,6 +48,13 @@ void Close(std::ofstream* out, const std::string& folder, const std::string& nam
   if (!out->flush()) throw stg::UserError(folder + "/" + name + ": cannot be written");
 }
 
+/// Of an earlier simulation: beside another's summary it would be taken for this one's.
+void Remove(const std::string& folder, const std::string& name) {
+  std::error_code error;
+  std::filesystem::remove(std::filesystem::path(folder) / name, error);
+  if (error) throw stg::UserError(folder + "/" + name + ": cannot be removed");
+}
+
 nlohmann::json ToJson(const SimulationSummary& s, const SimulationFile& file, bool whole) {
   using stg::acoustics::DropReason;
   const auto id = [&](int node) { return file.nodes[static_cast<std::size_t>(node)].id; };
@@ -129,6 +136,8 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
   if (log_packets) {
     packets = Create(folder, "packets.csv");
     log.emplace(&packets, static_cast<int>(names.size()), names);
+  } else {
+    Remove(folder, "packets.csv");
   }
   const auto start = std::chrono::steady_clock::now();
   stg::acoustics::Simulation simulation(file, log ? &*log : nullptr);
@@ -156,13 +165,13 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
     std::printf("%s: %zu nodes, %.1f s of %s with %s in %.2f s%s\n", path.c_str(), names.size(),
                 summary.duration_s, file.channel.model.c_str(), file.channel.access.c_str(), wall_s,
                 whole ? "" : " (interrupted)");
-    std::printf("  offered %llu, transmitted %llu, delivered %llu of %llu\n",
+    std::printf("  offered %llu packets, transmitted %llu, delivered %llu of %llu receptions\n",
                 static_cast<unsigned long long>(summary.offered),
                 static_cast<unsigned long long>(summary.transmitted),
                 static_cast<unsigned long long>(summary.delivered),
                 static_cast<unsigned long long>(summary.expected));
     for (const auto& [reason, count] : json["drops"].items()) {
-      std::printf("  dropped, %s: %s\n", reason.c_str(), count.dump().c_str());
+      std::printf("  dropped, %s: %s receptions\n", reason.c_str(), count.dump().c_str());
     }
     std::fflush(stdout);
   }
@@ -183,7 +192,8 @@ int main(int argc, char** argv) {
   app.add_option("file", path, "YAML file: duration_s, seed, channel, nodes, traffic")->required();
   app.add_option("--out", folder, "folder for the results, made if need be")->required();
   app.add_flag("--quiet", quiet, "print nothing but the summary");
-  app.add_flag("--summary-only", summary_only, "do not write packets.csv");
+  app.add_flag("--summary-only", summary_only,
+               "do not write packets.csv, and remove one that is there");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -255,9 +255,20 @@ TEST_F(Simulate, CommandLine) {
   EXPECT_NE(nowhere.err.find("cannot be written"), std::string::npos) << nowhere.err;
   const Result talking = Command("'" + good + "' --out '" + folder_ + "/a/b'");
   EXPECT_EQ(talking.code, 0) << talking.err;
-  EXPECT_NE(talking.out.find("offered 1, transmitted 1, delivered 1 of 1"), std::string::npos);
+  EXPECT_NE(talking.out.find("offered 1 packets, transmitted 1, delivered 1 of 1 receptions"),
+            std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(Read(folder_ + "/a/b/summary.json")), talking.json);
   EXPECT_EQ(Read(folder_ + "/a/b/simulation.yaml"), Read(good));
+}
+
+TEST_F(Simulate, ASummaryAloneStandsBesideNoPacketsOfAnEarlierSimulation) {
+  const std::string file =
+      Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, "1.0"));
+  const std::string folder = folder_ + "/out", arguments = "'" + file + "' --out '" + folder + "'";
+  EXPECT_EQ(Command(arguments).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder + "/packets.csv"));
+  EXPECT_EQ(Command(arguments + " --summary-only").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder + "/packets.csv"));
 }
 
 TEST_F(Simulate, ARunHasItsFolderForItselfAndKeepsWhatItHasWhenInterrupted) {

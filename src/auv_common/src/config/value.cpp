@@ -285,6 +285,10 @@ std::optional<std::string> CheckValue(const Field& field) {
                },
                [&](const NameOrFileRef& v) -> Result {
                  if (IsName(*v.text) || IsFile(*v.text, v.extension)) return {};
+                 if (v.text->find_first_not_of(" \t") == std::string::npos) {
+                   return Quoted(*v.text) + " is blank, neither a name nor a path to a " +
+                          v.extension + " file";
+                 }
                  return Quoted(*v.text) + " is no name (" + FormatRange(field) + ", 64 at most)";
                },
                [&](const EnumRef& v) -> Result {

@@ -133,6 +133,7 @@ class Runner:
             return False
         for job in evaluations:
             self.failed.append(f"{job.name}: not done, its training failed")
+        self._say(self._standing())
         return True
 
     def _next(self, trainings, evaluations, finished):
@@ -183,6 +184,11 @@ class Runner:
                     item.signal(signal.SIGKILL)
             self._wait()
 
+    def _standing(self):
+        """How many of the jobs are done."""
+        share = 100 * self._done // self._total if self._total else 100
+        return f"{self._done}/{self._total} jobs ({share} %), {len(self.failed)} failed"
+
     def _progress(self, waiting, running):
         """One line, rewritten in place on a terminal and every half minute elsewhere."""
         now = time.monotonic()
@@ -195,8 +201,7 @@ class Runner:
             for r in running
             if r.job.kind == "training"
         ]
-        text = f"{self._done}/{self._total} jobs, {len(self.failed)} failed, ETA "
-        text += "?" if left is None else duration(left)
+        text = f"{self._standing()}, ETA " + ("?" if left is None else duration(left))
         if parts:
             text += " | " + ", ".join(parts)
         if self._live:

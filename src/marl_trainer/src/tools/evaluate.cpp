@@ -12,6 +12,7 @@
 #include "marl_trainer/env/seed_blocks.hpp"
 #include "marl_trainer/learn/variants.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
+#include "seed_check.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
 
 namespace {
@@ -60,6 +61,7 @@ int main(int argc, char** argv) {
                  "episode e is drawn from seed + e; from " +
                      std::to_string(stg::env::kReportingSeeds.first) +
                      " on, what nothing was chosen by")
+      ->check(stg::learn::SeedCheck())
       ->capture_default_str();
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
   app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256));

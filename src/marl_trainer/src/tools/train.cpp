@@ -14,6 +14,7 @@
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
+#include "seed_check.hpp"
 
 namespace {
 
@@ -75,6 +76,7 @@ struct Declare {
   void operator()(T* field) const {
     CLI::Option* added = app.add_option("--" + option.name, *field, option.meaning);
     if constexpr (std::is_same_v<T, std::vector<int>>) added->delimiter(',');
+    if constexpr (std::is_same_v<T, std::uint64_t>) added->check(stg::learn::SeedCheck());
     added->capture_default_str();
   }
 };

@@ -176,10 +176,19 @@ void Policy::RequireFits(const AgentConfig& scenario) const {
 std::string PolicyFileOf(const std::string& path, int agent) {
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored)) return path;
-  std::filesystem::path own = path;
-  own.replace_filename(own.stem().string() + "_" + std::to_string(agent) +
-                       own.extension().string());
-  return std::filesystem::exists(own, ignored) ? own.string() : path;
+  const auto file_of = [&path](int i) {
+    std::filesystem::path own = path;
+    return own.replace_filename(own.stem().string() + "_" + std::to_string(i) +
+                                own.extension().string());
+  };
+  const std::filesystem::path own = file_of(agent);
+  if (std::filesystem::exists(own, ignored)) return own.string();
+  if (std::filesystem::exists(file_of(0), ignored)) {
+    throw UserError(path + ": AUV " + std::to_string(agent) + " has no policy: there is " +
+                    file_of(0).filename().string() + " beside it, for AUV 0, but no " +
+                    own.filename().string());
+  }
+  return path;
 }
 
 }  // namespace stg::agent

@@ -89,6 +89,13 @@ TEST_F(PolicyTest, AnAuvFindsItsOwnFileWhereThereIsNoneForAll) {
   Write(Path("p_1.onnx"), "");
   EXPECT_EQ(PolicyFileOf(all, 1), Path("p_1.onnx"));
   EXPECT_EQ(PolicyFileOf(all, 0), all);
+  Write(Path("p_0.onnx"), "");
+  try {
+    PolicyFileOf(all, 4);
+    FAIL() << "policies of fewer AUVs";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("no p_4.onnx"), std::string::npos) << error.what();
+  }
   Write(all, "");
   EXPECT_EQ(PolicyFileOf(all, 1), all);
 }

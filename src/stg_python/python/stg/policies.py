@@ -4,6 +4,7 @@ import numpy as np
 
 from stg import _core
 from stg.scenarios import load_scenario
+from stg.vector import seed_of
 
 __all__ = ["evaluate", "export_policy", "load_policy"]
 
@@ -25,7 +26,7 @@ def evaluate(policy, scenario="medium", condition="nominal", overrides=None, epi
     those of the command line `evaluate`. privileged: a built-in controller sees the truth.
     """
     s = load_scenario(scenario, condition, overrides)
-    return _core.evaluate(str(policy), s, episodes, seed, workers, privileged)
+    return _core.evaluate(str(policy), s, episodes, seed_of(seed), workers, privileged)
 
 
 def _flat(module):
@@ -118,7 +119,7 @@ def export_policy(
         id=str(id),
         scenario_hash=s.hash,
         training_step=int(training_step),
-        seed=int(seed),
+        seed=seed_of(seed),
         metrics={str(k): str(v) for k, v in (metrics or {}).items()},
     )
     policy.require_fits(s)

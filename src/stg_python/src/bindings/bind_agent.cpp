@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -81,14 +82,15 @@ struct BoundAgent {
   std::vector<double> action;  ///< executed by the last act
 };
 
-void Reset(BoundAgent& a, std::uint64_t seed, std::uint32_t episode,
+void Reset(BoundAgent& a, std::int64_t seed, std::uint32_t episode,
            const std::optional<Triple>& cue, double cue_std_m) {
+  if (seed < 0) throw py::value_error("seed: " + std::to_string(seed) + " is not in [0, 2^63)");
   dynamics::Cue c;
   c.target = cue ? a.mind.target() : -1;
   if (cue) c.p_WT = VectorOf(*cue);
   c.std_m = cue_std_m;
   a.mind.Reset(episode, c);
-  a.turns.Reset(seed, 0);
+  a.turns.Reset(static_cast<std::uint64_t>(seed), 0);
 }
 
 void Receive(BoundAgent& a, const py::bytes& data, TimeNs arrival) {

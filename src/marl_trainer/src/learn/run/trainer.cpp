@@ -37,6 +37,33 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
   return all;
 }
 
+/// An algorithm with the networks of the run in `folder`.
+void StartFrom(const std::string& folder, const std::string& algorithm, std::ostream* log,
+               Algorithm* learner) {
+  const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, log);
+  if (!theirs) throw UserError("--start-from: no checkpoint in " + folder);
+  const auto config = nlohmann::json::parse(theirs->config, nullptr, false);
+  if (!config.is_object() || !config.contains("algorithm") || config["algorithm"] != algorithm) {
+    throw UserError("--start-from: " + folder + " was not trained with " + algorithm);
+  }
+  try {
+    learner->StartFrom(theirs->algorithm);
+  } catch (const UserError& error) {
+    throw UserError("--start-from: " + folder + ": " + error.what());
+  }
+}
+
+/// The algorithm at its start; UserError where it cannot start so.
+std::unique_ptr<Algorithm> AtStart(const TrainSetup& setup, const Problem& problem,
+                                   const Trainer::Options& options, WorkerPool* pool) {
+  std::unique_ptr<Algorithm> learner = setup.own->Make(setup.common, problem, pool);
+  const std::string& folder = setup.common.start_from;
+  if (!options.resume && !folder.empty()) {
+    StartFrom(folder, setup.algorithm, options.log, learner.get());
+  }
+  return learner;
+}
+
 /// The first multiple of `interval` past `steps`.
 std::int64_t NextMultiple(std::int64_t steps, std::int64_t interval) {
   return (steps / interval + 1) * interval;
@@ -62,7 +89,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
       options_(options),
       problem_(ProblemOf(train_scenario_)),
       pool_(options.workers),
-      algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
+      algorithm_(AtStart(setup_, problem_, options_, &pool_)),
       collector_(mix_, setup_.common, &pool_, options.ranks),
       folder_(options.out, options.log) {
   if (leads()) folder_.Lock();
@@ -74,8 +101,6 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
     Resume();
   } else if (folder_.HoldsRun()) {
     throw UserError(options_.out + ": holds another run; use --resume or another folder");
-  } else if (!setup_.common.start_from.empty()) {
-    StartFrom(setup_.common.start_from);
   }
   ScheduleNext();
   // Before anybody writes, all have seen what was there.
@@ -99,21 +124,6 @@ void Trainer::JoinRanks() {
     algorithm_->Join(options_.ranks);
   } catch (const UserError& error) {
     throw UserError("--algorithm " + setup_.algorithm + ": " + error.what());
-  }
-}
-
-void Trainer::StartFrom(const std::string& folder) {
-  const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, options_.log);
-  if (!theirs) throw UserError("--start-from: no checkpoint in " + folder);
-  const auto config = nlohmann::json::parse(theirs->config, nullptr, false);
-  if (!config.is_object() || !config.contains("algorithm") ||
-      config["algorithm"] != setup_.algorithm) {
-    throw UserError("--start-from: " + folder + " was not trained with " + setup_.algorithm);
-  }
-  try {
-    algorithm_->StartFrom(theirs->algorithm);
-  } catch (const UserError& error) {
-    throw UserError("--start-from: " + folder + ": " + error.what());
   }
 }
 
@@ -172,6 +182,10 @@ bool Trainer::Run() {
     AlignEpisodes(finished);
     stopped = Stopped();
     if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
+  }
+  if (leads() && options_.log != nullptr && state_.best_return <= TrainState().best_return) {
+    *options_.log << "no policy_best yet: none was validated before " << next_validation_
+                  << " steps; policy_last is what was learned" << std::endl;
   }
   if (leads()) {
     log_->WriteSummary(algorithm_->Sizes(), pool_.workers(), PeakFlops(&pool_),

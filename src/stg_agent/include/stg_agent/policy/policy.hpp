@@ -102,8 +102,8 @@ class Policy {
   std::vector<Packed> packed_;
 };
 
-/// The file of AUV `agent` where each has a policy of its own: `path` itself where there is such a
-/// file, else <path without .onnx>_<agent>.onnx where that exists; else `path`.
+/// The policy of AUV `agent`: `path` where it is a file, else <path without .onnx>_<agent>.onnx
+/// where that is one, else `path`. UserError where it has none of its own and AUV 0 has.
 std::string PolicyFileOf(const std::string& path, int agent);
 
 }  // namespace stg::agent

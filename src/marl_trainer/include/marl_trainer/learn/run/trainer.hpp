@@ -52,7 +52,6 @@ class Trainer {
 
  private:
   void JoinRanks();
-  void StartFrom(const std::string& folder);
   void Resume();
   void ScheduleNext();
   void Iterate(TrainRecord* record);

@@ -1,0 +1,90 @@
+"""The arguments of a launch: which its file has, what each takes, and whether it is given that.
+
+What an argument takes shows in its default: `true` and `false` are switches, digits a whole number,
+digits with a point a number, and everything else text. A default that is another argument takes
+what that one does. roslaunch hands on whatever it is given, and stumbles over it later or not at
+all.
+"""
+
+import difflib
+import math
+import re
+import xml.etree.ElementTree as ElementTree
+
+import roslib.packages
+from roslaunch.loader import convert_value
+from run_checks import Refusal
+
+MOST_AGENTS = 255
+OTHER = re.compile(r"^\$\(arg (\w+)\)$")
+SEEDS = ("seed", "train_seed")
+ANY_SEED = -1  # a default that stands for the scenario's
+# Numbers that are left to the scenario where nothing is given.
+NUMBERS_OR_NOTHING = ("latitude", "longitude")
+
+
+def declared(file):
+    """Returns {name: default, or None where it must be given} of a launch file's arguments."""
+    arguments = ElementTree.parse(file).getroot().findall("arg")
+    return {arg.get("name"): arg.get("default") for arg in arguments if arg.get("value") is None}
+
+
+def _as_roslaunch_reads(text):
+    """Returns the bool, int, float or str that roslaunch makes of a text."""
+    return convert_value(text, "auto")
+
+
+def _is_whole(value):
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_number(value):
+    return _is_whole(value) or (isinstance(value, float) and math.isfinite(value))
+
+
+def _what_it_takes(name, text, default):
+    """Returns what an argument takes where `text` is something else, or an empty string."""
+    given, usual = _as_roslaunch_reads(text), _as_roslaunch_reads(default)
+    if name in NUMBERS_OR_NOTHING:
+        fits, takes = not text or _is_number(given), "a number, such as 54.5, or nothing"
+    elif isinstance(usual, bool):
+        fits, takes = isinstance(given, bool), "true or false"
+    elif name in SEEDS and usual != ANY_SEED:
+        fits, takes = _is_whole(given) and given >= 0, "a whole number from 0"
+    elif _is_whole(usual):
+        fits, takes = _is_whole(given), f"a whole number, such as {default}"
+    elif _is_number(usual):
+        fits, takes = _is_number(given), f"a number, such as {default}"
+    else:
+        fits, takes = isinstance(given, str), f"text (./{text} is a file of that name)"
+    return "" if fits else takes
+
+
+def check(words):
+    """Refuses arguments that the launch file does not have, and what is not of their kind.
+
+    @param words  a roslaunch command line: [OPTIONS] PACKAGE FILE NAME:=TEXT ...
+    @throws Refusal  which names the argument and what it takes
+    """
+    names = [word for word in words if ":=" not in word and not word.startswith("-")]
+    found = roslib.packages.find_resource(*names[-2:]) if len(names) > 1 else []
+    if not found:
+        return
+    defaults = declared(found[0])
+    for name, text in (word.split(":=", 1) for word in words if ":=" in word):
+        if name.startswith("_"):
+            continue
+        if name not in defaults:
+            near = difflib.get_close_matches(name, defaults, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(defaults)}"
+            raise Refusal(f"{names[-1]} has no argument '{name}'; {hint}")
+        if name == "bag" and "'" in text:
+            raise Refusal("bag: a name with ' in it cannot be given to the recorder")
+        if name == "agents" and not (text.isdecimal() and 1 <= int(text) <= MOST_AGENTS):
+            raise Refusal(f"agents: '{text}' is none of 1 to {MOST_AGENTS}")
+        if text and not text.strip():
+            raise Refusal(f"{name}: '{text}' is blank")
+        default, other = defaults[name] or "", OTHER.match(defaults[name] or "")
+        takes = _what_it_takes(name, text, defaults[other.group(1)] if other else default)
+        if takes:
+            raise Refusal(f"{name} takes {takes}, not '{text}'")

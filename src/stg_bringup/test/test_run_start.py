@@ -1,0 +1,165 @@
+"""A run starts as it was asked to, or not at all, and beside others; Ctrl-C ends it at any time."""
+
+import contextlib
+import io
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+import types
+import unittest
+
+import rosgraph
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[2] / "scripts")]
+
+import run_arguments  # noqa: E402  (lies in the scripts folder)
+import run_checks  # noqa: E402
+from run_launcher import LAUNCH, free_port, launch, process_of, processes_with, stop  # noqa: E402
+
+PACKAGES = HERE.parents[1]
+ENDLESS = ("policy:=idle", "table:=false")
+
+
+class Arguments(unittest.TestCase):
+    """What an argument takes is known before anything starts."""
+
+    def refusal(self, *words, file="medium.launch"):
+        """Returns what is said of a command line."""
+        with self.assertRaises(run_checks.Refusal) as refused:
+            run_arguments.check(["-p", "11311", "stg_bringup", file, *words])
+        return str(refused.exception)
+
+    def test_values_of_the_wrong_kind_are_refused_with_what_is_taken(self):
+        for word, takes in (("real_time_factor:=abc", "a number, such as 1.0, not 'abc'"),
+                            ("real_time_factor:=nan", "a number, such as 1.0, not 'nan'"),
+                            ("deadline:=", "a number, such as 2.0, not ''"),
+                            ("gui:=maybe", "true or false, not 'maybe'"),
+                            ("record:=1", "true or false, not '1'"),
+                            ("episodes:=1.5", "a whole number, such as 0, not '1.5'"),
+                            ("episodes:=true", "a whole number, such as 0, not 'true'"),
+                            ("seed:=-1", "a whole number from 0, not '-1'"),
+                            ("policy:=7", "text (./7 is a file of that name), not '7'")):
+            self.assertEqual(self.refusal(word), word.replace(":=", "\n").split("\n")[0] +
+                             " takes " + takes)
+        self.assertIn("or nothing", self.refusal("latitude:=north", file="field.launch"))
+        self.assertIn("is blank", self.refusal("terrain:= ", file="field.launch"))
+        self.assertIn("true or false", self.refusal("stay:=2", "bag:=a", file="replay.launch"))
+
+    def test_values_of_the_right_kind_pass(self):
+        run_arguments.check(["stg_bringup", "medium.launch", "real_time_factor:=2", "deadline:=.5",
+                             "gui:=True", "episodes:=3", "bag:=./7", "policy:=pursuit:cap=0.5",
+                             "overrides:=[agents=4]", "external:=[2]", "summary_file:="])
+        run_arguments.check(["stg_bringup", "field.launch", "latitude:=", "longitude:=-10.5"])
+        run_arguments.check(["acoustic_channel", "channel.launch", "seed:=-1", "step:=0.5"])
+
+    def test_every_default_is_of_its_own_kind(self):
+        files = [*(PACKAGES / "stg_bringup" / "launch").glob("*.launch"),
+                 *(PACKAGES / "acoustic_channel" / "launch").glob("*.launch")]
+        self.assertGreater(len(files), 6)
+        for file in files:
+            for name, default in run_arguments.declared(file).items():
+                if default and "$(" not in default:
+                    run_arguments.check([file.parents[1].name, file.name, f"{name}:={default}"])
+
+
+class Bags(unittest.TestCase):
+    """Recordings of before."""
+
+    def test_one_that_is_replaced_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag = pathlib.Path(folder) / "run.bag"
+            recorder = types.SimpleNamespace(package="rosbag", type="record",
+                                             args=f"--output-name='{bag}' /tf")
+            said = []
+            for _ in range(2):
+                with contextlib.redirect_stdout(io.StringIO()) as output:
+                    run_checks.Outputs([recorder], {}).check_before()
+                said.append(output.getvalue())
+                bag.touch()
+        self.assertEqual(said, ["", f"stg: bag '{bag}' is there already; the recording replaces "
+                                    "it\n"])
+
+
+class WithFolder(unittest.TestCase):
+    """A test with a folder of its own, from which runs are started."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def start(self, *arguments, **options):
+        """Starts a launch; returns (process, address of its master)."""
+        process, environment = launch(self.folder, *arguments, **options)
+        self.addCleanup(stop, process)
+        return process, environment["ROS_MASTER_URI"]
+
+    def script(self, name, *lines):
+        """Returns a program that ends as the launcher, after these lines of shell."""
+        path = self.folder / name
+        path.write_text("\n".join(["#!/bin/sh", *lines, f'exec "{LAUNCH}" "$@"\n']))
+        path.chmod(0o755)
+        return path
+
+
+class Interrupted(WithFolder):
+    """Ctrl-C before everything is started."""
+
+    def check_end(self, process, master):
+        """It ends with what a shell says of Ctrl-C, and leaves nothing behind."""
+        output = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 130, output)
+        self.assertNotIn("Traceback", output)
+        self.assertEqual(processes_with(master), {}, output)
+
+    def test_while_python_itself_loads(self):
+        # It waits for the program to be ready for it.
+        pending = self.script("pending", 'kill -INT "$$"').rename(self.folder / "inner")
+        blocked = self.folder / "blocked"
+        blocked.write_text(f'#!/bin/sh\nexec env --block-signal=INT "{pending}" "$@"\n')
+        blocked.chmod(0o755)
+        self.check_end(*self.start("medium.launch", *ENDLESS, program=blocked))
+
+    def test_while_the_master_and_the_nodes_start(self):
+        for mark in ("auto-starting new master", "setting /run_id", "process[world"):
+            with self.subTest(mark):
+                process, master = self.start("medium.launch", *ENDLESS)
+                for line in process.stdout:
+                    if mark in line:
+                        break
+                process.send_signal(signal.SIGINT)
+                self.check_end(process, master)
+
+
+class Together(WithFolder):
+    """Runs that start at the same moment."""
+
+    def test_of_two_on_one_master_one_is_refused_and_the_other_flies(self):
+        port = free_port()
+        runs = [self.start("medium.launch", *ENDLESS, port=port)[0] for _ in range(2)]
+        end = time.monotonic() + 60.0
+        while all(run.poll() is None for run in runs) and time.monotonic() < end:
+            time.sleep(0.1)
+        (refused,) = (run for run in runs if run.poll() is not None)
+        output = refused.communicate()[0]
+        self.assertEqual(refused.returncode, 1, output)
+        self.assertRegex(output, "stg: the run failed: a node /.* runs already on the master")
+        self.assertNotIn("RLException", output)
+        process_of("/metrics", {"ROS_MASTER_URI": f"http://127.0.0.1:{port}"})
+
+    def test_a_port_has_a_run_of_its_own_whatever_the_environment_says(self):
+        first, one = self.start("view.launch", "rviz:=false")
+        process_of("/markers", {"ROS_MASTER_URI": one})
+        elsewhere = self.script("elsewhere", f"export ROS_MASTER_URI={one}")
+        second, two = self.start("view.launch", "rviz:=false", program=elsewhere)
+        process_of("/markers", {"ROS_MASTER_URI": two})
+        ids = {rosgraph.Master("/test", master_uri=uri).getParam("/run_id") for uri in (one, two)}
+        self.assertEqual(len(ids), 2)
+        self.assertEqual((first.poll(), second.poll()), (None, None))
+
+
+if __name__ == "__main__":
+    unittest.main()
