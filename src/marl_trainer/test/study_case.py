@@ -70,5 +70,9 @@ class StudyCase(unittest.TestCase):
         with open(self.path(*parts), encoding="utf-8") as file:
             return file.read()
 
+    def read_bytes(self, *parts):
+        with open(self.path(*parts), "rb") as file:
+            return file.read()
+
     def rows(self, name):
         return read_rows(self.path(name))

@@ -4,6 +4,7 @@ import fcntl
 import gzip
 import json
 import os
+import re
 import resource
 import shlex
 import shutil
@@ -21,6 +22,8 @@ from study_case import STUDY, StudyCase  # noqa: E402
 from stg_study.files import locked  # noqa: E402  (study_case makes it known)
 from stg_study.jobs import plan  # noqa: E402
 from stg_study.study import load_study  # noqa: E402
+from stg_study.data import Results  # noqa: E402  (found by study_case)
+from stg_common.files import FileError  # noqa: E402
 
 
 class Reproduce(StudyCase):
@@ -275,10 +278,7 @@ class Reproduce(StudyCase):
     def test_damaged_results_are_refused_in_one_line(self):
         self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)
         names = ("episodes.csv.gz", "curves.csv", "runs.csv", "options.csv")
-        whole = {}
-        for name in names:
-            with open(self.path(name), "rb") as file:
-                whole[name] = file.read()
+        whole = {name: self.read_bytes(name) for name in names}
         curves = whole["curves.csv"].decode()
         episodes = gzip.decompress(whole["episodes.csv.gz"])
         for name, content, what in (
@@ -290,16 +290,44 @@ class Reproduce(StudyCase):
              r"episodes.csv.gz:\d+: seed: 'x'"),
             ("curves.csv", curves.replace("stg,0,100,", "stg,0,100,many,", 1), r"curves.csv:\d+: "),
             ("curves.csv", curves.replace("stg,0,100,", "stg,0,many,", 1), "env_steps: 'many'"),
-            ("curves.csv", curves.replace(",tail_distance", ",distance"), "no column tail_distance"),
             ("curves.csv", b"\xff\n", "curves.csv:1: is not text"),
             ("runs.csv", "a,b\n", "runs.csv:1: no column scenario"),
             ("options.csv", "method,option,value\nstg,lr\n", "options.csv:2: 2 cells"),
         ):
             with open(self.path(name), "wb") as file:
                 file.write(content if isinstance(content, bytes) else content.encode())
-            self.refused(what, "--report-only")
+            with self.assertRaisesRegex(FileError, what):
+                Results(self.out).scores("medium_release", "nominal", "stg", "return")
             with open(self.path(name), "wb") as file:
                 file.write(whole[name])
+        with open(self.path("curves.csv"), "w", encoding="utf-8") as file:
+            file.write(curves.replace(",tail_distance", ",distance"))
+        self.refused("curves.csv:1: no column tail_distance", "--report-only")
+
+    def test_reports_of_less_than_the_study_asks_for(self):
+        """Results without a seed, a condition, or any validation that two seeds have in common."""
+        self.assertEqual(self.reproduce()[0], 0)
+        episodes = gzip.decompress(self.read_bytes("episodes.csv.gz")).decode().splitlines(True)
+        curves = self.read("curves.csv").splitlines(True)
+        few = [line for line in episodes if "combined_stress" not in line and ",pursuit,0," not in line]
+        apart = [line for k, line in enumerate(curves) if not k or k % 2 == int(line.split(",")[2])]
+        for rows in (few, episodes[:1]):
+            with open(self.path("episodes.csv.gz"), "wb") as file:
+                file.write(gzip.compress("".join(rows).encode()))
+            with open(self.path("curves.csv"), "w", encoding="utf-8") as file:
+                file.writelines(apart)
+            status, output, _ = self.reproduce_all("--report-only")
+            self.assertEqual(status, 0, output)
+            page = self.read("medium_release.md")
+            seeds = re.findall(r"^\| pursuit \(tuned\) \| (\d+) \| – \|", page, re.MULTILINE)
+            self.assertEqual(seeds, ["1"] if rows is few else [])
+
+    def test_labels_that_cannot_be_drawn_are_refused(self):
+        self.assertEqual(self.reproduce("--no-training")[0], 0)
+        text = self.read("study.yaml").replace("label: STG-MAPPO", "label: $\\frac{$")
+        with open(self.path("study.yaml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        self.refused(r"study.yaml: methods.stg.label: ", "--report-only")
 
     def test_a_reader_that_leaves_ends_it_without_a_word(self):
         command = " ".join(map(shlex.quote, self.command("--no-report", "--no-training")))

@@ -67,6 +67,7 @@ class Draws(unittest.TestCase):
             ({"algorithms": {"mappo": {"lr": {"log": [1.0, math.inf]}}}}, "mappo.lr"),
             ({"algorithms": {"mappo": {"lr": [[1]]}}}, "mappo.lr"),
             ({"algorithms": {"../mappo": {}}}, "../mappo"),
+            ({"algorithms": {"mappo": {None: [1]}}}, "mappo.None"),
             ({"fixed": {"mappo": 3}}, "fixed.mappo"),
             ({"fixed": {"mappo": {"lr": []}}}, "fixed.mappo.lr"),
         ):

@@ -103,4 +103,4 @@ def main():
 
 
 if __name__ == "__main__":
-    run_program("view", main)
+    run_program("view", main, rospkg.ResourceNotFound)

@@ -104,6 +104,10 @@ class Results:
         episodes = min(len(row) for row in rows)
         return np.array([row[:episodes] for row in rows])
 
+    def evaluated_seeds(self, scenario, condition, method):
+        """The seeds of the rows of scores()."""
+        return sorted(key[3] for key in self._scores if key[:3] == (scenario, condition, method))
+
     def option(self, method, name):
         """An option of a method's training as text, empty where it has none of that name."""
         return self._options.get(method, {}).get(name, "")

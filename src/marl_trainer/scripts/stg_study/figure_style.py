@@ -6,10 +6,13 @@ import os
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the backend)
+import matplotlib.cbook  # noqa: E402  (after the backend)
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.mathtext import MathTextParser  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from stg_study.files import write_atomically  # noqa: E402
+from stg_study.study import StudyError  # noqa: E402
 
 # Okabe and Ito's colours, which the colour-blind can tell apart.
 OTHER_COLOURS = ["#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9"]
@@ -66,6 +69,18 @@ def colours(study):
     return table
 
 
+def check_labels(study, name):
+    """Refuses labels with formulas that cannot be drawn; `name` is that of the study's file."""
+    for key, entries in (("methods", study.methods), ("controllers", study.controllers)):
+        for entry in entries:
+            try:
+                if matplotlib.cbook.is_math_text(entry.label):
+                    MathTextParser("path").parse(entry.label)
+            except ValueError:
+                where = f"{name}: {key}.{entry.name}.label"
+                raise StudyError(f"{where}: '{entry.label}' holds no formula between its $") from None
+
+
 def logarithmic(axis, low, high):
     """A logarithmic y axis from below `low` to above `high`, with at least three plain numbers."""
     low, high = low / 1.25, high * 1.25
@@ -101,7 +116,10 @@ def save(figure, folder, name):
 
 
 def legend_below(figure, handles, labels, columns=4):
-    """One legend for all panels, whole, under them; lays the figure out above it."""
+    """One legend for all panels, whole, under them, or none of nothing; lays the figure out above it."""
+    if not labels:
+        figure.tight_layout()
+        return
     figure.canvas.draw()
     width = figure.bbox.width
     for count in range(min(columns, len(labels)), 0, -1):

@@ -25,7 +25,8 @@ FLOOR = 1e-4  # of logarithmic axes
 
 
 def curve_band(results, scenario, method, metric, scale=1.0):
-    """Steps, mean and std over seeds at the validations that all seeds have; None without any."""
+    """Steps, mean and std over seeds at the validations that all seeds have; None where there are
+    none."""
     seeds = results.seeds(scenario, method)
     if not seeds:
         return None
@@ -39,6 +40,8 @@ def curve_band(results, scenario, method, metric, scale=1.0):
         for seed in seeds
     ]
     steps = sorted(set.intersection(*(set(c) for c in curves)))
+    if not steps:
+        return None
     values = scale * np.array([[curve[s] for s in steps] for curve in curves])
     std = values.std(axis=0, ddof=1) if len(seeds) > 1 else np.zeros(len(steps))
     return np.array(steps), values.mean(axis=0), std
@@ -176,7 +179,8 @@ def reward_components(study, results, scenario, folder):
             axis.fill_between(steps, mean - std, mean + std, color=shade, alpha=0.18, lw=0)
             axis.plot(steps, mean, color=shade, lw=1.6, label=label)
         step_axis(axis)
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=3)
+        if axis.lines:
+            axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=3)
     axes[0].set_title("Reward terms before weighting")
     axes[0].set_ylabel("mean over decisions and AUVs")
     axes[1].set_title("Control diagnostics")

@@ -2,7 +2,7 @@
 
 import os
 
-from stg_study import figures_bars, figures_curves, figures_scores, tables, tables_cost
+from stg_study import figure_style, figures_bars, figures_curves, figures_scores, tables, tables_cost
 from stg_study.data import Paper, Results
 from stg_study.files import write_atomically
 
@@ -124,6 +124,7 @@ def scenario_page(study, results, paper, scenario, folder):
 
 def write_report(study, folder):
     """Writes report.md, a page for each scenario and the figures from the CSVs in `folder`."""
+    figure_style.check_labels(study, os.path.join(folder, "study.yaml"))
     results, paper = Results(folder), Paper()
     overview = [f"# {study.title}\n"]
     if study.notes:

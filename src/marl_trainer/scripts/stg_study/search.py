@@ -50,6 +50,8 @@ def load_search(path):
             if not isinstance(options, dict):
                 raise StudyError(f"{where}: must be a mapping")
             for option, value in options.items():
+                if not isinstance(option, str):
+                    raise StudyError(f"{where}.{option}: is no name of an option")
                 if key == "algorithms":
                     _check_source(f"{where}.{option}", value)
                 elif not is_option(option, value):

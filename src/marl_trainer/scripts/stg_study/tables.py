@@ -140,7 +140,6 @@ def seed_table(study, results, paper, scenario, table):
                 scale = 1.0 / study.agents if metric == "return" else 1.0
                 row.append(cell((sum(values) / len(values), None), digits, scale))
             rows.append(row)
-    seeds = study.seeds_of(next(s for s in study.scenarios if s.name == scenario))
     for controller in study.controllers:
         scores = {
             metric: results.scores(scenario, "nominal", controller.name, metric)
@@ -148,8 +147,9 @@ def seed_table(study, results, paper, scenario, table):
         }
         if scores["return"] is None:
             continue
-        for block, _ in enumerate(scores["return"]):
-            row = [controller.label, seeds[block], NOTHING]
+        seeds = results.evaluated_seeds(scenario, "nominal", controller.name)
+        for block, seed in enumerate(seeds):
+            row = [controller.label, seed, NOTHING]
             for _, metric, digits in columns:
                 scale = 1.0 / study.agents if metric == "return" else 1.0
                 row.append(cell((scores[metric][block].mean(), None), digits, scale))
