@@ -6,19 +6,24 @@ says how large the region is and how far AUVs stay from their target, and the ca
 follow. Everything else is the view as shipped.
 """
 
-import argparse
 import os
-import pathlib
 import signal
-import subprocess
-import sys
-import tempfile
-import threading
 
-import rospkg
-import rospy
-import std_msgs.msg
-import yaml
+if __name__ == "__main__":  # Ctrl-C is blocked until here, see view.launch
+    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+
+import argparse  # noqa: E402
+import pathlib  # noqa: E402
+import subprocess  # noqa: E402
+import sys  # noqa: E402
+import tempfile  # noqa: E402
+import threading  # noqa: E402
+
+import rospkg  # noqa: E402
+import rospy  # noqa: E402
+import std_msgs.msg  # noqa: E402
+import yaml  # noqa: E402
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 # rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
