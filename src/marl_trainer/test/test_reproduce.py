@@ -146,12 +146,17 @@ class Reproduce(StudyCase):
 
     def test_a_closed_terminal_stops_it_as_ctrl_c_does(self):
         ours, terminal = os.openpty()
+
+        def take_terminal():
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)  # the tests themselves may run under nohup
+            fcntl.ioctl(terminal, termios.TIOCSCTTY, 0)
+
         process, run = self.start(
             start_new_session=True,
             stdin=terminal,
             stdout=terminal,
             stderr=subprocess.STDOUT,
-            preexec_fn=lambda: fcntl.ioctl(terminal, termios.TIOCSCTTY, 0),
+            preexec_fn=take_terminal,
         )
         os.close(terminal)
         os.close(ours)  # what it says now has nowhere to go

@@ -77,8 +77,13 @@ class Train(unittest.TestCase):
 
     def test_a_closed_terminal_makes_it_save(self):
         ours, terminal = os.openpty()
+
+        def take_terminal():
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)  # the tests themselves may run under nohup
+            fcntl.ioctl(terminal, termios.TIOCSCTTY, 0)
+
         process = self.start("--steps", "100000000", start_new_session=True, stdout=terminal,
-                             preexec_fn=lambda: fcntl.ioctl(terminal, termios.TIOCSCTTY, 0))
+                             preexec_fn=take_terminal)
         os.close(terminal)
         self.wait_for_rows(process)
         os.close(ours)
