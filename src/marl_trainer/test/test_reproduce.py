@@ -1,6 +1,5 @@
 """Tests of the reproduce command with stand-ins for the programs it runs."""
 
-import fcntl
 import gzip
 import json
 import os
@@ -11,12 +10,12 @@ import shutil
 import signal
 import subprocess
 import sys
-import termios
 import time
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
+import hangups  # noqa: E402
 import stub_programs  # noqa: E402
 from study_case import STUDY, StudyCase  # noqa: E402
 from stg_study.files import locked  # noqa: E402  (study_case makes it known)
@@ -146,17 +145,12 @@ class Reproduce(StudyCase):
 
     def test_a_closed_terminal_stops_it_as_ctrl_c_does(self):
         ours, terminal = os.openpty()
-
-        def take_terminal():
-            signal.signal(signal.SIGHUP, signal.SIG_DFL)  # the tests themselves may run under nohup
-            fcntl.ioctl(terminal, termios.TIOCSCTTY, 0)
-
         process, run = self.start(
             start_new_session=True,
             stdin=terminal,
             stdout=terminal,
             stderr=subprocess.STDOUT,
-            preexec_fn=take_terminal,
+            preexec_fn=hangups.takes(terminal),
         )
         os.close(terminal)
         os.close(ours)  # what it says now has nowhere to go
@@ -165,10 +159,8 @@ class Reproduce(StudyCase):
         self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.ckpt")))
 
     def test_a_hangup_that_nohup_ignores_is_ignored(self):
-        process, _ = self.start(preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
-        with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
-            (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
-        self.assertTrue(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)
+        process, _ = self.start(preexec_fn=hangups.ignore)
+        self.assertTrue(hangups.ignored_by(process.pid))
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)

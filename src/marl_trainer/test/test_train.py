@@ -1,7 +1,6 @@
 """The train command as a user runs it: interrupted, resumed, and refused."""
 
 import csv
-import fcntl
 import hashlib
 import json
 import os
@@ -9,12 +8,16 @@ import pathlib
 import re
 import signal
 import subprocess
+import sys
 import tempfile
-import termios
 import time
 import unittest
 
 import roslib.packages
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+
+import hangups  # noqa: E402
 
 SMALL = ["--scenario", "medium_release", "--envs", "4", "--horizon", "25", "--minibatch", "100",
          "--actor-hidden", "8", "--critic-hidden", "8", "--workers", "1"]
@@ -77,13 +80,8 @@ class Train(unittest.TestCase):
 
     def test_a_closed_terminal_makes_it_save(self):
         ours, terminal = os.openpty()
-
-        def take_terminal():
-            signal.signal(signal.SIGHUP, signal.SIG_DFL)  # the tests themselves may run under nohup
-            fcntl.ioctl(terminal, termios.TIOCSCTTY, 0)
-
         process = self.start("--steps", "100000000", start_new_session=True, stdout=terminal,
-                             preexec_fn=take_terminal)
+                             preexec_fn=hangups.takes(terminal))
         os.close(terminal)
         self.wait_for_rows(process)
         os.close(ours)
@@ -93,12 +91,9 @@ class Train(unittest.TestCase):
         self.assertEqual(status, 0, output)
 
     def test_a_hangup_that_nohup_ignores_is_ignored(self):
-        process = self.start("--steps", "100000000",
-                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        process = self.start("--steps", "100000000", preexec_fn=hangups.ignore)
         self.wait_for_rows(process)
-        with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
-            (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
-        self.assertTrue(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)
+        self.assertTrue(hangups.ignored_by(process.pid))
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130)

@@ -20,6 +20,13 @@ def one_line(text):
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in str(text))
 
 
+def told(error):
+    """An error in words: which file, and what is wrong with it."""
+    filename = getattr(error, "filename", None)
+    reason = getattr(error, "strerror", None) or error
+    return str(reason) if filename is None else f"{filename}: {reason}"
+
+
 class FileError(Exception):
     """Why a file cannot be used; the message is one line that names it, and its line if known."""
 

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 
-from stg_common.files import FileError, one_line
+from stg_common.files import FileError, one_line, told
 
 NOBODY_READS = 128 + signal.SIGPIPE  # the exit status that a shell gives programs which SIGPIPE ended
 
@@ -57,9 +57,7 @@ def run_program(name, main, *refusals, status=2, system_status=None):
     except (FileError, *refusals) as error:
         code = _refuse(name, error, status)
     except OSError as error:
-        place = "" if error.filename is None else f"{error.filename}: "
-        what = f"{place}{error.strerror or error}"
-        code = _refuse(name, what, status if system_status is None else system_status)
+        code = _refuse(name, told(error), status if system_status is None else system_status)
     sys.exit(code)
 
 

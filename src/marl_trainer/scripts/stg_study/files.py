@@ -35,9 +35,3 @@ def locked(path):
             reason = "another program is writing into it"
             raise BlockingIOError(errno.EWOULDBLOCK, reason, path) from error
         yield
-
-
-def told(error):
-    """An error in words: which file, and what is wrong with it."""
-    filename = getattr(error, "filename", None)
-    return f"{filename}: {error.strerror}" if filename else str(error)

@@ -5,8 +5,7 @@ import signal
 import subprocess
 import time
 
-from stg_common.files import FileError
-from stg_study.files import told
+from stg_common.files import FileError, told
 
 # What tells a process that mpirun or srun started it; our jobs are started by us.
 LAUNCHERS = ("OMPI_", "PMIX_", "PMI_")
