@@ -14,13 +14,18 @@ METRICS = [
 COMMON = f"""#!/usr/bin/python3
 import hashlib, json, math, os, random, signal, sys, time
 METRICS = {METRICS!r}
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+def seed_by(path, *more):
+    # The folder of a test has another name in every run; what lies in it has not.
+    random.seed(" ".join([os.path.relpath(path, HERE), *more]))
 
 def option(name, default=None):
     return sys.argv[sys.argv.index(name) + 1] if name in sys.argv else default
 
-with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "calls"), "a") as calls:
+with open(os.path.join(HERE, "calls"), "a") as calls:
     calls.write(os.path.basename(__file__) + " " + " ".join(sys.argv[1:]) + "\\n")
-with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "parents"), "a") as parents:
+with open(os.path.join(HERE, "parents"), "a") as parents:
     parents.write(str(os.getppid()) + "\\n")
 if any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK")):
     sys.exit("this stub is taken for a rank")
@@ -47,7 +52,7 @@ level = LEVEL[option("--variant", "stg")]
 config = os.path.join(out, "config.json")
 if "--resume" not in sys.argv and os.path.exists(config):
     sys.exit("holds another run")
-random.seed(out)
+seed_by(out)
 os.makedirs(out, exist_ok=True)
 algorithm = option("--algorithm", "mappo")
 open(config, "w").write(json.dumps({"algorithm": algorithm, "gamma": 0.9, "lr": 0.003}))
@@ -98,7 +103,7 @@ quality -= {"nominal": 0.0, "combined_stress": 0.05}.get(option("--condition"), 
 if policy == "idle":
     quality = 0.2
 first = int(option("--seed"))
-random.seed(policy + option("--condition") + str(first))
+seed_by(policy, option("--condition"), str(first))
 rows = [sample(quality, random.gauss(0, 1)) for _ in range(count)]
 with open(csv, "w") as file:
     file.write(",".join(["episode", "seed"] + METRICS) + "\\n")

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import yaml
 
@@ -126,6 +127,15 @@ class Tune(unittest.TestCase):
             self.assertEqual(chosen[algorithm], trial)
         self.assertEqual(self.tune().returncode, 0)
         self.assertEqual(stub_programs.calls(self.folder), [])
+
+    def test_the_table_has_the_digits_that_the_choice_was_made_from(self):
+        scores = [search.Score(value, 0.0, 1.0) for value in (1000.01, 1000.02, 1000.04, 1000.03)]
+        with mock.patch.object(search, "score_of", lambda score: score):
+            search.write_search(sample(), {"masac": scores}, self.folder)
+        with open(os.path.join(self.folder, "trials.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["chosen"] for row in rows], ["0", "0", "1", "0"])
+        self.assertEqual(max(rows, key=lambda row: float(row["return"])), rows[2])
 
     def test_damaged_runs_are_refused_in_one_line(self):
         self.assertEqual(self.tune("--algorithms", "masac").returncode, 0)

@@ -170,10 +170,12 @@ def write_search(search, trainings, out):
         missing += scores.count(None)
         for k, (options, score) in enumerate(zip(trials_of(search, algorithm), scores)):
             text = " ".join(f"--{name} {value}" for name, value in options.items())
-            cells = ["", "", ""]
+            # The table keeps the digits that the choice was made from; the page rounds.
+            figures, cells = ["", "", ""], ["", "", ""]
             if score is not None:
+                figures = [f"{value:.9g}" for value in dataclasses.astuple(score)]
                 cells = [f"{score.value:.1f}", f"{score.lost_rate:.4f}", f"{score.wall_seconds:.1f}"]
-            rows.append((algorithm, k, text, *cells, int(k == best)))
+            rows.append((algorithm, k, text, *figures, int(k == best)))
             mark = "**" if k == best else ""
             cells = [f"{mark}{cell or '–'}{mark}" for cell in cells]
             page.append(f"| {algorithm} | {k} | {text or 'the preset'} | " + " | ".join(cells) + " |")
