@@ -211,7 +211,13 @@ void Trainer::Iterate(TrainRecord* record) {
   const CollectionReport collected = collector_.Collect(
       static_cast<std::uint32_t>(state_.collections), context.imitation > 0.0, algorithm_.get());
   const Stopwatch watch;
-  UpdateReport report = algorithm_->Update(context);
+  UpdateReport report;
+  try {
+    report = algorithm_->Update(context);
+  } catch (const UserError& error) {
+    throw UserError(options_.out + ": after " + std::to_string(state_.env_steps) +
+                    " steps: " + error.what());
+  }
   record->update_seconds = watch.seconds();
   ++state_.collections;
   state_.env_steps += static_cast<std::int64_t>(config.envs) * config.horizon;
