@@ -66,6 +66,24 @@ TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
   }
 }
 
+TEST_F(TrainerTest, EpisodesReachTheirEndAlsoWhereTheHorizonDoesNotDivideThem) {
+  TrainSetup setup = SmallSetup();
+  setup.common.horizon = 30;  // two collections for an episode of 40
+  setup.common.steps = 5760;  // six collections
+  Trainer(ShortScenario(), setup, Options("run")).Run();
+  std::istringstream csv(Bytes(folder_ / "run" / "progress.csv"));
+  std::string line;
+  std::getline(csv, line);
+  std::vector<int> ended;
+  while (std::getline(csv, line)) {
+    std::istringstream row(line);
+    std::string cell;
+    for (int column = 0; column < 4; ++column) std::getline(row, cell, ',');
+    ended.push_back(std::stoi(cell));
+  }
+  EXPECT_EQ(ended, (std::vector<int>{0, 32, 0, 32, 0, 32}));
+}
+
 TEST_F(TrainerTest, StopSavesAfterTheCollectionAndLeavesALoadablePolicy) {
   const std::atomic<int> stop{2};
   Trainer::Options options = Options("run");

@@ -255,9 +255,12 @@ void Trainer::RunValidation(TrainRecord* record) {
 
 void Trainer::AlignEpisodes(bool force) {
   const TrainConfig& config = setup_.common;
-  const int episode = std::max(1, scenario_.time.episode_steps / config.horizon);
-  // Cutting staggered episodes at every boundary would undo the staggering.
-  const int every = config.stagger ? 2 * episode : episode;
+  const int whole = scenario_.time.episode_steps / config.horizon;
+  // Cutting staggered episodes at every boundary would undo the staggering. Others must reach
+  // their end before they are cut, also where the horizon does not divide them.
+  const int every = config.stagger
+                        ? 2 * std::max(1, whole)
+                        : (scenario_.time.episode_steps + config.horizon - 1) / config.horizon;
   if (state_.collections % every != 0 && !force) return;
   state_.round = collector_.round();
   if (config.stagger || !collector_.at_episode_start()) {
