@@ -47,6 +47,13 @@ class Draws(unittest.TestCase):
         self.assertLess(abs(below - 19.5), 4.0 * 39**0.5 / 2.0)
         self.assertEqual({trial["epochs"] for trial in trials[1:]}, {2, 3})
 
+    def test_rounding_does_not_leave_a_narrow_interval(self):
+        # Two digits of these are 0.99, which is below, and 1, which is above.
+        narrow = sample(algorithms={"masac": {"gamma": {"log": [0.992, 0.998]}}}, trials=40)
+        drawn = [trial["gamma"] for trial in search.trials_of(narrow, "masac")[1:]]
+        self.assertTrue(all(0.992 <= gamma <= 0.998 for gamma in drawn), drawn)
+        self.assertEqual(len(set(drawn)), len(drawn))
+
     def test_draws_depend_on_the_seed_and_on_no_other_algorithm(self):
         alone = sample(algorithms={"mappo": sample().algorithms["mappo"]})
         self.assertEqual(search.trials_of(alone, "mappo"), search.trials_of(sample(), "mappo"))

@@ -138,6 +138,8 @@ class Cells(unittest.TestCase):
     def test_tables_are_complete_rows_of_markdown(self):
         text = tables.markdown(["Algorithm", "Return"], [["A", 1.5]])
         self.assertEqual(text, "| Algorithm | Return |\n|---|---:|\n| A | 1.5 |\n")
+        text = tables.markdown(["|e|"], [["a|"]])
+        self.assertEqual(text, "| \\|e\\| |\n|---:|\n| a\\| |\n")
         with self.assertRaises(ValueError):
             tables.markdown(["Algorithm", "Return"], [["A"]])
 

@@ -17,7 +17,7 @@ from stg_study.collect import csv_text
 from stg_study.statistics import final_stage
 from stg_study.study import Method, ScenarioEntry, Study, StudyError, build, is_name, is_option
 
-LOG_DIGITS = 2  # significant digits of a value drawn from an interval
+LOG_DIGITS = 2  # significant digits of a value drawn from an interval, where they lie in it
 
 
 @dataclasses.dataclass
@@ -72,12 +72,14 @@ def _check_source(where, source):
 
 
 def draw(source, generator):
-    """One value of a list, or of an interval evenly in the logarithm."""
+    """One value of a list, or of an interval evenly in the logarithm, with LOG_DIGITS significant
+    digits unless they lie outside of the interval."""
     if isinstance(source, list):
         return generator.choice(source)
     low, high = source["log"]
     value = math.exp(generator.uniform(math.log(low), math.log(high)))
-    return float(f"{value:.{LOG_DIGITS}g}")
+    rounded = float(f"{value:.{LOG_DIGITS}g}")
+    return rounded if low <= rounded <= high else min(max(value, low), high)
 
 
 def trials_of(search, algorithm):

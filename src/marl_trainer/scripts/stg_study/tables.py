@@ -57,14 +57,19 @@ def cell(value, digits, scale=1.0):
     return text if std is None else f"{text} ± {std * scale:.{digits}f}"
 
 
+def _line(cells):
+    """A line of a Markdown table; a label may hold the sign that ends a cell."""
+    return "| " + " | ".join(str(value).replace("|", "\\|") for value in cells) + " |"
+
+
 def markdown(header, rows):
     """A Markdown table with its numbers aligned to the right."""
     rules = ["---" if name in TEXT_COLUMNS else "---:" for name in header]
-    lines = ["| " + " | ".join(header) + " |", "|" + "|".join(rules) + "|"]
+    lines = [_line(header), "|" + "|".join(rules) + "|"]
     for row in rows:
         if len(row) != len(header):
             raise ValueError(f"{len(row)} cells in a table of {len(header)} columns: {row}")
-        lines.append("| " + " | ".join(str(value) for value in row) + " |")
+        lines.append(_line(row))
     return "\n".join(lines) + "\n"
 
 

@@ -1,6 +1,7 @@
 #include "marl_trainer/learn/options.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <type_traits>
 
@@ -12,11 +13,17 @@ namespace {
 
 constexpr std::size_t kMaxList = 7;  // as many hidden layers as a policy file may have
 
+/// Shortest text that reads back as the same number: bounds reach from 1e-12 to 1e12.
+std::string Text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general).ptr;
+  return {text, end};
+}
+
 void RequireRange(const Option& option, double value) {
-  RequireOption(std::isfinite(value) && value >= option.range.lo && value <= option.range.hi,
-                option.name,
-                std::to_string(value) + " is not in [" + std::to_string(option.range.lo) + ", " +
-                    std::to_string(option.range.hi) + "]");
+  RequireOption(
+      std::isfinite(value) && value >= option.range.lo && value <= option.range.hi, option.name,
+      Text(value) + " is not in [" + Text(option.range.lo) + ", " + Text(option.range.hi) + "]");
 }
 
 struct RangeCheck {

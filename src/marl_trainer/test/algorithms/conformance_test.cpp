@@ -7,6 +7,7 @@
 #include "algorithms/game.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithm_config.hpp"
+#include "marl_trainer/learn/nn/gaussian_actor.hpp"
 
 /// What every registered algorithm promises, whatever it learns.
 namespace stg::learn {
@@ -78,6 +79,21 @@ TEST_P(Conformance, ExportsThePolicyThatItFlies) {
     }
   }
   EXPECT_TRUE(moves);
+}
+
+TEST(Export, AFileHasTheLeastSpreadWhereTheScaleMakesItSmaller) {
+  Game game = AnyGame();
+  agent::PolicyMetadata metadata;
+  metadata.observation_layout = metadata.action_interface = "any";
+  const auto spread = [&](const std::string& name, const nlohmann::json& options) {
+    Training training(game, GameSetup(name, options));
+    return training.algorithm().Policies(metadata).front().parameters().log_std[0];
+  };
+  game.scale = 0.05;  // log: -3.0
+  EXPECT_EQ(spread("masac", {{"min-log-std", -20.0}, {"max-log-std", -19.9}}), kNoSpread);
+  EXPECT_NEAR(spread("masac", {{"min-log-std", -10.0}, {"max-log-std", -9.9}}), -12.95F, 0.06F);
+  game.scale = 1e-8;
+  EXPECT_EQ(spread("maddpg", {{"noise-min", 1e-3}}), kNoSpread);
 }
 
 /// As GameSetup, but that all environments explore alike.

@@ -125,6 +125,18 @@ TEST(TrainSetup, NamesTheOptionWithABadValue) {
   EXPECT_NE(Refusal(setup).find("--wall-units"), std::string::npos);
 }
 
+TEST(TrainSetup, TellsTheBoundsOfARangeHoweverSmall) {
+  TrainSetup setup("mappo", "fast");
+  Own(setup).lr = 0.0;
+  EXPECT_EQ(Refusal(setup), "--lr: 0 is not in [1e-08, 1]");
+  setup = TrainSetup("mappo", "fast");
+  Own(setup).adam_eps = 5e-13;
+  EXPECT_EQ(Refusal(setup), "--adam-eps: 5e-13 is not in [1e-12, 1]");
+  setup = TrainSetup("mappo", "fast");
+  setup.common.envs = 65537;
+  EXPECT_EQ(Refusal(setup), "--envs: 65537 is not in [1, 65536]");
+}
+
 TEST(TrainSetup, AnUnknownAlgorithmOrPresetIsToldWhatThereIs) {
   try {
     TrainSetup("mapo", "fast");

@@ -4,6 +4,7 @@
 #include "auv_common/error.hpp"
 #include "learn/trainer_fixture.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
+#include "marl_trainer/learn/algorithms/masac/masac_config.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
 #include "marl_trainer/learn/variants.hpp"
 
@@ -63,6 +64,24 @@ TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
     EXPECT_EQ(Bytes(folder_ / ("whole" + name) / "policy_last.onnx"),
               Bytes(folder_ / ("halves" + name) / "policy_last.onnx"));
   }
+}
+
+TEST_F(TrainerTest, EpisodesReachTheirEndAlsoWhereTheHorizonDoesNotDivideThem) {
+  TrainSetup setup = SmallSetup();
+  setup.common.horizon = 30;  // two collections for an episode of 40
+  setup.common.steps = 5760;  // six collections
+  Trainer(ShortScenario(), setup, Options("run")).Run();
+  std::istringstream csv(Bytes(folder_ / "run" / "progress.csv"));
+  std::string line;
+  std::getline(csv, line);
+  std::vector<int> ended;
+  while (std::getline(csv, line)) {
+    std::istringstream row(line);
+    std::string cell;
+    for (int column = 0; column < 4; ++column) std::getline(row, cell, ',');
+    ended.push_back(std::stoi(cell));
+  }
+  EXPECT_EQ(ended, (std::vector<int>{0, 32, 0, 32, 0, 32}));
 }
 
 TEST_F(TrainerTest, StopSavesAfterTheCollectionAndLeavesALoadablePolicy) {
@@ -173,6 +192,34 @@ TEST_F(TrainerTest, AFolderThatATrainingWritesIntoIsRefusedToOthers) {
   refused(false);
   ASSERT_TRUE(first.Run());
   refused(true);
+}
+
+TEST_F(TrainerTest, ATrainingThatDivergesSaysSoAndKeepsItsLastGoodCheckpoint) {
+  TrainSetup setup("masac", "fast");
+  auto& own = dynamic_cast<MasacConfig&>(*setup.own);
+  own.warmup = 0;
+  own.batch = 16;
+  own.replayed = 16.0;  // a gradient step each step
+  own.alpha_lr = 1.0;
+  own.target_entropy = 1.0;  // more than the uniform density has: alpha grows without end
+  own.actor_hidden = own.critic_hidden = {8};
+  setup.common.envs = 4;
+  setup.common.horizon = 20;
+  setup.common.checkpoint_interval = 1;
+  setup.common.keep_checkpoints = 1;
+  setup.common.steps = 1600;
+  const Trainer::Options options = Options("run");
+  try {
+    Trainer(ShortScenario(), setup, options).Run();
+    ADD_FAILURE() << "alpha stayed finite";
+  } catch (const UserError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(what.find(options.out + ": after "), 0U) << what;
+    EXPECT_NE(what.find("the training diverged"), std::string::npos) << what;
+  }
+  const std::optional<TrainState> good = LoadNewestCheckpoint(options.out, &log_);
+  ASSERT_TRUE(good.has_value()) << log_.str();
+  EXPECT_GE(good->env_steps, 80);
 }
 
 TEST_F(TrainerTest, ProgressFileHasOneRowPerCollectionAlsoAfterResuming) {

@@ -40,7 +40,8 @@ agent::Policy GaussianActor::ToPolicy(const float* parameters, const Normaliser&
     layer.bias = Eigen::Map<const Eigen::VectorXf>(parameters + mean_.bias_offset(l), outputs);
     p.layers.push_back(std::move(layer));
   }
-  p.log_std = Eigen::Map<const Eigen::VectorXf>(parameters + log_std_offset(), action_size());
+  p.log_std = Eigen::Map<const Eigen::VectorXf>(parameters + log_std_offset(), action_size())
+                  .cwiseMax(kNoSpread);
   metadata.action_scale = static_cast<double>(action_scale());
   p.metadata = std::move(metadata);
   return agent::Policy(std::move(p));

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "auv_common/error.hpp"
+
 namespace stg::learn {
 
 SlicedGradient::SlicedGradient(std::size_t parameters, WorkerPool* pool)
@@ -72,7 +74,9 @@ void SlicedGradient::Compute(const std::vector<int>& bounds, const Part& part) {
 double SlicedGradient::Apply(const Adam& adam, std::size_t begin, std::size_t end,
                              double learning_rate, double limit, float* parameters) const {
   const double norm = GradientNorm(sum_.data(), begin, end);
-  assert(std::isfinite(norm));
+  if (!std::isfinite(norm)) {
+    throw UserError("the training diverged: a gradient is not finite (smaller learning rates?)");
+  }
   const float shrink = ShrinkTo(limit, norm);
   ForRanges(end - begin, [&](std::size_t from, std::size_t to) {
     adam.Apply(begin + from, begin + to, learning_rate, shrink, sum_.data(), parameters);

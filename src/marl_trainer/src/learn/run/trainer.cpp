@@ -211,7 +211,13 @@ void Trainer::Iterate(TrainRecord* record) {
   const CollectionReport collected = collector_.Collect(
       static_cast<std::uint32_t>(state_.collections), context.imitation > 0.0, algorithm_.get());
   const Stopwatch watch;
-  UpdateReport report = algorithm_->Update(context);
+  UpdateReport report;
+  try {
+    report = algorithm_->Update(context);
+  } catch (const UserError& error) {
+    throw UserError(options_.out + ": after " + std::to_string(state_.env_steps) +
+                    " steps: " + error.what());
+  }
   record->update_seconds = watch.seconds();
   ++state_.collections;
   state_.env_steps += static_cast<std::int64_t>(config.envs) * config.horizon;
@@ -249,9 +255,12 @@ void Trainer::RunValidation(TrainRecord* record) {
 
 void Trainer::AlignEpisodes(bool force) {
   const TrainConfig& config = setup_.common;
-  const int episode = std::max(1, scenario_.time.episode_steps / config.horizon);
-  // Cutting staggered episodes at every boundary would undo the staggering.
-  const int every = config.stagger ? 2 * episode : episode;
+  const int whole = scenario_.time.episode_steps / config.horizon;
+  // Cutting staggered episodes at every boundary would undo the staggering. Others must reach
+  // their end before they are cut, also where the horizon does not divide them.
+  const int every = config.stagger
+                        ? 2 * std::max(1, whole)
+                        : (scenario_.time.episode_steps + config.horizon - 1) / config.horizon;
   if (state_.collections % every != 0 && !force) return;
   state_.round = collector_.round();
   if (config.stagger || !collector_.at_episode_start()) {

@@ -9,6 +9,9 @@
 
 namespace stg::learn {
 
+/// Least log sigma that a policy file can hold: no spread at all.
+constexpr float kNoSpread = -20.0F;
+
 /// The actor of Eq. 37: a Gaussian whose mean is a network of one AUV's normalised observation,
 /// squashed to the action's scale, with a standard deviation that does not depend on the state.
 /// Parameters in one flat array: the network, then log sigma [action_size].
@@ -29,7 +32,8 @@ class GaussianActor {
   void Initialise(std::uint64_t seed, std::uint32_t network, double log_std,
                   float* parameters) const;
 
-  /// The policy that `parameters` and the observation normaliser make.
+  /// The policy that `parameters` and the observation normaliser make; a log sigma below kNoSpread,
+  /// of a small action scale, is kNoSpread there.
   agent::Policy ToPolicy(const float* parameters, const Normaliser& observations,
                          agent::PolicyMetadata metadata) const;
   /// Writes the parameters of a policy of the same shape.

@@ -42,7 +42,9 @@ class SlicedGradient {
                  const std::function<void(std::size_t, std::size_t)>& work) const;
 
   /// One step of Adam on parameters[begin, end) with its gradient clipped to norm `limit`; `adam`
-  /// has moved on to this step. Returns the norm before clipping; asserts that it is finite.
+  /// has moved on to this step. Returns the norm before clipping. UserError, and the parameters as
+  /// they were, where it is not finite: the training diverged. All ranks have the same sum, and
+  /// throw together.
   double Apply(const Adam& adam, std::size_t begin, std::size_t end, double learning_rate,
                double limit, float* parameters) const;
 

@@ -258,7 +258,6 @@ std::vector<agent::Policy> Madqn::Policies(const agent::PolicyMetadata& metadata
   parameters.insert(parameters.end(), from + weight + network_.spec().layer_inputs(last),
                     from + bias);
   parameters.insert(parameters.end(), from + bias + 1, parameters_.end());
-  constexpr float kNoSpread = -20.0F;
   parameters.insert(parameters.end(), static_cast<std::size_t>(spec.outputs), kNoSpread);
   agent::Policy::Parameters p =
       GaussianActor(spec).ToPolicy(parameters.data(), scales().observations, metadata).parameters();
