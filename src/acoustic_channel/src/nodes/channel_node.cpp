@@ -34,7 +34,7 @@ ChannelNode::ChannelNode(acoustics::LineOfSight line_of_sight)
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
       tracker_(period_, scenario_.time.episode_steps),
-      barrier_(scenario_.agents),
+      barrier_(scenario_.agents, period_),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
       velocities_(auvs_.size()),
