@@ -52,5 +52,26 @@ TEST(FinitePose, RefusesAQuaternionThatIsNoRotation) {
   EXPECT_FALSE(nodes::FinitePose(pose));
 }
 
+TEST(UsableDetection, TakesWhatASensorOfTheLongestRangeTells) {
+  Detection d;
+  d.kind = MeasurementKind::kRange;
+  d.range_m = d.std_m = 1e5;  // a range says nothing of the direction: anywhere around
+  d.range_std_m = 1e4;
+  auv_msgs::TargetDetection m;
+  nodes::SetDetection(d, &m);
+  EXPECT_TRUE(nodes::UsableDetection(m)) << m.variance.x;
+  EXPECT_EQ(nodes::DetectionOf(m).std_m, d.std_m);
+}
+
+TEST(UsableDetection, RefusesVariancesThatAreNoneOrOfImpossibleDeviations) {
+  for (const double x : {std::numeric_limits<double>::quiet_NaN(), -1.0, 1.001e12, 1e300}) {
+    auv_msgs::TargetDetection m;
+    nodes::SetDetection({}, &m);
+    ASSERT_TRUE(nodes::UsableDetection(m));
+    m.variance.x = x;
+    EXPECT_FALSE(nodes::UsableDetection(m)) << x;
+  }
+}
+
 }  // namespace
 }  // namespace stg::dynamics

@@ -1,5 +1,6 @@
 // The graph of nodes in lockstep flies the very same episodes as the environment in one process.
 
+#include <auv_msgs/AgentStep.h>
 #include <auv_msgs/EpisodeSummary.h>
 #include <auv_msgs/StepReport.h>
 #include <gtest/gtest.h>
@@ -17,6 +18,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "marl_trainer/env/evaluation.hpp"
+#include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -29,18 +31,29 @@ constexpr int kEpisodes = 2;
 /// What the graph published, by index of the stamp (steps 0 to T of each episode in a row).
 struct Flight {
   std::map<int, std::vector<dynamics::NavState>> states;
+  std::map<int, std::vector<auv_msgs::AgentStep>> decisions;
   std::map<int, auv_msgs::StepReport> reports;
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries;
 };
 
 /// Listens until all of kEpisodes is in, or a minute has passed.
-Flight Listen(const Scenario& s) {
+/// @param silent AUV whose agent does not tell what it sees and decides; -1: none
+Flight Listen(const Scenario& s, int silent) {
   Flight flight;
   const double period = s.decision_dt_s() * 1e9;
   const auto index_of = [period](const ros::Time& t) {
     return static_cast<int>(std::llround(static_cast<double>(NsOf(t) - kFirstStamp) / period));
   };
-  int missing = kEpisodes * s.time.episode_steps * s.agents;
+  const auto agents = static_cast<std::size_t>(s.agents);
+  const int telling = silent < 0 ? s.agents : s.agents - 1;
+  int missing = kEpisodes * s.time.episode_steps * (s.agents + telling);
+  // Not compared: the state after the last step, which decides nothing, and the episodes after
+  // these, which may come from one AUV before the last of these come from another.
+  const auto count = [&](int index) {
+    const bool compared = index < kEpisodes * (s.time.episode_steps + 1) &&
+                          index % (s.time.episode_steps + 1) < s.time.episode_steps;
+    missing -= compared ? 1 : 0;
+  };
   ros::NodeHandle node;
   std::vector<ros::Subscriber> subscribers;
   for (int i = 0; i < s.agents; ++i) {
@@ -50,16 +63,25 @@ Flight Listen(const Scenario& s) {
           if ((NsOf(m->header.stamp) - kFirstStamp) % s.decision_period() != 0) return;
           const int index = index_of(m->header.stamp);
           auto& states = flight.states[index];
-          states.resize(static_cast<std::size_t>(s.agents));
-          states[static_cast<std::size_t>(i)] = NavOf(*m, 0);
-          // Not compared: the state after the last step, which decides nothing, and the episodes
-          // after these, which may come from one AUV before the last of these come from another.
-          const bool compared = index < kEpisodes * (s.time.episode_steps + 1) &&
-                                index % (s.time.episode_steps + 1) < s.time.episode_steps;
-          missing -= compared ? 1 : 0;
+          states.resize(agents);
+          dynamics::NavState& state = states[static_cast<std::size_t>(i)];
+          if (state.stamp == 0) count(index);  // who connects just then gets a step twice
+          state = NavOf(*m, 0);
         };
     subscribers.push_back(
         node.subscribe<nav_msgs::Odometry>(topics::AuvTopic(i, topics::kOdom), 0, callback));
+    if (i == silent) continue;
+    const boost::function<void(const auv_msgs::AgentStep::ConstPtr&)> on_decision =
+        [&, i](const auv_msgs::AgentStep::ConstPtr& m) {
+          const int index = index_of(m->header.stamp);
+          auto& decisions = flight.decisions[index];
+          decisions.resize(agents);
+          auv_msgs::AgentStep& decision = decisions[static_cast<std::size_t>(i)];
+          if (decision.observation.empty()) count(index);
+          decision = *m;
+        };
+    subscribers.push_back(node.subscribe<auv_msgs::AgentStep>(
+        topics::AuvTopic(i, topics::kAgentStep), 0, on_decision));
   }
   const boost::function<void(const auv_msgs::StepReport::ConstPtr&)> on_report =
       [&](const auv_msgs::StepReport::ConstPtr& m) {
@@ -76,11 +98,21 @@ Flight Listen(const Scenario& s) {
          (missing > 0 || flight.summaries.size() < kEpisodes || flight.reports.size() < reports)) {
     HandleMessages(0.1);
   }
-  EXPECT_EQ(missing, 0) << "states that did not arrive";
+  EXPECT_EQ(missing, 0) << "states and decisions that did not arrive";
   return flight;
 }
 
 double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
+
+/// What an AUV saw and did in one step, and what it sees and does in the environment.
+void ExpectDecision(const auv_msgs::AgentStep& flown, const env::VectorEnv& env, int i,
+                    const std::vector<float>& observations, const std::vector<double>& actions) {
+  const int width = env.observation_size(), size = env.action_size();
+  const auto seen = observations.begin() + i * width;
+  EXPECT_EQ(flown.observation, std::vector<float>(seen, seen + width)) << "AUV " << i;
+  const auto done = actions.begin() + i * size;
+  EXPECT_EQ(flown.action, std::vector<float>(done, done + size)) << "AUV " << i;
+}
 
 bool AtWall(const Vec3<double>& p, double half_extent_m) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) == half_extent_m;
@@ -88,9 +120,10 @@ bool AtWall(const Vec3<double>& p, double half_extent_m) {
 
 TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
   const Scenario s = LoadScenarioParameters<Scenario>(config::Scope::kWhole);
-  const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
+  const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2147483647));
   const env::Controller controller = env::MakeController(TextParameter("policy", ""), s);
-  const Flight flight = Listen(s);
+  const int silent = IntegerParameter("silent", -1, -1, s.agents - 1);
+  const Flight flight = Listen(s, silent);
   ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));
 
   const int steps = s.time.episode_steps;
@@ -117,6 +150,14 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
         ASSERT_EQ(worst, 0.0) << "episode " << e << ", step " << k << ", AUV " << i;
       }
       env::Decide(controller, env, memory.observations.data(), actions.data());
+      const auto decisions = flight.decisions.find(index);
+      ASSERT_NE(decisions, flight.decisions.end()) << "episode " << e << ", step " << k;
+      for (int i = 0; i < s.agents; ++i) {
+        if (i == silent) continue;
+        ExpectDecision(decisions->second[static_cast<std::size_t>(i)], env, i, memory.observations,
+                       actions);
+      }
+      ASSERT_FALSE(HasFailure()) << "episode " << e << ", step " << k;
       const std::vector<float> state = memory.states;
       env.Step(actions.data(), memory.arrays());
       const auto report = flight.reports.find(index + 1);
@@ -145,6 +186,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_NEAR(summary.colliding_pairs, m.colliding_pairs, kTolerance);
     EXPECT_NEAR(summary.tail_colliding_pairs, m.tail_colliding_pairs, kTolerance);
     EXPECT_NEAR(summary.min_separation, m.min_separation, kTolerance);
+    EXPECT_NEAR(summary.time_to_band, m.time_to_band, kTolerance);
     ASSERT_EQ(summary.field != 0, m.field.has_value());
     if (m.field) {
       const task::FieldMetrics& f = *m.field;
@@ -155,12 +197,16 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
       EXPECT_NEAR(summary.band_share, f.band_share, kTolerance);
       EXPECT_NEAR(summary.time_lost, f.time_lost, kTolerance);
       EXPECT_NEAR(summary.time_to_reacquire, f.time_to_reacquire, kTolerance);
+      EXPECT_NEAR(summary.losses, f.losses, kTolerance);
       EXPECT_NEAR(summary.spread, f.spread, kTolerance);
       EXPECT_NEAR(summary.near_pairs, f.near_pairs, kTolerance);
       EXPECT_NEAR(summary.min_altitude, f.min_altitude, kTolerance);
       EXPECT_NEAR(summary.min_clearance, f.min_clearance, kTolerance);
       EXPECT_EQ(summary.groundings, f.groundings);
       EXPECT_EQ(summary.collisions, f.collisions);
+      EXPECT_NEAR(summary.packets, f.packets, kTolerance);
+      EXPECT_NEAR(summary.packet_loss, f.packet_loss, kTolerance);
+      EXPECT_EQ(summary.modem_energy, f.modem_energy);
     }
     RecordProperty("worst_difference_" + std::to_string(e), std::to_string(worst));
     std::printf("episode %d: largest difference %.3g\n", e, worst);

@@ -34,7 +34,7 @@ ChannelNode::ChannelNode(acoustics::LineOfSight line_of_sight)
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
       tracker_(period_, scenario_.time.episode_steps),
-      barrier_(scenario_.agents),
+      barrier_(scenario_.agents, period_),
       auvs_(static_cast<std::size_t>(scenario_.agents)),
       positions_(auvs_.size()),
       velocities_(auvs_.size()),
@@ -242,7 +242,9 @@ void ChannelNode::PublishWindow(int i, TimeNs until) {
 
 void ChannelNode::PublishLinks(TimeNs now) {
   const ros::WallTime wall = ros::WallTime::now();
-  if ((wall - links_sent_).toSec() < display_period_s_) return;
+  // What an episode came to is no matter of the wall clock.
+  const bool last = step_ + 1 == static_cast<std::uint32_t>(scenario_.time.episode_steps);
+  if (!last && (wall - links_sent_).toSec() < display_period_s_) return;
   links_sent_ = wall;
   auto& m = links_message_;
   m.header.stamp = TimeOf(barrier_.stamp());
@@ -250,7 +252,7 @@ void ChannelNode::PublishLinks(TimeNs now) {
   m.links.clear();
   m.energy.clear();
   for (int i = 0; i < scenario_.agents; ++i) {
-    m.energy.push_back(channel_->EnergyJ(i, now));
+    m.energy.push_back(channel_->EnergyJ(i, now + period_));  // packets are counted until then
     for (int j = 0; j < scenario_.agents; ++j) {
       if (i == j) continue;
       auv_msgs::LinkState& link = m.links.emplace_back();

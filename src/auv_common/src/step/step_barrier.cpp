@@ -17,8 +17,8 @@ std::uint64_t Distance(TimeNs a, TimeNs b) {
 
 }  // namespace
 
-StepBarrier::StepBarrier(int parties) {
-  assert(parties >= 0);
+StepBarrier::StepBarrier(int parties, TimeNs period) : recent_(std::max(kRecent, 3 * period)) {
+  assert(parties >= 0 && period >= 0);
   parties_.resize(static_cast<std::size_t>(parties));
   given_up_.reserve(parties_.size());
 }
@@ -42,7 +42,7 @@ StepBarrier::Opening StepBarrier::Open(TimeNs stamp, double deadline_s) {
 
 StepBarrier::Word StepBarrier::Hear(int index, TimeNs stamp) {
   Party& party = At(index);
-  if (has_stamp_ && Distance(stamp, stamp_) >= static_cast<std::uint64_t>(kRecent)) {
+  if (has_stamp_ && Distance(stamp, stamp_) >= static_cast<std::uint64_t>(recent_)) {
     return Word::kForeign;
   }
   party.present = true;

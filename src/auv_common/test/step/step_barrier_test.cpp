@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "step_barrier_fixture.hpp"
 
 namespace stg::step_barrier_test {
@@ -126,6 +128,20 @@ TEST(StepBarrier, AnEarlyAnswerIsForTheCallerToKeep) {
   EXPECT_EQ(barrier.Hear(0, kFirst + kStep), Word::kEarly);
   barrier.Open(kFirst + kStep, 6.0);
   EXPECT_EQ(barrier.Hear(0, kFirst + kStep), Word::kCounts);
+}
+
+TEST(StepBarrier, WordsAboutTwoStepsBeforeAndAheadAreOfTheRunHoweverLongStepsAre) {
+  constexpr TimeNs kLong = StepBarrier::kRecent;
+  for (const TimeNs period : {kStep, kLong / 2, kLong, 100 * kLong}) {
+    StepBarrier barrier(1, period);
+    const TimeNs now = kFirst + 10 * period;
+    barrier.Open(now, 5.0);
+    for (const int steps : {1, 2}) {
+      EXPECT_EQ(barrier.Hear(0, now - steps * period), Word::kLate) << period;
+      EXPECT_EQ(barrier.Hear(0, now + steps * period), Word::kEarly) << period;
+    }
+    EXPECT_EQ(barrier.Hear(0, now + 3 * std::max(period, kLong)), Word::kForeign) << period;
+  }
 }
 
 TEST(StepBarrier, WordsOfAnotherTimeProveNothing) {

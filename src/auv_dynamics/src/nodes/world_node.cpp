@@ -45,7 +45,7 @@ WorldNode::WorldNode()
       wait_for_metrics_(FlagParameter("wait_for_metrics", false)),
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
-      barrier_(scenario_.agents + 1),
+      barrier_(scenario_.agents + 1, period_),
       fresh_(static_cast<std::size_t>(scenario_.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.agents);

@@ -41,6 +41,7 @@ AgentNode::AgentNode()
                        (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(scenario_))),
       pending_(id_, scenario_.target.count),
       tracker_(period_, scenario_.time.episode_steps),
+      barrier_(kParties, period_),
       observation_(static_cast<std::size_t>(scenario_.observation_size())),
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
   Advertise();

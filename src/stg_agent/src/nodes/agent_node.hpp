@@ -86,7 +86,7 @@ class AgentNode {
   auv_msgs::SensorFrame::ConstPtr frame_;  ///< of the open step; null: none is open
   PendingInputs pending_;
   StepTracker tracker_;
-  StepBarrier barrier_{kParties};
+  StepBarrier barrier_;
   TimeNs window_ = -1;  ///< clock time at which the newest reception window ended [ns]
   TimeNs start_ = -1;   ///< clock time of the episode's step 0 [ns]
   bool in_episode_ = false;

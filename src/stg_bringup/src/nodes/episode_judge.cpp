@@ -62,6 +62,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
       return verdict;  // the end of an episode that was not watched
     }
     for (auto* v : {&tau_, &action_}) std::fill(v->begin(), v->end(), std::array<double, 6>{});
+    for (auto& f : field_) f.received = f.missed = f.modem_energy_j = 0.0;
     deadline_misses_ = channel_misses_ = 0;
     started_ = true;
     complete_ = frame.truth->step == 0;
@@ -128,6 +129,7 @@ void EpisodeJudge::SetField(const SwarmFrame& frame) {
     std::copy(task->target_covariance.begin(), task->target_covariance.end(), f.covariance);
     f.age_s = task->target_age;
   }
+  if (frame.links) SetLinks(*frame.links);
 }
 
 void EpisodeJudge::SetLinks(const auv_msgs::LinkStates& links) {

@@ -30,10 +30,6 @@ class EpisodeJudge {
   /// Frames come in order of time. A frame without truth ends the episode it belongs to.
   Verdict Judge(const SwarmFrame& frame);
 
-  /// Packets delivered to and lost on the way to all AUVs, and energy of their modems, in this
-  /// episode up to now; of open water.
-  void SetLinks(const auv_msgs::LinkStates& links);
-
   /// Present truth, for display.
   const task::Tracking<double>& tracking(int i) const { return task_.tracking(i); }
   std::uint32_t episode() const { return episode_; }
@@ -45,6 +41,9 @@ class EpisodeJudge {
  private:
   void SetTruth(const SwarmFrame& frame);
   void SetField(const SwarmFrame& frame);
+  /// Packets delivered to and lost on the way to all AUVs, and energy of their modems, in this
+  /// episode up to now; of open water.
+  void SetLinks(const auv_msgs::LinkStates& links);
   void TakeWrenches(const auv_msgs::SwarmState& truth);
   void TakeActions(const SwarmFrame& frame);
   task::SwarmState<double> Swarm() const;

@@ -134,7 +134,7 @@ bool MetricsNode::Near(TimeNs stamp) const {
 bool MetricsNode::Usable(const auv_msgs::TaskState& m) const {
   return Finite(m.graph_summary[1]) && std::all_of(m.action.begin(), m.action.end(), Finite) &&
          FiniteVector(m.target_position) && Finite(m.target_age) &&
-         std::all_of(m.target_covariance.begin(), m.target_covariance.end(), Finite);
+         std::all_of(m.target_covariance.begin(), m.target_covariance.end(), FiniteSquare);
 }
 
 bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
@@ -176,12 +176,28 @@ double MetricsNode::Work() {
 
 void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
   table_.SetLinks(*message);
-  judge_.SetLinks(*message);
+  const TimeNs end = NsOf(message->header.stamp) + period_;
+  if (!tracker_.started() || !Near(end)) return;
+  if (frames_.has_taken() && end <= frames_.taken()) return;
+  if (SwarmFrame* frame = frames_.At(end, WallSeconds())) frame->links = message;
+}
+
+/// The last frame of an episode waits for what the channel counted until then, but not for long:
+/// there may be no channel.
+bool MetricsNode::AwaitsLinks(const SwarmFrame& frame) {
+  const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
+  if (!last || !scenario_.sea.open || frame.links) return false;
+  const TimeNs stamp = NsOf(frame.truth->header.stamp);
+  if (awaited_ != stamp) {
+    awaited_ = stamp;
+    awaited_since_s_ = WallSeconds();
+  }
+  return WallSeconds() - awaited_since_s_ <= patience_s_;
 }
 
 void MetricsNode::JudgeFrames() {
   SwarmFrame frame(scenario_.agents);
-  const auto complete = [](const SwarmFrame& f) { return f.Complete(); };
+  const auto complete = [this](const SwarmFrame& f) { return f.Complete() && !AwaitsLinks(f); };
   while (frames_.Take(WallSeconds(), patience_s_, complete, &frame)) {
     if (!frame.Complete()) {
       ++incomplete_frames_;

@@ -36,6 +36,7 @@ class MetricsNode {
   /// A stamp of the run's steps, not further ahead than messages may overtake each other.
   bool Near(TimeNs stamp) const;
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
+  bool AwaitsLinks(const SwarmFrame& frame);
   void JudgeFrames();
   void Publish(const EpisodeJudge::Verdict& verdict);
   void OpenSummary(std::uint32_t episode);
@@ -52,6 +53,8 @@ class MetricsNode {
   EpisodeJudge judge_;
   LiveTable table_;
   double now_s_ = 0.0;
+  TimeNs awaited_ = -1;           ///< stamp of the frame whose links were awaited last
+  double awaited_since_s_ = 0.0;  ///< wall time [s]
   std::vector<task::EpisodeMetrics> episodes_;  ///< complete ones
   std::string file_name_;
   std::ofstream file_;

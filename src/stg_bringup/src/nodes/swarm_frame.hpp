@@ -1,5 +1,6 @@
 #pragma once
 
+#include <auv_msgs/LinkStates.h>
 #include <auv_msgs/SwarmState.h>
 #include <auv_msgs/TaskState.h>
 
@@ -15,6 +16,7 @@ struct SwarmFrame {
 
   auv_msgs::SwarmState::ConstPtr truth;              ///< what no step can be judged without
   std::vector<auv_msgs::TaskState::ConstPtr> tasks;  ///< [agents]
+  auv_msgs::LinkStates::ConstPtr links;              ///< up to here; the channel tells now and then
 
   /// Everything is here.
   bool Complete() const {

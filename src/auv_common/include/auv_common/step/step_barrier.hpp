@@ -23,7 +23,8 @@ namespace stg {
 /// StepWindow). Nothing is allocated after construction. Not thread-safe.
 class StepBarrier {
  public:
-  /// Words about steps at least this far from the present one prove nothing [ns].
+  /// Words about steps at least this far from the present one prove nothing [ns]. Where steps are
+  /// long it is three of them: the next but one may be spoken of before the next is opened.
   static constexpr TimeNs kRecent = 10'000'000'000;
 
   enum class Opening {
@@ -41,8 +42,10 @@ class StepBarrier {
     kForeign,    ///< about a time that is not of this run: no sign of presence either
   };
 
-  /// Everybody is present. @param parties at least 0.
-  explicit StepBarrier(int parties);
+  /// Everybody is present.
+  /// @param parties at least 0.
+  /// @param period of the steps [ns], at least 0; 0: short beside kRecent.
+  explicit StepBarrier(int parties, TimeNs period = 0);
 
   /// Opens a step. Any order of stamps is allowed: presence outlives a clock that goes back.
   /// @param deadline_s until when answers are waited for; infinity: for ever.
@@ -103,6 +106,7 @@ class StepBarrier {
   const Party& At(int party) const;
   bool WaitsFor(const Party& party) const;
 
+  TimeNs recent_;
   bool open_ = false, started_ = false;
   bool has_stamp_ = false;
   TimeNs stamp_ = 0;

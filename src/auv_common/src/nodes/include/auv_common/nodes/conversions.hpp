@@ -34,6 +34,8 @@ inline constexpr double kLargestInput = 1e6;
 
 /// Each of these also refuses numbers beyond kLargestInput.
 inline bool Finite(double x) { return std::abs(x) <= kLargestInput; }
+/// Of a variance or a covariance, whose deviations are such numbers.
+inline bool FiniteSquare(double x) { return std::abs(x) <= kLargestInput * kLargestInput; }
 template <class Message>
 inline bool FiniteVector(const Message& m) {
   return Finite(m.x) && Finite(m.y) && Finite(m.z);

@@ -74,11 +74,12 @@ inline void SetDetection(const dynamics::Detection& d, auv_msgs::TargetDetection
 /// Whether DetectionOf gives something that a filter can use.
 inline bool UsableDetection(const auv_msgs::TargetDetection& m) {
   return m.kind <= auv_msgs::TargetDetection::RANGE_BEARING && FiniteVector(m.position) &&
-         FiniteVector(m.variance) && m.variance.x >= 0.0 && FiniteVector(m.observer) &&
-         Finite(m.range) && m.range >= 0.0 && Finite(m.range_std) && m.range_std >= 0.0 &&
-         Finite(m.observer_std) && m.observer_std >= 0.0 && Finite(m.heading_std) &&
-         m.heading_std >= 0.0 && Finite(m.azimuth) && Finite(m.elevation) &&
-         Finite(m.bearing_std) && m.bearing_std >= 0.0 && Finite(m.mirror_azimuth);
+         FiniteSquare(m.variance.x) && FiniteSquare(m.variance.y) && FiniteSquare(m.variance.z) &&
+         m.variance.x >= 0.0 && FiniteVector(m.observer) && Finite(m.range) && m.range >= 0.0 &&
+         Finite(m.range_std) && m.range_std >= 0.0 && Finite(m.observer_std) &&
+         m.observer_std >= 0.0 && Finite(m.heading_std) && m.heading_std >= 0.0 &&
+         Finite(m.azimuth) && Finite(m.elevation) && Finite(m.bearing_std) &&
+         m.bearing_std >= 0.0 && Finite(m.mirror_azimuth);
 }
 
 /// The inverse of SetDetection; the stamp is the clock time.
