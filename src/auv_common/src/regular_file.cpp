@@ -1,6 +1,7 @@
 #include "auv_common/regular_file.hpp"
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include "auv_common/error.hpp"
@@ -19,6 +20,18 @@ void RequireRegularFile(const std::string& path, std::uintmax_t largest) {
     throw UserError(path + ": larger than " + std::to_string(largest) +
                     " bytes, refused before reading");
   }
+}
+
+std::ifstream OpenText(const std::string& path, std::uintmax_t largest) {
+  RequireRegularFile(path, largest);
+  std::ifstream in(path);
+  if (!in) throw UserError(path + ": cannot be read");
+  char mark[3] = {};
+  if (!in.read(mark, 3) || std::string_view(mark, 3) != "\xEF\xBB\xBF") {
+    in.clear();
+    in.seekg(0);
+  }
+  return in;
 }
 
 }  // namespace stg

@@ -1,5 +1,6 @@
 """Files that users give are read whole or refused in one line that names file and line."""
 
+import codecs
 import gzip
 import os
 import subprocess
@@ -59,6 +60,19 @@ class Files(WithFolder):
         with open(huge, "wb") as file:
             file.truncate(1 << 40)
         self.check_refused(read_yaml, huge, "bytes")
+
+    def test_a_byte_order_mark_is_no_part_of_a_text(self):
+        mark = codecs.BOM_UTF8
+        self.assertEqual(read_text(self.write(mark + b"a")), "a")
+        self.assertEqual(read_json(self.write(mark + b'{"a": 1}')), {"a": 1})
+        self.assertEqual(read_yaml(self.write(mark + b"a: 1")), {"a": 1})
+        for name in ("t.csv", "t.csv.gz"):
+            pack = gzip.compress if name.endswith(".gz") else bytes
+            rows = table_rows(self.write(pack(mark + b"x,y\n1,2\n"), name), {"x": number})
+            self.assertEqual(list(rows), [{"x": 1.0, "y": "2"}])
+        self.assertEqual(read_text(self.write(b"a" + mark)), "a\ufeff")  # elsewhere it is a character
+        self.check_refused(read_text, self.write(mark + b"a\n\xff"), ":2: ", "UTF-8")
+        self.check_refused(read_yaml, self.write(mark + b"a: 1\nb: ["), ":2: ")
 
     def test_json_is_refused_by_line_and_key(self):
         self.check_refused(read_json, self.write('{\n"a": 1,}'), ":2: ")

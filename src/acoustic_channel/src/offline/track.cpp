@@ -49,9 +49,7 @@ Track Track::Line(const Vec3<double>& p_W, const Vec3<double>& v_W) {
 }
 
 Track Track::Load(const std::string& file) {
-  RequireRegularFile(file);
-  std::ifstream in(file);
-  if (!in) throw UserError(file + ": cannot be read");
+  std::ifstream in = OpenText(file);
   std::vector<Point> points;
   std::string row;
   for (int line = 1; std::getline(in, row); ++line) {

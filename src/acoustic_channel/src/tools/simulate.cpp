@@ -1,33 +1,29 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "acoustic_channel/log/packet_log.hpp"
 #include "acoustic_channel/offline/simulation.hpp"
 #include "acoustic_channel/offline/simulation_file.hpp"
 #include "auv_common/config/yaml_tree.hpp"
+#include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/folder_lock.hpp"
+#include "auv_common/stop_signals.hpp"
 
 namespace {
 
 using stg::acoustics::SimulationFile;
 using stg::acoustics::SimulationSummary;
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// The second one ends the program at once.
-void OnSignal(int signal) {
-  interrupted = 1;
-  std::signal(signal, SIG_DFL);
-}
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -37,16 +33,32 @@ void MakeFolder(const std::string& folder) {
   }
 }
 
-/// Opens a file in the folder; UserError when that does not work.
-std::ofstream Create(const std::string& folder, const std::string& name) {
-  std::ofstream out(std::filesystem::path(folder) / name);
-  if (!out) throw stg::UserError(folder + "/" + name + ": cannot be written");
-  return out;
-}
+/// packets.csv while it grows, beside the one of an earlier simulation.
+class PacketFile {
+ public:
+  /// Opened anew; UserError when that does not work.
+  PacketFile(const std::string& folder, const std::vector<std::string>& nodes)
+      : file_(folder + "/packets.csv", "the packets"),
+        out_(file_.temporary()),
+        log_(&out_, static_cast<int>(nodes.size()), nodes) {
+    if (!out_) file_.Fail(std::strerror(errno));
+  }
+  stg::acoustics::PacketLog* log() { return &log_; }
+  /// UserError when rows were lost: there is no use in going on.
+  void Check() const {
+    if (!out_) file_.Fail("rows are lost, is the disk full?");
+  }
+  void Commit() {
+    out_.close();
+    Check();
+    file_.Commit();
+  }
 
-void Close(std::ofstream* out, const std::string& folder, const std::string& name) {
-  if (!out->flush()) throw stg::UserError(folder + "/" + name + ": cannot be written");
-}
+ private:
+  stg::DurableFile file_;
+  std::ofstream out_;
+  stg::acoustics::PacketLog log_;
+};
 
 /// Of an earlier simulation: beside another's summary it would be taken for this one's.
 void Remove(const std::string& folder, const std::string& name) {
@@ -120,47 +132,45 @@ class Progress {
   Clock::time_point start_ = Clock::now(), shown_ = start_;
 };
 
-/// Exit status: 0, or 130 when it was interrupted.
-int Simulate(const std::string& path, const std::string& folder, bool quiet, bool log_packets) {
+/// Exit status: 0, or kStopped when it was interrupted. What the folder holds of an earlier
+/// simulation stays until this one is done.
+int Simulate(const std::string& path, const std::string& folder, bool quiet, bool log_packets,
+             const std::atomic<int>& stop) {
   const SimulationFile file = stg::acoustics::LoadSimulation(path);
   std::vector<std::string> names;
   for (const auto& node : file.nodes) names.push_back(std::to_string(node.id));
   MakeFolder(folder);
   const stg::FolderLock lock(folder);
-  std::ofstream input = Create(folder, "simulation.yaml");
-  input << stg::config::ReadBoundedFile(path);
-  Close(&input, folder, "simulation.yaml");
+  const std::string input = stg::config::ReadBoundedFile(path);
 
-  std::ofstream packets;
-  std::optional<stg::acoustics::PacketLog> log;
-  if (log_packets) {
-    packets = Create(folder, "packets.csv");
-    log.emplace(&packets, static_cast<int>(names.size()), names);
-  } else {
-    Remove(folder, "packets.csv");
-  }
+  std::optional<PacketFile> packets;
+  if (log_packets) packets.emplace(folder, names);
   const auto start = std::chrono::steady_clock::now();
-  stg::acoustics::Simulation simulation(file, log ? &*log : nullptr);
+  stg::acoustics::Simulation simulation(file, packets ? packets->log() : nullptr);
   bool whole = true;
   {
     Progress progress(file.duration_s, !quiet && isatty(STDERR_FILENO) != 0);
     while (simulation.Step()) {
-      if (interrupted != 0) {
+      if (packets) packets->Check();
+      if (stop != 0) {
         whole = false;
         break;
       }
       progress.At(simulation.time_s());
     }
   }
-  if (log_packets) Close(&packets, folder, "packets.csv");
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   const SimulationSummary summary = simulation.Summary();
   const nlohmann::json json = ToJson(summary, file, whole);
-  std::ofstream out = Create(folder, "summary.json");
-  out << json.dump(1) << "\n";
-  Close(&out, folder, "summary.json");
+  if (packets) {
+    packets->Commit();
+  } else {
+    Remove(folder, "packets.csv");
+  }
+  stg::WriteDurably(input, folder + "/simulation.yaml", "the copy of the simulation");
+  stg::WriteDurably(json.dump(1) + "\n", folder + "/summary.json", "the summary");
   if (!quiet) {
     std::printf("%s: %zu nodes, %.1f s of %s with %s in %.2f s%s\n", path.c_str(), names.size(),
                 summary.duration_s, file.channel.model.c_str(), file.channel.access.c_str(), wall_s,
@@ -173,10 +183,13 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
     for (const auto& [reason, count] : json["drops"].items()) {
       std::printf("  dropped, %s: %s receptions\n", reason.c_str(), count.dump().c_str());
     }
-    std::fflush(stdout);
   }
-  std::cout << json.dump() << std::endl;
-  return whole ? 0 : 130;
+  std::printf("%s\n", json.dump().c_str());
+  // Nobody may be there to read it any more when the terminal was closed.
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && whole) {
+    throw stg::UserError("all is written, but standard output cannot be");
+  }
+  return whole ? 0 : stg::kStopped;
 }
 
 }  // namespace
@@ -199,10 +212,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
+  const std::atomic<int>& stop = stg::HeedStopSignals();
   try {
-    return Simulate(path, folder, quiet, !summary_only);
+    return Simulate(path, folder, quiet, !summary_only, stop);
   } catch (const stg::UserError& e) {
     std::cerr << "simulate: " << e.what() << "\n";
     return 2;

@@ -1,9 +1,3 @@
-#include <fcntl.h>
-#include <signal.h>
-
-#include <chrono>
-#include <thread>
-
 #include "acoustic_channel/water/absorption.hpp"
 #include "simulate_fixture.hpp"
 
@@ -269,42 +263,6 @@ TEST_F(Simulate, ASummaryAloneStandsBesideNoPacketsOfAnEarlierSimulation) {
   EXPECT_TRUE(std::filesystem::exists(folder + "/packets.csv"));
   EXPECT_EQ(Command(arguments + " --summary-only").code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder + "/packets.csv"));
-}
-
-TEST_F(Simulate, ARunHasItsFolderForItselfAndKeepsWhatItHasWhenInterrupted) {
-  // Longer than any machine takes until the signal, which follows the first packets.
-  const std::string file = Write(Head("", 9e7) + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) +
-                                 "traffic:\n"
-                                 "  - {source: 0, kind: periodic, period_s: 1000.0, bytes: 32}\n");
-  const std::string out = folder_ + "/out", text = folder_ + "/interrupted";
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    const int fd = ::open(text.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::dup2(fd, 1);
-    ::execl(STG_SIMULATE, STG_SIMULATE, file.c_str(), "--out", out.c_str(), "--quiet",
-            static_cast<char*>(nullptr));
-    ::_exit(99);
-  }
-  while (std::filesystem::exists(out + "/packets.csv") == false ||
-         std::filesystem::file_size(out + "/packets.csv") == 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  const std::string other =
-      Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, "1.0"),
-            "other.yaml");
-  const Result second = Command("'" + other + "' --out '" + out + "'");
-  EXPECT_EQ(second.code, 2);
-  EXPECT_EQ(second.err, "simulate: " + out + ": another program is writing into it\n");
-  ::kill(child, SIGINT);
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  const auto json = nlohmann::json::parse(Read(text), nullptr, false);
-  EXPECT_EQ(json["finished"], false);
-  EXPECT_GT(json["delivered"], 0);
-  EXPECT_LT(json["duration_s"], 9e7);
 }
 
 }  // namespace

@@ -107,6 +107,12 @@ TEST_F(TrackFile, GoesOnStraightLinesAndRestsAtItsEnds) {
   EXPECT_EQ(Norm(v), 0.0);
 }
 
+TEST_F(TrackFile, MayBeginWithAByteOrderMark) {
+  Vec3<double> p, v;
+  Load("\xEF\xBB\xBFt,x,y,z\n1,2,3,-5\n").At(0.0, &p, &v);
+  EXPECT_EQ(p.x, 2.0);
+}
+
 TEST_F(TrackFile, BadRowsAreRefusedWithTheirLine) {
   EXPECT_EQ(Refusal("x,y,z\n1,2,3\n"), ":1: expected the header t,x,y,z, found 'x,y,z'");
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2,3\n1,2,nan,3\n").find(":3: expected four"), std::string::npos);

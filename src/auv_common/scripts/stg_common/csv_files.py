@@ -4,7 +4,7 @@ import csv
 import gzip
 import zlib
 
-from stg_common.files import LARGEST, LARGEST_NUMBER, Damaged, opened
+from stg_common.files import LARGEST, LARGEST_NUMBER, Damaged, opened, without_mark
 
 LONGEST_LINE = 1 << 20  # bytes
 
@@ -52,7 +52,7 @@ def _lines(path, file):
                 raise Damaged(path, f"a line of more than {LONGEST_LINE} bytes", line)
             if size > LARGEST:
                 raise Damaged(path, f"holds more than {LARGEST} bytes")
-            yield data.decode("utf-8")
+            yield (without_mark(data) if line == 1 else data).decode("utf-8")
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise Damaged(path, f"damaged, or cut off: {error}", line + 1) from None
     except UnicodeDecodeError:

@@ -4,6 +4,7 @@ Whoever opens such a file any other way waits for a FIFO that nobody writes, or 
 the memory is full.
 """
 
+import codecs
 import contextlib
 import json
 import os
@@ -57,12 +58,18 @@ def opened(path, largest=LARGEST):
         raise FileError(path, error.strerror or error) from None
 
 
+def without_mark(data):
+    """The bytes of a text without the byte-order mark that some editors begin UTF-8 with."""
+    return data[len(codecs.BOM_UTF8) :] if data.startswith(codecs.BOM_UTF8) else data
+
+
 def read_text(path, largest=LARGEST):
     """The text of a file in UTF-8."""
     with opened(path, largest) as file:
         data = file.read(largest + 1)
     if len(data) > largest:
         raise FileError(path, f"has more than {largest} bytes")
+    data = without_mark(data)
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:

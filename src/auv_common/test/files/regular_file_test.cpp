@@ -52,5 +52,23 @@ TEST_F(RegularFile, WhatIsNoneIsToldByItsKindAndNotOpened) {
   EXPECT_EQ(Refusal("large"), ": larger than 3 bytes, refused before reading");
 }
 
+TEST_F(RegularFile, AByteOrderMarkIsNoPartOfAText) {
+  const std::string mark = "\xEF\xBB\xBF", path = folder_ + "/text";
+  const auto read = [&](const std::string& bytes) {
+    std::ofstream(path) << bytes;
+    std::ifstream in = OpenText(path);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  for (const std::string& text : {std::string(), std::string("a"), std::string("t,x\n1,2\n")}) {
+    EXPECT_EQ(read(text), text);
+    EXPECT_EQ(read(mark + text), text);
+    EXPECT_EQ(read(mark + mark + text), mark + text);
+    EXPECT_EQ(read(text + mark), text.empty() ? "" : text + mark);
+  }
+  EXPECT_EQ(read("\xEF\xBB"), "\xEF\xBB");
+  EXPECT_THROW(OpenText(path, 1), UserError);
+  EXPECT_THROW(OpenText(folder_), UserError);
+}
+
 }  // namespace
 }  // namespace stg

@@ -126,9 +126,7 @@ const char* NameOf(MotionColumn column) {
 }
 
 std::vector<RecordedMotion> LoadMotions(const std::string& file) {
-  RequireRegularFile(file, kLargestFile);
-  std::ifstream in(file);
-  if (!in) throw UserError(file + ": cannot be read");
+  std::ifstream in = OpenText(file, kLargestFile);
   std::vector<RecordedMotion> motions;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
-#include "auv_common/error.hpp"
+#include "auv_common/durable_file.hpp"
 #include "auv_dynamics/terrain/bathymetry.hpp"
 #include "netcdf_file.hpp"
 
@@ -207,25 +205,17 @@ Bathymetry Bathymetry::Load(const std::string& file, const GeoRegion& region) {
 }
 
 void Bathymetry::Save(const std::string& path, const std::string& note) const {
-  // What is there stays until the new one is whole, and what is no file is not replaced by one.
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    throw UserError(path + ": cannot be written, is there and no file");
-  }
-  const std::string temporary = path + ".tmp";
+  DurableFile durable(path, "the terrain");
   int file = -1, dimensions[2] = {}, lat = -1, lon = -1, elevation = -1;
   const auto check = [&](int status) {
     if (status == NC_NOERR) return;
     if (file >= 0) nc_close(file);
-    fs::remove(temporary, error);
-    throw UserError(path + ": cannot be written (" + nc_strerror(status) + ")");
+    durable.Fail(nc_strerror(status));
   };
   const auto text = [&](int variable, const char* name, const std::string& value) {
     check(nc_put_att_text(file, variable, name, value.size(), value.data()));
   };
-  check(nc_create(temporary.c_str(), NC_CLOBBER, &file));
+  check(nc_create(durable.temporary().c_str(), NC_CLOBBER, &file));
   check(nc_def_dim(file, "lat", latitudes_.size(), &dimensions[0]));
   check(nc_def_dim(file, "lon", longitudes_.size(), &dimensions[1]));
   check(nc_def_var(file, "lat", NC_DOUBLE, 1, &dimensions[0], &lat));
@@ -247,11 +237,7 @@ void Bathymetry::Save(const std::string& path, const std::string& note) const {
   const int closing = file;
   file = -1;
   check(nc_close(closing));
-  fs::rename(temporary, path, error);
-  if (!error) return;
-  const std::string reason = error.message();
-  fs::remove(temporary, error);
-  throw UserError(path + ": cannot be written (" + reason + ")");
+  durable.Commit();
 }
 
 }  // namespace stg::dynamics

@@ -73,6 +73,13 @@ TEST_F(MotionFile, CommandsAndTimesPartTheMotions) {
   EXPECT_EQ(motions[2].rudder_deg, 5.0);
 }
 
+TEST_F(MotionFile, MayBeginWithAByteOrderMark) {
+  Write("\xEF\xBB\xBF" + std::string(kTitle) + kRestAt1);
+  const auto motions = LoadMotions(file_);
+  ASSERT_EQ(motions.size(), 1u);
+  EXPECT_EQ(motions[0].rows[0].line, 2);
+}
+
 TEST_F(MotionFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(Refusal("").find("holds no motion"), std::string::npos);
   EXPECT_NE(Refusal("a,b\n").find(":1: expected the header"), std::string::npos);

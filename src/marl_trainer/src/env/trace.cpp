@@ -111,9 +111,7 @@ std::vector<std::string> Split(const std::string& line) {
 }
 
 void ReadSteps(const std::string& file, Trace* trace) {
-  RequireRegularFile(file, kLargestSteps);
-  std::ifstream in(file);
-  if (!in) throw UserError(file + ": cannot be read");
+  std::ifstream in = OpenText(file, kLargestSteps);
   std::string line;
   int number = 0;
   while (std::getline(in, line)) {

@@ -1,12 +1,16 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 #include <thread>
 
 #include "auv_common/config/files.hpp"
+#include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/env/seed_blocks.hpp"
@@ -17,9 +21,9 @@
 
 namespace {
 
-void WriteCsv(const std::string& file, const std::vector<stg::task::EpisodeMetrics>& episodes,
-              std::uint64_t seed) {
-  std::ofstream out(file);
+/// One row per episode.
+std::string Table(const std::vector<stg::task::EpisodeMetrics>& episodes, std::uint64_t seed) {
+  std::ostringstream out;
   out << "episode,seed";
   for (const auto& item : stg::task::EpisodeMetrics{}.Items()) out << ',' << item.first;
   out << '\n';
@@ -28,8 +32,36 @@ void WriteCsv(const std::string& file, const std::vector<stg::task::EpisodeMetri
     for (const auto& item : episodes[e].Items()) out << ',' << item.second;
     out << '\n';
   }
-  if (!out.flush()) throw stg::UserError(file + ": cannot be written");
+  return out.str();
 }
+
+/// Where --csv goes: a file is replaced by the whole of the new one, a pipe or a device is written.
+class CsvOutput {
+ public:
+  /// UserError at once for what cannot be written; "" is no output.
+  explicit CsvOutput(const std::string& path) : path_(path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    streams_ = std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
+    if (path.empty() || streams_) return;
+    file_.emplace(path, "the table");
+    // As --csv /dev/stdout > FILE; the summary would go into the file that is replaced.
+    if (std::filesystem::equivalent(path, "/dev/stdout", error)) {
+      file_->Fail("standard output goes there");
+    }
+  }
+  void Write(const std::string& table) {
+    if (file_) file_->Write(table);
+    if (!streams_) return;
+    std::ofstream out(path_);
+    if (!(out << table).flush()) throw stg::UserError(path_ + ": cannot write the table");
+  }
+
+ private:
+  std::string path_;
+  bool streams_ = false;
+  std::optional<stg::DurableFile> file_;
+};
 
 }  // namespace
 
@@ -88,6 +120,7 @@ int main(int argc, char** argv) {
     }
     stg::env::Controller controller = stg::env::MakeController(full, s);
     controller.privileged = privileged;
+    CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));
     stg::env::EvaluationOptions options;
     options.episodes = episodes;
@@ -96,7 +129,7 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
     });
     std::fprintf(stderr, "\n");
-    if (!csv.empty()) WriteCsv(csv, metrics, seed);
+    table.Write(Table(metrics, seed));
     const stg::task::MetricSummary summary = stg::task::Summarise(metrics);
     const std::string block = stg::env::SeedBlockOf(seed, static_cast<std::uint64_t>(episodes));
     nlohmann::json json = {{"policy", policy},       {"scenario", scenario},

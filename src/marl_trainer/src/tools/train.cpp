@@ -1,8 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <memory>
@@ -11,34 +9,13 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 #include "seed_check.hpp"
 
 namespace {
-
-std::atomic<int> stop_signal{0};
-
-/// The first signal asks for a clean end, the second one kills; but what closes a terminal tells so
-/// more than once, itself and by its shell, and ends the session.
-extern "C" void OnSignal(int signal) {
-  stop_signal = signal;
-  if (signal == SIGHUP) return;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
-
-void HeedSignals() {
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  // What SLURM and mpirun pass on.
-  std::signal(SIGUSR1, OnSignal);
-  // What nohup has us ignore stays ignored.
-  struct sigaction before {};
-  sigaction(SIGHUP, nullptr, &before);
-  if (before.sa_handler != SIG_IGN) std::signal(SIGHUP, OnSignal);
-}
 
 bool Leads(const stg::learn::Communicator* ranks) { return ranks == nullptr || ranks->rank() == 0; }
 
@@ -154,8 +131,7 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
     options.mix.push_back(
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario_name, name, overrides));
   }
-  options.stop = &stop_signal;
-  HeedSignals();
+  options.stop = &stg::HeedStopSignals();
   stg::learn::Trainer trainer(scenario, setup, options);
   if (trainer.Run()) {
     if (Leads(ranks) && !std::cout.flush()) {
@@ -165,7 +141,7 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   }
   lines << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
         << std::endl;
-  return 130;
+  return stg::kStopped;
 }
 
 }  // namespace

@@ -188,6 +188,15 @@ TEST_F(BadTrace, TheCopyItselfIsGood) {
   EXPECT_LE(ReplayTrace(LoadTrace(folder_, Release()), 1e-5).max_abs_error, 1e-5);
 }
 
+TEST_F(BadTrace, AByteOrderMarkBeforeEachFileIsHarmless) {
+  config_.insert(0, "\xEF\xBB\xBF");
+  lines_[0].insert(0, "\xEF\xBB\xBF");
+  Write();
+  const Trace trace = LoadTrace(folder_, Release());
+  EXPECT_EQ(trace.columns[0], Cells(Read(STG_TEST_DATA "/golden/velocity_medium/steps.csv"))[0]);
+  EXPECT_LE(ReplayTrace(trace, 1e-5).max_abs_error, 1e-5);
+}
+
 TEST_F(BadTrace, MissingFolderAndFilesAreNamed) {
   fs::remove(folder_ + "/steps.csv");
   EXPECT_EQ(Error(), folder_ + "/steps.csv: no such file");

@@ -52,6 +52,12 @@ TEST_F(HostileFile, EmptyFileIsRefused) {
   ExpectRefused(Write("c.yaml", "---\n...\n"), ":1: ", "the file is empty");
 }
 
+TEST_F(HostileFile, AByteOrderMarkIsHarmless) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_TRUE(LoadsOrRefuses(Write("a.yaml", mark + ToYaml(Scenario{}))));
+  ExpectRefused(Write("b.yaml", mark + "agents: 0\n"), ":1: ", "agents");
+}
+
 TEST_F(HostileFile, ThingsThatAreNoRegularFileAreRefused) {
   ExpectRefused((folder_ / "none.yaml").string(), ": ", "no such file");
   ExpectRefused(folder_.string(), ": ", "is a directory");

@@ -168,6 +168,43 @@ TEST_F(CommandLine, EvaluateFailsWhereItsOutputCannotBeWritten) {
             std::string::npos);
 }
 
+TEST_F(CommandLine, EvaluateKeepsTheOldTableWhereTheNewOneCannotBeWritten) {
+  const std::string csv = folder_ + "/episodes.csv", start = "evaluate: " + folder_;
+  const auto evaluate = [&](const std::string& file) {
+    return Run(STG_EVALUATE,
+               "--policy idle --episodes 1 --set time.episode_steps=120 --csv '" + file + "'");
+  };
+  std::ofstream(csv) << "old";
+  fs::create_symlink("/dev/full", csv + ".tmp");
+  Result r = evaluate(csv);
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("\n" + start + "/episodes.csv: cannot write the table: No space left"),
+            std::string::npos)
+      << r.err;
+  EXPECT_EQ(Read(csv), "old");
+  EXPECT_EQ(evaluate(csv).code, 0);
+  EXPECT_EQ(Read(csv).rfind("episode,seed,return,", 0), 0U);
+  // Before the first episode is flown.
+  r = evaluate(folder_ + "/none/x.csv");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_EQ(r.err, start + "/none/x.csv: cannot write the table: No such file or directory\n");
+  EXPECT_EQ(evaluate(folder_).err, start + ": cannot write the table: is a directory\n");
+}
+
+TEST_F(CommandLine, EvaluateWritesItsTableIntoPipesAndDevicesAndReplacesNone) {
+  const std::string arguments = "--policy idle --episodes 1 --set time.episode_steps=120 --csv ";
+  const Result piped = Run(STG_EVALUATE, arguments + "/dev/stdout | cat");
+  EXPECT_EQ(piped.out.rfind("episode,seed,return,", 0), 0U) << piped.err;
+  EXPECT_TRUE(piped.Json().is_object()) << piped.out;
+  // Run sends it into a file, which --csv would replace.
+  EXPECT_EQ(Run(STG_EVALUATE, arguments + "/dev/stdout").err,
+            "evaluate: /dev/stdout: cannot write the table: standard output goes there\n");
+  const std::string full = folder_ + "/full";
+  fs::create_symlink("/dev/full", full);
+  EXPECT_EQ(Run(STG_EVALUATE, arguments + "'" + full + "'").code, 2);
+  EXPECT_TRUE(fs::is_symlink(full));
+}
+
 TEST_F(CommandLine, EvaluateTakesTheConstantsOfPursuit) {
   const std::string base =
       "--policy pursuit --scenario medium_release --episodes 4 --set time.episode_steps=150 ";

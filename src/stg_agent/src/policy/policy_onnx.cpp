@@ -4,9 +4,9 @@
 
 #include <cinttypes>
 #include <cstdio>
-#include <fstream>
 #include <utility>
 
+#include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 
 /// Writing of policy files. Operator set 10 is the last whose Clip carries its
@@ -243,18 +243,9 @@ void Policy::SaveOnnx(const std::string& path) const {
   chain.AddConstant(chain.Add("Mul", "action"), "action_scale", {1, action_size()}, scale.data());
   WriteMetadata(p, &model);
 
-  const std::string temporary = path + ".tmp";
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    if (!out || !model.SerializeToOstream(&out) || !out.flush()) {
-      std::remove(temporary.c_str());
-      throw UserError(path + ": cannot write the policy");
-    }
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw UserError(path + ": cannot write the policy");
-  }
+  std::string bytes;
+  if (!model.SerializeToString(&bytes)) throw UserError(path + ": cannot write the policy");
+  WriteDurably(bytes, path, "the policy");
 }
 
 }  // namespace stg::agent

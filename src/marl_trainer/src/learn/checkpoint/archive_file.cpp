@@ -4,9 +4,9 @@
 #include <fstream>
 #include <type_traits>
 
+#include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/checkpoint/archive.hpp"
-#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {

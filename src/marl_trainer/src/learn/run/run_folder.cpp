@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "auv_common/config/yaml_tree.hpp"
+#include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/checked_json.hpp"
-#include "marl_trainer/learn/checkpoint/durable_file.hpp"
 
 namespace stg::learn {
 namespace {
