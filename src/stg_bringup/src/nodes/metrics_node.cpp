@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "acoustic_channel/nodes/topics.hpp"
@@ -113,7 +114,10 @@ bool MetricsNode::Follow(const auv_msgs::SwarmState& m) {
       refused_swarm_.Add(Refusals::kStale);
       return false;
     case StepTracker::Verdict::kNewRun:
-      if (in_run) frames_.Clear();
+      if (in_run) {
+        frames_.Clear();
+        links_.clear();
+      }
       break;
     case StepTracker::Verdict::kRepeated:
     case StepTracker::Verdict::kNext:
@@ -177,17 +181,25 @@ double MetricsNode::Work() {
 void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
   table_.SetLinks(*message);
   const TimeNs end = NsOf(message->header.stamp) + period_;
-  if (!tracker_.started() || !Near(end)) return;
-  if (frames_.has_taken() && end <= frames_.taken()) return;
-  if (SwarmFrame* frame = frames_.At(end, WallSeconds())) frame->links = message;
+  // Not into a frame: patience with it would begin before the world has come to its step.
+  if (Near(end) && links_.size() < kMaxFrames) links_[end] = message;
+}
+
+/// The newest links up to a step; older ones are forgotten.
+auv_msgs::LinkStates::ConstPtr MetricsNode::TakeLinks(TimeNs stamp) {
+  const auto later = links_.upper_bound(stamp);
+  if (later == links_.begin()) return nullptr;
+  auv_msgs::LinkStates::ConstPtr newest = std::prev(later)->second;
+  links_.erase(links_.begin(), later);
+  return newest;
 }
 
 /// The last frame of an episode waits for what the channel counted until then, but not for long:
 /// there may be no channel.
 bool MetricsNode::AwaitsLinks(const SwarmFrame& frame) {
   const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
-  if (!last || !scenario_.sea.open || frame.links) return false;
   const TimeNs stamp = NsOf(frame.truth->header.stamp);
+  if (!last || !scenario_.sea.open || links_.count(stamp) > 0) return false;
   if (awaited_ != stamp) {
     awaited_ = stamp;
     awaited_since_s_ = WallSeconds();
@@ -199,6 +211,7 @@ void MetricsNode::JudgeFrames() {
   SwarmFrame frame(scenario_.agents);
   const auto complete = [this](const SwarmFrame& f) { return f.Complete() && !AwaitsLinks(f); };
   while (frames_.Take(WallSeconds(), patience_s_, complete, &frame)) {
+    frame.links = TakeLinks(frames_.taken());
     if (!frame.Complete()) {
       ++incomplete_frames_;
     } else if (!summary_) {

@@ -3,6 +3,7 @@
 #include <ros/node_handle.h>
 
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ class MetricsNode {
   /// A stamp of the run's steps, not further ahead than messages may overtake each other.
   bool Near(TimeNs stamp) const;
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
+  auv_msgs::LinkStates::ConstPtr TakeLinks(TimeNs stamp);
   bool AwaitsLinks(const SwarmFrame& frame);
   void JudgeFrames();
   void Publish(const EpisodeJudge::Verdict& verdict);
@@ -53,6 +55,7 @@ class MetricsNode {
   EpisodeJudge judge_;
   LiveTable table_;
   double now_s_ = 0.0;
+  std::map<TimeNs, auv_msgs::LinkStates::ConstPtr> links_;  ///< by the step they lead to
   TimeNs awaited_ = -1;           ///< stamp of the frame whose links were awaited last
   double awaited_since_s_ = 0.0;  ///< wall time [s]
   std::vector<task::EpisodeMetrics> episodes_;  ///< complete ones
