@@ -1,0 +1,73 @@
+"""Programs of scripts/ refuse what cannot work in one line, before anything is run or written."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
+
+
+def run(folder, name, *arguments):
+    """Returns the finished program of scripts/, run in a folder; only fig6 finds the workspace."""
+    environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C"}
+    if name == "fig6":
+        environment = dict(os.environ)
+    program = [str(SCRIPTS / name)] if os.access(SCRIPTS / name, os.X_OK) else [
+        sys.executable, str(SCRIPTS / name)]  # fmt: skip
+    return subprocess.run([*program, *map(str, arguments)], cwd=folder, env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          universal_newlines=True, check=False)  # fmt: skip
+
+
+class Tools(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+
+    def check_refused(self, what, name, *arguments):
+        """The last line must say what is wrong, with a status, no traceback, and no file left."""
+        done = run(self.folder, name, *arguments)
+        with self.subTest(program=name, arguments=arguments):
+            self.assertIn(done.returncode, (1, 2), done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+            self.assertRegex((done.stderr.splitlines() or [""])[-1], what)
+            self.assertEqual(os.listdir(self.folder), [])
+
+    def test_arguments_that_cannot_work_are_refused_before_anything_is_run(self):
+        self.check_refused("no 'foo' is shipped.*medium", "soak", "--scenario", "foo")
+        for hours in ("nan", "-1", "0"):
+            self.check_refused("--hours.*positive", "soak", "--hours", hours)
+        self.check_refused("--every.*positive", "soak", "--every", "-1")
+        self.check_refused("none/x.csv: No such", "soak", "--out", "none/x.csv")
+        self.check_refused("--steps.*1 or more", "bench.py", "--steps", "0")
+        self.check_refused("nothing to do", "bench.py", "--only", "ros", "--no-ros")
+        self.check_refused("--out: /proc cannot be written", "bench.py", "--out", "/proc")
+        self.check_refused("required.*--build", "fuzz.py", "packet", "1")
+        self.check_refused("no packages", "draw_architecture.py", "--source", ".")
+        self.check_refused("none.svg: No such", "draw_architecture.py", "--check", "--out", "none")
+        self.check_refused("--at: 'x' is no number", "screenshot.sh", "--at", "x", "o.png")
+        self.check_refused("no folder for none/o.png", "screenshot.sh", "none/o.png")
+        self.check_refused("none: there is no medium.onnx", "shipped_tables.py", "out", "none")
+        self.check_refused("medium_SEED: 0 finished", "shipped_seeds.py", "out", "none")
+        self.check_refused("--trials.*1 or more", "controllers/tune.py", "a", "b", "--trials", "0")
+
+    def test_figure_of_the_field_refuses_what_it_cannot_draw(self):
+        self.check_refused("^fig6: scenario 'medium' has no open water", "fig6", "--cases", "medium")
+        self.check_refused("--seed must not be negative", "fig6", "--seed", "-1")
+        self.check_refused("no folder none", "fig6", "--out", "none/fig6")
+        self.check_refused("at most 8", "fig6", "--cases", *["fig6_4"] * 9)
+
+    def test_help_is_no_argument(self):
+        for name in ("shipped_tables.py", "shipped_seeds.py", "train_shipped.sh", "soak"):
+            done = run(self.folder, name, "--help")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), name)
+            self.assertRegex(done.stdout, "(?i)usage: ")
+            self.assertEqual(os.listdir(self.folder), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
