@@ -256,7 +256,8 @@ def make_room(path):
 def bench_ros():
     """Runs the ROS graph's own benchmark, whose last line is a JSON object."""
     heading("ROS graph")
-    result = json.loads(run([os.path.join(HERE, "bench_ros.sh")]).strip().splitlines()[-1])
+    command = [os.path.join(HERE, "bench_ros.sh")]
+    result = last_json(run(command), command)
     for name, figure in result.items():
         print(f"{name.replace('_', ' '):32s} {figure}", flush=True)
     return result

@@ -1,5 +1,6 @@
 """Programs of scripts/ refuse what cannot work in one line, before anything is run or written."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -7,6 +8,20 @@ import sys
 import tempfile
 import unittest
 
+# In place of roslaunch: what the world says at the end, and in the first run in real time the process
+# of an agent, for which what is in place of sleep waits.
+ROSLAUNCH = """#!/bin/bash
+echo "world: 9 steps in 1.5 s, 2.5 x real time, 1.0 to wrench 1.25 ms (median), 3.75 ms (99 %), \
+in time, 0 with a deadline miss"
+if [[ "$*" == *real_time_factor:=1* && ! -e "$TMPDIR/agent" ]]; then
+  touch "$TMPDIR/agent"
+  exec -a "/stg_agent/agent $ROS_HOME" /bin/sleep 4
+fi
+"""
+SLEEP = """#!/bin/bash
+until [[ -e "$TMPDIR/agent" ]]; do /bin/sleep 0.1; done
+exec /bin/sleep 0.5
+"""
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
 
 
@@ -60,6 +75,24 @@ class Tools(unittest.TestCase):
         self.check_refused("--seed must not be negative", "fig6", "--seed", "-1")
         self.check_refused("no folder none", "fig6", "--out", "none/fig6")
         self.check_refused("at most 8", "fig6", "--cases", *["fig6_4"] * 9)
+
+    @unittest.skipUnless(os.path.exists("/usr/share/i18n/locales/de_DE"), "no sources of locales")
+    def test_benchmark_of_the_graph_prints_json_where_numbers_have_commas(self):
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", f"{self.folder}/de_DE.UTF-8"],
+                       check=True)  # fmt: skip
+        for name, text in (("roslaunch", ROSLAUNCH), ("sleep", SLEEP)):
+            program = pathlib.Path(self.folder, name)
+            program.write_text(text)
+            program.chmod(0o755)
+        environment = dict(os.environ, PATH=f"{self.folder}:/usr/bin:/bin", LOCPATH=self.folder,
+                           LC_ALL="de_DE.UTF-8", TMPDIR=self.folder)  # fmt: skip
+        done = subprocess.run([str(SCRIPTS / "bench_ros.sh")], env=environment, check=False,
+                              stdout=subprocess.PIPE, universal_newlines=True)  # fmt: skip
+        self.assertEqual(done.returncode, 0)
+        figures = json.loads(done.stdout)
+        self.assertEqual(figures["lockstep_4_auvs_x_real_time"], 2.5)
+        self.assertEqual(figures["detection_to_wrench_p99_ms_each"], [3.75] * 3)
+        self.assertGreater(figures["largest_agent_memory_mib"], 0.0)
 
     def test_help_is_no_argument(self):
         for name in ("shipped_tables.py", "shipped_seeds.py", "train_shipped.sh", "soak"):
