@@ -69,6 +69,14 @@ class Log:
         self.sent = np.isfinite(self.transmit_s)
         self.end_s = max(np.nanmax(self.offered_s), np.nanmax(self.arrival_s, initial=0.0))
 
+    def count_from_first(self):
+        """Has all times count from the first one: a node's log has those of its clock."""
+        first_s = min(np.nanmin(self.offered_s), np.nanmin(self.generation_s, initial=np.inf))
+        for name in NUMBERS:
+            if name.endswith("_s"):
+                setattr(self, name, getattr(self, name) - first_s)
+        self.end_s -= first_s
+
     def nodes(self):
         """All names of nodes, numbers in their order."""
         return in_order(set(self.source) | set(self.destination))
@@ -256,11 +264,30 @@ def draw(log, summary, window, path):
     figure.savefig(path, dpi=100)
 
 
+def read(path):
+    """Returns (log, summary, picture) of the folder of a simulation, or of a node's packet log."""
+    if os.path.isdir(path) or not os.path.exists(path):
+        log = Log(os.path.join(path, "packets.csv"))
+        summary = read_summary(os.path.join(path, "summary.json"))
+        picture = os.path.join(path, "network.png")
+    else:
+        log, summary, picture = Log(path), {"energy_j": {}}, os.path.splitext(path)[0] + ".png"
+    if "model" not in summary:
+        log.count_from_first()
+    return log, summary, picture
+
+
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("folder", help="with packets.csv and, for energy, summary.json")
-    parser.add_argument("--out", help="picture (.png, .svg, .pdf); default: FOLDER/network.png")
+    parser.add_argument(
+        "log",
+        help="folder with packets.csv and, for energy, summary.json; or the packet log of a node, "
+        "whose times are counted from its first one",
+    )
+    parser.add_argument(
+        "--out", help="picture (.png, .svg, .pdf); default: network.png in the folder, LOG.png beside a log"
+    )
     parser.add_argument(
         "--window",
         nargs=2,
@@ -271,9 +298,8 @@ def main():
     arguments = parser.parse_args()
     if arguments.window and not arguments.window[1] > arguments.window[0]:
         parser.error("--window: END is not after START")
-    log = Log(os.path.join(arguments.folder, "packets.csv"))
-    summary = read_summary(os.path.join(arguments.folder, "summary.json"))
-    out = arguments.out or os.path.join(arguments.folder, "network.png")
+    log, summary, picture = read(arguments.log)
+    out = arguments.out or picture
     draw(log, summary, arguments.window, out)
     print(out)
     return 0
