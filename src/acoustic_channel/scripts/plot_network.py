@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 # Where auv_common has stg_common: in the sources, and installed.
 sys.path += [os.path.join(HERE, up) for up in ("../../auv_common/scripts", "../auv_common")]
 from stg_common.csv_files import number, table_rows  # noqa: E402  (found by the line above)
-from stg_common.files import Damaged, expect, member, read_json  # noqa: E402
+from stg_common.files import Damaged, FileError, expect, member, read_json  # noqa: E402
 from stg_common.program import run_program  # noqa: E402
 
 NUMBERS = "offered_s generation_s transmit_s transmit_end_s begin_s arrival_s distance_m".split()
@@ -261,7 +261,10 @@ def draw(log, summary, window, path):
             f"{summary['model']}, {summary['access']}: {summary['transmitted']} packets sent in"
             f" {summary['duration_s']:g} s, delivery ratio {summary['delivery_ratio']:.3f}"
         )
-    figure.savefig(path, dpi=100)
+    try:
+        figure.savefig(path, dpi=100)
+    except OSError as error:  # which of a full disk does not name the file
+        raise FileError(path, error.strerror) from None
 
 
 def read(path):
@@ -300,6 +303,7 @@ def main():
         parser.error("--window: END is not after START")
     log, summary, picture = read(arguments.log)
     out = arguments.out or picture
+    out += "" if os.path.splitext(out)[1] else ".png"  # which is what would be written
     draw(log, summary, arguments.window, out)
     print(out)
     return 0

@@ -64,6 +64,17 @@ class PlotNetwork(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (0, picture + "\n"), done.stderr)
         self.assertTrue(os.path.isfile(picture))
 
+    def test_what_is_written_is_named_also_where_it_cannot_be(self):
+        self.write(HEADER + row(0, 1, 0, 1.0, 4.0))
+        picture = os.path.join(self.folder.name, "picture")
+        done = self.run_script("--out", picture)
+        self.assertEqual(done.stdout, picture + ".png\n", done.stderr)
+        self.assertTrue(os.path.isfile(picture + ".png"))
+        os.symlink("/dev/full", picture + ".svg")
+        done = self.run_script("--out", picture + ".svg")
+        self.assertEqual(done.stderr, f"plot_network: {picture}.svg: No space left on device\n")
+        self.assertEqual(done.returncode, 2)
+
     def test_age_is_the_sawtooth_of_the_deliveries(self):
         log = plot_network.Log(
             self.write(
