@@ -15,6 +15,7 @@
 #include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/folder_lock.hpp"
+#include "auv_common/program.hpp"
 
 namespace {
 
@@ -173,9 +174,8 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
     for (const auto& [reason, count] : json["drops"].items()) {
       std::printf("  dropped, %s: %s receptions\n", reason.c_str(), count.dump().c_str());
     }
-    std::fflush(stdout);
   }
-  std::cout << json.dump() << std::endl;
+  stg::PrintResult(json);
   return whole ? 0 : 130;
 }
 

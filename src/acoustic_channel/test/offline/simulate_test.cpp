@@ -261,6 +261,17 @@ TEST_F(Simulate, CommandLine) {
   EXPECT_EQ(Read(folder_ + "/a/b/simulation.yaml"), Read(good));
 }
 
+TEST_F(Simulate, AResultThatCannotBeWrittenIsAFailure) {
+  const std::string file =
+      Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 10, 0) + "traffic:\n" + At(0, "1.0"));
+  const int status = std::system(("'" STG_SIMULATE "' '" + file + "' --out '" + folder_ +
+                                  "/out' > /dev/full 2> '" + folder_ + "/stderr'")
+                                     .c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;
+  EXPECT_EQ(Read(folder_ + "/stderr"), "simulate: standard output cannot be written\n");
+  EXPECT_TRUE(std::filesystem::exists(folder_ + "/out/summary.json"));
+}
+
 TEST_F(Simulate, ASummaryAloneStandsBesideNoPacketsOfAnEarlierSimulation) {
   const std::string file =
       Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, "1.0"));
