@@ -7,11 +7,15 @@ Prints a report and writes everything as JSON.
 import argparse
 import json
 import os
+import pathlib
 import platform
 import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
+from stg_common.program import run_program  # noqa: E402  (found by the line above)
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
@@ -34,6 +38,14 @@ def positive(text):
     return value
 
 
+def count(text):
+    """An argument that is a positive whole number."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError("must be 1 or more")
+    return value
+
+
 def parse(argv):
     """Reads the command line."""
     parser = argparse.ArgumentParser(prog="./stg bench", description=__doc__.splitlines()[0])
@@ -50,9 +62,9 @@ def parse(argv):
         "seeds); '' for none",
     )
     parser.add_argument(
-        "--workers", type=int, default=os.cpu_count() or 1, help="threads of train (%(default)s)"
+        "--workers", type=count, default=os.cpu_count() or 1, help="threads of train (%(default)s)"
     )
-    parser.add_argument("--steps", type=int, help="environment steps of a training (the preset's)")
+    parser.add_argument("--steps", type=count, help="environment steps of a training (the preset's)")
     parser.add_argument("--out", default="results/bench.json", help="JSON file (%(default)s)")
     parser.add_argument("--only", choices=PARTS, help="one part, e.g. algorithms")
     parser.add_argument("--no-ros", action="store_true", help="leave the ROS graph out")
@@ -65,6 +77,8 @@ def parse(argv):
     options.parts = [options.only] if options.only else list(PARTS)
     if options.no_ros and "ros" in options.parts:
         options.parts.remove("ros")
+    if not options.parts:
+        parser.error("--only ros and --no-ros leave nothing to do")
     return options
 
 
@@ -231,10 +245,19 @@ def report_training(summaries):
     print(f"return {GOAL[0]} without a loss in under {GOAL[1]:.0f} s: {met} of {len(times)} seeds")
 
 
+def make_room(path):
+    """Makes the folder of a file, and refuses what cannot be written before anything is measured."""
+    folder = os.path.dirname(path) or "."
+    os.makedirs(folder, exist_ok=True)
+    if os.path.isdir(path) or not os.access(path if os.path.exists(path) else folder, os.W_OK):
+        raise BenchError(f"--out: {path} cannot be written")
+
+
 def bench_ros():
     """Runs the ROS graph's own benchmark, whose last line is a JSON object."""
     heading("ROS graph")
-    result = json.loads(run([os.path.join(HERE, "bench_ros.sh")]).strip().splitlines()[-1])
+    command = [os.path.join(HERE, "bench_ros.sh")]
+    result = last_json(run(command), command)
     for name, figure in result.items():
         print(f"{name.replace('_', ' '):32s} {figure}", flush=True)
     return result
@@ -243,6 +266,7 @@ def bench_ros():
 def main(argv):
     """Runs all benchmarks; returns the exit status."""
     options = parse(argv)
+    make_room(options.out)
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     report = {"date": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), "machine": machine()}
     if "environment" in options.parts:
@@ -253,9 +277,6 @@ def main(argv):
         report["algorithms"] = bench_algorithms(options)
     if "ros" in options.parts:
         report["ros"] = bench_ros()
-    folder = os.path.dirname(options.out)
-    if folder:
-        os.makedirs(folder, exist_ok=True)
     with open(options.out, "w", encoding="utf-8") as file:
         json.dump(report, file, indent=1)
         file.write("\n")
@@ -264,10 +285,4 @@ def main(argv):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except (BenchError, OSError) as problem:
-        print(f"bench: {problem}", file=sys.stderr)
-        sys.exit(1)
-    except KeyboardInterrupt:
-        sys.exit(130)
+    run_program("bench", lambda: main(sys.argv[1:]), BenchError, status=1)

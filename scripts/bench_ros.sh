@@ -5,6 +5,7 @@
 # Usage: bench_ros.sh [FILE]   also writes the JSON to FILE
 # Exit status 1, after the JSON, when a figure is missing; the runs' last lines are on stderr.
 set -euo pipefail
+export LC_ALL=C.UTF-8  # JSON has points, whatever the user's language writes
 
 work=$(mktemp -d)
 export ROS_HOME=$work/ros_home

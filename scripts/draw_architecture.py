@@ -16,7 +16,9 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts" / "lint"))
+sys.path.append(str(ROOT / "src" / "auv_common" / "scripts"))
 
+from stg_common.program import run_program  # noqa: E402 pylint: disable=C0413,E0401
 from tree import cpp_files, included, includes, logical  # noqa: E402 pylint: disable=C0413,E0401
 
 PICTURE = ROOT / "docs" / "images" / "architecture"
@@ -312,6 +314,8 @@ def main(argv):
     parser.add_argument("--out", type=pathlib.Path, default=PICTURE, help="without suffix")
     options = parser.parse_args(argv)
     house = House(options.source)
+    if not house.folders:
+        parser.error(f"--source: there are no packages in {options.source}")
     if not options.check:
         Picture(house).draw(options.out)
         return 0
@@ -322,4 +326,4 @@ def main(argv):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run_program("draw_architecture", lambda: main(sys.argv[1:]))

@@ -14,6 +14,9 @@ import re
 import subprocess
 import sys
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
+from stg_common.program import run_program  # noqa: E402  (found by the line above)
+
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 TARGETS = sorted(path.name for path in (ROOT / "fuzz" / "corpus").iterdir())
 SECONDS = 60
@@ -32,12 +35,15 @@ def parse(argv):
                         help=f"for each target ({SECONDS})")  # fmt: skip
     parser.add_argument("--runs", type=int, default=0, metavar="N",
                         help="end a target after so many inputs, too")  # fmt: skip
-    parser.add_argument("--build", type=pathlib.Path, help=argparse.SUPPRESS)
+    parser.add_argument("--build", type=pathlib.Path, required=True,
+                        help=argparse.SUPPRESS)  # fmt: skip
     options = parser.parse_args(argv)
     if options.target and options.target not in TARGETS:
         parser.error(f"no target '{options.target}'; there are: {', '.join(TARGETS)}")
     if options.seconds < 1:
         parser.error("SECONDS must be 1 or more")
+    if options.runs < 0:
+        parser.error("--runs must not be negative")
     return options
 
 
@@ -87,4 +93,4 @@ def main(argv):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run_program("fuzz", lambda: main(sys.argv[1:]))

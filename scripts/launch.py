@@ -199,6 +199,10 @@ def master_of(words):
 def check_before_loading(words):
     """Refuses what roslaunch would stumble over or hang on; returns the address of the master."""
     run_arguments.check(words)
+    # Nodes run in ROS_HOME: what is relative to where we are would be another folder to them.
+    for name in ("ROS_HOME", "ROS_LOG_DIR"):
+        if os.environ.get(name):
+            os.environ[name] = os.path.abspath(os.environ[name])
     master = master_of(words)
     run_checks.master_is_online(master)
     run_checks.check_log_folder()

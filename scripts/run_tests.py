@@ -12,11 +12,15 @@ import argparse
 import glob
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
+from stg_common.program import run_program  # noqa: E402  (found by the line above)
 
 TIMEOUT_S = float(os.environ.get("STG_TEST_TIMEOUT_S", "900"))
 SHOWN_LINES = 80
@@ -200,4 +204,4 @@ def main(argv):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run_program("test", lambda: main(sys.argv[1:]))

@@ -44,6 +44,8 @@ while (($# > 0)); do
 done
 [[ -n "$out" ]] || { usage >&2; exit 2; }
 [[ -f "$root/rviz/$view.rviz" ]] || fail "no view '$view'"
+[[ "$at" =~ ^[0-9]+([.][0-9]+)?$ ]] || fail "--at: '$at' is no number of seconds"
+[[ -d "$(dirname "$out")" ]] || fail "there is no folder for $out"
 [[ "$size" =~ ^[0-9]+x[0-9]+$ ]] || fail "--size: not of the form 1280x800"
 
 work=$(mktemp -d)
@@ -90,8 +92,15 @@ roslaunch -p "$port" stg_bringup replay.launch gui:=false stay:=true bag:="$bag"
 pids+=($!)
 xvfb-run -a -s "-screen 0 $((width + 32))x$((height + margin))x24" bash -c "
   rviz -d '$work/shot.rviz' >'$work/rviz.log' 2>&1 & viewer=\$!
-  sleep 18
-  import -window root '$work/shot.png'
+  # Whether the replay has come to that moment, and rviz is there to show it.
+  shown() {
+    grep -q 'player.*process has finished cleanly' '$work/replay.log' &&
+      rosnode list 2>/dev/null | grep -q '^/rviz'
+  }
+  for ((tries = 0; tries < 120; ++tries)); do sleep 1; ! shown || break; done
+  sleep 5
+  ! shown || import -window root '$work/shot.png'
   kill \$viewer"
+[[ -f "$work/shot.png" ]] || { tail -n 20 "$work"/re*.log "$work"/rviz.log >&2; fail "rviz did not show the run"; }
 convert "$work/shot.png" -crop "${size}+16+62" +repage "$out"
 echo "screenshot: $out"

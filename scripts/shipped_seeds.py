@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Evaluates the shipped policies' recipe over seeds of training, with and without messages.
 
-Usage: shipped_seeds.py OUT RUNS, in a built and sourced workspace. Writes OUT/seeds.md and
-OUT/seeds.csv. RUNS/SCENARIO_SEED and RUNS/silent_SCENARIO_SEED are what train_shipped.sh left, the
-silent ones trained with `--set channel.loss_probability=1.0`.
+In a built and sourced workspace. Writes OUT/seeds.md and OUT/seeds.csv. RUNS/SCENARIO_SEED and
+RUNS/silent_SCENARIO_SEED are what train_shipped.sh left, the silent ones trained with `--set channel.loss_probability=1.0`.
 """
 
+import argparse
 import glob
 import os
 import re
@@ -13,9 +13,8 @@ import statistics
 import subprocess
 import sys
 
-from shipped_tables import COLUMNS, CONDITIONS, SILENCE, evaluate, run_program, write
+from shipped_tables import COLUMNS, CONDITIONS, SCENARIOS, SILENCE, FileError, evaluate, run_program, write
 
-SCENARIOS = ("medium", "hard")
 METRICS = [(name, digits) for name, digits in COLUMNS if name != "return_std"]
 KINDS = (("", "with messages", ()), ("silent_", "without messages", SILENCE))
 
@@ -28,18 +27,23 @@ def trainings(runs, kind, scenario):
         if seed:
             found.append((int(seed[1]), policy))
     if len(found) < 2:
-        sys.exit(f"{runs}/{kind}{scenario}_SEED: {len(found)} finished trainings, needs two or more")
+        raise FileError(
+            f"{runs}/{kind}{scenario}_SEED", f"{len(found)} finished trainings, needs two or more"
+        )
     return sorted(found)
 
 
 def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    out, runs = sys.argv[1:]
-    os.makedirs(out, exist_ok=True)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
+    parser.add_argument("out", metavar="OUT")
+    parser.add_argument("runs", metavar="RUNS")
+    arguments = parser.parse_args()
+    out, runs = arguments.out, arguments.runs
     lines = []
     table = [["scenario", "condition", "trained and flown", "seed"] + [name for name, _ in METRICS]]
     policies = {(s, kind): trainings(runs, kind, s) for s in SCENARIOS for kind, _, _ in KINDS}
+    os.makedirs(out, exist_ok=True)
     for scenario in SCENARIOS:
         lines += [
             f"## {scenario}", "",

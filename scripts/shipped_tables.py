@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Evaluates the shipped policies and the built-in controllers in acoustic mode, side by side.
 
-Usage: shipped_tables.py OUT [SILENT_FOLDER], in a built and sourced workspace. Writes OUT/tables.md,
-OUT/results.csv and OUT/summary.md, where each policy stands beside the controller that returns most
-on its own estimates. SILENT_FOLDER/SCENARIO.onnx, where given, was trained without messages.
+In a built and sourced workspace. Writes OUT/tables.md, OUT/results.csv and OUT/summary.md, where
+each policy stands beside the controller that returns most on its own estimates. SILENT_FOLDER/SCENARIO.onnx, where given, was trained without messages.
 """
 
+import argparse
 import csv
 import json
 import os
@@ -14,7 +14,8 @@ import subprocess
 import sys
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_common" / "scripts"))
-from stg_common.program import run_program  # noqa: E402  (found by the line above)
+from stg_common.files import FileError  # noqa: E402  (found by the line above)
+from stg_common.program import run_program  # noqa: E402
 
 CONDITIONS = (
     "nominal", "fast_target", "far_initialization", "limited_sensing", "degraded_communication",
@@ -32,6 +33,7 @@ COLUMNS = (
     ("return", 1), ("return_std", 1), ("tail_distance", 4), ("tracking_error", 5),
     ("lost_rate", 3), ("colliding_pairs", 3), ("tail_colliding_pairs", 3), ("band_rate", 2),
 )
+SCENARIOS = ("medium", "hard")
 EPISODES, SEED = 100, 5_000_000  # of the reporting block: nothing was chosen by them
 
 
@@ -105,16 +107,22 @@ def write(out, page, lines, table, rows):
 
 
 def main():
-    if not 2 <= len(sys.argv) <= 3:
-        sys.exit(__doc__)
-    out, silent = sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
+    parser.add_argument("out", metavar="OUT")
+    parser.add_argument("silent", metavar="SILENT_FOLDER", nargs="?")
+    arguments = parser.parse_args()
+    out, silent = arguments.out, arguments.silent
+    for scenario in SCENARIOS if silent else ():
+        if not os.path.isfile(os.path.join(silent, scenario + ".onnx")):
+            raise FileError(silent, f"there is no {scenario}.onnx in it")
     package = subprocess.run(
         ["rospack", "find", "stg_bringup"], check=True, stdout=subprocess.PIPE, text=True
     ).stdout.strip()
     os.makedirs(out, exist_ok=True)
     lines = []
     rows = [["scenario", "condition", "who"] + [name for name, _ in COLUMNS]]
-    for scenario in ("medium", "hard"):
+    for scenario in SCENARIOS:
         lines += [
             f"## {scenario}", "",
             "| condition | who | return | tail distance | tail error | lost | contact "

@@ -5,6 +5,7 @@
 # docs/adr/008-privileged-teacher.md.
 # Usage: train_shipped.sh SCENARIO OUT [TRAIN_OPTION ...]   e.g. train_shipped.sh medium runs/medium
 set -euo pipefail
+[[ "${1:-}" != -h && "${1:-}" != --help ]] || { sed -n '2,6s/^# //p' "$0"; exit; }
 (($# >= 2)) || { sed -n '2,6s/^# //p' "$0" >&2; exit 2; }
 scenario=$1 out=$2
 shift 2

@@ -36,12 +36,12 @@ COLUMNS = (
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("out")
-    parser.add_argument("--episodes", type=int, default=100)
+    parser.add_argument("--episodes", type=flights.count, default=100)
     parser.add_argument("--evaluate", default="evaluate", help="program, where not rosrun's")
     parser.add_argument("--controllers", nargs="+", default=list(CONTROLLERS))
     parser.add_argument("--scenarios", nargs="+", default=["field"])
     parser.add_argument("--conditions", nargs="+", default=list(flights.CONDITIONS))
-    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--workers", type=flights.count, default=1)
     arguments = parser.parse_args()
     known = flights.Flights(
         os.path.join(arguments.out, "flights.jsonl"), arguments.evaluate, arguments.workers
@@ -55,6 +55,8 @@ def main():
                         CONTROLLERS.get(controller, controller), scenario, condition,
                         arguments.episodes, SEED, overrides,
                     )
+                    if "band_share" not in found:
+                        raise flights.FlightError(f"{scenario}: is no scenario of open water")
                     rows.append([scenario, condition, controller, messages, found])
                     print(*rows[-1][:4], f"{found['band_share']:.3f}", file=sys.stderr)
     with open(os.path.join(arguments.out, "field.csv"), "w", encoding="utf-8", newline="") as file:

@@ -1,5 +1,6 @@
 """Flights of `evaluate` that tuning and tables share, each flown once and kept in a file."""
 
+import argparse
 import hashlib
 import json
 import os
@@ -20,6 +21,14 @@ SILENCE = ("channel.noise.site_db=200.0",)
 
 class FlightError(Exception):
     """Why there is no flight, told in words for the user."""
+
+
+def count(text):
+    """An argument of a command line that is a positive whole number."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError("must be 1 or more")
+    return value
 
 
 class Flights:

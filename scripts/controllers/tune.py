@@ -91,16 +91,27 @@ def read(file):
     for key, (good, what) in KEYS.items():
         if not good(search[key]):
             raise Damaged(file, f"{key}: is not {what}")
+    for name, value in ((n, v) for start in search["start"] for n, v in start.items()):
+        if name not in search["space"]:
+            raise Damaged(file, f"start: {name} is not in the space, so that no trial would tell of it")
+        if is_logarithmic(search["space"][name]) and value <= 0.0:
+            raise Damaged(file, f"start: {name}: {value} is not positive, and its range is searched by"
+                                " its logarithm")  # fmt: skip
     if not search["start"] and not search["random_trials"]:
         raise Damaged(file, "start, random_trials: there is nothing to begin with")
     return search
+
+
+def is_logarithmic(ends):
+    """Whether a range is searched by the logarithm: one that spans a decade or more."""
+    return ends[0] > 0.0 and ends[1] / ends[0] >= 10.0
 
 
 def draw(space, centre, step, rng):
     """Returns constants: anywhere, or with a centre near it, by `step` of the range."""
     values = {}
     for name, (lo, hi) in space.items():
-        logarithmic = lo > 0.0 and hi / lo >= 10.0
+        logarithmic = is_logarithmic((lo, hi))
         a, b = (math.log(lo), math.log(hi)) if logarithmic else (lo, hi)
         if centre is None or name not in centre:
             x = rng.uniform(a, b)
@@ -159,9 +170,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("search")
     parser.add_argument("out")
-    parser.add_argument("--trials", type=int, help="instead of the file's")
+    parser.add_argument("--trials", type=flights.count, help="instead of the file's")
     parser.add_argument("--evaluate", default="evaluate", help="program, where not rosrun's")
-    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--workers", type=flights.count, default=1)
     arguments = parser.parse_args()
     search = read(arguments.search)
     search["trials"] = arguments.trials or search["trials"]

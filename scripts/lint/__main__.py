@@ -15,6 +15,9 @@ import house
 from tidy import check_tidy
 from tools import check_catkin, check_format, check_python, check_shell
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "src" / "auv_common" / "scripts"))
+from stg_common.program import run_program  # noqa: E402  (found by the line above)
+
 SHOWN = 200  # findings of one checker
 
 
@@ -79,4 +82,4 @@ def main(argv):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run_program("lint", lambda: main(sys.argv[1:]))

@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 # Where auv_common has stg_common: in the sources, and installed.
 sys.path += [os.path.join(HERE, up) for up in ("../../auv_common/scripts", "../auv_common")]
 from stg_common.csv_files import number, table_rows  # noqa: E402  (found by the line above)
-from stg_common.files import Damaged, expect, member, read_json  # noqa: E402
+from stg_common.files import Damaged, FileError, expect, member, read_json  # noqa: E402
 from stg_common.program import run_program  # noqa: E402
 
 NUMBERS = "offered_s generation_s transmit_s transmit_end_s begin_s arrival_s distance_m".split()
@@ -68,6 +68,14 @@ class Log:
         self.delivered = self.fate == "delivered"
         self.sent = np.isfinite(self.transmit_s)
         self.end_s = max(np.nanmax(self.offered_s), np.nanmax(self.arrival_s, initial=0.0))
+
+    def count_from_first(self):
+        """Has all times count from the first one: a node's log has those of its clock."""
+        first_s = min(np.nanmin(self.offered_s), np.nanmin(self.generation_s, initial=np.inf))
+        for name in NUMBERS:
+            if name.endswith("_s"):
+                setattr(self, name, getattr(self, name) - first_s)
+        self.end_s -= first_s
 
     def nodes(self):
         """All names of nodes, numbers in their order."""
@@ -253,14 +261,36 @@ def draw(log, summary, window, path):
             f"{summary['model']}, {summary['access']}: {summary['transmitted']} packets sent in"
             f" {summary['duration_s']:g} s, delivery ratio {summary['delivery_ratio']:.3f}"
         )
-    figure.savefig(path, dpi=100)
+    try:
+        figure.savefig(path, dpi=100)
+    except OSError as error:  # which of a full disk does not name the file
+        raise FileError(path, error.strerror) from None
+
+
+def read(path):
+    """Returns (log, summary, picture) of the folder of a simulation, or of a node's packet log."""
+    if os.path.isdir(path) or not os.path.exists(path):
+        log = Log(os.path.join(path, "packets.csv"))
+        summary = read_summary(os.path.join(path, "summary.json"))
+        picture = os.path.join(path, "network.png")
+    else:
+        log, summary, picture = Log(path), {"energy_j": {}}, os.path.splitext(path)[0] + ".png"
+    if "model" not in summary:
+        log.count_from_first()
+    return log, summary, picture
 
 
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("folder", help="with packets.csv and, for energy, summary.json")
-    parser.add_argument("--out", help="picture (.png, .svg, .pdf); default: FOLDER/network.png")
+    parser.add_argument(
+        "log",
+        help="folder with packets.csv and, for energy, summary.json; or the packet log of a node, "
+        "whose times are counted from its first one",
+    )
+    parser.add_argument(
+        "--out", help="picture (.png, .svg, .pdf); default: network.png in the folder, LOG.png beside a log"
+    )
     parser.add_argument(
         "--window",
         nargs=2,
@@ -271,9 +301,9 @@ def main():
     arguments = parser.parse_args()
     if arguments.window and not arguments.window[1] > arguments.window[0]:
         parser.error("--window: END is not after START")
-    log = Log(os.path.join(arguments.folder, "packets.csv"))
-    summary = read_summary(os.path.join(arguments.folder, "summary.json"))
-    out = arguments.out or os.path.join(arguments.folder, "network.png")
+    log, summary, picture = read(arguments.log)
+    out = arguments.out or picture
+    out += "" if os.path.splitext(out)[1] else ".png"  # which is what would be written
     draw(log, summary, arguments.window, out)
     print(out)
     return 0

@@ -46,6 +46,35 @@ class PlotNetwork(unittest.TestCase):
             [SCRIPT, self.folder.name, *arguments], capture_output=True, text=True, check=False
         )
 
+    def test_log_of_a_node_is_drawn_from_its_first_time_on(self):
+        start_s = 1.75e9  # of the wall
+        rows = [(0, 1, 0, 1.0, 4.0), (0, 1, 1, 6.0, 9.0)]
+        at_zero = plot_network.Log(self.write(HEADER + "".join(row(*r) for r in rows)))
+        at_zero.count_from_first()
+        file = os.path.join(self.folder.name, "log of a node.csv")
+        with open(file, "w", encoding="utf-8") as log:
+            log.write(HEADER + "".join(row(*r[:3], start_s + r[3], start_s + r[4]) for r in rows))
+        read, _, picture = plot_network.read(file)
+        self.assertEqual(read.end_s, 8.0)
+        self.assertEqual(picture, os.path.join(self.folder.name, "log of a node.png"))
+        self.assertEqual(read.transmissions(), at_zero.transmissions())
+        for pieces, same in zip(plot_network.age_segments(read), plot_network.age_segments(at_zero)):
+            np.testing.assert_array_equal(pieces, same)
+        done = subprocess.run([SCRIPT, file], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stdout), (0, picture + "\n"), done.stderr)
+        self.assertTrue(os.path.isfile(picture))
+
+    def test_what_is_written_is_named_also_where_it_cannot_be(self):
+        self.write(HEADER + row(0, 1, 0, 1.0, 4.0))
+        picture = os.path.join(self.folder.name, "picture")
+        done = self.run_script("--out", picture)
+        self.assertEqual(done.stdout, picture + ".png\n", done.stderr)
+        self.assertTrue(os.path.isfile(picture + ".png"))
+        os.symlink("/dev/full", picture + ".svg")
+        done = self.run_script("--out", picture + ".svg")
+        self.assertEqual(done.stderr, f"plot_network: {picture}.svg: No space left on device\n")
+        self.assertEqual(done.returncode, 2)
+
     def test_age_is_the_sawtooth_of_the_deliveries(self):
         log = plot_network.Log(
             self.write(

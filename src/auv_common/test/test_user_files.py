@@ -180,6 +180,10 @@ class Program(WithFolder):
             os.close(writer)
             self.assertEqual((run.returncode, run.stderr), (141, ""))
 
+    def test_an_interrupt_ends_it_silently(self):
+        run = self.run_with("import os, signal, time; os.kill(os.getpid(), signal.SIGINT); time.sleep(9)")
+        self.assertEqual((run.returncode, run.stderr), (130, ""))
+
 
 if __name__ == "__main__":
     unittest.main()

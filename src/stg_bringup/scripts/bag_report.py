@@ -279,7 +279,10 @@ def parse_arguments(arguments):
     parser.add_argument(
         "--salvage", action="store_true", help="read what is whole of a truncated bag"
     )
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.max_figures < 0:
+        parser.error("--max-figures must not be negative")
+    return options
 
 
 def main(arguments=None):

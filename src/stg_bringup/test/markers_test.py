@@ -151,6 +151,16 @@ class Markers(unittest.TestCase):
         self.publish_until(lambda: not self.shown("overview", "half_duplex")
                            and not self.shown("overview", "carrier"), "silence again")
 
+    def test_the_past_stays_when_an_auv_is_some_steps_behind(self):
+        self.publish_until(lambda: self.step > 20 and self.shown("overview", "link"), "links")
+        late = rospy.Time(1, 0) + rospy.Duration.from_sec((self.step - 15) * synthetic_bag.STEP_S)
+        self.run_under_test.odom[1].publish(
+            synthetic_bag.odometry("auv_1/base_link", late, (0.0, 0.0, 0.0), (1, 0)))
+        for _ in range(10):  # views
+            with self.condition:
+                self.condition.wait(5.0)
+        self.assertTrue(self.shown("overview", "link"))
+
     def test_walls_follow_the_scenario(self):
         def walls():
             points = [p for m in self.shown("overview", "workspace") for p in m.points]

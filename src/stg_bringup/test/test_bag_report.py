@@ -112,6 +112,11 @@ class WholeBag(WithFolder):
         self.assertIn("no episode 7", errors)
         self.assertFalse(self.out.exists())
 
+    def test_fewer_figures_than_none_are_refused(self):
+        with contextlib.redirect_stderr(io.StringIO()), self.assertRaises(SystemExit) as ended:
+            bag_report.parse_arguments(["run.bag", "--max-figures", "-1"])
+        self.assertEqual(ended.exception.code, 2)
+
 
 class DamagedBag(WithFolder):
     """Files that are no whole bags give one clear line and nothing else."""

@@ -273,6 +273,17 @@ class Lost(WithFolder):
         status, output = self.finish(process)
         self.assertEqual(status, 0, output)
 
+    def test_a_home_of_ros_that_is_relative_is_one_folder(self):
+        program = self.folder / "run"
+        program.write_text(f'#!/bin/sh\nROS_HOME=here exec "{LAUNCH}" "$@"\n')
+        program.chmod(0o755)
+        process, _ = launch(self.folder, "medium.launch", *QUICK, program=program)
+        self.addCleanup(stop, process)
+        status, output = self.finish(process)
+        self.assertEqual(status, 0, output)
+        self.assertTrue(list((self.folder / "here" / "log").glob("*/rosout.log")))
+        self.assertFalse((self.folder / "here" / "here").exists())
+
     def test_summary_on_a_full_disk(self):
         status, output = self.finish(self.start(*QUICK, "summary_file:=/dev/full")[0])
         self.assertEqual(status, 1, output)

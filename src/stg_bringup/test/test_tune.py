@@ -97,6 +97,8 @@ class Tune(unittest.TestCase):
                         {"start": [{"gain": "x"}]}, {"scenarios": []}, {"trials": "4"},
                         {"seed": True}, {"score": []}, {"step": [0.1]}, {"controller": 3}):  # fmt: skip
             refused(f"search.yaml: {list(changes)[0]}: is not", self.run_tune(**changes))
+        for start, what in (({"gain": 0}, "gain: 0 is not positive"), ({"gian": 1}, "gian is not in")):
+            refused(f"search.yaml: start: {what}", self.run_tune(start=[start]))
         refused("search.yaml: start, random", self.run_tune(start=[], random_trials=0))
         refused("score: evaluate tells of no joy", self.run_tune(score={"joy": 1.0}))
         file = self.folder / "search.yaml"
@@ -118,6 +120,14 @@ class Tune(unittest.TestCase):
         (self.folder / "evaluate").write_text("#!/bin/sh\necho why >&2\nexit 3\n")
         run = self.run_tune()
         self.assertEqual((run.returncode, run.stderr), (1, "tune: evaluate: exit status 3: why\n"))
+
+    def test_tables_of_the_field_name_a_scenario_that_has_no_such_metrics(self):
+        run = subprocess.run(
+            [sys.executable, str(FOLDER / "field_tables.py"), str(self.folder / "out"), "--scenarios",
+             "box", "--evaluate", str(self.folder / "evaluate")],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
+        self.assertEqual(run.returncode, 1)
+        self.assertEqual(run.stderr, "field_tables: box: is no scenario of open water\n")
 
     def test_shipped_searches_name_choosing_seeds_and_constants_of_their_space(self):
         files = sorted(FOLDER.glob("*.yaml"))

@@ -57,7 +57,10 @@ void Network::Impl::Queue(int packet, TimeNs t) {
     return;
   }
   if (p.info.kind == PacketKind::kPing) {
-    if (n.ping.open) EndPing(node, t, false);
+    if (n.ping.open) {
+      n.ping.result.replaced = true;
+      EndPing(node, t, false);
+    }
     if (n.request != kNone) Discard(n.request, DropReason::kQueue, t);
     n.request = packet;
     StartPing(packet, t);

@@ -18,6 +18,7 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/folder_lock.hpp"
+#include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
 
 namespace {
@@ -184,10 +185,11 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
       std::printf("  dropped, %s: %s receptions\n", reason.c_str(), count.dump().c_str());
     }
   }
-  std::printf("%s\n", json.dump().c_str());
-  // Nobody may be there to read it any more when the terminal was closed.
-  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && whole) {
-    throw stg::UserError("all is written, but standard output cannot be");
+  try {
+    stg::PrintResult(json);
+  } catch (const stg::UserError&) {
+    // All is written; and nobody may be there to read it when the terminal was closed.
+    if (whole) throw;
   }
   return whole ? 0 : stg::kStopped;
 }

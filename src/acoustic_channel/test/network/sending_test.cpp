@@ -229,6 +229,20 @@ TEST(Ping, IsGivenUpWhereNobodyAnswers) {
   EXPECT_EQ(b.log.pings[0].ended, Ns(6.0));
 }
 
+TEST(Ping, ALaterOneOfTheSameSourceReplacesItAndIsAnswered) {
+  Bench b(2);
+  b.medium->SetDelay(0, 1, 0.5);
+  b.Start();
+  b.network->Ping(0, 1, Ns(1.0), 10 * kSecond, 3);
+  b.network->Ping(0, 1, Ns(1.0), 10 * kSecond, 4);
+  b.network->Advance(20 * kSecond);
+  ASSERT_EQ(b.log.pings.size(), 2u);
+  EXPECT_EQ(b.log.pings[0].tag, 3u);
+  EXPECT_TRUE(b.log.pings[0].replaced && !b.log.pings[0].answered);
+  EXPECT_EQ(b.log.pings[1].tag, 4u);
+  EXPECT_TRUE(!b.log.pings[1].replaced && b.log.pings[1].answered);
+}
+
 TEST(Ping, ADriftingClockMeasuresAShareOfTheRoundTripWrongly) {
   Bench b(2);
   b.config.modem.clock_drift_std_ppm = 100.0;

@@ -1,5 +1,5 @@
 """How a program of this repository ends: in one line where a file is at fault, silently where
-nobody reads on."""
+nobody reads on or Ctrl-C was pressed."""
 
 import io
 import os
@@ -8,7 +8,9 @@ import sys
 
 from stg_common.files import FileError, one_line, told
 
-NOBODY_READS = 128 + signal.SIGPIPE  # the exit status that a shell gives programs which SIGPIPE ended
+# The exit statuses that a shell gives programs which these signals ended.
+NOBODY_READS = 128 + signal.SIGPIPE
+INTERRUPTED = 128 + signal.SIGINT
 
 
 def discard(stream):
@@ -47,13 +49,15 @@ class Unread(io.TextIOWrapper):
 def run_program(name, main, *refusals, status=2, system_status=None):
     """Ends the process with what main() returns; with `status`, and one line, where it throws
     FileError or another of the `refusals`; with `system_status`, the same by default, where it is
-    OSError, such as of a folder that is closed to us or a disk that is full."""
+    OSError, such as of a folder that is closed to us or a disk that is full; after Ctrl-C silently."""
     try:
         code = main()
         sys.stdout.flush()
     except BrokenPipeError:
         discard(sys.stdout)  # which Python flushes when it ends
         code = NOBODY_READS
+    except KeyboardInterrupt:
+        code = INTERRUPTED
     except (FileError, *refusals) as error:
         code = _refuse(name, error, status)
     except OSError as error:

@@ -1,11 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/program.hpp"
 #include "auv_dynamics/check/recorded_motion.hpp"
+#include "auv_dynamics/vehicle/torpedo.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 
 namespace {
@@ -62,17 +65,14 @@ int main(int argc, char** argv) {
                  "CSV: rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r")
       ->required();
   app.add_option("--tolerance", tolerance, "largest share of range or distance allowed")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--dt", dt_s, "largest physics step [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-4, 1.0));
+      ->capture_default_str();
+  app.add_option("--dt", dt_s, "largest physics step [s]")->capture_default_str();
   app.add_option("--integrator", integrator,
                  "semi_implicit, as the public model that the shipped motions are from, or rk4")
       ->capture_default_str()
       ->check(CLI::IsMember({"semi_implicit", "rk4"}));
   app.add_option("--scenario", scenario,
-                 "take the vehicle of this scenario, a name or a file; else the REMUS 100");
+                 "take the torpedo of this scenario, a name or a file; else the REMUS 100");
   app.add_option("--set", overrides, "key=value over the scenario, e.g. vehicle.substeps=2");
   app.add_flag("--advance-over-ground", over_ground,
                "propeller inflow from the speed over ground, as the public model has it");
@@ -82,6 +82,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
+    stg::CheckOption("--dt", dt_s, 1e-4, 1.0);
     stg::dynamics::VehicleConfig vehicle;
     if (!scenario.empty()) {
       const auto source =
@@ -89,6 +91,13 @@ int main(int argc, char** argv) {
       vehicle =
           stg::config::Load<stg::dynamics::WorldConfig>(source, stg::config::Scope::kOwnSections)
               .vehicle;
+      const std::string& model = vehicle.model_of(0);
+      const auto flown = stg::dynamics::Vehicles().Make(model, vehicle);
+      if (dynamic_cast<const stg::dynamics::Torpedo*>(flown.get()) == nullptr) {
+        throw stg::UserError("--scenario: '" + scenario + "' flies " + model +
+                             ", and recorded motions are of a torpedo (--set "
+                             "vehicle.model=torpedo)");
+      }
     } else if (!overrides.empty()) {
       throw stg::UserError("--set needs --scenario");
     }
@@ -117,7 +126,7 @@ int main(int argc, char** argv) {
       json["in_current"] = JsonOf(in_current);
       json["in_current"]["judged"] = judged;
     }
-    std::cout << json.dump() << std::endl;
+    stg::PrintResult(json);
     return pass ? 0 : 1;
   } catch (const stg::UserError& e) {
     std::cerr << "check_vehicle: " << e.what() << "\n";

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "auv_common/error.hpp"
+#include "auv_common/program.hpp"
 #include "auv_dynamics/terrain/bathymetry.hpp"
 
 namespace {
@@ -72,13 +73,12 @@ int main(int argc, char** argv) {
       grid.Save(out, "cropped from " + name + " by crop_terrain");
     }
     const stg::dynamics::GeoRegion r = grid.region();
-    std::cout << nlohmann::json{{"region", {r.south, r.north, r.west, r.east}},
-                                {"points", {grid.latitudes().size(), grid.longitudes().size()}},
-                                {"lowest_m", grid.lowest()},
-                                {"highest_m", grid.highest()},
-                                {"file", out.empty() ? nlohmann::json() : nlohmann::json(out)}}
-                     .dump()
-              << std::endl;
+    stg::PrintResult(
+        nlohmann::json{{"region", {r.south, r.north, r.west, r.east}},
+                       {"points", {grid.latitudes().size(), grid.longitudes().size()}},
+                       {"lowest_m", grid.lowest()},
+                       {"highest_m", grid.highest()},
+                       {"file", out.empty() ? nlohmann::json() : nlohmann::json(out)}});
     return 0;
   } catch (const stg::UserError& e) {
     std::cerr << "crop_terrain: " << e.what() << "\n";

@@ -26,10 +26,10 @@ class Crop : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Whether the tool writes this file.
-  bool Tool(const std::string& out) const {
-    const std::string command =
-        "'" STG_CROP_TERRAIN "' '" + file_ + "' --out '" + out + "' > /dev/null 2>&1";
+  /// Whether the tool writes this file, and its result.
+  bool Tool(const std::string& out, const std::string& result = "/dev/null") const {
+    const std::string command = "'" STG_CROP_TERRAIN "' '" + file_ + "' --out '" + out + "' > '" +
+                                result + "' 2> /dev/null";
     return std::system(command.c_str()) == 0;
   }
 
@@ -60,6 +60,8 @@ TEST_F(Crop, TheToolDoesNotWriteOverItsInputByAnotherName) {
   }
   EXPECT_EQ(fs::last_write_time(file_), before);
   EXPECT_TRUE(Tool(folder_ + "/copy.nc"));
+  EXPECT_TRUE(Tool(folder_ + "/\xe9.nc")) << "a name that is no UTF-8";
+  EXPECT_FALSE(Tool(folder_ + "/unseen.nc", "/dev/full"));
 }
 
 }  // namespace

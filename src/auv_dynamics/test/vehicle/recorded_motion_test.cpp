@@ -129,6 +129,28 @@ TEST_F(MotionFile, AColumnThatMovesWhereNoneShouldIsInfinitelyWrong) {
   EXPECT_FALSE(e.Within(1e9));
 }
 
+TEST_F(MotionFile, ToolRefusesWhatItCannotCompareWith) {
+  const std::string shipped = "'" STG_TEST_DATA "/remus100.csv'";
+  for (const char* wrong : {"--dt nan", "--dt 0", "--tolerance nan", "--tolerance -1"}) {
+    EXPECT_EQ(Run(shipped + " " + wrong), 2);
+    EXPECT_NE(err_.find(" is not from "), std::string::npos) << err_;
+  }
+  const std::string scenarios = STG_SHIPPED_TERRAIN "/../scenarios/";
+  EXPECT_EQ(Run(shipped + " --scenario '" + scenarios + "medium.yaml'"), 2);
+  EXPECT_NE(err_.find("flies fully_actuated"), std::string::npos) << err_;
+  EXPECT_EQ(Run(shipped + " --scenario '" + scenarios + "field.yaml'"), 0) << err_;
+}
+
+TEST_F(MotionFile, ToolEndsWithItsResultUnderAnyNameAndFailsWhereItCannotBeWritten) {
+  const std::string latin = folder_ + "/\xe9.csv";
+  std::filesystem::copy_file(STG_TEST_DATA "/remus100.csv", latin);
+  EXPECT_EQ(Run("'" + latin + "'"), 0) << err_;
+  EXPECT_TRUE(Json().is_object()) << out_;
+  const int status = std::system("'" STG_CHECK_VEHICLE "' '" STG_TEST_DATA
+                                 "/remus100.csv' > /dev/full 2> /dev/null");
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;
+}
+
 TEST_F(MotionFile, ToolReportsByColumnAndByExitStatus) {
   const std::string shipped = "'" STG_TEST_DATA "/remus100.csv'";
   EXPECT_EQ(Run(shipped), 0) << err_;

@@ -7,6 +7,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
+#include "auv_common/program.hpp"
 #include "marl_trainer/env/vector_env.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
@@ -66,9 +67,7 @@ int main(int argc, char** argv) {
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
   app.add_option("--condition", condition, "stress condition")->capture_default_str();
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
-  app.add_option("--seconds", seconds, "time to measure for")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  app.add_option("--seconds", seconds, "time to measure for")->capture_default_str();
   app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256))->capture_default_str();
   app.add_option("--envs", envs, "parallel environments")
       ->check(CLI::Range(1, 100000))
@@ -80,6 +79,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    stg::CheckOption("--seconds", seconds, 1e-6, 1e6);
     const auto load = [&](std::vector<std::string> extra) {
       extra.insert(extra.begin(), overrides.begin(), overrides.end());
       return stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, extra);
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
       }
       json["scaling"] = rows;
     }
-    std::cout << json.dump() << std::endl;
+    stg::PrintResult(json);
     return 0;
   } catch (const stg::UserError& e) {
     std::cerr << "bench_env: " << e.what() << "\n";

@@ -4,6 +4,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/program.hpp"
 #include "marl_trainer/env/trace.hpp"
 #include "marl_trainer/scenario/scenario.hpp"
 
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
     const stg::Scenario base = stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario);
     double worst = 0.0;
     nlohmann::json traces = nlohmann::json::array();
@@ -49,12 +51,10 @@ int main(int argc, char** argv) {
                 << e.worst_column << ", step " << e.worst_step << ", agent " << e.worst_agent
                 << ")\n";
     }
-    std::cout << nlohmann::json{{"max_abs_error", worst},
-                                {"tolerance", tolerance},
-                                {"pass", worst <= tolerance},
-                                {"traces", traces}}
-                     .dump()
-              << std::endl;
+    stg::PrintResult(nlohmann::json{{"max_abs_error", worst},
+                                    {"tolerance", tolerance},
+                                    {"pass", worst <= tolerance},
+                                    {"traces", traces}});
     return worst <= tolerance ? 0 : 1;
   } catch (const stg::UserError& e) {
     std::cerr << "check_trace: " << e.what() << "\n";

@@ -12,6 +12,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/program.hpp"
 #include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/env/seed_blocks.hpp"
 #include "marl_trainer/learn/variants.hpp"
@@ -146,10 +147,7 @@ int main(int argc, char** argv) {
       json[summary.names[k]] = summary.mean[k];
       json[summary.names[k] + "_std"] = summary.std[k];
     }
-    std::printf("%s\n", json.dump().c_str());
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw stg::UserError("standard output cannot be written");
-    }
+    stg::PrintResult(json);
     return 0;
   } catch (const stg::UserError& e) {
     std::cerr << "evaluate: " << e.what() << "\n";

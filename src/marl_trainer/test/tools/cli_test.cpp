@@ -159,13 +159,36 @@ TEST_F(CommandLine, EvaluateEndsWithTheMetricsOfTheContract) {
   EXPECT_NEAR(sum / 5.0, json["return"].get<double>(), 0.01);
 }
 
-TEST_F(CommandLine, EvaluateFailsWhereItsOutputCannotBeWritten) {
-  const std::string command =
-      "'" STG_EVALUATE "' --policy idle --episodes 1 > /dev/full 2> '" + folder_ + "/stderr'";
-  const int status = std::system(command.c_str());
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;
-  EXPECT_NE(Read(folder_ + "/stderr").find("evaluate: standard output cannot be written"),
-            std::string::npos);
+TEST_F(CommandLine, ProgramsFailWhereTheirOutputCannotBeWritten) {
+  for (const Program& program : kPrograms) {
+    const std::string command = std::string("'") + program.path + "' " + program.arguments +
+                                " > /dev/full 2> '" + folder_ + "/stderr'";
+    const int status = std::system(command.c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << program.path << status;
+    EXPECT_NE(Read(folder_ + "/stderr").find(": standard output cannot be written"),
+              std::string::npos);
+  }
+}
+
+TEST_F(CommandLine, ProgramsEndWithTheirResultWhereANameIsNoUtf8) {
+  const std::string file = Scenario("seed: 1\n"), latin = folder_ + "/\xe9";
+  fs::rename(file, latin + ".yaml");
+  fs::create_directory_symlink(STG_TEST_DATA "/golden/velocity_medium", latin);
+  for (const auto& [program, arguments] :
+       {std::pair(STG_EVALUATE, "--policy idle --episodes 1 --scenario " + latin + ".yaml"),
+        std::pair(STG_BENCH_ENV, "--seconds 0.05 --scenario " + latin + ".yaml"),
+        std::pair(STG_CHECK_TRACE, latin)}) {
+    const Result r = Run(program, arguments);
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_TRUE(r.Json().is_object()) << r.out;
+  }
+}
+
+TEST_F(CommandLine, NumbersThatAreNoneAreRefused) {
+  for (const char* seconds : {"nan", "0", "-1", "inf"}) {
+    EXPECT_EQ(Run(STG_BENCH_ENV, std::string("--seconds ") + seconds).code, 2) << seconds;
+  }
+  EXPECT_EQ(Run(STG_CHECK_TRACE, STG_TEST_DATA "/golden/velocity_medium --tolerance nan").code, 2);
 }
 
 TEST_F(CommandLine, EvaluateKeepsTheOldTableWhereTheNewOneCannotBeWritten) {

@@ -43,6 +43,7 @@ struct PingResult {
   int source = 0, destination = 0;
   std::uint32_t tag = 0;
   bool answered = false;
+  bool replaced = false;        ///< given up because its source pings anew
   TimeNs asked = 0, ended = 0;  ///< offered; answered or given up
   double round_trip_s = 0.0;    ///< by the source's clock, without turnaround and airtimes
   double range_m = 0.0;         ///< from it and the sound speed at the source

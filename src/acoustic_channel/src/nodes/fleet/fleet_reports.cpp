@@ -104,7 +104,9 @@ void FleetNode::OnFate(const PacketInfo& packet, const PacketFate& fate) {
 void FleetNode::OnPing(const acoustics::PingResult& result) {
   auv_msgs::Ping::Response answer;
   answer.success = result.answered;
-  answer.message = result.answered ? "" : "no answer";
+  answer.message = result.answered   ? ""
+                   : result.replaced ? "replaced by a later ping of the same vehicle"
+                                     : "no answer";
   answer.range = result.range_m;
   answer.round_trip = result.round_trip_s;
   answer.stamp = TimeOf(fleet_.start() + result.ended);

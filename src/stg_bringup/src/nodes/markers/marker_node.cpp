@@ -41,6 +41,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
+constexpr int kOdomQueue = 20;           // steps by which an AUV may come late
 constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
 
 class MarkerNode {
@@ -130,7 +131,7 @@ class MarkerNode {
       view_.vehicles.emplace_back();
       const int id = static_cast<int>(i);
       subscribers_.push_back(nh_.subscribe<nav_msgs::Odometry>(
-          topics::AuvTopic(id, topics::kOdom), 20,
+          topics::AuvTopic(id, topics::kOdom), kOdomQueue,
           [this, i](const nav_msgs::Odometry::ConstPtr& m) { OnOdom(i, *m); }));
       subscribers_.push_back(nh_.subscribe<auv_msgs::TaskState>(
           topics::AuvTopic(id, topics::kTaskState), 20,
@@ -145,17 +146,18 @@ class MarkerNode {
     for (std::size_t k = view_.targets.size(); k < count; ++k) {
       view_.targets.emplace_back();
       subscribers_.push_back(nh_.subscribe<nav_msgs::Odometry>(
-          topics::TargetOdom(static_cast<int>(k)), 20,
+          topics::TargetOdom(static_cast<int>(k)), kOdomQueue,
           [this, k](const nav_msgs::Odometry::ConstPtr& m) { OnTarget(k, *m); }));
     }
   }
 
-  /// Simulated time goes on; when it jumps back (a replay starts over) the past is forgotten.
+  /// Simulated time goes on; when it jumps back by more than an AUV may come late (a replay starts
+  /// over) the past is forgotten.
   void Advance(const ros::Time& stamp) {
     const double t = stamp.toSec();
-    if (t < view_.now - 1.0) ForgetPast();
+    if (t < view_.now - std::max(1.0, kOdomQueue * view_.step_s)) ForgetPast();
     if (t > view_.now && view_.now > 0.0) view_.step_s = t - view_.now;
-    if (t > view_.now || view_.now - t > 1.0) view_.now = t;
+    view_.now = std::max(view_.now, t);
   }
 
   void ForgetPast() {

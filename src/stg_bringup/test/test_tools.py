@@ -1,0 +1,106 @@
+"""Programs of scripts/ refuse what cannot work in one line, before anything is run or written."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+# In place of roslaunch: what the world says at the end, and in the first run in real time the process
+# of an agent, for which what is in place of sleep waits.
+ROSLAUNCH = """#!/bin/bash
+echo "world: 9 steps in 1.5 s, 2.5 x real time, 1.0 to wrench 1.25 ms (median), 3.75 ms (99 %), \
+in time, 0 with a deadline miss"
+if [[ "$*" == *real_time_factor:=1* && ! -e "$TMPDIR/agent" ]]; then
+  touch "$TMPDIR/agent"
+  exec -a "/stg_agent/agent $ROS_HOME" /bin/sleep 4
+fi
+"""
+SLEEP = """#!/bin/bash
+until [[ -e "$TMPDIR/agent" ]]; do /bin/sleep 0.1; done
+exec /bin/sleep 0.5
+"""
+SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
+
+
+def run(folder, name, *arguments):
+    """Returns the finished program of scripts/, run in a folder; only fig6 finds the workspace."""
+    environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C"}
+    if name == "fig6":
+        environment = dict(os.environ)
+    program = [str(SCRIPTS / name)] if os.access(SCRIPTS / name, os.X_OK) else [
+        sys.executable, str(SCRIPTS / name)]  # fmt: skip
+    return subprocess.run([*program, *map(str, arguments)], cwd=folder, env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          universal_newlines=True, check=False)  # fmt: skip
+
+
+class Tools(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+
+    def check_refused(self, what, name, *arguments):
+        """The last line must say what is wrong, with a status, no traceback, and no file left."""
+        done = run(self.folder, name, *arguments)
+        with self.subTest(program=name, arguments=arguments):
+            self.assertIn(done.returncode, (1, 2), done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+            self.assertRegex((done.stderr.splitlines() or [""])[-1], what)
+            self.assertEqual(os.listdir(self.folder), [])
+
+    def test_arguments_that_cannot_work_are_refused_before_anything_is_run(self):
+        self.check_refused("no 'foo' is shipped.*medium", "soak", "--scenario", "foo")
+        for hours in ("nan", "-1", "0"):
+            self.check_refused("--hours.*positive", "soak", "--hours", hours)
+        self.check_refused("--every.*positive", "soak", "--every", "-1")
+        self.check_refused("none/x.csv: No such", "soak", "--out", "none/x.csv")
+        self.check_refused("--steps.*1 or more", "bench.py", "--steps", "0")
+        self.check_refused("nothing to do", "bench.py", "--only", "ros", "--no-ros")
+        self.check_refused("--out: /proc cannot be written", "bench.py", "--out", "/proc")
+        self.check_refused("required.*--build", "fuzz.py", "packet", "1")
+        self.check_refused("no packages", "draw_architecture.py", "--source", ".")
+        self.check_refused("none.svg: No such", "draw_architecture.py", "--check", "--out", "none")
+        self.check_refused("--at: 'x' is no number", "screenshot.sh", "--at", "x", "o.png")
+        self.check_refused("no folder for none/o.png", "screenshot.sh", "none/o.png")
+        self.check_refused("none: there is no medium.onnx", "shipped_tables.py", "out", "none")
+        self.check_refused("medium_SEED: 0 finished", "shipped_seeds.py", "out", "none")
+        self.check_refused("--trials.*1 or more", "controllers/tune.py", "a", "b", "--trials", "0")
+
+    def test_figure_of_the_field_refuses_what_it_cannot_draw(self):
+        self.check_refused("^fig6: scenario 'medium' has no open water", "fig6", "--cases", "medium")
+        self.check_refused("--seed must not be negative", "fig6", "--seed", "-1")
+        self.check_refused("no folder none", "fig6", "--out", "none/fig6")
+        self.check_refused("at most 8", "fig6", "--cases", *["fig6_4"] * 9)
+
+    @unittest.skipUnless(os.path.exists("/usr/share/i18n/locales/de_DE"), "no sources of locales")
+    def test_benchmark_of_the_graph_prints_json_where_numbers_have_commas(self):
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", f"{self.folder}/de_DE.UTF-8"],
+                       check=True)  # fmt: skip
+        for name, text in (("roslaunch", ROSLAUNCH), ("sleep", SLEEP)):
+            program = pathlib.Path(self.folder, name)
+            program.write_text(text)
+            program.chmod(0o755)
+        environment = dict(os.environ, PATH=f"{self.folder}:/usr/bin:/bin", LOCPATH=self.folder,
+                           LC_ALL="de_DE.UTF-8", TMPDIR=self.folder)  # fmt: skip
+        done = subprocess.run([str(SCRIPTS / "bench_ros.sh")], env=environment, check=False,
+                              stdout=subprocess.PIPE, universal_newlines=True)  # fmt: skip
+        self.assertEqual(done.returncode, 0)
+        figures = json.loads(done.stdout)
+        self.assertEqual(figures["lockstep_4_auvs_x_real_time"], 2.5)
+        self.assertEqual(figures["detection_to_wrench_p99_ms_each"], [3.75] * 3)
+        self.assertGreater(figures["largest_agent_memory_mib"], 0.0)
+
+    def test_help_is_no_argument(self):
+        for name in ("shipped_tables.py", "shipped_seeds.py", "train_shipped.sh", "soak"):
+            done = run(self.folder, name, "--help")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), name)
+            self.assertRegex(done.stdout, "(?i)usage: ")
+            self.assertEqual(os.listdir(self.folder), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
