@@ -6,6 +6,7 @@ import unittest
 
 import rospy
 import rostest
+import tf2_ros
 from auv_msgs.msg import SensorFrame
 from geometry_msgs.msg import TwistWithCovarianceStamped
 from sensor_msgs.msg import FluidPressure, Imu, NavSatFix, Range
@@ -18,7 +19,7 @@ TYPES = {
     "altitude": Range,
     "gps": NavSatFix,
 }
-BOTTOM_M = 120.0  # depth of the test's flat bottom
+BOTTOM_M = 101.0  # depth of the flat bottom
 STEPS = 60
 
 
@@ -37,6 +38,8 @@ class Instruments(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.heard = {topic: {} for topic in TYPES}
+        cls.tree = tf2_ros.Buffer(rospy.Duration(3600))
+        cls.listener = tf2_ros.TransformListener(cls.tree)
         for topic, kind in TYPES.items():
             rospy.Subscriber("/auv_1/" + topic, kind, cls.keep(topic))
         end = rospy.get_time() + 40.0
@@ -52,8 +55,9 @@ class Instruments(unittest.TestCase):
         frames = self.heard["sensor_frame"]
         found = [(frames[t], m) for t, m in sorted(self.heard[topic].items()) if t in frames]
         self.assertGreater(len(found), 20 if topic != "gps" else 0, topic)
-        for frame, message in found:
-            self.assertEqual(message.header.frame_id, frame.header.frame_id)
+        own = "auv_1/altimeter" if topic == "altitude" else found[0][0].header.frame_id
+        for _, message in found:
+            self.assertEqual(message.header.frame_id, own)
         return found
 
     def test_pressure_is_that_of_the_water_above(self):
@@ -65,12 +69,29 @@ class Instruments(unittest.TestCase):
         self.assertGreater(deepest, 1.0, "the AUV did not dive")
 
     def test_altitude_and_depth_add_up_to_the_depth_of_the_bottom(self):
+        beyond = 0
         for frame, message in self.pairs("altitude"):
             altitude = BOTTOM_M + frame.pose.position.z
             if altitude <= message.max_range:
                 self.assertAlmostEqual(message.range, altitude, 4)
             else:
                 self.assertEqual(message.range, math.inf)
+                beyond += 1
+        self.assertGreater(beyond, 0)
+
+    def test_the_beam_of_the_altimeter_ends_at_the_bottom_below_the_auv(self):
+        ranges = [(f, m) for f, m in self.pairs("altitude") if m.range <= m.max_range]
+        self.assertGreater(len(ranges), 0)
+        for frame, message in ranges:
+            beam = self.tree.lookup_transform(
+                "world", message.header.frame_id, message.header.stamp, rospy.Duration(5)
+            ).transform
+            q = beam.rotation
+            back = type(q)(w=q.w, x=-q.x, y=-q.y, z=-q.z)
+            end = rotate_back(back, (message.range, 0.0, 0.0))
+            self.assertAlmostEqual(beam.translation.z + end[2], -BOTTOM_M, 3)
+            self.assertAlmostEqual(beam.translation.x + end[0], frame.pose.position.x, 3)
+            self.assertAlmostEqual(beam.translation.y + end[1], frame.pose.position.y, 3)
 
     def test_dvl_and_imu_move_as_the_navigation_says(self):
         for frame, message in self.pairs("dvl"):

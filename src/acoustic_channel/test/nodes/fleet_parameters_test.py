@@ -57,7 +57,7 @@ class FleetParameters(unittest.TestCase):
 
     def test_parameters_out_of_range(self):
         for wrong in ({"silent_after": -1.0}, {"twist": "sideways"}, {"lag": "long"},
-                      {"packet_log": "/nonexistent/packets.csv"}, {"bag": "/nonexistent.bag"}):
+                      {"packet_log": "/dev/null/packets.csv"}, {"bag": "/nonexistent.bag"}):
             (name,) = wrong
             with self.subTest(name):
                 self.assertIn(f"parameter {name}", self.refusal(**wrong))

@@ -1,5 +1,6 @@
 #include "instruments.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "auv_common/error.hpp"
@@ -54,8 +55,9 @@ void Instruments::Advertise(int i) {
                       return !m->header.stamp.isZero();
                     });
   auv.altitude.Advertise(
-      topics::AuvTopic(i, topics::kAltitude), kInstrumentQueue, [&auv](sensor_msgs::Range* m) {
+      topics::AuvTopic(i, topics::kAltitude), kInstrumentQueue, [this, &auv, i](sensor_msgs::Range* m) {
         m->header = auv.header;
+        m->header.frame_id = frames::Altimeter(i);
         m->radiation_type = sensor_msgs::Range::ULTRASOUND;
         m->field_of_view = 0.0F;
         m->min_range = static_cast<float>(kAltimeter_m[0]);
@@ -63,7 +65,9 @@ void Instruments::Advertise(int i) {
         const bool heard = auv.altitude_m <= kAltimeter_m[1];
         m->range =
             heard ? static_cast<float>(auv.altitude_m) : std::numeric_limits<float>::infinity();
-        return !m->header.stamp.isZero();
+        if (m->header.stamp.isZero()) return false;
+        PointDown(m->header, auv.p_WB);
+        return true;
       });
   auv.gps.Advertise(topics::AuvTopic(i, topics::kGps), kInstrumentQueue,
                     [this, &auv](sensor_msgs::NavSatFix* m) {
@@ -80,6 +84,16 @@ void Instruments::Advertise(int i) {
                     });
 }
 
+void Instruments::PointDown(const std_msgs::Header& beam, const Vec3<double>& p_WB) {
+  geometry_msgs::TransformStamped down;
+  down.header.stamp = beam.stamp;
+  down.header.frame_id = frames::kWorld;
+  down.child_frame_id = beam.frame_id;
+  SetVector(p_WB, &down.transform.translation);
+  down.transform.rotation.y = down.transform.rotation.w = std::sqrt(0.5);  // x to -z
+  frames_.sendTransform(down);
+}
+
 void Instruments::Publish(const dynamics::World& world, TimeNs now, bool first) {
   const Vec3<double> up{0.0, 0.0, kGravity_mps2};
   for (int i = 0; i < world.agents(); ++i) {
@@ -90,6 +104,7 @@ void Instruments::Publish(const dynamics::World& world, TimeNs now, bool first) 
         first ? Vec3<double>() : (v_WB - auv.v_WB) * (1.0 / period_s_);
     auv.specific_force_B = Lane(v.R_WB.TransposeTimes(Broadcast(acceleration + up)), 0);
     auv.v_WB = v_WB;
+    auv.p_WB = p_WB;
     auv.header.stamp = TimeOf(now);
     auv.nav = world.Nav(0, i);
     auv.altitude_m = world.sea().terrain().Altitude(p_WB);

@@ -5,6 +5,7 @@
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/NavSatFix.h>
 #include <sensor_msgs/Range.h>
+#include <tf2_ros/transform_broadcaster.h>
 
 #include <vector>
 
@@ -21,8 +22,8 @@ namespace stg::nodes {
 ///             since the decision before, from the change of true velocity over ground
 ///   pressure  absolute, of the depth that the navigation has: p_atm + rho g depth
 ///   dvl       velocity over ground in body axes as the navigation has it
-///   altitude  of the body's origin above the bottom, straight down; +Inf where it is out of range
-///             (REP 117)
+///   altitude  of the body's origin above the bottom, straight down however the body lies, along x
+///             of a frame of its own in tf; +Inf where it is out of range (REP 117)
 ///   gps       within kSurface_m of the surface, where an aerial is out of the water
 /// Costs nothing while nobody listens.
 class Instruments {
@@ -47,14 +48,17 @@ class Instruments {
     OnDemand<sensor_msgs::NavSatFix> gps;
     std_msgs::Header header;
     dynamics::NavState nav;
-    Vec3<double> v_WB, specific_force_B;
+    Vec3<double> p_WB, v_WB, specific_force_B;
     double altitude_m = 0.0;
   };
   void Advertise(int i);
+  /// Sends the frame of an altimeter's beam.
+  void PointDown(const std_msgs::Header& beam, const Vec3<double>& p_WB);
 
   double period_s_;
   dynamics::Datum datum_;
   std::vector<Auv> auvs_;
+  tf2_ros::TransformBroadcaster frames_;
 };
 
 }  // namespace stg::nodes

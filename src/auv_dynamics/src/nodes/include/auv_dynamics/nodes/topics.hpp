@@ -33,6 +33,8 @@ inline constexpr char kEpisodeSummary[] = "/episode_summary";
 namespace stg::frames {
 
 inline constexpr char kWorldNed[] = "world_ned";
+/// Where an altimeter's beam begins; x along it, straight down.
+inline std::string Altimeter(int i) { return "auv_" + std::to_string(i) + "/altimeter"; }
 inline std::string Target(int k) { return "target_" + std::to_string(k); }
 
 }  // namespace stg::frames
