@@ -54,21 +54,21 @@ void Instruments::Advertise(int i) {
                       SetVector(auv.nav.v_WB_B, &m->twist.twist.linear);
                       return !m->header.stamp.isZero();
                     });
-  auv.altitude.Advertise(
-      topics::AuvTopic(i, topics::kAltitude), kInstrumentQueue, [this, &auv, i](sensor_msgs::Range* m) {
-        m->header = auv.header;
-        m->header.frame_id = frames::Altimeter(i);
-        m->radiation_type = sensor_msgs::Range::ULTRASOUND;
-        m->field_of_view = 0.0F;
-        m->min_range = static_cast<float>(kAltimeter_m[0]);
-        m->max_range = static_cast<float>(kAltimeter_m[1]);
-        const bool heard = auv.altitude_m <= kAltimeter_m[1];
-        m->range =
-            heard ? static_cast<float>(auv.altitude_m) : std::numeric_limits<float>::infinity();
-        if (m->header.stamp.isZero()) return false;
-        PointDown(m->header, auv.p_WB);
-        return true;
-      });
+  auv.altitude.Advertise(topics::AuvTopic(i, topics::kAltitude), kInstrumentQueue,
+                         [this, &auv, i](sensor_msgs::Range* m) {
+                           m->header = auv.header;
+                           m->header.frame_id = frames::Altimeter(i);
+                           m->radiation_type = sensor_msgs::Range::ULTRASOUND;
+                           m->field_of_view = 0.0F;
+                           m->min_range = static_cast<float>(kAltimeter_m[0]);
+                           m->max_range = static_cast<float>(kAltimeter_m[1]);
+                           const bool heard = auv.altitude_m <= kAltimeter_m[1];
+                           m->range = heard ? static_cast<float>(auv.altitude_m)
+                                            : std::numeric_limits<float>::infinity();
+                           if (m->header.stamp.isZero()) return false;
+                           PointDown(m->header, auv.p_WB);
+                           return true;
+                         });
   auv.gps.Advertise(topics::AuvTopic(i, topics::kGps), kInstrumentQueue,
                     [this, &auv](sensor_msgs::NavSatFix* m) {
                       if (auv.header.stamp.isZero() || auv.nav.p_WB.z < -kSurface_m) return false;
