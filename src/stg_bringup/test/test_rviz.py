@@ -14,6 +14,7 @@ import yaml
 
 PACKAGE = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
 SOURCES = PACKAGE.parent
+FRAMES = {"world", "world_ned", r"auv_\d+/base_link", r"auv_\d+/altimeter", r"target_\d+"}
 PLUGINS = "/usr/share/rviz/plugin_description.xml"
 
 
@@ -100,7 +101,7 @@ class RvizFiles(unittest.TestCase):
 
     def test_every_frame_is_published(self):
         known = published_frames()
-        self.assertEqual(known, {"world", "world_ned", r"auv_\d+/base_link", r"target_\d+"})
+        self.assertEqual(known, FRAMES)
         for name, view in rviz_files().items():
             manager = view["Visualization Manager"]
             frames = [manager["Global Options"]["Fixed Frame"]]
