@@ -47,7 +47,7 @@ def main():
     for scenario in SCENARIOS:
         lines += [
             f"## {scenario}", "",
-            "| condition | trained and flown | seeds | return | tail distance | tail error | lost "
+            "| condition | trained and flown | seeds | return | tail distance [m] | tail error [m] | lost "
             "| contact | contact, tail | in band |",
             "|---|---|---|---:|---:|---:|---:|---:|---:|---:|",
         ]

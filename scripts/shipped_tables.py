@@ -125,7 +125,7 @@ def main():
     for scenario in SCENARIOS:
         lines += [
             f"## {scenario}", "",
-            "| condition | who | return | tail distance | tail error | lost | contact "
+            "| condition | who | return | tail distance [m] | tail error [m] | lost | contact "
             "| contact, tail | in band |",
             "|---|---|---:|---:|---:|---:|---:|---:|---:|",
         ]
