@@ -80,7 +80,7 @@ import rosbag
 with rosbag.Bag(sys.argv[1]) as bag, open(sys.argv[2], "w") as out:
     out.write(next((m.data for _, m, _ in bag.read_messages("/scenario")), "{}"))
 PYTHON
-"$root/src/stg_bringup/scripts/view.py" "$view" --scenario-file "$work/scenario.yaml" --write "$work/view.rviz"
+"$root/src/stg_monitor/scripts/view.py" "$view" --scenario-file "$work/scenario.yaml" --write "$work/view.rviz"
 sed -e "s/^  Height: .*/  Height: $((height + margin))/" -e "s/^  Width: .*/  Width: $((width + 32))/" \
   "$work/view.rviz" >"$work/shot.rviz"
 

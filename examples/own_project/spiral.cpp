@@ -7,9 +7,9 @@
 #include <string>
 
 #include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/env/evaluation.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/controllers/controller.hpp"
+#include "stg_env/env/evaluation.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace {
 

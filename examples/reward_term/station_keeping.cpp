@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "marl_trainer/task/task.hpp"
+#include "stg_env/task/task.hpp"
 
 namespace {
 

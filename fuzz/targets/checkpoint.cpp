@@ -7,7 +7,7 @@
 #include "marl_trainer/learn/algorithm.hpp"
 #include "marl_trainer/learn/collect/collector.hpp"
 #include "marl_trainer/learn/train_config.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/scenario/scenario.hpp"
 #include "target.hpp"
 
 namespace stg::fuzz {

@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/recorded/recorded.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/scenario/scenario.hpp"
 #include "target.hpp"
 
 namespace stg::fuzz {

@@ -1,4 +1,4 @@
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 #include <utility>
 

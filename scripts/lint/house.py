@@ -21,9 +21,11 @@ MAY_INCLUDE = {
     "auv_dynamics": {"auv_common"},
     "acoustic_channel": {"auv_common"},
     "stg_agent": {"auv_common", "auv_dynamics", "acoustic_channel"},
-    "marl_trainer": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent"},
-    "stg_python": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "marl_trainer"},
-    "stg_bringup": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "marl_trainer"},
+    "stg_env": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent"},
+    "marl_trainer": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "stg_env"},
+    "stg_python": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "stg_env"},
+    "stg_monitor": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "stg_env"},
+    "stg_bringup": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "stg_env"},
 }
 # The namespaces of a package's core, and of all nodes; each may have namespaces within.
 CORE_NAMESPACES = {
@@ -31,11 +33,12 @@ CORE_NAMESPACES = {
     "auv_dynamics": ("stg::dynamics",),
     "acoustic_channel": ("stg::acoustics",),
     "stg_agent": ("stg::agent",),
-    "marl_trainer": ("stg::task", "stg::env", "stg::learn"),
+    "stg_env": ("stg::task", "stg::env"),
+    "marl_trainer": ("stg::learn",),
     "stg_python": ("stg::python",),
 }
 # What composes the sections of all packages belongs to all of them.
-SHARED_NAMESPACES = {("marl_trainer", "scenario"): ("stg",)}
+SHARED_NAMESPACES = {("stg_env", "scenario"): ("stg",)}
 NODE_NAMESPACES = ("stg::nodes", "stg::topics", "stg::frames")
 # Headers that a core must not see.
 ROS = re.compile(

@@ -16,9 +16,9 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/env/vector_env.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "stg_agent/policy/policy.hpp"
+#include "stg_env/env/vector_env.hpp"
 
 namespace stg::nodes {
 namespace {

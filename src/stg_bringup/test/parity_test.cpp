@@ -17,8 +17,8 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/env/evaluation.hpp"
 #include "stg_agent/nodes/topics.hpp"
+#include "stg_env/env/evaluation.hpp"
 
 namespace stg::nodes {
 namespace {

@@ -73,7 +73,7 @@ class Includes(Rule):
                 '#include "auv_dynamics/world/world.hpp"\n'
                 '#include "acoustic_channel/channel/channel.hpp"\n'
                 "#include <cmath>\n",
-                "stg_bringup/src/nodes/metrics.cpp": '#include "marl_trainer/env/env.hpp"\n',
+                "stg_monitor/src/nodes/metrics.cpp": '#include "stg_env/env/env.hpp"\n',
             }
         )
 
@@ -194,7 +194,7 @@ class Topics(Rule):
 
     def test_a_second_place_for_a_name_is_found(self):
         header = 'inline constexpr char kClock[] = "/clock";\n'
-        node = "stg_bringup/src/nodes/marker_node.cpp"
+        node = "stg_monitor/src/nodes/marker_node.cpp"
         self.assert_clean({TOPICS: header})
         self.assert_found({TOPICS: header, node: 'const char* kTime = "/clock";\n'}, f"src/{node}:1")
         self.assert_clean({TOPICS: header, "stg_bringup/test/a_test.cpp": 'Wait("/clock");\n'})
@@ -213,13 +213,13 @@ class Namespaces(Rule):
                 "auv_common/src/config/a.cpp": "namespace stg::config {\n",
                 "auv_dynamics/src/a.cpp": "namespace fs = std::filesystem;\nnamespace stg::dynamics {",
                 "auv_dynamics/src/nodes/a.cpp": "namespace stg::nodes {\n",
-                "marl_trainer/src/scenario/scenario.cpp": "namespace stg {\n",
+                "stg_env/src/scenario/scenario.cpp": "namespace stg {\n",
                 "marl_trainer/src/learn/nn/a.cpp": "namespace stg::learn::nn {\n",
             }
         )
 
     def test_a_forward_declaration_of_another_is_no_code(self):
-        path = "marl_trainer/include/marl_trainer/env/env.hpp"
+        path = "stg_env/include/stg_env/env/env.hpp"
         self.assert_clean({path: "namespace stg::agent {\nclass Agent;\nstruct Packet;\n}\n"})
         self.assert_found({path: "namespace stg::agent {\nclass Agent;\nint f();\n}\n"}, "agent")
 
@@ -229,7 +229,7 @@ class Namespaces(Rule):
             ("auv_dynamics/src/a.cpp", "stg::acoustics"),
             ("acoustic_channel/include/acoustic_channel/a.hpp", "stg::dynamics"),
             ("stg_agent/src/nodes/a.cpp", "stg::agent"),
-            ("marl_trainer/src/env/a.cpp", "stg"),
+            ("stg_env/src/env/a.cpp", "stg"),
             ("marl_trainer/src/learn/a.cpp", "stg::learning"),
         ):
             self.assert_found({path: f"\nnamespace {name} {{\n"}, f"src/{path}:2: namespace {name}:")
@@ -255,10 +255,10 @@ class Registries(Rule):
         files = {"auv_dynamics/src/targets/motions.cpp": REGISTRY + 'bool a = name == "evasive";\n'}
         self.assert_clean(files)
         for text in ('if (c.motion == "evasive") {\n', 'return "straight" != c.motion;\n'):
-            path = "marl_trainer/src/env/env.cpp"
+            path = "stg_env/src/env/env.cpp"
             self.assert_found({**files, path: text}, f"src/{path}:1", "motions.cpp")
         self.assert_clean({**files, "auv_dynamics/test/a_test.cpp": 'EXPECT_TRUE(n == "evasive");'})
-        self.assert_clean({**files, "marl_trainer/src/env/env.cpp": 'if (c.motion == "other") {\n'})
+        self.assert_clean({**files, "stg_env/src/env/env.cpp": 'if (c.motion == "other") {\n'})
 
 
 class Picture(unittest.TestCase):

@@ -13,7 +13,7 @@ import unittest
 import rosbag
 
 HERE = pathlib.Path(__file__).resolve().parent
-SCRIPTS = HERE.parent / "scripts"
+SCRIPTS = HERE.parents[1] / "stg_monitor" / "scripts"
 sys.path[:0] = [str(HERE), str(SCRIPTS)]
 
 import bag_report  # noqa: E402  (lies in the scripts folder)

@@ -15,6 +15,8 @@ PACKAGES = (
     "marl_trainer",
     "stg_agent",
     "stg_bringup",
+    "stg_env",
+    "stg_monitor",
     "stg_python",
 )
 sys.path.insert(0, str(ROOT / "scripts" / "lint"))
@@ -176,8 +178,8 @@ class PackagePages(unittest.TestCase):
         self.assertGreater(len(set().union(*map(self.constants, PACKAGES))), 10)
         for package in PACKAGES:
             with self.subTest(package):
-                # The metrics node of stg_bringup publishes what auv_dynamics names.
-                pages = {package, "stg_bringup"}
+                # The metrics node of stg_monitor publishes what auv_dynamics names.
+                pages = {package, "stg_monitor"}
                 text = "".join((DOCS / "packages" / f"{page}.md").read_text() for page in pages)
                 for name in self.constants(package):
                     whole_name = rf"(?<!\w){re.escape(name)}(?!\w)"

@@ -61,8 +61,8 @@ class Help(unittest.TestCase):
 
     def test_scripts_tell_their_usage_without_a_master(self):
         for script in ("auv_common/scripts/ends_launch", "acoustic_channel/scripts/chat.py",
-                       "stg_bringup/scripts/make_meshes.py", "stg_bringup/scripts/view.py",
-                       "stg_bringup/scripts/bag_report.py", "stg_python/examples/agent.py",
+                       "stg_bringup/scripts/make_meshes.py", "stg_monitor/scripts/view.py",
+                       "stg_monitor/scripts/bag_report.py", "stg_python/examples/agent.py",
                        "stg_python/examples/random_actions.py", "stg_python/examples/ppo.py"):
             with self.subTest(script):
                 status, output = run("/usr/bin/python3", ROOT / "src" / script, "--help")

@@ -122,7 +122,7 @@ class RvizFiles(unittest.TestCase):
                 asked, made = pathlib.Path(folder) / "s.yaml", pathlib.Path(folder) / "v.rviz"
                 asked.write_text(yaml.safe_dump(scenario))
                 subprocess.run(
-                    ["/usr/bin/python3", PACKAGE / "scripts" / "view.py", view, "--scenario-file",
+                    ["/usr/bin/python3", PACKAGE.parent / "stg_monitor" / "scripts" / "view.py", view, "--scenario-file",
                      asked, "--write", made], check=True,
                 )  # fmt: skip
                 content = yaml.safe_load(made.read_text())
@@ -161,7 +161,7 @@ class RvizFiles(unittest.TestCase):
                 else:
                     file.write_text(text)
                 run = subprocess.run(
-                    ["/usr/bin/python3", PACKAGE / "scripts" / "view.py", "follow", "--scenario-file",
+                    ["/usr/bin/python3", PACKAGE.parent / "stg_monitor" / "scripts" / "view.py", "follow", "--scenario-file",
                      file, "--write", folder / "view"], stderr=subprocess.PIPE, check=False,
                     universal_newlines=True, timeout=60,
                 )  # fmt: skip

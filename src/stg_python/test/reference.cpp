@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "auv_common/config/files.hpp"
-#include "marl_trainer/env/vector_env.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/env/vector_env.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace {
 

@@ -12,9 +12,9 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "record_inlet.hpp"
 #include "stg_agent/nodes/topics.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::nodes {
 namespace {

@@ -8,8 +8,8 @@
 #include "auv_common/numbers/random.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
 #include "auv_common/program.hpp"
-#include "marl_trainer/env/vector_env.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/env/vector_env.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace {
 

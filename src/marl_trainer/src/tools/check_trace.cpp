@@ -5,8 +5,8 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
-#include "marl_trainer/env/trace.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/env/trace.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 /// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
 /// on unusable input.

@@ -13,12 +13,12 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
-#include "marl_trainer/env/evaluation.hpp"
-#include "marl_trainer/env/seed_blocks.hpp"
-#include "marl_trainer/learn/variants.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "seed_check.hpp"
 #include "stg_agent/controllers/pursuit.hpp"
+#include "stg_env/env/evaluation.hpp"
+#include "stg_env/env/seed_blocks.hpp"
+#include "stg_env/env/variants.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace {
 
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const stg::Scenario s = stg::learn::ValidationScenario(
+    const stg::Scenario s = stg::env::ValidationScenario(
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides),
         variant);
     std::string full = policy;

@@ -12,8 +12,8 @@
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "seed_check.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "auv_common/numbers/random.hpp"
 #include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::learn {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "auv_common/error.hpp"
 #include "learn/mappo_setup.hpp"
-#include "marl_trainer/learn/variants.hpp"
+#include "stg_env/env/variants.hpp"
 
 namespace stg::learn {
 namespace {
@@ -183,10 +183,10 @@ TEST(Imitation, IsInFullForTheFirstHalfAndThenFades) {
 
 TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
   Scenario scenario;
-  EXPECT_EQ(VariantScenario(scenario, "stg").observation_size(), 74);
-  EXPECT_EQ(VariantScenario(scenario, "semantic").observation_size(), 68);
-  EXPECT_EQ(VariantScenario(scenario, "velocity3").observation_size(), 51);
-  const Scenario tau6 = VariantScenario(scenario, "tau6");
+  EXPECT_EQ(env::VariantScenario(scenario, "stg").observation_size(), 74);
+  EXPECT_EQ(env::VariantScenario(scenario, "semantic").observation_size(), 68);
+  EXPECT_EQ(env::VariantScenario(scenario, "velocity3").observation_size(), 51);
+  const Scenario tau6 = env::VariantScenario(scenario, "tau6");
   EXPECT_EQ(tau6.observation_size(), 51);
   EXPECT_EQ(tau6.action_size(), 6);
   EXPECT_EQ(tau6.control.action_scale, 0.18);
@@ -194,10 +194,10 @@ TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
   EXPECT_EQ(tau6.control.max_delta, 0.0);
   EXPECT_EQ(tau6.reward.kind, task::RewardKind::kReleaseRaw);
   EXPECT_EQ(tau6.reward.weights.coordination, 0.10);
-  EXPECT_EQ(ValidationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
-  EXPECT_EQ(ValidationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
-  EXPECT_EQ(ValidationScenario(scenario, "tau6").action_size(), 6);
-  EXPECT_THROW(VariantScenario(scenario, "other"), UserError);
+  EXPECT_EQ(env::ValidationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
+  EXPECT_EQ(env::ValidationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
+  EXPECT_EQ(env::ValidationScenario(scenario, "tau6").action_size(), 6);
+  EXPECT_THROW(env::VariantScenario(scenario, "other"), UserError);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "auv_common/config/files.hpp"
 #include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::learn {
 

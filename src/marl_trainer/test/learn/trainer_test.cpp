@@ -6,7 +6,7 @@
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
 #include "marl_trainer/learn/algorithms/masac/masac_config.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
-#include "marl_trainer/learn/variants.hpp"
+#include "stg_env/env/variants.hpp"
 
 namespace stg::learn {
 namespace {
@@ -301,7 +301,7 @@ TEST_F(TrainerTest, EveryVariantTrains) {
     EXPECT_TRUE(trainer.Run());
     const agent::Policy policy =
         agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
-    EXPECT_NO_THROW(policy.RequireFits(VariantScenario(ShortScenario(), variant)));
+    EXPECT_NO_THROW(policy.RequireFits(env::VariantScenario(ShortScenario(), variant)));
   }
 }
 

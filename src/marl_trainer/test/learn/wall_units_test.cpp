@@ -8,8 +8,8 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/numbers/attitude.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/graph/observation.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::learn {
 namespace {

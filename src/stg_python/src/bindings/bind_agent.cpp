@@ -13,8 +13,8 @@
 #include "arrays.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "bind.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/agent/agent.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::python {
 namespace {

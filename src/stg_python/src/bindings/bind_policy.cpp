@@ -8,9 +8,9 @@
 #include "arrays.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
 #include "bind.hpp"
-#include "marl_trainer/env/evaluation.hpp"
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_agent/policy/policy.hpp"
+#include "stg_env/env/evaluation.hpp"
 
 namespace stg::python {
 namespace {

@@ -6,9 +6,9 @@
 #include "auv_common/error.hpp"
 #include "auv_dynamics/terrain/seascape.hpp"
 #include "bind.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
-#include "marl_trainer/task/critic_state.hpp"
 #include "stg_agent/policy/policy.hpp"
+#include "stg_env/scenario/scenario.hpp"
+#include "stg_env/task/critic_state.hpp"
 
 namespace stg::python {
 namespace {

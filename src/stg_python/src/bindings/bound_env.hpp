@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/env/controller.hpp"
+#include "stg_env/env/controller.hpp"
 #include "stg_python/env/fleet.hpp"
 
 namespace stg::python {

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "marl_trainer/env/seed_blocks.hpp"
 #include "marl_trainer/learn/algorithm_config.hpp"
 #include "marl_trainer/learn/collect/imitation.hpp"
 #include "marl_trainer/learn/options.hpp"
+#include "stg_env/env/seed_blocks.hpp"
 
 namespace stg::learn {
 

@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/env/controller.hpp"
-#include "marl_trainer/env/vector_env.hpp"
 #include "marl_trainer/learn/clock.hpp"
 #include "marl_trainer/learn/nn/sliced_gradient.hpp"
+#include "stg_env/env/controller.hpp"
+#include "stg_env/env/vector_env.hpp"
 
 namespace stg::learn {
 

@@ -6,7 +6,7 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
-#include "marl_trainer/learn/variants.hpp"
+#include "stg_env/env/variants.hpp"
 
 namespace stg::learn {
 namespace {
@@ -20,10 +20,10 @@ Scenario Valid(const Scenario& scenario, const TrainSetup& setup) {
 /// The scenarios to train in, all with the observation and episode of the first.
 std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>& mix,
                           const TrainSetup& setup) {
-  const Scenario base = VariantScenario(scenario, setup.common.variant);
+  const Scenario base = env::VariantScenario(scenario, setup.common.variant);
   std::vector<Scenario> all;
   for (const Scenario& s : mix) {
-    all.push_back(VariantScenario(Valid(s, setup), setup.common.variant));
+    all.push_back(env::VariantScenario(Valid(s, setup), setup.common.variant));
   }
   if (all.empty()) all.push_back(base);
   for (const Scenario& s : all) {
@@ -82,8 +82,8 @@ double PeakFlops(WorkerPool* pool) {
 
 Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Options& options)
     : scenario_(Valid(scenario, setup)),
-      train_scenario_(VariantScenario(scenario, setup.common.variant)),
-      validation_scenario_(ValidationScenario(scenario, setup.common.variant)),
+      train_scenario_(env::VariantScenario(scenario, setup.common.variant)),
+      validation_scenario_(env::ValidationScenario(scenario, setup.common.variant)),
       mix_(Mix(scenario, options.mix, setup)),
       setup_(setup),
       options_(options),

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "marl_trainer/env/evaluation.hpp"
 #include "marl_trainer/learn/train_config.hpp"
+#include "stg_env/env/evaluation.hpp"
 
 namespace stg::learn {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/env/vector_env.hpp"
+#include "stg_env/env/vector_env.hpp"
 
 namespace stg::python {
 

@@ -9,8 +9,8 @@
 #include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/algorithm.hpp"
 #include "marl_trainer/learn/train_config.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
-#include "marl_trainer/task/metrics.hpp"
+#include "stg_env/scenario/scenario.hpp"
+#include "stg_env/task/metrics.hpp"
 
 namespace stg::learn {
 

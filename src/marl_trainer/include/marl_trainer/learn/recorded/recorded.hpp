@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "auv_dynamics/measurements.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/policy/policy.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::learn {
 

@@ -9,8 +9,8 @@
 #include "auv_common/folder_lock.hpp"
 #include "marl_trainer/learn/checkpoint/checkpoint.hpp"
 #include "marl_trainer/learn/train_config.hpp"
-#include "marl_trainer/scenario/scenario.hpp"
 #include "stg_agent/policy/policy.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::learn {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/algorithm.hpp"
-#include "marl_trainer/task/metrics.hpp"
+#include "stg_env/task/metrics.hpp"
 
 namespace stg::learn {
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "stg_env/env/controller.hpp"
+
+namespace stg::env {
+
+/// Chooses the actions [envs, agents, action_size] of all AUVs of `env` from its observations
+/// [envs, agents, observation_size].
+using ActFunction =
+    std::function<void(const VectorEnv& env, const float* observations, double* actions)>;
+/// Makes the ActFunction of one block of environments, which `worker` of the pool flies (0 without
+/// one): what it needs of memory is its own or that worker's.
+using ActFactory = std::function<ActFunction(const VectorEnv& env, int worker)>;
+
+/// Which episodes an evaluation flies.
+struct EvaluationOptions {
+  int episodes = 30;
+  std::uint64_t seed = 3000;  ///< episode e is drawn from world seed `seed` + e
+  /// Environments that fly together, a multiple of kMixBlock. Every block is full: what an
+  /// ActFunction computes for whole blocks does not depend on the number of episodes.
+  int block = kMixBlock;
+};
+
+/// Runs whole episodes on the threads of `pool`; null: on this one. The result does not depend on
+/// the number of threads.
+/// @param progress called with the number of finished episodes; may be empty.
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFactory& make_act,
+                                           const EvaluationOptions& options, WorkerPool* pool,
+                                           const std::function<void(int)>& progress = {});
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
+                                           const EvaluationOptions& options, WorkerPool* pool,
+                                           const std::function<void(int)>& progress = {});
+
+}  // namespace stg::env

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "stg_agent/agent/agent_view.hpp"
+#include "stg_env/env/env_arrays.hpp"
+#include "stg_env/scenario/scenario.hpp"
+#include "stg_env/task/metrics.hpp"
+#include "stg_env/task/reward.hpp"
+#include "stg_env/task/swarm_state.hpp"
+
+namespace stg::acoustics {
+class Channel;
+}
+
+namespace stg::env {
+
+class Environment;
+struct LaneSet;
+
+/// Environments of a mix of scenarios take turns in blocks of this many: environment e flies
+/// scenario (e / kMixBlock) mod n. A constant of the seed rule, whatever the machine.
+inline constexpr int kMixBlock = 4;
+
+/// Which environments a VectorEnv runs, and which episodes they draw.
+struct VectorEnvOptions {
+  /// The k-th episode of environment e (counted from 0, through all objects that share the
+  /// numbering) is global reset r = e + k * total_envs and is drawn from seed + r.
+  std::uint64_t seed = 0;
+  int envs = kMixBlock;     ///< environments of this object
+  int first_env = 0;        ///< index of its first one
+  int total_envs = 0;       ///< of all objects together; 0: `envs`
+  bool curriculum = false;  ///< easy, medium, hard by r, where scenario.reset.curriculum says so
+  /// The first episodes of the blocks of kMixBlock are cut to lengths spread evenly over an
+  /// episode, so that not all environments end at the same time.
+  bool stagger = false;
+};
+
+/// Any number of environments of one scenario, or of a mix of scenarios of one layout. Episodes
+/// end by truncation only and restart at once. Nothing depends on how many environments run
+/// together but speed. Not thread-safe: one object per worker.
+class VectorEnv {
+ public:
+  /// Throws UserError for an empty mix, scenarios whose arrays differ in size, or options out of
+  /// range.
+  VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& options);
+  VectorEnv(const Scenario& scenario, const VectorEnvOptions& options);
+  ~VectorEnv();
+  VectorEnv(VectorEnv&&) noexcept;
+
+  /// Starts the first episode of every environment. Writes observations and states.
+  void Reset(const EnvArrays& out) { RestartAt(0, out); }
+  /// Episodes that start from now on are drawn from this seed; k of the seed rule goes on.
+  void Reseed(std::uint64_t seed) { options_.seed = seed; }
+  /// Starts the k-th episode of every environment (resuming a run); it is cut if `stagger` says so.
+  void RestartAt(std::uint64_t k, const EnvArrays& out);
+  /// Starts an episode of one environment at once, drawn from `seed`. The others go on. The episode
+  /// after it is the one that would have followed the one given up. Writes this environment's rows
+  /// of observations and states.
+  void ResetEnv(int env, std::uint64_t seed, const EnvArrays& out);
+  /// Starts an episode of every environment from given world positions [m] and target velocities
+  /// [m/s], AUVs at rest (golden traces, tests).
+  void Place(const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
+             const std::vector<Vec3<double>>& v_WT, const EnvArrays& out);
+  /// One decision of every AUV. Writes all arrays.
+  /// @param actions [envs, agents, action_size], clipped to [-1, 1]. Non-finite ones throw
+  /// std::invalid_argument before anything has moved.
+  void Step(const float* actions, const EnvArrays& out);
+  void Step(const double* actions, const EnvArrays& out);
+
+  int envs() const { return options_.envs; }
+  int agents() const { return mix_.front().agents; }
+  int action_size() const { return mix_.front().action_size(); }
+  int observation_size() const { return observation_size_; }
+  int state_size() const { return state_size_; }
+  /// The scenario that an environment of this object flies.
+  const Scenario& scenario(int env = 0) const;
+  /// Arrays of the right sizes.
+  EnvMemory MakeMemory() const { return {envs(), agents(), observation_size(), state_size()}; }
+
+  /// Of the episode that runs now: decisions made, k of the seed rule, world seed.
+  int step(int env) const;
+  std::uint64_t round(int env) const { return round_[static_cast<std::size_t>(env)]; }
+  std::uint64_t seed(int env) const;
+  /// Of the episode that ended last; valid while truncated.
+  const task::EpisodeMetrics& metrics(int env) const {
+    return finished_[static_cast<std::size_t>(env)];
+  }
+
+  /// The truth of one environment, for built-in controllers, tests and traces.
+  dynamics::NavState nav(int env, int i) const;
+  /// What an AUV's own navigation believes.
+  dynamics::NavState navigation(int env, int i) const;
+  dynamics::VehicleState<double> vehicle(int env, int i) const;
+  dynamics::TargetState<double> target(int env, int k) const;
+  TimeNs time(int env) const;
+  task::Tracking<double> tracking(int env, int i) const;
+  task::RewardTerms<double> terms(int env, int i) const;
+  /// What an AUV decides on.
+  agent::Knowledge<double> knowledge(int env, int i) const;
+  /// Acoustic mode only: what an AUV's agent holds, and the network.
+  agent::AgentView agent(int env, int i) const;
+  const acoustics::Channel& channel(int env) const;
+
+  /// The environments by SIMD register, for code that computes on registers, too.
+  struct Slice {
+    std::unique_ptr<Environment> lanes;
+    int first, count;  ///< environments first .. first + count - 1 are its first lanes
+  };
+  const std::vector<Slice>& slices() const { return slices_; }
+
+ private:
+  template <class Number>
+  void StepAll(const Number* actions, const EnvArrays& out);
+  template <class Number>
+  void TakeActions(const Number* actions);
+  void Judge(const Slice& slice, const EnvArrays& out);
+  void Restart(const Slice& slice, int lane, bool first);
+  void WriteStart(const Slice& slice, const EnvArrays& out) const;
+  /// Ends the episodes of some lanes and starts their next ones.
+  void Finish(const Slice& slice, const LaneSet& done, const EnvArrays& out);
+  int FirstLength(int env) const;
+  const Slice& SliceOf(int env) const;
+  int lane_of(int env) const { return env - SliceOf(env).first; }
+
+  std::vector<Scenario> mix_;
+  VectorEnvOptions options_;
+  int observation_size_ = 0, state_size_ = 0;
+  std::vector<Slice> slices_;
+  std::vector<int> slice_of_;                   // [envs]
+  std::vector<std::uint64_t> round_;            // [envs], k of the running episode
+  std::vector<task::EpisodeMetrics> finished_;  // [envs]
+  std::vector<Pack> wanted_;                    // [slices, agents, action_size]
+  std::vector<float> rows_;                     // [lanes], scratch of Finish
+};
+
+}  // namespace stg::env

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "stg_env/task/judge_config.hpp"
+#include "stg_env/task/metrics.hpp"
+#include "stg_env/task/swarm_state.hpp"
+
+namespace stg::task {
+
+/// How evenly the AUVs that are tasked with a target stand around it: one minus the length of the
+/// mean of their bearings as unit vectors in the plane (the circular variance of N. I. Fisher,
+/// Statistical analysis of circular data, 1993). 1: evenly, or balanced; 0: all on one side, or a
+/// single AUV.
+template <class T>
+T Spread(const JudgeConfig& s, const SwarmState<T>& swarm, int target);
+
+/// Squared error of an estimate by its covariance, r^T P^-1 r; 0 where P is not positive definite.
+/// @param covariance xx xy xz yy yz zz
+template <class T>
+T NormalisedSquare(const Vec3<T>& r, const T (&covariance)[6]);
+
+/// The sums behind FieldMetrics. Every lane counts its own decisions.
+template <class T>
+class FieldTotals {
+ public:
+  explicit FieldTotals(const JudgeConfig& scenario);
+
+  void Start(const Mask<T>& lanes);
+  /// Adds a decision. @param swarm with its field @param tracking [agents]
+  void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking);
+  /// Of the episode up to now. @param steps decisions of this lane
+  FieldMetrics Metrics(int lane, double steps) const;
+
+ private:
+  struct Sums {
+    T square = T(0.0), nees = T(0.0), judged = T(0.0), known = T(0.0), age = T(0.0), band = T(0.0),
+      lost = T(0.0), losses = T(0.0), recovered = T(0.0), recovered_steps = T(0.0), spread = T(0.0),
+      near_pairs = T(0.0), groundings = T(0.0), collisions = T(0.0), received = T(0.0),
+      missed = T(0.0), modem_energy = T(0.0);
+    T min_altitude = T(1e9), min_clearance = T(1e9);
+  };
+
+  JudgeConfig scenario_;
+  Sums sums_;
+  std::vector<T> spell_;  // [agents] decisions of the spell of loss that runs
+};
+
+extern template class FieldTotals<double>;
+extern template class FieldTotals<Pack>;
+
+}  // namespace stg::task

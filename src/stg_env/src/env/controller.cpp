@@ -1,0 +1,86 @@
+#include "stg_env/env/controller.hpp"
+
+#include "acoustic_channel/models/range.hpp"
+#include "environment.hpp"
+#include "sources/acoustic_source.hpp"
+#include "stg_agent/agent/agent_view.hpp"
+
+namespace stg::env {
+namespace {
+
+/// From true states, all lanes of a slice at once.
+void DecideTruly(const agent::Controller& c, const VectorEnv::Slice& slice, double* actions) {
+  const Environment& env = *slice.lanes;
+  const dynamics::World& world = env.world();
+  const Scenario& s = env.scenario();
+  const int n = s.agents, size = s.action_size();
+  std::vector<agent::NeighbourSight<Pack>> neighbours(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    int count = 0;
+    for (int j = 0; j < n; ++j) {
+      if (j == i) continue;
+      agent::NeighbourSight<Pack>& seen = neighbours[static_cast<std::size_t>(count++)];
+      seen.known = Pack(1.0);
+      seen.p_W = seen.p_WN = world.vehicle(j).p_WB;
+      seen.v_W = world.vehicle(j).v_WB;
+      seen.tracking_error = env.task().tracking(j).error;
+      seen.r_BN_W = seen.p_WN - world.vehicle(i).p_WB;
+      seen.distance_m = world.distance(i, j);
+      seen.link_quality = acoustics::RangeQuality(seen.distance_m, s.channel.range_m);
+    }
+    Pack a[dynamics::kMaxActionSize];
+    c.Act({s, i, env.Truth(i), neighbours.data(), count}, a);
+    for (int lane = 0; lane < slice.count; ++lane) {
+      double* out = actions + ((slice.first + lane) * n + i) * size;
+      for (int k = 0; k < size; ++k) out[k] = Lane(a[k], lane);
+    }
+  }
+}
+
+void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float* observations,
+                 double* actions) {
+  const Scenario& s = slice.lanes->scenario();
+  const int n = s.agents, size = s.action_size(), width = s.observation_size();
+  if (c.builtin != nullptr && (c.privileged || s.mode == InformationMode::kTruth)) {
+    DecideTruly(*c.builtin, slice, actions);
+    return;
+  }
+  float a[dynamics::kMaxActionSize];
+  for (int row = 0; row < slice.count * n; ++row) {
+    if (!c.policies.empty()) {
+      const std::size_t own = c.policies.size() == 1 ? 0 : static_cast<std::size_t>(row % n);
+      c.policies[own]->Mean(
+          observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
+    } else {
+      c.builtin->Act(slice.lanes->acoustic().agent(row % n).view(row / n), a);
+    }
+    double* out = actions + (slice.first * n + row) * size;
+    for (int k = 0; k < size; ++k) out[k] = static_cast<double>(a[k]);
+  }
+}
+
+}  // namespace
+
+Controller MakeController(const std::string& name, const Scenario& scenario) {
+  Controller c;
+  c.name = name;
+  c.builtin = agent::MakeController(name);
+  if (c.builtin) return c;
+  agent::RequirePolicyFileName(name);
+  std::string last;
+  for (int i = 0; i < scenario.agents; ++i) {
+    const std::string file = agent::PolicyFileOf(name, i);
+    if (file == last) break;
+    auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(file));
+    policy->RequireFits(scenario);
+    c.policies.push_back(policy);
+    last = file;
+  }
+  return c;
+}
+
+void Decide(const Controller& c, const VectorEnv& env, const float* observations, double* actions) {
+  for (const VectorEnv::Slice& slice : env.slices()) DecideSlice(c, slice, observations, actions);
+}
+
+}  // namespace stg::env

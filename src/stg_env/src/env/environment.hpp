@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "auv_dynamics/helm/helm.hpp"
+#include "sources/information_source.hpp"
+#include "stg_env/scenario/scenario.hpp"
+#include "stg_env/task/task.hpp"
+
+namespace stg::env {
+
+class AcousticSource;
+
+/// kLanes environments of one scenario, one per SIMD lane, each in its own episode: the world moves
+/// the AUVs, an information source tells them what they know, the task judges.
+class Environment {
+ public:
+  explicit Environment(const Scenario& scenario);
+  ~Environment();
+  Environment(Environment&&) noexcept;
+
+  /// Puts one lane to the start of an episode of `episode_steps` decisions, drawn from a seed or
+  /// from given world positions and target velocities. Begin must follow, for any number of lanes.
+  void Reset(int lane, std::uint64_t seed, dynamics::ResetStage stage, int episode_steps);
+  void Place(int lane, const std::vector<Vec3<double>>& p_WB, const std::vector<Vec3<double>>& p_WT,
+             const std::vector<Vec3<double>>& v_WT);
+  void Begin(const LaneSet& lanes);
+
+  /// One decision of every AUV of every lane, in two halves: they act and the world moves; they
+  /// learn what came of it and the task judges. @param wanted [agents, action_size], finite
+  void Move(const Pack* wanted);
+  void Judge();
+  /// The lane has made all decisions of its episode.
+  bool Done(int lane) const { return task_.steps(lane) >= Lane(length_, lane); }
+
+  /// Rows of the first `lanes` lanes: [agents, observation_size], [state_size], [agents].
+  void WriteObservations(int lanes, float* rows) const;
+  void WriteStates(int lanes, float* rows) const;
+  void WriteRewards(int lanes, float* rows) const;
+
+  const Scenario& scenario() const { return scenario_; }
+  const dynamics::World& world() const { return world_; }
+  const task::Task<Pack>& task() const { return task_; }
+  const agent::Knowledge<Pack>& knowledge(int i) const { return source_->knowledge(i); }
+  /// What an AUV would know that saw its own state and its target truly; of neighbours nothing.
+  agent::Knowledge<Pack> Truth(int i) const;
+  AcousticSource& acoustic() const;  ///< acoustic mode only
+
+ private:
+  void Steer();
+  void Zero(int lane, int episode_steps);
+  task::SwarmState<Pack> Swarm() const;
+  void LookAround();
+
+  Scenario scenario_;
+  dynamics::World world_;
+  std::unique_ptr<InformationSource> source_;
+  task::Task<Pack> task_;
+  int observation_size_;
+  Pack length_ = Pack(0.0);  // decisions of the episode of each lane
+  Pack link_quality_ = Pack(0.0);
+  task::Efforts<Pack> tau_, action_;
+  std::vector<dynamics::Wrench<Pack>> wrench_;
+  std::vector<task::FieldState<Pack>> field_;  // [agents] in open water; else empty
+  // Of vehicles that are steered by autopilots; else null.
+  std::unique_ptr<dynamics::Helm> helm_;
+  std::vector<Vec3<Pack>> v_des_W_;
+};
+
+}  // namespace stg::env

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "acoustic_channel/channel/channel.hpp"
+#include "information_source.hpp"
+#include "stg_agent/agent/agent_lanes.hpp"
+#include "stg_env/scenario/scenario.hpp"
+
+namespace stg::env {
+
+/// Each AUV knows its own navigation, its own detections, what the channel delivered to it, and the
+/// cue that it started with: the agents of the ROS graph and their channel, kLanes of each.
+class AcousticSource : public InformationSource {
+ public:
+  explicit AcousticSource(const Scenario& scenario);
+
+  void Start(const dynamics::World& world, const LaneSet& lanes) override;
+  void Observe(const dynamics::World& world, const LaneSet& lanes) override;
+  void Act(const dynamics::World& world, int i, const Pack* wanted, task::Effort<Pack>* action,
+           task::Effort<Pack>* tau) override;
+  void Send(const dynamics::World& world) override;
+  const agent::Knowledge<Pack>& knowledge(int i) const override {
+    return agents_[static_cast<std::size_t>(i)].knowledge();
+  }
+  /// Mean over all ordered pairs of the link quality that the agents know; of an unheard neighbour
+  /// it is 0.
+  Pack LinkQuality(const dynamics::World& world) const override;
+  void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
+
+  const agent::AgentLanes& agent(int i) const { return agents_[static_cast<std::size_t>(i)]; }
+  const acoustics::Channel& channel(int lane) const {
+    return *channels_[static_cast<std::size_t>(lane)];
+  }
+
+ private:
+  Scenario scenario_;
+  std::vector<agent::AgentLanes> agents_;                      // [agent]
+  std::vector<std::unique_ptr<acoustics::Channel>> channels_;  // [lane]
+  // Of one lane at a time: what is offered to the channel, and what it delivers.
+  std::vector<agent::Packet> packets_;
+  std::vector<acoustics::Transmission> offered_;
+  std::vector<acoustics::Reception> received_;
+  std::vector<Vec3<double>> positions_, velocities_;
+};
+
+}  // namespace stg::env

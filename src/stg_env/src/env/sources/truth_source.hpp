@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "information_source.hpp"
+#include "stg_agent/agent/mind.hpp"
+#include "stg_env/scenario/scenario.hpp"
+
+namespace stg::env {
+
+/// Everybody knows the true states of all: the paper's formulas, as its release computes them. The
+/// same minds as the agents', told by somebody who sees everything.
+class TruthSource : public InformationSource {
+ public:
+  explicit TruthSource(const Scenario& scenario);
+
+  void Start(const dynamics::World& world, const LaneSet& lanes) override;
+  void Observe(const dynamics::World& world, const LaneSet& lanes) override;
+  void Act(const dynamics::World& world, int i, const Pack* wanted, task::Effort<Pack>* action,
+           task::Effort<Pack>* tau) override;
+  void Send(const dynamics::World&) override {}
+  const agent::Knowledge<Pack>& knowledge(int i) const override {
+    return minds_[static_cast<std::size_t>(i)].knowledge;
+  }
+  Pack LinkQuality(const dynamics::World& world) const override;
+  void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
+
+ private:
+  void Think(const dynamics::World& world);
+  /// Quality and number of everybody's links into links_.
+  void MeasureLinks(const dynamics::World& world);
+  void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
+
+  Scenario scenario_;
+  bool exact_angles_;                                 // the integrator keeps roll, pitch and yaw
+  std::vector<agent::Mind<Pack>> minds_;              // [agent]
+  std::vector<agent::Mind<Pack>> before_;             // as minds_ before the present Observe
+  std::vector<agent::NeighbourSummary<Pack>> links_;  // [agent], of the present Think
+};
+
+}  // namespace stg::env

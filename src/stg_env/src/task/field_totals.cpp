@@ -1,0 +1,137 @@
+#include "stg_env/task/field_totals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stg::task {
+
+template <class T>
+T Spread(const JudgeConfig& s, const SwarmState<T>& swarm, int target) {
+  T east(0.0), north(0.0);
+  int count = 0;
+  const Vec3<T>& p_WT = swarm.targets[static_cast<std::size_t>(target)].p_WT;
+  for (int i = target; i < s.agents; i += s.target.count) {
+    const Vec3<T> r = swarm.vehicles[static_cast<std::size_t>(i)].p_WB - p_WT;
+    const T inverse = T(1.0) / Max(Sqrt(r.x * r.x + r.y * r.y), T(1e-6));
+    east += r.x * inverse;
+    north += r.y * inverse;
+    ++count;
+  }
+  return T(1.0) - Sqrt(east * east + north * north) * T(1.0 / std::max(1, count));
+}
+
+template <class T>
+T NormalisedSquare(const Vec3<T>& r, const T (&P)[6]) {
+  // By the adjugate.
+  const T a = P[3] * P[5] - P[4] * P[4], b = P[2] * P[4] - P[1] * P[5],
+          c = P[1] * P[4] - P[2] * P[3];
+  const T d = P[0] * P[5] - P[2] * P[2], e = P[1] * P[2] - P[0] * P[4],
+          f = P[0] * P[3] - P[1] * P[1];
+  const T determinant = P[0] * a + P[1] * b + P[2] * c;
+  const auto positive = (determinant > T(0.0)) && (P[0] > T(0.0)) && (f > T(0.0));
+  const T square = r.x * (a * r.x + b * r.y + c * r.z) + r.y * (b * r.x + d * r.y + e * r.z) +
+                   r.z * (c * r.x + e * r.y + f * r.z);
+  return Select(positive, square / Select(positive, determinant, T(1.0)), T(0.0));
+}
+
+template <class T>
+FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
+    : scenario_(scenario), spell_(static_cast<std::size_t>(scenario.agents), T(0.0)) {}
+
+template <class T>
+void FieldTotals<T>::Start(const Mask<T>& lanes) {
+  const auto restart = [&](T* value, double first) { *value = Select(lanes, T(first), *value); };
+  Sums& s = sums_;
+  for (T* sum : {&s.square, &s.nees, &s.judged, &s.known, &s.age, &s.band, &s.lost, &s.losses,
+                 &s.recovered, &s.recovered_steps, &s.spread, &s.near_pairs, &s.groundings,
+                 &s.collisions, &s.received, &s.missed, &s.modem_energy}) {
+    restart(sum, 0.0);
+  }
+  restart(&s.min_altitude, 1e9);
+  restart(&s.min_clearance, 1e9);
+  for (T& spell : spell_) restart(&spell, 0.0);
+}
+
+template <class T>
+void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking) {
+  const T zero(0.0), one(1.0);
+  const config::Interval& band = scenario_.reward.band_m;
+  Sums& s = sums_;
+  s.groundings = s.collisions = s.received = s.missed = s.modem_energy =
+      zero;  // counted by their owners
+  for (std::size_t i = 0; i < tracking.size(); ++i) {
+    const FieldState<T>& f = (*swarm.field)[i];
+    const Tracking<T>& k = tracking[i];
+    const auto target = static_cast<std::size_t>(scenario_.target_of(static_cast<int>(i)));
+    const Vec3<T> error = f.p_WT - swarm.targets[target].p_WT;
+    const auto known = f.known > T(0.5);
+    const T nees = NormalisedSquare(error, f.covariance);
+    s.known += f.known;
+    s.square += Select(known, Dot(error, error), zero);
+    s.nees += Select(known, nees, zero);
+    s.judged += Select(known && (nees > zero), one, zero);
+    s.age += Select(known, f.age_s, zero);
+    const auto inside = (k.distance <= T(band.hi)) && (k.distance >= T(band.lo));
+    s.band += Select(inside, one, zero);
+    s.lost += k.lost;
+    const auto lost = k.lost > T(0.5);
+    const auto before = spell_[i] > zero;
+    s.losses += Select(lost, Select(before, zero, one), zero);
+    s.recovered += Select(lost, zero, Select(before, one, zero));
+    s.recovered_steps += Select(lost, zero, spell_[i]);
+    spell_[i] = Select(lost, spell_[i] + one, zero);
+    s.min_altitude = Min(s.min_altitude, f.altitude_m);
+    s.min_clearance = Min(s.min_clearance, f.clearance_m);
+    s.groundings += f.groundings;
+    s.collisions += f.collisions;
+    s.received += f.received;
+    s.missed += f.missed;
+    s.modem_energy += f.modem_energy_j;
+  }
+  for (int k = 0; k < scenario_.target.count; ++k) {
+    s.spread += Spread(scenario_, swarm, k) * T(1.0 / scenario_.target.count);
+  }
+  const T near(scenario_.reward.separation_distance_m);
+  for (int i = 0; i < scenario_.agents; ++i) {
+    for (int j = i + 1; j < scenario_.agents; ++j) {
+      s.near_pairs += Select(swarm.separations.distance(i, j) < near, one, zero);
+    }
+  }
+}
+
+template <class T>
+FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
+  const auto at = [lane](const T& value) { return Lane(value, lane); };
+  const double agents = static_cast<double>(scenario_.agents), all = agents * steps;
+  const double dt_s = scenario_.decision_dt_s();
+  const Sums& s = sums_;
+  FieldMetrics m;
+  const double known = std::max(1.0, at(s.known));
+  m.estimate_rmse = std::sqrt(at(s.square) / known);
+  m.nees = at(s.nees) / std::max(1.0, at(s.judged));
+  m.estimate_known = at(s.known) / all;
+  m.information_age = at(s.age) / known;
+  m.band_share = at(s.band) / all;
+  m.time_lost = at(s.lost) * dt_s / agents;
+  m.time_to_reacquire = at(s.recovered_steps) * dt_s / std::max(1.0, at(s.recovered));
+  m.losses = at(s.losses) / agents;
+  m.spread = at(s.spread) / steps;
+  m.near_pairs = at(s.near_pairs) / steps;
+  m.min_altitude = at(s.min_altitude);
+  m.min_clearance = at(s.min_clearance);
+  m.groundings = at(s.groundings);
+  m.collisions = at(s.collisions);
+  m.packets = at(s.received) / agents;
+  m.packet_loss = at(s.missed) / std::max(1.0, at(s.received) + at(s.missed));
+  m.modem_energy = at(s.modem_energy) / agents;
+  return m;
+}
+
+template class FieldTotals<double>;
+template class FieldTotals<Pack>;
+template double Spread(const JudgeConfig&, const SwarmState<double>&, int);
+template Pack Spread(const JudgeConfig&, const SwarmState<Pack>&, int);
+template double NormalisedSquare(const Vec3<double>&, const double (&)[6]);
+template Pack NormalisedSquare(const Vec3<Pack>&, const Pack (&)[6]);
+
+}  // namespace stg::task

@@ -1,0 +1,91 @@
+#include "stg_env/task/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stg::task {
+
+std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
+  return {{"estimate_rmse", estimate_rmse},
+          {"nees", nees},
+          {"estimate_known", estimate_known},
+          {"information_age", information_age},
+          {"band_share", band_share},
+          {"time_lost", time_lost},
+          {"time_to_reacquire", time_to_reacquire},
+          {"losses", losses},
+          {"spread", spread},
+          {"near_pairs", near_pairs},
+          {"min_altitude", min_altitude},
+          {"min_clearance", min_clearance},
+          {"groundings", groundings},
+          {"collisions", collisions},
+          {"packets", packets},
+          {"packet_loss", packet_loss},
+          {"modem_energy", modem_energy}};
+}
+
+std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
+  std::vector<std::pair<std::string, double>> items{
+      {"return", episode_return},
+      {"tail_distance", tail_distance},
+      {"tracking_error", tracking_error},
+      {"lost_rate", lost_rate},
+      {"action_norm", action_norm},
+      {"saturation_rate", saturation_rate},
+      {"control_cost", control_cost},
+      {"communication_quality", communication_quality},
+      {"band_rate", band_rate},
+      {"colliding_pairs", colliding_pairs},
+      {"tail_colliding_pairs", tail_colliding_pairs},
+      {"min_separation", min_separation},
+      {"time_to_band", time_to_band},
+      {"mean_error", mean_error},
+      {"whole_lost_rate", whole_lost_rate},
+      {"reward_track", reward_track},
+      {"reward_observation", reward_observation},
+      {"reward_coordination", reward_coordination},
+      {"reward_communication", reward_communication},
+      {"reward_semantic", reward_semantic},
+      {"reward_separation", reward_separation}};
+  if (!field) return items;
+  for (const auto& item : field->Items()) items.push_back(item);
+  return items;
+}
+
+bool OfTail(const std::string& metric) {
+  return metric == "tail_distance" || metric == "tracking_error" || metric == "lost_rate" ||
+         metric == "band_rate" || metric == "tail_colliding_pairs";
+}
+
+double MetricSummary::Mean(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? 0.0 : mean[static_cast<size_t>(found - names.begin())];
+}
+
+MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes) {
+  MetricSummary s;
+  s.episodes = static_cast<int>(episodes.size());
+  const EpisodeMetrics any = episodes.empty() ? EpisodeMetrics{} : episodes.front();
+  for (const auto& item : any.Items()) s.names.push_back(item.first);
+  s.mean.assign(s.names.size(), 0.0);
+  s.std.assign(s.names.size(), 0.0);
+  const double n = static_cast<double>(episodes.size());
+  if (episodes.empty()) return s;
+  for (const auto& e : episodes) {
+    const auto items = e.Items();
+    for (size_t k = 0; k < items.size(); ++k) s.mean[k] += items[k].second / n;
+  }
+  if (episodes.size() < 2) return s;
+  for (const auto& e : episodes) {
+    const auto items = e.Items();
+    for (size_t k = 0; k < items.size(); ++k) {
+      const double d = items[k].second - s.mean[k];
+      s.std[k] += d * d / (n - 1.0);
+    }
+  }
+  for (double& v : s.std) v = std::sqrt(v);
+  return s;
+}
+
+}  // namespace stg::task

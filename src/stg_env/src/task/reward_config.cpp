@@ -1,0 +1,68 @@
+#include "stg_env/task/reward_config.hpp"
+
+#include "stg_env/task/judge_config.hpp"
+#include "stg_env/task/reward_term.hpp"
+
+namespace stg::task {
+
+using config::Enum;
+using config::kNone;
+using config::NonNegative;
+using config::Positive;
+
+void Describe(RewardConfig* c, config::Table* t) {
+  t->Section("reward");
+  t->Add("kind", config::Enum(&c->kind, {"paper", "release", "release_raw"}), config::kNone, "-",
+         "Eqs. 28-36, the release's reward, or that of its raw baselines");
+  t->Section("reward.weights");
+  RewardWeights* w = &c->weights;
+  t->Add("tracking", &w->tracking, config::NonNegative(1e3), "-", "weight of the tracking term");
+  t->Add("observation", &w->observation, config::NonNegative(1e3), "-",
+         "weight of the observation term");
+  t->Add("coordination", &w->coordination, config::NonNegative(1e3), "-",
+         "weight of the coordination term");
+  t->Add("communication", &w->communication, config::NonNegative(1e3), "-",
+         "weight of the communication term");
+  t->Add("semantic", &w->semantic, config::NonNegative(1e3), "-", "weight of the semantic term");
+  t->Add("control_cost", &w->control_cost, config::NonNegative(1e3), "-",
+         "weight of the control cost, which is subtracted");
+  t->Add("separation", &w->separation, config::NonNegative(1e3), "-",
+         "weight of the penalty for closeness to another AUV; 0 in the paper");
+  t->Section("reward");
+  t->Add("band_m", &c->band_m, config::Positive(1e4), "m", "[d_l, d_u]: tracking band");
+  t->Add("error_max_m", &c->error_max_m, config::Positive(1e5), "m",
+         "e_max: error that earns nothing");
+  t->Add("w_band", &c->w_band, config::NonNegative(1e3), "-", "Eq. 30: weight of the band term");
+  t->Add("w_progress", &c->w_progress, config::NonNegative(1e3), "-", "Eq. 30: weight of progress");
+  t->Add("w_closing", &c->w_closing, config::NonNegative(1e3), "-",
+         "Eq. 30: weight of closing speed");
+  t->Add("w_reacquire", &c->w_reacquire, config::NonNegative(1e3), "-",
+         "Eq. 30: weight of reacquisition");
+  t->Add("w_too_close", &c->w_too_close, config::NonNegative(1e3), "-",
+         "Eq. 30: weight of the penalty inside d_l");
+  t->Add("separation_distance_m", &c->separation_distance_m, config::Positive(1e4), "m",
+         "separation penalty: none beyond this distance of two AUVs");
+  t->Add("total_limit", &c->total_limit, config::Positive(1e6), "-",
+         "an agent's total reward is clipped to +- this value");
+  t->Section("reward.terms");
+  for (const std::string& name : RewardTermsByName().Names()) {
+    t->AddOptional(name, &c->terms[name], "0.0", config::NonNegative(1e3), "-",
+                   "weight of the registered term of this name");
+  }
+}
+
+std::optional<config::Violation> FindConflict(const JudgeConfig& s) {
+  if (auto violation = FindConflict(static_cast<const agent::AgentConfig&>(s))) return violation;
+  if (s.task.lost_distance_m <= s.reward.band_m.hi) {
+    return config::Violation{{"task.lost_distance_m", "reward.band_m"},
+                             "a target inside the tracking band would count as lost"};
+  }
+  if (s.reward.weights.separation > 0.0 &&
+      s.reward.separation_distance_m <= 2.0 * s.vehicle.radius_m) {
+    return config::Violation{{"reward.separation_distance_m", "vehicle.radius_m"},
+                             "the penalty must set in before contact, at two radii"};
+  }
+  return {};
+}
+
+}  // namespace stg::task

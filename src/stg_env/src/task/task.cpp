@@ -1,0 +1,134 @@
+#include "stg_env/task/task.hpp"
+
+#include <algorithm>
+
+namespace stg::task {
+
+template <class T>
+Task<T>::Task(const JudgeConfig& scenario)
+    : scenario_(scenario),
+      tracking_(static_cast<std::size_t>(scenario.agents)),
+      terms_(tracking_.size()),
+      totals_(scenario) {
+  Effort<T> zero;
+  zero.fill(T(0.0));
+  previous_tau_.assign(tracking_.size(), zero);
+  previous_action_ = previous_tau_;
+  for (const auto& [name, weight] : scenario_.reward.terms) {
+    if (weight != 0.0) extra_.push_back({weight, RewardTermsByName().Make(name, scenario_)});
+  }
+}
+
+template <class T>
+void Task<T>::Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& episode_steps) {
+  Measure(swarm, &lanes);
+  Remember(swarm);
+  totals_.Start(lanes, episode_steps);
+}
+
+template <class T>
+void Task<T>::Step(const SwarmState<T>& swarm) {
+  Measure(swarm, nullptr);
+  T coordination(0.0), communication(0.0), team(0.0);
+  ShareReward(swarm, &coordination, &communication);
+  for (int i = 0; i < scenario_.agents; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    T extra(0.0);
+    for (const Weighted& e : extra_) {
+      const TermInput<T> in{swarm, i, tracking_[u], previous_tau_[u], previous_action_[u]};
+      extra += T(e.weight) * e.term->Evaluate(in);
+    }
+    terms_[u] = Reward(scenario_, InputOf(swarm, i), coordination, communication,
+                       extra_.empty() ? nullptr : &extra);
+    team += terms_[u].total;
+  }
+  team_reward_ = team * T(1.0 / scenario_.agents);
+  totals_.Add(swarm, tracking_, terms_);
+  Remember(swarm);
+}
+
+template <class T>
+void Task<T>::Remember(const SwarmState<T>& swarm) {
+  // The paper's cost is of actions, the release's of forces; a registered term may ask for either.
+  const bool paper = scenario_.reward.kind == RewardKind::kPaper;
+  const bool actions = paper || !extra_.empty(), forces = !paper || !extra_.empty();
+  for (std::size_t i = 0; i < tracking_.size(); ++i) {
+    if (actions) previous_action_[i] = swarm.action[i];
+    if (forces) previous_tau_[i] = swarm.tau[i];
+  }
+}
+
+template <class T>
+void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
+  const T zero(0.0), one(1.0);
+  for (std::size_t i = 0; i < tracking_.size(); ++i) {
+    const dynamics::VehicleState<T>& v = swarm.vehicles[i];
+    const dynamics::TargetState<T>& t =
+        swarm.targets[static_cast<std::size_t>(scenario_.target_of(static_cast<int>(i)))];
+    Tracking<T>& k = tracking_[i];
+    k.r_BT_W = t.p_WT - v.p_WB;
+    const T d = Norm(k.r_BT_W);
+    k.previous_distance =
+        starting != nullptr ? Select(*starting, d, k.previous_distance) : k.distance;
+    k.distance = d;
+    k.error = Abs(d - T(scenario_.task.desired_distance_m));
+    k.closing = agent::ClosingSpeed(k.r_BT_W, d, v.v_WB, t.v_WT);
+    k.confidence = agent::Confidence(d, scenario_.sensing.range_m);
+    k.lost = Select(d > T(scenario_.task.lost_distance_m), one, zero);
+    if (swarm.field != nullptr && scenario_.task.lost_error_m > 0.0) {
+      const FieldState<T>& f = (*swarm.field)[i];
+      const auto off =
+          (f.known < T(0.5)) || (Norm(f.p_WT - t.p_WT) > T(scenario_.task.lost_error_m));
+      k.lost = Select(off, one, k.lost);
+    }
+  }
+}
+
+template <class T>
+void Task<T>::ShareReward(const SwarmState<T>& swarm, T* coordination, T* communication) const {
+  const RewardConfig& c = scenario_.reward;
+  T deviation(0.0);
+  for (const Tracking<T>& k : tracking_) {
+    deviation += c.kind == RewardKind::kReleaseRaw ? k.error : BandDeviation(c, k.distance);
+  }
+  deviation = deviation * T(1.0 / scenario_.agents);
+  *coordination = CoordinationReward(c, deviation);
+  *communication = c.kind == RewardKind::kPaper
+                       ? swarm.link_quality
+                       : ReleaseCommunication(deviation, scenario_.sensing.range_m);
+}
+
+template <class T>
+RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
+  const auto u = static_cast<std::size_t>(i);
+  const Tracking<T>& k = tracking_[u];
+  RewardInput<T> in;
+  in.distance = k.distance;
+  in.previous_distance = k.previous_distance;
+  if (scenario_.observation.release_bookkeeping) {
+    const auto first = totals_.steps() < T(0.5);  // the release has no d(t-1) there
+    in.previous_distance = Select(first, k.distance, k.previous_distance);
+  }
+  in.closing = k.closing;
+  in.confidence = k.confidence;
+  in.lost = k.lost;
+  if (scenario_.reward.weights.separation != 0.0) {
+    for (int j = 0; j < scenario_.agents; ++j) {
+      if (j == i) continue;
+      in.crowding += SeparationPenalty(scenario_.reward, swarm.separations.distance(i, j));
+    }
+  }
+  if (scenario_.reward.kind == RewardKind::kPaper) {
+    in.action = swarm.action[u].data();
+    in.previous_action = previous_action_[u].data();
+  } else {
+    in.tau = swarm.tau[u].data();
+    in.previous_tau = previous_tau_[u].data();
+  }
+  return in;
+}
+
+template class Task<double>;
+template class Task<Pack>;
+
+}  // namespace stg::task

@@ -1,0 +1,257 @@
+#include "stg_env/env/evaluation.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "auv_common/error.hpp"
+#include "env/env_fixture.hpp"
+#include "stg_env/env/seed_blocks.hpp"
+
+namespace stg::env {
+namespace {
+
+/// `episodes` episodes from `seed` on `workers` threads.
+std::vector<task::EpisodeMetrics> Fly(const Scenario& s, const Controller& c, int episodes,
+                                      std::uint64_t seed, int workers = 1) {
+  WorkerPool pool(workers);
+  return Evaluate(s, c, {episodes, seed, kMixBlock}, &pool);
+}
+
+double Value(const task::EpisodeMetrics& m, const std::string& name) {
+  for (const auto& item : m.Items()) {
+    if (item.first == name) return item.second;
+  }
+  ADD_FAILURE() << name;
+  return 0.0;
+}
+
+TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
+  for (const char* mode : {"mode=truth", "mode=acoustic"}) {
+    const Scenario s = Short(Shipped("medium", "nominal", {mode, "sensing.noise_std_m=0.002"}), 60);
+    const Controller c = MakeController("pursuit_separated", s);
+    const auto one = Fly(s, c, 11, 3000);
+    ASSERT_EQ(one.size(), 11u);
+    for (const int workers : {2, 5}) {
+      const auto many = Fly(s, c, 11, 3000, workers);
+      ASSERT_EQ(many.size(), one.size());
+      for (size_t e = 0; e < one.size(); ++e) {
+        EXPECT_EQ(one[e].Items(), many[e].Items()) << mode << " " << workers << " " << e;
+      }
+    }
+    EXPECT_NE(one[0].Items(), one[1].Items());
+  }
+}
+
+TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
+  const Scenario s = Short(Shipped("medium_release"), 40);
+  const Controller c = MakeController("pursuit", s);
+  const auto many = Fly(s, c, 9, 3000);
+  EXPECT_EQ(many[7].Items(), Fly(s, c, 1, 3007)[0].Items());
+  EXPECT_EQ(many[2].Items(), Fly(s, c, 3, 3000)[2].Items());
+}
+
+TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
+  const Scenario s = Short(Shipped("medium_release"), 5);
+  int last = 0;
+  Evaluate(s, MakeController("idle", s), {6, 1, kMixBlock}, nullptr, [&](int done) {
+    EXPECT_GT(done, last);
+    last = done;
+  });
+  EXPECT_EQ(last, 6);
+}
+
+TEST(MakeController, AnUnknownNameOrMissingFileIsAUserError) {
+  const Scenario s;
+  EXPECT_THROW(MakeController("pursiut", s), UserError);
+  EXPECT_THROW(MakeController("/nonexistent/policy.onnx", s), UserError);
+}
+
+/// A policy that always does tanh(bias).
+agent::Policy ConstantPolicy(const Scenario& s, float bias) {
+  agent::Policy::Parameters p;
+  p.input_mean = Eigen::VectorXf::Zero(s.observation_size());
+  p.input_std = Eigen::VectorXf::Ones(s.observation_size());
+  p.layers.push_back({Eigen::MatrixXf::Zero(s.action_size(), s.observation_size()),
+                      Eigen::VectorXf::Constant(s.action_size(), bias)});
+  p.log_std = Eigen::VectorXf::Zero(s.action_size());
+  p.metadata.observation_layout = agent::ObservationLayout(s);
+  p.metadata.action_interface = agent::ActionInterfaceName(s.control.interface);
+  return agent::Policy(std::move(p));
+}
+
+TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
+  const Scenario s = Shipped("medium_release");
+  std::string folder = (std::filesystem::temp_directory_path() / "own_XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const auto file = [&](int i) { return folder + "/p_" + std::to_string(i) + ".onnx"; };
+  for (int i = 0; i < s.agents; ++i) {
+    ConstantPolicy(s, 0.1F * static_cast<float>(i)).SaveOnnx(file(i));
+  }
+  VectorEnvOptions options;
+  options.envs = 3;
+  VectorEnv env(s, options);
+  EnvMemory memory = env.MakeMemory();
+  env.RestartAt(0, memory.arrays());
+  std::vector<double> actions(static_cast<std::size_t>(3 * s.agents * s.action_size()));
+  const Controller own = MakeController(folder + "/p.onnx", s);
+  EXPECT_EQ(own.policies.size(), static_cast<std::size_t>(s.agents));
+  Decide(own, env, memory.observations.data(), actions.data());
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    const auto row = static_cast<int>(i) / s.action_size();
+    EXPECT_NEAR(actions[i], std::tanh(0.1 * (row % s.agents)), 1e-6);
+  }
+  std::filesystem::remove(file(2));
+  EXPECT_THROW(MakeController(folder + "/p.onnx", s), UserError);
+  // One for all goes first.
+  ConstantPolicy(s, 1.0F).SaveOnnx(folder + "/p.onnx");
+  EXPECT_EQ(MakeController(folder + "/p.onnx", s).policies.size(), 1U);
+  std::filesystem::remove_all(folder);
+}
+
+/// A row of the table in the reference (400 episodes of the release's simulator).
+struct Reference {
+  const char *scenario, *condition;
+  double simple_return, simple_distance, tuned_return, tuned_distance, simple_pairs, tuned_pairs;
+};
+const Reference kTable[] = {
+    {"medium_release", "nominal", 1000.4, .0142, 1027.0, .0123, 1.29, 4.80},
+    {"medium_release", "fast_target", 957.8, .0149, 1026.8, .0123, 2.42, 4.78},
+    {"medium_release", "far_initialization", 960.3, .0148, 1022.4, .0123, 2.21, 4.70},
+    {"medium_release", "limited_sensing", 990.8, .0142, 1017.8, .0123, 1.29, 4.80},
+    {"medium_release", "combined_stress", 943.9, .0150, 1013.0, .0124, 2.42, 4.70},
+    {"hard_release", "nominal", 960.3, .0148, 1022.4, .0123, 2.21, 4.70},
+    {"hard_release", "fast_target", 924.5, .0161, 1020.5, .0125, 3.13, 4.65},
+    {"hard_release", "limited_sensing", 950.7, .0148, 1013.1, .0123, 2.21, 4.70},
+    {"hard_release", "combined_stress", 914.9, .0161, 1011.2, .0125, 3.13, 4.65},
+};
+
+TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
+  constexpr int kEpisodes = 60, kReferenceEpisodes = 400;
+  for (const Reference& row : kTable) {
+    const Scenario s = Shipped(row.scenario, row.condition);
+    for (const bool tuned : {false, true}) {
+      const Controller c =
+          MakeController(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s);
+      const task::MetricSummary m = task::Summarise(Fly(s, c, kEpisodes, 3000));
+      // Four standard errors of the difference of two means, and the table's rounding.
+      const auto expect = [&](const std::string& name, double expected, double rounding) {
+        const auto k =
+            static_cast<size_t>(std::find(m.names.begin(), m.names.end(), name) - m.names.begin());
+        const double error = m.std[k] * std::sqrt(1.0 / kEpisodes + 1.0 / kReferenceEpisodes);
+        EXPECT_NEAR(m.mean[k], expected, 4.0 * error + rounding)
+            << name << " of " << (tuned ? "tuned" : "simple") << " on " << row.scenario << ", "
+            << row.condition << " (standard error " << error << ")";
+      };
+      expect("return", tuned ? row.tuned_return : row.simple_return, 0.05);
+      expect("tail_distance", tuned ? row.tuned_distance : row.simple_distance, 0.00005);
+      expect("colliding_pairs", tuned ? row.tuned_pairs : row.simple_pairs, 0.005);
+    }
+  }
+}
+
+TEST(PursuitSeparated, HoldsTheBandWithoutContactOnTrueStates) {
+  const Scenario s = Shipped("medium_release");
+  const auto separated = Fly(s, MakeController("pursuit_separated", s), 28, 3000);
+  const task::MetricSummary m = task::Summarise(separated);
+  const auto mean = [&](const std::string& name) {
+    double sum = 0.0;
+    for (const auto& e : separated) sum += Value(e, name) / 28.0;
+    return sum;
+  };
+  EXPECT_EQ(mean("tail_colliding_pairs"), 0.0);
+  EXPECT_GT(mean("return"), 1005.0);
+  EXPECT_GT(mean("band_rate"), 0.9);
+  EXPECT_LT(mean("tail_distance"), 0.015);
+  EXPECT_EQ(m.episodes, 28);
+}
+
+TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
+  // With a useless cue and no sensing the same controller cannot find the target.
+  const std::vector<std::string> blind = {"sensing.range_m=0.02", "sensing.cue_std_m=0.2"};
+  const Scenario acoustic = Short(Shipped("medium", "nominal", blind), 150);
+  Scenario truth = acoustic;
+  truth.mode = InformationMode::kTruth;
+  const auto a = Fly(acoustic, MakeController("pursuit", acoustic), 16, 1);
+  const auto t = Fly(truth, MakeController("pursuit", truth), 16, 1);
+  double error_a = 0.0, error_t = 0.0;
+  for (size_t e = 0; e < a.size(); ++e) {
+    error_a += a[e].tracking_error / 16.0;
+    error_t += t[e].tracking_error / 16.0;
+  }
+  EXPECT_LT(error_t, 0.06);
+  EXPECT_GT(error_a, 0.15);
+}
+
+TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
+  for (const char* name : {"medium", "hard"}) {
+    const Scenario s = Shipped(name);
+    const task::MetricSummary m = task::Summarise(Fly(s, MakeController("pursuit", s), 12, 3000));
+    const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
+                                       m.names.begin());
+    EXPECT_NEAR(m.mean[k], 0.0125, 0.0005) << name;  // its standoff, and the error of the track
+  }
+}
+
+TEST(Shipped, PoliciesDoWhatTheyAreShippedFor) {
+  const struct {
+    const char* name;
+    double least_return, most_error;  // on 100 episodes of the reporting block: docs/results
+  } rows[] = {{"medium", 1042.0, 0.0004}, {"hard", 1036.0, 0.0007}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.name);
+    const Scenario s = Shipped(row.name);
+    const std::string file = config::ScenarioFolder() + "/../policies/" + row.name + ".onnx";
+    const auto episodes = Fly(s, MakeController(file, s), 28, kReportingSeeds.first);
+    const task::MetricSummary m = task::Summarise(episodes);
+    EXPECT_GT(m.Mean("return"), row.least_return);
+    EXPECT_LT(m.Mean("tracking_error"), row.most_error);
+    EXPECT_EQ(m.Mean("lost_rate"), 0.0);
+    EXPECT_LT(m.Mean("tail_colliding_pairs"), 0.05);
+  }
+}
+
+TEST(SeedBlocks, AreDisjointAndKnown) {
+  EXPECT_LT(kChoosingSeeds.last, kReportingSeeds.first);
+  EXPECT_LT(kReportingSeeds.last, kTrainingSeeds.first);
+  EXPECT_EQ(SeedBlockOf(3000, 30), "choosing");
+  EXPECT_EQ(SeedBlockOf(kReportingSeeds.first, 100), "reporting");
+  EXPECT_EQ(SeedBlockOf(kReportingSeeds.last, 1), "reporting");
+  EXPECT_EQ(SeedBlockOf(kReportingSeeds.last, 2), "no");
+  EXPECT_EQ(SeedBlockOf(kChoosingSeeds.last, 2), "no");
+  EXPECT_EQ(SeedBlockOf(kTrainingSeeds.last, 2), "no");  // wraps around
+  EXPECT_EQ(SeedBlockOf(2'000'000'000, 1), "training");
+}
+
+TEST(Idle, DoesNotMove) {
+  const Scenario s = Short(Shipped("medium"), 50);
+  for (const auto& e : Fly(s, MakeController("idle", s), 4, 3000)) {
+    EXPECT_EQ(e.action_norm, 0.0);
+    EXPECT_EQ(e.control_cost, 0.0);
+    EXPECT_NEAR(e.time_to_band, 5.0, 1e-9);
+    EXPECT_GE(e.min_separation, s.reset.min_separation_m - 1e-6);
+  }
+}
+
+TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
+  const auto actions = [](const char* mode, bool privileged) {
+    const Scenario s = LoadNamedScenario(config::ScenarioFolder(), "medium", "nominal",
+                                         {std::string("mode=") + mode});
+    VectorEnv env(s, VectorEnvOptions());
+    EnvMemory memory = env.MakeMemory();
+    env.Reset(memory.arrays());
+    Controller controller = MakeController("pursuit_separated", s);
+    controller.privileged = privileged;
+    std::vector<double> a(static_cast<size_t>(env.envs() * env.agents() * env.action_size()));
+    Decide(controller, env, memory.observations.data(), a.data());
+    return a;
+  };
+  EXPECT_EQ(actions("acoustic", true), actions("truth", false));
+  EXPECT_NE(actions("acoustic", false), actions("truth", false));  // a cue is 5 cm off
+}
+
+}  // namespace
+}  // namespace stg::env

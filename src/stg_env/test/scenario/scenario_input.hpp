@@ -1,0 +1,83 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "auv_common/error.hpp"
+#include "stg_env/scenario/scenario.hpp"
+
+namespace stg::scenario_test {
+
+namespace fs = std::filesystem;
+
+/// Message of the UserError that `call` throws; fails when it throws none.
+template <class F>
+std::string ErrorOf(F call) {
+  try {
+    call();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no UserError";
+  return "";
+}
+
+/// A folder for each test with files that the test writes.
+class ScenarioFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "scenario_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return (folder_ / name).string();
+  }
+
+  fs::path folder_;
+};
+
+/// Scenarios with one line replaced.
+class ScenarioInput : public ScenarioFolder {
+ protected:
+  /// The whole file with the line of `key` (its leaf) replaced; `line` is told.
+  static std::string WithLine(const std::string& key, const std::string& replacement, int* line) {
+    std::istringstream in(ToYaml(Scenario{}));
+    std::string out;
+    int number = 0;
+    *line = 0;
+    for (std::string text; std::getline(in, text);) {
+      ++number;
+      const auto start = text.find_first_not_of(' ');
+      if (*line == 0 && text.compare(start, key.size() + 1, key + ":") == 0) {
+        *line = number;
+        text = text.substr(0, start) + replacement;
+      }
+      out += text + "\n";
+    }
+    EXPECT_GT(*line, 0) << key;
+    return out;
+  }
+
+  /// Loads the file with one line replaced and expects an error that names
+  /// file, line, key and says `what`.
+  void ExpectRefused(const std::string& leaf, const std::string& replacement,
+                     const std::string& path, const std::string& what) {
+    int line = 0;
+    const std::string file = Write("bad.yaml", WithLine(leaf, replacement, &line));
+    const std::string message = ErrorOf([&] { LoadScenario(file); });
+    const std::string start = file + ":" + std::to_string(line) + ": " + path + ": ";
+    EXPECT_EQ(message.substr(0, start.size()), start) << replacement;
+    EXPECT_NE(message.find(what), std::string::npos) << message << "\nexpected: " << what;
+  }
+};
+
+}  // namespace stg::scenario_test
