@@ -14,7 +14,7 @@ import rosbag
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = HERE.parents[1] / "stg_monitor" / "scripts"
-sys.path[:0] = [str(HERE), str(SCRIPTS)]
+sys.path[:0] = [str(HERE), str(SCRIPTS), str(HERE.parent / "scripts")]
 
 import bag_report  # noqa: E402  (lies in the scripts folder)
 import make_meshes  # noqa: E402
