@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/nn/torch/torch_network.hpp"
@@ -121,8 +121,8 @@ struct Minibatch {
     problem.action_size = kActions;
     return problem;
   }
-  static MappoConfig MakeConfig(int width) {
-    MappoConfig config;
+  static PpoOptions MakeConfig(int width) {
+    PpoOptions config;
     config.actor_hidden = config.critic_hidden = {width, width};
     config.activation = width == 64 ? "tanh" : "relu";
     return config;
@@ -146,7 +146,7 @@ void KernelsStep(benchmark::State& state) {
   const int width = static_cast<int>(state.range(0));
   constexpr int kBlock = 64;
   Minibatch m(width);
-  const MappoConfig config = Minibatch::MakeConfig(width);
+  const PpoOptions config = Minibatch::MakeConfig(width);
   PpoLoss loss(m.networks, config, 1.0, kBlock, Minibatch::kAgents);
   AdamState adam(m.networks.parameters());
   std::vector<float> gradient(m.networks.parameters());

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "draw.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
 #include "marl_trainer/learn/nn/torch/torch_network.hpp"
 
@@ -111,7 +111,7 @@ TEST(BackEnds, ExchangeParameters) {
 TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
   for (const auto& [activation, imitation] :
        {std::pair("tanh", 0.0F), std::pair("relu", 0.0F), std::pair("tanh", 0.3F)}) {
-    MappoConfig config;
+    PpoOptions config;
     config.activation = activation;
     config.actor_hidden = {32, 16};
     config.critic_hidden = {24};

@@ -15,8 +15,8 @@ class RanksTest : public TrainerTest {
   static TrainSetup SetupOf(const std::string& algorithm) {
     const TrainSetup small = SmallSetup();
     TrainSetup setup(algorithm, "fast");
-    if (auto* mappo = dynamic_cast<MappoConfig*>(setup.own.get())) {
-      *mappo = dynamic_cast<const MappoConfig&>(*small.own);
+    if (auto* ppo = dynamic_cast<PpoOptions*>(setup.own.get())) {
+      *ppo = dynamic_cast<const PpoOptions&>(*small.own);
     } else {
       auto& replay = dynamic_cast<ReplayConfig&>(*setup.own);
       replay.replay = 1280;  // two collections of three

@@ -7,12 +7,9 @@
 namespace stg::learn {
 
 void HappoConfig::Describe(OptionTable* t) {
-  MappoConfig::Describe(t);
+  PpoConfig::Describe(t);
   t->Add("sequential", &sequential,
          "each AUV's update knows those before it; off: MAPPO with an actor for each AUV");
-  t->Check([this] {
-    RequireOption(wall_units == 0.0, "wall-units", "is for an actor that all AUVs share");
-  });
 }
 
 void HappoConfig::ApplyRecordings(const TrainConfig&) {

@@ -20,7 +20,7 @@ constexpr std::uint32_t kOrderDraw = 1;
 
 /// One worker's memory for a block.
 struct HappoUpdate::Scratch {
-  Scratch(const ActorCritic& networks, const MappoConfig& config, double focus)
+  Scratch(const ActorCritic& networks, const PpoOptions& config, double focus)
       : loss(networks, config, focus, kBlock, 1),
         actor(networks.actor.mean(), kBlock),
         rows(networks, kBlock, 1) {}

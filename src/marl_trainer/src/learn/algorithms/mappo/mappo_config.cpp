@@ -1,8 +1,5 @@
 #include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
 
-#include <algorithm>
-
-#include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
 #include "marl_trainer/learn/nn/wall_units.hpp"
 #include "marl_trainer/learn/train_config.hpp"
@@ -10,92 +7,18 @@
 namespace stg::learn {
 
 void MappoConfig::Describe(OptionTable* t) {
-  t->Add("epochs", &epochs, {1, 1000}, "passes over the collected steps per update");
-  t->Add("minibatch", &minibatch, {1, 1e9}, "environment steps per gradient step");
-  t->Add("actor-hidden", &actor_hidden, {1, 4096}, "widths of the actor's hidden layers");
-  t->Add("critic-hidden", &critic_hidden, {1, 4096}, "widths of the critic's hidden layers");
-  t->Add("activation", &activation, {"tanh", "relu"}, "of the hidden layers: tanh or relu");
-  t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of the actor at the start");
-  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critic at the start");
-  t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
-  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "Adam's epsilon");
-  t->Add("gamma", &gamma, {0, 1}, "discount per decision");
-  t->Add("lambda", &lambda, {0, 1}, "GAE's lambda");
-  t->Add("clip", &clip, {1e-3, 10}, "PPO's clip of the probability ratio");
-  t->Add("entropy", &entropy, {0, 10}, "weight of the entropy bonus");
-  t->Add("value-weight", &value_weight, {0, 100}, "weight of the critic's loss");
-  t->Add("grad-clip", &grad_clip, {1e-6, 1e6},
-         "largest gradient norm of the actor and of the critic");
-  t->Add("target-kl", &target_kl, {0, 100}, "KL divergence that ends an update early; 0: never");
-  t->Add("initial-log-std", &initial_log_std, {-20, 2},
-         "log sigma of the exploration at the start");
-  t->Add("min-log-std", &min_log_std, {-20, 2}, "lower bound of log sigma");
-  t->Add("max-log-std", &max_log_std, {-20, 2}, "upper bound of log sigma");
-  t->Add("observation-clip", &observation_clip, {0.1, 1e6},
-         "bound of normalised observations and states");
-  t->Add("std-floor", &std_floor, {1e-6, 1}, "smallest standard deviation of the normalisers");
-  t->Add("std-scale", &std_scale, {1e-3, 1e3},
-         "the actor's inputs are divided by this much of their standard deviation: below 1, the "
-         "neighbourhood of the target is seen larger and distant offsets are clipped");
+  PpoConfig::Describe(t);
   t->Add("wall-units", &wall_units, {0, 1e3},
          "with --start-from and relu: 24 units of the actor's first layer start anew as hinges on "
          "the target's room to each wall, at 1/2, 1, 2 and 4 times this margin [m]; 0: none");
 }
 
-void MappoConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
-  if (preset == "fast") return;
-  if (preset != "paper") throw UserError("--preset: '" + preset + "' is not fast or paper");
-  common->steps = 2000000;
-  common->horizon = 100;
-  epochs = 10;
-  gamma = 0.95;
-  minibatch = 800;
-  // Table S2 gives no network sizes. The release's 256-256-256 (an option away)
-  // takes four times as long on a small machine.
-  actor_hidden = {128, 128};
-  critic_hidden = {128, 128};
-  activation = "relu";
-  lr = 3e-4;
-  critic_lr = 3e-4;
-  lr_final = 1.0;
-  entropy = 0.001;
-  initial_log_std = -0.5;
-}
-
 void MappoConfig::ValidateOrThrow(const TrainConfig& common) const {
-  const std::int64_t samples = static_cast<std::int64_t>(common.envs) * common.horizon;
-  RequireOption(samples % minibatch == 0, "minibatch",
-                "must divide envs times horizon, " + std::to_string(samples));
-  RequireOption(min_log_std <= max_log_std, "max-log-std", "is below --min-log-std");
-  RequireOption(min_log_std <= initial_log_std && initial_log_std <= max_log_std, "initial-log-std",
-                "is not between --min-log-std and --max-log-std");
+  PpoConfig::ValidateOrThrow(common);
   RequireOption(wall_units == 0.0 || !common.start_from.empty(), "wall-units",
                 "needs the normalisers of another run: --start-from");
   RequireOption(wall_units == 0.0 || (activation == "relu" && actor_hidden[0] >= kWallUnits),
                 "wall-units", "needs --activation relu and 24 units in the actor's first layer");
-}
-
-void MappoConfig::ApplyRecordings(const TrainConfig& common) {
-  epochs = 10;
-  lr = critic_lr = 3e-3;
-  lr_final = 1.0;
-  target_kl = 0.1;
-  minibatch = std::min(500, common.horizon);
-  while (common.horizon % minibatch != 0) --minibatch;
-  moment_stride = 1;
-}
-
-void MappoConfig::FitPolicy(const agent::Policy& policy) {
-  const agent::Policy::Parameters& p = policy.parameters();
-  actor_hidden.clear();
-  for (std::size_t l = 0; l + 1 < p.layers.size(); ++l) {
-    actor_hidden.push_back(static_cast<int>(p.layers[l].bias.size()));
-  }
-  activation = p.activation == agent::Policy::Activation::kRelu ? "relu" : "tanh";
-  observation_clip = static_cast<double>(p.input_clip);
-  // A component that never moved has the smallest deviation: the floor, scaled.
-  const auto smallest = static_cast<double>(p.input_std.minCoeff());
-  if (smallest < std_floor * std_scale) std_scale = smallest / std_floor;
 }
 
 std::unique_ptr<Algorithm> MappoConfig::Make(const TrainConfig& common, const Problem& problem,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/happo/happo_update.hpp"
-#include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/valued_rollouts.hpp"
 #include "marl_trainer/learn/nn/observed_pass.hpp"
 
 namespace stg::learn {

@@ -2,12 +2,13 @@
 
 #include <memory>
 
-#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_config.hpp"
 
 namespace stg::learn {
 
-/// Configuration of HAPPO: MAPPO's options and presets, and how the actors take their turns.
-struct HappoConfig : CopyableConfig<HappoConfig, MappoConfig> {
+/// Configuration of HAPPO: the options and presets of all on-policy methods, and how the actors
+/// take their turns.
+struct HappoConfig : CopyableConfig<HappoConfig, PpoConfig> {
   bool sequential = true;
 
   void Describe(OptionTable* table) override;

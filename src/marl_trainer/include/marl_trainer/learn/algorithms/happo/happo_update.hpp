@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo_rows.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_rows.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_update.hpp"
 
 namespace stg::learn {
 

@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
-#include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
+#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_update.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/valued_rollouts.hpp"
 #include "marl_trainer/learn/nn/observed_pass.hpp"
 
 namespace stg::learn {

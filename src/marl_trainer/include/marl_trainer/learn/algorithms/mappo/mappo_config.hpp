@@ -1,46 +1,17 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "marl_trainer/learn/algorithm_config.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_config.hpp"
 
 namespace stg::learn {
 
-/// Configuration of MAPPO, its presets `fast` (ours) and `paper` (Table S2).
-struct MappoConfig : CopyableConfig<MappoConfig> {
-  int epochs = 1;
-  int minibatch = 400;
-  std::vector<int> actor_hidden{64, 64};
-  std::vector<int> critic_hidden{64, 64};
-  std::string activation = "tanh";
-  double lr = 5e-3;
-  double critic_lr = 5e-3;
-  double lr_final = 0.1;
-  double adam_eps = 1e-5;
-  double gamma = 0.9;
-  double lambda = 0.95;
-  double clip = 0.2;
-  double entropy = 0.0;
-  double value_weight = 0.5;
-  double grad_clip = 5.0;
-  double target_kl = 0.0;
-  double initial_log_std = -1.0;
-  double min_log_std = -4.0;
-  double max_log_std = 0.0;
-  double observation_clip = 10.0;
-  double std_floor = 0.01;
-  double std_scale = 1.0;
+/// Configuration of MAPPO.
+struct MappoConfig : CopyableConfig<MappoConfig, PpoConfig> {
   double wall_units = 0.0;  ///< margin [m] of PlaceWallUnits; 0: none
-  /// The normalisers take in every n-th decision; no option of the command line.
-  int moment_stride = 4;
 
   void Describe(OptionTable* table) override;
-  void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
-  void ApplyRecordings(const TrainConfig& common) override;
-  void FitPolicy(const agent::Policy& policy) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   WorkerPool* pool) const override;
 };

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/actor_critic.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/actor_critic.hpp"
 #include "marl_trainer/learn/buffers/rollout_buffer.hpp"
 #include "marl_trainer/learn/checkpoint/archive.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
@@ -19,7 +19,7 @@ struct Scales {
 /// The running moments behind the scales of inputs and value targets.
 class Normalisers {
  public:
-  Normalisers(const Problem& problem, const MappoConfig& config);
+  Normalisers(const Problem& problem, const PpoOptions& config);
 
   const Scales& scales() const { return scales_; }
 

@@ -1,9 +1,9 @@
-#include "marl_trainer/learn/algorithms/mappo/ppo_update.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_update.hpp"
 
 #include <algorithm>
 #include <cassert>
 
-#include "marl_trainer/learn/algorithms/mappo/ppo_rows.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_rows.hpp"
 
 namespace stg::learn {
 
@@ -49,13 +49,13 @@ std::vector<double> PpoValues(const PpoReport& report, double learning_rate, dou
 
 /// One worker's memory for a block.
 struct PpoUpdate::Scratch {
-  Scratch(const ActorCritic& networks, const MappoConfig& config, double focus, int agents)
+  Scratch(const ActorCritic& networks, const PpoOptions& config, double focus, int agents)
       : loss(networks, config, focus, kBlock, agents), rows(networks, kBlock, agents) {}
   PpoLoss loss;
   PpoRows rows;
 };
 
-PpoUpdate::PpoUpdate(const ActorCritic& networks, const MappoConfig& config,
+PpoUpdate::PpoUpdate(const ActorCritic& networks, const PpoOptions& config,
                      const TrainConfig& common, int agents, WorkerPool* pool)
     : networks_(networks),
       config_(config),

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/learn/algorithms/mappo/normalisers.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/normalisers.hpp"
 #include "marl_trainer/learn/buffers/rollout_buffer.hpp"
 
 namespace stg::learn {
@@ -13,7 +13,7 @@ namespace stg::learn {
 class ValuedRollouts {
  public:
   /// @param critic, pool must outlive this object.
-  ValuedRollouts(const Problem& problem, const MappoConfig& config, const Mlp& critic,
+  ValuedRollouts(const Problem& problem, const PpoOptions& config, const Mlp& critic,
                  WorkerPool* pool);
 
   /// As Algorithm::Join.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/mappo_config.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_config.hpp"
 #include "marl_trainer/learn/nn/gaussian_actor.hpp"
 
 namespace stg::learn {
@@ -11,7 +11,7 @@ namespace stg::learn {
 /// The actor that all AUVs share and the central critic, which maps the true state of the swarm to
 /// one value per environment step. Parameters in one flat array: actor (with log sigma), critic.
 struct ActorCritic {
-  ActorCritic(const Problem& problem, const MappoConfig& config);
+  ActorCritic(const Problem& problem, const PpoOptions& config);
 
   GaussianActor actor;
   Mlp critic;

@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/algorithms/mappo/valued_rollouts.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/valued_rollouts.hpp"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ constexpr int kValueRows = 256;
 
 }  // namespace
 
-ValuedRollouts::ValuedRollouts(const Problem& problem, const MappoConfig& config, const Mlp& critic,
+ValuedRollouts::ValuedRollouts(const Problem& problem, const PpoOptions& config, const Mlp& critic,
                                WorkerPool* pool)
     : problem_(problem),
       gamma_(static_cast<float>(config.gamma)),

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
-#include "marl_trainer/learn/algorithms/mappo/ppo_samples.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_samples.hpp"
 #include "marl_trainer/learn/nn/sliced_gradient.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 
@@ -51,7 +51,7 @@ std::vector<double> PpoValues(const PpoReport& report, double learning_rate, dou
 class PpoUpdate {
  public:
   /// @param networks, pool must outlive this object.
-  PpoUpdate(const ActorCritic& networks, const MappoConfig& config, const TrainConfig& common,
+  PpoUpdate(const ActorCritic& networks, const PpoOptions& config, const TrainConfig& common,
             int agents, WorkerPool* pool);
   ~PpoUpdate();
 
@@ -75,7 +75,7 @@ class PpoUpdate {
             PpoReport* report);
 
   const ActorCritic& networks_;
-  const MappoConfig config_;
+  const PpoOptions config_;
   const std::uint64_t seed_;
   const int agents_;
   SlicedGradient gradient_;

@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/algorithms/mappo/ppo_samples.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_samples.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "marl_trainer/learn/algorithms/mappo/actor_critic.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/actor_critic.hpp"
 
 namespace stg::learn {
 namespace {
 
-NetworkSpec ActorSpec(const Problem& problem, const MappoConfig& config) {
+NetworkSpec ActorSpec(const Problem& problem, const PpoOptions& config) {
   NetworkSpec spec;
   spec.inputs = problem.observation_size;
   spec.hidden = config.actor_hidden;
@@ -14,7 +14,7 @@ NetworkSpec ActorSpec(const Problem& problem, const MappoConfig& config) {
   return spec;
 }
 
-NetworkSpec CriticSpec(const Problem& problem, const MappoConfig& config) {
+NetworkSpec CriticSpec(const Problem& problem, const PpoOptions& config) {
   NetworkSpec spec;
   spec.inputs = problem.state_size;
   spec.hidden = config.critic_hidden;
@@ -24,7 +24,7 @@ NetworkSpec CriticSpec(const Problem& problem, const MappoConfig& config) {
 
 }  // namespace
 
-ActorCritic::ActorCritic(const Problem& problem, const MappoConfig& config)
+ActorCritic::ActorCritic(const Problem& problem, const PpoOptions& config)
     : actor(ActorSpec(problem, config)), critic(CriticSpec(problem, config)) {}
 
 std::vector<float> ActorCritic::Initialise(std::uint64_t seed, double log_std) const {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/actor_critic.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/actor_critic.hpp"
 
 namespace stg::learn {
 
@@ -34,7 +34,7 @@ struct PpoBatch {
 class PpoLoss {
  public:
   /// @param networks must outlive this object. @param max_samples of a batch, `agents` rows each.
-  PpoLoss(const ActorCritic& networks, const MappoConfig& config, double imitation_focus,
+  PpoLoss(const ActorCritic& networks, const PpoOptions& config, double imitation_focus,
           int max_samples, int agents);
 
   /// Adds the gradient of the loss to gradient [parameters]. Every term is

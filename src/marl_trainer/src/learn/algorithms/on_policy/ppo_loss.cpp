@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ void PpoSums::Add(const PpoSums& other) {
   samples += other.samples;
 }
 
-PpoLoss::PpoLoss(const ActorCritic& networks, const MappoConfig& config, double imitation_focus,
+PpoLoss::PpoLoss(const ActorCritic& networks, const PpoOptions& config, double imitation_focus,
                  int max_samples, int agents)
     : networks_(networks),
       clip_(static_cast<float>(config.clip)),

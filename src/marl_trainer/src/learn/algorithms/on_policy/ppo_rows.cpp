@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/algorithms/mappo/ppo_rows.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_rows.hpp"
 
 namespace stg::learn {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/normalisers.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/normalisers.hpp"
 #include "marl_trainer/learn/buffers/rollout_buffer.hpp"
 #include "marl_trainer/learn/comm/communicator.hpp"
 

@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/algorithms/mappo/normalisers.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/normalisers.hpp"
 
 #include <cmath>
 
@@ -12,7 +12,7 @@ double ValueStd(const RunningMoments& values) { return std::sqrt(values.variance
 
 }  // namespace
 
-Normalisers::Normalisers(const Problem& problem, const MappoConfig& config)
+Normalisers::Normalisers(const Problem& problem, const PpoOptions& config)
     : std_floor_(static_cast<float>(config.std_floor)),
       clip_(static_cast<float>(config.observation_clip)),
       std_scale_(static_cast<float>(config.std_scale)),

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marl_trainer/learn/algorithms/mappo/ppo_loss.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
 
 namespace stg::learn {
 
