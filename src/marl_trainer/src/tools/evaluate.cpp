@@ -22,16 +22,18 @@
 
 namespace {
 
-/// One row per episode.
-std::string Table(const std::vector<stg::task::EpisodeMetrics>& episodes, std::uint64_t seed) {
+/// One row per episode, at least one.
+/// @param training_returns of the same episodes
+std::string Table(const std::vector<stg::task::EpisodeMetrics>& episodes,
+                  const std::vector<double>& training_returns, std::uint64_t seed) {
   std::ostringstream out;
   out << "episode,seed";
-  for (const auto& item : stg::task::EpisodeMetrics{}.Items()) out << ',' << item.first;
-  out << '\n';
+  for (const auto& item : episodes.front().Items()) out << ',' << item.first;
+  out << ",training_return\n";
   for (size_t e = 0; e < episodes.size(); ++e) {
     out << e << ',' << seed + e;
     for (const auto& item : episodes[e].Items()) out << ',' << item.second;
-    out << '\n';
+    out << ',' << training_returns[e] << '\n';
   }
   return out.str();
 }
@@ -83,9 +85,11 @@ int main(int argc, char** argv) {
                  "nominal, fast_target, far_initialization, limited_sensing, "
                  "degraded_communication, combined_stress")
       ->capture_default_str();
-  app.add_option("--variant", variant,
-                 "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of "
-                 "the policy; the reward stays the scenario's")
+  app.add_option(
+         "--variant", variant,
+         "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of "
+         "the policy; the return is by the scenario's reward, training_return by that of the "
+         "variant")
       ->capture_default_str();
   app.add_option("--episodes", episodes, "number of episodes")
       ->check(CLI::Range(1, 1000000))
@@ -111,9 +115,9 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const stg::Scenario s = stg::env::ValidationScenario(
-        stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides),
-        variant);
+    const stg::Scenario given =
+        stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides);
+    const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
     std::string full = policy;
     for (const auto& [name, value] : constants) {
       if (value.empty()) continue;
@@ -126,12 +130,22 @@ int main(int argc, char** argv) {
     stg::env::EvaluationOptions options;
     options.episodes = episodes;
     options.seed = seed;
-    const auto metrics = stg::env::Evaluate(s, controller, options, &pool, [&](int done) {
-      std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
-    });
-    std::fprintf(stderr, "\n");
-    table.Write(Table(metrics, seed));
-    const stg::task::MetricSummary summary = stg::task::Summarise(metrics);
+    const auto fly = [&](const stg::Scenario& flown) {
+      const auto metrics = stg::env::Evaluate(flown, controller, options, &pool, [&](int done) {
+        std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
+      });
+      std::fprintf(stderr, "\n");
+      return metrics;
+    };
+    const auto metrics = fly(s);
+    // The same flights: a reward has no effect on them.
+    const auto own = variant == "stg" ? metrics : fly(stg::env::VariantScenario(given, variant));
+    std::vector<double> training_returns;
+    for (const auto& episode : own) training_returns.push_back(episode.episode_return);
+    table.Write(Table(metrics, training_returns, seed));
+    stg::task::MetricSummary summary = stg::task::Summarise(metrics);
+    const stg::task::MetricSummary own_summary = stg::task::Summarise(own);
+    summary.Append("training_return", own_summary.Mean("return"), own_summary.Std("return"));
     const std::string block = stg::env::SeedBlockOf(seed, static_cast<std::uint64_t>(episodes));
     nlohmann::json json = {{"policy", policy},       {"scenario", scenario},
                            {"condition", condition}, {"episodes", episodes},

@@ -181,7 +181,7 @@ TEST(Imitation, IsInFullForTheFirstHalfAndThenFades) {
   EXPECT_EQ(imitation.Weight(2000), 0.0);
 }
 
-TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
+TEST(Variants, DifferAsTableS9SaysAndAreEvaluatedWithOneReward) {
   Scenario scenario;
   EXPECT_EQ(env::VariantScenario(scenario, "stg").observation_size(), 74);
   EXPECT_EQ(env::VariantScenario(scenario, "semantic").observation_size(), 68);
@@ -194,9 +194,9 @@ TEST(Variants, DifferAsTableS9SaysAndAreValidatedWithOneReward) {
   EXPECT_EQ(tau6.control.max_delta, 0.0);
   EXPECT_EQ(tau6.reward.kind, task::RewardKind::kReleaseRaw);
   EXPECT_EQ(tau6.reward.weights.coordination, 0.10);
-  EXPECT_EQ(env::ValidationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
-  EXPECT_EQ(env::ValidationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
-  EXPECT_EQ(env::ValidationScenario(scenario, "tau6").action_size(), 6);
+  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
+  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
+  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").action_size(), 6);
   EXPECT_THROW(env::VariantScenario(scenario, "other"), UserError);
 }
 

@@ -32,7 +32,7 @@ Scenario VariantScenario(const Scenario& scenario, const std::string& variant) {
   return s;
 }
 
-Scenario ValidationScenario(const Scenario& scenario, const std::string& variant) {
+Scenario EvaluationScenario(const Scenario& scenario, const std::string& variant) {
   Scenario s = VariantScenario(scenario, variant);
   s.reward = scenario.reward;
   return s;

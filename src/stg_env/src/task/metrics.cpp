@@ -63,6 +63,17 @@ double MetricSummary::Mean(const std::string& name) const {
   return found == names.end() ? 0.0 : mean[static_cast<size_t>(found - names.begin())];
 }
 
+double MetricSummary::Std(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? 0.0 : std[static_cast<size_t>(found - names.begin())];
+}
+
+void MetricSummary::Append(const std::string& name, double its_mean, double its_std) {
+  names.push_back(name);
+  mean.push_back(its_mean);
+  std.push_back(its_std);
+}
+
 MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes) {
   MetricSummary s;
   s.episodes = static_cast<int>(episodes.size());

@@ -106,7 +106,7 @@ std::string TrainLog::Header() const {
   for (const auto& item : task::EpisodeMetrics().Items()) {
     header += "validation_" + item.first + ",";
   }
-  header.back() = '\n';
+  header += "validation_scenario_return\n";
   return header;
 }
 
@@ -133,7 +133,7 @@ void TrainLog::Add(const TrainRecord& r) {
   for (const auto& item : task::EpisodeMetrics().Items()) {
     row += (r.validated ? Number(r.validation.Mean(item.first)) : "") + ",";
   }
-  row.back() = '\n';
+  row += (r.validated ? Number(r.validation.Mean("scenario_return")) : "") + "\n";
   csv_ << row;
 
   if (r.validated) {
@@ -143,11 +143,12 @@ void TrainLog::Add(const TrainRecord& r) {
       last_validation_[r.validation.names[i]] = r.validation.mean[i];
     }
     const double value = r.validation.Mean("return");
+    const double judged = r.validation.Mean("scenario_return");
     const bool kept = r.validation.Mean("lost_rate") == 0.0;
     const Moment now{r.wall_seconds, r.env_steps};
     if (kept) reached_.emplace("no_loss", now);
     for (const auto& [name, threshold] : kThresholds) {
-      if (value >= threshold && kept) reached_.emplace(name, now);
+      if (judged >= threshold && kept) reached_.emplace(name, now);
     }
     if (best_validation_.empty() || value > best_validation_.at("return")) {
       best_validation_ = last_validation_;
@@ -170,6 +171,11 @@ void TrainLog::PrintLine(const TrainRecord& r) {
                   r.validation.Mean("return"), r.validation.Mean("tail_distance"),
                   r.validation.Mean("lost_rate"), r.validation.Mean("tail_colliding_pairs"));
     *lines_ << text;
+    if (r.validation.Mean("scenario_return") != r.validation.Mean("return")) {
+      std::snprintf(text, sizeof text, " (scenario's return %.1f)",
+                    r.validation.Mean("scenario_return"));
+      *lines_ << text;
+    }
   } else {
     std::snprintf(text, sizeof text, " | reward %.4f", r.reward);
     *lines_ << text;

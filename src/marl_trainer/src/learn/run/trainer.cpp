@@ -83,7 +83,7 @@ double PeakFlops(WorkerPool* pool) {
 Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Options& options)
     : scenario_(Valid(scenario, setup)),
       train_scenario_(env::VariantScenario(scenario, setup.common.variant)),
-      validation_scenario_(env::ValidationScenario(scenario, setup.common.variant)),
+      evaluation_scenario_(env::EvaluationScenario(scenario, setup.common.variant)),
       mix_(Mix(scenario, options.mix, setup)),
       setup_(setup),
       options_(options),
@@ -240,9 +240,15 @@ void Trainer::Iterate(TrainRecord* record) {
 
 void Trainer::RunValidation(TrainRecord* record) {
   const Stopwatch watch;
-  last_validation_ =
-      task::Summarise(Validate(validation_scenario_, setup_.common.validation_episodes,
-                               algorithm_.get(), &pool_, options_.ranks));
+  const auto fly = [this](const Scenario& scenario) {
+    return task::Summarise(Validate(scenario, setup_.common.validation_episodes, algorithm_.get(),
+                                    &pool_, options_.ranks));
+  };
+  last_validation_ = fly(train_scenario_);
+  // The same flights: a reward has no effect on them.
+  const task::MetricSummary judged =
+      setup_.common.variant == "stg" ? last_validation_ : fly(evaluation_scenario_);
+  last_validation_.Append("scenario_return", judged.Mean("return"), judged.Std("return"));
   record->validated = true;
   record->validation = last_validation_;
   if (last_validation_.Mean("return") > state_.best_return) {
@@ -287,8 +293,8 @@ void Trainer::SavePolicy(const std::string& name) const {
   const std::string id = scenario_.name + "-" + config.variant + "-" + config.preset + "-seed" +
                          std::to_string(config.seed) + "-" + std::to_string(state_.env_steps);
   agent::PolicyMetadata m = MetadataOf(train_scenario_, id, state_.env_steps, config.seed);
-  for (const char* metric :
-       {"return", "tail_distance", "tracking_error", "lost_rate", "tail_colliding_pairs"}) {
+  for (const char* metric : {"return", "scenario_return", "tail_distance", "tracking_error",
+                             "lost_rate", "tail_colliding_pairs"}) {
     if (last_validation_.names.empty()) break;
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", last_validation_.Mean(metric));

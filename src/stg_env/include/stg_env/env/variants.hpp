@@ -12,11 +12,11 @@ namespace stg::env {
 /// - velocity3: raw observation, raw reward;
 /// - tau6: raw observation, force interface (scale 0.18, no smoothing or rate
 ///   limit), raw reward.
-/// The raw reward is the release's for its baselines. Returns of trainings with
-/// different rewards do not compare, so validation and evaluation always use the
-/// unchanged scenario's reward (ValidationScenario).
+/// The raw reward is the release's for its baselines. A training keeps the checkpoint that returns
+/// most by the reward it trains with. Returns by different rewards do not compare, so whoever
+/// compares variants flies them with the unchanged scenario's reward (EvaluationScenario).
 Scenario VariantScenario(const Scenario& scenario, const std::string& variant);
-/// VariantScenario with the reward of `scenario`, in the scenario's own stage.
-Scenario ValidationScenario(const Scenario& scenario, const std::string& variant);
+/// VariantScenario with the reward of `scenario`.
+Scenario EvaluationScenario(const Scenario& scenario, const std::string& variant);
 
 }  // namespace stg::env

@@ -70,6 +70,9 @@ struct MetricSummary {
 
   /// Mean of the metric called `name`; 0 where there is none.
   double Mean(const std::string& name) const;
+  /// Standard deviation of the metric called `name`; 0 where there is none.
+  double Std(const std::string& name) const;
+  void Append(const std::string& name, double its_mean, double its_std);
 };
 MetricSummary Summarise(const std::vector<EpisodeMetrics>& episodes);
 

@@ -25,13 +25,15 @@ struct TrainRecord {
   double env_seconds = 0.0, inference_seconds = 0.0, update_seconds = 0.0, validation_seconds = 0.0;
   double update_flops = 0.0;
   bool validated = false;
-  task::MetricSummary validation;  ///< deterministic policy; the scenario's own reward
+  /// Of the deterministic policy. `return` is by the reward of the training, which chooses the best
+  /// policy; `scenario_return` is of the same flights by the scenario's reward.
+  task::MetricSummary validation;
 };
 
 /// The labelled numbers of an update as people read them: "KL 0.0123 clip 0.100".
 std::string ReportText(const std::vector<ReportColumn>& columns, const std::vector<double>& values);
 
-/// Progress lines, progress.csv and the times to the return thresholds.
+/// Progress lines, progress.csv and the times to the thresholds of the scenario's return.
 class TrainLog {
  public:
   /// @param out folder. @param columns of the algorithm.

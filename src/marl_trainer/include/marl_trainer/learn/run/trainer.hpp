@@ -65,7 +65,9 @@ class Trainer {
   bool leads() const { return options_.ranks == nullptr || options_.ranks->rank() == 0; }
   double Elapsed() const { return state_.wall_seconds + watch_.seconds(); }
 
-  const Scenario scenario_, train_scenario_, validation_scenario_;
+  // As given; as trained in, which validations fly and checkpoints are chosen by; and that with the
+  // reward of the first, for the return that compares variants.
+  const Scenario scenario_, train_scenario_, evaluation_scenario_;
   const std::vector<Scenario> mix_;  // never empty; the scenarios trained in
   const TrainSetup setup_;
   const Options options_;

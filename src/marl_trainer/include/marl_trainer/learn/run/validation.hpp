@@ -10,7 +10,7 @@
 namespace stg::learn {
 
 /// Flies the deterministic policy of an algorithm on the same held-out episodes every time
-/// (seeds kValidationSeed + r, the scenario's own stage and reward).
+/// (seeds kValidationSeed + r, in the scenario's own stage).
 /// @param ranks that fly a share of them each; null: this process flies them all
 /// @return one entry per episode, in order.
 std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
