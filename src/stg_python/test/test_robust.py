@@ -1,6 +1,7 @@
 """Wrong input is told clearly and changes nothing; memory, threads and processes behave."""
 
 import multiprocessing
+import subprocess
 import sys
 import threading
 import time
@@ -9,6 +10,20 @@ import unittest
 import numpy as np
 
 import stg
+
+
+CYCLE = {"time": {}}
+CYCLE["time"]["time"] = CYCLE
+CYCLIC_LIST = [1]
+CYCLIC_LIST.append(CYCLIC_LIST)
+
+
+def deep(count):
+    """Returns `count` dictionaries within each other."""
+    values = {}
+    for _ in range(count):
+        values = {"a": values}
+    return values
 
 
 def resident_bytes():
@@ -90,6 +105,9 @@ class WrongActions(unittest.TestCase):
         for call, error, words in (
             (lambda: stg.vector_env("medium", 0), stg.UserError, "num_envs"),
             (lambda: stg.vector_env("medium", 2.0), TypeError, "num_envs"),
+            (lambda: stg.vector_env("medium", 10**9), stg.UserError,
+             "num_envs: 1000000000 environments of 4 AUVs need more than .* GiB"),
+            (lambda: stg.vector_env("medium", 10**10), ValueError, "num_envs: 10000000000"),
             (lambda: stg.vector_env("medium", 2, workers=0), stg.UserError, "workers"),
             (lambda: stg.vector_env("medium", 2, seed=-1), ValueError, "seed"),
             (lambda: stg.vector_env("medium", 2, seed=1.5), TypeError, "seed"),
@@ -101,11 +119,27 @@ class WrongActions(unittest.TestCase):
             (lambda: stg.vector_env("medium", 2).reset(seed=[1]), ValueError, "seed"),
             (lambda: stg.vector_env("medium", 2).reset(options={"speed": 1}), ValueError, "speed"),
             (lambda: stg.vector_env("medium", 2).metrics(2), IndexError, "environment 2 of 2"),
+            (lambda: stg.vector_env("medium", 2, overrides="x"), TypeError, "overrides.*'x'"),
+            (lambda: stg.parallel_env(overrides="x"), TypeError, "overrides.*'x'"),
+            (lambda: stg.parallel_env(overrides=3), TypeError, "overrides"),
+            (lambda: stg.parallel_env(overrides={3: 1}), TypeError, "overrides: keys are texts"),
+            (lambda: stg.parallel_env(overrides=CYCLE), ValueError, "a dict holds itself"),
+            (lambda: stg.parallel_env(overrides={"a": CYCLIC_LIST}), ValueError,
+             "a list holds itself"),
+            (lambda: stg.parallel_env(overrides=deep(5000)), ValueError, "32 dictionaries"),
+            (lambda: stg.parallel_env().reset(options="x"), TypeError, "options"),
             (lambda: stg.parallel_env(seed=2**63), ValueError, "seed"),
             (lambda: stg.parallel_env().reset(seed="1"), TypeError, "seed"),
         ):  # fmt: skip
             with self.subTest(words), self.assertRaisesRegex(error, words):
                 call()
+
+    def test_an_option_of_reset_gives_a_warning(self):
+        """PettingZoo's parallel_api_test passes one."""
+        env, twin = stg.parallel_env(), stg.parallel_env()
+        with self.assertWarnsRegex(UserWarning, "speed changed nothing"):
+            told = env.reset(seed=3, options={"speed": 1})
+        np.testing.assert_equal(told, twin.reset(seed=3))
 
 
 class Resources(unittest.TestCase):
@@ -223,6 +257,32 @@ class Threads(unittest.TestCase):
         process.join(60)
         self.assertEqual(process.exitcode, 0)
         env.step(np.zeros((8, 4, 3), np.float32))
+
+
+LEAVE = """
+import threading, time, numpy as np, stg
+env = stg.vector_env("medium", 400)
+env.reset(seed=0)
+def fly():
+    actions = np.zeros((400, 4, 3), np.float32)
+    while True:
+        {call}
+threading.Thread(target=fly, daemon=True).start()
+time.sleep(0.3)
+print("left")
+"""
+
+
+class Exit(unittest.TestCase):
+    def test_of_the_program_while_a_daemon_thread_flies(self):
+        """Python ends the thread where it asks for the GIL back; the program ended by SIGABRT."""
+        for call in ("env.step(actions)", "stg.evaluate('pursuit', episodes=1)"):
+            for _ in range(3):
+                done = subprocess.run(
+                    [sys.executable, "-c", LEAVE.format(call=call)], stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT, universal_newlines=True, check=False, timeout=120,
+                )  # fmt: skip
+                self.assertEqual((done.returncode, done.stdout), (0, "left\n"), call)
 
 
 if __name__ == "__main__":

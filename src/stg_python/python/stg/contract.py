@@ -1,6 +1,8 @@
 """Checks of what every environment and wrapper must keep to, as Gymnasium's and PettingZoo's own
 testers do; an AssertionError says what is broken."""
 
+import warnings
+
 import numpy as np
 
 __all__ = ["check_parallel", "check_vector"]
@@ -39,6 +41,9 @@ def check_parallel(make, cycles=30):
     for name in env.possible_agents:
         assert env.observation_space(name) is env.observation_space(name)
         assert env.action_space(name) is env.action_space(name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        env.reset(seed=0, options={"options": 1})  # taken, whatever it is
     for _ in range(2):
         _check_parallel_episode(env, cycles)
     _check_parallel_seed(make)

@@ -1,5 +1,7 @@
 """One swarm in the form of PettingZoo's parallel environments."""
 
+import warnings
+
 import numpy as np
 
 from stg import _core, spaces
@@ -96,10 +98,14 @@ class ParallelEnv(_Base):
         """Starts an episode; returns ({agent: observation}, {agent: info}).
 
         seed: of the world; None: one more than the last one, the first time that given to
-        parallel_env. options: none are known.
+        parallel_env. options: a dictionary, of which no key is known: each one gives a warning and
+        changes nothing, because PettingZoo's contract wants environments to take any.
         """
+        if options is not None and not isinstance(options, dict):
+            raise TypeError(f"options: expected a dictionary, not {type(options).__name__}")
         if options:
-            raise ValueError(f"options: {sorted(options)} are not known")
+            names = ", ".join(map(str, options))
+            warnings.warn(f"reset: no option is known here; {names} changed nothing", stacklevel=2)
         seed = self._next_seed if seed is None else seed_of(seed)
         self._core.reset_env(0, seed)
         self._next_seed = seed + 1

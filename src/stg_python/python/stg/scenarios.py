@@ -32,31 +32,50 @@ def scenario_names():
     return sorted(path.stem for path in pathlib.Path(scenario_folder()).glob("*.yaml"))
 
 
-def _text(value):
-    """Returns a value as it stands in a YAML file."""
+def _text(value, within):
+    """Returns a value as it stands in a YAML file; `within` are the lists and dictionaries around it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_text(v) for v in value) + "]"
+        within = _inside(value, within)
+        return "[" + ", ".join(_text(v, within) for v in value) + "]"
     return str(value)
+
+
+def _inside(value, within):
+    """Returns `within` and `value`; raises ValueError where the value holds itself or lies too deep."""
+    if any(value is outer for outer in within):
+        raise ValueError(f"overrides: a {type(value).__name__} holds itself")
+    if len(within) >= 32:
+        raise ValueError("overrides: more than 32 dictionaries or lists within each other")
+    return (*within, value)
+
+
+def _walk(prefix, values, within):
+    """Yields "key.path=value" of a dictionary and those in it."""
+    within = _inside(values, within)
+    for key, value in values.items():
+        if not isinstance(key, str):
+            raise TypeError(f"overrides: keys are texts, not {type(key).__name__} ({key!r})")
+        if isinstance(value, dict):
+            yield from _walk(f"{prefix}{key}.", value, within)
+        else:
+            yield f"{prefix}{key}={_text(value, within)}"
 
 
 def override_texts(overrides):
     """Returns ["key.path=value", ...] of a dictionary, nested or with dotted keys, or of a list of
     such texts."""
+    if overrides is None:
+        return []
     if isinstance(overrides, (list, tuple)):
         return [str(text) for text in overrides]
-    texts = []
-
-    def walk(prefix, values):
-        for key, value in values.items():
-            if isinstance(value, dict):
-                walk(f"{prefix}{key}.", value)
-            else:
-                texts.append(f"{prefix}{key}={_text(value)}")
-
-    walk("", overrides or {})
-    return texts
+    if not isinstance(overrides, dict):
+        raise TypeError(
+            "overrides: expected a dictionary {'key.path': value} or a list of texts "
+            f"'key.path=value', not {overrides!r}"
+        )
+    return list(_walk("", overrides, ()))
 
 
 def load_scenario(scenario="medium", condition="nominal", overrides=None):

@@ -87,6 +87,8 @@ class VectorEnv(_Base):
         for name, number in (("num_envs", num_envs), ("workers", workers)):
             if isinstance(number, bool) or not isinstance(number, (int, np.integer)):
                 raise TypeError(f"{name}: expected an integer, not {type(number).__name__}")
+            if number >= 2**31:
+                raise ValueError(f"{name}: {number} is too many")
         self.scenarios = _mix(scenario, condition, overrides)
         self._seed = seed_of(seed)
         self._core = _core.VectorEnv(

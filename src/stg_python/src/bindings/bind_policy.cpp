@@ -11,6 +11,7 @@
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_agent/policy/policy.hpp"
 #include "stg_env/env/evaluation.hpp"
+#include "without_gil.hpp"
 
 namespace stg::python {
 namespace {
@@ -101,7 +102,7 @@ py::array_t<float> Mean(const Policy& policy, const py::handle& object) {
   const float* from = rows.data();
   float* to = actions.mutable_data();
   const py::ssize_t count = rows.size() / policy.observation_size();
-  const py::gil_scoped_release release;
+  const WithoutGil release;
   for (py::ssize_t r = 0; r < count; ++r) {
     policy.Mean(from + r * policy.observation_size(), to + r * policy.action_size());
   }
@@ -115,7 +116,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
   if (workers < 1) throw py::value_error("workers: must be at least 1");
   task::MetricSummary summary;
   {
-    const py::gil_scoped_release release;
+    const WithoutGil release;
     env::Controller controller = env::MakeController(policy, scenario);
     controller.privileged = privileged;
     WorkerPool pool(std::min(workers, episodes));
@@ -146,8 +147,7 @@ void BindPolicy(py::module_& module) {
            py::arg("log_std") = py::none(), py::arg("action_scale") = 1.0, py::arg("id") = "policy",
            py::arg("scenario_hash") = "", py::arg("training_step") = 0, py::arg("seed") = 0,
            py::arg("metrics") = std::map<std::string, std::string>())
-      .def_static("load", &Policy::LoadOnnx, py::arg("path"),
-                  py::call_guard<py::gil_scoped_release>(),
+      .def_static("load", &Policy::LoadOnnx, py::arg("path"), py::call_guard<WithoutGil>(),
                   "Reads an ONNX file; raises UserError for anything but a policy.")
       .def("save", &Policy::SaveOnnx, py::arg("path"), "Writes an ONNX file, whole or not at all.")
       .def("mean", &Mean, py::arg("observations"),

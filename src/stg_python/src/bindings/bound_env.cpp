@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "arrays.hpp"
+#include "without_gil.hpp"
 
 namespace stg::python {
 
@@ -95,7 +96,7 @@ void BoundEnv::Bind(const py::dict& arrays) {
 void BoundEnv::RestartAt(std::uint64_t k) {
   const Use use(this);
   RequireBound();
-  const py::gil_scoped_release release;
+  const WithoutGil release;
   fleet_->RestartAt(k, out_);
 }
 
@@ -108,7 +109,7 @@ void BoundEnv::ResetEnv(int env, std::uint64_t seed) {
   RequireEnv(env);
   const Use use(this);
   RequireBound();
-  const py::gil_scoped_release release;
+  const WithoutGil release;
   fleet_->ResetEnv(env, seed, out_);
 }
 
@@ -121,7 +122,7 @@ int BoundEnv::StepChecked(const Number* actions) {
                           std::to_string(bad % row / action_size_) + ", " +
                           std::to_string(bad % action_size_) + "] is not finite");
   }
-  const py::gil_scoped_release release;
+  const WithoutGil release;
   fleet_->Step(actions, out_);
   return static_cast<int>(std::count(out_.truncated, out_.truncated + envs_, 1));
 }
@@ -179,7 +180,7 @@ py::array_t<float> BoundEnv::Decide(const std::string& name, bool privileged) {
   const env::Controller& controller = ControllerOf(name, privileged);
   py::array_t<float> actions(Shape{envs_, agents_, action_size_});
   float* to = actions.mutable_data();
-  const py::gil_scoped_release release;
+  const WithoutGil release;
   for (const Fleet::Part& part : fleet_->parts()) {
     const env::VectorEnv& envs = *part.envs;
     std::vector<double> wanted(static_cast<std::size_t>(envs.envs() * agents_ * action_size_));

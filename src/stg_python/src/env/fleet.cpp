@@ -1,7 +1,11 @@
 #include "stg_python/env/fleet.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 
 #include "auv_common/error.hpp"
 
@@ -10,9 +14,26 @@ namespace {
 
 std::ptrdiff_t Rows(int a, int b = 1, int c = 1) { return static_cast<std::ptrdiff_t>(a) * b * c; }
 
+/// Less than an AUV of an environment takes, whatever the scenario: `medium` takes 12 KiB.
+constexpr double kLeastBytesPerAgent = 8 * 1024.0;
+
+/// Refuses what this machine cannot hold: it would be swapped or killed after minutes.
+void RequireMemory(const std::vector<Scenario>& mix, int envs) {
+  const int agents = mix.empty() ? 1 : mix.front().agents;
+  const double needed = kLeastBytesPerAgent * envs * agents;
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (needed <= there) return;
+  const auto gib = [](double bytes) { return std::to_string(std::lround(bytes / 1073741824.0)); };
+  throw UserError("num_envs: " + std::to_string(envs) + " environments of " +
+                  std::to_string(agents) + " AUVs need more than " + gib(needed) +
+                  " GiB of memory, and this machine has " + gib(there));
+}
+
 /// Threads that have something to do: environments of one block share a register.
-int Busy(int envs, int workers) {
+int Busy(const std::vector<Scenario>& mix, int envs, int workers) {
   if (envs < 1) throw UserError("num_envs must be at least 1, not " + std::to_string(envs));
+  RequireMemory(mix, envs);
   if (workers < 1) throw UserError("workers must be at least 1, not " + std::to_string(workers));
   return std::min(workers, (envs + env::kMixBlock - 1) / env::kMixBlock);
 }
@@ -20,7 +41,7 @@ int Busy(int envs, int workers) {
 }  // namespace
 
 Fleet::Fleet(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers)
-    : envs_(options.envs), pool_(Busy(options.envs, workers)) {
+    : envs_(options.envs), pool_(Busy(mix, options.envs, workers)) {
   const int blocks = (envs_ + env::kMixBlock - 1) / env::kMixBlock;
   for (int w = 0; w < pool_.workers(); ++w) {
     const int first = blocks * w / pool_.workers() * env::kMixBlock;

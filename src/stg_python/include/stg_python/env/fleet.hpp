@@ -16,7 +16,8 @@ class Fleet {
  public:
   /// @param options `envs` of them; `first_env` and `total_envs` are set here
   /// @param workers threads, the caller's included; at most one for each kMixBlock environments
-  /// are used. Throws UserError as VectorEnv does, and for fewer than one.
+  /// are used. Throws UserError as VectorEnv does, for fewer than one, and for more
+  /// environments than this machine's memory holds.
   Fleet(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers);
 
   void Reseed(std::uint64_t seed);
