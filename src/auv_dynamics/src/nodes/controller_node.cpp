@@ -21,6 +21,8 @@ ControllerNode::ControllerNode()
       id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
       body_frame_(frames::Body(id_)),
       period_(scenario_.decision_period()),
+      // An autopilot also takes a command that comes late: better that than the one before.
+      waiting_(period_, dynamics::Helm::Steers(scenario_) ? period_ - 1 : 0),
       health_("velocity controller", topics::Auv(id_).substr(1),
               [this](auto& status) { Report(status); }) {
   if (scenario_.control.interface != dynamics::ActionInterface::kVelocity3) {
@@ -70,7 +72,7 @@ void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
     if (has_nav_ && NsOf(message->header.stamp) < nav_.stamp) Forget();  // of another run
     nav_ = NavOf(*message, 0);
     has_nav_ = true;
-    TakeStray();
+    Refuse(waiting_.Advance(nav_.stamp));
     Answer();
   }
 }
@@ -84,29 +86,12 @@ void ControllerNode::OnCommand(const geometry_msgs::TwistStamped::ConstPtr& mess
     refused_commands_.Add(Refusals::kNotFinite);
     return;
   }
-  // A command answers the newest odometry, or one that is still on its way.
-  const TimeNs ahead = NsOf(message->header.stamp) - nav_.stamp;
-  // An autopilot also takes one that comes late: better that than the one before.
-  const TimeNs late = autopilot_ == nullptr ? 0 : period_ - 1;
-  if (has_nav_ && (ahead < -late || ahead > period_)) {
-    if (stray_) refused_commands_.Add(Refusals::kStale);
-    stray_ = message;
-    return;
-  }
-  command_ = message;
+  Refuse(waiting_.Add({NsOf(message->header.stamp), VectorOf(message->twist.linear)}));
   Answer();
 }
 
-/// A command far from the newest odometry is stale, unless the clock has leapt (another run) and
-/// it was faster than the odometry that it answers.
-void ControllerNode::TakeStray() {
-  if (!stray_) return;
-  if (NsOf(stray_->header.stamp) == nav_.stamp) {
-    command_ = stray_;
-  } else {
-    refused_commands_.Add(Refusals::kStale);
-  }
-  stray_.reset();
+void ControllerNode::Refuse(int commands) {
+  for (int k = 0; k < commands; ++k) refused_commands_.Add(Refusals::kStale);
 }
 
 void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
@@ -114,39 +99,52 @@ void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   const TimeNs stamp = NsOf(message->header.stamp);
   if (stamp == framed_) return;
   framed_ = stamp;
+  if (message->step == 0) Begin(stamp);
+  Answer();
+}
+
+/// An episode begins with the odometry of `stamp`, which may be here already or still to come:
+/// what is answered before it is of the episode before.
+void ControllerNode::Begin(TimeNs stamp) {
+  if (!has_nav_ || stamp > nav_.stamp) {
+    begins_ = stamp;
+    return;
+  }
   // While nobody was known to send frames, that odometry was answered without.
   const bool begun = began_ == stamp && answered_ - stamp < period_;
-  if (message->step == 0 && !begun) Forget();
-  Answer();
+  if (!begun) Forget();
 }
 
 /// What the autopilot has in mind, as a new episode wants it.
 void ControllerNode::Forget() {
   memory_.assign(memory_.size(), 0.0);
-  began_ = -1;
+  began_ = begins_ = -1;
 }
 
 void ControllerNode::Answer() {
-  if (!has_nav_ || !command_) return;
+  const dynamics::WaitingCommands::Command* command = waiting_.Current();
+  if (command == nullptr) return;
   if (autopilot_ == nullptr) {
-    if (NsOf(command_->header.stamp) == nav_.stamp) AnswerWithWrench();
-  } else if (Steerable()) {
-    AnswerWithActuators();
+    AnswerWithWrench(*command);
+  } else if (Steerable(*command)) {
+    AnswerWithActuators(*command);
+  } else {
+    return;
   }
+  waiting_.Take();
 }
 
-/// The newest odometry has not been answered, and the velocity to steer by is known.
-bool ControllerNode::Steerable() const {
-  const TimeNs since = nav_.stamp - NsOf(command_->header.stamp);
-  if (nav_.stamp == answered_ || since < 0 || since >= period_) return false;
+/// The newest odometry has not been answered, and it is known whether an episode begins with it.
+bool ControllerNode::Steerable(const dynamics::WaitingCommands::Command& command) const {
+  if (nav_.stamp == answered_) return false;
   // A frame says whether an episode begins; it may come later than the velocity that answers it.
-  return since > 0 || frames_.getNumPublishers() == 0 || framed_ == nav_.stamp;
+  return nav_.stamp > command.stamp || frames_.getNumPublishers() == 0 || framed_ == nav_.stamp;
 }
 
-void ControllerNode::AnswerWithActuators() {
+void ControllerNode::AnswerWithActuators(const dynamics::WaitingCommands::Command& command) {
+  if (begins_ == nav_.stamp) Forget();
   const double dt_s = scenario_.time.dt_s * scenario_.control.autopilot.period_steps;
-  autopilot_->Steer(VectorOf(command_->twist.linear), nav_, dt_s, memory_.data(),
-                    actuators_.values.data());
+  autopilot_->Steer(command.v_des_W, nav_, dt_s, memory_.data(), actuators_.values.data());
   actuators_.header.stamp = TimeOf(nav_.stamp);
   publisher_.publish(actuators_);
   answered_ = nav_.stamp;
@@ -154,16 +152,15 @@ void ControllerNode::AnswerWithActuators() {
   answers_.Add();
 }
 
-void ControllerNode::AnswerWithWrench() {
+void ControllerNode::AnswerWithWrench(const dynamics::WaitingCommands::Command& command) {
   double fraction[6];
-  dynamics::VelocityController(scenario_.control, scenario_.vehicle,
-                               VectorOf(command_->twist.linear), nav_, fraction);
+  dynamics::VelocityController(scenario_.control, scenario_.vehicle, command.v_des_W, nav_,
+                               fraction);
   const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.vehicle, fraction);
-  wrench_.header.stamp = command_->header.stamp;
+  wrench_.header.stamp = TimeOf(command.stamp);
   SetVector(wrench.force, &wrench_.wrench.force);
   SetVector(wrench.moment, &wrench_.wrench.torque);
   publisher_.publish(wrench_);
-  command_.reset();
   answers_.Add();
 }
 

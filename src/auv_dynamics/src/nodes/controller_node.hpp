@@ -12,6 +12,7 @@
 
 #include "auv_common/nodes/health.hpp"
 #include "auv_dynamics/autopilot/autopilot.hpp"
+#include "auv_dynamics/control/waiting_commands.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 
@@ -35,11 +36,12 @@ class ControllerNode {
   void OnOdometry(const nav_msgs::Odometry::ConstPtr& message);
   void OnCommand(const geometry_msgs::TwistStamped::ConstPtr& message);
   void OnFrame(const auv_msgs::SensorFrame::ConstPtr& message);
-  void TakeStray();
+  void Refuse(int commands);
   void Answer();
-  void AnswerWithWrench();
-  bool Steerable() const;
-  void AnswerWithActuators();
+  void AnswerWithWrench(const dynamics::WaitingCommands::Command& command);
+  bool Steerable(const dynamics::WaitingCommands::Command& command) const;
+  void AnswerWithActuators(const dynamics::WaitingCommands::Command& command);
+  void Begin(TimeNs stamp);
   void Forget();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -50,12 +52,12 @@ class ControllerNode {
   dynamics::NavState nav_;  ///< newest odometry, with its absolute stamp
   bool has_nav_ = false;
   ros::WallTime busy_;
-  geometry_msgs::TwistStamped::ConstPtr command_;  ///< newest command; waits for its odometry
-  geometry_msgs::TwistStamped::ConstPtr stray_;    ///< far from the odometry; refused by the next
+  dynamics::WaitingCommands waiting_;
   geometry_msgs::WrenchStamped wrench_;
   // Of vehicles that are steered by autopilots; else null.
   std::unique_ptr<const dynamics::Autopilot> autopilot_;
   std::vector<double> memory_;  ///< of the autopilot
+  TimeNs begins_ = -1;          ///< stamp of the episode's step 0, whose odometry is still to come
   TimeNs began_ = -1;           ///< stamp of the first odometry that this memory steered by
   auv_msgs::ActuatorCommand actuators_;
   TimeNs framed_ = 0;    ///< stamp of the newest sensor frame

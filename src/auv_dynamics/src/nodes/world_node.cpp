@@ -84,7 +84,7 @@ double WorldNode::Work() {
     const bool quiet =
         pacer_.lockstep() ? barrier_.Complete() : barrier_.Complete(0, scenario_.agents);
     if (quiet || OpenFor() >= kViewDelay_s) ShowStep();
-    if (!pacer_.paused()) Advance();
+    if (!pacer_.paused() || reset_) Advance();
   }
   return done_ ? kLoopDone : WaitTime();
 }
@@ -100,6 +100,10 @@ void WorldNode::Advance() {
   const double now = WallSeconds();
   for (const int party : barrier_.GiveUp(now)) WarnOfLoss(party);
   if (!barrier_.Complete()) return;
+  if (reset_) {
+    StartEpisode(episode_ + 1);
+    return;
+  }
   if (!pacer_.running()) {
     if (!ListenersReady(now)) return;
     pacer_.Begin(now);
@@ -199,6 +203,7 @@ void WorldNode::CheckState() const {
 
 void WorldNode::StartEpisode(std::uint32_t episode) {
   ShowStep();
+  reset_ = false;
   start_ = Now() + period_;
   episode_ = episode;
   step_ = 0;
@@ -292,9 +297,10 @@ bool WorldNode::OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Resp
     seed_ = request.seed;
     seed_episode_ = episode_ + 1;
   }
-  StartEpisode(episode_ + 1);
+  // The open step's answers are waited for: they would meet those of the new episode half-way.
+  reset_ = true;
   response.success = true;
-  response.episode = episode_;
+  response.episode = episode_ + 1;
   return true;
 }
 

@@ -35,6 +35,8 @@ namespace stg::nodes {
 /// Vehicles that are steered by autopilots get a command of their actuators more often: a decision
 /// is then flown in parts, before each of which all AUVs, not the channel, are waited for.
 ///
+/// A reset waits for the open step's answers too, and leaves the step unflown.
+///
 /// After the last decision of an episode the final state is published as step T and answered like
 /// any other; its wrenches are not used. The next episode starts one decision later.
 class WorldNode {
@@ -89,6 +91,7 @@ class WorldNode {
   TimeNs start_;         ///< clock time of the present episode's step 0
   StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
   bool finishing_ = false, done_ = false, summary_lost_ = false;
+  bool reset_ = false;       ///< the next episode begins when the open step is answered
   bool summarised_ = false;  ///< the episode that has ended
   std::uint64_t missed_steps_ = 0;
   Throttle losses_;    ///< of warnings about those who are given up
