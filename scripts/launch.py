@@ -35,6 +35,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "src" / "auv_c
 from stg_common.program import NOBODY_READS, Unread  # noqa: E402  (found by the line above)
 
 REFUSED, LOST_OUTPUT = 2, 4
+ON_LOOPBACK = "libauv_common_nodes.so"  # lets XML-RPC of roscpp listen where ROS_IP says
 MONITOR_ENDS_S = 30  # a node has 15 s after SIGINT and 2 s after SIGTERM
 # Each AUV includes the launch file of the next one.
 sys.setrecursionlimit(100 * run_arguments.MOST_AGENTS)
@@ -75,6 +76,8 @@ class Watch(roslaunch.pmon.ProcessListener):
         run_checks.check_bags_are_there(config.nodes)
         if run_checks.master_is_online(config.master.uri):
             run_checks.check_names_are_free(config.master.uri, self.names)
+        for node in config.nodes_core:  # rosout, to which launch files have nothing to say
+            node.env_args.append(("LD_PRELOAD", ON_LOOPBACK))
         self.required |= {name for name, node in nodes.items() if node.required}
         self.recorders = {name for name, node in nodes.items() if run_checks.bag_of(node)}
         self.outputs = run_checks.Outputs(config.nodes, parameters)

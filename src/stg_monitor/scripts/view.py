@@ -32,6 +32,7 @@ from scenario_reading import sections_of  # noqa: E402  (found by the line above
 from stg_common.program import run_program  # noqa: E402  (found by scenario_reading)
 from stg_common.yaml_files import parse_yaml, read_yaml  # noqa: E402
 
+ON_LOOPBACK = "libauv_common_nodes.so"  # lets rviz's XML-RPC listen where ROS_IP says
 WAIT_S = 15.0  # of wall time for a scenario to appear
 HALF_EXTENT_M, RADIUS_M = 1.0, 0.011  # of the scenario that the views are written for
 BANDS_AWAY = 26.0  # factor of the close-up's camera for each metre of the tracking band
@@ -101,7 +102,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         view = pathlib.Path(folder) / f"{arguments.view}.rviz"
         view.write_text(yaml.safe_dump(config))
-        viewer = subprocess.Popen(["rviz", "-d", str(view), *names])
+        viewer = subprocess.Popen(["rviz", "-d", str(view), *names],
+                                  env=dict(os.environ, LD_PRELOAD=ON_LOOPBACK))
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: viewer.terminate())
         return viewer.wait()

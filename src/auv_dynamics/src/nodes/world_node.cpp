@@ -70,9 +70,10 @@ WorldNode::WorldNode()
 void WorldNode::Spin() {
   PollLoop([this] { return Work(); }, RealtimePriorityParameter());
   if (summary_lost_) throw LostOutput("world: the last episode's summary did not come");
-  if (!done_ && episodes_ > 0 && !StoppedBySignal()) {
-    throw LostOutput("world: another node ended this one after " + std::to_string(episode_) +
-                     " of " + std::to_string(episodes_) + " episodes");
+  if (!done_ && !StoppedBySignal()) {
+    const std::string asked = episodes_ > 0 ? " of " + std::to_string(episodes_) : "";
+    throw LostOutput("world: another node or program ended this one after " +
+                     std::to_string(episode_) + asked + " episodes");
   }
 }
 
