@@ -16,6 +16,10 @@ const char* KindName(PacketKind kind) {
       return "ping";
     case PacketKind::kReply:
       return "reply";
+    case PacketKind::kAck:
+      return "ack";
+    case PacketKind::kControl:
+      return "control";
   }
   return "?";
 }
@@ -30,6 +34,7 @@ PacketLog::PacketLog(std::ostream* out, int nodes, std::vector<std::string> name
 }
 
 void PacketLog::OnDiscarded(const PacketInfo& packet, DropReason reason, TimeNs /*t*/) {
+  if (packet.destination == kToNobody) return;
   if (packet.destination != kToAll) {
     Row(packet, nullptr, packet.destination, reason);
     return;

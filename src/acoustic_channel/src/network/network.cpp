@@ -61,6 +61,7 @@ void Network::Impl::Reset(std::uint64_t seed, std::uint32_t episode) {
     n.active.clear();
     n.delivered.clear();
     std::swap(fresh.profile, n.profile);
+    std::swap(fresh.waveforms, n.waveforms);
     std::swap(fresh.queue, n.queue);
     std::swap(fresh.active, n.active);
     std::swap(fresh.delivered, n.delivered);
@@ -143,12 +144,14 @@ void Network::Impl::SetPresent(int node, TimeNs t, bool present) {
   if (n.request != kNone) Discard(n.request, DropReason::kLeft, t);
   n.request = kNone;
   if (n.ping.open) EndPing(node, t, false);
+  const int locked = n.locked;
   Unlock(&n, t);
   for (const int arrival : n.active) {
     Arrival& a = arrivals_[arrival];
     a.candidate = false;
     if (a.open) Drop(&a, DropReason::kLeft, 0.0, 0.0, 0.0);
   }
+  if (locked != kNone) BreakLock(arrivals_[locked], DropReason::kLeft, t);
 }
 
 double Network::Impl::EnergyJ(const Node& n, TimeNs t) const {
@@ -190,7 +193,10 @@ void Network::Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<doubl
 
 void Network::Offer(const Transmission& packet) {
   if (packet.stamp < impl_->now_) throw std::invalid_argument("Network::Offer: in the past");
-  const int made = impl_->MakePacket(packet, PacketKind::kData);
+  if (packet.kind == PacketKind::kPing || packet.kind == PacketKind::kReply) {
+    throw std::invalid_argument("Network::Offer: pings are asked for by Ping");
+  }
+  const int made = impl_->MakePacket(packet, packet.kind);
   if (packet.stamp == impl_->now_) {
     impl_->Queue(made, packet.stamp);
   } else {
@@ -222,6 +228,15 @@ void Network::Ping(int source, int destination, TimeNs t, TimeNs timeout, std::u
 }
 
 void Network::Advance(TimeNs t) { impl_->Advance(t); }
+TimeNs Network::next() const {
+  return impl_->events_.empty() ? kNever : std::max(impl_->events_.first(), impl_->now_);
+}
+bool Network::Cancel(int source, std::uint32_t tag) {
+  return impl_->Cancel(source, tag, std::max<TimeNs>(impl_->now_, 0));
+}
+void Network::SetWaveforms(int node, std::vector<std::string> waveforms) {
+  impl_->At(node).waveforms = std::move(waveforms);
+}
 
 void Network::Take(int receiver, TimeNs until, std::vector<Reception>* out) {
   auto& delivered = impl_->At(receiver).delivered;

@@ -26,6 +26,8 @@ class Network::Impl {
     double bits = 0.0;                ///< on the air
     std::uint32_t ping = 0;           ///< of the source of the request, by number
     TimeNs deadline = 0;              ///< of a request
+    double level_db = 0.0;            ///< added to the source level
+    TimeNs airtime = 0;
   };
 
   /// A packet at one receiver, from its first to its last sound.
@@ -57,6 +59,7 @@ class Network::Impl {
 
   struct Node {
     ModemProfile profile;
+    std::vector<std::string> waveforms;  ///< decoded besides the profile's
     NodeMotion motion;
     TimeNs moved = 0;  ///< time of motion
     bool present = true;
@@ -108,6 +111,7 @@ class Network::Impl {
   int MakePacket(const Transmission& offer, PacketKind kind);
   void ReleasePacket(int packet);
   void Queue(int packet, TimeNs t);
+  bool Cancel(int node, std::uint32_t tag, TimeNs t);
   void Discard(int packet, DropReason reason, TimeNs t);
   void Attempt(int node, TimeNs t);
   void TrySend(int node, TimeNs t);
@@ -134,15 +138,17 @@ class Network::Impl {
   void LockOrDrop(int node, int arrival, TimeNs t);
   void Finish(int arrival, TimeNs t);
   void Deliver(const Packet& packet, const Arrival& arrival, double loss, double sinr_db);
-  const ModemProfile& SenderOf(const Arrival& a) const {
-    return At(packets_[a.packet].info.source).profile;
-  }
+  const ModemProfile& SenderOf(const Arrival& a) const { return *packets_[a.packet].info.mode; }
+  bool Understands(const Node& n, const ModemProfile& sender) const;
   bool IsFor(const Packet& p, int receiver) const {
     return p.info.destination == kToAll || p.info.destination == receiver;
   }
   /// Closes an arrival; tells of it where it was for this node.
   void Drop(Arrival* a, DropReason reason, double noise_db, double sinr_db, double loss);
   void Tell(const Packet& packet, const PacketFate& fate);
+  /// A locked arrival is let go of.
+  void BreakLock(const Arrival& a, DropReason reason, TimeNs t);
+  void EndLock(const Arrival& a, const PacketFate& fate, bool read, TimeNs t);
   PacketFate FateOf(const Arrival& a) const;
 
   int count_;

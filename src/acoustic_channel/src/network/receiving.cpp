@@ -19,7 +19,7 @@ void Network::Impl::Begin(int arrival, TimeNs t) {
     if (a.open) Drop(&a, DropReason::kLeft, 0.0, 0.0, 0.0);
   } else if (n.sending != kNone) {
     if (a.open) Drop(&a, DropReason::kHalfDuplex, 0.0, 0.0, 0.0);
-  } else if (sender.waveform != n.profile.waveform) {
+  } else if (!Understands(n, sender)) {
     if (a.open) Drop(&a, DropReason::kNotAcquired, 0.0, 0.0, 0.0);
   } else if (n.locked != kNone) {
     const double disturbance = n.noise + Interference(n, arrival);
@@ -28,6 +28,11 @@ void Network::Impl::Begin(int arrival, TimeNs t) {
     a.candidate = true;
     events_.Push(t, EventKind::kAcquire, p.info.source, a.receiver, arrival);
   }
+}
+
+bool Network::Impl::Understands(const Node& n, const ModemProfile& sender) const {
+  return sender.waveform == n.profile.waveform ||
+         std::find(n.waveforms.begin(), n.waveforms.end(), sender.waveform) != n.waveforms.end();
 }
 
 void Network::Impl::Acquire(int node, TimeNs t) {
@@ -90,6 +95,7 @@ void Network::Impl::LockOrDrop(int node, int arrival, TimeNs t) {
     n.locked = arrival;
     n.lock_begin = a.piece_begin = t;
     SenseNoise(node, t);  // again, so that its changes are watched
+    if (observer_ != nullptr) observer_->OnAcquired(packets_[a.packet].info, node, a.begin);
     return;
   }
   if (!a.open) return;
@@ -139,7 +145,7 @@ void Network::Impl::End(int arrival, TimeNs t) {
   n.active.erase(std::find(n.active.begin(), n.active.end(), arrival));
   if (n.locked == arrival) {
     Unlock(&n, t);
-    if (a.open) Finish(arrival, t);
+    Finish(arrival, t);
   }
   const int packet = a.packet;
   arrivals_.Remove(arrival);
@@ -148,6 +154,7 @@ void Network::Impl::End(int arrival, TimeNs t) {
 
 void Network::Impl::Finish(int arrival, TimeNs t) {
   const Arrival a = arrivals_[arrival];
+  if (!a.open && observer_ == nullptr) return;
   const Packet& p = packets_[a.packet];
   const ModemProfile& profile = SenderOf(a);
   Random random(seed_, Stream::kReception, episode_, p.draw_sequence,
@@ -157,15 +164,20 @@ void Network::Impl::Finish(int arrival, TimeNs t) {
   const double noise_db = Db(a.noise);
   const double sinr_db = Db(a.power / (a.noise + a.interference));
   if (luck < 1.0 - loss) {
-    if (p.info.kind == PacketKind::kPing) {
+    if (!a.open) {
+      // Only overheard.
+    } else if (p.info.kind == PacketKind::kPing) {
       Tell(p, FateOf(a));
       Answer(a, t);
     } else if (p.info.kind == PacketKind::kReply) {
       Tell(p, FateOf(a));
       TakeReply(a, t);
-    } else {
+    } else if (p.info.kind == PacketKind::kData) {
       Deliver(p, a, loss, sinr_db);
+    } else {
+      Tell(p, FateOf(a));
     }
+    EndLock(a, FateOf(a), true, t);
     return;
   }
   // With the same luck, what would have saved it?
@@ -179,7 +191,26 @@ void Network::Impl::Finish(int arrival, TimeNs t) {
                             : survives(a.hearing.steady_level_db - quiet_db) ? DropReason::kFading
                             : survives(a.hearing.clear_level_db - quiet_db)  ? DropReason::kShadow
                                                                              : DropReason::kLoss;
-  Drop(&arrivals_[arrival], reason, noise_db, sinr_db, loss);
+  if (a.open) Drop(&arrivals_[arrival], reason, noise_db, sinr_db, loss);
+  PacketFate fate = FateOf(a);
+  fate.reason = reason;
+  EndLock(a, fate, false, t);
+}
+
+void Network::Impl::EndLock(const Arrival& a, const PacketFate& fate, bool read, TimeNs t) {
+  if (observer_ == nullptr) return;
+  const Packet& p = packets_[a.packet];
+  HeardEnd end;
+  end.fate = fate;
+  end.closing_mps = a.closing_mps;
+  if (read) end.payload = payloads_.at(p.payload);
+  observer_->OnReceptionEnd(p.info, end, t);
+}
+
+void Network::Impl::BreakLock(const Arrival& a, DropReason reason, TimeNs t) {
+  PacketFate fate = FateOf(a);
+  fate.reason = reason;
+  EndLock(a, fate, false, t);
 }
 
 PacketFate Network::Impl::FateOf(const Arrival& a) const {
@@ -241,6 +272,7 @@ void Network::Impl::Deliver(const Packet& p, const Arrival& a, double loss, doub
   r.link_quality = (1.0 - loss) * std::exp(-age_s / config_.freshness_s);
   r.doppler_mps = a.closing_mps;
   r.tag = p.info.tag;
+  r.header = p.info.header;
   const PacketFate fate = FateOf(a);
   r.received_level_db = fate.received_level_db;
   r.noise_level_db = fate.noise_level_db;

@@ -34,8 +34,13 @@ int Network::Impl::MakePacket(const Transmission& offer, PacketKind kind) {
   p.payload = payloads_.Store(offer.payload);
   payloads_.Hold(p.payload);
   p.holders = 1;
-  const ModemProfile& profile = At(offer.source).profile;
-  p.bits = 8.0 * static_cast<double>(profile.frames(p.info.bytes) * profile.frame_bytes);
+  const ModemProfile& profile = offer.mode != nullptr ? *offer.mode : At(offer.source).profile;
+  const std::size_t air_bytes = offer.air_bytes > 0 ? offer.air_bytes : p.info.bytes;
+  p.info.mode = &profile;
+  p.info.header = offer.header;
+  p.airtime = profile.airtime(air_bytes);
+  p.level_db = offer.level_db;
+  p.bits = 8.0 * static_cast<double>(profile.frames(air_bytes) * profile.frame_bytes);
   return packets_.Add(p);
 }
 
@@ -77,9 +82,20 @@ void Network::Impl::Queue(int packet, TimeNs t) {
   Attempt(node, t);
 }
 
+bool Network::Impl::Cancel(int node, std::uint32_t tag, TimeNs t) {
+  std::vector<int>& queue = At(node).queue;
+  const auto found = std::find_if(queue.begin(), queue.end(),
+                                  [&](int packet) { return packets_[packet].info.tag == tag; });
+  if (found == queue.end()) return false;
+  const int packet = *found;
+  queue.erase(found);
+  Discard(packet, DropReason::kQueue, t);
+  return true;
+}
+
 void Network::Impl::Discard(int packet, DropReason reason, TimeNs t) {
   const PacketInfo& info = packets_[packet].info;
-  if (info.kind == PacketKind::kData) {
+  if (info.kind == PacketKind::kData && info.destination != kToNobody) {
     const bool all = info.destination == kToAll;
     for (int j = all ? 0 : info.destination; j < (all ? count_ : info.destination + 1); ++j) {
       if (j != info.source) table_.Drop(info.source, j, reason);
@@ -132,12 +148,13 @@ void Network::Impl::Send(int node, int packet, TimeNs t) {
   p.info.sequence = data ? n.sequence++ : n.control_sequence++;
   p.draw_sequence = data ? p.info.sequence : kControl | p.info.sequence;
   p.info.transmit = t;
-  p.info.transmit_end = t + n.profile.airtime(p.info.bytes);
+  p.info.transmit_end = t + p.airtime;
   if (p.info.kind == PacketKind::kPing) n.ping.transmit = t;
   if (n.locked != kNone) {
     Arrival& lost = arrivals_[n.locked];
     Unlock(&n, t);
     if (lost.open) Drop(&lost, DropReason::kHalfDuplex, 0.0, 0.0, 0.0);
+    BreakLock(lost, DropReason::kHalfDuplex, t);
   }
   n.sending = packet;
   n.send_begin = t;
@@ -157,13 +174,14 @@ void Network::Impl::EndSend(int node, TimeNs t) {
   n.sending = kNone;
   n.sent_ns += t - n.send_begin;
   n.last_end = t;
+  if (observer_ != nullptr) observer_->OnSendEnd(packets_[packet].info);
   ReleasePacket(packet);
   Attempt(node, t);
 }
 
 void Network::Impl::Propagate(int packet, int receiver, TimeNs t, const NodeMotion& source) {
   Packet& p = packets_[packet];
-  const ModemProfile& sender = At(p.info.source).profile;
+  const ModemProfile& sender = *p.info.mode;
   Node& r = At(receiver);
   const NodeMotion target = Motion(r, t);
   Arrival a;
@@ -172,6 +190,11 @@ void Network::Impl::Propagate(int packet, int receiver, TimeNs t, const NodeMoti
   a.open = IsFor(p, receiver);
   const PacketKey key{p.info.source, receiver, p.draw_sequence, t};
   a.hearing = medium_->Hear(key, source, target, sender);
+  if (p.level_db != 0.0) {
+    a.hearing.level_db += p.level_db;
+    a.hearing.steady_level_db += p.level_db;
+    a.hearing.clear_level_db += p.level_db;
+  }
   const Vec3<double> way = target.p_W - source.p_W;
   const double distance = a.hearing.distance_m;
   a.closing_mps = distance > 0.0 ? Dot(source.v_W - target.v_W, way) / distance : 0.0;
@@ -181,7 +204,7 @@ void Network::Impl::Propagate(int packet, int receiver, TimeNs t, const NodeMoti
     if (a.open) Drop(&a, DropReason::kLeft, 0.0, 0.0, 0.0);
     return;
   }
-  const bool understood = sender.waveform == r.profile.waveform;
+  const bool understood = Understands(r, sender);
   if (sender.ideal) {
     a.hearing.travel_time_s = 0.0;
     if (!a.open) return;

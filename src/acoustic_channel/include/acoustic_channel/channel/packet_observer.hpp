@@ -22,6 +22,8 @@ struct PacketInfo {
   std::size_t bytes = 0;
   TimeNs offered = 0, generation = 0;
   TimeNs transmit = 0, transmit_end = 0;  ///< of the sound at the sender; once it leaves
+  std::uint64_t header = 0;               ///< Transmission::header
+  const ModemProfile* mode = nullptr;     ///< that it is sent in; null: no model of modems
 };
 
 /// What became of a packet at one receiver it was for.
@@ -36,6 +38,13 @@ struct PacketFate {
   double sinr_db = 0.0;            ///< mean over the packet for delivered and garbled ones; else
                                    ///< at its begin
   double loss_probability = 0.0;   ///< with which it could have been lost, once it was acquired
+};
+
+/// What a modem knows of a packet that it locked onto, whoever it was for, when it lets go of it.
+struct HeardEnd {
+  PacketFate fate;           ///< kHalfDuplex and kLeft: it let go before the last sound
+  double closing_mps = 0.0;  ///< at transmission
+  ByteView payload;          ///< of one that it could read, during the call; empty: it could not
 };
 
 /// How a ping ended.
@@ -61,6 +70,12 @@ class PacketObserver {
   virtual void OnDiscarded(const PacketInfo&, DropReason, TimeNs /*t*/) {}
   /// Begins to leave.
   virtual void OnSent(const PacketInfo&) {}
+  /// Its last sound has left.
+  virtual void OnSendEnd(const PacketInfo&) {}
+  /// The receiver locks onto the packet, whoever it is for; `begin` is the time of its first sound.
+  virtual void OnAcquired(const PacketInfo&, int /*receiver*/, TimeNs /*begin*/) {}
+  /// And lets go of it at t. Of every packet that was acquired, after its OnFate if there is one.
+  virtual void OnReceptionEnd(const PacketInfo&, const HeardEnd&, TimeNs /*t*/) {}
   /// Once for each node that it was for. A delivered one is told when it is complete.
   virtual void OnFate(const PacketInfo&, const PacketFate&) {}
   virtual void OnPing(const PingResult&) {}

@@ -19,14 +19,24 @@ ByteView ViewOf(const Bytes& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-inline constexpr int kToAll = -1;  ///< destination of a packet for everybody who hears it
+inline constexpr int kToAll = -1;     ///< destination of a packet for everybody who hears it
+inline constexpr int kToNobody = -2;  ///< of one for a modem that is not in this water
 
 /// Longest payload of a modem without a profile of its own [bytes]: the largest frame set of the
 /// modems in use today (eight frames of 256 bytes).
 inline constexpr std::size_t kLargestFrame = 2048;
 
-/// What a packet is to the modems. Pings and replies are their own business; nobody else sees them.
-enum class PacketKind : std::uint8_t { kData, kPing, kReply };
+struct ModemProfile;
+
+/// What a packet is to the modems. All but data is their own business: no vehicle is given it, and
+/// links do not count it.
+enum class PacketKind : std::uint8_t {
+  kData,
+  kPing,     ///< of Network::Ping, which answers with kReply
+  kReply,    ///< to it
+  kAck,      ///< an acknowledgement that a modem sends by itself
+  kControl,  ///< what else a modem's protocol sends: a start of a cycle, a ping of its own
+};
 
 /// A packet offered to the sender's modem.
 struct Transmission {
@@ -36,6 +46,13 @@ struct Transmission {
   TimeNs generation = 0;     ///< time at which the payload was true, not after `stamp`
   std::uint32_t tag = 0;     ///< the caller's own, not read; comes back in receptions and reports
   ByteView payload;          ///< not empty; the modem copies it
+
+  // Of modems with a protocol of their own; read by Network alone.
+  PacketKind kind = PacketKind::kData;  ///< kData, kAck or kControl
+  const ModemProfile* mode = nullptr;   ///< that it is sent in; null: the node's. Outlives the run
+  std::size_t air_bytes = 0;            ///< bytes whose airtime it takes; 0: those of the payload
+  double level_db = 0.0;                ///< added to the source level of the mode
+  std::uint64_t header = 0;             ///< rides along; no part of the air, not read
 };
 
 /// A packet as one receiver's modem gives it. Every number is finite.
@@ -56,6 +73,7 @@ struct Reception {
   double sinr_db = 0.0;         ///< signal to interference and noise
   double doppler_mps = 0.0;     ///< closing speed at transmission, positive closing
   std::uint32_t tag = 0;        ///< Transmission::tag; not on the air
+  std::uint64_t header = 0;     ///< Transmission::header
   ByteView payload;             ///< valid until the channel's next Step or Reset
 };
 

@@ -45,6 +45,10 @@ class EventQueue {
   }
   bool Has(TimeNs until) const { return !heap_.empty() && heap_.front().t <= until; }
 
+  /// Of the earliest event; there must be one.
+  TimeNs first() const { return heap_.front().t; }
+  bool empty() const { return heap_.empty(); }
+
   /// @param source, receiver nodes, 0 where there is none
   void Push(TimeNs t, EventKind kind, int source, int receiver, int index) {
     const auto order = static_cast<std::uint64_t>(kind) << 56 |

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "acoustic_channel/channel/packet_observer.hpp"
@@ -54,6 +55,11 @@ class Network {
   void Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<double>& v_W);
   /// As Channel::CheckOrThrow wants it; at its stamp.
   void Offer(const Transmission& packet);
+  /// Takes a packet back that still waits in the modem of `source`: it is discarded (kQueue) now.
+  /// False: there is none with this tag.
+  bool Cancel(int source, std::uint32_t tag);
+  /// Waveforms that a node's front end decodes besides that of its profile, in its band.
+  void SetWaveforms(int node, std::vector<std::string> waveforms);
   /// An absent node neither sends nor hears; what waits in its modem and what it was receiving is
   /// lost. Sound that is in the water goes on.
   void SetPresent(int node, TimeNs t, bool present);
@@ -61,6 +67,8 @@ class Network {
   /// One at a time of a source: another one before the answer or the end of `timeout` replaces it.
   void Ping(int source, int destination, TimeNs t, TimeNs timeout, std::uint32_t tag);
 
+  /// When something will happen next; kNever: nothing is under way.
+  TimeNs next() const;
   /// Lets everything up to and including t happen.
   void Advance(TimeNs t);
 
