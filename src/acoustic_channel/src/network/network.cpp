@@ -272,6 +272,10 @@ Hearing Network::Expect(int source, int destination, TimeNs t) const {
   return impl_->medium_->Expect(Motion(source, t), Motion(destination, t), profile(source));
 }
 
+double Network::SoundSpeed(int node) const {
+  return impl_->medium_->SoundSpeed(Motion(node, std::max<TimeNs>(now(), 0)).p_W);
+}
+
 double Network::ExpectedLoss(int source, int destination, TimeNs t) const {
   const ModemProfile& p = profile(destination);
   if (profile(source).waveform != p.waveform) return 1.0;

@@ -88,6 +88,8 @@ class Network {
   double ClockS(int node, TimeNs t) const;
   /// What to expect of a link now.
   Hearing Expect(int source, int destination, TimeNs t) const;
+  /// At a node now [m/s].
+  double SoundSpeed(int node) const;
   /// Probability that a packet of the longest payload is lost to noise alone, without any draw.
   double ExpectedLoss(int source, int destination, TimeNs t) const;
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+/// What an S2C modem tells another one beside the payload. It rides in Transmission::header.
+namespace stg::acoustics::s2c {
+
+enum class MessageType : std::uint8_t {
+  kPlain,  ///< of a vehicle without such a modem: an instant message without acknowledgement
+  kIm,     ///< instant message
+  kIms,    ///< synchronous instant message
+  kAck,    ///< acknowledgement; its payload is a piggyback message, or one byte of nothing
+};
+
+enum class Flag : std::uint8_t { kNoack, kAck, kForce };
+
+struct Header {
+  MessageType type = MessageType::kPlain;
+  Flag flag = Flag::kNoack;
+  int source = 0, destination = 0;  ///< addresses
+  int pid = 0;                      ///< protocol id
+  bool piggyback = false;           ///< of kAck
+};
+
+inline std::uint64_t Pack(const Header& h) {
+  return static_cast<std::uint64_t>(h.type) | static_cast<std::uint64_t>(h.flag) << 4 |
+         static_cast<std::uint64_t>(h.piggyback ? 1 : 0) << 7 |
+         static_cast<std::uint64_t>(h.source & 0xff) << 8 |
+         static_cast<std::uint64_t>(h.destination & 0xff) << 16 |
+         static_cast<std::uint64_t>(h.pid & 0xff) << 24;
+}
+
+inline Header Unpack(std::uint64_t bits) {
+  Header h;
+  h.type = static_cast<MessageType>(bits & 0xf);
+  h.flag = static_cast<Flag>(bits >> 4 & 0x7);
+  h.piggyback = (bits >> 7 & 1) != 0;
+  h.source = static_cast<int>(bits >> 8 & 0xff);
+  h.destination = static_cast<int>(bits >> 16 & 0xff);
+  h.pid = static_cast<int>(bits >> 24 & 0xff);
+  return h;
+}
+
+}  // namespace stg::acoustics::s2c

@@ -1,0 +1,174 @@
+#include "acoustic_channel/s2c/s2c_modem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acoustic_channel/access/medium_access.hpp"
+
+/// Lines in, lines out, and time.
+namespace stg::acoustics::s2c {
+namespace {
+
+constexpr TimeNs kGuard = 1'000'000'000;     ///< silence around a lonely "+++"
+constexpr TimeNs kPatience = 5'000'000'000;  ///< with a message that does not go on
+constexpr TimeNs kAckPatience = 1'000'000'000;
+
+/// What an answer calls a command; nothing in it could be taken for another field.
+std::string NameOf(const std::string& text) {
+  constexpr std::size_t kLongest = 16;
+  std::size_t end = 0;
+  const auto allowed = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string("?!@&*").find(c) != std::string::npos;
+  };
+  while (end < text.size() && end < kLongest && allowed(text[end])) ++end;
+  return text.substr(0, end);
+}
+
+}  // namespace
+
+S2cModem::S2cModem(const ModemOptions& options, ModemSurroundings* world)
+    : options_(options), world_(world) {
+  settings_.Set("AL", std::to_string(options.address));
+  settings_.Store();
+}
+
+void S2cModem::Start(TimeNs t) {
+  power_on_ = t;
+  settings_.Restore();
+  world_->SetAddress(settings_.at("AL"));
+  SetMode(options_.net ? Reader::Mode::kPlain : Reader::Mode::kData);
+  reader_.Reset();
+  state_ = State::kListen;
+  DropMessages(false);
+  acks_.clear();
+  delivery_ = "EMPTY";
+  measured_ = {};
+}
+
+void S2cModem::Reboot(TimeNs t) {
+  Start(t);
+  world_->HangUp();
+}
+
+void S2cModem::Connect(TimeNs t) {
+  connected_ = true;
+  silence_ = t;
+  reader_.Reset();
+  SetMode(options_.net ? Reader::Mode::kPlain : Reader::Mode::kData);
+}
+
+void S2cModem::Disconnect(TimeNs /*t*/) {
+  connected_ = awaits_silence_ = false;
+  reader_.Reset();
+}
+
+void S2cModem::SetMode(Reader::Mode mode) { reader_.SetMode(mode); }
+
+void S2cModem::Read(TimeNs t, ByteView bytes) {
+  if (bytes.size == 0) return;
+  silence_ = t;
+  reader_.Feed(bytes);
+  Work(t);
+}
+
+void S2cModem::Work(TimeNs t) {
+  while (const std::optional<Item> item = reader_.Next()) Obey(*item, t);
+  awaits_silence_ = reader_.awaits_silence() || reader_.inside_message();
+}
+
+void S2cModem::Obey(const Item& item, TimeNs t) {
+  if (item.kind == Item::Kind::kData) return;  // no acoustic connection: nobody to give it to
+  const std::string name = NameOf(item.text);
+  // The interpreter of plain lines knows no escapes.
+  if (item.kind == Item::Kind::kBroken ||
+      (item.escaped && reader_.mode() == Reader::Mode::kPlain)) {
+    Answer(name, "ERROR WRONG FORMAT");
+  } else if (item.kind == Item::Kind::kTooLong) {
+    Answer(name, "ERROR OUT OF RANGE");
+  } else if (item.kind == Item::Kind::kMessage) {
+    Send(item, t);
+  } else {
+    Command(item.text, t);
+  }
+}
+
+void S2cModem::Answer(const std::string& name, const std::string& text) {
+  if (reader_.mode() == Reader::Mode::kPlain) {
+    world_->Write(text + "\r\n");
+  } else {
+    world_->Write("+++AT" + name + ":" + std::to_string(text.size()) + ":" + text + "\r\n");
+  }
+}
+
+void S2cModem::AnswerLines(const std::string& name, const std::string& lines) {
+  Answer(name, lines);  // their own last end of line makes the empty line
+}
+
+void S2cModem::Notify(const std::string& text) {
+  if (connected_) Answer("", text);
+}
+
+std::uint32_t S2cModem::ClockUs(TimeNs t) const {
+  const double s = world_->ClockS(t) - world_->ClockS(power_on_);
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llround(s * 1e6)));
+}
+
+TimeNs S2cModem::TimeOfClock(std::uint32_t clock_us, TimeNs t) const {
+  const auto wait_us = static_cast<std::int32_t>(clock_us - ClockUs(t));
+  const double target_s = world_->ClockS(t) + 1e-6 * wait_us;
+  TimeNs guess = t + static_cast<TimeNs>(wait_us) * 1000;
+  for (int k = 0; k < 2; ++k) guess += std::llround((target_s - world_->ClockS(guess)) * 1e9);
+  return guess;
+}
+
+TimeNs S2cModem::next() const {
+  TimeNs first = kNever;
+  if (awaits_silence_) first = silence_ + (reader_.inside_message() ? kPatience : kGuard);
+  if (!acks_.empty()) {
+    const Ack& ack = acks_.front();
+    const bool free = ack.tag == 0 && !sending_;
+    first = std::min(first, free ? ack.due : ack.due + kAckPatience);
+  }
+  if (message_) {
+    if (message_->step == Message::Step::kAwaitingAck) first = std::min(first, message_->deadline);
+    if (message_->step == Message::Step::kWaiting && message_->timed) {
+      first = std::min(first, message_->start);
+    }
+  }
+  return first;
+}
+
+void S2cModem::Tick(TimeNs t) {
+  if (awaits_silence_ && t >= silence_ + kGuard && !reader_.inside_message()) {
+    if (reader_.OnSilence()) {
+      SetMode(Reader::Mode::kPlain);
+      Answer("", "OK");
+    }
+    awaits_silence_ = false;
+  }
+  if (awaits_silence_ && t >= silence_ + kPatience) {
+    reader_.GiveUp();
+    awaits_silence_ = false;
+    Answer("", "ERROR WRONG FORMAT");
+  }
+  while (!acks_.empty() && t >= acks_.front().due + kAckPatience) {
+    world_->TakeBack(acks_.front().tag);
+    acks_.pop_front();
+  }
+  LaunchAck(t);
+  if (!message_) return;
+  Message& m = *message_;
+  if (m.step == Message::Step::kAwaitingAck && t >= m.deadline) {
+    if (m.retries_left == 0) {
+      ++failed_count_;
+      GiveUp("FAILED");
+    } else {
+      if (m.retries_left < 255) --m.retries_left;
+      m.step = Message::Step::kWaiting;
+    }
+  }
+  Launch(t);
+}
+
+}  // namespace stg::acoustics::s2c

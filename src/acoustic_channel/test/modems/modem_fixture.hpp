@@ -1,0 +1,114 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acoustic_channel/emulator/modem_water.hpp"
+#include "acoustic_channel/s2c/s2c_modem.hpp"
+#include "network/network_fixture.hpp"
+
+namespace stg::acoustics {
+
+/// What the hosts of some modems saw, with the times.
+struct Hosts : ModemHosts {
+  struct Said {
+    int node;
+    double t_s;
+    std::string bytes;
+  };
+  void Write(int node, const std::string& bytes) override {
+    said.push_back({node, Seconds(water->now()), bytes});
+    all[node] += bytes;
+  }
+  void HangUp(int node) override { hung_up.push_back(node); }
+  void OnSharedAddress(int node, int) override { shared.push_back(node); }
+
+  ModemWater* water = nullptr;
+  std::vector<Said> said;
+  std::map<int, std::string> all;
+  std::vector<int> hung_up, shared;
+};
+
+/// Modems in stated water: every link is 1500 m long at 1500 m/s and loses nothing, unless a test
+/// says otherwise.
+struct ModemBench {
+  explicit ModemBench(int nodes) {
+    run.agents = nodes;
+    config.model = "physical";
+    config.access = "aloha";
+    config.modem.queue = QueuePolicy::kFifo;
+    config.modem.profile = "evologics_s2c";
+    auto stated = std::make_unique<StatedMedium>(nodes);
+    medium = stated.get();
+    for (int i = 0; i < nodes; ++i) {
+      for (int j = 0; j < i; ++j) medium->SetDelay(i, j, 1.0);
+    }
+    stated_ = std::move(stated);
+  }
+  /// All nodes get an S2C modem with NET interpreters and addresses from 1.
+  ModemWater& StartS2c(s2c::ModemOptions options = NetOptions()) {
+    Make();
+    for (int i = 0; i < run.agents; ++i) {
+      options.address = i + 1;
+      water->Attach(i, options.address, [&](ModemSurroundings* world) {
+        auto modem = std::make_unique<s2c::S2cModem>(options, world);
+        modems.push_back(modem.get());
+        return modem;
+      });
+    }
+    return Begin();
+  }
+  void Make() {
+    water = std::make_unique<ModemWater>(config, run, std::move(stated_), &hosts);
+    hosts.water = water.get();
+  }
+  ModemWater& Begin() {
+    water->Observe(&log);
+    water->Reset(1, 0);
+    for (int i = 0; i < run.agents; ++i) water->Connect(i, 0);
+    return *water;
+  }
+  static s2c::ModemOptions NetOptions() {
+    s2c::ModemOptions options;
+    options.net = true;
+    return options;
+  }
+  void Say(int node, double t_s, const std::string& text) const {
+    water->Read(node, Ns(t_s), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+  /// What a host is answered at once.
+  std::string Ask(int node, double t_s, const std::string& text) {
+    water->Advance(Ns(t_s));
+    const std::size_t before = hosts.all[node].size();
+    Say(node, t_s, text);
+    return hosts.all[node].substr(before);
+  }
+  /// When a host was told this; the test fails unless it was once.
+  double When(int node, const std::string& bytes) const {
+    double t_s = -1.0;
+    int times = 0;
+    for (const Hosts::Said& s : hosts.said) {
+      if (s.node != node || s.bytes != bytes) continue;
+      t_s = s.t_s;
+      ++times;
+    }
+    EXPECT_EQ(times, 1) << bytes;
+    return t_s;
+  }
+
+  RunConfig run;
+  ChannelConfig config;
+  StatedMedium* medium;
+  Hosts hosts;
+  std::unique_ptr<ModemWater> water;
+  std::vector<s2c::S2cModem*> modems;
+  Log log;
+
+ private:
+  std::unique_ptr<Medium> stated_;
+};
+
+}  // namespace stg::acoustics
