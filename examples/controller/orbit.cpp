@@ -26,7 +26,7 @@ struct Orbit {
     const Vec3<T> around{ahead.y, -ahead.x, T(0.0)};  // level, anticlockwise
     const Vec3<T> v_des_W =
         k.v_WT + around * T(speed_mps) + ahead * ((k.distance - T(radius_m)) * T(gain_per_s));
-    const auto& limit = in.scenario.vehicle.max_velocity_mps;
+    const auto& limit = in.model.vehicle.max_velocity_mps;
     const T velocity[3] = {Clip(v_des_W.x * T(1.0 / limit[0]), T(-1.0), T(1.0)),
                            Clip(v_des_W.y * T(1.0 / limit[1]), T(-1.0), T(1.0)),
                            Clip(v_des_W.z * T(1.0 / limit[2]), T(-1.0), T(1.0))};
@@ -47,10 +47,10 @@ std::unique_ptr<Controller> MakeOrbit(ControllerConstants& constants) {
 int main() {
   Controllers().Add("orbit", MakeOrbit);
 
-  AgentConfig config;
-  config.agents = 1;
+  AgentModel config;
+  config.run.agents = 1;
   config.control.smoothing = config.control.max_delta = 0.0;  // moves as it is told
-  config.time.decision_steps = 1;
+  config.run.time.decision_steps = 1;
   Agent agent(config, 0);
   const Vec3<double> p_WT{0.1, 0.0, 0.0};
   dynamics::Cue cue;
@@ -61,7 +61,7 @@ int main() {
   dynamics::NavState nav;
   nav.p_WB = {-0.1, -0.1, 0.0};
   std::vector<float> observation(static_cast<std::size_t>(config.observation_size()));
-  const double dt = config.decision_dt_s();
+  const double dt = config.run.decision_dt_s();
   double turned = 0.0;  // in the last 10 s [rad]
   for (int k = 0; k < static_cast<int>(60.0 / dt); ++k) {
     agent.Detect({nav.stamp, 0, p_WT, 0.0});
@@ -71,7 +71,7 @@ int main() {
     nav.v_WB_B = agent.Act(action).cmd_vel_W;  // level and unturned: body axes are world axes
     const Vec3<double> before = nav.p_WB - p_WT;
     nav.p_WB += nav.v_WB_B * dt;
-    nav.stamp += config.decision_period();
+    nav.stamp += config.run.decision_period();
     const Vec3<double> after = nav.p_WB - p_WT;
     const Vec3<double> moment = Cross(before, after);
     if (k >= static_cast<int>(50.0 / dt)) turned += std::atan2(moment.z, Dot(before, after));

@@ -54,15 +54,15 @@ int main() {
   MediumAccesses().Add("lottery", MakeLottery);
 
   NetworkConfig network;
-  network.agents = 2;
+  network.run.agents = 2;
   network.channel.model = "range";
   network.channel.access = "lottery";
   network.channel.transmit_period_s = 0.5;  // every fifth decision, on average
-  const TimeNs period = network.decision_period();
+  const TimeNs period = network.run.decision_period();
   constexpr int kDecisions = 20000;
 
-  const auto channel = MakeChannel(network.channel, network);
-  Turns turns(network.channel, network);  // what a node with a modem elsewhere asks
+  const auto channel = MakeChannel(network.channel, network.run);
+  Turns turns(network.channel, network.run);  // what a node with a modem elsewhere asks
   channel->Reset(/*seed=*/1, /*episode=*/0);
   turns.Reset(1, 0);
   const std::uint8_t bytes[] = {1, 2, 3};

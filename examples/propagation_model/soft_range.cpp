@@ -41,17 +41,17 @@ class SoftRange {
 /// Share of the packets that node 1 receives of node 0 at distance d [m].
 double ShareAt(double d, const NetworkConfig& network) {
   constexpr int kPackets = 4000;
-  const auto channel = MakeChannel(network.channel, network);
+  const auto channel = MakeChannel(network.channel, network.run);
   channel->Reset(/*seed=*/1, /*episode=*/0);
   const std::uint8_t bytes[] = {1, 2, 3};
   std::vector<Reception> received;
   for (int k = 0; k < kPackets; ++k) {
-    const TimeNs t = k * network.decision_period();
+    const TimeNs t = k * network.run.decision_period();
     Transmission packet;
     packet.stamp = packet.generation = t;
     packet.payload = {bytes, sizeof(bytes)};
     channel->Step(t, static_cast<std::uint32_t>(k), {{}, {d, 0.0, 0.0}}, {{}, {}}, {packet});
-    channel->Deliver(1, t + network.decision_period(), &received);
+    channel->Deliver(1, t + network.run.decision_period(), &received);
   }
   return static_cast<double>(received.size()) / kPackets;
 }
@@ -62,10 +62,10 @@ int main() {
   PropagationModels().Add("soft_range", MakeIndependentModel<SoftRange>);
 
   NetworkConfig network;
-  network.agents = 2;
+  network.run.agents = 2;
   network.channel.model = "soft_range";
   network.channel.range_m = 100.0;
-  network.channel.transmit_period_s = network.decision_dt_s();  // a packet in every decision
+  network.channel.transmit_period_s = network.run.decision_dt_s();  // a packet in every decision
 
   // Half of the packets arrive at the range itself, and what an agent thinks of a link agrees.
   const double near = ShareAt(60.0, network), at = ShareAt(100.0, network);

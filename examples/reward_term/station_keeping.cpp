@@ -20,9 +20,9 @@ class StationKeeping : public TermOf<StationKeeping> {
   template <class T>
   T Of(const TermInput<T>& in) const {
     const auto i = static_cast<std::size_t>(in.agent);
-    const auto k = static_cast<std::size_t>(config_.target_of(in.agent));
+    const auto k = static_cast<std::size_t>(config_.world.target.of(in.agent));
     const T speed = Norm(in.swarm.vehicles[i].v_WB - in.swarm.targets[k].v_WT);
-    return -Min(speed * T(1.0 / config_.vehicle.max_velocity_mps[0]), T(1.0));
+    return -Min(speed * T(1.0 / config_.world.vehicle.max_velocity_mps[0]), T(1.0));
   }
 
  private:
@@ -36,13 +36,13 @@ std::unique_ptr<const RewardTerm> MakeStationKeeping(const JudgeConfig& config) 
 /// What one AUV earns that stands beside a target of this speed, as a share of the largest.
 double Earned(double share, double weight) {
   JudgeConfig config;
-  config.agents = 1;
+  config.run.agents = 1;
   config.reward.terms["station_keeping"] = weight;
 
   std::vector<dynamics::VehicleState<double>> vehicles(1);
   std::vector<dynamics::TargetState<double>> targets(1);
-  targets[0].p_WT = {config.task.desired_distance_m, 0.0, 0.0};
-  targets[0].v_WT = {0.0, share * config.vehicle.max_velocity_mps[0], 0.0};
+  targets[0].p_WT = {config.agent.task.desired_distance_m, 0.0, 0.0};
+  targets[0].v_WT = {0.0, share * config.world.vehicle.max_velocity_mps[0], 0.0};
   dynamics::Separations<double> separations(1, 0.0);
   separations.Measure(vehicles);
   const Efforts<double> idle(1);

@@ -48,12 +48,12 @@ std::unique_ptr<const TargetSensor> MakeSonar(const SensingConfig& config) {
 int main() {
   TargetSensors().Add("sonar", MakeSonar);
 
-  WorldConfig config;
-  config.agents = 1;
-  config.sensing.sensor = "sonar";
-  config.sensing.range_m = 500.0;
-  config.sensing.noise_std_m = 1.0;
-  config.workspace.half_extent_m = 1000.0;
+  WorldScenario config;
+  config.run.agents = 1;
+  config.world.sensing.sensor = "sonar";
+  config.world.sensing.range_m = 500.0;
+  config.world.sensing.noise_std_m = 1.0;
+  config.world.workspace.half_extent_m = 1000.0;
   World world(config);
   world.Place(0, {{0.0, 0.0, 0.0}}, {{300.0, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
 

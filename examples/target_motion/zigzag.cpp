@@ -36,11 +36,11 @@ std::unique_ptr<TargetMotion> MakeZigzag(const MotionSetup& setup) {
 int main() {
   TargetMotions().Add("zigzag", MakeZigzag);
 
-  WorldConfig config;
-  config.agents = 1;
-  config.target.motion = "zigzag";
-  config.target.turn_rate_radps = 0.1;
-  config.target.turn_period_s = 5.0;
+  WorldScenario config;
+  config.run.agents = 1;
+  config.world.target.motion = "zigzag";
+  config.world.target.turn_rate_radps = 0.1;
+  config.world.target.turn_period_s = 5.0;
   World world(config);
   world.Place(0, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.02, 0.0, 0.0}});
 

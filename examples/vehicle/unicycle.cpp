@@ -57,10 +57,10 @@ std::unique_ptr<const Vehicle> MakeUnicycle(const VehicleConfig& config) {
 int main() {
   Vehicles().Add("unicycle", MakeUnicycle);
 
-  WorldConfig config;  // or config::Load<WorldConfig>({file}), where the file says model: unicycle
-  config.agents = 1;
-  config.vehicle.model = "unicycle";
-  config.workspace.half_extent_m = 100.0;
+  WorldScenario config;  // or config::Load<WorldScenario>({file}), with model: unicycle in it
+  config.run.agents = 1;
+  config.world.vehicle.model = "unicycle";
+  config.world.workspace.half_extent_m = 100.0;
   World world(config);
   world.Place(0, {{0.0, 0.0, -5.0}}, {{20.0, 0.0, -5.0}}, {{0.0, 0.0, 0.0}});
 

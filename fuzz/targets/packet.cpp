@@ -6,7 +6,7 @@
 /// Eight bytes of the receiver's clock, then a packet of any size. What is accepted can be sent on
 /// (the nearest code of what was decoded is the same state), unless it says that it was clipped.
 bool stg::fuzz::RunPacket(const std::string& bytes) {
-  static const agent::PacketCodec codec{agent::AgentConfig()};
+  static const agent::PacketCodec codec{agent::AgentModel()};
   Bytes in(bytes);
   const TimeNs now = in.Take<TimeNs>();
   const std::string packet = bytes.size() > sizeof now ? in.Rest() : "";

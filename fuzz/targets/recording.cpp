@@ -16,7 +16,8 @@ std::vector<float> TakeNumbers(Bytes* in) {
 
 agent::Policy MakePolicy(const Scenario& scenario) {
   agent::Policy::Parameters p;
-  const int inputs = scenario.observation_size(), outputs = scenario.action_size();
+  const int inputs = scenario.agent.observation_size(),
+            outputs = scenario.world.control.action_size();
   p.input_mean = Eigen::VectorXf::Zero(inputs);
   p.input_std = Eigen::VectorXf::Ones(inputs);
   p.layers.push_back({Eigen::MatrixXf::Zero(outputs, inputs), Eigen::VectorXf::Zero(outputs)});
@@ -40,11 +41,12 @@ bool RunRecording(const std::string& bytes) {
   bool whole = false;
   const auto judge = [&](const std::vector<learn::RecordedEpisode>& episodes) {
     for (const learn::RecordedEpisode& episode : episodes) {
-      whole = whole || episode.Complete(scenario.time.episode_steps);
+      whole = whole || episode.Complete(scenario.run.time.episode_steps);
       const learn::Finding finding = checker.Check(episode);
       Require(finding.flaw != learn::Flaw::kCount, "a flaw without a name");
-      Require(finding.flaw != learn::Flaw::kNone || episode.Complete(scenario.time.episode_steps),
-              "an episode with gaps was accepted");
+      Require(
+          finding.flaw != learn::Flaw::kNone || episode.Complete(scenario.run.time.episode_steps),
+          "an episode with gaps was accepted");
     }
   };
   while (!in.empty()) {

@@ -12,9 +12,9 @@ constexpr TimeNs kDt = 100'000'000;
 void Step(benchmark::State& bench, const char* model) {
   const int agents = static_cast<int>(bench.range(0));
   NetworkConfig s;
-  s.agents = agents;
+  s.run.agents = agents;
   s.channel.model = model;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   std::vector<Vec3<double>> p_W;
   for (int i = 0; i < agents; ++i) {
@@ -55,13 +55,13 @@ BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 void Modems(benchmark::State& bench, const char* access) {
   const int agents = static_cast<int>(bench.range(0));
   NetworkConfig s;
-  s.agents = agents;
+  s.run.agents = agents;
   s.channel.model = "physical";
   s.channel.access = access;
   s.channel.modem.packet_bytes = 32;
   s.channel.slots.length_s = 1.25;
   s.channel.contention.rest_s = agents;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   std::vector<Vec3<double>> p_W;
   for (int i = 0; i < agents; ++i) p_W.push_back({20.0 * (i % 7), 20.0 * (i / 7), -5.0 - i % 3});
@@ -99,7 +99,7 @@ BENCHMARK(CsmaStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50);
 
 void Link(benchmark::State& bench) {
   const NetworkConfig s;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   const std::vector<Vec3<double>> origin(4);
   channel->Step(0, 0, origin, origin, {});

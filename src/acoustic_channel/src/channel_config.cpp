@@ -29,13 +29,13 @@ std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunC
 }
 
 void Describe(NetworkConfig* c, config::Table* t) {
-  Describe(static_cast<RunConfig*>(c), t);
+  Describe(&c->run, t);
   Describe(&c->channel, t);
 }
 
 std::optional<config::Violation> FindConflict(const NetworkConfig& c) {
-  if (auto violation = FindConflict(static_cast<const RunConfig&>(c))) return violation;
-  return FindConflict(c.channel, c);
+  if (auto violation = FindConflict(c.run)) return violation;
+  return FindConflict(c.channel, c.run);
 }
 
 }  // namespace stg::acoustics

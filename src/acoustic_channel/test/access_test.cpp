@@ -14,7 +14,7 @@ namespace {
 
 NetworkConfig Slotted(int nodes, double transmit_period_s, int decision_steps = 1) {
   NetworkConfig s = LosslessNetwork(nodes);
-  s.time.decision_steps = decision_steps;
+  s.run.time.decision_steps = decision_steps;
   s.channel.transmit_period_s = transmit_period_s;
   return s;
 }
@@ -27,7 +27,7 @@ TEST(Periodic, GivesEveryNodeItsSlotForAnySwarmAndPeriod) {
       for (const double period : {1.0, 1.4, 1.6, 2.0, 2.4, 3.0, 4.7, 5.0, 9.6, 10.0, 37.0}) {
         const NetworkConfig s = Slotted(nodes, period * dt_s, decision_steps);
         const int slots = std::max(1, static_cast<int>(std::floor(period + 0.5)));
-        Turns turns(s.channel, s);
+        Turns turns(s.channel, s.run);
         turns.Reset(3, 1);
         for (int k = 0; k < 3 * slots; ++k) {
           const TimeNs t = k * decision_steps * kDt;
@@ -46,7 +46,7 @@ TEST(Periodic, GivesEveryNodeItsSlotForAnySwarmAndPeriod) {
 
 TEST(Periodic, RoundsHalvesUpAndNeverBelowOneDecision) {
   const auto slots_of = [](double period_s) {
-    Turns turns(Slotted(1, period_s).channel, Slotted(1, period_s));
+    Turns turns(Slotted(1, period_s).channel, Slotted(1, period_s).run);
     int k = 1;
     while (!turns.Due(0, k * kDt)) ++k;
     return k;
@@ -59,7 +59,7 @@ TEST(Periodic, RoundsHalvesUpAndNeverBelowOneDecision) {
 
 TEST(Periodic, WhoAsksLateOrOftenGetsTheSameSlots) {
   const NetworkConfig s = Slotted(6, 0.4);
-  Turns all(s.channel, s), late(s.channel, s);
+  Turns all(s.channel, s.run), late(s.channel, s.run);
   for (int k = 0; k < 40; ++k) {
     for (const int i : {5, 0, 3, 3}) {
       const bool due = all.Due(i, k * kDt);
@@ -98,7 +98,7 @@ std::vector<Reception> Heard(const NetworkConfig& s, Channel* channel, bool only
     const TimeNs t = k * kDt;
     std::vector<Transmission> offered;
     if (!only_when_due || channel->Due(0, t)) offered.push_back(Numbered(0, k, &bytes));
-    StepAtRest(channel, t, k, std::vector<Vec3<double>>(static_cast<std::size_t>(s.agents)),
+    StepAtRest(channel, t, k, std::vector<Vec3<double>>(static_cast<std::size_t>(s.run.agents)),
                offered);
     bytes.assign(1, 255);  // what waits was copied
     got.clear();
@@ -113,7 +113,7 @@ std::vector<Reception> Heard(const NetworkConfig& s, Channel* channel, bool only
 
 TEST(Outbox, ANewerPacketReplacesTheOneThatWaits) {
   const NetworkConfig s = Slotted(3, 0.5);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   std::vector<int> every, due;
   const auto offered_always = Heard(s, channel.get(), false, &every);
   // Packets 1 to 4 waited and were replaced, by the receiver's count twice (two receivers) each.
@@ -134,7 +134,7 @@ TEST(Outbox, ANewerPacketReplacesTheOneThatWaits) {
 
 TEST(Outbox, APacketWaitsForItsTurnAndKeepsItsGeneration) {
   const NetworkConfig s = Slotted(2, 0.5);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   const std::vector<Vec3<double>> p(2);
   std::vector<std::uint8_t> bytes;
@@ -159,7 +159,7 @@ TEST(Outbox, APacketWaitsForItsTurnAndKeepsItsGeneration) {
 
 TEST(Outbox, ResetForgetsWhatWaitsAndCountsFromZero) {
   const NetworkConfig s = Slotted(2, 0.5);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   const std::vector<Vec3<double>> p(2);
   channel->Reset(1, 0);
   StepAtRest(channel.get(), 0, 0, p, {From(0, 0)});
@@ -202,7 +202,7 @@ TEST(MediumAccess, OneFromOutsideIsARegisteredName) {
   EXPECT_FALSE(config::FindViolation(s));
   s.channel.transmit_period_s = 0.01;
   EXPECT_FALSE(config::FindViolation(s)) << "a key of `periodic` binds nobody else";
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   EXPECT_TRUE(channel->Due(1, kDt));
   StepAtRest(channel.get(), kDt, 1, {{}, {0.5, 0, 0}, {1.0, 0, 0}}, {From(1, kDt)});
@@ -216,7 +216,7 @@ TEST(MediumAccess, AnUnknownOneIsRefusedWithTheList) {
   NetworkConfig s;
   s.channel.access = "shouting";
   try {
-    MakeChannel(s.channel, s);
+    MakeChannel(s.channel, s.run);
     FAIL();
   } catch (const UserError& error) {
     EXPECT_EQ(std::string(error.what())

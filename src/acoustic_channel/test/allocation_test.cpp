@@ -80,9 +80,9 @@ TEST(Allocation, ChannelAllocatesNothingAfterWarmUp) {
     for (const int agents : {4, 21}) {
       for (const bool always : {false, true}) {
         NetworkConfig s;
-        s.agents = agents;
+        s.run.agents = agents;
         s.channel.model = model;
-        const auto channel = MakeChannel(s.channel, s);
+        const auto channel = MakeChannel(s.channel, s.run);
         Traffic traffic(channel.get(), always);
         traffic.Fly(0);
         traffic.Fly(1);
@@ -101,7 +101,7 @@ TEST(Allocation, PhysicalAllocatesNothingAfterWarmUp) {
   for (const char* access : {"periodic", "tdma", "aloha", "slotted_aloha", "csma"}) {
     for (const bool fifo : {false, true}) {
       NetworkConfig s;
-      s.agents = 6;
+      s.run.agents = 6;
       s.channel.model = "physical";
       s.channel.access = access;
       s.channel.modem.profile = "micromodem_psk_r5";
@@ -111,7 +111,7 @@ TEST(Allocation, PhysicalAllocatesNothingAfterWarmUp) {
       s.channel.slots.send_probability = 0.3;
       s.channel.contention.rest_s = 5.0;
       s.channel.noise.burst_every_s = 3.0;
-      const auto channel = MakeChannel(s.channel, s);
+      const auto channel = MakeChannel(s.channel, s.run);
       Traffic traffic(channel.get(), true);
       for (std::uint32_t episode = 0; episode < 16; ++episode) traffic.Fly(episode);
       const long before = g_allocations;

@@ -12,7 +12,7 @@ inline constexpr TimeNs kDt = 100'000'000;  ///< of the default clock
 /// A lossless network in which whoever offers a packet sends it at once.
 inline NetworkConfig LosslessNetwork(int nodes) {
   NetworkConfig s;
-  s.agents = nodes;
+  s.run.agents = nodes;
   s.channel.model = "extended";
   s.channel.transmit_period_s = 0.1;
   s.channel.max_range_m = 3.5;

@@ -49,17 +49,17 @@ std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std:
                          int steps, const std::vector<bool>& sends, std::uint64_t shuffle,
                          Channel* reuse = nullptr, double spread = 1.0) {
   std::unique_ptr<Channel> own;
-  if (reuse == nullptr) own = MakeChannel(scenario.channel, scenario);
+  if (reuse == nullptr) own = MakeChannel(scenario.channel, scenario.run);
   Channel& channel = reuse ? *reuse : *own;
   channel.Reset(seed, episode);
-  std::vector<Vec3<double>> p = RandomPositions(scenario.agents, 5);
+  std::vector<Vec3<double>> p = RandomPositions(scenario.run.agents, 5);
   for (auto& v : p) v = v * spread;
   std::mt19937_64 engine(shuffle);
   std::vector<Record> records;
   for (int k = 0; k < steps; ++k) {
     const TimeNs t = k * kDt;
     std::vector<Transmission> sent;
-    for (int i = 0; i < scenario.agents; ++i) {
+    for (int i = 0; i < scenario.run.agents; ++i) {
       if (sends[static_cast<std::size_t>(i)]) {
         sent.push_back(From(i, t));
       }
@@ -75,11 +75,11 @@ std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std:
 
 TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
   NetworkConfig s;
-  s.agents = 3;
+  s.run.agents = 3;
   s.channel.model = "range";
   s.channel.transmit_period_s = 0.1;
   s.channel.range_m = 0.5;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   // 0-1: 0.3 m; 0-2: exactly the range, so q = 0.
   StepAtRest(channel.get(), kDt, 1, {{0, 0, 0}, {0.3, 0, 0}, {0, 0.5, 0}}, {From(0, kDt)});
@@ -100,7 +100,7 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
 TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
   NetworkConfig s = LosslessNetwork(2);
   s.channel.sound_speed_mps = 1500.0;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   for (const double d : {0.0, 0.0015, 0.75, 1.5, 3.0, 3.5}) {
     channel->Reset(1, 0);
     StepAtRest(channel.get(), 5 * kDt, 5, {{1, 2, 3}, {1, 2, 3 + d}}, {From(1, 5 * kDt)});
@@ -116,7 +116,7 @@ TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
 TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
   NetworkConfig s = LosslessNetwork(2);
   s.channel.sound_speed_mps = 2.0;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {1, 0, 0}}, {From(0, 0)});
   StepAtRest(channel.get(), kDt, 1, {{0, 0, 0}, {3, 0, 0}}, {});
@@ -134,7 +134,7 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
   NetworkConfig s = LosslessNetwork(2);
   s.channel.loss_distance_m = 2.0;
   s.channel.sound_speed_mps = 10.0;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   std::vector<Reception> got;
   Transmission packet = From(0, 3 * kDt);
   packet.generation = 2 * kDt;
@@ -161,7 +161,7 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
 
 TEST(ExtendedChannel, NothingArrivesBeyondMaxRangeAndTheDropSaysWhy) {
   const NetworkConfig s = LosslessNetwork(3);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {3.5, 0, 0}, {0, 0, -3.5000001}}, {From(0, 0)});
   const std::vector<Reception> got = DeliverAll(channel.get(), kDt);
@@ -179,7 +179,7 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
   const NetworkConfig s = ExtendedScenario(2);
   const int n = 20000;
   for (const double d : {0.0, 0.3, 1.0, 2.0, 3.0}) {
-    const auto channel = MakeChannel(s.channel, s);
+    const auto channel = MakeChannel(s.channel, s.run);
     channel->Reset(11, 2);
     std::vector<Reception> got;
     for (int k = 0; k < n; ++k) {
@@ -254,7 +254,7 @@ TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
 TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
   NetworkConfig s = LosslessNetwork(9);
   s.channel.sound_speed_mps = 1.0;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   // Sources 1..8 around receiver 0 at four distances, two each, farthest first.
   std::vector<Vec3<double>> p(9);
@@ -279,7 +279,7 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
 TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
   NetworkConfig s = ExtendedScenario(4);
   s.channel.sound_speed_mps = 3.0;  // packets of the last steps are still under way
-  const auto used = MakeChannel(s.channel, s);
+  const auto used = MakeChannel(s.channel, s.run);
   Play(s, 9, 0, 50, std::vector<bool>(4, true), 0, used.get());
   ASSERT_GT(used->totals().delivered, 0u);
   used->Reset(9, 1);
@@ -295,7 +295,7 @@ TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
 
 TEST(ExtendedChannel, EveryPacketIsDeliveredOrDroppedWithAReason) {
   const NetworkConfig s = ExtendedScenario(6);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   Play(s, 4, 0, 300, std::vector<bool>(6, true), 0, channel.get(), 2.0);
   const ChannelTotals& t = channel->totals();
   EXPECT_EQ(t.delivered + t.dropped, 300u * 6u * 5u);
@@ -319,7 +319,7 @@ TEST(Channel, NonFinitePositionsAreRefused) {
   for (const char* model : {"range", "extended"}) {
     NetworkConfig s = ExtendedScenario(2);
     s.channel.model = model;
-    const auto channel = MakeChannel(s.channel, s);
+    const auto channel = MakeChannel(s.channel, s.run);
     channel->Reset(0, 0);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();

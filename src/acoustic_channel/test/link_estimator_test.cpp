@@ -97,8 +97,8 @@ TEST(LinkEstimator, MeansWhatTheChannelMeans) {
     NetworkConfig s = LosslessNetwork(2);
     s.channel.model = model;
     s.channel.range_m = 1.0;
-    const auto channel = MakeChannel(s.channel, s);
-    const auto links = MakeLinkEstimator(s.channel, s.agents);
+    const auto channel = MakeChannel(s.channel, s.run);
+    const auto links = MakeLinkEstimator(s.channel, s.run.agents);
     channel->Reset(1, 0);
     Transmission packet = From(0, 7 * kDt);
     packet.generation = 5 * kDt;
@@ -138,8 +138,8 @@ TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
   s.channel.model = "coin";
   s.channel.loss_distance_m = 1e6;  // in range, and of no effect
   EXPECT_FALSE(config::FindViolation(s));
-  EXPECT_EQ(MakeLinkEstimator(s.channel, s.agents)->Quality(3.0, 0.0), 0.25);
-  const auto channel = MakeChannel(s.channel, s);
+  EXPECT_EQ(MakeLinkEstimator(s.channel, s.run.agents)->Quality(3.0, 0.0), 0.25);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   const std::vector<Vec3<double>> p = {{}, {1e4, 0, 0}};
   for (std::uint32_t k = 0; k < 1000; ++k) {
@@ -155,9 +155,9 @@ TEST(PropagationModel, AnUnknownOneIsRefusedWithTheList) {
   for (const bool channel : {false, true}) {
     try {
       if (channel) {
-        MakeChannel(s.channel, s);
+        MakeChannel(s.channel, s.run);
       } else {
-        MakeLinkEstimator(s.channel, s.agents);
+        MakeLinkEstimator(s.channel, s.run.agents);
       }
       FAIL();
     } catch (const UserError& error) {

@@ -11,7 +11,7 @@ namespace {
 
 NetworkConfig Swarm(const std::string& model) {
   NetworkConfig s;
-  s.agents = 4;
+  s.run.agents = 4;
   s.channel.model = model;
   s.channel.loss_probability = 0.3;
   s.channel.range_m = 2.5;
@@ -33,7 +33,7 @@ std::vector<Vec3<double>> Line(int nodes) {
 TEST(Observer, IsToldOfEveryPacketOnceByEveryModel) {
   for (const char* model : {"range", "extended", "physical"}) {
     const NetworkConfig s = Swarm(model);
-    const auto channel = MakeChannel(s.channel, s);
+    const auto channel = MakeChannel(s.channel, s.run);
     Log log;
     channel->Reset(3, 0);
     channel->Observe(&log);
@@ -79,7 +79,7 @@ TEST(Observer, ChangesNothing) {
     const NetworkConfig s = Swarm(model);
     std::vector<Reception> got[2];
     for (const bool watched : {false, true}) {
-      const auto channel = MakeChannel(s.channel, s);
+      const auto channel = MakeChannel(s.channel, s.run);
       Log log;
       channel->Reset(3, 0);
       if (watched) channel->Observe(&log);
@@ -104,7 +104,7 @@ TEST(ChannelPresence, AnAbsentNodeNeitherSendsNorHearsInAnyModel) {
     s.channel.loss_distance_m = 1e9;
     s.channel.transmit_period_s = 0.1;
     s.channel.contention.rest_s = 0.0;
-    const auto channel = MakeChannel(s.channel, s);
+    const auto channel = MakeChannel(s.channel, s.run);
     Log log;
     channel->Reset(3, 0);
     channel->Observe(&log);
@@ -133,7 +133,7 @@ TEST(ChannelPresence, AnAbsentNodeNeitherSendsNorHearsInAnyModel) {
 TEST(ChannelPing, IsOfModelsWithModems) {
   for (const char* model : {"range", "extended", "physical"}) {
     const NetworkConfig s = Swarm(model);
-    const auto channel = MakeChannel(s.channel, s);
+    const auto channel = MakeChannel(s.channel, s.run);
     channel->Reset(1, 0);
     if (channel->continuous()) {
       EXPECT_THROW(channel->Ping(0, 4, 0, kDt, 0), UserError);
@@ -156,7 +156,7 @@ TEST(ChannelPing, IsOfModelsWithModems) {
 TEST(PhysicalChannel, TakesPacketsOfAnyTimeSinceTheLastStep) {
   NetworkConfig s = Swarm("physical");
   s.channel.contention.rest_s = 0.0;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   ASSERT_TRUE(channel->continuous());
   channel->Reset(1, 0);
   std::vector<Reception> got;

@@ -30,7 +30,7 @@ const std::vector<Vec3<double>> kTriangle = {{0, 0, 0}, {0.3, 0, 0}, {0, 0.4, 0}
 
 TEST(Payload, BytesOfAnySizeUpToAFrameArriveUnchanged) {
   const NetworkConfig s = LosslessNetwork(3);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   ASSERT_EQ(channel->max_payload(), kLargestFrame);
   channel->Reset(1, 0);
   const std::size_t sizes[] = {1, 2, 31, 32, 33, 255, 256, 1000, kLargestFrame};
@@ -57,7 +57,7 @@ TEST(Payload, BytesOfAnySizeUpToAFrameArriveUnchanged) {
 TEST(Payload, IsKeptWhilePacketsAreUnderWayAndAfterDeliveryUntilTheNextStep) {
   NetworkConfig s = LosslessNetwork(3);
   s.channel.sound_speed_mps = 1.0;  // three and four steps to the receivers
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   std::vector<Bytes> sent;
   std::vector<Reception> got;
@@ -105,7 +105,7 @@ TEST(Payload, PoolUsesASlotAgainOnlyWhenNobodyHoldsIt) {
 
 TEST(Destination, AnAddressedPacketReachesThatNodeOnly) {
   const NetworkConfig s = LosslessNetwork(3);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   for (int destination = 0; destination < 3; ++destination) {
     channel->Reset(1, 0);
     Transmission packet = From((destination + 1) % 3, 0);
@@ -124,7 +124,7 @@ TEST(Destination, DoesNotChangeWhetherAPacketArrives) {
   // One link, the same losses, whether the others are meant too or not.
   NetworkConfig s = LosslessNetwork(3);
   s.channel.loss_probability = 0.4;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   const auto arrivals = [&](int destination) {
     std::vector<std::uint32_t> arrived;
     channel->Reset(8, 0);
@@ -155,7 +155,7 @@ std::string Refusal(const Channel& channel, const Transmission& packet) {
 
 TEST(PacketCheck, RefusesWhatNoModemTakes) {
   const NetworkConfig s = LosslessNetwork(3);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   const Transmission good = From(2, kDt);
   EXPECT_EQ(Refusal(*channel, good), "");
   Transmission p = good;
@@ -186,7 +186,7 @@ TEST(PacketCheck, RefusesWhatNoModemTakes) {
 
 TEST(Doppler, IsTheClosingSpeedAlongTheLine) {
   const NetworkConfig s = LosslessNetwork(4);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   // Receivers ahead, at right angles, and at the sender's own place, which moves at 2 m/s along x.
   const std::vector<Vec3<double>> p = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {0, 0, 0}};
@@ -201,7 +201,7 @@ TEST(Doppler, IsTheClosingSpeedAlongTheLine) {
 
 TEST(Doppler, IsTheDecreaseOfDistanceAndTheSameInBothDirections) {
   const NetworkConfig s = LosslessNetwork(2);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   const std::vector<Vec3<double>> p = {{0.1, -0.4, 0.3}, {-0.7, 0.9, -0.2}};
   const std::vector<Vec3<double>> v = {{0.3, 0.8, -0.1}, {-0.2, 0.4, 0.6}};
   channel->Reset(1, 0);
@@ -217,7 +217,7 @@ TEST(Doppler, IsTheDecreaseOfDistanceAndTheSameInBothDirections) {
 
 TEST(Doppler, NonFiniteVelocitiesAreRefused) {
   const NetworkConfig s = LosslessNetwork(2);
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(0, 0);
   EXPECT_THROW(channel->Step(0, 0, {{}, {}}, {{}, {0, 0, std::nan("")}}, {}),
                std::invalid_argument);
@@ -227,7 +227,7 @@ TEST(Draws, AreKeyedBySeedEpisodeStepAndLink) {
   NetworkConfig s = LosslessNetwork(3);
   s.channel.loss_probability = 0.3;
   s.channel.loss_distance_m = 0.8;
-  const auto channel = MakeChannel(s.channel, s);
+  const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(77, 5);
   int lost = 0;
   for (std::uint32_t k = 0; k < 200; ++k) {

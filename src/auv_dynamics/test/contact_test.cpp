@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kSurgeMass = 31.9 + 2.0, kSwayMass = 31.9 + 35.0;
 
-WorldConfig ContactScenario(int agents) {
-  WorldConfig s = QuietScenario(agents);
-  s.vehicle = ReleaseVehicle();
+WorldScenario ContactScenario(int agents) {
+  WorldScenario s = QuietScenario(agents);
+  s.world.vehicle = ReleaseVehicle();
   return s;
 }
 
-World PlacedWorld(const WorldConfig& scenario, const std::vector<Vec3<double>>& p_WB) {
+World PlacedWorld(const WorldScenario& scenario, const std::vector<Vec3<double>>& p_WB) {
   World world(scenario);
   for (int lane = 0; lane < kLanes; ++lane) {
     world.Place(lane, p_WB, {{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}});
@@ -66,7 +66,7 @@ TEST(Contact, VehiclesApartFeelNothing) {
 
 TEST(Contact, ForceIsFeltInBodyAxesOfATurnedVehicle) {
   // Bow of vehicle 0 along world y, so that a push along x is a sway force.
-  WorldConfig scenario = ContactScenario(2);
+  WorldScenario scenario = ContactScenario(2);
   World world = PlacedWorld(scenario, {{0.0, 0.0, 0.0}, {0.02, 0.0, 0.0}});
   VehicleState<Pack>& s = world.mutable_vehicle(0);
   s.rpy.z = Pack(kPi / 2);

@@ -54,15 +54,15 @@ void StartIfDue(World* world, int lane, int id, int k) {
 }
 
 /// Runs the given worlds side by side, world ids[l] in lane l; records each.
-std::vector<Record> RunTogether(const WorldConfig& scenario, const std::vector<int>& ids) {
+std::vector<Record> RunTogether(const WorldScenario& scenario, const std::vector<int>& ids) {
   World world(scenario);
   std::vector<Record> records(ids.size());
-  std::vector<Wrench<Pack>> tau = NoForce(scenario.agents);
+  std::vector<Wrench<Pack>> tau = NoForce(scenario.run.agents);
   for (int k = 0; k < kSteps; ++k) {
     for (size_t l = 0; l < ids.size(); ++l) {
       const int lane = static_cast<int>(l);
       StartIfDue(&world, lane, ids[l], k);
-      for (int i = 0; i < scenario.agents; ++i) {
+      for (int i = 0; i < scenario.run.agents; ++i) {
         const Wrench<double> command = Command(ids[l], i, k);
         SetLane(&tau[static_cast<size_t>(i)].force, lane, command.force);
         SetLane(&tau[static_cast<size_t>(i)].moment, lane, command.moment);
@@ -82,14 +82,14 @@ TEST(Lanes, EachLaneEqualsTheSameWorldAloneBitForBit) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
     for (const std::string motion :
          {"constant_velocity", "coordinated_turn", "random_waypoint", "evasive"}) {
-      WorldConfig scenario = QuietScenario(4);
-      scenario.vehicle.integrator = integrator;
-      scenario.vehicle.float32_tau = motion == "evasive";
-      if (motion == "coordinated_turn") scenario.vehicle.r_BG_m = {0.0, 0.01, -0.02};
-      scenario.target.motion = motion;
-      scenario.current.velocity_mps = {0.02, -0.03, 0.01};
-      scenario.disturbance = {2.0, 0.2, 1.0};
-      scenario.sensing = {"position", 0.45, 0.01, 0.8, 0.2, 1.0, 0.05};
+      WorldScenario scenario = QuietScenario(4);
+      scenario.world.vehicle.integrator = integrator;
+      scenario.world.vehicle.float32_tau = motion == "evasive";
+      if (motion == "coordinated_turn") scenario.world.vehicle.r_BG_m = {0.0, 0.01, -0.02};
+      scenario.world.target.motion = motion;
+      scenario.world.current.velocity_mps = {0.02, -0.03, 0.01};
+      scenario.world.disturbance = {2.0, 0.2, 1.0};
+      scenario.world.sensing = {"position", 0.45, 0.01, 0.8, 0.2, 1.0, 0.05};
       std::vector<int> ids;
       for (int l = 0; l < kLanes; ++l) ids.push_back(l);
       const std::vector<Record> together = RunTogether(scenario, ids);
@@ -108,7 +108,7 @@ TEST(Lanes, OrderOfTheLanesDoesNotMatter) {
     forward.push_back(l);
     backward.insert(backward.begin(), l);
   }
-  const WorldConfig scenario = QuietScenario(3);
+  const WorldScenario scenario = QuietScenario(3);
   const std::vector<Record> a = RunTogether(scenario, forward), b = RunTogether(scenario, backward);
   for (size_t l = 0; l < a.size(); ++l) EXPECT_TRUE(SameBits(a[l], b[a.size() - 1 - l]));
 }
@@ -116,13 +116,13 @@ TEST(Lanes, OrderOfTheLanesDoesNotMatter) {
 TEST(Lanes, ScalarIntegratorEqualsTheWorldBitForBit) {
   // A program that steps one vehicle with doubles gets the World's numbers.
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    WorldConfig scenario = QuietScenario(1);
-    scenario.vehicle.integrator = integrator;
-    scenario.workspace.half_extent_m = 100.0;
-    scenario.current.velocity_mps = {0.02, -0.03, 0.01};
+    WorldScenario scenario = QuietScenario(1);
+    scenario.world.vehicle.integrator = integrator;
+    scenario.world.workspace.half_extent_m = 100.0;
+    scenario.world.current.velocity_mps = {0.02, -0.03, 0.01};
     World world(scenario);
     world.Place(0, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
-    const VehicleModel model(scenario.vehicle);
+    const VehicleModel model(scenario.world.vehicle);
     VehicleState<double> s = AtAttitude({});
     std::vector<Wrench<Pack>> tau = NoForce(1);
     for (int k = 0; k < 500; ++k) {

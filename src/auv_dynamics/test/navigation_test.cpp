@@ -12,17 +12,17 @@ namespace stg::dynamics {
 namespace {
 
 /// A vehicle that flies as told in open water with dead reckoning that has no errors yet.
-WorldConfig DriftScenario() {
-  WorldConfig s = QuietScenario(1);
-  s.vehicle.model = "kinematic";
-  s.vehicle.max_velocity_mps = {2.0, 0.5, 0.5};
-  s.vehicle.kinematic.min_speed_mps = 0.0;
-  s.vehicle.kinematic.speed_lag_s = 0.1;
-  s.workspace.half_extent_m = 5000.0;
-  s.reset.start_half_extent_m = 5000.0;
-  s.sea.open = true;
-  s.sea.bottom_m = 120.0;
-  NavigationConfig& n = s.navigation;
+WorldScenario DriftScenario() {
+  WorldScenario s = QuietScenario(1);
+  s.world.vehicle.model = "kinematic";
+  s.world.vehicle.max_velocity_mps = {2.0, 0.5, 0.5};
+  s.world.vehicle.kinematic.min_speed_mps = 0.0;
+  s.world.vehicle.kinematic.speed_lag_s = 0.1;
+  s.world.workspace.half_extent_m = 5000.0;
+  s.world.reset.start_half_extent_m = 5000.0;
+  s.world.sea.open = true;
+  s.world.sea.bottom_m = 120.0;
+  NavigationConfig& n = s.world.navigation;
   n.kind = "dead_reckoning";
   n.dvl_scale_std = n.dvl_noise_mps = n.heading_std_deg = n.gyro_walk_deg_per_sqrt_h = 0.0;
   n.depth_std_m = n.start_std_m = n.current_std_mps = 0.0;
@@ -42,11 +42,11 @@ double Rms(const std::vector<double>& values) {
 }
 
 /// Flies `seconds` at 2 m/s and a turn rate in `rounds` times kLanes episodes.
-Drift Fly(const WorldConfig& s, double seconds, double turn_radps, int rounds,
+Drift Fly(const WorldScenario& s, double seconds, double turn_radps, int rounds,
           double depth = 40.0) {
   Drift drift;
   World world(s);
-  const auto steps = static_cast<int>(std::lround(seconds / s.time.dt_s));
+  const auto steps = static_cast<int>(std::lround(seconds / s.run.time.dt_s));
   for (int round = 0; round < rounds; ++round) {
     for (int lane = 0; lane < kLanes; ++lane) {
       world.Reset(lane, static_cast<std::uint64_t>(1000 + round * kLanes + lane), 0,
@@ -87,8 +87,8 @@ TEST(DeadReckoning, WithoutErrorsItIsTheTruth) {
 }
 
 TEST(DeadReckoning, ScaleErrorGrowsWithTheDistanceAlongTheWay) {
-  WorldConfig s = DriftScenario();
-  s.navigation.dvl_scale_std = 0.01;
+  WorldScenario s = DriftScenario();
+  s.world.navigation.dvl_scale_std = 0.01;
   for (const double seconds : {100.0, 400.0}) {
     const Drift drift = Fly(s, seconds, 0.0, kRounds);
     const double expected = 0.01 * drift.distance_m;
@@ -99,8 +99,8 @@ TEST(DeadReckoning, ScaleErrorGrowsWithTheDistanceAlongTheWay) {
 }
 
 TEST(DeadReckoning, HeadingErrorTurnsTheWay) {
-  WorldConfig s = DriftScenario();
-  s.navigation.heading_std_deg = 0.5;
+  WorldScenario s = DriftScenario();
+  s.world.navigation.heading_std_deg = 0.5;
   const Drift drift = Fly(s, 400.0, 0.0, kRounds);
   const double expected = 0.5 * kPi / 180.0 * drift.distance_m;
   EXPECT_NEAR(Rms(drift.across), expected, Tolerance(expected));
@@ -116,9 +116,9 @@ TEST(DeadReckoning, HeadingErrorTurnsTheWay) {
 }
 
 TEST(DeadReckoning, NoiseOfPingsIsARandomWalk) {
-  WorldConfig s = DriftScenario();
-  s.navigation.dvl_noise_mps = 0.05;
-  s.navigation.period_s = 2.0;
+  WorldScenario s = DriftScenario();
+  s.world.navigation.dvl_noise_mps = 0.05;
+  s.world.navigation.period_s = 2.0;
   const Drift drift = Fly(s, 400.0, 0.01, kRounds);
   const double expected = 0.05 * 2.0 * std::sqrt(200.0);
   EXPECT_NEAR(Rms(drift.along), expected, Tolerance(expected));
@@ -127,8 +127,8 @@ TEST(DeadReckoning, NoiseOfPingsIsARandomWalk) {
 }
 
 TEST(DeadReckoning, GyroWalkGrowsWithThePowerThreeHalvesOfTime) {
-  WorldConfig s = DriftScenario();
-  s.navigation.gyro_walk_deg_per_sqrt_h = 2.0;
+  WorldScenario s = DriftScenario();
+  s.world.navigation.gyro_walk_deg_per_sqrt_h = 2.0;
   const Drift drift = Fly(s, 400.0, 0.0, kRounds);
   // Integral of a Wiener process of the heading times the speed: q v T^(3/2) / sqrt(3).
   const double expected = 2.0 * kPi / 180.0 / 60.0 * 2.0 * std::pow(400.0, 1.5) / std::sqrt(3.0);
@@ -137,11 +137,11 @@ TEST(DeadReckoning, GyroWalkGrowsWithThePowerThreeHalvesOfTime) {
 }
 
 TEST(DeadReckoning, CurrentDriftsItWhereTheLogHasNoBottom) {
-  WorldConfig s = DriftScenario();
-  s.current.velocity_mps = {0.2, 0.0, 0.0};
-  s.navigation.current_std_mps = 0.2;
+  WorldScenario s = DriftScenario();
+  s.world.current.velocity_mps = {0.2, 0.0, 0.0};
+  s.world.navigation.current_std_mps = 0.2;
   const auto drifted = [&](double altitude_m) {
-    s.navigation.dvl_altitude_m = altitude_m;
+    s.world.navigation.dvl_altitude_m = altitude_m;
     return Fly(s, 100.0, 0.02, 1);
   };
   const Drift over_ground = drifted(100.0), in_water = drifted(50.0);
@@ -152,9 +152,9 @@ TEST(DeadReckoning, CurrentDriftsItWhereTheLogHasNoBottom) {
 }
 
 TEST(DeadReckoning, AFixAtTheSurfaceBoundsTheError) {
-  WorldConfig s = DriftScenario();
-  s.navigation.start_std_m = 100.0;
-  s.navigation.gps_std_m = 3.0;
+  WorldScenario s = DriftScenario();
+  s.world.navigation.start_std_m = 100.0;
+  s.world.navigation.gps_std_m = 3.0;
   const Drift drift = Fly(s, 10.0, 0.0, kRounds, 0.1);
   // Ten fixes and a prior.
   const double expected = 1.0 / std::sqrt(10.0 / 9.0 + 1e-4);
@@ -164,9 +164,9 @@ TEST(DeadReckoning, AFixAtTheSurfaceBoundsTheError) {
 }
 
 TEST(DeadReckoning, DepthIsThePressureGauges) {
-  WorldConfig s = DriftScenario();
-  s.navigation.depth_std_m = 0.2;
-  s.navigation.gps_std_m = 3.0;
+  WorldScenario s = DriftScenario();
+  s.world.navigation.depth_std_m = 0.2;
+  s.world.navigation.gps_std_m = 3.0;
   World world(s);
   std::vector<double> errors;
   for (int k = 0; k < 500; ++k) {
@@ -181,10 +181,10 @@ TEST(DeadReckoning, DepthIsThePressureGauges) {
 TEST(DeadReckoning, StatesWhatItIsOffBy) {
   // Everything at once, straight on and in circles; the stated deviation is that of the worst
   // direction, so the squared error over it is at most two on the mean.
-  WorldConfig s = DriftScenario();
+  WorldScenario s = DriftScenario();
   NavigationConfig defaults;
   defaults.kind = "dead_reckoning";
-  s.navigation = defaults;
+  s.world.navigation = defaults;
   const double deviations = 5.0 * 2.0 / std::sqrt(static_cast<double>(kRounds * kLanes));
   for (const double turn : {0.0, 0.02}) {
     const Drift drift = Fly(s, 1000.0, turn, kRounds);
@@ -196,10 +196,10 @@ TEST(DeadReckoning, StatesWhatItIsOffBy) {
 }
 
 TEST(DeadReckoning, VelocityIsThatOfThePosition) {
-  WorldConfig s = DriftScenario();
+  WorldScenario s = DriftScenario();
   NavigationConfig defaults;
   defaults.kind = "dead_reckoning";
-  s.navigation = defaults;
+  s.world.navigation = defaults;
   World world(s);
   for (int lane = 0; lane < kLanes; ++lane) world.Reset(lane, 5, 0, ResetStage::kMedium);
   const std::vector<Pack> command{Pack(2.0), Pack(0.0), Pack(0.0)};
@@ -208,15 +208,15 @@ TEST(DeadReckoning, VelocityIsThatOfThePosition) {
   world.Step(command);
   const NavState b = world.Nav(0, 0);
   const Vec3<double> v_W = RotationOf(b.q_WB) * b.v_WB_B;
-  EXPECT_NEAR(v_W.x, (b.p_WB.x - a.p_WB.x) / s.time.dt_s, 1e-6);
-  EXPECT_NEAR(v_W.y, (b.p_WB.y - a.p_WB.y) / s.time.dt_s, 1e-6);
+  EXPECT_NEAR(v_W.x, (b.p_WB.x - a.p_WB.x) / s.run.time.dt_s, 1e-6);
+  EXPECT_NEAR(v_W.y, (b.p_WB.y - a.p_WB.y) / s.run.time.dt_s, 1e-6);
 }
 
 TEST(DeadReckoning, LanesAreEpisodesOfTheirOwn) {
-  WorldConfig s = DriftScenario();
+  WorldScenario s = DriftScenario();
   NavigationConfig defaults;
   defaults.kind = "dead_reckoning";
-  s.navigation = defaults;
+  s.world.navigation = defaults;
   World together(s), alone(s);
   const std::vector<Pack> command{Pack(2.0), Pack(0.05), Pack(0.1)};
   for (int lane = 0; lane < kLanes; ++lane) together.Reset(lane, 7, 0, ResetStage::kMedium);

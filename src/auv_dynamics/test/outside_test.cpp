@@ -73,14 +73,14 @@ void AddOutsiders() {
                       [](const SensingConfig&) { return std::make_unique<const Blinker>(); });
 }
 
-WorldConfig OutsideScenario(int agents) {
+WorldScenario OutsideScenario(int agents) {
   AddOutsiders();
-  WorldConfig s = QuietScenario(agents);
-  s.vehicle.model = "cart";
-  s.target.motion = "lift";
-  s.sensing.sensor = "blinker";
-  s.workspace.half_extent_m = 10.0;
-  s.current.velocity_mps = {0.0, 0.0, 0.5};
+  WorldScenario s = QuietScenario(agents);
+  s.world.vehicle.model = "cart";
+  s.world.target.motion = "lift";
+  s.world.sensing.sensor = "blinker";
+  s.world.workspace.half_extent_m = 10.0;
+  s.world.current.velocity_mps = {0.0, 0.0, 0.5};
   return s;
 }
 
@@ -99,8 +99,8 @@ TEST(Outside, VehicleMovesByItsOwnRuleUnderItsOwnCommand) {
 }
 
 TEST(Outside, VehicleFeelsContactAndWalls) {
-  WorldConfig scenario = OutsideScenario(2);
-  scenario.vehicle.radius_m = 1.0;
+  WorldScenario scenario = OutsideScenario(2);
+  scenario.world.vehicle.radius_m = 1.0;
   World world(scenario);
   world.Place(0, {{0.0, 0.0, 0.0}, {1.5, 0.0, 9.99}}, {{0.0, 5.0, 0.0}}, {{0.0, 0.0, 0.0}});
   const std::vector<Pack> still(6, Pack(0.0));
@@ -136,8 +136,8 @@ TEST(Outside, ForceAndMomentAreRefusedByAVehicleThatHasOtherActuators) {
 }
 
 TEST(Outside, TargetsMoveByTheirOwnRuleAndAreResetByLane) {
-  WorldConfig scenario = OutsideScenario(2);
-  scenario.target.count = 2;
+  WorldScenario scenario = OutsideScenario(2);
+  scenario.world.target.count = 2;
   World world(scenario);
   const auto before = Lift::resets;
   world.Place(1 % kLanes, {{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}, {{0.0, 5.0, 0.0}, {0.0, -5.0, 0.0}},
@@ -152,8 +152,8 @@ TEST(Outside, TargetsMoveByTheirOwnRuleAndAreResetByLane) {
 }
 
 TEST(Outside, SensorSeesWhatItLooksAt) {
-  WorldConfig scenario = OutsideScenario(2);
-  scenario.target.count = 2;
+  WorldScenario scenario = OutsideScenario(2);
+  scenario.world.target.count = 2;
   World world(scenario);
   world.Place(0, {{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}, {{0.0, 5.0, 0.0}, {0.0, -5.0, 0.0}},
               {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
@@ -173,7 +173,7 @@ TEST(Outside, SensorSeesWhatItLooksAt) {
 
 TEST(Registries, KeysTakeNamesThatWereAddedAndListThem) {
   AddOutsiders();
-  WorldConfig config;
+  WorldScenario config;
   config::Table table;
   Describe(&config, &table);
   std::map<std::string, std::string> ranges;
@@ -190,7 +190,7 @@ TEST(Registries, KeysTakeNamesThatWereAddedAndListThem) {
 }
 
 TEST(Registries, WorldRefusesUnknownNamesWithTheKey) {
-  const auto message = [](const WorldConfig& scenario) {
+  const auto message = [](const WorldScenario& scenario) {
     try {
       World world(scenario);
     } catch (const UserError& e) {
@@ -198,15 +198,15 @@ TEST(Registries, WorldRefusesUnknownNamesWithTheKey) {
     }
     return std::string();
   };
-  WorldConfig scenario = QuietScenario(1);
-  scenario.vehicle.model = "submarine";
+  WorldScenario scenario = QuietScenario(1);
+  scenario.world.vehicle.model = "submarine";
   EXPECT_NE(message(scenario).find("vehicle.model: must be one of fully_actuated"),
             std::string::npos);
   scenario = QuietScenario(1);
-  scenario.target.motion = "random";
+  scenario.world.target.motion = "random";
   EXPECT_NE(message(scenario).find("target.motion: "), std::string::npos);
   scenario = QuietScenario(1);
-  scenario.sensing.sensor = "eyes";
+  scenario.world.sensing.sensor = "eyes";
   EXPECT_NE(message(scenario).find("sensing.sensor: "), std::string::npos);
 }
 
@@ -221,11 +221,11 @@ TEST(Registries, FullyActuatedStatesItsSpaces) {
   EXPECT_EQ(vehicle->actuators()[3].lo, -7.0);
   EXPECT_EQ(vehicle->actuators()[3].hi, 7.0);
   EXPECT_EQ(vehicle->internal_size(), 0);
-  WorldConfig world;
-  EXPECT_EQ(vehicle->actions().size(), static_cast<size_t>(world.action_size()));
+  WorldScenario world;
+  EXPECT_EQ(vehicle->actions().size(), static_cast<size_t>(world.world.control.action_size()));
   EXPECT_EQ(vehicle->actions()[1].hi, 0.25);
-  world.control.interface = ActionInterface::kTau6;
-  EXPECT_EQ(vehicle->actuators().size(), static_cast<size_t>(world.action_size()));
+  world.world.control.interface = ActionInterface::kTau6;
+  EXPECT_EQ(vehicle->actuators().size(), static_cast<size_t>(world.world.control.action_size()));
 }
 
 }  // namespace

@@ -60,11 +60,11 @@ inline double Power(const BodyVelocity<double>& a, const BodyVelocity<double>& b
   return Dot(a.v, b.v) + Dot(a.w, b.w);
 }
 
-/// WorldConfig with `agents` vehicles and nothing random in it.
-inline WorldConfig QuietScenario(int agents) {
-  WorldConfig s;
-  s.agents = agents;
-  s.sensing.cue_std_m = 0.0;
+/// WorldScenario with `agents` vehicles and nothing random in it.
+inline WorldScenario QuietScenario(int agents) {
+  WorldScenario s;
+  s.run.agents = agents;
+  s.world.sensing.cue_std_m = 0.0;
   return s;
 }
 

@@ -19,11 +19,11 @@ class RelativeSensorTest : public ::testing::Test {
  protected:
   RelativeSensorTest() {
     s_ = QuietScenario(1);
-    s_.vehicle = ReleaseVehicle();
-    s_.workspace.half_extent_m = 2000.0;
-    s_.sea.open = true;
-    s_.sensing.sensor = "range_bearing";
-    s_.sensing.range_m = 600.0;
+    s_.world.vehicle = ReleaseVehicle();
+    s_.world.workspace.half_extent_m = 2000.0;
+    s_.world.sea.open = true;
+    s_.world.sensing.sensor = "range_bearing";
+    s_.world.sensing.range_m = 600.0;
   }
 
   /// Looks `looks` times, with new draws each.
@@ -41,7 +41,7 @@ class RelativeSensorTest : public ::testing::Test {
     return all;
   }
 
-  WorldConfig s_;
+  WorldScenario s_;
 };
 
 struct Moments {
@@ -57,9 +57,9 @@ Moments Of(const std::vector<Detection>& all, const Value& value) {
 }
 
 TEST_F(RelativeSensorTest, NoiseHasTheConfiguredMoments) {
-  s_.sensing.range_std_m = 2.0;
-  s_.sensing.range_std_share = 0.02;
-  s_.sensing.bearing_std_deg = 1.5;
+  s_.world.sensing.range_std_m = 2.0;
+  s_.world.sensing.range_std_share = 0.02;
+  s_.world.sensing.bearing_std_deg = 1.5;
   const Vec3<double> r{120.0, -160.0, 0.0};  // 200 m
   const auto all = Look(r, 4000);
   ASSERT_EQ(all.size(), 4000U);
@@ -78,8 +78,8 @@ TEST_F(RelativeSensorTest, NoiseHasTheConfiguredMoments) {
 }
 
 TEST_F(RelativeSensorTest, ProbabilityFallsWithTheSquareOfTheRangeToTheShareAtItsEnd) {
-  s_.sensing.detection_probability = 0.8;
-  s_.sensing.probability_at_range = 0.25;
+  s_.world.sensing.detection_probability = 0.8;
+  s_.world.sensing.probability_at_range = 0.25;
   for (const double range : {60.0, 300.0, 599.0}) {
     const double share = range / 600.0;
     const double expected = 0.8 * (1.0 - 0.75 * share * share);
@@ -92,16 +92,16 @@ TEST_F(RelativeSensorTest, ProbabilityFallsWithTheSquareOfTheRangeToTheShareAtIt
 }
 
 TEST_F(RelativeSensorTest, OutliersAndFalseAlarmsAreUniformInRange) {
-  s_.sensing.sensor = "range";
-  s_.sensing.outlier_probability = 0.2;
+  s_.world.sensing.sensor = "range";
+  s_.world.sensing.outlier_probability = 0.2;
   const auto far_off = [](const Detection& d) { return std::abs(d.range_m - 100.0) > 20.0; };
   int outliers = 0;
   for (const Detection& d : Look({100.0, 0.0, 0.0}, 3000)) outliers += far_off(d) ? 1 : 0;
   const double expected = 0.2 * (1.0 - 40.0 / 600.0);
   EXPECT_NEAR(outliers, 3000.0 * expected, 5.0 * std::sqrt(3000.0 * expected));
 
-  s_.sensing.outlier_probability = 0.0;
-  s_.sensing.false_alarm_probability = 0.3;
+  s_.world.sensing.outlier_probability = 0.0;
+  s_.world.sensing.false_alarm_probability = 0.3;
   const auto alarms = Look({900.0, 0.0, 0.0}, 3000);  // nothing is there
   EXPECT_NEAR(static_cast<double>(alarms.size()), 900.0, 5.0 * std::sqrt(3000.0 * 0.21));
   EXPECT_NEAR(Of(alarms, [](const Detection& d) { return d.range_m; }).mean, 300.0,
@@ -109,7 +109,7 @@ TEST_F(RelativeSensorTest, OutliersAndFalseAlarmsAreUniformInRange) {
 }
 
 TEST_F(RelativeSensorTest, LooksOnlyAtItsPeriod) {
-  s_.sensing.period_s = 2.0;  // steps of 0.1 s
+  s_.world.sensing.period_s = 2.0;  // steps of 0.1 s
   const auto all = Look({100.0, 0.0, 0.0}, 101);
   ASSERT_EQ(all.size(), 6U);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -118,7 +118,7 @@ TEST_F(RelativeSensorTest, LooksOnlyAtItsPeriod) {
 }
 
 TEST_F(RelativeSensorTest, FieldOfViewIsAConeAroundTheBow) {
-  s_.sensing.field_of_view_deg = 90.0;
+  s_.world.sensing.field_of_view_deg = 90.0;
   const auto seen = [&](double azimuth_deg, double elevation_deg) {
     const double c = std::cos(elevation_deg * kDegree);
     return !Look({100.0 * c * std::cos(azimuth_deg * kDegree),
@@ -136,9 +136,9 @@ TEST_F(RelativeSensorTest, FieldOfViewIsAConeAroundTheBow) {
 }
 
 TEST_F(RelativeSensorTest, AnAmbiguousBearingNamesPortAndStarboardAlike) {
-  s_.sensing.sensor = "bearing";
-  s_.sensing.ambiguous = true;
-  s_.sensing.bearing_std_deg = 0.001;
+  s_.world.sensing.sensor = "bearing";
+  s_.world.sensing.ambiguous = true;
+  s_.world.sensing.bearing_std_deg = 0.001;
   for (const double azimuth_deg : {30.0, -30.0}) {  // the bow points east
     const Detection d = Look({100.0 * std::cos(azimuth_deg * kDegree),
                               100.0 * std::sin(azimuth_deg * kDegree), 0.0},
@@ -153,15 +153,15 @@ TEST_F(RelativeSensorTest, AnAmbiguousBearingNamesPortAndStarboardAlike) {
 }
 
 TEST_F(RelativeSensorTest, TellsInTheFrameOfItsOwnNavigation) {
-  s_.navigation.kind = "dead_reckoning";
-  s_.navigation.heading_std_deg = 10.0;
-  s_.navigation.start_std_m = 30.0;
-  s_.sensing.range_std_m = 1e-9;
-  s_.sensing.range_std_share = 0.0;
-  s_.sensing.bearing_std_deg = 1e-9;
+  s_.world.navigation.kind = "dead_reckoning";
+  s_.world.navigation.heading_std_deg = 10.0;
+  s_.world.navigation.start_std_m = 30.0;
+  s_.world.sensing.range_std_m = 1e-9;
+  s_.world.sensing.range_std_share = 0.0;
+  s_.world.sensing.bearing_std_deg = 1e-9;
   const Vec3<double> r{120.0, -160.0, 20.0};
   for (const char* sensor : {"position", "range_bearing"}) {
-    s_.sensing.sensor = sensor;
+    s_.world.sensing.sensor = sensor;
     World world(s_);
     world.Place(0, {kAt}, {kAt + r}, {{0.0, 0.0, 0.0}});
     const NavState nav = world.Nav(0, 0);
@@ -177,7 +177,7 @@ TEST_F(RelativeSensorTest, TellsInTheFrameOfItsOwnNavigation) {
 }
 
 TEST_F(RelativeSensorTest, ARepeatedLookSeesTheSame) {
-  s_.sensing.outlier_probability = 0.5;
+  s_.world.sensing.outlier_probability = 0.5;
   World world(s_);
   for (int lane = 0; lane < kLanes; ++lane) {
     world.Place(lane, {kAt}, {kAt + Vec3<double>{100.0, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
@@ -193,7 +193,7 @@ TEST_F(RelativeSensorTest, ARepeatedLookSeesTheSame) {
 }
 
 TEST_F(RelativeSensorTest, APeriodThatIsNoWholeNumberOfDecisionsIsRefused) {
-  s_.sensing.period_s = 0.25;
+  s_.world.sensing.period_s = 0.25;
   EXPECT_THROW(World{s_}, UserError);
 }
 

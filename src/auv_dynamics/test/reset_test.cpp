@@ -99,8 +99,8 @@ TEST(Reset, DirectionsAreUniformOnTheSphere) {
 
 TEST(Reset, VehiclesStartAtRestAndLevelWhateverCameBefore) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    WorldConfig scenario = QuietScenario(2);
-    scenario.vehicle.integrator = integrator;
+    WorldScenario scenario = QuietScenario(2);
+    scenario.world.vehicle.integrator = integrator;
     World world(scenario);
     std::vector<Wrench<Pack>> tau = NoForce(2);
     for (auto& t : tau) {
@@ -156,8 +156,8 @@ TEST(Reset, AnotherSeedOrEpisodeGivesAnotherStart) {
 }
 
 TEST(Reset, VehiclesStartAroundTheTargetTheyAreTaskedWith) {
-  WorldConfig scenario = QuietScenario(6);
-  scenario.target.count = 3;
+  WorldScenario scenario = QuietScenario(6);
+  scenario.world.target.count = 3;
   World world(scenario);
   for (std::uint32_t e = 0; e < 200; ++e) {
     world.Reset(0, 6, e, ResetStage::kMedium);

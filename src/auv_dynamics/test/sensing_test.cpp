@@ -9,10 +9,10 @@ namespace stg::dynamics {
 namespace {
 
 /// One vehicle that always has its target within range.
-WorldConfig SensingScenario() {
-  WorldConfig s = QuietScenario(1);
-  s.vehicle = ReleaseVehicle();
-  s.sensing.range_m = 10.0;
+WorldScenario SensingScenario() {
+  WorldScenario s = QuietScenario(1);
+  s.world.vehicle = ReleaseVehicle();
+  s.world.sensing.range_m = 10.0;
   return s;
 }
 
@@ -26,8 +26,8 @@ void ExpectShare(int hits, int draws, double probability) {
 void ExpectChiSquare(double sum, int n) { EXPECT_NEAR(sum, n, 5.0 * std::sqrt(2.0 * n)); }
 
 TEST(Sensing, DetectsWithinRangeOnly) {
-  WorldConfig scenario = SensingScenario();
-  scenario.sensing.range_m = 0.45;
+  WorldScenario scenario = SensingScenario();
+  scenario.world.sensing.range_m = 0.45;
   World world(scenario);
   Detection detection;
   for (const double d : {0.0, 0.2, 0.4499}) {
@@ -42,10 +42,10 @@ TEST(Sensing, DetectsWithinRangeOnly) {
 }
 
 TEST(Sensing, DetectionCarriesStampTargetAndStatedNoise) {
-  WorldConfig scenario = SensingScenario();
-  scenario.agents = 2;
-  scenario.target.count = 2;
-  scenario.sensing.noise_std_m = 0.01;
+  WorldScenario scenario = SensingScenario();
+  scenario.run.agents = 2;
+  scenario.world.target.count = 2;
+  scenario.world.sensing.noise_std_m = 0.01;
   World world(scenario);
   world.Reset(0, 1, 0, ResetStage::kMedium);
   for (int k = 0; k < 7; ++k) world.Step(NoForce(2));
@@ -63,8 +63,8 @@ TEST(Sensing, DetectionCarriesStampTargetAndStatedNoise) {
 
 TEST(Sensing, DetectionProbabilityIsMetWithinBinomialBounds) {
   for (const double probability : {0.05, 0.5, 0.9}) {
-    WorldConfig scenario = SensingScenario();
-    scenario.sensing.detection_probability = probability;
+    WorldScenario scenario = SensingScenario();
+    scenario.world.sensing.detection_probability = probability;
     World world(scenario);
     int hits = 0;
     constexpr int kDraws = 20000;
@@ -79,9 +79,9 @@ TEST(Sensing, DetectionProbabilityIsMetWithinBinomialBounds) {
 
 TEST(Sensing, DetectionProbabilityZeroAndOneAreCertain) {
   for (const double probability : {0.0, 1.0}) {
-    WorldConfig scenario = SensingScenario();
-    scenario.sensing.detection_probability = probability;
-    scenario.sensing.noise_std_m = 0.001;
+    WorldScenario scenario = SensingScenario();
+    scenario.world.sensing.detection_probability = probability;
+    scenario.world.sensing.noise_std_m = 0.001;
     World world(scenario);
     Detection detection;
     for (std::uint32_t e = 0; e < 1000; ++e) {
@@ -92,8 +92,8 @@ TEST(Sensing, DetectionProbabilityZeroAndOneAreCertain) {
 }
 
 TEST(Sensing, NoiseHasTheStatedDeviationAndNoBias) {
-  WorldConfig scenario = SensingScenario();
-  scenario.sensing.noise_std_m = 0.02;
+  WorldScenario scenario = SensingScenario();
+  scenario.world.sensing.noise_std_m = 0.02;
   World world(scenario);
   world.Reset(0, 7, 0, ResetStage::kEasy);
   double squares = 0.0;
@@ -116,9 +116,9 @@ TEST(Sensing, NoiseHasTheStatedDeviationAndNoBias) {
 }
 
 TEST(Sensing, DropoutMakesBlindSpellsOfTheStatedShareAndLength) {
-  WorldConfig scenario = SensingScenario();
-  scenario.sensing.dropout_rate_hz = 0.25;
-  scenario.sensing.dropout_duration_s = 2.0;
+  WorldScenario scenario = SensingScenario();
+  scenario.world.sensing.dropout_rate_hz = 0.25;
+  scenario.world.sensing.dropout_duration_s = 2.0;
   World world(scenario);
   world.Reset(0, 8, 0, ResetStage::kEasy);
   constexpr int kSlots = 3000, kSlotSteps = 20;
@@ -138,10 +138,10 @@ TEST(Sensing, DropoutMakesBlindSpellsOfTheStatedShareAndLength) {
 }
 
 TEST(Sensing, CueHasTheStatedDeviationAndIsSharedByAllVehicles) {
-  WorldConfig scenario = SensingScenario();
-  scenario.agents = 3;
-  scenario.target.count = 2;
-  scenario.sensing.cue_std_m = 0.05;
+  WorldScenario scenario = SensingScenario();
+  scenario.run.agents = 3;
+  scenario.world.target.count = 2;
+  scenario.world.sensing.cue_std_m = 0.05;
   World world(scenario);
   double squares = 0.0;
   constexpr int kDraws = 5000;

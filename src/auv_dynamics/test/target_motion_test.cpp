@@ -9,10 +9,10 @@
 namespace stg::dynamics {
 namespace {
 
-WorldConfig TargetScenario(const std::string& motion) {
-  WorldConfig s = QuietScenario(1);
-  s.target.motion = motion;
-  s.vehicle = ReleaseVehicle();
+WorldScenario TargetScenario(const std::string& motion) {
+  WorldScenario s = QuietScenario(1);
+  s.world.target.motion = motion;
+  s.world.vehicle = ReleaseVehicle();
   return s;
 }
 
@@ -47,9 +47,9 @@ TEST(TargetMotion, ReflectionClampsAndFlipsThatComponentOnly) {
 }
 
 /// Steps `world` and checks every lane's target against its limits.
-void CheckLimits(const WorldConfig& scenario, World* world, int steps) {
-  const double most = scenario.target.max_turn_rate_radps * scenario.time.dt_s;
-  const double dt = scenario.time.dt_s;
+void CheckLimits(const WorldScenario& scenario, World* world, int steps) {
+  const double most = scenario.world.target.max_turn_rate_radps * scenario.run.time.dt_s;
+  const double dt = scenario.run.time.dt_s;
   std::array<Vec3<double>, static_cast<size_t>(kLanes)> p, v;
   const auto read = [&] {
     for (int l = 0; l < kLanes; ++l) {
@@ -64,10 +64,10 @@ void CheckLimits(const WorldConfig& scenario, World* world, int steps) {
     read();
     for (size_t l = 0; l < static_cast<size_t>(kLanes); ++l) {
       ASSERT_NEAR(Norm(v[l]), Norm(v0[l]), 1e-12) << "step " << k;  // no motion changes the speed
-      ASSERT_LE(Norm(v[l]), scenario.target.max_speed_mps * (1.0 + 1e-9));
+      ASSERT_LE(Norm(v[l]), scenario.world.target.max_speed_mps * (1.0 + 1e-9));
       ASSERT_LE(AngleBetween(v[l], v0[l]), most * (1.0 + 1e-9) + 1e-12) << "step " << k;
       ASSERT_LE(Norm(p[l] - p0[l]), Norm(v[l]) * dt * (1.0 + 1e-9));
-      const double e = scenario.workspace.half_extent_m;
+      const double e = scenario.world.workspace.half_extent_m;
       ASSERT_TRUE(std::abs(p[l].x) <= e && std::abs(p[l].y) <= e && std::abs(p[l].z) <= e);
     }
   }
@@ -75,10 +75,10 @@ void CheckLimits(const WorldConfig& scenario, World* world, int steps) {
 
 TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
   for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
-    WorldConfig scenario = TargetScenario(motion);
+    WorldScenario scenario = TargetScenario(motion);
     // As fast as the reset stage may start it: fast enough to meet every wall.
-    scenario.reset.stages[2].target_speed_mps = {0.01, 0.05};
-    scenario.target.evasion_range_m = 1.0;
+    scenario.world.reset.stages[2].target_speed_mps = {0.01, 0.05};
+    scenario.world.target.evasion_range_m = 1.0;
     World world(scenario);
     for (int n = 0; n < 6; ++n) {
       for (int l = 0; l < kLanes; ++l) {
@@ -91,9 +91,9 @@ TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
 }
 
 TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
-  WorldConfig scenario = TargetScenario("coordinated_turn");
-  scenario.target.turn_period_s = 1.0;
-  scenario.workspace.half_extent_m = 100.0;  // no wall interferes
+  WorldScenario scenario = TargetScenario("coordinated_turn");
+  scenario.world.target.turn_period_s = 1.0;
+  scenario.world.workspace.half_extent_m = 100.0;  // no wall interferes
   World world(scenario);
   world.Reset(0, 3, 0, ResetStage::kMedium);
   double turned = 0.0;
@@ -110,7 +110,7 @@ TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
 TEST(TargetMotion, EvasiveTargetTurnsAwayFromAnAuvInRange) {
   for (const Vec3<double>& auv : {Vec3<double>{0.06, 0.0, 0.0}, Vec3<double>{-0.03, 0.05, 0.0},
                                   Vec3<double>{0.01, -0.02, -0.06}}) {
-    WorldConfig scenario = TargetScenario("evasive");
+    WorldScenario scenario = TargetScenario("evasive");
     World world(scenario);
     const Vec3<double> towards = auv * (0.01 / Norm(auv));
     world.Place(0, {auv}, {{0.0, 0.0, 0.0}}, {towards + Vec3<double>{0.0, 0.001, 0.001}});
@@ -151,7 +151,7 @@ struct Tour {
 };
 
 /// Follows a target through its waypoints, in order; it may skip a few of them.
-Tour FollowTour(const WorldConfig& scenario, std::uint64_t seed, int steps) {
+Tour FollowTour(const WorldScenario& scenario, std::uint64_t seed, int steps) {
   World world(scenario);
   world.Reset(0, seed, 0, ResetStage::kHard);
   Tour tour;
@@ -161,7 +161,8 @@ Tour FollowTour(const WorldConfig& scenario, std::uint64_t seed, int steps) {
     const Vec3<double> p = Lane(world.target(0).p_WT, 0);
     tour.longest_wait = std::max(tour.longest_wait, ++wait);
     for (std::uint32_t ahead = 0; ahead < 3; ++ahead) {
-      if (Norm(p - Waypoint(seed, next + ahead)) >= scenario.target.waypoint_radius_m) continue;
+      if (Norm(p - Waypoint(seed, next + ahead)) >= scenario.world.target.waypoint_radius_m)
+        continue;
       tour.skipped += static_cast<int>(ahead);
       ++tour.visited;
       next += ahead + 1;
@@ -174,9 +175,9 @@ Tour FollowTour(const WorldConfig& scenario, std::uint64_t seed, int steps) {
 }
 
 TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
-  WorldConfig scenario = TargetScenario("random_waypoint");
+  WorldScenario scenario = TargetScenario("random_waypoint");
   for (const double speed : {0.02, 0.05}) {
-    scenario.reset.stages[2].target_speed_mps = {speed, speed};
+    scenario.world.reset.stages[2].target_speed_mps = {speed, speed};
     // Two ways along the diagonal of the waypoint cube, and a turn.
     const int patience = static_cast<int>(2.0 * 1.6 * std::sqrt(3.0) / speed / 0.1) + 300;
     Tour sum;
@@ -193,9 +194,9 @@ TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
 }
 
 TEST(TargetMotion, SeveralTargetsMoveIndependently) {
-  WorldConfig scenario = TargetScenario("coordinated_turn");
-  scenario.agents = 2;
-  scenario.target.count = 2;
+  WorldScenario scenario = TargetScenario("coordinated_turn");
+  scenario.run.agents = 2;
+  scenario.world.target.count = 2;
   World world(scenario);
   const Vec3<double> v{0.01, 0.0, 0.0};
   world.Place(0, {{0.0, 0.3, 0.0}, {0.0, -0.3, 0.0}}, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {v, v});

@@ -39,13 +39,13 @@ namespace stg::dynamics {
 namespace {
 
 TEST(World, RefusesAScenarioThatFailsItsValidation) {
-  WorldConfig scenario = QuietScenario(2);
-  scenario.time.dt_s = -0.1;
+  WorldScenario scenario = QuietScenario(2);
+  scenario.run.time.dt_s = -0.1;
   EXPECT_THROW(World{scenario}, UserError);
 }
 
 TEST(World, TimeIsStepsTimesDt) {
-  WorldConfig scenario = QuietScenario(1);
+  WorldScenario scenario = QuietScenario(1);
   World world(scenario);
   world.Reset(0, 1, 0, ResetStage::kMedium);
   for (int k = 0; k < 123; ++k) world.Step(NoForce(1));
@@ -54,7 +54,7 @@ TEST(World, TimeIsStepsTimesDt) {
 }
 
 TEST(World, NamesTheVehicleWhoseStateIsNotFinite) {
-  WorldConfig scenario = QuietScenario(3);
+  WorldScenario scenario = QuietScenario(3);
   World world(scenario);
   for (int lane = 0; lane < kLanes; ++lane) world.Reset(lane, 40, 0, ResetStage::kMedium);
   world.Step(NoForce(3));
@@ -79,10 +79,10 @@ TEST(World, NamesTheVehicleWhoseStateIsNotFinite) {
 
 /// Vehicle 0 of a release world, moved to p with body velocity v at zero attitude.
 World AtWall(const Vec3<double>& p, const Vec3<double>& v) {
-  WorldConfig scenario = QuietScenario(1);
-  scenario.vehicle = ReleaseVehicle();
-  scenario.vehicle.linear_damping = {};
-  scenario.vehicle.quadratic_damping = {};
+  WorldScenario scenario = QuietScenario(1);
+  scenario.world.vehicle = ReleaseVehicle();
+  scenario.world.vehicle.linear_damping = {};
+  scenario.world.vehicle.quadratic_damping = {};
   World world(scenario);
   for (int lane = 0; lane < kLanes; ++lane) {
     world.Place(lane, {p}, {{0.0, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
@@ -134,8 +134,8 @@ TEST(World, NothingHappensJustInsideTheWall) {
 }
 
 TEST(World, CommandIsClippedToTheActuatorLimits) {
-  WorldConfig scenario = QuietScenario(1);
-  scenario.vehicle = ReleaseVehicle();
+  WorldScenario scenario = QuietScenario(1);
+  scenario.world.vehicle = ReleaseVehicle();
   World world(scenario);
   world.Place(0, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
   std::vector<Wrench<Pack>> tau = NoForce(1);
@@ -149,9 +149,9 @@ TEST(World, CommandIsClippedToTheActuatorLimits) {
 
 TEST(World, CommandIsRoundedToFloatOnlyWhereAskedFor) {
   for (const bool rounded : {false, true}) {
-    WorldConfig scenario = QuietScenario(1);
-    scenario.vehicle = ReleaseVehicle();
-    scenario.vehicle.float32_tau = rounded;
+    WorldScenario scenario = QuietScenario(1);
+    scenario.world.vehicle = ReleaseVehicle();
+    scenario.world.vehicle.float32_tau = rounded;
     World world(scenario);
     world.Place(0, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
     std::vector<Wrench<Pack>> tau = NoForce(1);
@@ -163,10 +163,10 @@ TEST(World, CommandIsRoundedToFloatOnlyWhereAskedFor) {
 }
 
 TEST(World, CurrentCarriesTheWholeSwarmAtItsSpeed) {
-  WorldConfig scenario = QuietScenario(2);
-  scenario.workspace.half_extent_m = 100.0;
-  scenario.reset.start_half_extent_m = 0.9;
-  scenario.current.velocity_mps = {0.1, -0.05, 0.02};
+  WorldScenario scenario = QuietScenario(2);
+  scenario.world.workspace.half_extent_m = 100.0;
+  scenario.world.reset.start_half_extent_m = 0.9;
+  scenario.world.current.velocity_mps = {0.1, -0.05, 0.02};
   World world(scenario);
   world.Reset(0, 1, 0, ResetStage::kMedium);
   for (int k = 0; k < 2000; ++k) world.Step(NoForce(2));
@@ -177,14 +177,14 @@ TEST(World, CurrentCarriesTheWholeSwarmAtItsSpeed) {
 }
 
 TEST(World, DisturbanceHasItsStationaryDeviationAndCorrelationTime) {
-  WorldConfig scenario = QuietScenario(1);
-  scenario.vehicle = ReleaseVehicle();
-  scenario.vehicle.linear_damping = {};
-  scenario.vehicle.quadratic_damping = {};
-  scenario.vehicle.clip_velocity = false;
-  scenario.workspace.half_extent_m = 1e5;
-  scenario.disturbance.force_std_n = 3.0;
-  scenario.disturbance.correlation_time_s = 0.5;
+  WorldScenario scenario = QuietScenario(1);
+  scenario.world.vehicle = ReleaseVehicle();
+  scenario.world.vehicle.linear_damping = {};
+  scenario.world.vehicle.quadratic_damping = {};
+  scenario.world.vehicle.clip_velocity = false;
+  scenario.world.workspace.half_extent_m = 1e5;
+  scenario.world.disturbance.force_std_n = 3.0;
+  scenario.world.disturbance.correlation_time_s = 0.5;
   World world(scenario);
   for (int l = 0; l < kLanes; ++l)
     world.Reset(l, 11, static_cast<std::uint32_t>(l), ResetStage::kMedium);
@@ -212,9 +212,9 @@ TEST(World, DisturbanceHasItsStationaryDeviationAndCorrelationTime) {
 }
 
 TEST(World, DisturbanceIsNotLimitedByTheActuators) {
-  WorldConfig scenario = QuietScenario(1);
-  scenario.vehicle = ReleaseVehicle();
-  scenario.disturbance.force_std_n = 1e4;
+  WorldScenario scenario = QuietScenario(1);
+  scenario.world.vehicle = ReleaseVehicle();
+  scenario.world.disturbance.force_std_n = 1e4;
   World world(scenario);
   world.Reset(0, 12, 0, ResetStage::kMedium);
   world.Step(NoForce(1));
@@ -224,12 +224,12 @@ TEST(World, DisturbanceIsNotLimitedByTheActuators) {
 TEST(World, StepAllocatesNothing) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
     for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
-      WorldConfig scenario = QuietScenario(8);
-      scenario.vehicle.integrator = integrator;
-      scenario.vehicle.float32_tau = true;
-      scenario.target.motion = motion;
-      scenario.disturbance = {1.0, 0.1, 2.0};
-      scenario.sensing = {"position", 0.45, 0.01, 0.9, 0.1, 1.0, 0.05};
+      WorldScenario scenario = QuietScenario(8);
+      scenario.world.vehicle.integrator = integrator;
+      scenario.world.vehicle.float32_tau = true;
+      scenario.world.target.motion = motion;
+      scenario.world.disturbance = {1.0, 0.1, 2.0};
+      scenario.world.sensing = {"position", 0.45, 0.01, 0.9, 0.1, 1.0, 0.05};
       World world(scenario);
       for (int l = 0; l < kLanes; ++l) world.Reset(l, 3, 0, ResetStage::kEasy);
       std::vector<Wrench<Pack>> tau = NoForce(8);

@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kEpisode = 64;
 
 void Step(benchmark::State& state) {
-  AgentConfig s;
-  s.agents = static_cast<int>(state.range(0));
+  AgentModel s;
+  s.run.agents = static_cast<int>(state.range(0));
   const int packets = static_cast<int>(state.range(1));
   std::vector<Agent> agents = MakeAgents(s);
   const std::size_t count = agents.size();
@@ -75,7 +75,7 @@ NeighbourState Told(int source, TimeNs t, const Vec3<double>& p) {
 }
 
 void Encode(benchmark::State& bench) {
-  const PacketCodec codec{AgentConfig{}};
+  const PacketCodec codec{AgentModel{}};
   NeighbourState state = Told(1, 12'300'000'000, {0.1, 0.2, 0.3});
   for (auto _ : bench) {
     benchmark::DoNotOptimize(state);
@@ -86,7 +86,7 @@ void Encode(benchmark::State& bench) {
 BENCHMARK(Encode);
 
 void Decode(benchmark::State& bench) {
-  const PacketCodec codec{AgentConfig{}};
+  const PacketCodec codec{AgentModel{}};
   Packet packet = codec.Encode(Told(1, 12'300'000'000, {0.1, 0.2, 0.3}));
   for (auto _ : bench) {
     benchmark::DoNotOptimize(packet);

@@ -1,5 +1,6 @@
 #include "stg_agent/agent_config.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "acoustic_channel/models/propagation_model.hpp"
@@ -22,29 +23,52 @@ void Describe(TaskConfig* c, config::Table* t) {
 }
 
 void Describe(AgentConfig* c, config::Table* t) {
-  Describe(static_cast<dynamics::WorldConfig*>(c), t);
-  Describe(&c->channel, t);
   Describe(&c->track, t);
   Describe(&c->observation, t);
   Describe(&c->task, t);
 }
 
-std::optional<config::Violation> FindConflict(const AgentConfig& c) {
-  if (auto violation = FindConflict(static_cast<const dynamics::WorldConfig&>(c))) {
-    return violation;
-  }
-  if (auto violation = FindConflict(c.channel, c)) return violation;
-  if (acoustics::MaxPayload(c.channel, c.agents) < kPacketBytes) {
+void Describe(AgentScenario* s, config::Table* t) {
+  Describe(&s->run, t);
+  Describe(&s->world, t);
+  Describe(&s->channel, t);
+  Describe(&s->agent, t);
+}
+
+std::optional<config::Violation> FindConflict(const AgentScenario& s) {
+  if (auto violation = FindConflict(s.run)) return violation;
+  if (auto violation = FindConflict(s.world, s.run)) return violation;
+  if (auto violation = FindConflict(s.channel, s.run)) return violation;
+  if (acoustics::MaxPayload(s.channel, s.run.agents) < kPacketBytes) {
     return config::Violation{
         {"channel.modem.packet_bytes", "channel.modem.profile"},
         "the packet of an agent has " + std::to_string(kPacketBytes) + " bytes"};
   }
-  if (auto violation = FindFilterConflict(c)) return violation;
-  if (c.observation.quality_medium > c.observation.quality_high) {
+  const AgentModel model = ModelOf(s.run, s.world, s.channel, s.agent);
+  if (auto violation = FindFilterConflict(model)) return violation;
+  if (s.agent.observation.quality_medium > s.agent.observation.quality_high) {
     return config::Violation{{"observation.quality_medium", "observation.quality_high"},
                              "medium quality cannot begin above high quality"};
   }
   return {};
+}
+
+AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& world,
+                   const acoustics::ChannelConfig& channel, const AgentConfig& agent) {
+  const auto& v = world.current.velocity_mps;
+  return {run,
+          world.vehicle,
+          world.workspace,
+          world.sea,
+          world.target,
+          world.navigation,
+          world.sensing,
+          world.control,
+          channel,
+          agent.track,
+          agent.observation,
+          agent.task,
+          std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])};
 }
 
 }  // namespace stg::agent

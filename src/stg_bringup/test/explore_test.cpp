@@ -34,7 +34,7 @@ struct Episode {
 /// Hears every AUV.
 class Listener {
  public:
-  explicit Listener(const Scenario& s) : agents_(static_cast<std::size_t>(s.agents)) {
+  explicit Listener(const Scenario& s) : agents_(static_cast<std::size_t>(s.run.agents)) {
     ros::NodeHandle node;
     for (std::size_t i = 0; i < agents_; ++i) {
       const int id = static_cast<int>(i);
@@ -101,17 +101,18 @@ class Explore : public testing::Test {
     scenario_ = new Scenario(LoadScenarioParameters<Scenario>(config::Scope::kWhole));
     seed_ = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 1 << 30));
     const Listener listener(*scenario_);
-    first_ = new Episode(listener.WaitFor(0, scenario_->time.episode_steps));
+    first_ = new Episode(listener.WaitFor(0, scenario_->run.time.episode_steps));
     auv_msgs::Reset call;
     call.request.seed = seed_;
     call.request.use_seed = true;
     ASSERT_TRUE(ros::service::call(topics::kReset, call) && call.response.success);
     ASSERT_GT(call.response.episode, 0U);
-    again_ = new Episode(listener.WaitFor(call.response.episode, scenario_->time.episode_steps));
+    again_ =
+        new Episode(listener.WaitFor(call.response.episode, scenario_->run.time.episode_steps));
   }
 
   void SetUp() override {
-    const auto steps = static_cast<std::size_t>(scenario_->time.episode_steps) + 1;
+    const auto steps = static_cast<std::size_t>(scenario_->run.time.episode_steps) + 1;
     ASSERT_EQ(first_->records.size(), steps);
     ASSERT_EQ(again_->records.size(), steps);
   }
@@ -159,7 +160,7 @@ TEST_F(Explore, TheRecordedActionsFlyTheRecordedEpisode) {
   const auto width = static_cast<std::size_t>(env.observation_size());
   const auto agents = static_cast<std::size_t>(env.agents());
   std::vector<float> actions(agents * size);
-  for (int k = 0; k < scenario_->time.episode_steps; ++k) {
+  for (int k = 0; k < scenario_->run.time.episode_steps; ++k) {
     const auto& row = first_->records.at(static_cast<std::uint32_t>(k));
     for (std::size_t i = 0; i < agents; ++i) {
       const dynamics::NavState truth = env.nav(0, static_cast<int>(i));

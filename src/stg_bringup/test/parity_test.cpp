@@ -40,27 +40,27 @@ struct Flight {
 /// @param silent AUV whose agent does not tell what it sees and decides; -1: none
 Flight Listen(const Scenario& s, int silent) {
   Flight flight;
-  const double period = s.decision_dt_s() * 1e9;
+  const double period = s.run.decision_dt_s() * 1e9;
   const auto index_of = [period](const ros::Time& t) {
     return static_cast<int>(std::llround(static_cast<double>(NsOf(t) - kFirstStamp) / period));
   };
-  const auto agents = static_cast<std::size_t>(s.agents);
-  const int telling = silent < 0 ? s.agents : s.agents - 1;
-  int missing = kEpisodes * s.time.episode_steps * (s.agents + telling);
+  const auto agents = static_cast<std::size_t>(s.run.agents);
+  const int telling = silent < 0 ? s.run.agents : s.run.agents - 1;
+  int missing = kEpisodes * s.run.time.episode_steps * (s.run.agents + telling);
   // Not compared: the state after the last step, which decides nothing, and the episodes after
   // these, which may come from one AUV before the last of these come from another.
   const auto count = [&](int index) {
-    const bool compared = index < kEpisodes * (s.time.episode_steps + 1) &&
-                          index % (s.time.episode_steps + 1) < s.time.episode_steps;
+    const bool compared = index < kEpisodes * (s.run.time.episode_steps + 1) &&
+                          index % (s.run.time.episode_steps + 1) < s.run.time.episode_steps;
     missing -= compared ? 1 : 0;
   };
   ros::NodeHandle node;
   std::vector<ros::Subscriber> subscribers;
-  for (int i = 0; i < s.agents; ++i) {
+  for (int i = 0; i < s.run.agents; ++i) {
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> callback =
         [&, i](const nav_msgs::Odometry::ConstPtr& m) {
           // Between two decisions navigation goes to autopilots alone.
-          if ((NsOf(m->header.stamp) - kFirstStamp) % s.decision_period() != 0) return;
+          if ((NsOf(m->header.stamp) - kFirstStamp) % s.run.decision_period() != 0) return;
           const int index = index_of(m->header.stamp);
           auto& states = flight.states[index];
           states.resize(agents);
@@ -93,7 +93,7 @@ Flight Listen(const Scenario& s, int silent) {
   subscribers.push_back(
       node.subscribe<auv_msgs::EpisodeSummary>(topics::kEpisodeSummary, 0, on_summary));
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(50.0);
-  const auto reports = static_cast<std::size_t>(kEpisodes * s.time.episode_steps);
+  const auto reports = static_cast<std::size_t>(kEpisodes * s.run.time.episode_steps);
   while (ros::ok() && ros::WallTime::now() < end &&
          (missing > 0 || flight.summaries.size() < kEpisodes || flight.reports.size() < reports)) {
     HandleMessages(0.1);
@@ -121,12 +121,12 @@ bool AtWall(const Vec3<double>& p, double half_extent_m) {
 TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
   const Scenario s = LoadScenarioParameters<Scenario>(config::Scope::kWhole);
   const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2147483647));
-  const env::Controller controller = env::MakeController(TextParameter("policy", ""), s);
-  const int silent = IntegerParameter("silent", -1, -1, s.agents - 1);
+  const env::Controller controller = env::MakeController(TextParameter("policy", ""), s.model());
+  const int silent = IntegerParameter("silent", -1, -1, s.run.agents - 1);
   const Flight flight = Listen(s, silent);
   ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));
 
-  const int steps = s.time.episode_steps;
+  const int steps = s.run.time.episode_steps;
   int at_wall = 0;
   for (int e = 0; e < kEpisodes; ++e) {
     env::VectorEnvOptions env_options;
@@ -135,24 +135,24 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     env::VectorEnv env(s, env_options);
     env::EnvMemory memory = env.MakeMemory();
     env.Reset(memory.arrays());
-    std::vector<double> actions(static_cast<std::size_t>(s.agents * env.action_size()));
+    std::vector<double> actions(static_cast<std::size_t>(s.run.agents * env.action_size()));
     double worst = 0.0;
     for (int k = 0; k < steps; ++k) {
       const int index = e * (steps + 1) + k;
       const auto found = flight.states.find(index);
       ASSERT_NE(found, flight.states.end()) << "episode " << e << ", step " << k;
-      for (int i = 0; i < s.agents; ++i) {
+      for (int i = 0; i < s.run.agents; ++i) {
         const dynamics::NavState truth = env.navigation(0, i);
         const dynamics::NavState& flown = found->second[static_cast<std::size_t>(i)];
         worst = std::max(worst, Distance(truth.p_WB, flown.p_WB));
         worst = std::max(worst, Distance(truth.v_WB_B, flown.v_WB_B));
-        at_wall += AtWall(truth.p_WB, s.workspace.half_extent_m) ? 1 : 0;
+        at_wall += AtWall(truth.p_WB, s.world.workspace.half_extent_m) ? 1 : 0;
         ASSERT_EQ(worst, 0.0) << "episode " << e << ", step " << k << ", AUV " << i;
       }
       env::Decide(controller, env, memory.observations.data(), actions.data());
       const auto decisions = flight.decisions.find(index);
       ASSERT_NE(decisions, flight.decisions.end()) << "episode " << e << ", step " << k;
-      for (int i = 0; i < s.agents; ++i) {
+      for (int i = 0; i < s.run.agents; ++i) {
         if (i == silent) continue;
         ExpectDecision(decisions->second[static_cast<std::size_t>(i)], env, i, memory.observations,
                        actions);

@@ -25,7 +25,8 @@ void Describe(ChannelConfig* c, config::Table* t);
 std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunConfig& run);
 
 /// What a program needs that runs the network alone.
-struct NetworkConfig : RunConfig {
+struct NetworkConfig {
+  RunConfig run;
   ChannelConfig channel;
 };
 void Describe(NetworkConfig* c, config::Table* t);

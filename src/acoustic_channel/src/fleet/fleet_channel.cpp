@@ -23,14 +23,14 @@ MotionTrack::Limits LimitsOf(const FleetPatience& p) {
 
 FleetChannel::FleetChannel(const NetworkConfig& network, const FleetPatience& patience,
                            FleetListener* listener)
-    : period_(network.decision_period()),
+    : period_(network.run.decision_period()),
       lag_(Nanoseconds(patience.lag_s)),
       patience_(Nanoseconds(patience.odometry_s)),
       silent_after_(Nanoseconds(patience.silent_after_s)),
-      seed_(network.seed),
-      channel_(MakeChannel(network.channel, network)),
+      seed_(network.run.seed),
+      channel_(MakeChannel(network.channel, network.run)),
       listener_(listener),
-      tracks_(static_cast<std::size_t>(network.agents), MotionTrack(LimitsOf(patience))),
+      tracks_(static_cast<std::size_t>(network.run.agents), MotionTrack(LimitsOf(patience))),
       waiting_(tracks_.size()),
       present_(tracks_.size(), false),
       positions_(tracks_.size()),

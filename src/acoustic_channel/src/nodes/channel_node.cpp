@@ -29,22 +29,22 @@ std::vector<int> IndicesOf(int agents) {
 
 ChannelNode::ChannelNode(acoustics::LineOfSight line_of_sight)
     : scenario_(LoadScenarioParameters<acoustics::NetworkConfig>()),
-      channel_(acoustics::MakeChannel(scenario_.channel, scenario_, std::move(line_of_sight))),
-      period_(scenario_.decision_period()),
+      channel_(acoustics::MakeChannel(scenario_.channel, scenario_.run, std::move(line_of_sight))),
+      period_(scenario_.run.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
-      tracker_(period_, scenario_.time.episode_steps),
-      barrier_(scenario_.agents, period_),
-      auvs_(static_cast<std::size_t>(scenario_.agents)),
+      tracker_(period_, scenario_.run.time.episode_steps),
+      barrier_(scenario_.run.agents, period_),
+      auvs_(static_cast<std::size_t>(scenario_.run.agents)),
       positions_(auvs_.size()),
       velocities_(auvs_.size()),
-      reports_(IndicesOf(scenario_.agents)),
+      reports_(IndicesOf(scenario_.run.agents)),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
   done_ = node.advertise<std_msgs::Header>(topics::kChannelDone, kQueue, true);
   links_ = node.advertise<auv_msgs::LinkStates>(topics::kLinks, kQueue, true);
   packets_ = node.advertise<auv_msgs::PacketEvents>(topics::kPackets, kQueue);
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     Auv& auv = auvs_[static_cast<std::size_t>(i)];
     auv.reception = node.advertise<auv_msgs::AcousticReception>(
         topics::AuvTopic(i, topics::kAcousticRx), kQueue, true);
@@ -122,13 +122,13 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
 /// empty window before the run: who has it is connected, and will hear all that follow.
 void ChannelNode::Greet() {
   received_.clear();
-  for (int i = 0; i < scenario_.agents; ++i) PublishWindow(i, 0);
+  for (int i = 0; i < scenario_.run.agents; ++i) PublishWindow(i, 0);
 }
 
 /// Only of those whose packet can leave in this step, though others may offer one, too.
 void ChannelNode::AskForTransmissions() {
   const TimeNs stamp = barrier_.stamp();
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const auto& early = auvs_[static_cast<std::size_t>(i)].transmission;
     if (early && NsOf(early->header.stamp) == stamp) barrier_.Hear(i, stamp);
     if (!channel_->Due(i, stamp - start_)) barrier_.Excuse(i);
@@ -206,7 +206,7 @@ void ChannelNode::Close() {
   reports_.Begin(start_);
   channel_->Observe(watched ? &reports_ : nullptr);
   channel_->Step(now, step_, positions_, velocities_, offered_);
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     received_.clear();
     channel_->Deliver(i, now + period_, &received_);
     PublishWindow(i, now + period_);
@@ -243,7 +243,7 @@ void ChannelNode::PublishWindow(int i, TimeNs until) {
 void ChannelNode::PublishLinks(TimeNs now) {
   const ros::WallTime wall = ros::WallTime::now();
   // What an episode came to is no matter of the wall clock.
-  const bool last = step_ + 1 == static_cast<std::uint32_t>(scenario_.time.episode_steps);
+  const bool last = step_ + 1 == static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
   if (!last && (wall - links_sent_).toSec() < display_period_s_) return;
   links_sent_ = wall;
   auto& m = links_message_;
@@ -251,9 +251,9 @@ void ChannelNode::PublishLinks(TimeNs now) {
   m.header.frame_id = frames::kWorld;
   m.links.clear();
   m.energy.clear();
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     m.energy.push_back(channel_->EnergyJ(i, now + period_));  // packets are counted until then
-    for (int j = 0; j < scenario_.agents; ++j) {
+    for (int j = 0; j < scenario_.run.agents; ++j) {
       if (i == j) continue;
       auv_msgs::LinkState& link = m.links.emplace_back();
       SetLinkState(channel_->Link(i, j, now), &link);
@@ -283,8 +283,8 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
   double largest = 0.0, sum = 0.0;
   int links = 0;
-  for (int i = 0; i < scenario_.agents; ++i) {
-    for (int j = 0; j < scenario_.agents; ++j) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
+    for (int j = 0; j < scenario_.run.agents; ++j) {
       if (i == j) continue;
       const double age = channel_->Link(i, j, std::max<TimeNs>(0, barrier_.stamp() - start_)).age_s;
       largest = std::max(largest, age);
@@ -294,7 +294,7 @@ void ChannelNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
   status.add("age of information, mean [s]", links > 0 ? sum / links : 0.0);
   status.add("age of information, largest [s]", largest);
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     if (!barrier_.present(i)) {
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
                           "AUV " + std::to_string(i) + " does not transmit");

@@ -59,8 +59,8 @@ struct Scribe : FleetListener {
 /// Three vehicles on links that lose every fifth packet or so.
 NetworkConfig FleetNetwork(double loss = 0.2) {
   NetworkConfig n;
-  n.agents = 3;
-  n.seed = 7;
+  n.run.agents = 3;
+  n.run.seed = 7;
   n.channel.model = "extended";
   n.channel.transmit_period_s = 0.1;
   n.channel.max_range_m = 2000.0;
@@ -270,8 +270,8 @@ TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
     return LoadFleetNetwork(file, overrides, 5);
   };
   const NetworkConfig n = load("seed: 3\nchannel: {model: range, range_m: 120.0}\n");
-  EXPECT_EQ(n.agents, 5);
-  EXPECT_EQ(n.seed, 3u);
+  EXPECT_EQ(n.run.agents, 5);
+  EXPECT_EQ(n.run.seed, 3u);
   EXPECT_EQ(n.channel.model, "range");
   EXPECT_EQ(n.channel.range_m, 120.0);
   EXPECT_EQ(n.channel.freshness_s, ChannelConfig().freshness_s);

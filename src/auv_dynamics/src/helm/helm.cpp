@@ -2,21 +2,19 @@
 
 namespace stg::dynamics {
 
-bool Helm::Steers(const WorldConfig& scenario) {
-  return Autopilots().Has(scenario.vehicle.model_of(0));
-}
+bool Helm::Steers(const VehicleConfig& vehicle) { return Autopilots().Has(vehicle.model_of(0)); }
 
-Helm::Helm(const WorldConfig& scenario)
-    : steps_(scenario.control.autopilot.period_steps),
-      periods_(scenario.time.decision_steps / steps_),
-      dt_s_(scenario.time.dt_s * steps_) {
-  const Fleet fleet(scenario.vehicle, scenario.agents);
+Helm::Helm(const VehicleConfig& vehicle, const AutopilotConfig& config, const RunConfig& run)
+    : steps_(config.period_steps),
+      periods_(run.time.decision_steps / steps_),
+      dt_s_(run.time.dt_s * steps_) {
+  const Fleet fleet(vehicle, run.agents);
   inputs_ = fleet.command_size();
-  for (int i = 0; i < scenario.agents; ++i) {
-    const std::string& model = scenario.vehicle.model_of(i);
+  for (int i = 0; i < run.agents; ++i) {
+    const std::string& model = vehicle.model_of(i);
     auto& autopilot = kinds_[model];
     if (autopilot == nullptr) {
-      autopilot = Autopilots().Make(model, scenario.vehicle, scenario.control.autopilot);
+      autopilot = Autopilots().Make(model, vehicle, config);
     }
     states_ = std::max(states_, static_cast<std::size_t>(autopilot->state_size()));
     autopilots_.push_back(autopilot.get());

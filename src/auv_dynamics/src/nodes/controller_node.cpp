@@ -17,27 +17,28 @@ constexpr std::uint32_t kQueue = 20;
 }  // namespace
 
 ControllerNode::ControllerNode()
-    : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
-      id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
+    : scenario_(LoadScenarioParameters<dynamics::WorldScenario>()),
+      id_(IntegerParameter("id", 0, 0, scenario_.run.agents - 1)),
       body_frame_(frames::Body(id_)),
-      period_(scenario_.decision_period()),
+      period_(scenario_.run.decision_period()),
       // An autopilot also takes a command that comes late: better that than the one before.
-      waiting_(period_, dynamics::Helm::Steers(scenario_) ? period_ - 1 : 0),
+      waiting_(period_, dynamics::Helm::Steers(scenario_.world.vehicle) ? period_ - 1 : 0),
       health_("velocity controller", topics::Auv(id_).substr(1),
               [this](auto& status) { Report(status); }) {
-  if (scenario_.control.interface != dynamics::ActionInterface::kVelocity3) {
+  if (scenario_.world.control.interface != dynamics::ActionInterface::kVelocity3) {
     ROS_INFO("the scenario's policy commands force and moment itself: nothing to control");
     return;
   }
   ros::NodeHandle node;
-  if (dynamics::Helm::Steers(scenario_)) {
-    const std::string& model = scenario_.vehicle.model_of(id_);
-    autopilot_ = dynamics::Autopilots().Make(model, scenario_.vehicle, scenario_.control.autopilot);
+  if (dynamics::Helm::Steers(scenario_.world.vehicle)) {
+    const std::string& model = scenario_.world.vehicle.model_of(id_);
+    autopilot_ = dynamics::Autopilots().Make(model, scenario_.world.vehicle,
+                                             scenario_.world.control.autopilot);
     memory_.assign(static_cast<std::size_t>(autopilot_->state_size()), 0.0);
     actuators_.header.frame_id = body_frame_;
     actuators_.vehicle = model;
     actuators_.values.resize(
-        dynamics::Vehicles().Make(model, scenario_.vehicle)->actuators().size());
+        dynamics::Vehicles().Make(model, scenario_.world.vehicle)->actuators().size());
     publisher_ = node.advertise<auv_msgs::ActuatorCommand>(
         topics::AuvTopic(id_, topics::kActuators), kQueue, true);
     frames_ = node.subscribe(topics::AuvTopic(id_, topics::kSensorFrame), kQueue,
@@ -143,7 +144,7 @@ bool ControllerNode::Steerable(const dynamics::WaitingCommands::Command& command
 
 void ControllerNode::AnswerWithActuators(const dynamics::WaitingCommands::Command& command) {
   if (begins_ == nav_.stamp) Forget();
-  const double dt_s = scenario_.time.dt_s * scenario_.control.autopilot.period_steps;
+  const double dt_s = scenario_.run.time.dt_s * scenario_.world.control.autopilot.period_steps;
   autopilot_->Steer(command.v_des_W, nav_, dt_s, memory_.data(), actuators_.values.data());
   actuators_.header.stamp = TimeOf(nav_.stamp);
   publisher_.publish(actuators_);
@@ -154,9 +155,9 @@ void ControllerNode::AnswerWithActuators(const dynamics::WaitingCommands::Comman
 
 void ControllerNode::AnswerWithWrench(const dynamics::WaitingCommands::Command& command) {
   double fraction[6];
-  dynamics::VelocityController(scenario_.control, scenario_.vehicle, command.v_des_W, nav_,
-                               fraction);
-  const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.vehicle, fraction);
+  dynamics::VelocityController(scenario_.world.control, scenario_.world.vehicle, command.v_des_W,
+                               nav_, fraction);
+  const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.world.vehicle, fraction);
   wrench_.header.stamp = TimeOf(command.stamp);
   SetVector(wrench.force, &wrench_.wrench.force);
   SetVector(wrench.moment, &wrench_.wrench.torque);

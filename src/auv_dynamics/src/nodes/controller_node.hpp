@@ -45,7 +45,7 @@ class ControllerNode {
   void Forget();
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  dynamics::WorldConfig scenario_;
+  dynamics::WorldScenario scenario_;
   int id_;
   std::string body_frame_;
   TimeNs period_;           ///< of decisions

@@ -12,19 +12,19 @@ namespace {
 
 constexpr std::uint32_t kInstrumentQueue = 20;
 
-const dynamics::WorldConfig& InOpenWater(const dynamics::WorldConfig& scenario) {
-  if (scenario.sea.open) return scenario;
-  throw UserError("parameter instruments: scenario '" + scenario.name +
+const dynamics::WorldScenario& InOpenWater(const dynamics::WorldScenario& scenario) {
+  if (scenario.world.sea.open) return scenario;
+  throw UserError("parameter instruments: scenario '" + scenario.run.name +
                   "' has no open water (sea.open), so neither depth nor place");
 }
 
 }  // namespace
 
-Instruments::Instruments(const dynamics::WorldConfig& scenario)
-    : period_s_(Seconds(InOpenWater(scenario).decision_period())),
-      datum_(scenario.sea.latitude_deg, scenario.sea.longitude_deg),
-      auvs_(static_cast<std::size_t>(scenario.agents)) {
-  for (int i = 0; i < scenario.agents; ++i) Advertise(i);
+Instruments::Instruments(const dynamics::WorldScenario& scenario)
+    : period_s_(Seconds(InOpenWater(scenario).run.decision_period())),
+      datum_(scenario.world.sea.latitude_deg, scenario.world.sea.longitude_deg),
+      auvs_(static_cast<std::size_t>(scenario.run.agents)) {
+  for (int i = 0; i < scenario.run.agents; ++i) Advertise(i);
 }
 
 void Instruments::Advertise(int i) {

@@ -34,7 +34,7 @@ class Instruments {
   static constexpr double kAltimeter_m[2] = {0.3, 100.0};  ///< its range
 
   /// Throws UserError for a scenario without open water, where there is neither depth nor place.
-  explicit Instruments(const dynamics::WorldConfig& scenario);
+  explicit Instruments(const dynamics::WorldScenario& scenario);
 
   /// @param now clock time of the decision; `first` of an episode: nothing moved there
   void Publish(const dynamics::World& world, TimeNs now, bool first);

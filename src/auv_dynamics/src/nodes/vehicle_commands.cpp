@@ -14,23 +14,26 @@ constexpr std::uint32_t kCommandQueue = 20;
 
 }  // namespace
 
-VehicleCommands::VehicleCommands(const dynamics::WorldConfig& scenario,
+VehicleCommands::VehicleCommands(const dynamics::WorldScenario& scenario,
                                  const dynamics::World& world, bool onboard, Hear hear)
     : hear_(std::move(hear)),
-      vehicle_(scenario.vehicle),
+      vehicle_(scenario.world.vehicle),
       row_(world.command_size()),
-      steered_(dynamics::Helm::Steers(scenario)),
-      helm_(steered_ && onboard ? std::make_unique<dynamics::Helm>(scenario) : nullptr),
+      steered_(dynamics::Helm::Steers(scenario.world.vehicle)),
+      helm_(steered_ && onboard
+                ? std::make_unique<dynamics::Helm>(scenario.world.vehicle,
+                                                   scenario.world.control.autopilot, scenario.run)
+                : nullptr),
       parts_(steered_ && !onboard
-                 ? scenario.time.decision_steps / scenario.control.autopilot.period_steps
+                 ? scenario.run.time.decision_steps / scenario.world.control.autopilot.period_steps
                  : 1),
-      refused_(static_cast<std::size_t>(scenario.agents)),
+      refused_(static_cast<std::size_t>(scenario.run.agents)),
       wrenches_(steered_ ? 0 : refused_.size()),
       wrenches_of_lanes_(wrenches_.size()),
       values_(steered_ && !onboard ? refused_.size() * row_ : 0),
       values_of_lanes_(values_.size(), Pack(0.0)),
       v_des_W_(helm_ != nullptr ? refused_.size() : 0) {
-  for (int i = 0; i < scenario.agents; ++i) actuators_.push_back(world.model(i).actuators());
+  for (int i = 0; i < scenario.run.agents; ++i) actuators_.push_back(world.model(i).actuators());
 }
 
 template <class Message>

@@ -27,8 +27,8 @@ class VehicleCommands {
   using Hear = std::function<StepBarrier::Word(int auv, TimeNs stamp)>;
 
   /// @param onboard autopilots run here, and take a command for each decision
-  VehicleCommands(const dynamics::WorldConfig& scenario, const dynamics::World& world, bool onboard,
-                  Hear hear);
+  VehicleCommands(const dynamics::WorldScenario& scenario, const dynamics::World& world,
+                  bool onboard, Hear hear);
   VehicleCommands(const VehicleCommands&) = delete;
   VehicleCommands& operator=(const VehicleCommands&) = delete;
 

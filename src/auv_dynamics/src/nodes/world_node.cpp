@@ -34,9 +34,9 @@ Pacer::Options PacerParameters(TimeNs period) {
 }  // namespace
 
 WorldNode::WorldNode()
-    : scenario_(LoadScenarioParameters<dynamics::WorldConfig>()),
-      world_(scenario_),
-      period_(scenario_.decision_period()),
+    : scenario_(LoadScenarioParameters<dynamics::WorldScenario>()),
+      world_(scenario_.world, scenario_.run),
+      period_(scenario_.run.decision_period()),
       commands_(scenario_, world_, AutopilotOnBoardParameter(),
                 [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
       pacer_(PacerParameters(period_ / commands_.parts())),
@@ -45,12 +45,12 @@ WorldNode::WorldNode()
       wait_for_metrics_(FlagParameter("wait_for_metrics", false)),
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
-      barrier_(scenario_.agents + 1, period_),
-      fresh_(static_cast<std::size_t>(scenario_.agents)),
+      barrier_(scenario_.run.agents + 1, period_),
+      fresh_(static_cast<std::size_t>(scenario_.run.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
-  WarnOfOverriddenAgents(scenario_.agents);
+  WarnOfOverriddenAgents(scenario_.run.agents);
   // Of no use here; but no other node sees all that a launch says of them.
-  RequireIndices("external", scenario_.agents);
+  RequireIndices("external", scenario_.run.agents);
   const std::string awaited = TextParameter("wait_for_node", "");
   if (!awaited.empty()) awaited_.emplace(awaited);
   ros::NodeHandle node;
@@ -83,7 +83,7 @@ double WorldNode::Work() {
     if (WallSeconds() > give_up_s_) done_ = summary_lost_ = true;
   } else {
     const bool quiet =
-        pacer_.lockstep() ? barrier_.Complete() : barrier_.Complete(0, scenario_.agents);
+        pacer_.lockstep() ? barrier_.Complete() : barrier_.Complete(0, scenario_.run.agents);
     if (quiet || OpenFor() >= kViewDelay_s) ShowStep();
     if (!pacer_.paused() || reset_) Advance();
   }
@@ -109,8 +109,8 @@ void WorldNode::Advance() {
     if (!ListenersReady(now)) return;
     pacer_.Begin(now);
     began_ = now;
-    ROS_INFO("world: running '%s' with %d AUVs, seed %llu", scenario_.name.c_str(),
-             scenario_.agents, static_cast<unsigned long long>(seed_));
+    ROS_INFO("world: running '%s' with %d AUVs, seed %llu", scenario_.run.name.c_str(),
+             scenario_.run.agents, static_cast<unsigned long long>(seed_));
   } else if (!pacer_.Due(now)) {
     return;
   }
@@ -167,7 +167,7 @@ void WorldNode::StepWorld() {
   }
   if (missed) ++missed_steps_;
   if (part_ == 0) channel_fresh_ = barrier_.answered(Channel());  // later parts excuse it
-  commands_.Move(scenario_.time.decision_steps / commands_.parts(), &world_);
+  commands_.Move(scenario_.run.time.decision_steps / commands_.parts(), &world_);
   CheckState();
   barrier_.Close();
   if (++part_ < commands_.parts()) {
@@ -192,7 +192,7 @@ void WorldNode::OpenPart() {
 
 /// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
 void WorldNode::CheckState() const {
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const dynamics::NavState nav = world_.Truth(0, i);
     if (FiniteVector(nav.p_WB) && FiniteVector(nav.v_WB_B) && FiniteVector(nav.w_WB_B)) continue;
     throw UserError("world: the state of AUV " + std::to_string(i) +
@@ -212,7 +212,7 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   part_ = 0;
   // The other lanes run the same world; only lane 0 is looked at.
   for (int lane = 0; lane < kLanes; ++lane) {
-    world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.reset.stage);
+    world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.world.reset.stage);
   }
   commands_.Clear();
   fresh_.assign(fresh_.size(), 0);
@@ -330,11 +330,11 @@ void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("from detection to wrench, 99 % [ms]", DelayQuantile(0.99));
   status.add("steps with a deadline miss", missed_steps_);
   status.add("deadline misses of the channel", barrier_.misses(Channel()));
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const std::string name = topics::AuvTopic(i, commands_.topic());
     status.add("deadline misses " + name, barrier_.misses(i));
     commands_.refused(i).Report(name, &status);
-    if (scenario_.sea.open) {
+    if (scenario_.world.sea.open) {
       status.add("groundings " + name, Lane(world_.sea().groundings(i), 0));
     }
     if (!barrier_.present(i)) {

@@ -55,7 +55,7 @@ class WorldNode {
 
   StepBarrier::Word Hear(int i, TimeNs stamp);
   double Work();
-  int Channel() const { return scenario_.agents; }
+  int Channel() const { return scenario_.run.agents; }
   double OpenFor() const { return WallSeconds() - opened_; }
   double WaitTime() const;
   void Advance();
@@ -73,9 +73,11 @@ class WorldNode {
   double DelayQuantile(double share) const;
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
   TimeNs Now() const { return start_ + world_.time(0); }
-  bool AtEnd() const { return step_ >= static_cast<std::uint32_t>(scenario_.time.episode_steps); }
+  bool AtEnd() const {
+    return step_ >= static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
+  }
 
-  dynamics::WorldConfig scenario_;
+  dynamics::WorldScenario scenario_;
   dynamics::World world_;
   TimeNs period_;  ///< of decisions [ns]
   VehicleCommands commands_;

@@ -28,12 +28,12 @@ geometry_msgs::TransformStamped TransformOf(const std::string& child,
 
 }  // namespace
 
-WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz)
+WorldPublisher::WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz)
     : scenario_(scenario),
       display_period_s_(1.0 / display_rate_hz),
       run_(ros::WallTime::now().toNSec()),
-      auvs_(static_cast<std::size_t>(scenario.agents)),
-      targets_(static_cast<std::size_t>(scenario.target.count)),
+      auvs_(static_cast<std::size_t>(scenario.run.agents)),
+      targets_(static_cast<std::size_t>(scenario.world.target.count)),
       target_messages_(targets_.size()) {
   Advertise();
   swarm_message_.header.frame_id = frames::kWorld;
@@ -53,7 +53,7 @@ WorldPublisher::WorldPublisher(const dynamics::WorldConfig& scenario, double dis
 
 void WorldPublisher::Advertise() {
   ros::NodeHandle node;
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
     auv.frame_message.header.frame_id = frames::Body(i);
     auv.frame = node.advertise<auv_msgs::SensorFrame>(topics::AuvTopic(i, topics::kSensorFrame),
@@ -77,7 +77,7 @@ void WorldPublisher::Advertise() {
   // roscpp sends in the order of these lines: who decides is served first.
   swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
-  for (int k = 0; k < scenario_.target.count; ++k) {
+  for (int k = 0; k < scenario_.world.target.count; ++k) {
     nav_msgs::Odometry& message = target_messages_[static_cast<std::size_t>(k)];
     message.header.frame_id = frames::kWorld;
     message.child_frame_id = frames::Target(k);
@@ -193,7 +193,7 @@ void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
   SetDetections(world, start + world.time(0), i, &m);
   if (m.step == 0) {
     m.cue_valid = true;  // and stays in the message, for an agent that comes late
-    const dynamics::Cue cue = world.InitialCue(0, i, scenario_.target_of(i));
+    const dynamics::Cue cue = world.InitialCue(0, i, scenario_.world.target.of(i));
     SetVector(cue.p_WT, &m.cue_position);
     m.cue_std = cue.std_m;
   }

@@ -21,7 +21,7 @@ class WorldPublisher {
  public:
   /// @param display_rate_hz largest rate of transforms per second of wall time, and a tenth of the
   ///                        largest rate of /clock: no step waits for either
-  WorldPublisher(const dynamics::WorldConfig& scenario, double display_rate_hz);
+  WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz);
 
   /// What acted on the AUVs in the step that ends at the next PublishSensors: wrenches, and which
   /// of them were commanded for it; and whether the acoustic channel had closed it.
@@ -64,7 +64,7 @@ class WorldPublisher {
   void PublishFrames(TimeNs now);
   void SendWorldNed();
 
-  dynamics::WorldConfig scenario_;
+  dynamics::WorldScenario scenario_;
   double display_period_s_;
   std::uint64_t run_;  ///< id of this run
   ros::WallTime clock_sent_, frames_sent_;

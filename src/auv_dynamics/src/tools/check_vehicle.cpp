@@ -89,8 +89,8 @@ int main(int argc, char** argv) {
       const auto source =
           stg::config::NamedSource(stg::config::ScenarioFolder(), scenario, "nominal", overrides);
       vehicle =
-          stg::config::Load<stg::dynamics::WorldConfig>(source, stg::config::Scope::kOwnSections)
-              .vehicle;
+          stg::config::Load<stg::dynamics::WorldScenario>(source, stg::config::Scope::kOwnSections)
+              .world.vehicle;
       const std::string& model = vehicle.model_of(0);
       const auto flown = stg::dynamics::Vehicles().Make(model, vehicle);
       if (dynamic_cast<const stg::dynamics::Torpedo*>(flown.get()) == nullptr) {

@@ -10,9 +10,9 @@
 namespace stg::dynamics {
 namespace {
 
-const WorldConfig& Valid(const WorldConfig& scenario) {
-  config::ValidateOrThrow(scenario);
-  return scenario;
+const WorldConfig& Valid(const WorldConfig& config, const RunConfig& run) {
+  config::ValidateOrThrow(WorldScenario{run, config});
+  return config;
 }
 
 NavState LaneOfNav(const Navigation<Pack>& all, int lane) {
@@ -29,31 +29,31 @@ NavState LaneOfNav(const Navigation<Pack>& all, int lane) {
 
 }  // namespace
 
-World::World(const WorldConfig& scenario)
-    : dt_s_(Valid(scenario).time.dt_s),
-      dt_ns_(scenario.step_period()),
-      current_(scenario.current),
-      v_WC_(Broadcast({scenario.current.velocity_mps[0], scenario.current.velocity_mps[1],
-                       scenario.current.velocity_mps[2]})),
-      reset_(scenario.reset),
-      depths_(scenario.sea),
-      sensing_(scenario.sensing),
-      fleet_(scenario.vehicle, scenario.agents),
-      motion_(TargetMotions().Make(
-          scenario.target.motion,
-          {scenario.target, scenario.wall_m(), dt_s_, scenario.workspace.half_extent_m})),
-      sensor_(TargetSensors().Make(scenario.sensing.sensor, scenario.sensing)),
-      navigation_(NavigationSystems().Make(
-          scenario.navigation.kind, {scenario.navigation, scenario.agents, scenario.time.dt_s})),
+World::World(const WorldConfig& config, const RunConfig& run)
+    : dt_s_(run.time.dt_s),
+      dt_ns_(run.step_period()),
+      current_(Valid(config, run).current),
+      v_WC_(Broadcast({config.current.velocity_mps[0], config.current.velocity_mps[1],
+                       config.current.velocity_mps[2]})),
+      reset_(config.reset),
+      depths_(config.sea),
+      sensing_(config.sensing),
+      fleet_(config.vehicle, run.agents),
+      motion_(TargetMotions().Make(config.target.motion,
+                                   {config.target, WallOf(config.workspace, config.sea), dt_s_,
+                                    config.workspace.half_extent_m})),
+      sensor_(TargetSensors().Make(config.sensing.sensor, config.sensing)),
+      navigation_(NavigationSystems().Make(config.navigation.kind,
+                                           {config.navigation, run.agents, run.time.dt_s})),
       perfect_(navigation_->perfect()),
-      separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
-      contacts_(scenario.contact, scenario.agents, scenario.vehicle.radius_m),
-      disturbance_(scenario.disturbance, scenario.agents, dt_s_),
-      walls_(scenario.workspace),
-      sea_(scenario.sea, scenario.agents, scenario.workspace.half_extent_m),
-      open_(scenario.sea.open),
-      vehicles_(static_cast<size_t>(scenario.agents)),
-      targets_(static_cast<size_t>(scenario.target.count)),
+      separations_(run.agents, 2.0 * config.vehicle.radius_m),
+      contacts_(config.contact, run.agents, config.vehicle.radius_m),
+      disturbance_(config.disturbance, run.agents, dt_s_),
+      walls_(config.workspace),
+      sea_(config.sea, run.agents, config.workspace.half_extent_m),
+      open_(config.sea.open),
+      vehicles_(static_cast<size_t>(run.agents)),
+      targets_(static_cast<size_t>(config.target.count)),
       internal_(vehicles_.size() * fleet_.internal_size(), Pack(0.0)),
       commands_(vehicles_.size() * kWrenchSize, Pack(0.0)),
       start_{std::vector<Vec3<double>>(vehicles_.size()),

@@ -23,7 +23,7 @@ bool StartsFit(const ResetConfig& reset, const ResetStageConfig& stage, int agen
          agents * half * half * half <= kShare * (outer * outer * outer - inner * inner * inner);
 }
 
-std::optional<Violation> CheckStage(const WorldConfig& s, int index) {
+std::optional<Violation> CheckStage(const WorldConfig& s, int agents, int index) {
   const char* const names[] = {"easy", "medium", "hard"};
   const std::string path = std::string("reset.stages.") + names[index] + ".";
   const ResetStageConfig& stage = s.reset.stages[static_cast<std::size_t>(index)];
@@ -40,7 +40,7 @@ std::optional<Violation> CheckStage(const WorldConfig& s, int index) {
                      "AUVs cannot start this far from a target within the start region"};
   }
   const bool used = s.reset.curriculum || static_cast<int>(s.reset.stage) == index;
-  if (used && !StartsFit(s.reset, stage, s.agents)) {
+  if (used && !StartsFit(s.reset, stage, agents)) {
     return Violation{{"agents", path + "auv_distance_m", "reset.min_separation_m"},
                      "so many AUVs do not fit around a target with this separation"};
   }
@@ -49,7 +49,7 @@ std::optional<Violation> CheckStage(const WorldConfig& s, int index) {
 
 }  // namespace
 
-void DescribeSections(WorldConfig* c, config::Table* t) {
+void Describe(WorldConfig* c, config::Table* t) {
   Describe(&c->vehicle, t);
   Describe(&c->current, t);
   Describe(&c->disturbance, t);
@@ -63,17 +63,11 @@ void DescribeSections(WorldConfig* c, config::Table* t) {
   Describe(&c->control, t);
 }
 
-void Describe(WorldConfig* c, config::Table* t) {
-  Describe(static_cast<RunConfig*>(c), t);
-  DescribeSections(c, t);
-}
-
-std::optional<config::Violation> FindConflict(const WorldConfig& s) {
-  if (auto violation = FindConflict(static_cast<const RunConfig&>(s))) return violation;
+std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunConfig& run) {
   if (auto violation = FindConflict(s.vehicle)) return violation;
   if (auto violation = FindConflict(s.current)) return violation;
   if (auto violation = FindConflict(s.sea)) return violation;
-  if (auto violation = FindConflict(s.sensing, s.decision_dt_s())) return violation;
+  if (auto violation = FindConflict(s.sensing, run.decision_dt_s())) return violation;
   for (const std::string& model : s.vehicle.models) {
     if (Autopilots().Has(model) == Autopilots().Has(s.vehicle.models[0])) continue;
     return Violation{
@@ -86,7 +80,7 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
       return Violation{{"control.interface", "vehicle.model"},
                        "these vehicles are steered by a velocity command: velocity3"};
     }
-    if (s.time.decision_steps % s.control.autopilot.period_steps != 0) {
+    if (run.time.decision_steps % s.control.autopilot.period_steps != 0) {
       return Violation{{"control.autopilot.period_steps", "time.decision_steps"},
                        "a decision must be a whole number of the autopilot's periods"};
     }
@@ -95,7 +89,7 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
     return Violation{{"vehicle.radius_m", "workspace.half_extent_m"},
                      "an AUV does not fit between the walls"};
   }
-  if (s.target.count > s.agents) {
+  if (s.target.count > run.agents) {
     return Violation{{"target.count", "agents"}, "there cannot be more targets than AUVs"};
   }
   if (s.reset.start_half_extent_m > s.workspace.half_extent_m) {
@@ -107,9 +101,19 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s) {
                      "the medium stage cannot end before the easy one"};
   }
   for (int i = 0; i < 3; ++i) {
-    if (auto violation = CheckStage(s, i)) return violation;
+    if (auto violation = CheckStage(s, run.agents, i)) return violation;
   }
   return {};
+}
+
+void Describe(WorldScenario* s, config::Table* t) {
+  Describe(&s->run, t);
+  Describe(&s->world, t);
+}
+
+std::optional<config::Violation> FindConflict(const WorldScenario& s) {
+  if (auto violation = FindConflict(s.run)) return violation;
+  return FindConflict(s.world, s.run);
 }
 
 }  // namespace stg::dynamics

@@ -8,23 +8,23 @@
 namespace stg::dynamics {
 namespace {
 
-WorldConfig Water(int agents) {
-  WorldConfig s;
-  s.agents = agents;
-  s.sea.open = true;
-  s.vehicle.model = "kinematic";
-  s.vehicle.max_velocity_mps = {2.0, 2.0, 0.5};
-  s.vehicle.kinematic.speed_lag_s = 0.1;
-  s.vehicle.radius_m = 1.0;
-  s.workspace.half_extent_m = 500.0;
-  s.target.max_speed_mps = 0.9;
-  s.target.max_turn_rate_radps = 0.05;
-  s.reset.start_half_extent_m = 450.0;
-  s.reset.min_separation_m = 20.0;
-  for (ResetStageConfig& stage : s.reset.stages) {
+WorldScenario Water(int agents) {
+  WorldScenario s;
+  s.run.agents = agents;
+  s.world.sea.open = true;
+  s.world.vehicle.model = "kinematic";
+  s.world.vehicle.max_velocity_mps = {2.0, 2.0, 0.5};
+  s.world.vehicle.kinematic.speed_lag_s = 0.1;
+  s.world.vehicle.radius_m = 1.0;
+  s.world.workspace.half_extent_m = 500.0;
+  s.world.target.max_speed_mps = 0.9;
+  s.world.target.max_turn_rate_radps = 0.05;
+  s.world.reset.start_half_extent_m = 450.0;
+  s.world.reset.min_separation_m = 20.0;
+  for (ResetStageConfig& stage : s.world.reset.stages) {
     stage = {{0.0, 200.0}, {50.0, 200.0}, {0.3, 0.9}};
   }
-  s.sensing.range_m = 400.0;
+  s.world.sensing.range_m = 400.0;
   return s;
 }
 
@@ -53,8 +53,8 @@ TEST(Obstacle, InsideIsANegativeDistanceAndExpelGoesToTheNearestPlaceOnTheSurfac
 }
 
 TEST(Obstacles, HoldAVehicleAtTheirSurfaceAndCountItOnceUntilItIsOff) {
-  WorldConfig s = Water(1);
-  s.sea.cylinders = {{50.0, 0.0, -120.0, 20.0, 120.0}};
+  WorldScenario s = Water(1);
+  s.world.sea.cylinders = {{50.0, 0.0, -120.0, 20.0, 120.0}};
   World world(s);
   world.Place(0, {{0.0, 3.0, -40.0}}, {{400.0, 400.0, -40.0}}, {{}});
   bool touched = false;
@@ -74,23 +74,24 @@ TEST(Obstacles, HoldAVehicleAtTheirSurfaceAndCountItOnceUntilItIsOff) {
 }
 
 TEST(Obstacles, BlockTheSensorAndNothingElseDoes) {
-  WorldConfig s = Water(1);
-  s.sea.spheres = {{100.0, 0.0, -40.0, 10.0}};
+  WorldScenario s = Water(1);
+  s.world.sea.spheres = {{100.0, 0.0, -40.0, 10.0}};
   World world(s);
   Detection detection;
   world.Place(0, {{0.0, 0.0, -40.0}}, {{200.0, 0.0, -40.0}}, {{}});
   EXPECT_FALSE(world.Sense(0, 0, 0, &detection));
   world.Place(0, {{0.0, 0.0, -40.0}}, {{200.0, 30.0, -40.0}}, {{}});
   EXPECT_TRUE(world.Sense(0, 0, 0, &detection));
-  const auto sees = ShadowsOf(s.sea, 500.0);
+  const auto sees = ShadowsOf(s.world.sea, 500.0);
   EXPECT_FALSE(sees({0.0, 0.0, -40.0}, {200.0, 0.0, -40.0}));
   EXPECT_TRUE(sees({0.0, 0.0, -40.0}, {200.0, 30.0, -40.0}));
-  EXPECT_FALSE(ShadowsOf(Water(1).sea, 500.0)) << "open water over a flat bottom has no shadows";
+  EXPECT_FALSE(ShadowsOf(Water(1).world.sea, 500.0))
+      << "open water over a flat bottom has no shadows";
 }
 
 TEST(Obstacles, EpisodesStartClearOfThemOrAreRefused) {
-  WorldConfig s = Water(3);
-  s.sea.spheres = {{0.0, 0.0, -40.0, 120.0}};
+  WorldScenario s = Water(3);
+  s.world.sea.spheres = {{0.0, 0.0, -40.0, 120.0}};
   World world(s);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     world.Reset(0, seed, 0, ResetStage::kMedium);
@@ -113,16 +114,16 @@ TEST(Obstacles, EpisodesStartClearOfThemOrAreRefused) {
             std::string::npos);
   EXPECT_NE(why({400.0, 400.0, 1.0}).find("above the surface"), std::string::npos);
   EXPECT_EQ(why({400.0, 400.0, -40.0}), "");
-  s.sea.spheres = {{0.0, 0.0, -40.0, 1000.0}};
+  s.world.sea.spheres = {{0.0, 0.0, -40.0, 1000.0}};
   World full(s);
   EXPECT_THROW(full.Reset(0, 1, 0, ResetStage::kMedium), UserError);
 }
 
 TEST(Obstacles, TargetsOfEveryMotionGoRoundThemAtTheirSpeed) {
   for (const char* motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
-    WorldConfig s = Water(1);
-    s.target.motion = motion;
-    s.sea.cylinders = {{60.0, 0.0, -120.0, 30.0, 120.0}, {-80.0, 40.0, -120.0, 30.0, 120.0}};
+    WorldScenario s = Water(1);
+    s.world.target.motion = motion;
+    s.world.sea.cylinders = {{60.0, 0.0, -120.0, 30.0, 120.0}, {-80.0, 40.0, -120.0, 30.0, 120.0}};
     World world(s);
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
       world.Reset(0, seed, 0, ResetStage::kMedium);
@@ -137,19 +138,19 @@ TEST(Obstacles, TargetsOfEveryMotionGoRoundThemAtTheirSpeed) {
 }
 
 TEST(Obstacles, AreRowsOfNumbersInAFile) {
-  WorldConfig s = Water(1);
-  s.sea.spheres = {{1.0, 2.0, -3.5, 4.0}, {5.0, 6.0, -7.0, 8.25}};
-  s.sea.cylinders = {{1.0, 2.0, -30.0, 4.0, 10.0}};
+  WorldScenario s = Water(1);
+  s.world.sea.spheres = {{1.0, 2.0, -3.5, 4.0}, {5.0, 6.0, -7.0, 8.25}};
+  s.world.sea.cylinders = {{1.0, 2.0, -30.0, 4.0, 10.0}};
   const std::string text = config::ToYaml(s);
   EXPECT_NE(text.find("spheres: [[1.0, 2.0, -3.5, 4.0], [5.0, 6.0, -7.0, 8.25]]"),
             std::string::npos)
       << text;
-  const WorldConfig read = config::LoadText<WorldConfig>(text, "here");
-  EXPECT_EQ(read.sea.spheres, s.sea.spheres);
-  EXPECT_EQ(read.sea.cylinders, s.sea.cylinders);
-  s.sea.spheres = {{1.0, 2.0, -3.5, 0.0}};
+  const WorldScenario read = config::LoadText<WorldScenario>(text, "here");
+  EXPECT_EQ(read.world.sea.spheres, s.world.sea.spheres);
+  EXPECT_EQ(read.world.sea.cylinders, s.world.sea.cylinders);
+  s.world.sea.spheres = {{1.0, 2.0, -3.5, 0.0}};
   EXPECT_THROW(config::ValidateOrThrow(s), UserError);
-  s.sea.spheres = {{1.0, 2.0, -3.5}};
+  s.world.sea.spheres = {{1.0, 2.0, -3.5}};
   EXPECT_THROW(config::ValidateOrThrow(s), UserError);
 }
 

@@ -15,17 +15,18 @@ namespace stg::dynamics {
 namespace {
 
 /// Open water for vehicles that do what they are told.
-WorldConfig OpenWater(int agents) {
-  WorldConfig s = QuietScenario(agents);
-  s.vehicle.model = "kinematic";
-  s.vehicle.max_velocity_mps = {2.0, 2.0, 1.0};
-  s.vehicle.max_rate_radps = {0.5, 0.5, 0.2};
-  s.workspace.half_extent_m = 500.0;
-  s.sea.open = true;
-  s.target.max_speed_mps = 1.0;
-  s.reset.start_half_extent_m = 500.0;
-  s.reset.min_separation_m = 20.0;
-  for (ResetStageConfig& stage : s.reset.stages) stage = {{0.0, 100.0}, {50.0, 150.0}, {0.3, 0.9}};
+WorldScenario OpenWater(int agents) {
+  WorldScenario s = QuietScenario(agents);
+  s.world.vehicle.model = "kinematic";
+  s.world.vehicle.max_velocity_mps = {2.0, 2.0, 1.0};
+  s.world.vehicle.max_rate_radps = {0.5, 0.5, 0.2};
+  s.world.workspace.half_extent_m = 500.0;
+  s.world.sea.open = true;
+  s.world.target.max_speed_mps = 1.0;
+  s.world.reset.start_half_extent_m = 500.0;
+  s.world.reset.min_separation_m = 20.0;
+  for (ResetStageConfig& stage : s.world.reset.stages)
+    stage = {{0.0, 100.0}, {50.0, 150.0}, {0.3, 0.9}};
   return s;
 }
 
@@ -52,10 +53,10 @@ TEST(Current, IsLinearBetweenItsLayersAndConstantBeyond) {
 }
 
 TEST(Current, TideCarriesADriftingVehicleToAndFro) {
-  WorldConfig s = OpenWater(1);
-  s.time.dt_s = 0.1;
-  s.current.tide_mps = {0.5, -0.2};
-  s.current.tide_period_s = 200.0;
+  WorldScenario s = OpenWater(1);
+  s.run.time.dt_s = 0.1;
+  s.world.current.tide_mps = {0.5, -0.2};
+  s.world.current.tide_period_s = 200.0;
   World world(s);
   world.Place(0, {{0.0, 0.0, -30.0}}, {{50.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
   const std::vector<Pack> still(3, Pack(0.0));
@@ -101,10 +102,10 @@ TEST(Sea, HasNoWalls) {
 }
 
 TEST(Sea, EpisodesStartAtTheirDepthsApartFromEachOther) {
-  WorldConfig s = OpenWater(6);
-  s.sea.auv_depth_m = {10.0, 15.0};
-  s.sea.target_depth_m = {40.0, 50.0};
-  s.target.count = 2;
+  WorldScenario s = OpenWater(6);
+  s.world.sea.auv_depth_m = {10.0, 15.0};
+  s.world.sea.target_depth_m = {40.0, 50.0};
+  s.world.target.count = 2;
   World world(s);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     world.Reset(0, seed, 0, ResetStage::kMedium);
@@ -129,9 +130,9 @@ TEST(Sea, EpisodesStartAtTheirDepthsApartFromEachOther) {
 TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
   for (const std::string& motion : TargetMotions().Names()) {
     if (motion == "lift") continue;  // of another test
-    WorldConfig s = OpenWater(1);
-    s.target.motion = motion;
-    s.target.evasion_range_m = 300.0;
+    WorldScenario s = OpenWater(1);
+    s.world.target.motion = motion;
+    s.world.target.evasion_range_m = 300.0;
     World world(s);
     world.Reset(0, 9, 0, ResetStage::kMedium);
     const double speed = Norm(Lane(world.target(0).v_WT, 0));
@@ -167,14 +168,14 @@ class SeaOverAFile : public ::testing::Test {
     ::unsetenv("STG_TERRAINS");
     std::filesystem::remove_all(folder_);
   }
-  static WorldConfig Slope(double latitude) {
-    WorldConfig s = OpenWater(1);
-    s.sea.terrain = "slope";
-    s.sea.latitude_deg = latitude;
-    s.sea.longitude_deg = 50.1;
+  static WorldScenario Slope(double latitude) {
+    WorldScenario s = OpenWater(1);
+    s.world.sea.terrain = "slope";
+    s.world.sea.latitude_deg = latitude;
+    s.world.sea.longitude_deg = 50.1;
     return s;
   }
-  static std::string Refusal(const WorldConfig& s) {
+  static std::string Refusal(const WorldScenario& s) {
     try {
       World world(s);
       world.Reset(0, 1, 0, ResetStage::kMedium);
@@ -200,18 +201,18 @@ TEST_F(SeaOverAFile, TheBottomIsThatOfTheFile) {
 }
 
 TEST_F(SeaOverAFile, EpisodesStartClearOfTheBottomOrSayThatTheyCannot) {
-  WorldConfig s = Slope(10.05);  // 60 m
-  s.sea.auv_depth_m = s.sea.target_depth_m = {20.0, 80.0};
+  WorldScenario s = Slope(10.05);  // 60 m
+  s.world.sea.auv_depth_m = s.world.sea.target_depth_m = {20.0, 80.0};
   World world(s);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     world.Reset(0, seed, 0, ResetStage::kMedium);
     EXPECT_GT(world.sea().terrain().Altitude(world.Nav(0, 0).p_WB), 5.0);
     EXPECT_GT(world.sea().terrain().Altitude(Lane(world.target(0).p_WT, 0)), 5.0);
   }
-  s.sea.target_depth_m = {70.0, 80.0};
+  s.world.sea.target_depth_m = {70.0, 80.0};
   EXPECT_NE(Refusal(s).find("every start of a target lies in the bottom"), std::string::npos);
-  s.sea.target_depth_m = {20.0, 40.0};
-  s.sea.auv_depth_m = {70.0, 80.0};
+  s.world.sea.target_depth_m = {20.0, 40.0};
+  s.world.sea.auv_depth_m = {70.0, 80.0};
   EXPECT_NE(Refusal(s).find("no room for 1 vehicles"), std::string::npos);
 }
 
@@ -219,29 +220,29 @@ TEST_F(SeaOverAFile, TakesAFileByItsPathWhateverItsName) {
   // As GEBCO names what it cuts out for a user.
   const std::string file = folder_ + "/gebco_2024_n10.5_s9.5.nc";
   std::filesystem::copy_file(folder_ + "/slope.nc", file);
-  WorldConfig s = Slope(10.1);
-  s.sea.terrain = file;
+  WorldScenario s = Slope(10.1);
+  s.world.sea.terrain = file;
   EXPECT_EQ(Refusal(s), "accepted");
-  s.sea.terrain = folder_ + "/none.nc";
+  s.world.sea.terrain = folder_ + "/none.nc";
   EXPECT_NE(Refusal(s).find("no file " + folder_), std::string::npos) << Refusal(s);
   for (const std::string bad : {"two words.nc", ".nc", "x.nc\n", "../passwd", "-x.nc"}) {
-    s.sea.terrain = bad;
+    s.world.sea.terrain = bad;
     EXPECT_NE(Refusal(s).find("is no name"), std::string::npos) << bad;
   }
   s = Slope(10.1);
-  s.name = file;  // other texts are names only
+  s.run.name = file;  // other texts are names only
   EXPECT_NE(Refusal(s).find("is no name"), std::string::npos);
 }
 
 TEST_F(SeaOverAFile, SaysWhatIsWrong) {
-  WorldConfig s = Slope(10.1);
+  WorldScenario s = Slope(10.1);
   EXPECT_EQ(Refusal(s), "accepted");
-  s.sea.latitude_deg = 11.0;
+  s.world.sea.latitude_deg = 11.0;
   EXPECT_NE(Refusal(s).find("covers latitudes 10.0"), std::string::npos) << Refusal(s);
   s = Slope(10.1);
-  s.sea.longitude_deg = 40.0;
+  s.world.sea.longitude_deg = 40.0;
   EXPECT_NE(Refusal(s).find("covers longitudes 50.0"), std::string::npos) << Refusal(s);
-  s.sea.terrain = "atlantis";
+  s.world.sea.terrain = "atlantis";
   ::setenv("STG_SCENARIOS", folder_.c_str(), 1);
   EXPECT_NE(Refusal(s).find("no atlantis.nc in the folders of STG_TERRAINS"), std::string::npos);
   ::unsetenv("STG_SCENARIOS");
@@ -250,13 +251,13 @@ TEST_F(SeaOverAFile, SaysWhatIsWrong) {
 }
 
 TEST(Sea, RefusesStartsInTheBottom) {
-  WorldConfig s = OpenWater(1);
-  s.sea.bottom_m = 60.0;
+  WorldScenario s = OpenWater(1);
+  s.world.sea.bottom_m = 60.0;
   EXPECT_THROW(World{s}, UserError);
-  s.sea.bottom_m = 100.0;
-  s.sea.target_depth_m = {20.0, 100.0};
+  s.world.sea.bottom_m = 100.0;
+  s.world.sea.target_depth_m = {20.0, 100.0};
   EXPECT_THROW(World{s}, UserError);
-  s.sea.open = false;
+  s.world.sea.open = false;
   EXPECT_NO_THROW(World{s});
 }
 

@@ -11,13 +11,13 @@ namespace stg::dynamics {
 namespace {
 
 /// A sea without walls in reach.
-WorldConfig Sea(const std::string& model, int agents) {
-  WorldConfig s = QuietScenario(agents);
-  s.vehicle.model = model;
-  s.vehicle.max_velocity_mps = {2.0, 2.0, 0.5};
-  s.vehicle.max_rate_radps = {0.5, 0.5, 0.2};
-  s.workspace.half_extent_m = 1e4;
-  s.time.dt_s = 0.05;
+WorldScenario Sea(const std::string& model, int agents) {
+  WorldScenario s = QuietScenario(agents);
+  s.world.vehicle.model = model;
+  s.world.vehicle.max_velocity_mps = {2.0, 2.0, 0.5};
+  s.world.vehicle.max_rate_radps = {0.5, 0.5, 0.2};
+  s.world.workspace.half_extent_m = 1e4;
+  s.run.time.dt_s = 0.05;
   return s;
 }
 
@@ -40,7 +40,7 @@ double Command(int id, int k, int axis, const Axis& limits) {
 using Numbers = std::vector<double>;
 
 /// Runs world ids[l] in lane l for 20 s; what each lane comes to.
-std::vector<Numbers> Fly(const WorldConfig& scenario, const std::vector<int>& ids) {
+std::vector<Numbers> Fly(const WorldScenario& scenario, const std::vector<int>& ids) {
   World world(scenario);
   const Space& axes = world.model().actuators();
   for (size_t l = 0; l < ids.size(); ++l) Launch(&world, static_cast<int>(l));
@@ -70,10 +70,10 @@ std::vector<Numbers> Fly(const WorldConfig& scenario, const std::vector<int>& id
 TEST(VehicleKinds, EachLaneEqualsTheSameWorldAloneBitForBit) {
   for (const std::string model : {"fully_actuated", "torpedo", "kinematic"}) {
     for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-      WorldConfig scenario = Sea(model, 2);
-      scenario.vehicle.integrator = integrator;
-      scenario.current.velocity_mps = {0.2, -0.3, 0.05};
-      scenario.disturbance = {2.0, 0.2, 1.0};
+      WorldScenario scenario = Sea(model, 2);
+      scenario.world.vehicle.integrator = integrator;
+      scenario.world.current.velocity_mps = {0.2, -0.3, 0.05};
+      scenario.world.disturbance = {2.0, 0.2, 1.0};
       std::vector<int> ids;
       for (int l = 0; l < kLanes; ++l) ids.push_back(l);
       const std::vector<Numbers> together = Fly(scenario, ids);
@@ -93,10 +93,10 @@ TEST(VehicleKinds, EachLaneEqualsTheSameWorldAloneBitForBit) {
 }
 
 TEST(VehicleKinds, ScalarTorpedoEqualsTheWorldBitForBit) {
-  const WorldConfig scenario = Sea("torpedo", 1);
+  const WorldScenario scenario = Sea("torpedo", 1);
   World world(scenario);
   Launch(&world, 0);
-  const TorpedoModel model(scenario.vehicle.torpedo);
+  const TorpedoModel model(scenario.world.vehicle.torpedo);
   VehicleState<double> s = AtAttitude({});
   s.p_WB = Line(1)[0];
   TorpedoActuators<double> actuators;
@@ -109,16 +109,17 @@ TEST(VehicleKinds, ScalarTorpedoEqualsTheWorldBitForBit) {
       commands.push_back(Pack(c[a]));
     }
     world.Step(commands);
-    Integrate(model, scenario.vehicle, model.Limit(TorpedoActuators<double>{c[0], c[1], c[2]}),
-              Wrench<double>(), Vec3<double>(), 0.05, &s, &actuators);
+    Integrate(model, scenario.world.vehicle,
+              model.Limit(TorpedoActuators<double>{c[0], c[1], c[2]}), Wrench<double>(),
+              Vec3<double>(), 0.05, &s, &actuators);
   }
   EXPECT_EQ(Norm(world.Nav(0, 0).p_WB - s.p_WB), 0.0);
   EXPECT_EQ(Norm(world.Nav(0, 0).w_WB_B - s.w_WB_B), 0.0);
 }
 
 TEST(VehicleKinds, MixedFleetsFlyAsEachKindAloneBitForBit) {
-  WorldConfig mixed = Sea("torpedo", 3);
-  mixed.vehicle.models = {"torpedo", "kinematic"};
+  WorldScenario mixed = Sea("torpedo", 3);
+  mixed.world.vehicle.models = {"torpedo", "kinematic"};
   World fleet(mixed);
   ASSERT_EQ(&fleet.model(0), &fleet.model(2));
   ASSERT_NE(&fleet.model(0), &fleet.model(1));
@@ -128,7 +129,7 @@ TEST(VehicleKinds, MixedFleetsFlyAsEachKindAloneBitForBit) {
     return a < axes.size() ? Pack(Command(i, k, static_cast<int>(a), axes[a])) : Pack(0.0);
   };
   for (int i = 0; i < 3; ++i) {
-    World alone(Sea(mixed.vehicle.model_of(i), 1));
+    World alone(Sea(mixed.world.vehicle.model_of(i), 1));
     alone.Place(0, {Line(3)[static_cast<std::size_t>(i)]}, {{100.0, 0.0, -30.0}},
                 {{0.0, 0.0, 0.0}});
     Launch(&fleet, 0);
@@ -148,14 +149,14 @@ TEST(VehicleKinds, MixedFleetsFlyAsEachKindAloneBitForBit) {
 }
 
 TEST(VehicleKinds, SteeredVehiclesDoNotFlyWithThoseThatForceCommands) {
-  WorldConfig mixed = Sea("torpedo", 2);
-  mixed.vehicle.models = {"torpedo", "fully_actuated"};
+  WorldScenario mixed = Sea("torpedo", 2);
+  mixed.world.vehicle.models = {"torpedo", "fully_actuated"};
   EXPECT_THROW(World{mixed}, UserError);
 }
 
 TEST(VehicleKinds, TorpedoFeelsContactAndDisturbance) {
-  WorldConfig scenario = Sea("torpedo", 2);
-  scenario.vehicle.radius_m = 1.0;
+  WorldScenario scenario = Sea("torpedo", 2);
+  scenario.world.vehicle.radius_m = 1.0;
   World world(scenario);
   world.Place(0, {{0.0, 0.0, -30.0}, {0.0, 1.5, -30.0}}, {{100.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
   const std::vector<Pack> still(6, Pack(0.0));
@@ -176,7 +177,7 @@ TEST(VehicleKinds, ActuatorsStartAtZeroWithEachEpisode) {
 }
 
 TEST(Kinematic, ReachesItsCommandsWithTheirLags) {
-  WorldConfig scenario = Sea("kinematic", 1);
+  WorldScenario scenario = Sea("kinematic", 1);
   World world(scenario);
   Launch(&world, 0);
   for (int k = 0; k < 40; ++k) world.Step({Pack(1.0), Pack(0.1), Pack(-0.2)});
@@ -199,9 +200,9 @@ TEST(Kinematic, FliesACircleOfSpeedOverRate) {
 }
 
 TEST(Kinematic, KeepsWithinItsLimitsAndDriftsWithTheCurrent) {
-  WorldConfig scenario = Sea("kinematic", 1);
-  scenario.vehicle.kinematic.min_speed_mps = 0.6;
-  scenario.current.velocity_mps = {0.0, 0.3, -0.1};
+  WorldScenario scenario = Sea("kinematic", 1);
+  scenario.world.vehicle.kinematic.min_speed_mps = 0.6;
+  scenario.world.current.velocity_mps = {0.0, 0.3, -0.1};
   World world(scenario);
   Launch(&world, 0);
   for (int k = 0; k < 2000; ++k) world.Step({Pack(-5.0), Pack(0.0), Pack(9.0)});
@@ -209,7 +210,7 @@ TEST(Kinematic, KeepsWithinItsLimitsAndDriftsWithTheCurrent) {
   EXPECT_NEAR(nav.v_WB_B.x, 0.6, 1e-9);
   EXPECT_NEAR(nav.v_WB_B.y, 0.3, 1e-9);
   EXPECT_NEAR(nav.v_WB_B.z, 0.5 - 0.1, 1e-9);
-  scenario.vehicle.kinematic.min_speed_mps = 3.0;
+  scenario.world.vehicle.kinematic.min_speed_mps = 3.0;
   EXPECT_THROW(World{scenario}, UserError);
 }
 

@@ -39,7 +39,7 @@ void ReadMessages(const rosbag::Bag& bag, const Scenario& scenario, RecordInlet*
                   BagContents* contents) {
   std::map<std::string, int> agent_of;
   std::vector<std::string> topics{topics::kStepReport, topics::kScenario};
-  for (int i = 0; i < scenario.agents; ++i) {
+  for (int i = 0; i < scenario.run.agents; ++i) {
     const std::string topic = topics::AuvTopic(i, topics::kAgentStep);
     agent_of[topic] = i;
     topics.push_back(topic);

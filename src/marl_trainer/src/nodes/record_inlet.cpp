@@ -5,7 +5,9 @@
 namespace stg::nodes {
 
 RecordInlet::RecordInlet(const Scenario& scenario, const std::string& source)
-    : period_(scenario.decision_period()), agents_(scenario.agents), episodes_(scenario, source) {}
+    : period_(scenario.run.decision_period()),
+      agents_(scenario.run.agents),
+      episodes_(scenario, source) {}
 
 void RecordInlet::Add(int agent, const auv_msgs::AgentStep& m) {
   if (agent < 0 || agent >= agents_ || m.agent != static_cast<std::uint32_t>(agent)) {

@@ -41,7 +41,7 @@ TrainerNode::TrainerNode()
       updates_(IntegerParameter("updates", 0, 0, 1000000)),
       window_(IntegerParameter("window", 10, 1, 100000)),
       target_lost_rate_(NumberParameter("target_lost_rate", -1.0, -1.0, 1.0)),
-      agent_policies_(static_cast<std::size_t>(scenario_.agents)),
+      agent_policies_(static_cast<std::size_t>(scenario_.run.agents)),
       began_(ros::WallTime::now()),
       health_("trainer", "trainer", [this](auto& status) { Report(status); }) {
   learn::RecordedTrainer::Options options;
@@ -100,7 +100,7 @@ void TrainerNode::TrainOnBags() {
 void TrainerNode::Subscribe() {
   ros::NodeHandle node;
   inlet_ = std::make_unique<RecordInlet>(scenario_, "live");
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const boost::function<void(const auv_msgs::AgentStep::ConstPtr&)> callback =
         [this, i](const auv_msgs::AgentStep::ConstPtr& m) { OnAgentStep(i, *m); };
     subscribers_.push_back(
@@ -229,7 +229,7 @@ void TrainerNode::Learn() {
   collection_.clear();
   summaries_.clear();
   full_.reset();
-  for (int i = 0; i < scenario_.agents; ++i) LoadPolicy(i);
+  for (int i = 0; i < scenario_.run.agents; ++i) LoadPolicy(i);
   last_load_ = ros::WallTime::now();
   StartEpisode();
 }

@@ -87,11 +87,11 @@ int main(int argc, char** argv) {
     const stg::Scenario s = load({});
     const double rate = Bench(s, envs, workers, seconds);
     nlohmann::json json = {
-        {"scenario", scenario},         {"agents", s.agents},
+        {"scenario", scenario},         {"agents", s.run.agents},
         {"workers", workers},           {"environments", envs},
-        {"env_steps_per_second", rate}, {"agent_steps_per_second", rate * s.agents}};
+        {"env_steps_per_second", rate}, {"agent_steps_per_second", rate * s.run.agents}};
     std::cout << scenario << ": " << static_cast<long>(rate) << " environment steps/s of "
-              << s.agents << " AUVs on " << workers << " worker(s)\n";
+              << s.run.agents << " AUVs on " << workers << " worker(s)\n";
     if (scaling) {
       nlohmann::json rows = nlohmann::json::array();
       for (const int n : {4, 8, 20, 50, 100}) {

@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
       if (value.empty()) continue;
       full += (full.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
     }
-    stg::env::Controller controller = stg::env::MakeController(full, s);
+    stg::env::Controller controller = stg::env::MakeController(full, s.model());
     controller.privileged = privileged;
     CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));

@@ -118,10 +118,10 @@ TEST_F(CollectorTest, EpisodesStartInTheStageOfTheCurriculum) {
   const auto observations = [&](bool curriculum, ResetStage stage, int easy_until,
                                 int medium_until) {
     Scenario scenario = scenario_;
-    scenario.reset.curriculum = curriculum;
-    scenario.reset.stage = stage;
-    scenario.reset.curriculum_easy_resets = easy_until;
-    scenario.reset.curriculum_medium_resets = medium_until;
+    scenario.world.reset.curriculum = curriculum;
+    scenario.world.reset.stage = stage;
+    scenario.world.reset.curriculum_easy_resets = easy_until;
+    scenario.world.reset.curriculum_medium_resets = medium_until;
     WorkerPool pool(1);
     Collector collector({scenario}, config_, &pool);
     Recorder recorder(problem_);

@@ -93,10 +93,10 @@ class RecordedTest : public ::testing::Test {
               std::uint32_t steps = kSteps) const {
     for (std::uint32_t t = 0; t < steps; ++t) {
       RewardRecord reward;
-      for (int i = 0; i < scenario_.agents; ++i) {
+      for (int i = 0; i < scenario_.run.agents; ++i) {
         AgentRecord r = Step(trainer_->policy(), number, t, i);
         const double off = double{r.action[0]} - 0.5;
-        reward.reward += (1.0 - off * off) / scenario_.agents;
+        reward.reward += (1.0 - off * off) / scenario_.run.agents;
         assembler->Add(number, start, t, i, std::move(r));
       }
       const auto size = static_cast<std::size_t>(trainer_->state_size());

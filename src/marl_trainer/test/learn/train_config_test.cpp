@@ -183,20 +183,20 @@ TEST(Imitation, IsInFullForTheFirstHalfAndThenFades) {
 
 TEST(Variants, DifferAsTableS9SaysAndAreEvaluatedWithOneReward) {
   Scenario scenario;
-  EXPECT_EQ(env::VariantScenario(scenario, "stg").observation_size(), 74);
-  EXPECT_EQ(env::VariantScenario(scenario, "semantic").observation_size(), 68);
-  EXPECT_EQ(env::VariantScenario(scenario, "velocity3").observation_size(), 51);
+  EXPECT_EQ(env::VariantScenario(scenario, "stg").agent.observation_size(), 74);
+  EXPECT_EQ(env::VariantScenario(scenario, "semantic").agent.observation_size(), 68);
+  EXPECT_EQ(env::VariantScenario(scenario, "velocity3").agent.observation_size(), 51);
   const Scenario tau6 = env::VariantScenario(scenario, "tau6");
-  EXPECT_EQ(tau6.observation_size(), 51);
-  EXPECT_EQ(tau6.action_size(), 6);
-  EXPECT_EQ(tau6.control.action_scale, 0.18);
-  EXPECT_EQ(tau6.control.smoothing, 0.0);
-  EXPECT_EQ(tau6.control.max_delta, 0.0);
+  EXPECT_EQ(tau6.agent.observation_size(), 51);
+  EXPECT_EQ(tau6.world.control.action_size(), 6);
+  EXPECT_EQ(tau6.world.control.action_scale, 0.18);
+  EXPECT_EQ(tau6.world.control.smoothing, 0.0);
+  EXPECT_EQ(tau6.world.control.max_delta, 0.0);
   EXPECT_EQ(tau6.reward.kind, task::RewardKind::kReleaseRaw);
   EXPECT_EQ(tau6.reward.weights.coordination, 0.10);
   EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
   EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
-  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").action_size(), 6);
+  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").world.control.action_size(), 6);
   EXPECT_THROW(env::VariantScenario(scenario, "other"), UserError);
 }
 

@@ -93,7 +93,7 @@ TEST_F(TrainerTest, StopSavesAfterTheCollectionAndLeavesALoadablePolicy) {
   EXPECT_EQ(trainer.state().env_steps, 640);
   const agent::Policy policy =
       agent::Policy::LoadOnnx((folder_ / "run" / "policy_last.onnx").string());
-  EXPECT_NO_THROW(policy.RequireFits(ShortScenario()));
+  EXPECT_NO_THROW(policy.RequireFits(ShortScenario().model()));
   EXPECT_TRUE(fs::exists(folder_ / "run" / "summary.json"));
   EXPECT_NO_THROW(LoadCheckpoint(CheckpointPath((folder_ / "run").string(), 640)));
 }
@@ -301,7 +301,7 @@ TEST_F(TrainerTest, EveryVariantTrains) {
     EXPECT_TRUE(trainer.Run());
     const agent::Policy policy =
         agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
-    EXPECT_NO_THROW(policy.RequireFits(env::VariantScenario(ShortScenario(), variant)));
+    EXPECT_NO_THROW(policy.RequireFits(env::VariantScenario(ShortScenario(), variant).model()));
   }
 }
 

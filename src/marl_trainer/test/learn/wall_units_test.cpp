@@ -20,10 +20,10 @@ constexpr double kMargin = 0.015;
 class WallUnits : public ::testing::Test {
  protected:
   WallUnits() : scenario_(LoadNamedScenario(config::ScenarioFolder(), "hard")), actor_(Actor()) {
-    scenario_.workspace.half_extent_m = 2.0;
+    scenario_.world.workspace.half_extent_m = 2.0;
     std::mt19937 rng(5);
     std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-    for (int i = 0; i < scenario_.observation_size(); ++i) {
+    for (int i = 0; i < scenario_.agent.observation_size(); ++i) {
       normaliser_.mean.push_back(0.4F * uniform(rng) - 0.2F);
       normaliser_.std.push_back(0.05F + 0.3F * uniform(rng));
     }
@@ -36,10 +36,10 @@ class WallUnits : public ::testing::Test {
 
   Mlp Actor() const {
     NetworkSpec spec;
-    spec.inputs = scenario_.observation_size();
+    spec.inputs = scenario_.agent.observation_size();
     spec.hidden = {kUnits, 8};
     spec.activation = HiddenActivation::kRelu;
-    spec.outputs = scenario_.action_size();
+    spec.outputs = scenario_.world.control.action_size();
     return Mlp(spec);
   }
 
@@ -64,7 +64,7 @@ class WallUnits : public ::testing::Test {
     k.trig = {0.0, 1.0, 0.0, 1.0, 0.0, 1.0};
     k.R_WB = RotationOf(k.trig);
     std::vector<float> x(static_cast<std::size_t>(Inputs()));
-    agent::BuildObservation(scenario_, k, [&](int i, double value) {
+    agent::BuildObservation(scenario_.model(), k, [&](int i, double value) {
       x[static_cast<std::size_t>(i)] = static_cast<float>(value);
     });
     normaliser_.Apply(x.data(), 1, x.data());

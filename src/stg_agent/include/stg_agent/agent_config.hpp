@@ -16,9 +16,8 @@ struct TaskConfig {
   double lost_error_m = 0.0;  ///< judged: so does a target whose estimate is off by more; 0: no
 };
 
-/// What an agent needs to know: its vehicle and world, the network, and its own sections.
-struct AgentConfig : dynamics::WorldConfig {
-  acoustics::ChannelConfig channel;
+/// The agents' own sections: how they track, what they observe, what they are to do.
+struct AgentConfig {
   TrackConfig track;
   ObservationConfig observation;
   TaskConfig task;
@@ -26,11 +25,47 @@ struct AgentConfig : dynamics::WorldConfig {
   int observation_size() const { return ObservationSpec(observation).size(); }
 };
 
+/// All that an AUV may know before it is in the water: how many there are, its vehicle, where it
+/// works, what it looks for and with what, the network. Apart from what is true, which it may
+/// differ from; current, disturbance, contact and where things start are not in it.
+struct AgentModel {
+  RunConfig run;
+  dynamics::VehicleConfig vehicle;
+  dynamics::WorkspaceConfig workspace;
+  dynamics::SeaConfig sea;
+  dynamics::TargetConfig target;
+  dynamics::NavigationConfig navigation;
+  dynamics::SensingConfig sensing;
+  dynamics::ControlConfig control;
+  acoustics::ChannelConfig channel;
+  TrackConfig track;
+  ObservationConfig observation;
+  TaskConfig task;
+  double max_current_mps = 0.0;  ///< of the uniform current; packets must hold speeds over ground
+
+  double wall_m() const { return dynamics::WallOf(workspace, sea); }
+  int observation_size() const { return ObservationSpec(observation).size(); }
+};
+
 /// Keys, units and ranges of the section.
 void Describe(TaskConfig* c, config::Table* t);
-/// All that an agent reads.
 void Describe(AgentConfig* c, config::Table* t);
-/// Contradictions between its keys.
-std::optional<config::Violation> FindConflict(const AgentConfig& c);
+
+/// What the agents of a scenario know.
+AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& world,
+                   const acoustics::ChannelConfig& channel, const AgentConfig& agent);
+
+/// What a program needs that runs an agent: the truth as the scenario says it, and the agents'
+/// sections.
+struct AgentScenario {
+  RunConfig run;
+  dynamics::WorldConfig world;
+  acoustics::ChannelConfig channel;
+  AgentConfig agent;
+
+  AgentModel model() const { return ModelOf(run, world, channel, agent); }
+};
+void Describe(AgentScenario* s, config::Table* t);
+std::optional<config::Violation> FindConflict(const AgentScenario& s);
 
 }  // namespace stg::agent

@@ -30,9 +30,9 @@ T Nanoseconds(const PerLane<T, TimeNs>& stamp) {
 template <class T>
 LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
     : constants_(constants),
-      links_(acoustics::MakeLinkEstimator(constants->scenario.channel, constants->scenario.agents)),
-      neighbours_(constants->scenario),
-      mind_(constants->scenario),
+      links_(acoustics::MakeLinkEstimator(constants->model.channel, constants->model.run.agents)),
+      neighbours_(constants->model),
+      mind_(constants->model),
       neighbours_before_(neighbours_),
       mind_before_(mind_) {
   inboxes_.reserve(static_cast<std::size_t>(kLanesOf<T>));
@@ -83,10 +83,9 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
     SetLaneOf(&target, lane, inbox(lane).Target(links_->freshness_s()));
   }
   mind_.SetNavigation(nav);
-  mind_.SetTracking(scenario(), target);
+  mind_.SetTracking(model(), target);
   neighbours_.Predict(nav.p_WB, *links_);
-  mind_.SetNeighbours(scenario(),
-                      SeeNeighbours(scenario(), id(), neighbours_.sights(), target.p_WT));
+  mind_.SetNeighbours(model(), SeeNeighbours(model(), id(), neighbours_.sights(), target.p_WT));
 }
 
 template <class T>
@@ -94,7 +93,7 @@ void LanedAgent<T>::Forget(const Mask<T>& lanes, const PerLane<T, TimeNs>& now) 
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (!InMask<T>(lanes, lane)) continue;
     At(lane).Forget(OfLane(now, lane));
-    for (int j = 0; j < scenario().agents; ++j) {
+    for (int j = 0; j < model().run.agents; ++j) {
       if (!inbox(lane).neighbours().knows(j)) neighbours_.Drop(lane, j);
     }
   }
@@ -103,9 +102,9 @@ void LanedAgent<T>::Forget(const Mask<T>& lanes, const PerLane<T, TimeNs>& now) 
 template <class T>
 Vec3<T> LanedAgent<T>::Act(const T* action) {
   T finite(0.0);
-  for (int k = 0; k < scenario().action_size(); ++k) finite += NonFiniteness(action[k]);
+  for (int k = 0; k < model().control.action_size(); ++k) finite += NonFiniteness(action[k]);
   if (Any(!(finite == T(0.0)))) throw std::invalid_argument("non-finite action");
-  return mind_.Act(scenario(), action);
+  return mind_.Act(model(), action);
 }
 
 template <class T>
@@ -117,7 +116,7 @@ template <class T>
 AgentView LanedAgent<T>::view(int lane) const {
   std::array<double, dynamics::kMaxActionSize> action;
   for (std::size_t k = 0; k < action.size(); ++k) action[k] = Lane(mind_.action[k], lane);
-  return {scenario(), inbox(lane), LaneOf(mind_.knowledge, lane), action,
+  return {model(), inbox(lane), LaneOf(mind_.knowledge, lane), action,
           SightReader(neighbours_.sights(), lane)};
 }
 

@@ -13,8 +13,9 @@ void Controller::Act(const AgentView& agent, float* action) const {
   NeighbourSight<double> nearest[kNearestKnown];
   const int count = agent.Nearest(kNearestKnown, nearest);
   double a[dynamics::kMaxActionSize] = {};
-  Act({agent.scenario(), agent.id(), agent.knowledge(), nearest, count}, a);
-  for (int k = 0; k < agent.scenario().action_size(); ++k) action[k] = static_cast<float>(a[k]);
+  Act({agent.model(), agent.id(), agent.knowledge(), nearest, count}, a);
+  for (int k = 0; k < agent.model().control.action_size(); ++k)
+    action[k] = static_cast<float>(a[k]);
 }
 
 ControllerConstants::ControllerConstants(const std::string& text) : text_(text) {

@@ -23,17 +23,17 @@ Level<T> Within(const Level<T>& v, double lo, double hi) {
 template <class T>
 T Encircle::Height(const ControllerInput<T>& in) const {
   const T target = in.knowledge.p_WB.z + in.knowledge.r_BT_W.z;
-  const AgentConfig& s = in.scenario;
+  const AgentModel& s = in.model;
   if (!s.sea.open) return target;
   const config::Interval& band = s.sea.auv_depth_m;
-  const double share = s.agents > 1 ? static_cast<double>(in.id) / (s.agents - 1) : 0.5;
+  const double share = s.run.agents > 1 ? static_cast<double>(in.id) / (s.run.agents - 1) : 0.5;
   return T(-(band.lo + share * (band.hi - band.lo)));
 }
 
 template <class T>
 T Encircle::Radius(const ControllerInput<T>& in, const T& dz) const {
-  const AgentConfig& s = in.scenario;
-  const int team = (s.agents + s.target.count - 1) / s.target.count;
+  const AgentModel& s = in.model;
+  const int team = (s.run.agents + s.target.count - 1) / s.target.count;
   double d = s.task.desired_distance_m;
   if (team > options.ring_team) {
     d *= (in.id / s.target.count) % 2 == 0 ? 1.0 - options.ring : 1.0 + options.ring;
@@ -63,7 +63,7 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
 
 template <class T>
 Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
-  const AgentConfig& s = in.scenario;
+  const AgentModel& s = in.model;
   const EncircleOptions& o = options;
   const Knowledge<T>& k = in.knowledge;
   const T zero(0.0), one(1.0);
@@ -83,7 +83,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   // Where the vehicle will be: commands take effect late, and last a decision.
   const Level<T> own{k.v_WB.x, k.v_WB.y};
   const Level<T> now{k.r_BT_W.x, k.r_BT_W.y};
-  const Level<T> r = now + (v_T - own) * T(o.lead_s + 0.5 * s.decision_dt_s());
+  const Level<T> r = now + (v_T - own) * T(o.lead_s + 0.5 * s.run.decision_dt_s());
   const T rho = Max(Norm(r), T(1e-3));
   const Level<T> in_W = r * (one / rho);
   const Level<T> around{in_W.y, -in_W.x};
@@ -97,7 +97,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const auto on_circle = Abs(distance - R) < T(0.5 * d);
   T ahead(kTwoPi), behind(kTwoPi);
   Level<T> aside;
-  const int team = (s.agents + s.target.count - 1) / s.target.count;
+  const int team = (s.run.agents + s.target.count - 1) / s.target.count;
   const bool rings = team > o.ring_team;
   const T reach = rings ? T(o.ring * d) : T(0.6 * d);
   for (int j = 0; j < in.neighbour_count; ++j) {

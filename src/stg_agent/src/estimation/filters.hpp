@@ -8,7 +8,7 @@
 /// of their names.
 namespace stg::agent {
 
-std::unique_ptr<TargetFilter> MakeKalmanFilter(const AgentConfig& scenario, const int& self);
-std::unique_ptr<TargetFilter> MakeMeasurementFilter(const AgentConfig& scenario, const int& self);
+std::unique_ptr<TargetFilter> MakeKalmanFilter(const AgentModel& model, const int& self);
+std::unique_ptr<TargetFilter> MakeMeasurementFilter(const AgentModel& model, const int& self);
 
 }  // namespace stg::agent

@@ -9,7 +9,7 @@ constexpr TimeNs kOldestShared = 30'000'000'000;
 /// TargetTrack: positions in, own and of others as fused estimates.
 class KalmanFilter : public TargetFilter {
  public:
-  explicit KalmanFilter(const AgentConfig& scenario) : track_(scenario) {}
+  explicit KalmanFilter(const AgentModel& model) : track_(model) {}
 
   bool Takes(dynamics::MeasurementKind kind, bool ambiguous) const override {
     return kind == dynamics::MeasurementKind::kPosition ||
@@ -64,8 +64,8 @@ class KalmanFilter : public TargetFilter {
 
 }  // namespace
 
-std::unique_ptr<TargetFilter> MakeKalmanFilter(const AgentConfig& scenario, const int&) {
-  return std::make_unique<KalmanFilter>(scenario);
+std::unique_ptr<TargetFilter> MakeKalmanFilter(const AgentModel& model, const int&) {
+  return std::make_unique<KalmanFilter>(model);
 }
 
 }  // namespace stg::agent

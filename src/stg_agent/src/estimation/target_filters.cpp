@@ -13,14 +13,14 @@ FilterRegistry& TargetFilters() {
   return registry;
 }
 
-PacketLayout LayoutOf(const AgentConfig& scenario) {
-  return TargetFilters().Make(scenario.track.filter, scenario, 0)->layout();
+PacketLayout LayoutOf(const AgentModel& model) {
+  return TargetFilters().Make(model.track.filter, model, 0)->layout();
 }
 
-std::optional<config::Violation> FindFilterConflict(const AgentConfig& scenario) {
-  const auto filter = TargetFilters().Make(scenario.track.filter, scenario, 0);
-  const auto sensor = dynamics::TargetSensors().Make(scenario.sensing.sensor, scenario.sensing);
-  if (filter->Takes(sensor->kind(), scenario.sensing.ambiguous)) return {};
+std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
+  const auto filter = TargetFilters().Make(model.track.filter, model, 0);
+  const auto sensor = dynamics::TargetSensors().Make(model.sensing.sensor, model.sensing);
+  if (filter->Takes(sensor->kind(), model.sensing.ambiguous)) return {};
   return config::Violation{{"track.filter", "sensing.sensor", "sensing.ambiguous"},
                            "this filter has no use for what this sensor measures"};
 }

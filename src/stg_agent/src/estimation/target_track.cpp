@@ -33,14 +33,14 @@ void Information(const TargetEstimate& e, double (*I)[3]) {
 
 }  // namespace
 
-TargetTrack::TargetTrack(const AgentConfig& scenario)
-    : intensity_(scenario.track.process_accel_std_mps2 * scenario.track.process_accel_std_mps2 *
-                 scenario.decision_dt_s()),
-      floor_std_m_(scenario.track.measurement_std_m),
-      speed_std_mps_(scenario.track.initial_speed_std_mps),
-      max_speed_mps_(scenario.target.max_speed_mps),
-      gate2_(scenario.track.gate_sigma * scenario.track.gate_sigma),
-      wall_m_(scenario.wall_m()) {}
+TargetTrack::TargetTrack(const AgentModel& model)
+    : intensity_(model.track.process_accel_std_mps2 * model.track.process_accel_std_mps2 *
+                 model.run.decision_dt_s()),
+      floor_std_m_(model.track.measurement_std_m),
+      speed_std_mps_(model.track.initial_speed_std_mps),
+      max_speed_mps_(model.target.max_speed_mps),
+      gate2_(model.track.gate_sigma * model.track.gate_sigma),
+      wall_m_(model.wall_m()) {}
 
 void TargetTrack::Clear() {
   started_ = observed_ = false;

@@ -5,11 +5,11 @@
 namespace stg::agent {
 
 template <class T>
-Neighbourhood<T>::Neighbourhood(const AgentConfig& scenario)
-    : max_age_s_(scenario.track.neighbour_max_age_s),
-      wall_m_(scenario.wall_m()),
-      sights_(static_cast<std::size_t>(scenario.agents)) {
-  const int padded = (scenario.agents + kLanes - 1) / kLanes * kLanes;
+Neighbourhood<T>::Neighbourhood(const AgentModel& model)
+    : max_age_s_(model.track.neighbour_max_age_s),
+      wall_m_(model.wall_m()),
+      sights_(static_cast<std::size_t>(model.run.agents)) {
+  const int padded = (model.run.agents + kLanes - 1) / kLanes * kLanes;
   for (auto* v : {&distance_, &age_, &learnt_, &quality_})
     v->assign(static_cast<std::size_t>(padded), 0.0);
 }

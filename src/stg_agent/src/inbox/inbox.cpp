@@ -12,10 +12,10 @@ namespace stg::agent {
 Inbox::Inbox(SharedConstants constants, int id)
     : constants_(std::move(constants)),
       id_(id),
-      target_(constants_->scenario.target_of(id)),
-      neighbours_(constants_->scenario, id),
-      filter_(TargetFilters().Make(constants_->scenario.track.filter, constants_->scenario, id_)) {
-  if (id < 0 || id >= constants_->scenario.agents) {
+      target_(constants_->model.target.of(id)),
+      neighbours_(constants_->model, id),
+      filter_(TargetFilters().Make(constants_->model.track.filter, constants_->model, id_)) {
+  if (id < 0 || id >= constants_->model.run.agents) {
     throw std::invalid_argument("agent index outside the swarm");
   }
 }
@@ -99,7 +99,7 @@ Packet Inbox::MakePacket(const Knowledge<double>& k) const {
   state.v_W = k.v_WB;
   state.confidence = k.confidence;
   state.tracking_error = k.error;
-  state.phase = PhaseOf(constants_->scenario.observation, k);
+  state.phase = PhaseOf(constants_->model.observation, k);
   state.link_quality = k.mean_quality;
   state.position_std_m = position_std_m_;
   state.target = target_;

@@ -4,10 +4,10 @@
 
 namespace stg::agent {
 
-NeighbourTable::NeighbourTable(const AgentConfig& scenario, int self)
-    : max_age_s_(scenario.track.neighbour_max_age_s),
+NeighbourTable::NeighbourTable(const AgentModel& model, int self)
+    : max_age_s_(model.track.neighbour_max_age_s),
       self_(self),
-      slots_(static_cast<std::size_t>(scenario.agents)) {
+      slots_(static_cast<std::size_t>(model.run.agents)) {
   known_.reserve(slots_.size());
 }
 

@@ -16,7 +16,7 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   m->phase = static_cast<std::uint8_t>(task.phase);
   m->quality = static_cast<std::uint8_t>(task.quality);
   m->role = task.role;
-  m->action.assign(output.action, output.action + agent.scenario().action_size());
+  m->action.assign(output.action, output.action + agent.model().control.action_size());
   m->target_known = target.started;
   SetVector(target.p_WT, &m->target_position);
   SetVector(target.v_WT, &m->target_velocity);

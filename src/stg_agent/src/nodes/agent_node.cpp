@@ -25,24 +25,24 @@ constexpr double kStartPatience_s = 5.0;
 }  // namespace
 
 AgentNode::AgentNode()
-    : scenario_(LoadScenarioParameters<agent::AgentConfig>()),
-      id_(IntegerParameter("id", 0, 0, scenario_.agents - 1)),
+    : model_(LoadScenarioParameters<agent::AgentScenario>().model()),
+      id_(IntegerParameter("id", 0, 0, model_.run.agents - 1)),
       body_frame_(frames::Body(id_)),
-      agent_(scenario_, id_),
-      turns_(scenario_.channel, scenario_),
+      agent_(model_, id_),
+      turns_(model_.channel, model_.run),
       decider_(std::make_unique<const Decider>(TextParameter("policy", agent::DefaultController()),
-                                               scenario_, id_)),
-      period_(scenario_.decision_period()),
+                                               model_, id_)),
+      period_(model_.run.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(FlagParameter("explore", false)),
-      commands_velocity_(scenario_.control.interface == dynamics::ActionInterface::kVelocity3),
+      commands_velocity_(model_.control.interface == dynamics::ActionInterface::kVelocity3),
       commands_wrench_(!commands_velocity_ ||
-                       (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(scenario_))),
-      pending_(id_, scenario_.target.count),
-      tracker_(period_, scenario_.time.episode_steps),
+                       (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(model_.vehicle))),
+      pending_(id_, model_.target.count),
+      tracker_(period_, model_.run.time.episode_steps),
       barrier_(kParties, period_),
-      observation_(static_cast<std::size_t>(scenario_.observation_size())),
+      observation_(static_cast<std::size_t>(model_.observation_size())),
       health_("agent", topics::Auv(id_).substr(1), [this](auto& status) { Report(status); }) {
   Advertise();
   ros::NodeHandle node;
@@ -168,7 +168,7 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                              auv_msgs::LoadPolicy::Response& response) {
   try {
-    decider_ = std::make_unique<const Decider>(request.path, scenario_, id_);
+    decider_ = std::make_unique<const Decider>(request.path, model_, id_);
     response.success = true;
     ROS_INFO("agent %d: policy is now '%s'", id_, decider_->id().c_str());
   } catch (const std::exception& error) {
@@ -240,8 +240,7 @@ void AgentNode::Decide() {
 
 void AgentNode::Command() {
   if (commands_wrench_) {
-    const dynamics::Wrench<double> wrench =
-        dynamics::ScaleWrench(scenario_.vehicle, output_.fraction);
+    const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(model_.vehicle, output_.fraction);
     wrench_message_.header.stamp = decided_->header.stamp;
     SetVector(wrench.force, &wrench_message_.wrench.force);
     SetVector(wrench.moment, &wrench_message_.wrench.torque);
@@ -292,7 +291,7 @@ bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
   message->step = decided_->step;
   message->agent = static_cast<std::uint32_t>(id_);
   message->observation = observation_;
-  message->action.assign(action_, action_ + scenario_.action_size());
+  message->action.assign(action_, action_ + model_.control.action_size());
   message->log_probability = log_probability_;
   message->policy_id = policy_id_;
   message->observation_layout = agent::kLayoutVersion;

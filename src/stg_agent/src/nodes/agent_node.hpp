@@ -66,7 +66,7 @@ class AgentNode {
   bool SetStep(auv_msgs::AgentStep* message) const;
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  agent::AgentConfig scenario_;
+  agent::AgentModel model_;
   int id_;
   std::string body_frame_;
   agent::Agent agent_;

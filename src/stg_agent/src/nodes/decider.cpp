@@ -11,16 +11,16 @@ namespace stg::nodes {
 
 namespace {
 
-std::string Resolve(const std::string& name, const agent::AgentConfig& scenario) {
+std::string Resolve(const std::string& name, const agent::AgentModel& model) {
   if (name != "auto") return name;
-  const std::string shipped = config::ScenarioFolder() + "/../policies/" + scenario.name + ".onnx";
+  const std::string shipped = config::ScenarioFolder() + "/../policies/" + model.run.name + ".onnx";
   return std::ifstream(shipped).good() ? shipped : agent::DefaultController();
 }
 
 }  // namespace
 
-Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario, int agent) {
-  const std::string name = Resolve(wanted, scenario);
+Decider::Decider(const std::string& wanted, const agent::AgentModel& model, int agent) {
+  const std::string name = Resolve(wanted, model);
   builtin_ = agent::MakeController(name);
   if (builtin_) {
     id_ = name;
@@ -29,7 +29,7 @@ Decider::Decider(const std::string& wanted, const agent::AgentConfig& scenario, 
   agent::RequirePolicyFileName(name);
   file_ = agent::PolicyFileOf(name, agent);
   policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(file_));
-  policy_->RequireFits(scenario);
+  policy_->RequireFits(model);
   id_ = policy_->metadata().id;
 }
 

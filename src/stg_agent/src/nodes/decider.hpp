@@ -18,7 +18,7 @@ class Decider {
   ///             policy shipped for the scenario's name where there is one, else pursuit_separated
   /// @param agent who decides
   /// Throws UserError when the file is not a policy for this scenario.
-  Decider(const std::string& name, const agent::AgentConfig& scenario, int agent);
+  Decider(const std::string& name, const agent::AgentModel& model, int agent);
 
   /// The policy's mean action, or the built-in controller's.
   void Mean(const agent::Agent& agent, const float* observation, float* action) const;

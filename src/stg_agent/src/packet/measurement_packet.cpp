@@ -94,15 +94,15 @@ double MeasurementPacket::Logarithm::Value(std::uint64_t code) const {
   return code == 0 ? 0.0 : lo * std::exp(step * static_cast<double>(code - 1));
 }
 
-MeasurementPacket::MeasurementPacket(const AgentConfig& s)
-    : agents_(s.agents), targets_(s.target.count), sensing_(s.sensing) {
+MeasurementPacket::MeasurementPacket(const AgentModel& s)
+    : agents_(s.run.agents), targets_(s.target.count), sensing_(s.sensing) {
   const double half = s.workspace.half_extent_m;
-  const double current = Length(s.current.velocity_mps);
+  const double current = s.max_current_mps;
   const double speed = Length(s.vehicle.max_velocity_mps) + current;
-  const double longest = std::min(s.track.memory_s, 127.0 * s.decision_dt_s());
+  const double longest = std::min(s.track.memory_s, 127.0 * s.run.decision_dt_s());
   const auto sensor = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing);
-  const auto navigation =
-      dynamics::NavigationSystems().Make(s.navigation.kind, {s.navigation, s.agents, s.time.dt_s});
+  const auto navigation = dynamics::NavigationSystems().Make(
+      s.navigation.kind, {s.navigation, s.run.agents, s.run.time.dt_s});
   kind_ = sensor->kind();
   ambiguous_ = s.sensing.ambiguous &&
                (kind_ == MeasurementKind::kBearing || kind_ == MeasurementKind::kRangeBearing);
@@ -112,7 +112,7 @@ MeasurementPacket::MeasurementPacket(const AgentConfig& s)
     heading_variance_ = std::pow(s.navigation.heading_std_deg * degree, 2);
     heading_walk_ = std::pow(s.navigation.gyro_walk_deg_per_sqrt_h * degree, 2) / 3600.0;
   }
-  age_step_ = std::max<TimeNs>(1, s.decision_period() / 8);
+  age_step_ = std::max<TimeNs>(1, s.run.decision_period() / 8);
   position_ = Quantiser::Signed(kPlaceMargin * half, kPlaceBits);
   velocity_ = Quantiser::Signed(speed, kSpeedBits);
   unit_ = Quantiser::Unsigned(0.0, 1.0, kUnitBits);

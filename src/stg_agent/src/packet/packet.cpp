@@ -42,17 +42,12 @@ constexpr double kStdLo = 1e-5, kStdHi = 10.0;  // of the workspace half extent
 /// Zero when all components are finite, NaN otherwise.
 double Finiteness(const Vec3<double>& v) { return v.x * 0.0 + v.y * 0.0 + v.z * 0.0; }
 
-double CurrentSpeed(const AgentConfig& s) {
-  const auto& v = s.current.velocity_mps;
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-double SpeedLimit(const AgentConfig& s) {
+double SpeedLimit(const AgentModel& s) {
   const auto& v = s.vehicle.max_velocity_mps;
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + CurrentSpeed(s);
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + s.max_current_mps;
 }
 
-double TargetSpeedLimit(const AgentConfig& s) {
+double TargetSpeedLimit(const AgentModel& s) {
   // A filter that starts with no velocity must be able to say what it believes.
   return std::max(
       {kTargetSpeedMargin * s.target.max_speed_mps, 4.0 * s.track.initial_speed_std_mps, 1e-3});
@@ -64,9 +59,9 @@ double TargetSpeedLimit(const AgentConfig& s) {
 
 }  // namespace
 
-PacketCodec::PacketCodec(const AgentConfig& s, PacketLayout layout)
+PacketCodec::PacketCodec(const AgentModel& s, PacketLayout layout)
     : layout_(layout),
-      agents_(s.agents),
+      agents_(s.run.agents),
       targets_(s.target.count),
       position_(Quantiser::Signed(kPositionMargin * s.workspace.half_extent_m, kPositionBits)),
       velocity_(Quantiser::Signed(SpeedLimit(s), kVelocityBits)),

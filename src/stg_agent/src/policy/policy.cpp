@@ -69,8 +69,8 @@ void Validate(const Policy::Parameters& p) {
 
 }  // namespace
 
-std::string ObservationLayout(const AgentConfig& scenario) {
-  return ObservationSpec(scenario.observation).name();
+std::string ObservationLayout(const ObservationConfig& observation) {
+  return ObservationSpec(observation).name();
 }
 
 std::string ActionInterfaceName(dynamics::ActionInterface interface) {
@@ -152,24 +152,24 @@ void Policy::Choose(const float* outputs, float* action) const {
   }
 }
 
-void Policy::RequireFits(const AgentConfig& scenario) const {
-  const std::string who = "policy '" + metadata().id + "': ";
-  const std::string layout = ObservationLayout(scenario);
-  if (metadata().observation_layout != layout) {
-    throw UserError(who + "observation layout '" + metadata().observation_layout +
-                    "', the scenario '" + scenario.name + "' gives '" + layout + "'");
+void Policy::RequireFits(const AgentModel& model) const {
+  const std::string subject = "policy '" + metadata().id + "': ";
+  const std::string object = ", the scenario '" + model.run.name + "' has ";
+  const ObservationSpec spec(model.observation);
+  if (metadata().observation_layout != spec.name()) {
+    throw UserError(subject + "observation layout '" + metadata().observation_layout + "'" +
+                    object + "'" + spec.name() + "'");
   }
-  const std::string interface = ActionInterfaceName(scenario.control.interface);
+  const std::string interface = ActionInterfaceName(model.control.interface);
   if (metadata().action_interface != interface) {
-    throw UserError(who + "action interface '" + metadata().action_interface + "', the scenario '" +
-                    scenario.name + "' has '" + interface + "'");
+    throw UserError(subject + "action interface '" + metadata().action_interface + "'" + object +
+                    "'" + interface + "'");
   }
-  if (observation_size() != scenario.observation_size() ||
-      action_size() != scenario.action_size()) {
-    throw UserError(who + std::to_string(observation_size()) + " observations and " +
-                    std::to_string(action_size()) + " actions, the scenario '" + scenario.name +
-                    "' has " + std::to_string(scenario.observation_size()) + " and " +
-                    std::to_string(scenario.action_size()));
+  if (observation_size() != spec.size() || action_size() != model.control.action_size()) {
+    throw UserError(subject + std::to_string(observation_size()) + " observations and " +
+                    std::to_string(action_size()) + " actions" + object +
+                    std::to_string(spec.size()) + " and " +
+                    std::to_string(model.control.action_size()));
   }
 }
 

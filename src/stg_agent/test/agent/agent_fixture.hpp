@@ -56,7 +56,7 @@ struct HeardPacket {
 };
 
 /// A packet as the channel would give it at its time of generation.
-inline HeardPacket Heard(const AgentConfig& s, const NeighbourState& state, TimeNs arrival) {
+inline HeardPacket Heard(const AgentModel& s, const NeighbourState& state, TimeNs arrival) {
   acoustics::Reception r;
   r.source = state.source;
   r.generation = r.transmit = state.generation;
@@ -74,7 +74,7 @@ struct Input {
 
 /// A seeded episode for one agent: neighbours that wander and report, a target that comes
 /// and goes, arbitrary attitudes and actions. All positions are moved by `shift`.
-inline std::vector<Input> RandomEpisode(const AgentConfig& s, int id, int steps, unsigned seed,
+inline std::vector<Input> RandomEpisode(const AgentModel& s, int id, int steps, unsigned seed,
                                         const Vec3<double>& shift = {}, double extent = 0.9,
                                         bool reports_targets = true) {
   std::mt19937_64 generator(seed);
@@ -98,7 +98,7 @@ inline std::vector<Input> RandomEpisode(const AgentConfig& s, int id, int steps,
     QuaternionOf(Vec3<double>{3.0 * u(generator), 1.5 * u(generator), 3.0 * u(generator)},
                  &in.nav.q_WB);
     if (u(generator) > 0.3) in.detections.push_back({in.nav.stamp, 0, target + shift, 0.001});
-    for (int j = 0; j < s.agents; ++j) {
+    for (int j = 0; j < s.run.agents; ++j) {
       if (j == id || u(generator) < 0.6) continue;
       NeighbourState n;
       n.source = j;
@@ -127,7 +127,7 @@ inline std::vector<Input> RandomEpisode(const AgentConfig& s, int id, int steps,
 inline AgentOutput Drive(Agent* agent, const Input& in, std::vector<float>* observation) {
   for (const HeardPacket& r : in.receptions) agent->Receive(r);
   for (const dynamics::Detection& d : in.detections) agent->Detect(d);
-  observation->resize(static_cast<std::size_t>(agent->scenario().observation_size()));
+  observation->resize(static_cast<std::size_t>(agent->model().observation_size()));
   agent->Observe(in.nav, observation->data());
   return agent->Act(in.action);
 }

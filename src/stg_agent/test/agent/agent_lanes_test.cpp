@@ -20,7 +20,7 @@ bool SameBits(const T& a, const T& b) {
 /// AUV 1 in a different episode in every lane: alone, one agent for each, and side by side.
 class TwoWays {
  public:
-  TwoWays(const AgentConfig& s, unsigned seed)
+  TwoWays(const AgentModel& s, unsigned seed)
       : scenario_(s), seed_(seed), beside_(std::make_shared<const AgentConstants>(s), 1) {
     for (int lane = 0; lane < kLanes; ++lane) {
       alone_.emplace_back(s, 1);
@@ -109,7 +109,7 @@ class TwoWays {
       for (int k = 0; k < dynamics::kWrenchSize; ++k) {
         ASSERT_TRUE(SameBits(out.fraction[k], Lane(beside_.knowledge().tau[k], lane))) << lane;
       }
-      for (std::size_t k = 0; k < static_cast<std::size_t>(scenario_.action_size()); ++k) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(scenario_.control.action_size()); ++k) {
         ASSERT_TRUE(SameBits(out.action[k], Lane(beside_.action()[k], lane))) << lane;
       }
       ASSERT_EQ(alone_[Index(lane)].MakePacket(), beside_.MakePacket(lane)) << lane;
@@ -146,7 +146,7 @@ class TwoWays {
     return nav;
   }
 
-  AgentConfig scenario_;
+  AgentModel scenario_;
   unsigned seed_, started_ = 0;
   AgentLanes beside_;
   std::vector<Agent> alone_;                  // [lane]
@@ -157,7 +157,7 @@ class TwoWays {
   std::size_t known_before_ = 0;
 };
 
-void ExpectSame(const AgentConfig& s, unsigned seed) {
+void ExpectSame(const AgentModel& s, unsigned seed) {
   TwoWays ways(s, seed);
   for (int step = 0; step < kSteps; ++step) {
     SCOPED_TRACE(step);
@@ -168,9 +168,9 @@ void ExpectSame(const AgentConfig& s, unsigned seed) {
   EXPECT_GT(ways.forgotten(), 0);
 }
 
-AgentConfig Forgetful(int agents) {
-  AgentConfig s;
-  s.agents = agents;
+AgentModel Forgetful(int agents) {
+  AgentModel s;
+  s.run.agents = agents;
   s.track.neighbour_max_age_s = 0.7;
   return s;
 }
@@ -182,19 +182,19 @@ TEST(AgentLanes, DoWhatSeparateAgentsDoBitForBit) {
 }
 
 TEST(AgentLanes, DoSoWithEveryKindOfLinkOrderAndAction) {
-  AgentConfig range = Forgetful(5), index = Forgetful(5), tau = Forgetful(5), bow = Forgetful(5);
-  AgentConfig physical = Forgetful(5);
+  AgentModel range = Forgetful(5), index = Forgetful(5), tau = Forgetful(5), bow = Forgetful(5);
+  AgentModel physical = Forgetful(5);
   range.channel.model = "range";
   physical.channel.model = "physical";
   index.observation.order = NeighbourOrder::kIndex;
   tau.control.interface = dynamics::ActionInterface::kTau6;
   bow.control.heading = dynamics::HeadingMode::kAlongVelocity;
-  for (const AgentConfig& s : {range, physical, index, tau, bow}) ExpectSame(s, 4);
+  for (const AgentModel& s : {range, physical, index, tau, bow}) ExpectSame(s, 4);
 }
 
 TEST(AgentLanes, OneLaneMayStartAnEpisodeWhileTheOthersGoOn) {
   for (const unsigned seed : {5U, 6U}) {
-    AgentConfig s = Forgetful(5);
+    AgentModel s = Forgetful(5);
     s.observation.error_window = seed == 5U ? 5 : 3;
     TwoWays ways(s, seed);
     for (int step = 0; step < kSteps; ++step) {
@@ -214,7 +214,7 @@ TEST(AgentLanes, OneLaneMayStartAnEpisodeWhileTheOthersGoOn) {
 }
 
 TEST(AgentLanes, RefuseWhatIsNotFiniteInAnyLane) {
-  const AgentConfig s;
+  const AgentModel s;
   AgentLanes lanes(std::make_shared<const AgentConstants>(s), 1);
   for (int lane = 0; lane < kLanes; ++lane) lanes.Reset(lane, 0, CueAt({}));
   dynamics::Navigation<Pack> nav;

@@ -43,7 +43,7 @@ void ExpectSame(const std::vector<AgentOutput>& a, const std::vector<AgentOutput
 }
 
 TEST(AgentProperty, UsedThenResetEqualsFresh) {
-  const AgentConfig s;
+  const AgentModel s;
   const auto inputs = RandomEpisode(s, 2, 200, 11);
   Agent fresh(s, 2), used(s, 2);
   RunEpisode(&used, RandomEpisode(s, 2, 137, 5));
@@ -55,7 +55,7 @@ TEST(AgentProperty, UsedThenResetEqualsFresh) {
 }
 
 TEST(AgentProperty, OrderOfMessagesWithinAStepDoesNotMatter) {
-  const AgentConfig s;
+  const AgentModel s;
   auto inputs = RandomEpisode(s, 0, 200, 21);
   Agent a(s, 0), b(s, 0);
   a.Reset(0, CueAt({}));
@@ -74,8 +74,8 @@ TEST(AgentProperty, OrderOfMessagesWithinAStepDoesNotMatter) {
 TEST(AgentProperty, ObservationsAreFiniteAndWithinTheirBounds) {
   for (const int agents : {1, 2, 4, 9}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
-      AgentConfig s;
-      s.agents = agents;
+      AgentModel s;
+      s.run.agents = agents;
       Agent agent(s, 0);
       agent.Reset(0, CueAt({0.9, -0.9, 0.9}, 0.5));
       std::vector<float> o;
@@ -102,7 +102,7 @@ TEST(AgentProperty, ObservationsAreFiniteAndWithinTheirBounds) {
 }
 
 TEST(AgentProperty, TranslatingTheWorldChangesOnlyPositionAndWallFeatures) {
-  const AgentConfig s;
+  const AgentModel s;
   // A multiple of the packet's position steps, so that packets round alike.
   const auto fields = PacketCodec(s).fields();
   const double resolution = fields[0].resolution;
@@ -130,8 +130,8 @@ TEST(AgentProperty, TranslatingTheWorldChangesOnlyPositionAndWallFeatures) {
 }
 
 TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
-  AgentConfig s;
-  s.agents = 6;
+  AgentModel s;
+  s.run.agents = 6;
   const int permutation[] = {0, 4, 5, 1, 3, 2};
   // Without target estimates: fusing them in another order rounds and weighs differently.
   const auto inputs = RandomEpisode(s, 0, 200, 41, {}, 0.9, false);
@@ -156,8 +156,8 @@ TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
 
 TEST(AgentProperty, AStepAllocatesNothing) {
   for (const int agents : {4, 50}) {
-    AgentConfig s;
-    s.agents = agents;
+    AgentModel s;
+    s.run.agents = agents;
     auto inputs = RandomEpisode(s, 0, 100, 51);
     std::size_t damaged = 20;
     while (inputs[damaged].receptions.empty()) ++damaged;
@@ -179,7 +179,7 @@ TEST(AgentProperty, AStepAllocatesNothing) {
 }
 
 TEST(AgentProperty, AgentsThatShareTheScenarioActAlike) {
-  const AgentConfig s;
+  const AgentModel s;
   const auto inputs = RandomEpisode(s, 3, 100, 61);
   Agent alone(s, 3);
   std::vector<Agent> agents = MakeAgents(s);

@@ -20,7 +20,7 @@ void Look(Agent* agent, const dynamics::NavState& nav) {
 }
 
 TEST(Agent, StartsFromTheCueWithNoConfidence) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   Look(&agent, Nav(0, {}));
@@ -36,7 +36,7 @@ TEST(Agent, StartsFromTheCueWithNoConfidence) {
 }
 
 TEST(Agent, ConfidenceEndsWithTheFreshnessOfTheLastObservation) {
-  const AgentConfig s;  // freshness 2 s
+  const AgentModel s;  // freshness 2 s
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   agent.Detect({0, 0, {0.2, 0.0, 0.0}, 0.0});
@@ -47,7 +47,7 @@ TEST(Agent, ConfidenceEndsWithTheFreshnessOfTheLastObservation) {
 }
 
 TEST(Agent, ConfidenceAlsoRestsOnWhatANeighbourSees) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   NeighbourState n;
@@ -62,7 +62,7 @@ TEST(Agent, ConfidenceAlsoRestsOnWhatANeighbourSees) {
 }
 
 TEST(Agent, LosesAnUnseenTargetAndCountsTheSteps) {
-  AgentConfig s;
+  AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.1, 0.0, 0.0}));
   int lost_steps = 0;
@@ -81,7 +81,7 @@ TEST(Agent, LosesAnUnseenTargetAndCountsTheSteps) {
 }
 
 TEST(Agent, ATargetBeyondTheLostDistanceIsLost) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.649, 0.0, 0.0}, 0.001));
   Look(&agent, Nav(0, {}));
@@ -92,7 +92,7 @@ TEST(Agent, ATargetBeyondTheLostDistanceIsLost) {
 }
 
 TEST(Agent, RemembersDistancesAndErrorsPerDecision) {
-  const AgentConfig s;  // window 5
+  const AgentModel s;  // window 5
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.5, 0.0, 0.0}, 0.001));
   std::vector<double> errors;
@@ -113,7 +113,7 @@ TEST(Agent, RemembersDistancesAndErrorsPerDecision) {
 }
 
 TEST(Agent, GraphCountsUnheardNeighboursAsNoLink) {
-  const AgentConfig s;  // three others
+  const AgentModel s;  // three others
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   Look(&agent, Nav(0, {}));
@@ -137,8 +137,8 @@ TEST(Agent, GraphCountsUnheardNeighboursAsNoLink) {
 }
 
 TEST(Agent, NeighbourSlotsAreNearestFirstOrByIndex) {
-  AgentConfig s;
-  s.agents = 5;
+  AgentModel s;
+  s.run.agents = 5;
   const double x[] = {0.4, 0.0, 0.1, 0.3, 0.2};
   for (const NeighbourOrder order : {NeighbourOrder::kNearest, NeighbourOrder::kIndex}) {
     s.observation.order = order;
@@ -160,7 +160,7 @@ TEST(Agent, NeighbourSlotsAreNearestFirstOrByIndex) {
 }
 
 TEST(Agent, FractionIsWhatTheControllerNodeComputesAndIsObservedNext) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.1, 0.0}));
   std::vector<float> observation;
@@ -178,7 +178,7 @@ TEST(Agent, FractionIsWhatTheControllerNodeComputesAndIsObservedNext) {
 }
 
 TEST(Agent, ActionIsRateLimitedSmoothedAndScaledToSpeed) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   const float full[] = {5.0F, -1.0F, 0.1F};
@@ -193,7 +193,7 @@ TEST(Agent, ActionIsRateLimitedSmoothedAndScaledToSpeed) {
 }
 
 TEST(Agent, Tau6ActionsAreTheForceFractions) {
-  AgentConfig s;
+  AgentModel s;
   s.control.interface = dynamics::ActionInterface::kTau6;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
@@ -206,7 +206,7 @@ TEST(Agent, Tau6ActionsAreTheForceFractions) {
 }
 
 TEST(Agent, OneThatComesLateFindsTheCueAsUncertainAsItHasBecome) {
-  const AgentConfig s;
+  const AgentModel s;
   for (int late = 1; late <= 7; ++late) {
     Agent always(s, 2), restarted(s, 2);
     always.Reset(0, CueAt({0.2, 0.0, 0.0}));
@@ -224,7 +224,7 @@ TEST(Agent, OneThatComesLateFindsTheCueAsUncertainAsItHasBecome) {
 }
 
 TEST(Agent, PacketTellsOwnStateAndTheEstimateAsOfItsLastObservation) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   const PacketCodec codec(s);
@@ -249,7 +249,7 @@ TEST(Agent, PacketTellsOwnStateAndTheEstimateAsOfItsLastObservation) {
 }
 
 TEST(Agent, SaysNothingOfATargetItKnowsFromTheCueOnly) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.0, 0.0}));
   Look(&agent, Nav(0, {}));
@@ -259,7 +259,7 @@ TEST(Agent, SaysNothingOfATargetItKnowsFromTheCueOnly) {
 }
 
 TEST(Agent, DamagedPacketsAreCountedAndChangeNothing) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   NeighbourState n;
@@ -272,7 +272,7 @@ TEST(Agent, DamagedPacketsAreCountedAndChangeNothing) {
 }
 
 TEST(Agent, AttendsToItsOwnTargetOnly) {
-  AgentConfig s;
+  AgentModel s;
   s.target.count = 2;
   Agent agent(s, 1);
   EXPECT_EQ(agent.target(), 1);
@@ -292,7 +292,7 @@ TEST(Agent, AttendsToItsOwnTargetOnly) {
 }
 
 TEST(Agent, NonFiniteInputIsTheCallersBug) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   float observation[128];
@@ -316,7 +316,7 @@ TEST(Agent, NonFiniteInputIsTheCallersBug) {
 TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
   for (const dynamics::ActionInterface interface :
        {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
-    AgentConfig s;
+    AgentModel s;
     s.control.interface = interface;
     Agent agent(s, 0);
     agent.Reset(0, CueAt({0.0, 0.0, 0.3}));
@@ -326,7 +326,7 @@ TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
     EXPECT_FLOAT_EQ(action[2], 0.75F);  // tau6: gain 1, so the same fraction of the force
     EXPECT_NEAR(action[0], 0.0F, 1e-7F);
     MakeController("idle")->Act(agent.view(), action);
-    for (int k = 0; k < s.action_size(); ++k) EXPECT_EQ(action[k], 0.0F);
+    for (int k = 0; k < s.control.action_size(); ++k) EXPECT_EQ(action[k], 0.0F);
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 const std::vector<std::string> kBuiltIn = {"encircle", "idle", "pursuit", "pursuit_separated"};
 
 /// An agent that has flown a while among neighbours.
-Agent Experienced(const AgentConfig& s) {
+Agent Experienced(const AgentModel& s) {
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.1, 0.0}));
   std::vector<float> observation;
@@ -40,7 +40,7 @@ TEST(Controllers, AreFoundByNameAndNothingElseIs) {
 }
 
 TEST(Controllers, ANameMayCarryConstants) {
-  const AgentConfig s;
+  const AgentModel s;
   const Agent agent = Experienced(s);
   PursuitOptions options = TunedPursuitSeparated();
   options.gain_per_s = 0.25;
@@ -73,7 +73,7 @@ TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
 TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
   for (const auto interface :
        {dynamics::ActionInterface::kVelocity3, dynamics::ActionInterface::kTau6}) {
-    AgentConfig s;
+    AgentModel s;
     s.control.interface = interface;
     const Agent agent = Experienced(s);
     NeighbourSight<double> one[3];
@@ -91,7 +91,7 @@ TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
       Pack b[dynamics::kMaxActionSize];
       controller->Act({s, 0, agent.knowledge(), one, count}, a);
       controller->Act({s, 0, knowledge, packs, count}, b);
-      for (int k = 0; k < s.action_size(); ++k) {
+      for (int k = 0; k < s.control.action_size(); ++k) {
         EXPECT_EQ(a[k], Lane(b[k], kLanes - 1)) << name;
         EXPECT_LE(std::abs(a[k]), 1.0) << name;
       }
@@ -100,13 +100,13 @@ TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
 }
 
 TEST(Controllers, AForceInterfaceIsGivenWhatTheVelocityControllerWouldDo) {
-  AgentConfig velocity, force;
+  AgentModel velocity, force;
   velocity.control.smoothing = velocity.control.max_delta = 0.0;  // executed as asked
   force.control.interface = dynamics::ActionInterface::kTau6;
   Agent a(velocity, 0), b(force, 0);
   for (Agent* agent : {&a, &b}) {
     agent->Reset(0, CueAt({0.2, 0.1, -0.1}));
-    std::vector<float> observation(static_cast<std::size_t>(agent->scenario().observation_size()));
+    std::vector<float> observation(static_cast<std::size_t>(agent->model().observation_size()));
     agent->Observe(Nav(0, {0.1, 0.0, 0.0}, {0.05, 0.02, 0.0}), observation.data());
   }
   float asked[dynamics::kMaxActionSize], action[dynamics::kMaxActionSize];
@@ -117,7 +117,7 @@ TEST(Controllers, AForceInterfaceIsGivenWhatTheVelocityControllerWouldDo) {
 }
 
 TEST(Controllers, ALaneIsServedLikeAnAgentOfItsOwn) {
-  const AgentConfig s;
+  const AgentModel s;
   Agent alone(s, 0);
   AgentLanes beside(std::make_shared<const AgentConstants>(s), 0);
   alone.Reset(0, CueAt({0.2, 0.1, 0.0}));

@@ -12,15 +12,15 @@ namespace stg::agent {
 namespace {
 
 /// Four torpedoes in open water, d* 90 m.
-AgentConfig Sea() {
-  AgentConfig s;
-  s.agents = 4;
+AgentModel Sea() {
+  AgentModel s;
+  s.run.agents = 4;
   s.sea.open = true;
   s.vehicle.max_velocity_mps = {2.5, 2.5, 0.5};
   s.target.max_speed_mps = 1.0;
   s.task.desired_distance_m = 90.0;
   s.control.max_delta = s.control.smoothing = 0.0;
-  s.time.dt_s = 1e-9;  // of a decision
+  s.run.time.dt_s = 1e-9;  // of a decision
   return s;
 }
 
@@ -37,7 +37,7 @@ Knowledge<double> Near(const Vec3<double>& p, const Vec3<double>& v, const Vec3<
 }
 
 /// Of AUV `id` [m/s], world axes.
-Vec3<double> Velocity(const AgentConfig& s, const Knowledge<double>& k, EncircleOptions o = {},
+Vec3<double> Velocity(const AgentModel& s, const Knowledge<double>& k, EncircleOptions o = {},
                       const std::vector<NeighbourSight<double>>& neighbours = {}, int id = 1) {
   double a[3];
   ControllerOf<Encircle>(Encircle{o})
@@ -71,7 +71,7 @@ TEST(Encircle, CirclesAnticlockwiseAtTheCruiseSpeedAndPointsAtATargetFarOff) {
 }
 
 TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
-  const AgentConfig s = Sea();
+  const AgentModel s = Sea();
   const EncircleOptions o;
   for (std::uint32_t k = 0; k < 3000; ++k) {
     Random random(1, Stream::kReset, 0, 0, k);
@@ -121,7 +121,7 @@ TEST(Encircle, PassesOthersAtLikeDepthAndObstaclesAside) {
   EXPECT_LT(aside(10.0, -33.0), alone - 0.1);
   EXPECT_GT(aside(-10.0, -33.0), alone + 0.1);
   EXPECT_NEAR(aside(10.0, -60.0), alone, 1e-12);
-  AgentConfig s = Sea();
+  AgentModel s = Sea();
   s.sea.cylinders = {{940.0, 10.0, -120.0, 20.0, 120.0}};
   EXPECT_LT(Velocity(s, k, o).y, alone - 0.1);
   s.sea.cylinders = {{940.0, 10.0, -120.0, 20.0, 30.0}};
@@ -135,7 +135,7 @@ TEST(Encircle, SpreadsOverTheDepthsOfTheScenario) {
 }
 
 TEST(Encircle, IsTheSameInEveryLane) {
-  const AgentConfig s = Sea();
+  const AgentModel s = Sea();
   const ControllerOf<Encircle> law(Encircle{});
   for (std::uint32_t n = 0; n < 200; ++n) {
     Knowledge<Pack> packed;

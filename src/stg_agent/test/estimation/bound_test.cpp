@@ -42,9 +42,9 @@ Bounded Compare(int observers) {
   o.observers = observers;
   o.drift = false;
   o.seconds = kSeconds;
-  const AgentConfig s = FleetScenario(o);
-  const double speed = s.target.max_speed_mps / std::sqrt(2.0);
-  const double depth = s.sea.target_depth_m.hi - s.sea.target_depth_m.lo;
+  const AgentScenario s = FleetScenario(o);
+  const double speed = s.world.target.max_speed_mps / std::sqrt(2.0);
+  const double depth = s.world.sea.target_depth_m.hi - s.world.sea.target_depth_m.lo;
   Matrix6 prior = Matrix6::Identity() * speed * speed;
   prior.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * o.cue_std_m * o.cue_std_m;
   prior(2, 2) = depth * depth / 12.0;  // what the filter knows beforehand: an even spread
@@ -56,16 +56,16 @@ Bounded Compare(int observers) {
     int lane = 0;
     fleet.Fly(static_cast<std::uint64_t>(7000 + e), kSeconds, [&](const Judgement& j, int second) {
       Matrix6& p = P[static_cast<std::size_t>(lane)];
-      Predict(speed, s.track.velocity_memory_s, &p);
+      Predict(speed, s.agent.track.velocity_memory_s, &p);
       Matrix6 information = p.inverse();
       for (int i = 0; i < observers; ++i) {
         const Vec3<double> r_BT =
             Lane(fleet.world().target(0).p_WT, lane) - Lane(fleet.world().vehicle(i).p_WB, lane);
         const double range = Norm(r_BT);
-        const double std_m = s.sensing.range_std_m + s.sensing.range_std_share * range;
+        const double std_m = s.world.sensing.range_std_m + s.world.sensing.range_std_share * range;
         Eigen::Matrix<double, 6, 1> h = Eigen::Matrix<double, 6, 1>::Zero();
         h.head<3>() << r_BT.x / range, r_BT.y / range, r_BT.z / range;
-        const double found = s.sensing.detection_probability;
+        const double found = s.world.sensing.detection_probability;
         information += found / (std_m * std_m) * h * h.transpose();
       }
       p = information.inverse();

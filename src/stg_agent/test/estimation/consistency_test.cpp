@@ -22,7 +22,7 @@ struct Consistency {
   std::array<double, kChecks> nees{}, error_m{};
 };
 
-Consistency Judge(const FleetOptions& o, const AgentConfig& s) {
+Consistency Judge(const FleetOptions& o, const AgentScenario& s) {
   Fleet fleet(s, o);
   Consistency c;
   for (int e = 0; e < kEpisodes; e += kLanes) {
@@ -75,9 +75,9 @@ TEST_P(Sensors, TwoThatShareAreHonestWhateverIsLostOrLate) {
 TEST_P(Sensors, OutliersAndFalseAlarmsAreSetAside) {
   if (std::string(GetParam()) == "position") return;  // has none
   const FleetOptions o = Options(2);
-  AgentConfig s = FleetScenario(o);
-  s.sensing.outlier_probability = 0.02;
-  s.sensing.false_alarm_probability = 0.02;
+  AgentScenario s = FleetScenario(o);
+  s.world.sensing.outlier_probability = 0.02;
+  s.world.sensing.false_alarm_probability = 0.02;
   const Consistency c = Judge(o, s);
   for (const double nees : c.nees) EXPECT_LT(nees, kUpper) << o.sensor;
 }
@@ -119,8 +119,8 @@ TEST(Consistency, AnAmbiguousBearingIsResolvedByTwo) {
   o.sensor = "bearing";
   o.seconds = 150.0;
   o.observers = 3;
-  AgentConfig s = FleetScenario(o);
-  s.sensing.ambiguous = true;
+  AgentScenario s = FleetScenario(o);
+  s.world.sensing.ambiguous = true;
   const Consistency c = Judge(o, s);
   for (const double nees : c.nees) EXPECT_LT(nees, kUpper);
   EXPECT_LT(c.error_m[2], 15.0);

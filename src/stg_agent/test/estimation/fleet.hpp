@@ -28,35 +28,35 @@ struct FleetOptions {
 };
 
 /// A field of 4 km by 4 km with kinematic AUVs that measure every second.
-inline AgentConfig FleetScenario(const FleetOptions& o) {
-  AgentConfig s;
-  s.agents = o.observers;
-  s.time.dt_s = 0.25;
-  s.time.decision_steps = 4;
-  s.vehicle.model = "kinematic";
-  s.vehicle.max_velocity_mps = {2.3, 2.3, 0.5};
-  s.vehicle.max_rate_radps = {0.2, 0.2, 0.2};
-  s.vehicle.kinematic.min_speed_mps = 0.0;
-  s.workspace.half_extent_m = 2000.0;
-  s.reset.start_half_extent_m = 2000.0;
-  s.reset.min_separation_m = 20.0;
-  for (auto& stage : s.reset.stages) {
+inline AgentScenario FleetScenario(const FleetOptions& o) {
+  AgentScenario s;
+  s.run.agents = o.observers;
+  s.run.time.dt_s = 0.25;
+  s.run.time.decision_steps = 4;
+  s.world.vehicle.model = "kinematic";
+  s.world.vehicle.max_velocity_mps = {2.3, 2.3, 0.5};
+  s.world.vehicle.max_rate_radps = {0.2, 0.2, 0.2};
+  s.world.vehicle.kinematic.min_speed_mps = 0.0;
+  s.world.workspace.half_extent_m = 2000.0;
+  s.world.reset.start_half_extent_m = 2000.0;
+  s.world.reset.min_separation_m = 20.0;
+  for (auto& stage : s.world.reset.stages) {
     stage.target_radius_m = {50.0, 200.0};
     stage.auv_distance_m = {80.0, 250.0};
     stage.target_speed_mps = {0.3, 0.9};
   }
-  s.sea.open = true;
-  s.target.motion = o.motion;
-  s.target.max_speed_mps = 0.9;
-  s.target.turn_rate_radps = o.turn_rate_radps;
-  s.target.turn_period_s = o.turn_period_s;
-  s.sensing.sensor = o.sensor;
-  s.sensing.range_m = 600.0;
-  s.sensing.noise_std_m = 3.0;
-  s.sensing.detection_probability = 0.9;
-  s.sensing.cue_std_m = o.cue_std_m;
-  s.navigation.kind = o.drift ? "dead_reckoning" : "perfect";
-  s.track.filter = "measurements";
+  s.world.sea.open = true;
+  s.world.target.motion = o.motion;
+  s.world.target.max_speed_mps = 0.9;
+  s.world.target.turn_rate_radps = o.turn_rate_radps;
+  s.world.target.turn_period_s = o.turn_period_s;
+  s.world.sensing.sensor = o.sensor;
+  s.world.sensing.range_m = 600.0;
+  s.world.sensing.noise_std_m = 3.0;
+  s.world.sensing.detection_probability = 0.9;
+  s.world.sensing.cue_std_m = o.cue_std_m;
+  s.world.navigation.kind = o.drift ? "dead_reckoning" : "perfect";
+  s.agent.track.filter = "measurements";
   return s;
 }
 
@@ -72,10 +72,14 @@ struct Judgement {
 /// episode, at `checks` times spread evenly over it.
 class Fleet {
  public:
-  Fleet(AgentConfig scenario, const FleetOptions& options)
-      : o_(options), s_(std::move(scenario)), codec_(s_, LayoutOf(s_)), world_(s_), random_(17) {
+  Fleet(const AgentScenario& scenario, const FleetOptions& options)
+      : o_(options),
+        s_(scenario.model()),
+        codec_(s_, LayoutOf(s_)),
+        world_(scenario.world, scenario.run),
+        random_(17) {
     for (int lane = 0; lane < kLanes; ++lane) {
-      for (int i = 0; i < s_.agents; ++i) {
+      for (int i = 0; i < s_.run.agents; ++i) {
         filters_.push_back(TargetFilters().Make(s_.track.filter, s_, i));
       }
     }
@@ -86,7 +90,7 @@ class Fleet {
   void Fly(std::uint64_t seed, int checks, const Judge& judge) {
     for (int lane = 0; lane < kLanes; ++lane) {
       world_.Reset(lane, seed + static_cast<std::uint64_t>(lane), 0, dynamics::ResetStage::kMedium);
-      for (int i = 0; i < s_.agents; ++i) {
+      for (int i = 0; i < s_.run.agents; ++i) {
         TargetFilter& f = *filters_[At(lane, i)];
         f.Clear();
         const dynamics::Cue cue = world_.InitialCue(lane, i, 0);
@@ -94,7 +98,7 @@ class Fleet {
         mail_[At(lane, i)].clear();
       }
     }
-    const auto decisions = static_cast<int>(o_.seconds / s_.decision_dt_s());
+    const auto decisions = static_cast<int>(o_.seconds / s_.run.decision_dt_s());
     for (int k = 0; k <= decisions; ++k) {
       for (int lane = 0; lane < kLanes; ++lane) Decide(lane, k);
       if (k > 0 && k % (decisions / checks) == 0) {
@@ -104,7 +108,7 @@ class Fleet {
     }
   }
 
-  const AgentConfig& scenario() const { return s_; }
+  const AgentModel& model() const { return s_; }
   TargetFilter& filter(int lane, int i) { return *filters_[At(lane, i)]; }
   const dynamics::World& world() const { return world_; }
 
@@ -123,13 +127,15 @@ class Fleet {
     TimeNs arrival;
     Packet packet;
   };
-  std::size_t At(int lane, int i) const { return static_cast<std::size_t>(lane * s_.agents + i); }
+  std::size_t At(int lane, int i) const {
+    return static_cast<std::size_t>(lane * s_.run.agents + i);
+  }
   double Uniform() { return std::uniform_real_distribution<double>()(random_); }
 
   void Decide(int lane, int k) {
     const TimeNs now = world_.time(lane);
-    const auto interval = static_cast<int>(o_.interval_s / s_.decision_dt_s());
-    for (int i = 0; i < s_.agents; ++i) {
+    const auto interval = static_cast<int>(o_.interval_s / s_.run.decision_dt_s());
+    for (int i = 0; i < s_.run.agents; ++i) {
       TargetFilter& f = *filters_[At(lane, i)];
       auto& mail = mail_[At(lane, i)];
       for (std::size_t m = 0; m < mail.size();) {
@@ -159,7 +165,7 @@ class Fleet {
     state.position_std_m = nav.position_std_m;
     filters_[At(lane, i)]->Tell(false, &state);
     const Packet packet = codec_.Encode(state);
-    for (int j = 0; j < s_.agents; ++j) {
+    for (int j = 0; j < s_.run.agents; ++j) {
       if (j == i || Uniform() < o_.loss) continue;
       const auto age = static_cast<TimeNs>(o_.longest_age_s * Uniform() * 1e9);
       mail_[At(lane, j)].push_back({now + age, packet});
@@ -169,7 +175,7 @@ class Fleet {
   /// Circles around the target at 60 to 120 m, each AUV at its own speed and on its own side.
   void Steer(int) {
     std::vector<Pack> commands;
-    for (int i = 0; i < s_.agents; ++i) {
+    for (int i = 0; i < s_.run.agents; ++i) {
       const auto& v = world_.vehicle(i);
       Pack turn(0.0);
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -185,11 +191,11 @@ class Fleet {
       commands.push_back(turn);
       commands.push_back(Pack(0.0));
     }
-    for (int step = 0; step < s_.time.decision_steps; ++step) world_.Step(commands);
+    for (int step = 0; step < s_.run.time.decision_steps; ++step) world_.Step(commands);
   }
 
   FleetOptions o_;
-  AgentConfig s_;
+  AgentModel s_;
   PacketCodec codec_;
   dynamics::World world_;
   std::mt19937_64 random_;

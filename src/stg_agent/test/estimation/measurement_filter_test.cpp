@@ -14,15 +14,15 @@ namespace {
 
 constexpr TimeNs kSecond = 1'000'000'000;
 
-AgentConfig Scenario(const char* sensor, bool drift = false) {
+AgentModel Scenario(const char* sensor, bool drift = false) {
   FleetOptions o;
   o.sensor = sensor;
   o.drift = drift;
   o.observers = 4;
-  return FleetScenario(o);
+  return FleetScenario(o).model();
 }
 
-std::unique_ptr<TargetFilter> Filter(const AgentConfig& s, int self = 0) {
+std::unique_ptr<TargetFilter> Filter(const AgentModel& s, int self = 0) {
   auto filter = TargetFilters().Make(s.track.filter, s, self);
   filter->Clear();
   return filter;
@@ -62,7 +62,7 @@ double Narrowest(const TargetBelief& b) {
 }
 
 TEST(MeasurementFilter, RangesThatAreHalfBelievedLeaveACovariance) {
-  const AgentConfig s = Scenario("range");
+  const AgentModel s = Scenario("range");
   const Vec3<double> target{0.0, 0.0, -50.0};
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> angle(-kPi, kPi), off(-60.0, 60.0), distance(5.0, 120.0);
@@ -83,7 +83,7 @@ TEST(MeasurementFilter, RangesThatAreHalfBelievedLeaveACovariance) {
 }
 
 TEST(MeasurementFilter, StartsFromTheCueWithTheDepthThatIsKnown) {
-  const AgentConfig s = Scenario("range");
+  const AgentModel s = Scenario("range");
   auto f = Filter(s);
   EXPECT_FALSE(f->belief().started);
   f->Start({10.0, 20.0, -30.0}, 50.0, 0);
@@ -101,7 +101,7 @@ TEST(MeasurementFilter, StartsFromTheCueWithTheDepthThatIsKnown) {
 }
 
 TEST(MeasurementFilter, PredictionIsTheIntegratedOrnsteinUhlenbeckProcess) {
-  AgentConfig s = Scenario("range");
+  AgentModel s = Scenario("range");
   s.track.velocity_std_mps = 0.5;
   s.track.velocity_memory_s = 40.0;
   auto once = Filter(s);
@@ -120,7 +120,7 @@ TEST(MeasurementFilter, PredictionIsTheIntegratedOrnsteinUhlenbeckProcess) {
 }
 
 TEST(MeasurementFilter, ARangeOfACertainTargetIsTheScalarKalmanFilter) {
-  AgentConfig s = Scenario("range");
+  AgentModel s = Scenario("range");
   s.track.velocity_std_mps = 1e-9;
   auto f = Filter(s);
   f->Start({1000.0, 0.0, -40.0}, 2.0, 0);
@@ -134,7 +134,7 @@ TEST(MeasurementFilter, ARangeOfACertainTargetIsTheScalarKalmanFilter) {
 
 TEST(MeasurementFilter, NeitherTimeNorOrderOfArrivalMatters) {
   for (const bool drift : {false, true}) {
-    const AgentConfig s = Scenario("range", drift);
+    const AgentModel s = Scenario("range", drift);
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
     struct Item {
@@ -185,7 +185,7 @@ TEST(MeasurementFilter, NeitherTimeNorOrderOfArrivalMatters) {
 }
 
 TEST(MeasurementFilter, OneRangeAloneLeavesARing) {
-  const AgentConfig s = Scenario("range");
+  const AgentModel s = Scenario("range");
   auto f = Filter(s);
   f->Detect(Range(0, {100.0, 0.0, -40.0}, 200.0));  // no cue
   Step(f.get(), 0);
@@ -206,7 +206,7 @@ TEST(MeasurementFilter, OneRangeAloneLeavesARing) {
 
 TEST(MeasurementFilter, ANavigationErrorIsNotAveragedAway) {
   // A thousand ranges from one AUV that is 20 m off cannot tell the target's place to better.
-  const AgentConfig s = Scenario("position", true);
+  const AgentModel s = Scenario("position", true);
   auto f = Filter(s);
   f->Start({0.0, 0.0, -40.0}, 100.0, 0);
   for (int k = 0; k < 50; ++k) {
@@ -227,7 +227,7 @@ TEST(MeasurementFilter, ANavigationErrorIsNotAveragedAway) {
 }
 
 TEST(MeasurementFilter, WhatItSharesIsItsNewestAndOneBefore) {
-  const AgentConfig s = Scenario("range");
+  const AgentModel s = Scenario("range");
   auto f = Filter(s);
   f->Start({0.0, 0.0, -40.0}, 50.0, 0);
   for (int k = 0; k < 5; ++k) {
@@ -249,7 +249,7 @@ TEST(MeasurementFilter, WhatItSharesIsItsNewestAndOneBefore) {
 }
 
 TEST(MeasurementFilter, KalmanRefusesWhatItCannotUse) {
-  AgentConfig s = Scenario("range");
+  AgentModel s = Scenario("range");
   s.track.filter = "kalman";
   EXPECT_TRUE(FindFilterConflict(s).has_value());
   s.sensing.sensor = "range_bearing";

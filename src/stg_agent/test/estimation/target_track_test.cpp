@@ -23,7 +23,7 @@ void Follow(TargetTrack* track, int steps, const Vec3<double>& v, Vec3<double>* 
 
 TEST(TargetTrack, ConvergesOnNoiseFreeDetectionsWithinTenSteps) {
   for (const double speed : {0.003, 0.008, 0.02}) {
-    TargetTrack track{AgentConfig()};
+    TargetTrack track{AgentModel()};
     const Vec3<double> v = Vec3<double>{0.6, -0.64, 0.48} * speed;
     Vec3<double> p{0.3, -0.2, 0.1};
     track.Start(p + Vec3<double>{0.04, -0.05, 0.06}, 0.05, 0);
@@ -37,7 +37,7 @@ TEST(TargetTrack, ConvergesOnNoiseFreeDetectionsWithinTenSteps) {
 
 TEST(TargetTrack, UpdateIsTheScalarKalmanFilterOfOneAxis) {
   // Hand-computed: prior N(0, 0.05^2), one measurement of the same variance meets it half way.
-  AgentConfig s;
+  AgentModel s;
   s.track.measurement_std_m = 0.05;
   TargetTrack track(s);
   track.Start({0.0, 0.0, 0.0}, 0.05, 0);
@@ -48,7 +48,7 @@ TEST(TargetTrack, UpdateIsTheScalarKalmanFilterOfOneAxis) {
 }
 
 TEST(TargetTrack, PredictionInOneStrideEqualsManySmallOnes) {
-  TargetTrack one{AgentConfig()}, many{AgentConfig()};
+  TargetTrack one{AgentModel()}, many{AgentModel()};
   for (TargetTrack* t : {&one, &many}) {
     t->Start({0.1, 0.2, 0.3}, 0.05, 0);
     t->Detect({kStep, 0, {0.11, 0.2, 0.3}, 0.001});
@@ -63,7 +63,7 @@ TEST(TargetTrack, PredictionInOneStrideEqualsManySmallOnes) {
 
 TEST(TargetTrack, FollowsAReflectionAtTheWallWithoutLosingAStep) {
   for (const double speed : {0.008, 0.05}) {
-    TargetTrack track{AgentConfig()};
+    TargetTrack track{AgentModel()};
     Vec3<double> p{1.0 - 20.5 * 0.1 * speed, 0.3, 0.0}, v{speed, 0.004, 0.0};
     track.Start(p, 0.01, 0);
     TimeNs t = 0;
@@ -81,7 +81,7 @@ TEST(TargetTrack, FollowsAReflectionAtTheWallWithoutLosingAStep) {
 
 TEST(TargetTrack, FollowsAReversalInOpenWater) {
   for (const double speed : {0.008, 0.02, 0.05}) {
-    TargetTrack track{AgentConfig()};
+    TargetTrack track{AgentModel()};
     Vec3<double> p{0.0, 0.0, 0.0}, v{speed, 0.0, 0.0};
     track.Start(p, 0.01, 0);
     TimeNs t = 0;
@@ -94,7 +94,7 @@ TEST(TargetTrack, FollowsAReversalInOpenWater) {
 }
 
 TEST(TargetTrack, OneOutlierIsSetAsideAndARowOfThemRestarts) {
-  TargetTrack track{AgentConfig()};
+  TargetTrack track{AgentModel()};
   Vec3<double> p{0.0, 0.0, 0.0};
   const Vec3<double> v{0.005, 0.0, 0.0};
   track.Start(p, 0.01, 0);
@@ -118,7 +118,7 @@ TEST(TargetTrack, OneOutlierIsSetAsideAndARowOfThemRestarts) {
 /// filter assumes; 6 for a consistent filter. `share`: a second filter with its own
 /// detections tells the first about its estimate every fifth step, and the other way round.
 double MeanNees(bool share, double noise, int runs) {
-  AgentConfig s;
+  AgentModel s;
   TrackConfig& c = s.track;
   const double S = c.process_accel_std_mps2 * c.process_accel_std_mps2 * 0.1;
   std::mt19937_64 generator(7);
@@ -167,7 +167,7 @@ TEST(TargetTrack, SharingIsConservativeAlthoughEstimatesAreCorrelated) {
 }
 
 TEST(TargetTrack, ExchangingOneEstimateBackAndForthAddsNoCertainty) {
-  TargetTrack a{AgentConfig()}, b{AgentConfig()};
+  TargetTrack a{AgentModel()}, b{AgentModel()};
   a.Start({0.1, 0.0, 0.0}, 0.05, 0);
   b.Start({0.1, 0.0, 0.0}, 0.05, 0);
   a.Detect({kStep, 0, {0.1, 0.0, 0.0}, 0.01});
@@ -187,7 +187,7 @@ TEST(TargetTrack, ExchangingOneEstimateBackAndForthAddsNoCertainty) {
 TEST(TargetTrack, ASharedEstimateIsWorthLessTheOlderItIs) {
   double previous = 0.0;
   for (const TimeNs age : {0, 1, 5, 20, 50}) {
-    TargetTrack track{AgentConfig()};
+    TargetTrack track{AgentModel()};
     track.Start({0.0, 0.0, 0.0}, 0.2, 0);
     track.Predict(100 * kStep);
     track.Fuse({(100 - age) * kStep, {0.05, 0.0, 0.0}, {0.01, 0.0, 0.0}, 0.002});
@@ -200,7 +200,7 @@ TEST(TargetTrack, ASharedEstimateIsWorthLessTheOlderItIs) {
 }
 
 TEST(TargetTrack, ASharedEstimateFarOffReplacesOnlyAnOlderAndWorseTrack) {
-  TargetTrack stale{AgentConfig()}, sharp{AgentConfig()};
+  TargetTrack stale{AgentModel()}, sharp{AgentModel()};
   stale.Start({0.0, 0.0, 0.0}, 0.01, 0);
   stale.Predict(50 * kStep);
   sharp.Start({0.0, 0.0, 0.0}, 0.01, 0);
@@ -213,7 +213,7 @@ TEST(TargetTrack, ASharedEstimateFarOffReplacesOnlyAnOlderAndWorseTrack) {
 }
 
 TEST(TargetTrack, ALateDetectionIsCarriedForwardAndCountsForLess) {
-  TargetTrack on_time{AgentConfig()}, late{AgentConfig()};
+  TargetTrack on_time{AgentModel()}, late{AgentModel()};
   for (TargetTrack* t : {&on_time, &late}) {
     Vec3<double> p{0.0, 0.0, 0.0};
     TimeNs stamp = 0;

@@ -11,13 +11,13 @@ namespace {
 
 /// Carries one lane's neighbours to a time, seen from p_WB.
 void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& p_WB,
-             const AgentConfig& s = AgentConfig()) {
+             const AgentModel& s = AgentModel()) {
   neighbours->Age(static_cast<double>(now));
-  neighbours->Predict(p_WB, *acoustics::MakeLinkEstimator(s.channel, s.agents));
+  neighbours->Predict(p_WB, *acoustics::MakeLinkEstimator(s.channel, s.run.agents));
 }
 
 TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
-  Neighbourhood<double> neighbours{AgentConfig()};
+  Neighbourhood<double> neighbours{AgentModel()};
   neighbours.Set(0, Report(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0}));
   Predict(&neighbours, 3 * kSecond, {0.3, 0.0, 0.0});
   const NeighbourSight<double>& n = neighbours.sights()[2];
@@ -30,14 +30,14 @@ TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
 }
 
 TEST(Neighbourhood, DeadReckoningStopsAtTheWalls) {
-  Neighbourhood<double> neighbours{AgentConfig()};
+  Neighbourhood<double> neighbours{AgentModel()};
   neighbours.Set(0, Report(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
   Predict(&neighbours, 5 * kSecond, {});
   EXPECT_DOUBLE_EQ(neighbours.sights()[1].p_WN.x, 1.0);
 }
 
 TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsDropped) {
-  Neighbourhood<Pack> neighbours{AgentConfig()};  // 10 s
+  Neighbourhood<Pack> neighbours{AgentModel()};  // 10 s
   const int last = kLanes - 1;
   neighbours.Set(last, Report(1, 0, {}));
   const auto old = [&](TimeNs now) {
@@ -55,8 +55,8 @@ TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsDropped) {
 TEST(Neighbourhood, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
   for (const char* model : {"range", "extended"}) {
     for (const int agents : {2, 4, 7, 23}) {
-      AgentConfig s;
-      s.agents = agents;
+      AgentModel s;
+      s.run.agents = agents;
       s.channel.model = model;
       Neighbourhood<double> neighbours(s);
       for (int i = agents - 1; i >= 0; --i) {
@@ -77,8 +77,8 @@ TEST(Neighbourhood, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
 }
 
 TEST(AgentView, NearestAreSortedAndTiesGoToTheLowerIndex) {
-  AgentConfig s;
-  s.agents = 8;
+  AgentModel s;
+  s.run.agents = 8;
   Agent agent(s, 0);
   agent.Reset(0, CueAt({}));
   const double x[] = {0.0, 0.5, 0.2, 0.9, 0.2, 0.1, 0.7, 0.4};

@@ -40,7 +40,7 @@ TEST(ObservationSpec, NameTellsWhatAPolicyFileMustMatch) {
 }
 
 /// Numbers that stand in one block, as the observation of this knowledge shows them.
-std::vector<double> Shown(const AgentConfig& s, const Knowledge<double>& k, Block block) {
+std::vector<double> Shown(const AgentModel& s, const Knowledge<double>& k, Block block) {
   std::vector<double> all;
   BuildObservation(s, k, [&](int index, double value) {
     EXPECT_EQ(index, static_cast<int>(all.size()));
@@ -56,7 +56,7 @@ std::vector<double> Shown(const AgentConfig& s, const Knowledge<double>& k, Bloc
 TEST(ObservationSpec, BuildObservationKeepsToIt) {
   using Numbers = std::vector<double>;
   for (const bool tracking : {true, false}) {
-    AgentConfig s;
+    AgentModel s;
     s.observation.tracking = tracking;
     s.workspace.half_extent_m = 1.0;
     s.vehicle.max_velocity_mps = {1.0, 1.0, 1.0};

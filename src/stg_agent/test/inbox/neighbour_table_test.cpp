@@ -8,7 +8,7 @@ namespace stg::agent {
 namespace {
 
 TEST(NeighbourTable, KeepsTheNewestStateWhateverTheOrder) {
-  NeighbourTable table(AgentConfig(), 0);
+  NeighbourTable table(AgentModel(), 0);
   EXPECT_TRUE(table.Update(Report(1, 2 * kSecond, {0.2, 0.0, 0.0})));
   EXPECT_FALSE(table.Update(Report(1, kSecond, {0.1, 0.0, 0.0})));
   EXPECT_FALSE(table.Update(Report(1, 2 * kSecond, {0.5, 0.0, 0.0})));
@@ -16,7 +16,7 @@ TEST(NeighbourTable, KeepsTheNewestStateWhateverTheOrder) {
 }
 
 TEST(NeighbourTable, IgnoresOneselfAndStrangers) {
-  NeighbourTable table(AgentConfig(), 3);
+  NeighbourTable table(AgentModel(), 3);
   EXPECT_FALSE(table.Update(Report(3, 0, {})));
   EXPECT_FALSE(table.Update(Report(-1, 0, {})));
   EXPECT_FALSE(table.Update(Report(4, 0, {})));
@@ -24,7 +24,7 @@ TEST(NeighbourTable, IgnoresOneselfAndStrangers) {
 }
 
 TEST(NeighbourTable, ForgetsTheSilentAndTakesThemBack) {
-  AgentConfig s;
+  AgentModel s;
   NeighbourTable table(s, 0);
   table.Update(Report(1, 0, {}));
   table.Update(Report(2, 5 * kSecond, {}));
@@ -39,7 +39,7 @@ TEST(NeighbourTable, ForgetsTheSilentAndTakesThemBack) {
 }
 
 TEST(NeighbourTable, ATargetEstimateIsReadOnce) {
-  NeighbourTable table(AgentConfig(), 0);
+  NeighbourTable table(AgentModel(), 0);
   NeighbourState with = Report(1, 0, {});
   with.has_target = true;
   table.Update(Report(2, 0, {}));

@@ -15,11 +15,11 @@ namespace {
 
 constexpr TimeNs kSecond = 1'000'000'000;
 
-AgentConfig Scenario(const std::string& sensor, bool ambiguous = false) {
+AgentModel Scenario(const std::string& sensor, bool ambiguous = false) {
   FleetOptions o;
   o.sensor = sensor;
   o.observers = 4;
-  AgentConfig s = FleetScenario(o);
+  AgentModel s = FleetScenario(o).model();
   s.sensing.ambiguous = ambiguous;
   return s;
 }
@@ -71,7 +71,7 @@ class MeasurementPackets : public ::testing::TestWithParam<std::tuple<const char
   void World() { kind_ = dynamics::TargetSensors().Make(s_.sensing.sensor, s_.sensing)->kind(); }
 
   std::mt19937_64 random_{5};
-  AgentConfig s_;
+  AgentModel s_;
   MeasurementPacket codec_;
   dynamics::MeasurementKind kind_ = dynamics::MeasurementKind::kPosition;
 };
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::make_tuple("bearing", true), std::make_tuple("range_bearing", true)));
 
 TEST(MeasurementPacket, ValuesOutOfRangeSaturateAndSaySo) {
-  const AgentConfig s = Scenario("range");
+  const AgentModel s = Scenario("range");
   const MeasurementPacket codec(s);
   NeighbourState in;
   in.generation = 100 * kSecond;
@@ -169,7 +169,7 @@ TEST(MeasurementPacket, ValuesOutOfRangeSaturateAndSaySo) {
 }
 
 TEST(MeasurementPacket, APacketFromBeforeTheStartIsRefused) {
-  const AgentConfig s = Scenario("range");
+  const AgentModel s = Scenario("range");
   const MeasurementPacket codec(s);
   NeighbourState in;
   in.generation = 10 * kSecond;

@@ -7,9 +7,9 @@ namespace stg::agent {
 
 inline constexpr TimeNs kMs = 1'000'000, kSecond = 1'000'000'000;
 
-inline AgentConfig TestScenario() {
-  AgentConfig s;
-  s.agents = 7;
+inline AgentModel TestScenario() {
+  AgentModel s;
+  s.run.agents = 7;
   s.target.count = 3;
   return s;
 }

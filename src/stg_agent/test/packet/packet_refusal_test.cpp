@@ -119,13 +119,13 @@ TEST(PacketRefusal, NonFiniteAndImpossibleValuesAreABug) {
 }
 
 TEST(PacketRefusal, ScenariosThatDoNotFitTheLayoutAreRefused) {
-  AgentConfig s;
-  s.agents = 256;
+  AgentModel s;
+  s.run.agents = 256;
   s.target.count = 64;
   EXPECT_NO_THROW(PacketCodec{s});
-  s.agents = 257;
+  s.run.agents = 257;
   EXPECT_THROW(PacketCodec{s}, UserError);
-  s.agents = 4;
+  s.run.agents = 4;
   s.target.count = 65;
   EXPECT_THROW(PacketCodec{s}, UserError);
 }

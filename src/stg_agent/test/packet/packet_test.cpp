@@ -24,7 +24,7 @@ NeighbourState RoundTrip(const PacketCodec& codec, const NeighbourState& s) {
 }
 
 TEST(Packet, ResolutionsSufficeForTheShippedWorkspace) {
-  const PacketCodec codec{AgentConfig{}};
+  const PacketCodec codec{AgentModel{}};
   EXPECT_LE(Field(codec, "position").resolution, 1e-4);
   EXPECT_LE(Field(codec, "target_position").resolution, 1e-4);
   EXPECT_LE(Field(codec, "velocity").resolution, 1e-3);
@@ -36,7 +36,7 @@ TEST(Packet, ResolutionsSufficeForTheShippedWorkspace) {
 
 TEST(Packet, BitCountsFollowTheClosedForm) {
   for (const double half_extent : {1.0, 1000.0}) {
-    AgentConfig s;
+    AgentModel s;
     s.workspace.half_extent_m = half_extent;
     for (const PacketField& f : PacketCodec(s).fields()) {
       // The subtraction keeps rounding in the quotient from adding a bit.
@@ -47,7 +47,7 @@ TEST(Packet, BitCountsFollowTheClosedForm) {
 }
 
 TEST(Packet, RoundTripErrorIsAtMostHalfTheResolution) {
-  const AgentConfig scenario = TestScenario();
+  const AgentModel scenario = TestScenario();
   const PacketCodec codec(scenario);
   std::mt19937_64 engine(7);
   const auto draw = [&](double lo, double hi) {

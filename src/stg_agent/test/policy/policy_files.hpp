@@ -37,7 +37,7 @@ inline Policy::Parameters RandomParameters(const std::vector<int>& sizes,
   }
   p.log_std = Eigen::VectorXf::Constant(sizes.back(), -1.2345678F);
   p.metadata.id = "test";
-  p.metadata.observation_layout = ObservationLayout(AgentConfig());
+  p.metadata.observation_layout = ObservationLayout(ObservationConfig());
   p.metadata.action_interface = "velocity3";
   p.metadata.action_scale = 0.75;
   p.metadata.scenario_hash = "0123456789abcdef";

@@ -193,15 +193,15 @@ TEST_F(PolicyTest, ConstructorChecksShapesAndNumbers) {
 }
 
 TEST_F(PolicyTest, FitsOnlyTheScenarioItWasMadeFor) {
-  AgentConfig scenario;
+  AgentModel scenario;
   const Policy policy(RandomParameters({74, 8, 3}, Policy::Activation::kTanh, 1));
   EXPECT_NO_THROW(policy.RequireFits(scenario));
   scenario.observation.graph = false;
   EXPECT_THROW(policy.RequireFits(scenario), UserError);
-  scenario = AgentConfig();
+  scenario = AgentModel();
   scenario.observation.order = NeighbourOrder::kIndex;
   EXPECT_THROW(policy.RequireFits(scenario), UserError);
-  scenario = AgentConfig();
+  scenario = AgentModel();
   scenario.control.interface = dynamics::ActionInterface::kTau6;
   EXPECT_THROW(policy.RequireFits(scenario), UserError);
 }

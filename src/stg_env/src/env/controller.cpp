@@ -12,8 +12,8 @@ namespace {
 void DecideTruly(const agent::Controller& c, const VectorEnv::Slice& slice, double* actions) {
   const Environment& env = *slice.lanes;
   const dynamics::World& world = env.world();
-  const Scenario& s = env.scenario();
-  const int n = s.agents, size = s.action_size();
+  const agent::AgentModel& s = env.model();
+  const int n = s.run.agents, size = s.control.action_size();
   std::vector<agent::NeighbourSight<Pack>> neighbours(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     int count = 0;
@@ -40,7 +40,8 @@ void DecideTruly(const agent::Controller& c, const VectorEnv::Slice& slice, doub
 void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float* observations,
                  double* actions) {
   const Scenario& s = slice.lanes->scenario();
-  const int n = s.agents, size = s.action_size(), width = s.observation_size();
+  const int n = s.run.agents, size = s.world.control.action_size();
+  const int width = s.agent.observation_size();
   if (c.builtin != nullptr && (c.privileged || s.mode == InformationMode::kTruth)) {
     DecideTruly(*c.builtin, slice, actions);
     return;
@@ -61,18 +62,18 @@ void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float
 
 }  // namespace
 
-Controller MakeController(const std::string& name, const Scenario& scenario) {
+Controller MakeController(const std::string& name, const agent::AgentModel& model) {
   Controller c;
   c.name = name;
   c.builtin = agent::MakeController(name);
   if (c.builtin) return c;
   agent::RequirePolicyFileName(name);
   std::string last;
-  for (int i = 0; i < scenario.agents; ++i) {
+  for (int i = 0; i < model.run.agents; ++i) {
     const std::string file = agent::PolicyFileOf(name, i);
     if (file == last) break;
     auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(file));
-    policy->RequireFits(scenario);
+    policy->RequireFits(model);
     c.policies.push_back(policy);
     last = file;
   }

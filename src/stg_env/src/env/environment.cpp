@@ -10,27 +10,30 @@
 namespace stg::env {
 namespace {
 
-std::unique_ptr<InformationSource> MakeSource(const Scenario& s) {
-  if (s.mode == InformationMode::kAcoustic) return std::make_unique<AcousticSource>(s);
-  return std::make_unique<TruthSource>(s);
+std::unique_ptr<InformationSource> MakeSource(const Scenario& s, const agent::AgentModel& model) {
+  if (s.mode == InformationMode::kTruth) return std::make_unique<TruthSource>(model);
+  const auto shadows = dynamics::ShadowsOf(s.world.sea, s.world.workspace.half_extent_m);
+  return std::make_unique<AcousticSource>(model, s.channel, shadows);
 }
 
 }  // namespace
 
 Environment::Environment(const Scenario& scenario)
     : scenario_(scenario),
-      world_(scenario),
-      source_(MakeSource(scenario)),
-      task_(scenario),
-      observation_size_(scenario.observation_size()) {
+      world_(scenario.world, scenario.run),
+      model_(scenario.model()),
+      source_(MakeSource(scenario, model_)),
+      task_(scenario.judge()),
+      observation_size_(model_.observation_size()) {
   task::Effort<Pack> zero;
   zero.fill(Pack(0.0));
-  tau_.assign(static_cast<std::size_t>(scenario.agents), zero);
+  tau_.assign(static_cast<std::size_t>(scenario.run.agents), zero);
   action_ = tau_;
   wrench_.resize(tau_.size());
-  if (scenario.sea.open) field_.resize(tau_.size());
-  if (dynamics::Helm::Steers(scenario)) {
-    helm_ = std::make_unique<dynamics::Helm>(scenario);
+  if (scenario.world.sea.open) field_.resize(tau_.size());
+  if (dynamics::Helm::Steers(scenario.world.vehicle)) {
+    helm_ = std::make_unique<dynamics::Helm>(scenario.world.vehicle,
+                                             scenario.world.control.autopilot, scenario.run);
     v_des_W_.resize(tau_.size());
   }
 }
@@ -62,7 +65,7 @@ void Environment::Place(int lane, const std::vector<Vec3<double>>& p_WB,
                         const std::vector<Vec3<double>>& p_WT,
                         const std::vector<Vec3<double>>& v_WT) {
   world_.Place(lane, p_WB, p_WT, v_WT);
-  Zero(lane, scenario_.time.episode_steps);
+  Zero(lane, scenario_.run.time.episode_steps);
 }
 
 void Environment::Begin(const LaneSet& lanes) {
@@ -75,23 +78,23 @@ void Environment::Begin(const LaneSet& lanes) {
 void Environment::Move(const Pack* wanted) {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     source_->Act(world_, static_cast<int>(i), wanted, &action_[i], &tau_[i]);
-    const auto wrench = dynamics::ScaleWrench(scenario_.vehicle, tau_[i].data());
+    const auto wrench = dynamics::ScaleWrench(scenario_.world.vehicle, tau_[i].data());
     wrench_[i].force = wrench.force;  // by halves: the whole is copied by a call
     wrench_[i].moment = wrench.moment;
-    wanted += scenario_.action_size();
+    wanted += scenario_.world.control.action_size();
   }
   source_->Send(world_);
   if (helm_ != nullptr) {
     Steer();
   } else {
-    for (int k = 0; k < scenario_.time.decision_steps; ++k) world_.Step(wrench_);
+    for (int k = 0; k < scenario_.run.time.decision_steps; ++k) world_.Step(wrench_);
   }
   world_.CheckFinite();
 }
 
 void Environment::Steer() {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
-    v_des_W_[i] = dynamics::DesiredVelocity(scenario_.vehicle, action_[i].data());
+    v_des_W_[i] = dynamics::DesiredVelocity(scenario_.world.vehicle, action_[i].data());
   }
   helm_->Drive(v_des_W_, &world_);
   for (std::size_t i = 0; i < tau_.size(); ++i) {
@@ -139,7 +142,7 @@ agent::Knowledge<Pack> Environment::Truth(int i) const {
   k.R_WB = v.R_WB;
   k.trig = v.trig;
   k.r_BT_W = t.r_BT_W;
-  k.v_WT = world_.target(scenario_.target_of(i)).v_WT;
+  k.v_WT = world_.target(scenario_.world.target.of(i)).v_WT;
   k.distance = t.distance;
   k.previous_distance = t.previous_distance;
   k.error = t.error;
@@ -164,14 +167,15 @@ void Environment::WriteObservations(int lanes, float* rows) const {
   const std::size_t stride = tau_.size() * size;
   Pack columns[agent::kMaxObservationSize];
   for (std::size_t i = 0; i < tau_.size(); ++i) {
-    agent::BuildObservation(scenario_, source_->knowledge(static_cast<int>(i)),
+    agent::BuildObservation(model_, source_->knowledge(static_cast<int>(i)),
                             [&](int index, const Pack& value) { columns[index] = value; });
     Scatter(columns, static_cast<int>(size), lanes, rows + i * size, stride);
   }
 }
 
 void Environment::WriteStates(int lanes, float* rows) const {
-  const auto stride = static_cast<std::size_t>(task::CriticStateSize(scenario_));
+  const auto stride = static_cast<std::size_t>(
+      task::CriticStateSize(scenario_.run.agents, scenario_.world.target.count));
   task_.WriteCriticState(Swarm(), [&](const Pack* numbers, int count) {
     Scatter(numbers, count, lanes, rows, stride);
     rows += count;

@@ -40,6 +40,7 @@ class Environment {
   void WriteRewards(int lanes, float* rows) const;
 
   const Scenario& scenario() const { return scenario_; }
+  const agent::AgentModel& model() const { return model_; }
   const dynamics::World& world() const { return world_; }
   const task::Task<Pack>& task() const { return task_; }
   const agent::Knowledge<Pack>& knowledge(int i) const { return source_->knowledge(i); }
@@ -55,6 +56,7 @@ class Environment {
 
   Scenario scenario_;
   dynamics::World world_;
+  agent::AgentModel model_;  // what the agents know
   std::unique_ptr<InformationSource> source_;
   task::Task<Pack> task_;
   int observation_size_;

@@ -142,7 +142,7 @@ void ReadSteps(const std::string& file, Trace* trace) {
     }
     trace->rows.push_back(std::move(row));
   }
-  const auto n = static_cast<size_t>(trace->scenario.agents);
+  const auto n = static_cast<size_t>(trace->scenario.run.agents);
   if (trace->rows.empty() || trace->rows.size() % n != 0) {
     Fail(file, number, "expected a whole number of steps of " + std::to_string(n) + " rows");
   }
@@ -169,11 +169,11 @@ Columns OurColumns(const VectorEnv& env, const EnvMemory& memory, const Scenario
   vec("state", {"u", "v", "w"}, [v](int i) { return v(i).v_WB_B; });
   vec("state", {"p", "q", "r"}, [v](int i) { return v(i).w_WB_B; });
   vec("angle", {"phi", "theta", "psi"}, [v](int i) { return v(i).rpy; });
-  const auto target = [&env, &s](int i) { return env.target(0, s.target_of(i)); };
+  const auto target = [&env, &s](int i) { return env.target(0, s.world.target.of(i)); };
   vec("target", {"tpx", "tpy", "tpz"}, [target](int i) { return target(i).p_WT; });
   vec("target", {"tvx", "tvy", "tvz"}, [target](int i) { return target(i).v_WT; });
   for (int k = 0; k < 6; ++k) {
-    const double max = s.vehicle.max_tau[static_cast<size_t>(k)];
+    const double max = s.world.vehicle.max_tau[static_cast<size_t>(k)];
     add("tau", "tau" + std::to_string(k),
         [&env, k, max](int i) { return env.knowledge(0, i).tau[k] * max; });
   }
@@ -203,16 +203,17 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
   Scenario& s = t.scenario;
   const std::string file = folder + "/config.yaml";
   Config c(file);
-  s.agents = c.Whole("agents", 1, 255);
-  s.time.dt_s = c.Number("dt");
-  c.Choice("action_interface",
-           {{"velocity3", [&] { s.control.interface = dynamics::ActionInterface::kVelocity3; }},
-            {"tau6", [&] { s.control.interface = dynamics::ActionInterface::kTau6; }}});
-  s.control.smoothing = c.Number("action_smoothing");
-  s.control.max_delta = c.Number("action_max_delta");
-  s.control.velocity_gain = c.Number("velocity_gain");
-  s.control.attitude_gain = c.Number("attitude_gain");
-  s.control.rate_gain = c.Number("rate_gain");
+  s.run.agents = c.Whole("agents", 1, 255);
+  s.run.time.dt_s = c.Number("dt");
+  c.Choice(
+      "action_interface",
+      {{"velocity3", [&] { s.world.control.interface = dynamics::ActionInterface::kVelocity3; }},
+       {"tau6", [&] { s.world.control.interface = dynamics::ActionInterface::kTau6; }}});
+  s.world.control.smoothing = c.Number("action_smoothing");
+  s.world.control.max_delta = c.Number("action_max_delta");
+  s.world.control.velocity_gain = c.Number("velocity_gain");
+  s.world.control.attitude_gain = c.Number("attitude_gain");
+  s.world.control.rate_gain = c.Number("rate_gain");
   c.Choice("reward", {{"stg", [&] { s.reward.kind = task::RewardKind::kRelease; }},
                       {"raw", [&] { s.reward.kind = task::RewardKind::kReleaseRaw; }}});
   const YAML::Node weights = c.Get("reward_weights");
@@ -231,7 +232,7 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
                       weight("control_cost"),
                       0.0};
   const YAML::Node positions = c.Get("initial_positions");
-  if (!positions.IsSequence() || static_cast<int>(positions.size()) != s.agents) {
+  if (!positions.IsSequence() || static_cast<int>(positions.size()) != s.run.agents) {
     Fail(file, positions.Mark().line + 1,
          "key 'initial_positions': expected one position per agent");
   }
@@ -244,8 +245,8 @@ Trace LoadTrace(const std::string& folder, const Scenario& base) {
     throw UserError(file + ": " + e.what());
   }
   ReadSteps(folder + "/steps.csv", &t);
-  s.time.episode_steps = static_cast<int>(t.rows.size()) / s.agents + 1;
-  s.time.tail_steps = 1;
+  s.run.time.episode_steps = static_cast<int>(t.rows.size()) / s.run.agents + 1;
+  s.run.time.tail_steps = 1;
   return t;
 }
 
@@ -257,7 +258,7 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
   EnvMemory memory = env.MakeMemory();
   env.Place(trace.p_WB, trace.p_WT, trace.v_WT, memory.arrays());
   const Columns ours = OurColumns(env, memory, s);
-  const int n = s.agents, size = s.action_size();
+  const int n = s.run.agents, size = s.world.control.action_size();
   std::map<std::string, size_t> column;
   for (size_t c = 0; c < trace.columns.size(); ++c) column[trace.columns[c]] = c;
   for (int k = 0; k < size; ++k) {

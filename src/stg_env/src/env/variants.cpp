@@ -7,7 +7,7 @@ namespace stg::env {
 Scenario VariantScenario(const Scenario& scenario, const std::string& variant) {
   Scenario s = scenario;
   if (variant == "stg") return s;
-  s.observation.graph = false;
+  s.agent.observation.graph = false;
   s.reward.kind = task::RewardKind::kReleaseRaw;
   task::RewardWeights raw;
   raw.tracking = 0.55;
@@ -19,16 +19,16 @@ Scenario VariantScenario(const Scenario& scenario, const std::string& variant) {
   raw.separation = scenario.reward.weights.separation;
   s.reward.weights = raw;
   if (variant == "semantic") return s;
-  s.observation.tracking = false;
-  s.observation.semantic = false;
+  s.agent.observation.tracking = false;
+  s.agent.observation.semantic = false;
   if (variant == "velocity3") return s;
   if (variant != "tau6") {
     throw UserError("--variant: '" + variant + "' is not stg, semantic, velocity3 or tau6");
   }
-  s.control.interface = dynamics::ActionInterface::kTau6;
-  s.control.action_scale = 0.18;
-  s.control.smoothing = 0.0;
-  s.control.max_delta = 0.0;
+  s.world.control.interface = dynamics::ActionInterface::kTau6;
+  s.world.control.action_scale = 0.18;
+  s.world.control.smoothing = 0.0;
+  s.world.control.max_delta = 0.0;
   return s;
 }
 

@@ -20,8 +20,9 @@ void RequireOneLayout(const std::vector<Scenario>& mix) {
   if (mix.empty()) throw UserError("an environment needs a scenario");
   const Scenario& a = mix.front();
   for (const Scenario& b : mix) {
-    if (b.agents != a.agents || b.target.count != a.target.count ||
-        b.action_size() != a.action_size() || b.observation_size() != a.observation_size()) {
+    if (b.run.agents != a.run.agents || b.world.target.count != a.world.target.count ||
+        b.world.control.action_size() != a.world.control.action_size() ||
+        b.agent.observation_size() != a.agent.observation_size()) {
       throw UserError("scenarios of a mix must agree in agents, targets, actions and observation");
     }
   }
@@ -35,8 +36,8 @@ VectorEnv::VectorEnv(const Scenario& scenario, const VectorEnvOptions& options)
 VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& options)
     : mix_(mix), options_(options) {
   RequireOneLayout(mix_);
-  observation_size_ = mix_.front().observation_size();
-  state_size_ = task::CriticStateSize(mix_.front());
+  observation_size_ = mix_.front().agent.observation_size();
+  state_size_ = task::CriticStateSize(agents(), mix_.front().world.target.count);
   if (options_.total_envs == 0) options_.total_envs = options_.envs;
   if (options_.envs < 1 || options_.first_env < 0 || options_.total_envs < options_.envs) {
     throw UserError("environments must be at least one, and no more than all together");
@@ -72,7 +73,7 @@ const VectorEnv::Slice& VectorEnv::SliceOf(int env) const {
 }
 
 int VectorEnv::FirstLength(int env) const {
-  const int whole = scenario(env).time.episode_steps;
+  const int whole = scenario(env).run.time.episode_steps;
   if (!options_.stagger) return whole;
   const int blocks = (options_.total_envs + kMixBlock - 1) / kMixBlock;
   const int block = (options_.first_env + env) / kMixBlock;
@@ -86,16 +87,16 @@ void VectorEnv::Restart(const Slice& slice, int lane, bool first) {
   const std::uint64_t r =
       static_cast<std::uint64_t>(options_.first_env + env) +
       round_[static_cast<std::size_t>(env)] * static_cast<std::uint64_t>(options_.total_envs);
-  dynamics::ResetStage stage = s.reset.stage;
-  if (options_.curriculum && s.reset.curriculum) {
-    stage = r < static_cast<std::uint64_t>(s.reset.curriculum_easy_resets)
+  dynamics::ResetStage stage = s.world.reset.stage;
+  if (options_.curriculum && s.world.reset.curriculum) {
+    stage = r < static_cast<std::uint64_t>(s.world.reset.curriculum_easy_resets)
                 ? dynamics::ResetStage::kEasy
-            : r < static_cast<std::uint64_t>(s.reset.curriculum_medium_resets)
+            : r < static_cast<std::uint64_t>(s.world.reset.curriculum_medium_resets)
                 ? dynamics::ResetStage::kMedium
                 : dynamics::ResetStage::kHard;
   }
   slice.lanes->Reset(lane, options_.seed + r, stage,
-                     first ? FirstLength(env) : s.time.episode_steps);
+                     first ? FirstLength(env) : s.run.time.episode_steps);
 }
 
 void VectorEnv::RestartAt(std::uint64_t k, const EnvArrays& out) {
@@ -114,7 +115,7 @@ void VectorEnv::ResetEnv(int env, std::uint64_t seed, const EnvArrays& out) {
   for (int lane = 0; lane < kLanes; ++lane) {
     const bool follows = env == slice.first && lane >= slice.count;
     if (lane != env - slice.first && !follows) continue;
-    slice.lanes->Reset(lane, seed, s.reset.stage, s.time.episode_steps);
+    slice.lanes->Reset(lane, seed, s.world.reset.stage, s.run.time.episode_steps);
     lanes.in[static_cast<std::size_t>(lane)] = true;
   }
   slice.lanes->Begin(lanes);

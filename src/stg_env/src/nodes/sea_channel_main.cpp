@@ -8,8 +8,8 @@ namespace stg::nodes {
 namespace {
 
 acoustics::LineOfSight Shadows() {
-  const auto scenario = LoadScenarioParameters<dynamics::WorldConfig>();
-  return dynamics::ShadowsOf(scenario.sea, scenario.workspace.half_extent_m);
+  const auto scenario = LoadScenarioParameters<dynamics::WorldScenario>();
+  return dynamics::ShadowsOf(scenario.world.sea, scenario.world.workspace.half_extent_m);
 }
 
 /// The acoustic channel where bottom and obstacles of the scenario's sea stand between vehicles.

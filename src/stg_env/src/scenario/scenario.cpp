@@ -8,20 +8,21 @@ namespace stg {
 void Scenario::ValidateOrThrow() const { config::ValidateOrThrow(*this); }
 
 void Describe(Scenario* s, config::Table* t) {
-  DescribeTop(s, t);
+  DescribeTop(&s->run, t);
   t->Add("mode", config::Enum(&s->mode, {"truth", "acoustic"}), config::kNone, "-",
          "what agents know: true states, or own sensors and received packets");
-  Describe(&s->time, t);
-  dynamics::DescribeSections(static_cast<dynamics::WorldConfig*>(s), t);
+  Describe(&s->run.time, t);
+  Describe(&s->world, t);
   Describe(&s->channel, t);
-  Describe(&s->track, t);
-  Describe(&s->observation, t);
-  Describe(&s->task, t);
+  Describe(&s->agent, t);
   Describe(&s->reward, t);
 }
 
 std::optional<config::Violation> FindConflict(const Scenario& s) {
-  return FindConflict(static_cast<const task::JudgeConfig&>(s));
+  if (auto violation = FindConflict(agent::AgentScenario{s.run, s.world, s.channel, s.agent})) {
+    return violation;
+  }
+  return FindConflict(s.judge());
 }
 
 Scenario LoadScenario(const std::string& file, const std::vector<std::string>& overlays,

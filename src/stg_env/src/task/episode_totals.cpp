@@ -7,14 +7,14 @@ namespace stg::task {
 
 template <class T>
 EpisodeTotals<T>::EpisodeTotals(const JudgeConfig& s)
-    : agents_(s.agents),
-      action_size_(s.action_size()),
-      episode_steps_(s.time.episode_steps),
-      tail_steps_(s.time.tail_steps),
-      decision_dt_s_(s.decision_dt_s()),
+    : agents_(s.run.agents),
+      action_size_(s.world.control.action_size()),
+      episode_steps_(s.run.time.episode_steps),
+      tail_steps_(s.run.time.tail_steps),
+      decision_dt_s_(s.run.decision_dt_s()),
       band_m_(s.reward.band_m),
       field_(s),
-      entered_(static_cast<std::size_t>(s.agents), T(-1.0)) {}
+      entered_(static_cast<std::size_t>(s.run.agents), T(-1.0)) {}
 
 template <class T>
 void EpisodeTotals<T>::Start(const Mask<T>& lanes, const T& episode_steps) {

@@ -6,12 +6,13 @@
 namespace stg::task {
 
 template <class T>
-T Spread(const JudgeConfig& s, const SwarmState<T>& swarm, int target) {
+T Spread(const SwarmState<T>& swarm, int target) {
   T east(0.0), north(0.0);
   int count = 0;
   const Vec3<T>& p_WT = swarm.targets[static_cast<std::size_t>(target)].p_WT;
-  for (int i = target; i < s.agents; i += s.target.count) {
-    const Vec3<T> r = swarm.vehicles[static_cast<std::size_t>(i)].p_WB - p_WT;
+  for (std::size_t i = static_cast<std::size_t>(target); i < swarm.vehicles.size();
+       i += swarm.targets.size()) {
+    const Vec3<T> r = swarm.vehicles[i].p_WB - p_WT;
     const T inverse = T(1.0) / Max(Sqrt(r.x * r.x + r.y * r.y), T(1e-6));
     east += r.x * inverse;
     north += r.y * inverse;
@@ -36,7 +37,7 @@ T NormalisedSquare(const Vec3<T>& r, const T (&P)[6]) {
 
 template <class T>
 FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
-    : scenario_(scenario), spell_(static_cast<std::size_t>(scenario.agents), T(0.0)) {}
+    : scenario_(scenario), spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)) {}
 
 template <class T>
 void FieldTotals<T>::Start(const Mask<T>& lanes) {
@@ -62,7 +63,7 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const FieldState<T>& f = (*swarm.field)[i];
     const Tracking<T>& k = tracking[i];
-    const auto target = static_cast<std::size_t>(scenario_.target_of(static_cast<int>(i)));
+    const auto target = static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)));
     const Vec3<T> error = f.p_WT - swarm.targets[target].p_WT;
     const auto known = f.known > T(0.5);
     const T nees = NormalisedSquare(error, f.covariance);
@@ -88,12 +89,12 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
     s.missed += f.missed;
     s.modem_energy += f.modem_energy_j;
   }
-  for (int k = 0; k < scenario_.target.count; ++k) {
-    s.spread += Spread(scenario_, swarm, k) * T(1.0 / scenario_.target.count);
+  for (int k = 0; k < scenario_.world.target.count; ++k) {
+    s.spread += Spread(swarm, k) * T(1.0 / scenario_.world.target.count);
   }
   const T near(scenario_.reward.separation_distance_m);
-  for (int i = 0; i < scenario_.agents; ++i) {
-    for (int j = i + 1; j < scenario_.agents; ++j) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
+    for (int j = i + 1; j < scenario_.run.agents; ++j) {
       s.near_pairs += Select(swarm.separations.distance(i, j) < near, one, zero);
     }
   }
@@ -102,8 +103,8 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
 template <class T>
 FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   const auto at = [lane](const T& value) { return Lane(value, lane); };
-  const double agents = static_cast<double>(scenario_.agents), all = agents * steps;
-  const double dt_s = scenario_.decision_dt_s();
+  const double agents = static_cast<double>(scenario_.run.agents), all = agents * steps;
+  const double dt_s = scenario_.run.decision_dt_s();
   const Sums& s = sums_;
   FieldMetrics m;
   const double known = std::max(1.0, at(s.known));
@@ -129,8 +130,8 @@ FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
 
 template class FieldTotals<double>;
 template class FieldTotals<Pack>;
-template double Spread(const JudgeConfig&, const SwarmState<double>&, int);
-template Pack Spread(const JudgeConfig&, const SwarmState<Pack>&, int);
+template double Spread(const SwarmState<double>&, int);
+template Pack Spread(const SwarmState<Pack>&, int);
 template double NormalisedSquare(const Vec3<double>&, const double (&)[6]);
 template Pack NormalisedSquare(const Vec3<Pack>&, const Pack (&)[6]);
 

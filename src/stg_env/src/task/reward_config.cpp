@@ -52,13 +52,12 @@ void Describe(RewardConfig* c, config::Table* t) {
 }
 
 std::optional<config::Violation> FindConflict(const JudgeConfig& s) {
-  if (auto violation = FindConflict(static_cast<const agent::AgentConfig&>(s))) return violation;
-  if (s.task.lost_distance_m <= s.reward.band_m.hi) {
+  if (s.agent.task.lost_distance_m <= s.reward.band_m.hi) {
     return config::Violation{{"task.lost_distance_m", "reward.band_m"},
                              "a target inside the tracking band would count as lost"};
   }
   if (s.reward.weights.separation > 0.0 &&
-      s.reward.separation_distance_m <= 2.0 * s.vehicle.radius_m) {
+      s.reward.separation_distance_m <= 2.0 * s.world.vehicle.radius_m) {
     return config::Violation{{"reward.separation_distance_m", "vehicle.radius_m"},
                              "the penalty must set in before contact, at two radii"};
   }

@@ -6,21 +6,21 @@ namespace {
 
 /// How evenly the AUVs of the same target stand around it (Spread), in [0, 1].
 struct SpreadTerm : TermOf<SpreadTerm> {
-  explicit SpreadTerm(const JudgeConfig& scenario) : scenario_(scenario) {}
+  explicit SpreadTerm(const dynamics::TargetConfig& targets) : targets_(targets) {}
 
   template <class T>
   T Of(const TermInput<T>& in) const {
-    return Spread(scenario_, in.swarm, scenario_.target_of(in.agent));
+    return Spread(in.swarm, targets_.of(in.agent));
   }
 
  private:
-  JudgeConfig scenario_;
+  dynamics::TargetConfig targets_;
 };
 
 }  // namespace
 
 std::unique_ptr<const RewardTerm> MakeSpreadTerm(const JudgeConfig& scenario) {
-  return std::make_unique<SpreadTerm>(scenario);
+  return std::make_unique<SpreadTerm>(scenario.world.target);
 }
 
 }  // namespace stg::task

@@ -7,7 +7,7 @@ namespace stg::task {
 template <class T>
 Task<T>::Task(const JudgeConfig& scenario)
     : scenario_(scenario),
-      tracking_(static_cast<std::size_t>(scenario.agents)),
+      tracking_(static_cast<std::size_t>(scenario.run.agents)),
       terms_(tracking_.size()),
       totals_(scenario) {
   Effort<T> zero;
@@ -31,7 +31,7 @@ void Task<T>::Step(const SwarmState<T>& swarm) {
   Measure(swarm, nullptr);
   T coordination(0.0), communication(0.0), team(0.0);
   ShareReward(swarm, &coordination, &communication);
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
     T extra(0.0);
     for (const Weighted& e : extra_) {
@@ -42,7 +42,7 @@ void Task<T>::Step(const SwarmState<T>& swarm) {
                        extra_.empty() ? nullptr : &extra);
     team += terms_[u].total;
   }
-  team_reward_ = team * T(1.0 / scenario_.agents);
+  team_reward_ = team * T(1.0 / scenario_.run.agents);
   totals_.Add(swarm, tracking_, terms_);
   Remember(swarm);
 }
@@ -64,21 +64,21 @@ void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
   for (std::size_t i = 0; i < tracking_.size(); ++i) {
     const dynamics::VehicleState<T>& v = swarm.vehicles[i];
     const dynamics::TargetState<T>& t =
-        swarm.targets[static_cast<std::size_t>(scenario_.target_of(static_cast<int>(i)))];
+        swarm.targets[static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)))];
     Tracking<T>& k = tracking_[i];
     k.r_BT_W = t.p_WT - v.p_WB;
     const T d = Norm(k.r_BT_W);
     k.previous_distance =
         starting != nullptr ? Select(*starting, d, k.previous_distance) : k.distance;
     k.distance = d;
-    k.error = Abs(d - T(scenario_.task.desired_distance_m));
+    k.error = Abs(d - T(scenario_.agent.task.desired_distance_m));
     k.closing = agent::ClosingSpeed(k.r_BT_W, d, v.v_WB, t.v_WT);
-    k.confidence = agent::Confidence(d, scenario_.sensing.range_m);
-    k.lost = Select(d > T(scenario_.task.lost_distance_m), one, zero);
-    if (swarm.field != nullptr && scenario_.task.lost_error_m > 0.0) {
+    k.confidence = agent::Confidence(d, scenario_.world.sensing.range_m);
+    k.lost = Select(d > T(scenario_.agent.task.lost_distance_m), one, zero);
+    if (swarm.field != nullptr && scenario_.agent.task.lost_error_m > 0.0) {
       const FieldState<T>& f = (*swarm.field)[i];
       const auto off =
-          (f.known < T(0.5)) || (Norm(f.p_WT - t.p_WT) > T(scenario_.task.lost_error_m));
+          (f.known < T(0.5)) || (Norm(f.p_WT - t.p_WT) > T(scenario_.agent.task.lost_error_m));
       k.lost = Select(off, one, k.lost);
     }
   }
@@ -91,11 +91,11 @@ void Task<T>::ShareReward(const SwarmState<T>& swarm, T* coordination, T* commun
   for (const Tracking<T>& k : tracking_) {
     deviation += c.kind == RewardKind::kReleaseRaw ? k.error : BandDeviation(c, k.distance);
   }
-  deviation = deviation * T(1.0 / scenario_.agents);
+  deviation = deviation * T(1.0 / scenario_.run.agents);
   *coordination = CoordinationReward(c, deviation);
   *communication = c.kind == RewardKind::kPaper
                        ? swarm.link_quality
-                       : ReleaseCommunication(deviation, scenario_.sensing.range_m);
+                       : ReleaseCommunication(deviation, scenario_.world.sensing.range_m);
 }
 
 template <class T>
@@ -105,7 +105,7 @@ RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
   RewardInput<T> in;
   in.distance = k.distance;
   in.previous_distance = k.previous_distance;
-  if (scenario_.observation.release_bookkeeping) {
+  if (scenario_.agent.observation.release_bookkeeping) {
     const auto first = totals_.steps() < T(0.5);  // the release has no d(t-1) there
     in.previous_distance = Select(first, k.distance, k.previous_distance);
   }
@@ -113,7 +113,7 @@ RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
   in.confidence = k.confidence;
   in.lost = k.lost;
   if (scenario_.reward.weights.separation != 0.0) {
-    for (int j = 0; j < scenario_.agents; ++j) {
+    for (int j = 0; j < scenario_.run.agents; ++j) {
       if (j == i) continue;
       in.crowding += SeparationPenalty(scenario_.reward, swarm.separations.distance(i, j));
     }

@@ -19,11 +19,11 @@ TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
   double square = 0.0;
   int count = 0;
   TestEnv env(s);
-  dynamics::World world(s);
+  dynamics::World world(s.world, s.run);
   for (std::uint64_t round = 0; round < 100; ++round) {
     env.RestartAt(round);
     for (int e = 0; e < kEnvs; ++e) {
-      world.Reset(0, env.seed(e), 0, s.reset.stage);
+      world.Reset(0, env.seed(e), 0, s.world.reset.stage);
       const dynamics::Cue cue = world.InitialCue(0, 0, 0);
       const Vec3<double> noise = cue.p_WT - env.target(e, 0).p_WT;
       square += Dot(noise, noise);
@@ -70,12 +70,12 @@ bool SameForBothTargets(const Scenario& s) {
 
 TEST(NoLeak, ATargetBeyondEverybodysRangeChangesNoObservation) {
   Scenario s = Short(Shipped("medium"), 200);
-  s.sensing.range_m = 0.25;
+  s.world.sensing.range_m = 0.25;
   EXPECT_TRUE(SameForBothTargets(s));
   // The same pair does differ where the target may be seen, and on true states.
-  s.sensing.range_m = 1.5;
+  s.world.sensing.range_m = 1.5;
   EXPECT_FALSE(SameForBothTargets(s));
-  s.sensing.range_m = 0.25;
+  s.world.sensing.range_m = 0.25;
   s.mode = InformationMode::kTruth;
   EXPECT_FALSE(SameForBothTargets(s));
 }
@@ -86,7 +86,7 @@ bool OthersNoticeTheFourth(InformationMode mode, double gap) {
   s.mode = mode;
   s.channel.model = "range";
   s.channel.range_m = 0.4;
-  s.observation.graph = s.observation.semantic = true;
+  s.agent.observation.graph = s.agent.observation.semantic = true;
   const VectorEnvOptions o;
   TestEnv a(s, o), b(s, o);
   std::vector<Vec3<double>> p = kSquare;
@@ -116,7 +116,7 @@ TEST(NoLeak, ANeighbourBeyondTheChannelChangesNoObservation) {
 
 TEST(Sharing, AnAgentOutOfSightLearnsTheTargetFromItsNeighbours) {
   Scenario s = Short(Shipped("medium"), 200);
-  s.sensing.range_m = 0.3;
+  s.world.sensing.range_m = 0.3;
   s.channel.loss_probability = 0.0;
   const VectorEnvOptions o;
   std::vector<Vec3<double>> p = kSquare;
@@ -153,9 +153,10 @@ Links Fly(const std::string& scenario, const std::string& condition) {
   for (int k = 0; k < 300; ++k) {
     env.Step(Idle(env));
     for (int e = 0; e < kEnvs; ++e) {
-      for (int i = 0; i < s.agents; ++i) {
-        links.quality += env.agent(e, i).knowledge().mean_quality / (300.0 * kEnvs * s.agents);
-        links.shown += static_cast<double>(Row(env, e, i)[kGraph + 1]) / (300.0 * kEnvs * s.agents);
+      for (int i = 0; i < s.run.agents; ++i) {
+        links.quality += env.agent(e, i).knowledge().mean_quality / (300.0 * kEnvs * s.run.agents);
+        links.shown +=
+            static_cast<double>(Row(env, e, i)[kGraph + 1]) / (300.0 * kEnvs * s.run.agents);
       }
     }
   }
@@ -194,7 +195,7 @@ TEST(PhysicalChannel, BringsTheAgentsOfTheFieldTheirNeighboursOverModems) {
     // Everybody sends once in a decision, to three others.
     EXPECT_NEAR(static_cast<double>(t.delivered + t.dropped), 30.0 * 12.0, 24.0);
     EXPECT_GT(t.delivered, 30u * 6u);
-    for (int i = 0; i < s.agents; ++i) {
+    for (int i = 0; i < s.run.agents; ++i) {
       const agent::AgentView view = env.agent(e, i);
       EXPECT_GT(view.neighbours().known().size(), 0u);
       for (const int j : view.neighbours().known()) {

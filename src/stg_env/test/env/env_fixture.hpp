@@ -18,8 +18,8 @@ inline Scenario Shipped(const std::string& name, const std::string& condition = 
 
 /// The scenario with episodes of `steps` decisions.
 inline Scenario Short(Scenario s, int steps) {
-  s.time.episode_steps = steps;
-  s.time.tail_steps = std::min(s.time.tail_steps, steps);
+  s.run.time.episode_steps = steps;
+  s.run.time.tail_steps = std::min(s.run.time.tail_steps, steps);
   return s;
 }
 

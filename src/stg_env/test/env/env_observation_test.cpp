@@ -18,9 +18,9 @@ TEST(Observation, EveryCombinationOfBlocksIsThatPartOfTheFullOne) {
     const VectorEnvOptions o;
     for (int options = 0; options < 8; ++options) {
       Scenario s = full;
-      s.observation.tracking = (options & 1) != 0;
-      s.observation.semantic = (options & 2) != 0;
-      s.observation.graph = (options & 4) != 0;
+      s.agent.observation.tracking = (options & 1) != 0;
+      s.agent.observation.semantic = (options & 2) != 0;
+      s.agent.observation.graph = (options & 4) != 0;
       TestEnv a(full, o), b(s, o);
       ASSERT_EQ(a.observation_size(), 74);
       ASSERT_EQ(b.observation_size(), 51 + ((options & 1) != 0 ? 8 : 0) +
@@ -36,9 +36,11 @@ TEST(Observation, EveryCombinationOfBlocksIsThatPartOfTheFullOne) {
         for (int i = 0; i < 4; ++i) {
           const float* x = Row(a, e, i);
           std::vector<float> expected(x, x + kTracking);
-          if (s.observation.tracking) expected.insert(expected.end(), x + kTracking, x + kSemantic);
-          if (s.observation.semantic) expected.insert(expected.end(), x + kSemantic, x + kGraph);
-          if (s.observation.graph) expected.insert(expected.end(), x + kGraph, x + 74);
+          if (s.agent.observation.tracking)
+            expected.insert(expected.end(), x + kTracking, x + kSemantic);
+          if (s.agent.observation.semantic)
+            expected.insert(expected.end(), x + kSemantic, x + kGraph);
+          if (s.agent.observation.graph) expected.insert(expected.end(), x + kGraph, x + 74);
           const float* y = Row(b, e, i);
           EXPECT_EQ(expected, std::vector<float>(y, y + b.observation_size())) << options;
         }
@@ -57,10 +59,10 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
       for (const Case c : {Case{1, 1}, Case{2, 1}, Case{2, 2}, Case{5, 2}, Case{20, 1}}) {
         Scenario s = Short(Shipped("medium"), 25);
         s.mode = mode;
-        s.control.interface = interface;
-        s.agents = c.agents;
-        s.target.count = c.targets;
-        s.reset.min_separation_m = 0.03;
+        s.world.control.interface = interface;
+        s.run.agents = c.agents;
+        s.world.target.count = c.targets;
+        s.world.reset.min_separation_m = 0.03;
         const VectorEnvOptions o;
         TestEnv env(s, o);
         EXPECT_EQ(env.observation_size(), 74);
@@ -114,8 +116,8 @@ TEST(Neighbours, TheThreeNearestInOrderEqualBruteForce) {
   for (const int agents : {1, 2, 3, 4, 20}) {
     Scenario s = Short(Shipped("medium"), 50);
     s.mode = InformationMode::kTruth;
-    s.agents = agents;
-    s.reset.min_separation_m = 0.03;
+    s.run.agents = agents;
+    s.world.reset.min_separation_m = 0.03;
     const VectorEnvOptions o;
     TestEnv env(s, o);
     env.Reset();
@@ -129,8 +131,8 @@ TEST(Neighbours, TheThreeNearestInOrderEqualBruteForce) {
 TEST(Neighbours, IndexOrderShowsTheFirstThreeOthers) {
   for (const int agents : {1, 2, 4, 6}) {
     Scenario s = Short(Shipped("medium_release"), 50);
-    s.agents = agents;
-    s.reset.min_separation_m = 0.03;
+    s.run.agents = agents;
+    s.world.reset.min_separation_m = 0.03;
     const VectorEnvOptions o;
     TestEnv env(s, o);
     env.Reset();
@@ -173,7 +175,7 @@ TEST(Observation, InTruthModeStatesGeometryInItsDocumentedPlaces) {
 TEST(Observation, LostStepsCountUpAndTheReleaseCountsOneTooMany) {
   for (const bool release : {false, true}) {
     Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 50);
-    s.observation.release_bookkeeping = release;
+    s.agent.observation.release_bookkeeping = release;
     TestEnv env(s, VectorEnvOptions{});
     // At 1 mm a step the target is lost, beyond 0.65 m, from decision 5 on.
     env.Place({{0.0, 0.0, 0.0}}, {{0.6455, 0.0, 0.0}}, {{0.01, 0.0, 0.0}});
@@ -190,7 +192,7 @@ TEST(Observation, LostStepsCountUpAndTheReleaseCountsOneTooMany) {
 TEST(Observation, ReleaseBookkeepingHidesProgress) {
   for (const bool release : {false, true}) {
     Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 50);
-    s.observation.release_bookkeeping = release;
+    s.agent.observation.release_bookkeeping = release;
     TestEnv env(s, VectorEnvOptions{});
     env.Place({{0.0, 0.0, 0.0}}, {{0.4, 0.0, 0.0}}, {{-0.04, 0.0, 0.0}});
     for (int k = 1; k <= 3; ++k) {
@@ -227,7 +229,7 @@ TEST(Tau6, ASurgeForceMovesTheBowAndIsNotSmoothed) {
   for (const auto mode : kModes) {
     Scenario s = Short(Shipped("medium"), 50);
     s.mode = mode;
-    s.control.interface = dynamics::ActionInterface::kTau6;
+    s.world.control.interface = dynamics::ActionInterface::kTau6;
     TestEnv env(s, VectorEnvOptions{});
     env.Reset();
     std::vector<float> actions = Idle(env);

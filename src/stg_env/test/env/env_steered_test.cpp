@@ -29,7 +29,7 @@ TEST(SteeredEnv, PursuersReachTheirTargetAndKeepGoing) {
                            "current.layer_east_mps=[0,0,0,0]", "current.tide_mps=[0,0]"}),
                 Few(8, 3));
     env.Reset();
-    const Controller pursuit = MakeController("pursuit_separated", env.scenario(0));
+    const Controller pursuit = MakeController("pursuit_separated", env.scenario(0).model());
     std::vector<double> actions(
         static_cast<std::size_t>(env.envs() * env.agents() * env.action_size()));
     double first = 0.0, last = 0.0;
@@ -81,7 +81,7 @@ TEST(SteeredEnv, AnEnvironmentIsTheSameInAnyCompanyBitForBit) {
       for (int k = 0; k < 40; ++k) {  // into the third episode
         together.Step(ActionsOf(together, all));
         alone.Step(ActionsOf(alone, o));
-        for (int i = 0; i < s.agents; ++i) {
+        for (int i = 0; i < s.run.agents; ++i) {
           const float *a = Row(together, 3, i), *b = Row(alone, 0, i);
           for (int f = 0; f < alone.observation_size(); ++f) {
             ASSERT_EQ(a[f], b[f]) << model << mode << " step " << k << " feature " << f;

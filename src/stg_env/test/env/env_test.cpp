@@ -14,16 +14,16 @@ namespace {
 Scenario Noisy(InformationMode mode, dynamics::ActionInterface interface) {
   Scenario s = Short(Shipped("medium"), 40);
   s.mode = mode;
-  s.control.interface = interface;
-  s.agents = 5;
-  s.target.count = 2;
-  s.target.motion = "coordinated_turn";
-  s.sensing.noise_std_m = 0.005;
-  s.sensing.detection_probability = 0.7;
-  s.sensing.dropout_rate_hz = 0.2;
-  s.disturbance.force_std_n = 1.0;
-  s.disturbance.moment_std_nm = 0.5;
-  s.reset.min_separation_m = 0.03;
+  s.world.control.interface = interface;
+  s.run.agents = 5;
+  s.world.target.count = 2;
+  s.world.target.motion = "coordinated_turn";
+  s.world.sensing.noise_std_m = 0.005;
+  s.world.sensing.detection_probability = 0.7;
+  s.world.sensing.dropout_rate_hz = 0.2;
+  s.world.disturbance.force_std_n = 1.0;
+  s.world.disturbance.moment_std_nm = 0.5;
+  s.world.reset.min_separation_m = 0.03;
   return s;
 }
 
@@ -172,13 +172,13 @@ TEST(Restart, AShortFirstEpisodeIsFollowedByFullOnes) {
 
 TEST(Curriculum, TheStageFollowsTheNumberOfResetsOfAllCopies) {
   Scenario s = Short(Shipped("medium_release"), 2);
-  s.reset.stages[0].auv_distance_m = {0.10, 0.15};
-  s.reset.stages[1].auv_distance_m = {0.25, 0.30};
-  s.reset.stages[2].auv_distance_m = {0.50, 0.55};
-  s.reset.min_separation_m = 0.03;
-  s.reset.curriculum = true;
-  s.reset.curriculum_easy_resets = 7;
-  s.reset.curriculum_medium_resets = 18;
+  s.world.reset.stages[0].auv_distance_m = {0.10, 0.15};
+  s.world.reset.stages[1].auv_distance_m = {0.25, 0.30};
+  s.world.reset.stages[2].auv_distance_m = {0.50, 0.55};
+  s.world.reset.min_separation_m = 0.03;
+  s.world.reset.curriculum = true;
+  s.world.reset.curriculum_easy_resets = 7;
+  s.world.reset.curriculum_medium_resets = 18;
   for (const bool curriculum : {true, false}) {
     VectorEnvOptions o;
     o.curriculum = curriculum;
@@ -192,8 +192,8 @@ TEST(Curriculum, TheStageFollowsTheNumberOfResetsOfAllCopies) {
         const size_t stage = !curriculum ? 1 : r < 7 ? 0 : r < 18 ? 1 : 2;
         for (int i = 0; i < 4; ++i) {
           const double d = env.tracking(e, i).distance;
-          EXPECT_GE(d, s.reset.stages[stage].auv_distance_m.lo - 1e-9) << r;
-          EXPECT_LE(d, s.reset.stages[stage].auv_distance_m.hi + 1e-9) << r;
+          EXPECT_GE(d, s.world.reset.stages[stage].auv_distance_m.lo - 1e-9) << r;
+          EXPECT_LE(d, s.world.reset.stages[stage].auv_distance_m.hi + 1e-9) << r;
         }
       }
     }
@@ -224,9 +224,9 @@ TEST(Rewards, TheTeamRewardIsTheMeanOverAuvsAndTheReturnTheirSum) {
 TEST(Decision, OfSeveralPhysicsStepsHoldsItsActionForAllOfThem) {
   // tau6 has no filter: one decision of five steps is five decisions of one step.
   Scenario one = Short(Shipped("medium_release"), 50);
-  one.control.interface = dynamics::ActionInterface::kTau6;
+  one.world.control.interface = dynamics::ActionInterface::kTau6;
   Scenario five = one;
-  five.time.decision_steps = 5;
+  five.run.time.decision_steps = 5;
   const VectorEnvOptions o;
   TestEnv a(one, o), b(five, o);
   a.Reset();
@@ -245,7 +245,7 @@ TEST(Decision, OfSeveralPhysicsStepsHoldsItsActionForAllOfThem) {
 /// At rest around a target at rest: every metric has a closed form.
 TEST(Metrics, OfASwarmAtRestAreItsGeometry) {
   Scenario s = Short(Shipped("medium_release", "nominal", {"agents=3", "contact.stiffness=0"}), 10);
-  s.time.tail_steps = 4;
+  s.run.time.tail_steps = 4;
   TestEnv env(s, VectorEnvOptions{});
   // In the band at 0.014 m, in contact with it at 0.018 m, and lost at 0.7 m.
   env.Place({{0.014, 0.0, 0.0}, {0.032, 0.0, 0.0}, {0.7, 0.0, 0.0}}, {{0.0, 0.0, 0.0}},
@@ -279,7 +279,7 @@ TEST(Metrics, OfASwarmAtRestAreItsGeometry) {
 
 TEST(Metrics, TheTailIsTheLastStepsOnly) {
   Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 20);
-  s.time.tail_steps = 5;
+  s.run.time.tail_steps = 5;
   TestEnv env(s, VectorEnvOptions{});
   const double speed = 0.01;
   env.Place({{0.1, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{-speed, 0.0, 0.0}});
@@ -291,7 +291,7 @@ TEST(Metrics, TheTailIsTheLastStepsOnly) {
 
 TEST(Metrics, SaturationCountsExecutedComponentsAndTheNormIsOfTau) {
   Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 4);
-  s.control.interface = dynamics::ActionInterface::kTau6;
+  s.world.control.interface = dynamics::ActionInterface::kTau6;
   TestEnv env(s, VectorEnvOptions{});
   env.Place({{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
   std::vector<float> actions;

@@ -32,7 +32,7 @@ double Value(const task::EpisodeMetrics& m, const std::string& name) {
 TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
   for (const char* mode : {"mode=truth", "mode=acoustic"}) {
     const Scenario s = Short(Shipped("medium", "nominal", {mode, "sensing.noise_std_m=0.002"}), 60);
-    const Controller c = MakeController("pursuit_separated", s);
+    const Controller c = MakeController("pursuit_separated", s.model());
     const auto one = Fly(s, c, 11, 3000);
     ASSERT_EQ(one.size(), 11u);
     for (const int workers : {2, 5}) {
@@ -48,7 +48,7 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
 
 TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
   const Scenario s = Short(Shipped("medium_release"), 40);
-  const Controller c = MakeController("pursuit", s);
+  const Controller c = MakeController("pursuit", s.model());
   const auto many = Fly(s, c, 9, 3000);
   EXPECT_EQ(many[7].Items(), Fly(s, c, 1, 3007)[0].Items());
   EXPECT_EQ(many[2].Items(), Fly(s, c, 3, 3000)[2].Items());
@@ -57,7 +57,7 @@ TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
 TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
   const Scenario s = Short(Shipped("medium_release"), 5);
   int last = 0;
-  Evaluate(s, MakeController("idle", s), {6, 1, kMixBlock}, nullptr, [&](int done) {
+  Evaluate(s, MakeController("idle", s.model()), {6, 1, kMixBlock}, nullptr, [&](int done) {
     EXPECT_GT(done, last);
     last = done;
   });
@@ -66,20 +66,21 @@ TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
 
 TEST(MakeController, AnUnknownNameOrMissingFileIsAUserError) {
   const Scenario s;
-  EXPECT_THROW(MakeController("pursiut", s), UserError);
-  EXPECT_THROW(MakeController("/nonexistent/policy.onnx", s), UserError);
+  EXPECT_THROW(MakeController("pursiut", s.model()), UserError);
+  EXPECT_THROW(MakeController("/nonexistent/policy.onnx", s.model()), UserError);
 }
 
 /// A policy that always does tanh(bias).
 agent::Policy ConstantPolicy(const Scenario& s, float bias) {
   agent::Policy::Parameters p;
-  p.input_mean = Eigen::VectorXf::Zero(s.observation_size());
-  p.input_std = Eigen::VectorXf::Ones(s.observation_size());
-  p.layers.push_back({Eigen::MatrixXf::Zero(s.action_size(), s.observation_size()),
-                      Eigen::VectorXf::Constant(s.action_size(), bias)});
-  p.log_std = Eigen::VectorXf::Zero(s.action_size());
-  p.metadata.observation_layout = agent::ObservationLayout(s);
-  p.metadata.action_interface = agent::ActionInterfaceName(s.control.interface);
+  p.input_mean = Eigen::VectorXf::Zero(s.agent.observation_size());
+  p.input_std = Eigen::VectorXf::Ones(s.agent.observation_size());
+  p.layers.push_back(
+      {Eigen::MatrixXf::Zero(s.world.control.action_size(), s.agent.observation_size()),
+       Eigen::VectorXf::Constant(s.world.control.action_size(), bias)});
+  p.log_std = Eigen::VectorXf::Zero(s.world.control.action_size());
+  p.metadata.observation_layout = agent::ObservationLayout(s.agent.observation);
+  p.metadata.action_interface = agent::ActionInterfaceName(s.world.control.interface);
   return agent::Policy(std::move(p));
 }
 
@@ -88,7 +89,7 @@ TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   std::string folder = (std::filesystem::temp_directory_path() / "own_XXXXXX").string();
   ASSERT_NE(mkdtemp(folder.data()), nullptr);
   const auto file = [&](int i) { return folder + "/p_" + std::to_string(i) + ".onnx"; };
-  for (int i = 0; i < s.agents; ++i) {
+  for (int i = 0; i < s.run.agents; ++i) {
     ConstantPolicy(s, 0.1F * static_cast<float>(i)).SaveOnnx(file(i));
   }
   VectorEnvOptions options;
@@ -96,19 +97,20 @@ TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   VectorEnv env(s, options);
   EnvMemory memory = env.MakeMemory();
   env.RestartAt(0, memory.arrays());
-  std::vector<double> actions(static_cast<std::size_t>(3 * s.agents * s.action_size()));
-  const Controller own = MakeController(folder + "/p.onnx", s);
-  EXPECT_EQ(own.policies.size(), static_cast<std::size_t>(s.agents));
+  std::vector<double> actions(
+      static_cast<std::size_t>(3 * s.run.agents * s.world.control.action_size()));
+  const Controller own = MakeController(folder + "/p.onnx", s.model());
+  EXPECT_EQ(own.policies.size(), static_cast<std::size_t>(s.run.agents));
   Decide(own, env, memory.observations.data(), actions.data());
   for (std::size_t i = 0; i < actions.size(); ++i) {
-    const auto row = static_cast<int>(i) / s.action_size();
-    EXPECT_NEAR(actions[i], std::tanh(0.1 * (row % s.agents)), 1e-6);
+    const auto row = static_cast<int>(i) / s.world.control.action_size();
+    EXPECT_NEAR(actions[i], std::tanh(0.1 * (row % s.run.agents)), 1e-6);
   }
   std::filesystem::remove(file(2));
-  EXPECT_THROW(MakeController(folder + "/p.onnx", s), UserError);
+  EXPECT_THROW(MakeController(folder + "/p.onnx", s.model()), UserError);
   // One for all goes first.
   ConstantPolicy(s, 1.0F).SaveOnnx(folder + "/p.onnx");
-  EXPECT_EQ(MakeController(folder + "/p.onnx", s).policies.size(), 1U);
+  EXPECT_EQ(MakeController(folder + "/p.onnx", s.model()).policies.size(), 1U);
   std::filesystem::remove_all(folder);
 }
 
@@ -135,7 +137,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
     const Scenario s = Shipped(row.scenario, row.condition);
     for (const bool tuned : {false, true}) {
       const Controller c =
-          MakeController(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s);
+          MakeController(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s.model());
       const task::MetricSummary m = task::Summarise(Fly(s, c, kEpisodes, 3000));
       // Four standard errors of the difference of two means, and the table's rounding.
       const auto expect = [&](const std::string& name, double expected, double rounding) {
@@ -155,7 +157,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
 
 TEST(PursuitSeparated, HoldsTheBandWithoutContactOnTrueStates) {
   const Scenario s = Shipped("medium_release");
-  const auto separated = Fly(s, MakeController("pursuit_separated", s), 28, 3000);
+  const auto separated = Fly(s, MakeController("pursuit_separated", s.model()), 28, 3000);
   const task::MetricSummary m = task::Summarise(separated);
   const auto mean = [&](const std::string& name) {
     double sum = 0.0;
@@ -175,8 +177,8 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
   const Scenario acoustic = Short(Shipped("medium", "nominal", blind), 150);
   Scenario truth = acoustic;
   truth.mode = InformationMode::kTruth;
-  const auto a = Fly(acoustic, MakeController("pursuit", acoustic), 16, 1);
-  const auto t = Fly(truth, MakeController("pursuit", truth), 16, 1);
+  const auto a = Fly(acoustic, MakeController("pursuit", acoustic.model()), 16, 1);
+  const auto t = Fly(truth, MakeController("pursuit", truth.model()), 16, 1);
   double error_a = 0.0, error_t = 0.0;
   for (size_t e = 0; e < a.size(); ++e) {
     error_a += a[e].tracking_error / 16.0;
@@ -189,7 +191,8 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
 TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
   for (const char* name : {"medium", "hard"}) {
     const Scenario s = Shipped(name);
-    const task::MetricSummary m = task::Summarise(Fly(s, MakeController("pursuit", s), 12, 3000));
+    const task::MetricSummary m =
+        task::Summarise(Fly(s, MakeController("pursuit", s.model()), 12, 3000));
     const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
                                        m.names.begin());
     EXPECT_NEAR(m.mean[k], 0.0125, 0.0005) << name;  // its standoff, and the error of the track
@@ -206,7 +209,7 @@ TEST(Shipped, PoliciesDoWhatTheyAreShippedFor) {
     const Scenario s = Shipped(row.name);
     const std::string file = config::ScenarioFolder() + "/../policies/" + row.name + ".onnx";
     // A test that could refuse a policy chooses, so the reporting block is not for it.
-    const auto episodes = Fly(s, MakeController(file, s), 28, 3000);
+    const auto episodes = Fly(s, MakeController(file, s.model()), 28, 3000);
     ASSERT_EQ(SeedBlockOf(3000, 28), "choosing");
     const task::MetricSummary m = task::Summarise(episodes);
     EXPECT_GT(m.Mean("return"), row.least_return);
@@ -230,11 +233,11 @@ TEST(SeedBlocks, AreDisjointAndKnown) {
 
 TEST(Idle, DoesNotMove) {
   const Scenario s = Short(Shipped("medium"), 50);
-  for (const auto& e : Fly(s, MakeController("idle", s), 4, 3000)) {
+  for (const auto& e : Fly(s, MakeController("idle", s.model()), 4, 3000)) {
     EXPECT_EQ(e.action_norm, 0.0);
     EXPECT_EQ(e.control_cost, 0.0);
     EXPECT_NEAR(e.time_to_band, 5.0, 1e-9);
-    EXPECT_GE(e.min_separation, s.reset.min_separation_m - 1e-6);
+    EXPECT_GE(e.min_separation, s.world.reset.min_separation_m - 1e-6);
   }
 }
 
@@ -245,7 +248,7 @@ TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
     VectorEnv env(s, VectorEnvOptions());
     EnvMemory memory = env.MakeMemory();
     env.Reset(memory.arrays());
-    Controller controller = MakeController("pursuit_separated", s);
+    Controller controller = MakeController("pursuit_separated", s.model());
     controller.privileged = privileged;
     std::vector<double> a(static_cast<size_t>(env.envs() * env.agents() * env.action_size()));
     Decide(controller, env, memory.observations.data(), a.data());

@@ -44,7 +44,7 @@ TEST(GoldenTrace, EveryOneIsReproducedInStateObservationAndReward) {
     EXPECT_LE(e.max_abs_error, 1e-5)
         << folder << ": " << e.worst_column << ", step " << e.worst_step;
     EXPECT_EQ(e.first_bad_step, -1);
-    EXPECT_EQ(e.steps * trace.scenario.agents, static_cast<int>(trace.rows.size()));
+    EXPECT_EQ(e.steps * trace.scenario.run.agents, static_cast<int>(trace.rows.size()));
     for (const char* group : {"state", "angle", "target", "tau", "observation", "reward"}) {
       EXPECT_EQ(e.by_group.count(group), 1u) << folder << " " << group;
     }
@@ -101,10 +101,10 @@ TEST(GoldenTrace, AnotherActionOrStartOrSettingIsFound) {
     bad.p_WT[0].y += 1e-4;
     EXPECT_EQ(ReplayTrace(bad, 1e-5).first_bad_step, 0);
     bad = good;
-    bad.scenario.observation.release_bookkeeping = false;
+    bad.scenario.agent.observation.release_bookkeeping = false;
     EXPECT_GT(ReplayTrace(bad, 1e-5).by_group.at("observation"), 1e-5) << folder;
     bad = good;
-    bad.scenario.vehicle.reversed_coriolis = false;
+    bad.scenario.world.vehicle.reversed_coriolis = false;
     coriolis = std::max(coriolis, ReplayTrace(bad, 1e-5).max_abs_error);
   }
   // Of the release's sign error only the trace that turns its AUVs tells.

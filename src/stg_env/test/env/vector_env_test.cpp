@@ -19,10 +19,10 @@ using Story = std::vector<std::vector<float>>;
 /// A random action of environment `env` in round k, the same whoever runs it.
 std::vector<float> ActionOf(const Scenario& s, int env, std::uint64_t round, int step) {
   std::vector<float> a;
-  for (int i = 0; i < s.agents; ++i) {
+  for (int i = 0; i < s.run.agents; ++i) {
     Random random(900 + static_cast<std::uint64_t>(env) + 1000 * round, Stream::kPolicy, 0,
                   static_cast<std::uint32_t>(step), static_cast<std::uint32_t>(i));
-    for (int k = 0; k < s.action_size(); ++k) {
+    for (int k = 0; k < s.world.control.action_size(); ++k) {
       a.push_back(static_cast<float>(random.Uniform(-1.0, 1.0)));
     }
   }
@@ -81,11 +81,11 @@ TEST(VectorEnv, AnEnvironmentIsTheSameInAnyCompany) {
                                    {"medium", "mode=acoustic"},
                                    {"physical", "mode=acoustic"}}) {
     Scenario a = Short(Shipped(name, "nominal", {mode, "agents=3"}), 7);
-    a.time.decision_steps = std::min(a.time.decision_steps, 10);
+    a.run.time.decision_steps = std::min(a.run.time.decision_steps, 10);
     Scenario b = a;
-    b.sensing.noise_std_m = 0.004;
+    b.world.sensing.noise_std_m = 0.004;
     Scenario c = a;
-    c.current.velocity_mps = {0.01, 0.0, 0.0};
+    c.world.current.velocity_mps = {0.01, 0.0, 0.0};
     const std::vector<std::vector<Scenario>> mixes = {{a}, {a, b}, {a, b, c}};
     for (std::size_t m = 0; m < mixes.size(); ++m) {
       std::vector<Story> alone;
@@ -188,7 +188,7 @@ TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
       mixed.Reset();
       alone.Reset();
       EXPECT_EQ(alone.seed(0), 4321u);
-      const int per_env = s.agents * s.action_size();
+      const int per_env = s.run.agents * s.world.control.action_size();
       for (int k = 0; k < 90; ++k) {
         if (k == 7 || k == 19) {
           mixed.ResetEnv(1, 4321);
@@ -198,16 +198,16 @@ TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
           EXPECT_EQ(mixed.step(2), calm.step(2));
         }
         for (const int e : {0, 2, 3}) {
-          for (int i = 0; i < s.agents; ++i) {
-            for (int f = 0; f < s.observation_size(); ++f) {
+          for (int i = 0; i < s.run.agents; ++i) {
+            for (int f = 0; f < s.agent.observation_size(); ++f) {
               ASSERT_EQ(Row(mixed, e, i)[f], Row(calm, e, i)[f]) << name << mode << k << " " << e;
             }
           }
         }
         const bool own = k >= 7 && mixed.seed(1) == 4321u;
         if (own) {
-          for (int i = 0; i < s.agents; ++i) {
-            for (int f = 0; f < s.observation_size(); ++f) {
+          for (int i = 0; i < s.run.agents; ++i) {
+            for (int f = 0; f < s.agent.observation_size(); ++f) {
               ASSERT_EQ(Row(mixed, 1, i)[f], Row(alone, 0, i)[f]) << name << mode << k;
             }
           }

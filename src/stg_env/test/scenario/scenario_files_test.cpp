@@ -45,7 +45,7 @@ TEST(ShippedScenarios, EveryFileLoadsUnderItsOwnName) {
   const auto names = Names(kFolder);
   EXPECT_GE(names.size(), 6u);
   for (const std::string& name : names) {
-    EXPECT_EQ(LoadNamedScenario(kFolder, name).name, name);
+    EXPECT_EQ(LoadNamedScenario(kFolder, name).run.name, name);
   }
 }
 
@@ -77,9 +77,9 @@ TEST(ShippedScenarios, MediumIsTheStructsDefault) {
 TEST(ShippedScenarios, HardDiffersFromMediumInNameAndStageOnly) {
   for (const std::string suffix : {"", "_release"}) {
     Scenario hard = LoadNamedScenario(kFolder, "hard" + suffix);
-    EXPECT_EQ(hard.reset.stage, dynamics::ResetStage::kHard);
-    hard.reset.stage = dynamics::ResetStage::kMedium;
-    hard.name = "medium" + suffix;
+    EXPECT_EQ(hard.world.reset.stage, dynamics::ResetStage::kHard);
+    hard.world.reset.stage = dynamics::ResetStage::kMedium;
+    hard.run.name = "medium" + suffix;
     EXPECT_EQ(ToYaml(hard), ToYaml(LoadNamedScenario(kFolder, "medium" + suffix)));
   }
 }
@@ -87,22 +87,22 @@ TEST(ShippedScenarios, HardDiffersFromMediumInNameAndStageOnly) {
 TEST(ShippedScenarios, ReleaseProfileIsTheReleasesSimulator) {
   const Scenario s = LoadNamedScenario(kFolder, "medium_release");
   EXPECT_EQ(s.mode, InformationMode::kTruth);
-  EXPECT_EQ(s.vehicle.added_mass_coriolis, dynamics::AddedMassCoriolis::kOff);
-  EXPECT_TRUE(s.vehicle.reversed_coriolis);
-  EXPECT_FALSE(s.vehicle.restoring);
-  EXPECT_EQ(s.vehicle.integrator, dynamics::Integrator::kSemiImplicit);
-  EXPECT_TRUE(s.vehicle.float32_tau);
-  EXPECT_TRUE(s.vehicle.clip_velocity);
+  EXPECT_EQ(s.world.vehicle.added_mass_coriolis, dynamics::AddedMassCoriolis::kOff);
+  EXPECT_TRUE(s.world.vehicle.reversed_coriolis);
+  EXPECT_FALSE(s.world.vehicle.restoring);
+  EXPECT_EQ(s.world.vehicle.integrator, dynamics::Integrator::kSemiImplicit);
+  EXPECT_TRUE(s.world.vehicle.float32_tau);
+  EXPECT_TRUE(s.world.vehicle.clip_velocity);
   EXPECT_EQ(s.reward.kind, task::RewardKind::kRelease);
-  EXPECT_EQ(s.observation.order, agent::NeighbourOrder::kIndex);
+  EXPECT_EQ(s.agent.observation.order, agent::NeighbourOrder::kIndex);
   EXPECT_EQ(s.channel.model, "range");
-  EXPECT_EQ(s.observation_size(), 74);
+  EXPECT_EQ(s.agent.observation_size(), 74);
 }
 
 /// Tables S7-S8 with the numbers of the release.
 TEST(StressConditions, HaveTheReleasesNumbers) {
   const auto speed = [](const Scenario& s) {
-    return s.reset.stages[static_cast<std::size_t>(s.reset.stage)].target_speed_mps;
+    return s.world.reset.stages[static_cast<std::size_t>(s.world.reset.stage)].target_speed_mps;
   };
   for (const std::string suffix : {"", "_release"}) {
     const std::string medium = "medium" + suffix, hard = "hard" + suffix;
@@ -116,15 +116,15 @@ TEST(StressConditions, HaveTheReleasesNumbers) {
       EXPECT_EQ(speed(load(hard, condition)).hi, 0.020);
     }
     for (const char* condition : {"far_initialization", "combined_stress"}) {
-      EXPECT_EQ(load(medium, condition).reset.stage, dynamics::ResetStage::kHard);
-      EXPECT_EQ(load(medium, condition).reset.min_separation_m, 0.10);
-      EXPECT_EQ(load(hard, condition).reset.min_separation_m, 0.14);
+      EXPECT_EQ(load(medium, condition).world.reset.stage, dynamics::ResetStage::kHard);
+      EXPECT_EQ(load(medium, condition).world.reset.min_separation_m, 0.10);
+      EXPECT_EQ(load(hard, condition).world.reset.min_separation_m, 0.14);
     }
-    EXPECT_EQ(load(medium, "fast_target").reset.stage, dynamics::ResetStage::kMedium);
+    EXPECT_EQ(load(medium, "fast_target").world.reset.stage, dynamics::ResetStage::kMedium);
     for (const std::string& name : {medium, hard}) {
       for (const char* condition :
            {"limited_sensing", "degraded_communication", "combined_stress"}) {
-        EXPECT_EQ(load(name, condition).sensing.range_m, 0.30);
+        EXPECT_EQ(load(name, condition).world.sensing.range_m, 0.30);
       }
       EXPECT_EQ(load(name, "degraded_communication").reward.weights.communication, 0.0);
       EXPECT_EQ(load(name, "combined_stress").reward.weights.communication, 0.01);
@@ -147,18 +147,18 @@ TEST(StressConditions, DegradedCommunicationDegradesEveryAspectOfALink) {
 
 TEST(NamedScenario, ConditionFollowsTheStageOfTheFileAndOverridesComeLast) {
   const Scenario s = LoadNamedScenario(kFolder, "medium", "fast_target", {"reset.stage=hard"});
-  EXPECT_EQ(s.reset.stage, dynamics::ResetStage::kHard);
-  EXPECT_EQ(s.reset.stages[2].target_speed_mps.hi, 0.014);
+  EXPECT_EQ(s.world.reset.stage, dynamics::ResetStage::kHard);
+  EXPECT_EQ(s.world.reset.stages[2].target_speed_mps.hi, 0.014);
   const std::string path = kFolder + "/medium.yaml";
   EXPECT_EQ(ToYaml(LoadNamedScenario("/none", path)), ToYaml(Scenario{}));
   const std::string overlay = kFolder + "/conditions/hard_fast_target.yaml";
-  EXPECT_EQ(LoadNamedScenario(kFolder, "medium", overlay).reset.stages[1].target_speed_mps.hi,
+  EXPECT_EQ(LoadNamedScenario(kFolder, "medium", overlay).world.reset.stages[1].target_speed_mps.hi,
             0.020);
 }
 
 TEST(NamedScenario, ConditionsOfAFileComeBeforeThoseOfItsStage) {
-  EXPECT_EQ(LoadNamedScenario(kFolder, "field", "fast_target").target.max_speed_mps, 1.3);
-  EXPECT_EQ(LoadNamedScenario(kFolder, "field8", "fast_target").target.max_speed_mps, 1.3);
+  EXPECT_EQ(LoadNamedScenario(kFolder, "field", "fast_target").world.target.max_speed_mps, 1.3);
+  EXPECT_EQ(LoadNamedScenario(kFolder, "field8", "fast_target").world.target.max_speed_mps, 1.3);
   std::set<std::string> hashes{ScenarioHash(LoadNamedScenario(kFolder, "field"))};
   const auto names = Names(kFolder + "/conditions/field");
   for (const std::string& name : names) {
@@ -270,6 +270,8 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
     }
   }
   for (const char* end : {"lo", "hi"}) members.erase(end);
+  // What puts sections together, and what follows from other keys.
+  for (const char* part : {"run", "world", "agent", "max_current_mps"}) members.erase(part);
   for (const std::string& member : members) {
     EXPECT_TRUE(keys.count(member) > 0 || optional.count(member) > 0) << member << " is no key";
   }

@@ -138,7 +138,7 @@ TEST_F(HostileFile, BaseThatLeadsBackToItselfIsRefused) {
 
 TEST_F(HostileFile, BaseThatIsNoFileIsRefusedWhereItIsNamed) {
   ExpectRefused(Write("a.yaml", "base: none.yaml\n"), ":1: base: ", "is not a file");
-  EXPECT_EQ(LoadScenario(Write("mine.yaml", "base: medium.yaml\nagents: 3\n")).agents, 3);
+  EXPECT_EQ(LoadScenario(Write("mine.yaml", "base: medium.yaml\nagents: 3\n")).run.agents, 3);
   ExpectRefused(Write("b.yaml", "base: .\n"), ":1: base: ", "is not a file");
   ExpectRefused(Write("c.yaml", "base: [a]\n"), ":1: base: ", "expected a file name");
   ExpectRefused(Write("d.yaml", "base:\n"), ":1: base: ", "expected a file name");

@@ -16,21 +16,21 @@ namespace {
 
 TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
   Scenario scenario;
-  scenario.vehicle.mass_kg = 0.1 + 0.2;  // needs all 17 digits
-  scenario.seed = std::numeric_limits<std::uint64_t>::max();
-  scenario.sensing.noise_std_m = 1e-300;
-  scenario.vehicle.added_mass_coriolis = dynamics::AddedMassCoriolis::kOff;
-  scenario.control.interface = dynamics::ActionInterface::kTau6;
-  scenario.reset.stages[2].target_radius_m = {1.0 / 3.0, 2.0 / 3.0};
-  scenario.name = "off";
+  scenario.world.vehicle.mass_kg = 0.1 + 0.2;  // needs all 17 digits
+  scenario.run.seed = std::numeric_limits<std::uint64_t>::max();
+  scenario.world.sensing.noise_std_m = 1e-300;
+  scenario.world.vehicle.added_mass_coriolis = dynamics::AddedMassCoriolis::kOff;
+  scenario.world.control.interface = dynamics::ActionInterface::kTau6;
+  scenario.world.reset.stages[2].target_radius_m = {1.0 / 3.0, 2.0 / 3.0};
+  scenario.run.name = "off";
   const Scenario loaded = LoadScenario(Write("a.yaml", ToYaml(scenario)));
-  EXPECT_EQ(loaded.vehicle.mass_kg, scenario.vehicle.mass_kg);
-  EXPECT_EQ(loaded.seed, scenario.seed);
-  EXPECT_EQ(loaded.sensing.noise_std_m, 1e-300);
-  EXPECT_EQ(loaded.vehicle.added_mass_coriolis, dynamics::AddedMassCoriolis::kOff);
-  EXPECT_EQ(loaded.control.interface, dynamics::ActionInterface::kTau6);
-  EXPECT_EQ(loaded.reset.stages[2].target_radius_m.lo, 1.0 / 3.0);
-  EXPECT_EQ(loaded.name, "off");
+  EXPECT_EQ(loaded.world.vehicle.mass_kg, scenario.world.vehicle.mass_kg);
+  EXPECT_EQ(loaded.run.seed, scenario.run.seed);
+  EXPECT_EQ(loaded.world.sensing.noise_std_m, 1e-300);
+  EXPECT_EQ(loaded.world.vehicle.added_mass_coriolis, dynamics::AddedMassCoriolis::kOff);
+  EXPECT_EQ(loaded.world.control.interface, dynamics::ActionInterface::kTau6);
+  EXPECT_EQ(loaded.world.reset.stages[2].target_radius_m.lo, 1.0 / 3.0);
+  EXPECT_EQ(loaded.run.name, "off");
   EXPECT_EQ(ToYaml(loaded), ToYaml(scenario));
 }
 
@@ -131,8 +131,8 @@ TEST_F(ScenarioInput, DuplicateKeyNamesBothLines) {
 TEST_F(ScenarioInput, OverridesAreAppliedInOrderAfterOverlays) {
   const std::string base = Write("base.yaml", ToYaml(Scenario{}));
   const std::string overlay = Write("overlay.yaml", "agents: 6\n");
-  EXPECT_EQ(LoadScenario(base, {overlay}).agents, 6);
-  EXPECT_EQ(LoadScenario(base, {overlay}, {"agents=7", "agents=8"}).agents, 8);
+  EXPECT_EQ(LoadScenario(base, {overlay}).run.agents, 6);
+  EXPECT_EQ(LoadScenario(base, {overlay}, {"agents=7", "agents=8"}).run.agents, 8);
   const Scenario s = LoadScenario(base, {}, {"reward.band_m=[0.011, 0.014]", "mode=truth"});
   EXPECT_EQ(s.reward.band_m.lo, 0.011);
   EXPECT_EQ(s.mode, InformationMode::kTruth);

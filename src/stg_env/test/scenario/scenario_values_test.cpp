@@ -96,7 +96,7 @@ TEST_F(ScenarioInput, EveryNumberIsRefusedOutsideItsRange) {
 TEST(Scenario, StructWithNanIsRefused) {
   Scenario scenario;
   EXPECT_NO_THROW(scenario.ValidateOrThrow());
-  scenario.current.velocity_mps[1] = std::nan("");
+  scenario.world.current.velocity_mps[1] = std::nan("");
   EXPECT_NE(ErrorOf([&] { scenario.ValidateOrThrow(); }).find("current.velocity_mps"),
             std::string::npos);
 }

@@ -11,16 +11,16 @@ namespace {
 
 JudgeConfig Sea(int agents, int targets = 1) {
   JudgeConfig s;
-  s.agents = agents;
-  s.target.count = targets;
-  s.sea.open = true;
-  s.vehicle.radius_m = 2.5;
-  s.time.dt_s = 1.0;
-  s.time.episode_steps = 100;
-  s.time.tail_steps = 10;
-  s.task.desired_distance_m = 90.0;
-  s.task.lost_distance_m = 600.0;
-  s.task.lost_error_m = 100.0;
+  s.run.agents = agents;
+  s.world.target.count = targets;
+  s.world.sea.open = true;
+  s.world.vehicle.radius_m = 2.5;
+  s.run.time.dt_s = 1.0;
+  s.run.time.episode_steps = 100;
+  s.run.time.tail_steps = 10;
+  s.agent.task.desired_distance_m = 90.0;
+  s.agent.task.lost_distance_m = 600.0;
+  s.agent.task.lost_error_m = 100.0;
   s.reward.band_m = {60.0, 120.0};
   s.reward.separation_distance_m = 20.0;
   return s;
@@ -29,9 +29,9 @@ JudgeConfig Sea(int agents, int targets = 1) {
 /// A swarm that a test sets by hand.
 struct Swarm {
   explicit Swarm(const JudgeConfig& s)
-      : vehicles(static_cast<std::size_t>(s.agents)),
-        targets(static_cast<std::size_t>(s.target.count)),
-        separations(s.agents, 5.0),
+      : vehicles(static_cast<std::size_t>(s.run.agents)),
+        targets(static_cast<std::size_t>(s.world.target.count)),
+        separations(s.run.agents, 5.0),
         efforts(vehicles.size()),
         field(vehicles.size()) {
     for (Effort<double>& e : efforts) e.fill(0.0);
@@ -60,7 +60,7 @@ TEST(Spread, IsOneMinusTheLengthOfTheMeanBearing) {
       swarm.vehicles[i++].p_WB =
           swarm.targets[0].p_WT + Vec3<double>{range * std::cos(a), range * std::sin(a), 11.0};
     }
-    return Spread(s, swarm.State(), 0);
+    return Spread(swarm.State(), 0);
   };
   EXPECT_NEAR(stand({10.0, 100.0, 190.0, 280.0}), 1.0, 1e-12);
   EXPECT_NEAR(stand({33.0, 33.0, 33.0, 33.0}), 0.0, 1e-12);

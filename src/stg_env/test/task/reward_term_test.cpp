@@ -44,7 +44,7 @@ std::vector<double> Totals(const Scenario& s) {
   for (int k = 0; k < 3; ++k) env.Step(env::ActionsOf(env, o));
   std::vector<double> totals;
   for (int e = 0; e < env.envs(); ++e) {
-    for (int i = 0; i < s.agents; ++i) totals.push_back(env.terms(e, i).total);
+    for (int i = 0; i < s.run.agents; ++i) totals.push_back(env.terms(e, i).total);
   }
   return totals;
 }
@@ -121,7 +121,7 @@ TEST(RewardTerms, AnUnknownNameIsRefusedWithTheKey) {
   EXPECT_THROW(With({"reward.terms.effort=1e9"}), UserError);
   Scenario s = With({});
   s.reward.terms["no_such_term"] = 1.0;
-  EXPECT_THROW(Task<double> task(s), UserError);
+  EXPECT_THROW(Task<double> task(s.judge()), UserError);
 }
 
 TEST(RewardTerms, StandInASavedScenarioOnlyWhenTheyCount) {

@@ -36,7 +36,7 @@ TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
   const double effort[6] = {0.6}, before[6] = {0.0, 0.6};
   in.tau = in.action = effort;
   in.previous_tau = in.previous_action = before;
-  const RewardTerms<double> paper = Reward(With(RewardKind::kPaper), in, 0.9, 0.6);
+  const RewardTerms<double> paper = Reward(With(RewardKind::kPaper).judge(), in, 0.9, 0.6);
   EXPECT_NEAR(paper.track, 0.5440625, 1e-12);
   EXPECT_NEAR(paper.observation, 0.5, 1e-12);
   EXPECT_NEAR(paper.coordination, 0.9, 1e-12);
@@ -45,7 +45,7 @@ TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
   EXPECT_NEAR(paper.cost, 0.6 * 0.36 + 0.4 * 0.72, 1e-12);
   EXPECT_NEAR(paper.total, 0.500405, 1e-12);
 
-  const RewardTerms<double> release = Reward(With(RewardKind::kRelease), in, 0.9, 0.6);
+  const RewardTerms<double> release = Reward(With(RewardKind::kRelease).judge(), in, 0.9, 0.6);
   EXPECT_NEAR(release.track, 0.5440625, 1e-12);
   EXPECT_NEAR(release.semantic, 0.5, 1e-12);
   EXPECT_NEAR(release.cost, 0.084, 1e-12);
@@ -53,7 +53,7 @@ TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
 
   Scenario s = With(RewardKind::kReleaseRaw);
   s.reward.weights = {0.55, 0.20, 0.10, 0.05, 0.0, 0.08, 0.0};
-  const RewardTerms<double> raw = Reward(s, in, 0.9, 0.6);
+  const RewardTerms<double> raw = Reward(s.judge(), in, 0.9, 0.6);
   EXPECT_NEAR(raw.track, 0.6209375, 1e-12);  // e = 0.185
   EXPECT_NEAR(raw.cost, 0.081, 1e-12);
   EXPECT_NEAR(raw.total, 0.555035625, 1e-12);
@@ -62,17 +62,17 @@ TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
 TEST(Reward, StablePhaseIsWhereThePaperAndTheReleaseDiffer) {
   // Near but above the band: P = 0, C = -0.5, b = 0.035, B = 0.95625.
   const RewardInput<double> in = Input(0.05, 0.05, -0.04, 0.8);
-  const RewardTerms<double> paper = Reward(With(RewardKind::kPaper), in, 0.0, 0.0);
+  const RewardTerms<double> paper = Reward(With(RewardKind::kPaper).judge(), in, 0.0, 0.0);
   EXPECT_NEAR(paper.track, 0.2596875, 1e-12);
   EXPECT_NEAR(paper.semantic, 0.89, 1e-12);
-  EXPECT_NEAR(Reward(With(RewardKind::kRelease), in, 0.0, 0.0).semantic, -0.175, 1e-12);
+  EXPECT_NEAR(Reward(With(RewardKind::kRelease).judge(), in, 0.0, 0.0).semantic, -0.175, 1e-12);
 }
 
 TEST(Reward, LostEarnsProgressOnly) {
   // P = -0.5, B = 0, R = P.
   const RewardInput<double> in = Input(0.88, 0.90, 0.0, 0.0, true);
   for (const RewardKind kind : {RewardKind::kPaper, RewardKind::kRelease}) {
-    const RewardTerms<double> r = Reward(With(kind), in, 0.0, 0.0);
+    const RewardTerms<double> r = Reward(With(kind).judge(), in, 0.0, 0.0);
     EXPECT_NEAR(r.track, -0.25, 1e-12);
     EXPECT_NEAR(r.observation, -1.0, 1e-12);
     EXPECT_NEAR(r.semantic, -0.5, 1e-12);
@@ -83,17 +83,17 @@ TEST(Reward, LostEarnsProgressOnly) {
 TEST(Reward, TooCloseIsPenalised) {
   // U = 0.5, b = 0.005, B = 0.99375.
   const RewardInput<double> in = Input(0.005, 0.005, 0.0, 0.9);
-  const RewardTerms<double> paper = Reward(With(RewardKind::kPaper), in, 0.0, 0.0);
+  const RewardTerms<double> paper = Reward(With(RewardKind::kPaper).judge(), in, 0.0, 0.0);
   EXPECT_NEAR(paper.track, 0.2478125, 1e-12);
   EXPECT_NEAR(paper.semantic, 0.55 * 0.9 + 0.45 * 0.5, 1e-12);
-  EXPECT_NEAR(Reward(With(RewardKind::kRelease), in, 0.0, 0.0).semantic, -0.125, 1e-12);
+  EXPECT_NEAR(Reward(With(RewardKind::kRelease).judge(), in, 0.0, 0.0).semantic, -0.125, 1e-12);
 }
 
 TEST(Reward, InsideTheBandProgressEarnsNoReacquisition) {
   // P = 0.5, C = 0, B = 1, R = 0.
   const RewardInput<double> in = Input(0.0325, 0.0125, 0.0, 0.9);
   for (const RewardKind kind : {RewardKind::kPaper, RewardKind::kRelease}) {
-    const RewardTerms<double> r = Reward(With(kind), in, 0.0, 0.0);
+    const RewardTerms<double> r = Reward(With(kind).judge(), in, 0.0, 0.0);
     EXPECT_NEAR(r.track, 0.5, 1e-12);
     EXPECT_NEAR(r.semantic, 0.55 * 0.9 + 0.45, 1e-12);
   }
@@ -105,14 +105,14 @@ TEST(Reward, EveryTermAndTheTotalStayWithinTheirLimits) {
   const double all[6] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   in.action = all;
   s.reward.w_band = 5.0;
-  RewardTerms<double> r = Reward(s, in, 1.0, 1.0);
+  RewardTerms<double> r = Reward(s.judge(), in, 1.0, 1.0);
   EXPECT_EQ(r.track, 1.0);
   EXPECT_EQ(r.cost, 1.0);
   s.reward.weights.tracking = 10.0;
-  EXPECT_EQ(Reward(s, in, 1.0, 1.0).total, 2.0);
+  EXPECT_EQ(Reward(s.judge(), in, 1.0, 1.0).total, 2.0);
   in = Input(0.0, 10.0, -10.0, 0.0, true);
   s.reward.w_progress = 5.0;
-  r = Reward(s, in, 0.0, 0.0);
+  r = Reward(s.judge(), in, 0.0, 0.0);
   EXPECT_EQ(r.track, -1.0);
   EXPECT_EQ(r.total, -2.0);
   // Progress and closing saturate at one unit of their scales.
@@ -128,11 +128,11 @@ TEST(Reward, EachWeightScalesItsTermAlone) {
   in.action = half;
   in.crowding = 0.3;
   Scenario s = With(RewardKind::kPaper);
-  const RewardTerms<double> r = Reward(s, in, 0.9, 0.6);
+  const RewardTerms<double> r = Reward(s.judge(), in, 0.9, 0.6);
   const auto only = [&](double RewardWeights::*weight) {
     s.reward.weights = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     s.reward.weights.*weight = 0.5;
-    return Reward(s, in, 0.9, 0.6).total;
+    return Reward(s.judge(), in, 0.9, 0.6).total;
   };
   EXPECT_NEAR(only(&RewardWeights::tracking), 0.5 * r.track, 1e-15);
   EXPECT_NEAR(only(&RewardWeights::observation), 0.5 * r.observation, 1e-15);
@@ -179,8 +179,8 @@ TEST(Reward, PacksAndScalarsGiveTheSameBits) {
       b.closing = Pack(a.closing);
       b.confidence = Pack(a.confidence);
       b.lost = Pack(a.lost);
-      const double expected = Reward(s, a, 0.4, 0.3).total;
-      EXPECT_EQ(Lane(Reward(s, b, Pack(0.4), Pack(0.3)).total, kLanes - 1), expected);
+      const double expected = Reward(s.judge(), a, 0.4, 0.3).total;
+      EXPECT_EQ(Lane(Reward(s.judge(), b, Pack(0.4), Pack(0.3)).total, kLanes - 1), expected);
     }
   }
 }

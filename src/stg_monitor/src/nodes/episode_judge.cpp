@@ -10,16 +10,16 @@ namespace stg::nodes {
 
 EpisodeJudge::EpisodeJudge(const Scenario& scenario)
     : scenario_(scenario),
-      task_(scenario),
-      vehicles_(static_cast<std::size_t>(scenario.agents)),
-      targets_(static_cast<std::size_t>(scenario.target.count)),
-      separations_(scenario.agents, 2.0 * scenario.vehicle.radius_m),
+      task_(scenario.judge()),
+      vehicles_(static_cast<std::size_t>(scenario.run.agents)),
+      targets_(static_cast<std::size_t>(scenario.world.target.count)),
+      separations_(scenario.run.agents, 2.0 * scenario.world.vehicle.radius_m),
       tau_(vehicles_.size()),
       action_(vehicles_.size()),
       policy_ids_(vehicles_.size()) {
-  if (!scenario.sea.open) return;
-  scape_ =
-      std::make_unique<const dynamics::Seascape>(scenario.sea, scenario.workspace.half_extent_m);
+  if (!scenario.world.sea.open) return;
+  scape_ = std::make_unique<const dynamics::Seascape>(scenario.world.sea,
+                                                      scenario.world.workspace.half_extent_m);
   field_.resize(vehicles_.size());
 }
 
@@ -58,7 +58,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   }
   SetTruth(frame);
   if (!follows) {
-    if (frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps)) {
+    if (frame.truth->step >= static_cast<std::uint32_t>(scenario_.run.time.episode_steps)) {
       return verdict;  // the end of an episode that was not watched
     }
     for (auto* v : {&tau_, &action_}) std::fill(v->begin(), v->end(), std::array<double, 6>{});
@@ -66,7 +66,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
     deadline_misses_ = channel_misses_ = 0;
     started_ = true;
     complete_ = frame.truth->step == 0;
-    task_.Start(true, Swarm(), scenario_.time.episode_steps);
+    task_.Start(true, Swarm(), scenario_.run.time.episode_steps);
     state_ = CriticState();
   } else {
     complete_ = complete_ && frame.truth->step == step_ + 1;
@@ -74,7 +74,8 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
     task_.Step(Swarm());
     std::vector<float> before = std::exchange(state_, CriticState());
     FillReport(frame, std::move(before), &verdict);
-    const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
+    const bool last =
+        frame.truth->step >= static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
     if (last) {
       started_ = false;
       complete_ = complete_ && Truncated();
@@ -139,8 +140,8 @@ void EpisodeJudge::SetLinks(const auv_msgs::LinkStates& links) {
     dropped += link.dropped;
   }
   for (std::size_t i = 0; i < field_.size(); ++i) {
-    field_[i].received = delivered / scenario_.agents;
-    field_[i].missed = dropped / scenario_.agents;
+    field_[i].received = delivered / scenario_.run.agents;
+    field_[i].missed = dropped / scenario_.run.agents;
     if (i < links.energy.size()) field_[i].modem_energy_j = links.energy[i];
   }
 }
@@ -157,7 +158,7 @@ void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
     const auto& w = truth.wrenches[i];
     const double tau[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
     for (std::size_t k = 0; k < 6; ++k) {
-      tau_[i][k] = tau[k] / scenario_.vehicle.max_tau[k];
+      tau_[i][k] = tau[k] / scenario_.world.vehicle.max_tau[k];
     }
   }
   const bool missed =
@@ -198,7 +199,7 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
   m.global_state = std::move(state);
   m.truncated = Truncated();
   if (m.truncated) m.final_state = state_;
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const task::RewardTerms<double>& r = task_.terms(i);
     m.agent_rewards.push_back(r.total);
     m.r_track.push_back(r.track);
@@ -209,18 +210,18 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
     m.r_sep.push_back(r.separation);
     m.cost.push_back(r.cost);
     m.distances.push_back(task_.tracking(i).distance);
-    m.reward += m.agent_rewards.back() / scenario_.agents;
+    m.reward += m.agent_rewards.back() / scenario_.run.agents;
   }
   for (std::size_t i = 0; i < field_.size(); ++i) {
     const task::FieldState<double>& f = field_[i];
-    const auto target = static_cast<std::size_t>(scenario_.target_of(static_cast<int>(i)));
+    const auto target = static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)));
     const double error = Norm(f.p_WT - targets_[target].p_WT);
     m.estimate_errors.push_back(f.known > 0.5 ? error : -1.0);
     m.altitudes.push_back(f.altitude_m);
     m.clearances.push_back(f.clearance_m);
   }
   m.colliding_pairs = static_cast<std::uint32_t>(separations_.colliding_pairs());
-  m.smallest_separation = scenario_.agents > 1 ? separations_.smallest() : 0.0;
+  m.smallest_separation = scenario_.run.agents > 1 ? separations_.smallest() : 0.0;
 }
 
 void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& e,
@@ -232,7 +233,7 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetric
   m.header.frame_id = frames::kWorld;
   m.episode = episode_;
   m.seed = seed_;
-  m.scenario = scenario_.name;
+  m.scenario = scenario_.run.name;
   m.policy_id = policy_id();
   m.steps = static_cast<std::uint32_t>(e.steps);
   m.complete = complete_;

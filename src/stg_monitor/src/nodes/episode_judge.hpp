@@ -47,7 +47,7 @@ class EpisodeJudge {
   void TakeWrenches(const auv_msgs::SwarmState& truth);
   void TakeActions(const SwarmFrame& frame);
   task::SwarmState<double> Swarm() const;
-  bool Truncated() const { return task_.steps(0) >= scenario_.time.episode_steps; }
+  bool Truncated() const { return task_.steps(0) >= scenario_.run.time.episode_steps; }
   std::vector<float> CriticState() const;
   void FillReport(const SwarmFrame& frame, std::vector<float> state, Verdict* verdict) const;
   void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics,

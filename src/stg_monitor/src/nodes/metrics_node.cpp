@@ -40,11 +40,11 @@ bool EndsWith(const std::string& text, const std::string& end) {
 
 MetricsNode::MetricsNode()
     : scenario_(LoadScenarioParameters<Scenario>(config::Scope::kWhole)),
-      period_(scenario_.decision_period()),
+      period_(scenario_.run.decision_period()),
       patience_s_(NumberParameter("patience", 1.0, 0.0, 3600.0)),
       show_table_(FlagParameter("table", true)),
-      tracker_(period_, scenario_.time.episode_steps),
-      frames_(kMaxFrames, SwarmFrame(scenario_.agents)),
+      tracker_(period_, scenario_.run.time.episode_steps),
+      frames_(kMaxFrames, SwarmFrame(scenario_.run.agents)),
       judge_(scenario_),
       table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       file_name_(TextParameter("summary_file", "")),
@@ -84,7 +84,7 @@ void MetricsNode::Subscribe() {
         if (!usable) refused_swarm_.Add(Refusals::kNotFinite);
         return usable && Follow(m);
       });
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < scenario_.run.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
     into_frames(
         topics::AuvTopic(i, topics::kTaskState),
@@ -142,8 +142,8 @@ bool MetricsNode::Usable(const auv_msgs::TaskState& m) const {
 }
 
 bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {
-  const auto n = static_cast<std::size_t>(scenario_.agents);
-  const auto targets = static_cast<std::size_t>(scenario_.target.count);
+  const auto n = static_cast<std::size_t>(scenario_.run.agents);
+  const auto targets = static_cast<std::size_t>(scenario_.world.target.count);
   const auto finite = [](const auto& v) { return FiniteVector(v); };
   const auto& p = m.target_positions;
   const auto& v = m.target_velocities;
@@ -197,9 +197,10 @@ auv_msgs::LinkStates::ConstPtr MetricsNode::TakeLinks(TimeNs stamp) {
 /// The last frame of an episode waits for what the channel counted until then, but not for long:
 /// there may be no channel.
 bool MetricsNode::AwaitsLinks(const SwarmFrame& frame) {
-  const bool last = frame.truth->step >= static_cast<std::uint32_t>(scenario_.time.episode_steps);
+  const bool last =
+      frame.truth->step >= static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
   const TimeNs stamp = NsOf(frame.truth->header.stamp);
-  if (!last || !scenario_.sea.open || links_.count(stamp) > 0) return false;
+  if (!last || !scenario_.world.sea.open || links_.count(stamp) > 0) return false;
   if (awaited_ != stamp) {
     awaited_ = stamp;
     awaited_since_s_ = WallSeconds();
@@ -208,7 +209,7 @@ bool MetricsNode::AwaitsLinks(const SwarmFrame& frame) {
 }
 
 void MetricsNode::JudgeFrames() {
-  SwarmFrame frame(scenario_.agents);
+  SwarmFrame frame(scenario_.run.agents);
   const auto complete = [this](const SwarmFrame& f) { return f.Complete() && !AwaitsLinks(f); };
   while (frames_.Take(WallSeconds(), patience_s_, complete, &frame)) {
     frame.links = TakeLinks(frames_.taken());
@@ -219,7 +220,7 @@ void MetricsNode::JudgeFrames() {
       summary_ =
           ros::NodeHandle().advertise<auv_msgs::EpisodeSummary>(topics::kEpisodeSummary, 10, true);
     }
-    for (int i = 0; i < scenario_.agents; ++i) {
+    for (int i = 0; i < scenario_.run.agents; ++i) {
       const auto& task = frame.tasks[static_cast<std::size_t>(i)];
       if (task) table_.SetPhase(i, task->phase);
     }

@@ -67,12 +67,12 @@ dynamics::Detection DetectionOf(TimeNs stamp, const Triple& p_WT, double std_m, 
 /// An agent, and when its modem lets packets go.
 struct BoundAgent {
   BoundAgent(const Scenario& scenario, int id)
-      : mind(Checked(scenario, id), id), turns(scenario.channel, scenario) {}
+      : mind(Checked(scenario, id).model(), id), turns(scenario.channel, scenario.run) {}
 
   static const Scenario& Checked(const Scenario& s, int id) {
-    if (id < 0 || id >= s.agents) {
+    if (id < 0 || id >= s.run.agents) {
       throw py::value_error("id: " + std::to_string(id) + ", there are " +
-                            std::to_string(s.agents) + " AUVs");
+                            std::to_string(s.run.agents) + " AUVs");
     }
     return s;
   }
@@ -111,17 +111,17 @@ py::array_t<float> Observe(BoundAgent& a, TimeNs stamp, const Triple& p_WB,
   std::copy(q_WB.begin(), q_WB.end(), nav.q_WB);
   nav.v_WB_B = VectorOf(v_WB_B);
   nav.w_WB_B = VectorOf(w_WB_B);
-  py::array_t<float> observation(a.mind.scenario().observation_size());
+  py::array_t<float> observation(a.mind.model().observation_size());
   a.mind.Observe(nav, observation.mutable_data());
   return observation;
 }
 
 py::dict Act(BoundAgent& a, const py::handle& action) {
-  const agent::AgentConfig& s = a.mind.scenario();
-  const Floats floats = RequireFloats(action, "action", {s.action_size()});
+  const agent::AgentModel& s = a.mind.model();
+  const Floats floats = RequireFloats(action, "action", {s.control.action_size()});
   const auto wanted = py::array_t<float, py::array::c_style | py::array::forcecast>(floats.array);
   const agent::AgentOutput out = a.mind.Act(wanted.data());
-  a.action.assign(out.action, out.action + s.action_size());
+  a.action.assign(out.action, out.action + s.control.action_size());
   const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(s.vehicle, out.fraction);
   py::dict all;
   all["cmd_vel"] = TripleOf(out.cmd_vel_W);
@@ -185,7 +185,8 @@ void BindAgent(py::module_& module) {
       .def_readonly("saturated", &NeighbourState::saturated, "A value did not fit; set by encode.");
 
   py::class_<agent::PacketCodec>(module, "PacketCodec", "The 32-byte packet of the agents.")
-      .def(py::init([](const Scenario& s) { return agent::PacketCodec(s); }), py::arg("scenario"))
+      .def(py::init([](const Scenario& s) { return agent::PacketCodec(s.model()); }),
+           py::arg("scenario"))
       .def(
           "encode",
           [](const agent::PacketCodec& c, const NeighbourState& s) { return Bytes(c.Encode(s)); },
@@ -197,7 +198,8 @@ void BindAgent(py::module_& module) {
   py::class_<agent::TargetTrack>(
       module, "TargetTrack",
       "Constant-velocity Kalman filter of one target. World axes, times [ns].")
-      .def(py::init([](const Scenario& s) { return agent::TargetTrack(s); }), py::arg("scenario"))
+      .def(py::init([](const Scenario& s) { return agent::TargetTrack(s.model()); }),
+           py::arg("scenario"))
       .def("clear", &agent::TargetTrack::Clear)
       .def(
           "start",

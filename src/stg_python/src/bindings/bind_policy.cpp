@@ -117,7 +117,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
   task::MetricSummary summary;
   {
     const WithoutGil release;
-    env::Controller controller = env::MakeController(policy, scenario);
+    env::Controller controller = env::MakeController(policy, scenario.model());
     controller.privileged = privileged;
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;
@@ -154,7 +154,9 @@ void BindPolicy(py::module_& module) {
            "Mean actions [..., action_size] of observations [..., observation_size].")
       .def(
           "require_fits",
-          [](const Policy& policy, const Scenario& scenario) { policy.RequireFits(scenario); },
+          [](const Policy& policy, const Scenario& scenario) {
+            policy.RequireFits(scenario.model());
+          },
           py::arg("scenario"),
           "Raises UserError unless layout, action interface and sizes are the scenario's.")
       .def_property_readonly("metadata", &Metadata)

@@ -51,7 +51,7 @@ py::dict Values(const Scenario& scenario) {
 }
 
 py::list Layout(const Scenario& scenario) {
-  const agent::ObservationSpec spec(scenario.observation);
+  const agent::ObservationSpec spec(scenario.agent.observation);
   py::list blocks;
   for (int b = 0; b < agent::kBlockCount; ++b) {
     const auto block = static_cast<agent::Block>(b);
@@ -64,10 +64,11 @@ py::list Layout(const Scenario& scenario) {
 
 /// Heights of the bottom of open water on a grid over the region.
 py::array_t<double> Bottom(const Scenario& s, int points) {
-  if (!s.sea.open) throw UserError("scenario '" + s.name + "' has no open water (sea.open)");
+  if (!s.world.sea.open)
+    throw UserError("scenario '" + s.run.name + "' has no open water (sea.open)");
   if (points < 2 || points > 4096) throw py::value_error("points: must be 2 to 4096");
-  const double half = s.workspace.half_extent_m, step = 2.0 * half / (points - 1);
-  const dynamics::Seascape sea(s.sea, half);
+  const double half = s.world.workspace.half_extent_m, step = 2.0 * half / (points - 1);
+  const dynamics::Seascape sea(s.world.sea, half);
   py::array_t<double> heights({points, points});
   auto at = heights.mutable_unchecked<2>();
   for (int j = 0; j < points; ++j) {
@@ -114,31 +115,36 @@ void BindScenario(py::module_& module) {
            "Raises UserError where there is no open water, or no bathymetry to be had.")
       .def("__repr__",
            [](const Scenario& s) {
-             return "<stg.Scenario '" + s.name + "', " + std::to_string(s.agents) + " AUVs>";
+             return "<stg.Scenario '" + s.run.name + "', " + std::to_string(s.run.agents) +
+                    " AUVs>";
            })
       .def_property_readonly(
           "hash", [](const Scenario& s) { return ScenarioHash(s); },
           "Identifies the scenario in policy files.")
-      .def_property_readonly("name", [](const Scenario& s) { return s.name; })
-      .def_property_readonly("agents", [](const Scenario& s) { return s.agents; })
-      .def_property_readonly("targets", [](const Scenario& s) { return s.target.count; })
-      .def_property_readonly("action_size", [](const Scenario& s) { return s.action_size(); })
+      .def_property_readonly("name", [](const Scenario& s) { return s.run.name; })
+      .def_property_readonly("agents", [](const Scenario& s) { return s.run.agents; })
+      .def_property_readonly("targets", [](const Scenario& s) { return s.world.target.count; })
+      .def_property_readonly("action_size",
+                             [](const Scenario& s) { return s.world.control.action_size(); })
       .def_property_readonly("observation_size",
-                             [](const Scenario& s) { return s.observation_size(); })
+                             [](const Scenario& s) { return s.agent.observation_size(); })
       .def_property_readonly("state_size",
-                             [](const Scenario& s) { return task::CriticStateSize(s); })
+                             [](const Scenario& s) {
+                               return task::CriticStateSize(s.run.agents, s.world.target.count);
+                             })
       .def_property_readonly(
-          "episode_steps", [](const Scenario& s) { return s.time.episode_steps; },
+          "episode_steps", [](const Scenario& s) { return s.run.time.episode_steps; },
           "Decisions of an episode.")
       .def_property_readonly(
-          "decision_dt_s", [](const Scenario& s) { return s.decision_dt_s(); },
+          "decision_dt_s", [](const Scenario& s) { return s.run.decision_dt_s(); },
           "Time between two decisions [s].")
       .def_property_readonly(
-          "observation_layout", [](const Scenario& s) { return agent::ObservationLayout(s); },
+          "observation_layout",
+          [](const Scenario& s) { return agent::ObservationLayout(s.agent.observation); },
           "Name of the layout, which policy files carry.")
       .def_property_readonly(
           "action_interface",
-          [](const Scenario& s) { return agent::ActionInterfaceName(s.control.interface); },
+          [](const Scenario& s) { return agent::ActionInterfaceName(s.world.control.interface); },
           "\"velocity3\" or \"tau6\".")
       .def_property_readonly("observation_blocks", &Layout,
                              "[(name, first index, size, content)] of an observation.");

@@ -168,7 +168,7 @@ int BoundEnv::StepAgents(const py::dict& actions) {
 const env::Controller& BoundEnv::ControllerOf(const std::string& name, bool privileged) {
   if (controller_.name != name) {
     const Fleet& fleet = *fleet_;
-    controller_ = env::MakeController(name, fleet.parts().front().envs->scenario());
+    controller_ = env::MakeController(name, fleet.parts().front().envs->scenario().model());
   }
   controller_.privileged = privileged;
   return controller_;

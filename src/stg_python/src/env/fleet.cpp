@@ -19,7 +19,7 @@ constexpr double kLeastBytesPerAgent = 8 * 1024.0;
 
 /// Refuses what this machine cannot hold: it would be swapped or killed after minutes.
 void RequireMemory(const std::vector<Scenario>& mix, int envs) {
-  const int agents = mix.empty() ? 1 : mix.front().agents;
+  const int agents = mix.empty() ? 1 : mix.front().run.agents;
   const double needed = kLeastBytesPerAgent * envs * agents;
   const double there =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

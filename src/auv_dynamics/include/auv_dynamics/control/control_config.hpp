@@ -29,6 +29,8 @@ struct ControlConfig {
   HeadingMode heading = HeadingMode::kFree;
   double heading_gain = 0.12;  ///< along_velocity: of the maximum moment per rad
   AutopilotConfig autopilot;   ///< of vehicles that are not commanded by force and moment
+
+  int action_size() const { return ActionSize(interface); }
 };
 
 /// Keys, units and ranges of the section.

@@ -19,11 +19,11 @@ inline double LargestOf(const Axis& axis) { return std::max(std::abs(axis.lo), s
 /// one process.
 class Helm {
  public:
-  /// Whether the vehicles of a scenario are steered by an autopilot, not by force and moment.
-  static bool Steers(const WorldConfig& scenario);
+  /// Whether vehicles are steered by an autopilot, not by force and moment.
+  static bool Steers(const VehicleConfig& vehicle);
 
   /// Throws UserError when they are not.
-  explicit Helm(const WorldConfig& scenario);
+  Helm(const VehicleConfig& vehicle, const AutopilotConfig& config, const RunConfig& run);
 
   /// An episode begins in one lane.
   void Reset(int lane);

@@ -16,6 +16,9 @@ struct TargetConfig {
   double turn_period_s = 10.0;      ///< coordinated_turn: time between new turn rates
   double waypoint_radius_m = 0.05;  ///< random_waypoint: arrival radius
   double evasion_range_m = 0.10;    ///< evasive: flees AUVs closer than this
+
+  /// Target that an AUV is tasked with: its index modulo the number of targets.
+  int of(int agent) const { return agent % count; }
 };
 
 /// Keys, units and ranges of the section.

@@ -33,7 +33,8 @@ inline constexpr char kUnstableHint[] =
 class World {
  public:
   /// Throws UserError for a scenario that fails its validation.
-  explicit World(const WorldConfig& scenario);
+  World(const WorldConfig& config, const RunConfig& run);
+  explicit World(const WorldScenario& s) : World(s.world, s.run) {}
   ~World();
   World(World&&) noexcept;
 

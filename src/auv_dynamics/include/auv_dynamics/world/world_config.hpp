@@ -16,7 +16,7 @@
 namespace stg::dynamics {
 
 /// Vehicles, what surrounds them, what they follow and sense, and how they are steered.
-struct WorldConfig : RunConfig {
+struct WorldConfig {
   VehicleConfig vehicle;
   CurrentConfig current;
   DisturbanceConfig disturbance;
@@ -28,21 +28,24 @@ struct WorldConfig : RunConfig {
   NavigationConfig navigation;
   SensingConfig sensing;
   ControlConfig control;
-
-  /// Target that agent i is tasked with: i modulo the number of targets.
-  int target_of(int agent) const { return agent % target.count; }
-  /// Where the walls are on each axis [m]; infinity: there are none.
-  double wall_m() const {
-    return sea.open ? std::numeric_limits<double>::infinity() : workspace.half_extent_m;
-  }
-  int action_size() const { return ActionSize(control.interface); }
 };
 
-/// The sections besides those of RunConfig.
-void DescribeSections(WorldConfig* c, config::Table* t);
-/// All of it.
+/// Where the walls are on each axis [m]; infinity: there are none.
+inline double WallOf(const WorkspaceConfig& workspace, const SeaConfig& sea) {
+  return sea.open ? std::numeric_limits<double>::infinity() : workspace.half_extent_m;
+}
+
+/// Keys, units and ranges of the sections.
 void Describe(WorldConfig* c, config::Table* t);
-/// Contradictions between its keys.
-std::optional<config::Violation> FindConflict(const WorldConfig& c);
+/// Contradictions between their keys, and with those of the run.
+std::optional<config::Violation> FindConflict(const WorldConfig& c, const RunConfig& run);
+
+/// What a program needs that moves or steers vehicles.
+struct WorldScenario {
+  RunConfig run;
+  WorldConfig world;
+};
+void Describe(WorldScenario* s, config::Table* t);
+std::optional<config::Violation> FindConflict(const WorldScenario& s);
 
 }  // namespace stg::dynamics

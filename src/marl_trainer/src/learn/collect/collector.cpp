@@ -18,8 +18,8 @@ Problem ProblemOf(const Scenario& scenario) {
   problem.observation_size = env.observation_size();
   problem.state_size = env.state_size();
   problem.action_size = env.action_size();
-  problem.action_scale = scenario.control.action_scale;
-  problem.workspace_half_extent_m = scenario.workspace.half_extent_m;
+  problem.action_scale = scenario.world.control.action_scale;
+  problem.workspace_half_extent_m = scenario.world.workspace.half_extent_m;
   return problem;
 }
 
@@ -61,7 +61,7 @@ class Collector::Unit {
     actions_.resize(rows * static_cast<std::size_t>(env_.action_size()));
     log_prob_.resize(rows);
     if (!config.imitation.controller.empty()) {
-      teacher_ = env::MakeController(config.imitation.controller, mix.front());
+      teacher_ = env::MakeController(config.imitation.controller, mix.front().model());
       teacher_->privileged = config.imitation.privileged;
       teacher_actions_.resize(actions_.size());
       taught_.resize(actions_.size());

@@ -87,8 +87,8 @@ bool RecordedEpisode::Complete(int episode_steps) const {
 }
 
 EpisodeAssembler::EpisodeAssembler(const Scenario& scenario, std::string source)
-    : agents_(scenario.agents),
-      episode_steps_(scenario.time.episode_steps),
+    : agents_(scenario.run.agents),
+      episode_steps_(scenario.run.time.episode_steps),
       source_(std::move(source)) {}
 
 RecordedEpisode* EpisodeAssembler::At(std::uint32_t episode, TimeNs start) {
@@ -171,8 +171,8 @@ std::vector<RecordedEpisode> EpisodeAssembler::TakeAll() {
 
 EpisodeChecker::EpisodeChecker(const Scenario& scenario, int state_size,
                                const agent::Policy& policy)
-    : agents_(scenario.agents),
-      episode_steps_(scenario.time.episode_steps),
+    : agents_(scenario.run.agents),
+      episode_steps_(scenario.run.time.episode_steps),
       state_size_(state_size),
       layout_version_(LayoutVersion(scenario)),
       policy_(policy) {}
@@ -254,7 +254,7 @@ double EpisodeChecker::LogProbability(const AgentRecord& r) const {
 }
 
 std::uint32_t LayoutVersion(const Scenario& scenario) {
-  const std::string layout = agent::ObservationLayout(scenario);
+  const std::string layout = agent::ObservationLayout(scenario.agent.observation);
   return static_cast<std::uint32_t>(
       std::strtoul(layout.c_str() + layout.find('-') + 1, nullptr, 10));
 }

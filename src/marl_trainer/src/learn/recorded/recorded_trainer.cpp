@@ -17,12 +17,12 @@ namespace {
 std::shared_ptr<const agent::Policy> LoadStart(const std::string& path, const Scenario& scenario) {
   if (path.empty()) return nullptr;
   auto policy = std::make_shared<const agent::Policy>(agent::Policy::LoadOnnx(path));
-  policy->RequireFits(scenario);
+  policy->RequireFits(scenario.model());
   const double scale = policy->metadata().action_scale;
-  if (std::abs(scale - scenario.control.action_scale) > 1e-6) {
+  if (std::abs(scale - scenario.world.control.action_scale) > 1e-6) {
     throw UserError(path + ": its action scale is " + std::to_string(scale) +
                     ", the scenario's control.action_scale " +
-                    std::to_string(scenario.control.action_scale));
+                    std::to_string(scenario.world.control.action_scale));
   }
   return policy;
 }
@@ -31,7 +31,7 @@ std::shared_ptr<const agent::Policy> LoadStart(const std::string& path, const Sc
 /// start from.
 TrainSetup Fit(TrainSetup setup, const Scenario& scenario, const agent::Policy* start) {
   setup.common.envs = 1;
-  setup.common.horizon = scenario.time.episode_steps;
+  setup.common.horizon = scenario.run.time.episode_steps;
   setup.common.stagger = false;
   if (start != nullptr) setup.own->FitPolicy(*start);
   setup.ValidateOrThrow();
@@ -86,7 +86,7 @@ struct StepArrays {
 TrainSetup RecordedSetup(const Scenario& scenario, const std::string& algorithm) {
   TrainSetup setup(algorithm, "fast");
   setup.common.envs = 1;
-  setup.common.horizon = scenario.time.episode_steps;
+  setup.common.horizon = scenario.run.time.episode_steps;
   setup.own->ApplyRecordings(setup.common);
   return setup;
 }
@@ -145,7 +145,7 @@ Finding RecordedTrainer::Check(const RecordedEpisode& episode) const {
 }
 
 double RecordedTrainer::Observe(const RecordedEpisode& episode, int shard) {
-  const auto steps = static_cast<std::uint32_t>(scenario_.time.episode_steps);
+  const auto steps = static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
   StepArrays step, next;
   step.Read(episode, 0);
   double sum = 0.0;
@@ -179,7 +179,7 @@ RecordedTrainer::Progress RecordedTrainer::Update(const std::vector<RecordedEpis
   const Stopwatch watch;
   Collection collection;
   collection.number = static_cast<std::uint32_t>(state_.collections);
-  collection.steps = scenario_.time.episode_steps;
+  collection.steps = scenario_.run.time.episode_steps;
   for (int e = 0; e < static_cast<int>(episodes.size()); ++e) collection.shards.push_back({e, 1});
   algorithm_->Begin(collection);
   std::vector<double> returns(episodes.size());
@@ -202,14 +202,14 @@ RecordedTrainer::Progress RecordedTrainer::Update(const std::vector<RecordedEpis
   p.updates = state_.collections;
   p.env_steps = state_.env_steps;
   p.episodes = static_cast<int>(episodes.size());
-  p.episode_return = std::accumulate(returns.begin(), returns.end(), 0.0) * scenario_.agents /
+  p.episode_return = std::accumulate(returns.begin(), returns.end(), 0.0) * scenario_.run.agents /
                      static_cast<double>(episodes.size());
   p.report = ReportText(algorithm_->Columns(), report.values);
   return p;
 }
 
 agent::Policy RecordedTrainer::MakePolicy() const {
-  const std::string id = scenario_.name + "-recorded-" + std::to_string(state_.env_steps);
+  const std::string id = scenario_.run.name + "-recorded-" + std::to_string(state_.env_steps);
   agent::PolicyMetadata m = MetadataOf(scenario_, id, state_.env_steps, setup_.common.seed);
   std::vector<agent::Policy> policies = algorithm_->Policies(m);
   if (policies.size() != 1) {

@@ -108,8 +108,8 @@ agent::PolicyMetadata MetadataOf(const Scenario& scenario, const std::string& id
                                  std::int64_t training_step, std::uint64_t seed) {
   agent::PolicyMetadata m;
   m.id = id;
-  m.observation_layout = agent::ObservationLayout(scenario);
-  m.action_interface = agent::ActionInterfaceName(scenario.control.interface);
+  m.observation_layout = agent::ObservationLayout(scenario.agent.observation);
+  m.action_interface = agent::ActionInterfaceName(scenario.world.control.interface);
   m.scenario_hash = ScenarioHash(scenario);
   m.training_step = training_step;
   m.seed = seed;

@@ -27,10 +27,11 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
   }
   if (all.empty()) all.push_back(base);
   for (const Scenario& s : all) {
-    if (s.agents != base.agents || s.target.count != base.target.count ||
-        s.time.episode_steps != base.time.episode_steps ||
-        s.control.interface != base.control.interface ||
-        agent::ObservationLayout(s) != agent::ObservationLayout(base)) {
+    if (s.run.agents != base.run.agents || s.world.target.count != base.world.target.count ||
+        s.run.time.episode_steps != base.run.time.episode_steps ||
+        s.world.control.interface != base.world.control.interface ||
+        agent::ObservationLayout(s.agent.observation) !=
+            agent::ObservationLayout(base.agent.observation)) {
       throw UserError("the scenarios to train in differ in swarm, episode or observation");
     }
   }
@@ -261,12 +262,12 @@ void Trainer::RunValidation(TrainRecord* record) {
 
 void Trainer::AlignEpisodes(bool force) {
   const TrainConfig& config = setup_.common;
-  const int whole = scenario_.time.episode_steps / config.horizon;
+  const int whole = scenario_.run.time.episode_steps / config.horizon;
   // Cutting staggered episodes at every boundary would undo the staggering. Others must reach
   // their end before they are cut, also where the horizon does not divide them.
   const int every = config.stagger
                         ? 2 * std::max(1, whole)
-                        : (scenario_.time.episode_steps + config.horizon - 1) / config.horizon;
+                        : (scenario_.run.time.episode_steps + config.horizon - 1) / config.horizon;
   if (state_.collections % every != 0 && !force) return;
   state_.round = collector_.round();
   if (config.stagger || !collector_.at_episode_start()) {
@@ -290,7 +291,7 @@ void Trainer::Save() {
 void Trainer::SavePolicy(const std::string& name) const {
   if (!leads()) return;
   const TrainConfig& config = setup_.common;
-  const std::string id = scenario_.name + "-" + config.variant + "-" + config.preset + "-seed" +
+  const std::string id = scenario_.run.name + "-" + config.variant + "-" + config.preset + "-seed" +
                          std::to_string(config.seed) + "-" + std::to_string(state_.env_steps);
   agent::PolicyMetadata m = MetadataOf(train_scenario_, id, state_.env_steps, config.seed);
   for (const char* metric : {"return", "scenario_return", "tail_distance", "tracking_error",

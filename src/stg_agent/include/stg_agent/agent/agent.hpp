@@ -39,7 +39,7 @@ struct AgentOutput {
 class Agent {
  public:
   /// Throws UserError when the scenario does not fit the packet layout.
-  Agent(const AgentConfig& scenario, int id);
+  Agent(const AgentModel& model, int id);
   /// An agent that shares scenario and tables with others.
   Agent(const SharedConstants& constants, int id) : one_(constants, id) {}
 
@@ -67,14 +67,14 @@ class Agent {
   Packet MakePacket() const { return one_.MakePacket(0); }
 
   int id() const { return one_.id(); }
-  const AgentConfig& scenario() const { return one_.scenario(); }
+  const AgentModel& model() const { return one_.model(); }
   std::uint32_t episode() const { return one_.inbox(0).episode(); }
   /// Number of the last Observe, counted from 0 since Reset.
   std::uint32_t step() const { return static_cast<std::uint32_t>(one_.decisions(0) - 1); }
 
   /// State of knowledge of the last Observe.
   const Knowledge<double>& knowledge() const { return one_.knowledge(); }
-  TaskView task() const { return TaskOf(scenario().observation, knowledge()); }
+  TaskView task() const { return TaskOf(model().observation, knowledge()); }
   const NeighbourTable& neighbours() const { return one_.inbox(0).neighbours(); }
   TargetEstimate estimate() const { return one_.inbox(0).estimate(); }
   TargetBelief belief() const { return one_.inbox(0).belief(); }
@@ -89,6 +89,6 @@ class Agent {
 };
 
 /// Agents 0 .. scenario.agents - 1, sharing one copy of the scenario.
-std::vector<Agent> MakeAgents(const AgentConfig& scenario);
+std::vector<Agent> MakeAgents(const AgentModel& model);
 
 }  // namespace stg::agent

@@ -51,7 +51,7 @@ class LanedAgent {
   Packet MakePacket(int lane) const;
 
   int id() const { return inbox(0).id(); }
-  const AgentConfig& scenario() const { return constants_->scenario; }
+  const AgentModel& model() const { return constants_->model; }
   const Inbox& inbox(int lane) const { return inboxes_[static_cast<std::size_t>(lane)]; }
   /// Decisions begun in the episode of a lane.
   int decisions(int lane) const { return static_cast<int>(Lane(mind_.decisions(), lane)); }

@@ -17,15 +17,11 @@ class AgentView {
  public:
   using Action = std::array<double, dynamics::kMaxActionSize>;
 
-  AgentView(const AgentConfig& scenario, const Inbox& inbox, const Knowledge<double>& knowledge,
+  AgentView(const AgentModel& model, const Inbox& inbox, const Knowledge<double>& knowledge,
             const Action& action, const SightReader& sights)
-      : scenario_(scenario),
-        inbox_(inbox),
-        knowledge_(knowledge),
-        action_(action),
-        sights_(sights) {}
+      : model_(model), inbox_(inbox), knowledge_(knowledge), action_(action), sights_(sights) {}
 
-  const AgentConfig& scenario() const { return scenario_; }
+  const AgentModel& model() const { return model_; }
   int id() const { return inbox_.id(); }
   int target() const { return inbox_.target(); }
   std::uint32_t episode() const { return inbox_.episode(); }
@@ -33,7 +29,7 @@ class AgentView {
   /// State of knowledge of the last Observe.
   const Knowledge<double>& knowledge() const { return knowledge_; }
   bool lost() const { return knowledge_.lost > 0.5; }
-  TaskView task() const { return TaskOf(scenario_.observation, knowledge_); }
+  TaskView task() const { return TaskOf(model_.observation, knowledge_); }
   /// Executed action of the last Act; action_size entries count.
   const Action& action() const { return action_; }
 
@@ -53,7 +49,7 @@ class AgentView {
   std::uint64_t refused_packets() const { return inbox_.refused_packets(); }
 
  private:
-  const AgentConfig& scenario_;
+  const AgentModel& model_;
   const Inbox& inbox_;
   Knowledge<double> knowledge_;
   Action action_;

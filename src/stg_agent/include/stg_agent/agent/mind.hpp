@@ -24,7 +24,7 @@ enum class Bookkeeping { kAgent, kTruth };
 template <class T>
 class Mind {
  public:
-  explicit Mind(const AgentConfig& s, Bookkeeping books = Bookkeeping::kAgent)
+  explicit Mind(const AgentModel& s, Bookkeeping books = Bookkeeping::kAgent)
       : release_(books == Bookkeeping::kTruth && s.observation.release_bookkeeping),
         errors_(std::max(1, s.observation.error_window), release_ ? ErrorMean::kRelease
                                                          : books == Bookkeeping::kTruth
@@ -63,7 +63,7 @@ class Mind {
   }
 
   /// Starts a decision; after SetNavigation.
-  void SetTracking(const AgentConfig& s, const TargetView<T>& target) {
+  void SetTracking(const AgentModel& s, const TargetView<T>& target) {
     const T zero(0.0), one(1.0), half(0.5);
     Knowledge<T>& k = knowledge;
     k.r_BT_W = target.p_WT - k.p_WB;
@@ -88,7 +88,7 @@ class Mind {
   }
 
   /// After SetTracking. The slots of `view.nearest` are as they are to be shown.
-  void SetNeighbours(const AgentConfig& s, const NeighbourView<T>& view) {
+  void SetNeighbours(const AgentModel& s, const NeighbourView<T>& view) {
     const T zero(0.0), one(1.0);
     const Knowledge<T>& k = knowledge;
     NeighbourSummary<T> n;
@@ -100,8 +100,8 @@ class Mind {
     n.closest = Select(Dot(k.r_BT_W, k.r_BT_W) <= view.closest_sq, one, zero);
     SetNeighbours(s, n);
   }
-  void SetNeighbours(const AgentConfig& s, const NeighbourSummary<T>& n) {
-    const T others(1.0 / std::max(1.0, static_cast<double>(s.agents - 1)));
+  void SetNeighbours(const AgentModel& s, const NeighbourSummary<T>& n) {
+    const T others(1.0 / std::max(1.0, static_cast<double>(s.run.agents - 1)));
     Knowledge<T>& k = knowledge;
     static_assert(kNeighbourSlots == 3,
                   "std::copy of packs is a call, which costs more than they do");
@@ -118,12 +118,12 @@ class Mind {
   /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed.
   /// Returns the desired velocity, world axes [m/s]; zero for tau6.
   /// @param wanted [action_size], clipped to [-1, 1]
-  Vec3<T> Act(const AgentConfig& s, const T* wanted) {
+  Vec3<T> Act(const AgentModel& s, const T* wanted) {
     return Act(s, wanted, [this] { return RpyOf(knowledge.trig); });
   }
   /// The same by given angles. @param rpy called for velocity3 only: roll, pitch, yaw [rad]
   template <class Rpy>
-  Vec3<T> Act(const AgentConfig& s, const T* wanted, const Rpy& rpy) {
+  Vec3<T> Act(const AgentModel& s, const T* wanted, const Rpy& rpy) {
     Knowledge<T>& k = knowledge;
     return dynamics::ExecuteAction(s.control, s.vehicle, wanted, k.R_WB, k.v_WB, rpy, k.w_WB_B,
                                    action.data(), k.tau);

@@ -20,7 +20,7 @@ namespace stg::agent {
 /// (T = Pack). Whether it is what the AUV found out by itself or the truth is the maker's affair.
 template <class T>
 struct ControllerInput {
-  const AgentConfig& scenario;
+  const AgentModel& model;
   int id;
   const Knowledge<T>& knowledge;
   const NeighbourSight<T>* neighbours;  ///< [neighbour_count], known ones, in the maker's order
@@ -67,7 +67,7 @@ class ControllerOf final : public Controller {
 /// @param velocity [3] v / v_max, world axes, each in [-1, 1]
 template <class T>
 inline void AskForVelocity(const ControllerInput<T>& input, const T* velocity, T* action) {
-  const AgentConfig& s = input.scenario;
+  const AgentModel& s = input.model;
   const Knowledge<T>& k = input.knowledge;
   dynamics::ActionForVelocity(
       s.control, s.vehicle, velocity, k.R_WB, k.v_WB, [&k] { return RpyOf(k.trig); }, k.w_WB_B,

@@ -130,7 +130,7 @@ struct Encircle {
 
   template <class T>
   void Act(const ControllerInput<T>& in, T* action) const {
-    const dynamics::VehicleConfig& vehicle = in.scenario.vehicle;
+    const dynamics::VehicleConfig& vehicle = in.model.vehicle;
     const Vec3<T> v = Velocity(in);
     const auto& vmax = vehicle.max_velocity_mps;
     const T velocity[3] = {Clip(v.x * T(1.0 / vmax[0]), T(-1.0), T(1.0)),

@@ -10,7 +10,7 @@ namespace stg::agent {
 struct Idle {
   template <class T>
   void Act(const ControllerInput<T>& input, T* action) const {
-    std::fill(action, action + input.scenario.action_size(), T(0.0));
+    std::fill(action, action + input.model.control.action_size(), T(0.0));
   }
 };
 

@@ -106,12 +106,11 @@ inline void KeepFromWalls(double wall_m, double margin_m, const Vec3<T>& p_WB, V
 
 /// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
 template <class T>
-inline void PursuitAction(const PursuitOptions& o, const AgentConfig& scenario,
-                          const Knowledge<T>& k, const NeighbourSight<T>* neighbours, int count,
-                          T* action) {
+inline void PursuitAction(const PursuitOptions& o, const AgentModel& model, const Knowledge<T>& k,
+                          const NeighbourSight<T>* neighbours, int count, T* action) {
   Vec3<T> r_BT_W = k.r_BT_W, v_WT = k.v_WT;
-  KeepFromWalls(scenario.wall_m(), o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
-  PursuitAction(o, scenario.vehicle, r_BT_W, v_WT, neighbours, count, action);
+  KeepFromWalls(model.wall_m(), o.wall_margin_m, k.p_WB, &r_BT_W, &v_WT);
+  PursuitAction(o, model.vehicle, r_BT_W, v_WT, neighbours, count, action);
 }
 
 /// The pursuit law, from any knowledge.
@@ -121,7 +120,7 @@ struct Pursuit {
   template <class T>
   void Act(const ControllerInput<T>& in, T* action) const {
     T velocity[3];
-    PursuitAction(options, in.scenario, in.knowledge, in.neighbours, in.neighbour_count, velocity);
+    PursuitAction(options, in.model, in.knowledge, in.neighbours, in.neighbour_count, velocity);
     AskForVelocity(in, velocity, action);
   }
 };

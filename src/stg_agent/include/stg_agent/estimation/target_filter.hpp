@@ -74,12 +74,12 @@ class TargetFilter {
 /// src/estimation/target_filters.cpp; one of another program is added with Add before it loads a
 /// scenario.
 /// @param self index of the AUV
-using FilterRegistry = Registry<TargetFilter, const AgentConfig&, const int&>;
+using FilterRegistry = Registry<TargetFilter, const AgentModel&, const int&>;
 FilterRegistry& TargetFilters();
 
 /// The packets of a scenario's agents: its filter says what is in them.
-PacketLayout LayoutOf(const AgentConfig& scenario);
+PacketLayout LayoutOf(const AgentModel& model);
 /// A sensor that the filter cannot make use of.
-std::optional<config::Violation> FindFilterConflict(const AgentConfig& scenario);
+std::optional<config::Violation> FindFilterConflict(const AgentModel& model);
 
 }  // namespace stg::agent

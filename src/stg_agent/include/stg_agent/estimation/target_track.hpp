@@ -53,7 +53,7 @@ class TargetTrack {
  public:
   static constexpr int kRestartAfter = 3;
 
-  explicit TargetTrack(const AgentConfig& scenario);
+  explicit TargetTrack(const AgentModel& model);
 
   void Clear();
   /// Starts the track from a datum: velocity zero with initial_speed_std_mps.

@@ -66,7 +66,7 @@ struct NeighbourSummary {
 /// All neighbours that AUV `self` knows of, seen by one whose target is at p_WT [m].
 /// @param sights [agents]
 template <class T>
-NeighbourView<T> SeeNeighbours(const AgentConfig& s, int self,
+NeighbourView<T> SeeNeighbours(const AgentModel& s, int self,
                                const std::vector<NeighbourSight<T>>& sights, const Vec3<T>& p_WT) {
   const T half(0.5), nowhere(1e9);
   const bool nearest = s.observation.order == NeighbourOrder::kNearest;

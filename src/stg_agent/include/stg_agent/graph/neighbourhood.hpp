@@ -57,7 +57,7 @@ class SightReader {
 template <class T>
 class Neighbourhood {
  public:
-  explicit Neighbourhood(const AgentConfig& scenario);
+  explicit Neighbourhood(const AgentModel& model);
 
   /// Forgets everybody.
   void Clear(int lane);

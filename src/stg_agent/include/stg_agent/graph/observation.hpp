@@ -20,14 +20,14 @@ inline constexpr int kTargetOffsetIndex =
 /// Writes the observation through put(index, value), index 0 .. observation_size() - 1 in
 /// ascending order; ObservationSpec says where each block stands.
 template <class T, class Put>
-inline void BuildObservation(const AgentConfig& scenario, const Knowledge<T>& k, Put&& put) {
-  const ObservationConfig& c = scenario.observation;
+inline void BuildObservation(const AgentModel& model, const Knowledge<T>& k, Put&& put) {
+  const ObservationConfig& c = model.observation;
   const ObservationSpec spec(c);
-  const auto& vm = scenario.vehicle.max_velocity_mps;
-  const auto& wm = scenario.vehicle.max_rate_radps;
+  const auto& vm = model.vehicle.max_velocity_mps;
+  const auto& wm = model.vehicle.max_rate_radps;
   const Vec3<double> inv_v{1.0 / vm[0], 1.0 / vm[1], 1.0 / vm[2]};
   const Vec3<double> inv_w{1.0 / wm[0], 1.0 / wm[1], 1.0 / wm[2]};
-  const T one(1.0), inv_extent(1.0 / scenario.workspace.half_extent_m);
+  const T one(1.0), inv_extent(1.0 / model.workspace.half_extent_m);
   int n = 0;
   const auto begin = [&](Block block) {
     assert(n == spec.offset(block));

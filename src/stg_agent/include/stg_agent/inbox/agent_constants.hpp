@@ -11,9 +11,9 @@ namespace stg::agent {
 /// What all agents of a swarm have in common, shared by them and never changed.
 struct AgentConstants {
   /// Throws UserError when the scenario does not fit the packet layout.
-  explicit AgentConstants(const AgentConfig& s) : scenario(s), codec(s, LayoutOf(s)) {}
+  explicit AgentConstants(const AgentModel& s) : model(s), codec(s, LayoutOf(s)) {}
 
-  AgentConfig scenario;
+  AgentModel model;
   PacketCodec codec;
 };
 using SharedConstants = std::shared_ptr<const AgentConstants>;

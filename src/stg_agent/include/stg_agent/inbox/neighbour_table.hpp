@@ -14,7 +14,7 @@ namespace stg::agent {
 /// generation stays.
 class NeighbourTable {
  public:
-  NeighbourTable(const AgentConfig& scenario, int self);
+  NeighbourTable(const AgentModel& model, int self);
 
   void Clear();
 

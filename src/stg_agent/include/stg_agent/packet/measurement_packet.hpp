@@ -27,7 +27,7 @@ namespace stg::agent {
 /// sensor, azimuth a circle, elevation +-2 rad.
 class MeasurementPacket {
  public:
-  explicit MeasurementPacket(const AgentConfig& scenario);
+  explicit MeasurementPacket(const AgentModel& model);
 
   /// As PacketCodec::Encode and Decode.
   Packet Encode(const NeighbourState& state) const;

@@ -40,7 +40,7 @@ struct PacketField {
 class PacketCodec {
  public:
   /// Throws UserError when the scenario does not fit the layout (more than 256 AUVs, 64 targets).
-  explicit PacketCodec(const AgentConfig& scenario, PacketLayout layout = PacketLayout::kEstimate);
+  explicit PacketCodec(const AgentModel& model, PacketLayout layout = PacketLayout::kEstimate);
 
   /// A non-finite value, a negative generation time or an index out of range is a bug of the
   /// caller and throws std::invalid_argument. Allocates nothing otherwise.

@@ -23,7 +23,7 @@ struct PolicyMetadata {
 };
 
 /// Names the observation's layout, e.g. "stg-1:raw+tracking+semantic+graph:nearest".
-std::string ObservationLayout(const AgentConfig& scenario);
+std::string ObservationLayout(const ObservationConfig& observation);
 /// "velocity3" or "tau6".
 std::string ActionInterfaceName(dynamics::ActionInterface interface);
 
@@ -81,7 +81,7 @@ class Policy {
 
   /// Throws UserError unless layout, action interface and sizes are those of the
   /// scenario. (The scenario hash may differ: policies are evaluated elsewhere.)
-  void RequireFits(const AgentConfig& scenario) const;
+  void RequireFits(const AgentModel& model) const;
 
   int observation_size() const { return static_cast<int>(parameters_.input_mean.size()); }
   int action_size() const { return static_cast<int>(parameters_.log_std.size()); }

@@ -53,13 +53,13 @@ struct Snapshot {
 /// depends on the set of sightings that came, not on when and in what order they did.
 class MeasurementFilter : public TargetFilter {
  public:
-  MeasurementFilter(const AgentConfig& s, int self)
+  MeasurementFilter(const AgentModel& s, int self)
       : model_(s),
         self_(self),
-        same_(std::max<TimeNs>(1, s.decision_period() / 16)),
+        same_(std::max<TimeNs>(1, s.run.decision_period() / 16)),
         memory_(static_cast<TimeNs>(s.track.memory_s * 1e9)),
         spacing_(static_cast<TimeNs>(s.track.share_spacing_s * 1e9)),
-        oldest_shared_(std::min(memory_, 127 * s.decision_period())),
+        oldest_shared_(std::min(memory_, 127 * s.run.decision_period())),
         now_(model_.layout(), self, kMostComponents),
         view_(kTargetStates + model_.layout().per_observer, kKeptComponents) {
     snapshots_.reserve(kSnapshots);
@@ -312,8 +312,8 @@ class MeasurementFilter : public TargetFilter {
 
 }  // namespace
 
-std::unique_ptr<TargetFilter> MakeMeasurementFilter(const AgentConfig& scenario, const int& self) {
-  return std::make_unique<MeasurementFilter>(scenario, self);
+std::unique_ptr<TargetFilter> MakeMeasurementFilter(const AgentModel& model, const int& self) {
+  return std::make_unique<MeasurementFilter>(model, self);
 }
 
 }  // namespace stg::agent

@@ -23,13 +23,13 @@ constexpr double kLeastFalseShare = 1e-3;
 
 }  // namespace
 
-SightingModel::SightingModel(const AgentConfig& s) {
-  const auto navigation =
-      dynamics::NavigationSystems().Make(s.navigation.kind, {s.navigation, s.agents, s.time.dt_s});
+SightingModel::SightingModel(const AgentModel& s) {
+  const auto navigation = dynamics::NavigationSystems().Make(
+      s.navigation.kind, {s.navigation, s.run.agents, s.run.time.dt_s});
   const auto sensor = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing);
   if (!navigation->perfect()) {
     layout_.per_observer = sensor->kind() == MeasurementKind::kRange ? 2 : 3;
-    layout_.observers = std::min(s.agents, kMostObservers);
+    layout_.observers = std::min(s.run.agents, kMostObservers);
   }
   observer_depth_variance_ =
       navigation->perfect() ? 0.0 : s.navigation.depth_std_m * s.navigation.depth_std_m;

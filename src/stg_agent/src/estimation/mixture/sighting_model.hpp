@@ -20,7 +20,7 @@ struct StateLayout {
 /// `measurements`, one normal distribution at a time. docs/estimation.md derives them.
 class SightingModel {
  public:
-  explicit SightingModel(const AgentConfig& scenario);
+  explicit SightingModel(const AgentModel& model);
 
   const StateLayout& layout() const { return layout_; }
 

@@ -21,7 +21,7 @@ struct Controller {
 
 /// A built-in controller (see agent::MakeController), or the path of an ONNX file, or of one for
 /// each AUV (see agent::PolicyFileOf), which must fit the scenario. Throws UserError.
-Controller MakeController(const std::string& name_or_file, const Scenario& scenario);
+Controller MakeController(const std::string& name_or_file, const agent::AgentModel& model);
 
 /// Deterministic actions of every AUV of every environment, [envs, agents, action_size]. In truth
 /// mode a built-in controller reads true states, in acoustic mode each agent's own estimates unless

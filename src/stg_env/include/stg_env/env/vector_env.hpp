@@ -29,10 +29,11 @@ struct VectorEnvOptions {
   /// The k-th episode of environment e (counted from 0, through all objects that share the
   /// numbering) is global reset r = e + k * total_envs and is drawn from seed + r.
   std::uint64_t seed = 0;
-  int envs = kMixBlock;     ///< environments of this object
-  int first_env = 0;        ///< index of its first one
-  int total_envs = 0;       ///< of all objects together; 0: `envs`
-  bool curriculum = false;  ///< easy, medium, hard by r, where scenario.reset.curriculum says so
+  int envs = kMixBlock;  ///< environments of this object
+  int first_env = 0;     ///< index of its first one
+  int total_envs = 0;    ///< of all objects together; 0: `envs`
+  bool curriculum =
+      false;  ///< easy, medium, hard by r, where scenario.world.reset.curriculum says so
   /// The first episodes of the blocks of kMixBlock are cut to lengths spread evenly over an
   /// episode, so that not all environments end at the same time.
   bool stagger = false;
@@ -71,8 +72,8 @@ class VectorEnv {
   void Step(const double* actions, const EnvArrays& out);
 
   int envs() const { return options_.envs; }
-  int agents() const { return mix_.front().agents; }
-  int action_size() const { return mix_.front().action_size(); }
+  int agents() const { return mix_.front().run.agents; }
+  int action_size() const { return mix_.front().world.control.action_size(); }
   int observation_size() const { return observation_size_; }
   int state_size() const { return state_size_; }
   /// The scenario that an environment of this object flies.

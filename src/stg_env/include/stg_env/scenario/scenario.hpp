@@ -13,8 +13,18 @@ namespace stg {
 enum class InformationMode { kTruth, kAcoustic };
 
 /// All of a scenario: everything a run depends on besides a seed and a policy.
-struct Scenario : task::JudgeConfig {
+struct Scenario {
+  RunConfig run;
   InformationMode mode = InformationMode::kAcoustic;
+  dynamics::WorldConfig world;
+  acoustics::ChannelConfig channel;
+  agent::AgentConfig agent;
+  task::RewardConfig reward;
+
+  /// What its agents know.
+  agent::AgentModel model() const { return agent::ModelOf(run, world, channel, agent); }
+  /// What its task judges by.
+  task::JudgeConfig judge() const { return {run, world, agent, reward}; }
 
   /// Throws UserError naming the key when a value is out of range or two keys
   /// contradict each other.

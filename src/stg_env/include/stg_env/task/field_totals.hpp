@@ -13,7 +13,7 @@ namespace stg::task {
 /// Statistical analysis of circular data, 1993). 1: evenly, or balanced; 0: all on one side, or a
 /// single AUV.
 template <class T>
-T Spread(const JudgeConfig& s, const SwarmState<T>& swarm, int target);
+T Spread(const SwarmState<T>& swarm, int target);
 
 /// Squared error of an estimate by its covariance, r^T P^-1 r; 0 where P is not positive definite.
 /// @param covariance xx xy xz yy yz zz

@@ -8,11 +8,14 @@
 namespace stg::task {
 
 /// What a task reads: what the AUVs are and are to do, and the reward.
-struct JudgeConfig : agent::AgentConfig {
+struct JudgeConfig {
+  RunConfig run;
+  dynamics::WorldConfig world;
+  agent::AgentConfig agent;
   RewardConfig reward;
 };
 
-/// Contradictions between its keys.
+/// Contradictions between the keys of the reward and those of the task and the vehicle.
 std::optional<config::Violation> FindConflict(const JudgeConfig& c);
 
 }  // namespace stg::task

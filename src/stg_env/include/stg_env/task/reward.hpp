@@ -85,15 +85,15 @@ inline RewardTerms<T> Reward(const JudgeConfig& s, const RewardInput<T>& in, con
   const RewardConfig& c = s.reward;
   const T zero(0.0), one(1.0);
   const T& d = in.distance;
-  const T P = agent::Progress(s.observation, in.previous_distance, d);
-  const T C = agent::Closing(s.observation, in.closing);
+  const T P = agent::Progress(s.agent.observation, in.previous_distance, d);
+  const T C = agent::Closing(s.agent.observation, in.closing);
   const T U = Clip((T(c.band_m.lo) - d) * T(1.0 / c.band_m.lo), zero, one);
   const T b = BandDeviation(c, d);
   const auto lost = in.lost > T(0.5);
   const auto in_band = b <= T(1e-9);
   RewardTerms<T> r;
   if (c.kind == RewardKind::kReleaseRaw) {
-    const T error = Abs(d - T(s.task.desired_distance_m));
+    const T error = Abs(d - T(s.agent.task.desired_distance_m));
     const T score = one - Clip(error * T(1.0 / c.error_max_m), zero, one);
     r.track = Clip(T(0.45) * score + T(0.40) * P + T(0.15) * C, -one, one);
   } else {
@@ -108,20 +108,20 @@ inline RewardTerms<T> Reward(const JudgeConfig& s, const RewardInput<T>& in, con
   r.communication = communication;
   // The paper's third case of Eq. 34 is the stable phase, the release's the band.
   T phase[4];
-  agent::PhaseOneHot(s.observation, in.lost, d, P, &phase);
+  agent::PhaseOneHot(s.agent.observation, in.lost, d, P, &phase);
   const auto holding = c.kind == RewardKind::kPaper ? phase[agent::kStable] > T(0.5) : in_band;
   const T seeking = T(0.65) * P + T(0.35) * C - T(0.25) * U;
   const T stable = T(0.55) * in.confidence + T(0.45) * (one - U);
   if (c.kind == RewardKind::kReleaseRaw) {
     const T near_target = T(0.5) * (in.confidence + Select(in_band, one, zero));
-    r.semantic =
-        Select(lost, P,
-               Select(d <= T(s.observation.near_range_m), near_target, T(0.70) * P + T(0.30) * C));
+    r.semantic = Select(
+        lost, P,
+        Select(d <= T(s.agent.observation.near_range_m), near_target, T(0.70) * P + T(0.30) * C));
   } else {
     r.semantic = Select(lost, P, Select(holding, stable, seeking));
   }
   r.separation = -in.crowding;
-  r.cost = ControlCost(c, s.action_size(), in);
+  r.cost = ControlCost(c, s.world.control.action_size(), in);
   const RewardWeights& w = c.weights;
   r.total = T(w.tracking) * r.track + T(w.observation) * r.observation +
             T(w.coordination) * r.coordination + T(w.communication) * r.communication +

@@ -4,14 +4,19 @@
 
 namespace stg::env {
 
-AcousticSource::AcousticSource(const Scenario& scenario) : scenario_(scenario) {
-  const auto n = static_cast<std::size_t>(scenario.agents);
-  const auto constants = std::make_shared<const agent::AgentConstants>(scenario_);
+AcousticSource::AcousticSource(const agent::AgentModel& model,
+                               const acoustics::ChannelConfig& channel,
+                               const acoustics::LineOfSight& line_of_sight)
+    : count_(model.run.agents),
+      targets_(model.target),
+      action_size_(model.control.action_size()),
+      decision_steps_(static_cast<std::uint32_t>(model.run.time.decision_steps)) {
+  const auto n = static_cast<std::size_t>(count_);
+  const auto constants = std::make_shared<const agent::AgentConstants>(model);
   agents_.reserve(n);
-  for (int i = 0; i < scenario.agents; ++i) agents_.emplace_back(constants, i);
-  const auto shadows = dynamics::ShadowsOf(scenario.sea, scenario.workspace.half_extent_m);
+  for (int i = 0; i < count_; ++i) agents_.emplace_back(constants, i);
   for (int lane = 0; lane < kLanes; ++lane) {
-    channels_.push_back(acoustics::MakeChannel(scenario_.channel, scenario_, shadows));
+    channels_.push_back(acoustics::MakeChannel(channel, model.run, line_of_sight));
   }
   packets_.resize(n);
   offered_.reserve(n);
@@ -24,15 +29,15 @@ void AcousticSource::Start(const dynamics::World& world, const LaneSet& lanes) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!lanes[lane]) continue;
     channels_[static_cast<std::size_t>(lane)]->Reset(world.seed(lane), world.episode(lane));
-    for (int i = 0; i < scenario_.agents; ++i) {
+    for (int i = 0; i < count_; ++i) {
       agents_[static_cast<std::size_t>(i)].Reset(lane, world.episode(lane),
-                                                 world.InitialCue(lane, i, scenario_.target_of(i)));
+                                                 world.InitialCue(lane, i, targets_.of(i)));
     }
   }
 }
 
 void AcousticSource::Observe(const dynamics::World& world, const LaneSet& lanes) {
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < count_; ++i) {
     agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!lanes[lane]) continue;
@@ -41,7 +46,7 @@ void AcousticSource::Observe(const dynamics::World& world, const LaneSet& lanes)
         channels_[static_cast<std::size_t>(lane)]->Deliver(i, world.time(lane), &received_);
         for (const acoustics::Reception& r : received_) agent.Receive(lane, r);
       }
-      for (int k = 0; k < scenario_.target.count; ++k) {
+      for (int k = 0; k < targets_.count; ++k) {
         dynamics::Detection detection;
         if (world.Sense(lane, i, k, &detection)) agent.Detect(lane, detection);
       }
@@ -58,7 +63,7 @@ void AcousticSource::Act(const dynamics::World&, int i, const Pack* wanted,
                          task::Effort<Pack>* action, task::Effort<Pack>* tau) {
   Pack rounded[dynamics::kMaxActionSize];
   // What a policy says is float.
-  for (int k = 0; k < scenario_.action_size(); ++k) rounded[k] = RoundToFloat(wanted[k]);
+  for (int k = 0; k < action_size_; ++k) rounded[k] = RoundToFloat(wanted[k]);
   agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
   agent.Act(rounded);
   std::copy(std::begin(agent.knowledge().tau), std::end(agent.knowledge().tau), tau->begin());
@@ -70,7 +75,7 @@ void AcousticSource::Send(const dynamics::World& world) {
     const TimeNs now = world.time(lane);
     acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
     offered_.clear();
-    for (int i = 0; i < scenario_.agents; ++i) {
+    for (int i = 0; i < count_; ++i) {
       const auto u = static_cast<std::size_t>(i);
       positions_[u] = Lane(world.vehicle(i).p_WB, lane);
       velocities_[u] = Lane(world.vehicle(i).v_WB, lane);
@@ -81,8 +86,7 @@ void AcousticSource::Send(const dynamics::World& world) {
       t.stamp = t.generation = now;
       t.payload = acoustics::ViewOf(packets_[u]);
     }
-    const auto decision =
-        world.step(lane) / static_cast<std::uint32_t>(scenario_.time.decision_steps);
+    const auto decision = world.step(lane) / decision_steps_;
     channel.Step(now, decision, positions_, velocities_, offered_);
   }
 }
@@ -90,7 +94,7 @@ void AcousticSource::Send(const dynamics::World& world) {
 Pack AcousticSource::LinkQuality(const dynamics::World&) const {
   Pack sum(0.0);
   for (const agent::AgentLanes& a : agents_) sum += a.knowledge().mean_quality;
-  return sum / Pack(scenario_.agents);
+  return sum / Pack(count_);
 }
 
 void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
@@ -107,8 +111,8 @@ void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<
     const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
     SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));
     const acoustics::ChannelTotals& totals = channel.totals();
-    SetLane(&f->received, lane, static_cast<double>(totals.delivered) / scenario_.agents);
-    SetLane(&f->missed, lane, static_cast<double>(totals.dropped) / scenario_.agents);
+    SetLane(&f->received, lane, static_cast<double>(totals.delivered) / count_);
+    SetLane(&f->missed, lane, static_cast<double>(totals.dropped) / count_);
   }
 }
 

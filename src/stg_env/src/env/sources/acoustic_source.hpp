@@ -6,7 +6,6 @@
 #include "acoustic_channel/channel/channel.hpp"
 #include "information_source.hpp"
 #include "stg_agent/agent/agent_lanes.hpp"
-#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::env {
 
@@ -14,7 +13,9 @@ namespace stg::env {
 /// cue that it started with: the agents of the ROS graph and their channel, kLanes of each.
 class AcousticSource : public InformationSource {
  public:
-  explicit AcousticSource(const Scenario& scenario);
+  /// @param model what the agents know; its clocks and number of AUVs are those of the world
+  AcousticSource(const agent::AgentModel& model, const acoustics::ChannelConfig& channel,
+                 const acoustics::LineOfSight& line_of_sight);
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;
   void Observe(const dynamics::World& world, const LaneSet& lanes) override;
@@ -35,7 +36,10 @@ class AcousticSource : public InformationSource {
   }
 
  private:
-  Scenario scenario_;
+  int count_;  // of AUVs
+  dynamics::TargetConfig targets_;
+  int action_size_;
+  std::uint32_t decision_steps_;
   std::vector<agent::AgentLanes> agents_;                      // [agent]
   std::vector<std::unique_ptr<acoustics::Channel>> channels_;  // [lane]
   // Of one lane at a time: what is offered to the channel, and what it delivers.

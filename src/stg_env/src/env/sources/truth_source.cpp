@@ -6,11 +6,11 @@
 
 namespace stg::env {
 
-TruthSource::TruthSource(const Scenario& scenario)
-    : scenario_(scenario),
-      exact_angles_(scenario.vehicle.integrator == dynamics::Integrator::kSemiImplicit),
-      minds_(static_cast<std::size_t>(scenario.agents),
-             agent::Mind<Pack>(scenario, agent::Bookkeeping::kTruth)),
+TruthSource::TruthSource(const agent::AgentModel& model)
+    : model_(model),
+      exact_angles_(model.vehicle.integrator == dynamics::Integrator::kSemiImplicit),
+      minds_(static_cast<std::size_t>(model.run.agents),
+             agent::Mind<Pack>(model, agent::Bookkeeping::kTruth)),
       before_(minds_),
       links_(minds_.size()) {}
 
@@ -36,7 +36,7 @@ void TruthSource::Act(const dynamics::World& world, int i, const Pack* wanted,
                       task::Effort<Pack>* action, task::Effort<Pack>* tau) {
   agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
   const dynamics::VehicleState<Pack>& v = world.vehicle(i);
-  mind.Act(scenario_, wanted, [&] { return exact_angles_ ? v.rpy : RpyOf(v.trig); });
+  mind.Act(model_, wanted, [&] { return exact_angles_ ? v.rpy : RpyOf(v.trig); });
   *action = mind.action;
   const Pack* t = mind.knowledge.tau;
   *tau = {t[0], t[1], t[2], t[3], t[4], t[5]};  // std::copy is a call, which costs more
@@ -45,35 +45,35 @@ void TruthSource::Act(const dynamics::World& world, int i, const Pack* wanted,
 void TruthSource::Think(const dynamics::World& world) {
   const Pack zero(0.0), one(1.0);
   Pack total_error = zero, nearest(1e9);
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < model_.run.agents; ++i) {
     agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
-    const dynamics::TargetState<Pack>& t = world.target(scenario_.target_of(i));
+    const dynamics::TargetState<Pack>& t = world.target(model_.target.of(i));
     mind.SetNavigation(world.vehicle(i));
-    mind.SetTracking(scenario_, {t.p_WT, t.v_WT, zero, one, one});
+    mind.SetTracking(model_, {t.p_WT, t.v_WT, zero, one, one});
     total_error += mind.knowledge.error;
     nearest = Min(nearest, mind.knowledge.distance);
   }
   MeasureLinks(world);
-  for (int i = 0; i < scenario_.agents; ++i) {
+  for (int i = 0; i < model_.run.agents; ++i) {
     agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
     agent::NeighbourSummary<Pack>& s = links_[static_cast<std::size_t>(i)];
     const agent::Knowledge<Pack>& k = mind.knowledge;
-    s.mean_error = scenario_.agents > 1
-                       ? (total_error - k.error) * Pack(1.0 / (scenario_.agents - 1))
+    s.mean_error = model_.run.agents > 1
+                       ? (total_error - k.error) * Pack(1.0 / (model_.run.agents - 1))
                        : k.error;
     s.closest = Select(k.distance <= nearest, one, zero);
     Show(world, i, s.offset);
-    mind.SetNeighbours(scenario_, s);
+    mind.SetNeighbours(model_, s);
   }
 }
 
 void TruthSource::MeasureLinks(const dynamics::World& world) {
-  const Pack zero(0.0), one(1.0), available(scenario_.observation.link_available);
+  const Pack zero(0.0), one(1.0), available(model_.observation.link_available);
   for (agent::NeighbourSummary<Pack>& s : links_) s.quality = s.best = s.effective = zero;
   // Each pair once; every AUV adds up its neighbours in the order of their numbers.
-  for (int i = 0; i < scenario_.agents; ++i) {
-    for (int j = i + 1; j < scenario_.agents; ++j) {
-      const Pack q = acoustics::RangeQuality(world.distance(i, j), scenario_.channel.range_m);
+  for (int i = 0; i < model_.run.agents; ++i) {
+    for (int j = i + 1; j < model_.run.agents; ++j) {
+      const Pack q = acoustics::RangeQuality(world.distance(i, j), model_.channel.range_m);
       const Pack counts = Select(q > available, one, zero);
       for (const int end : {i, j}) {
         agent::NeighbourSummary<Pack>& s = links_[static_cast<std::size_t>(end)];
@@ -87,14 +87,14 @@ void TruthSource::MeasureLinks(const dynamics::World& world) {
 
 void TruthSource::Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const {
   const Vec3<Pack>& p_WB = world.vehicle(i).p_WB;
-  if (scenario_.observation.order == agent::NeighbourOrder::kIndex) {
-    for (int j = 0, slot = 0; j < scenario_.agents && slot < agent::kNeighbourSlots; ++j) {
+  if (model_.observation.order == agent::NeighbourOrder::kIndex) {
+    for (int j = 0, slot = 0; j < model_.run.agents && slot < agent::kNeighbourSlots; ++j) {
       if (j != i) slots[slot++] = world.vehicle(j).p_WB - p_WB;
     }
     return;
   }
   agent::NearestSlots<Pack> nearest;
-  for (int j = 0; j < scenario_.agents; ++j) {
+  for (int j = 0; j < model_.run.agents; ++j) {
     if (j != i) nearest.Offer(world.vehicle(j).p_WB - p_WB, world.distance(i, j));
   }
   std::copy(nearest.offset, nearest.offset + agent::kNeighbourSlots, slots);
@@ -104,9 +104,9 @@ Pack TruthSource::LinkQuality(const dynamics::World& world) const {
   // Mean of q (Eq. 5) over the edges that exist.
   const Pack zero(0.0), one(1.0);
   Pack sum = zero, edges = zero;
-  for (int i = 0; i < scenario_.agents; ++i) {
-    for (int j = i + 1; j < scenario_.agents; ++j) {
-      const Pack q = acoustics::RangeQuality(world.distance(i, j), scenario_.channel.range_m);
+  for (int i = 0; i < model_.run.agents; ++i) {
+    for (int j = i + 1; j < model_.run.agents; ++j) {
+      const Pack q = acoustics::RangeQuality(world.distance(i, j), model_.channel.range_m);
       sum += q;
       edges += Select(q > zero, one, zero);
     }
@@ -116,7 +116,7 @@ Pack TruthSource::LinkQuality(const dynamics::World& world) const {
 
 void TruthSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
   f->known = Pack(1.0);
-  f->p_WT = world.target(scenario_.target_of(i)).p_WT;
+  f->p_WT = world.target(model_.target.of(i)).p_WT;
 }
 
 }  // namespace stg::env

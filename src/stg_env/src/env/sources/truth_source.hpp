@@ -4,7 +4,6 @@
 
 #include "information_source.hpp"
 #include "stg_agent/agent/mind.hpp"
-#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::env {
 
@@ -12,7 +11,7 @@ namespace stg::env {
 /// same minds as the agents', told by somebody who sees everything.
 class TruthSource : public InformationSource {
  public:
-  explicit TruthSource(const Scenario& scenario);
+  explicit TruthSource(const agent::AgentModel& model);
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;
   void Observe(const dynamics::World& world, const LaneSet& lanes) override;
@@ -31,7 +30,7 @@ class TruthSource : public InformationSource {
   void MeasureLinks(const dynamics::World& world);
   void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
 
-  Scenario scenario_;
+  agent::AgentModel model_;
   bool exact_angles_;                                 // the integrator keeps roll, pitch and yaw
   std::vector<agent::Mind<Pack>> minds_;              // [agent]
   std::vector<agent::Mind<Pack>> before_;             // as minds_ before the present Observe

@@ -24,7 +24,7 @@ void RequireAgents(int agents);
 template <class Config>
 Config LoadScenarioParameters(config::Scope scope = config::Scope::kOwnSections) {
   Config config = config::Load<Config>(ScenarioSource(), scope);
-  RequireAgents(config.agents);
+  RequireAgents(config.run.agents);
   return config;
 }
 
