@@ -174,6 +174,13 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_TRUE(summary.complete);
     EXPECT_EQ(summary.deadline_misses, 0U);
     EXPECT_EQ(summary.seed, env_options.seed);
+    const auto items = m.Items();
+    ASSERT_EQ(summary.metric_names.size(), items.size());
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      EXPECT_EQ(summary.metric_names[k], items[k].first);
+      EXPECT_NEAR(summary.metrics[k], items[k].second, 1e-6 * (1.0 + std::abs(items[k].second)))
+          << items[k].first;
+    }
     EXPECT_NEAR(summary.episode_return, m.episode_return, 1e-6);
     EXPECT_NEAR(summary.tail_distance, m.tail_distance, kTolerance);
     EXPECT_NEAR(summary.tracking_error, m.tracking_error, kTolerance);

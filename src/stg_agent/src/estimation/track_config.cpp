@@ -30,6 +30,15 @@ void Describe(TrackConfig* c, config::Table* t) {
                  "measurements: oldest measurement that is still taken");
   t->AddOptional("share_spacing_s", &c->share_spacing_s, "2.0", config::NonNegative(1e5), "s",
                  "measurements: least time between the two measurements in one packet");
+  t->AddOptional("observers", config::Enum(&c->observers, {"steps", "rates"}), "steps",
+                 config::kNone, "-",
+                 "measurements: errors of observers' positions grow by independent steps, or at "
+                 "lasting rates while their logs find no bottom");
+  t->AddOptional("shear_std_mps", &c->shear_std_mps, "0.1", config::NonNegative(10), "m/s",
+                 "rates: standard deviation of each component of the current that an AUV does not "
+                 "share with the others");
+  t->AddOptional("shear_memory_s", &c->shear_memory_s, "10800.0", config::Positive(1e7), "s",
+                 "rates: correlation time of that current");
 }
 
 }  // namespace stg::agent

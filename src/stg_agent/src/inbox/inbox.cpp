@@ -73,7 +73,7 @@ void Inbox::Advance(TimeNs now, double position_std_m) {
     filter_->Detect(detection_);
     detection_pending_ = false;
   }
-  filter_->Settle(now_);
+  filter_->Settle(now_, position_std_m_);
 }
 
 void Inbox::FuseNewest() {

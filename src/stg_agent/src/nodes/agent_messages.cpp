@@ -20,6 +20,7 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   m->target_known = target.started;
   SetVector(target.p_WT, &m->target_position);
   SetVector(target.v_WT, &m->target_velocity);
+  SetVector(k.r_BT_W, &m->target_offset);
   m->target_std = target.position_std_m();
   const agent::Covariance3& P = target.P_WT;
   const double covariance[6] = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};

@@ -126,5 +126,42 @@ TEST(Consistency, AnAmbiguousBearingIsResolvedByTwo) {
   EXPECT_LT(c.error_m[2], 15.0);
 }
 
+/// Root mean square of what AUV 0 steers by being off, and mean NEES, after a quarter of an hour in
+/// which no log saw the bottom.
+std::pair<double, double> Adrift(ObserverErrors errors, const std::array<double, 3>& current) {
+  FleetOptions o;
+  o.observers = 4;
+  o.seconds = 900.0;
+  o.look_steps = 5;
+  AgentScenario s = FleetScenario(o);
+  s.world.navigation.dvl_altitude_m = 10.0;
+  s.world.current.velocity_mps = current;
+  s.agent.track.observers = errors;
+  Fleet fleet(s, o);
+  constexpr int kFlights = 40;
+  double square = 0.0, nees = 0.0;
+  for (int e = 0; e < kFlights; e += kLanes) {
+    fleet.Fly(static_cast<std::uint64_t>(9000 + e), 1, [&](const Judgement& j, int) {
+      square += j.relative_m * j.relative_m / kFlights;
+      nees += j.nees / kFlights;
+    });
+  }
+  return {std::sqrt(square), nees};
+}
+
+TEST(Consistency, ACurrentThatCarriesAllBlursNothingThatIsSteeredBy) {
+  const auto [still_m, still] = Adrift(ObserverErrors::kRates, {0.0, 0.0, 0.0});
+  const auto [moved_m, moved] = Adrift(ObserverErrors::kRates, {0.1, 0.06, 0.0});
+  const auto [steps_m, steps] = Adrift(ObserverErrors::kSteps, {0.0, 0.0, 0.0});
+  std::printf("adrift: rates %.1f m, NEES %.2f; in a current %.1f m, %.2f; steps %.1f m, %.2f\n",
+              still_m, still, moved_m, moved, steps_m, steps);
+  EXPECT_LT(still_m, 10.0);
+  EXPECT_NEAR(moved_m, still_m, 0.5 * still_m);
+  EXPECT_GT(steps_m, 1.5 * still_m) << "steps do as well: what are rates for?";
+  EXPECT_LT(still, kUpper);
+  // One current is one error of all flights: (0.1^2 + 0.06^2) / 0.1^2 is its own share of NEES.
+  EXPECT_LT(moved, 1.36 + kUpper);
+}
+
 }  // namespace
 }  // namespace stg::agent

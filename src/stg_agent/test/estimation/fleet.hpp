@@ -25,6 +25,7 @@ struct FleetOptions {
   double turn_rate_radps = 0.02;
   double turn_period_s = 60.0;
   double cue_std_m = 50.0;
+  int look_steps = 1;  ///< decisions between two looks
 };
 
 /// A field of 4 km by 4 km with kinematic AUVs that measure every second.
@@ -149,8 +150,9 @@ class Fleet {
       }
       f.Predict(now);
       dynamics::Detection d;
-      if (world_.Sense(lane, i, 0, &d)) f.Detect(d);
-      f.Settle(now);
+      const bool looks = k % o_.look_steps == 0;
+      if (looks && world_.Sense(lane, i, 0, &d)) f.Detect(d);
+      f.Settle(now, world_.Nav(lane, i).position_std_m);
       if ((k + i) % interval == 0) Send(lane, i, now);
     }
   }

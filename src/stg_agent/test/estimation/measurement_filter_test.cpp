@@ -50,7 +50,7 @@ NeighbourState Shared(int source, const dynamics::Detection& d) {
 
 void Step(TargetFilter* f, TimeNs now) {
   f->Predict(now);
-  f->Settle(now);
+  f->Settle(now, 0.0);
 }
 
 /// Smallest eigenvalue of the covariance of the position [m^2].
@@ -76,7 +76,7 @@ TEST(MeasurementFilter, RangesThatAreHalfBelievedLeaveACovariance) {
       const double wrong = k % 4 == 3 ? off(random) : 0.0;
       f->Predict(k * kSecond);
       f->Detect(Range(k * kSecond, p_WO, std::max(1.0, Norm(target - p_WO) + wrong)));
-      f->Settle(k * kSecond);
+      f->Settle(k * kSecond, 0.0);
       ASSERT_GT(Narrowest(f->belief()), 0.0) << "flight " << flight << ", range " << k;
     }
   }

@@ -6,23 +6,26 @@
 namespace stg::task {
 
 std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
-  return {{"estimate_rmse", estimate_rmse},
-          {"nees", nees},
-          {"estimate_known", estimate_known},
-          {"information_age", information_age},
-          {"band_share", band_share},
-          {"time_lost", time_lost},
-          {"time_to_reacquire", time_to_reacquire},
-          {"losses", losses},
-          {"spread", spread},
-          {"near_pairs", near_pairs},
-          {"min_altitude", min_altitude},
-          {"min_clearance", min_clearance},
-          {"groundings", groundings},
-          {"collisions", collisions},
-          {"packets", packets},
-          {"packet_loss", packet_loss},
-          {"modem_energy", modem_energy}};
+  std::vector<std::pair<std::string, double>> items{{"estimate_rmse", estimate_rmse},
+                                                    {"nees", nees},
+                                                    {"estimate_known", estimate_known},
+                                                    {"information_age", information_age},
+                                                    {"band_share", band_share},
+                                                    {"worst_band_share", worst_band_share},
+                                                    {"time_lost", time_lost},
+                                                    {"time_to_reacquire", time_to_reacquire},
+                                                    {"losses", losses},
+                                                    {"spread", spread},
+                                                    {"near_pairs", near_pairs},
+                                                    {"min_altitude", min_altitude},
+                                                    {"min_clearance", min_clearance},
+                                                    {"groundings", groundings},
+                                                    {"collisions", collisions},
+                                                    {"packets", packets},
+                                                    {"packet_loss", packet_loss},
+                                                    {"modem_energy", modem_energy}};
+  for (const auto& item : estimates.Items()) items.push_back(item);
+  return items;
 }
 
 std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
@@ -55,7 +58,8 @@ std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
 
 bool OfTail(const std::string& metric) {
   return metric == "tail_distance" || metric == "tracking_error" || metric == "lost_rate" ||
-         metric == "band_rate" || metric == "tail_colliding_pairs";
+         metric == "band_rate" || metric == "tail_colliding_pairs" || metric == "own_rmse_tail" ||
+         metric == "world_rmse_tail";
 }
 
 double MetricSummary::Mean(const std::string& name) const {

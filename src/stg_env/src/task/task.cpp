@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stg_env/task/estimate_totals.hpp"
+
 namespace stg::task {
 
 template <class T>
@@ -75,11 +77,8 @@ void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
     k.closing = agent::ClosingSpeed(k.r_BT_W, d, v.v_WB, t.v_WT);
     k.confidence = agent::Confidence(d, scenario_.world.sensing.range_m);
     k.lost = Select(d > T(scenario_.agent.task.lost_distance_m), one, zero);
-    if (swarm.field != nullptr && scenario_.agent.task.lost_error_m > 0.0) {
-      const FieldState<T>& f = (*swarm.field)[i];
-      const auto off =
-          (f.known < T(0.5)) || (Norm(f.p_WT - t.p_WT) > T(scenario_.agent.task.lost_error_m));
-      k.lost = Select(off, one, k.lost);
+    if (swarm.field != nullptr) {
+      k.lost = Max(k.lost, OffInOwnFrame(scenario_.agent.task, (*swarm.field)[i], k.r_BT_W));
     }
   }
 }

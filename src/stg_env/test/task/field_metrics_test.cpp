@@ -114,6 +114,9 @@ TEST(FieldMetrics, CountErrorsSpellsOfLossAndNearness) {
     swarm.field[0].modem_energy_j = 10.0 * k;
     swarm.field[1].modem_energy_j = 30.0 * k;
     swarm.vehicles[1].p_WB.x = k > 15 ? 109.0 : -130.0;  // 19 m from the other
+    for (std::size_t i = 0; i < 2; ++i) {
+      swarm.field[i].r_BT_W = swarm.field[i].p_WT - swarm.vehicles[i].p_WB;
+    }
     task.Step(swarm.State());
     EXPECT_EQ(task.tracking(0).lost, astray ? 1.0 : 0.0);
     EXPECT_EQ(task.tracking(1).lost, k == 20 ? 1.0 : 0.0);
@@ -127,6 +130,7 @@ TEST(FieldMetrics, CountErrorsSpellsOfLossAndNearness) {
   EXPECT_NEAR(m.estimate_known, known / 40.0, 1e-12);
   EXPECT_NEAR(m.information_age, 2.0, 1e-12);
   EXPECT_NEAR(m.band_share, 25.0 / 40.0, 1e-12);
+  EXPECT_NEAR(m.worst_band_share, 5.0 / 20.0, 1e-12);
   EXPECT_NEAR(m.time_lost, 8.0 / 2.0, 1e-12);
   EXPECT_NEAR(m.time_to_reacquire, (5.0 + 2.0) / 2.0, 1e-12) << "the spell that runs is none yet";
   EXPECT_NEAR(m.losses, 3.0 / 2.0, 1e-12);
@@ -189,6 +193,37 @@ TEST(FieldTerms, AreWhatTheirNamesSay) {
   f.known = 0.0;
   EXPECT_EQ(value("estimate"), 0.0);
   EXPECT_EQ(value("spread"), 0.0) << "one AUV is on one side";
+}
+
+TEST(FieldMetrics, AreOfTheOwnFrameAndOfTheWorldApart) {
+  // An AUV whose navigation is off by 300 m, and whose vector to the target is off by (3, 4, 12):
+  // it has not lost the target, although it does not know where in the world both are.
+  const JudgeConfig s = Sea(1);
+  Task<double> task(s);
+  Swarm swarm(s);
+  const Vec3<double> off{3.0, 4.0, 12.0}, drift{300.0, 400.0, 0.0};
+  swarm.targets[0].p_WT = {10.0, 20.0, -40.0};
+  swarm.vehicles[0].p_WB = {100.0, 20.0, -30.0};
+  task.Start(true, swarm.State(), 100.0);
+  for (int k = 1; k <= 100; ++k) {
+    swarm.field[0].r_BT_W = swarm.targets[0].p_WT - swarm.vehicles[0].p_WB + off;
+    swarm.field[0].p_WT = swarm.targets[0].p_WT + off + drift;
+    // In the tail the vector is twice as far off; beyond 100 m for one decision before.
+    if (k > 90) swarm.field[0].r_BT_W = swarm.field[0].r_BT_W + off;
+    if (k == 50) swarm.field[0].r_BT_W.x += 120.0;
+    task.Step(swarm.State());
+    EXPECT_EQ(task.tracking(0).lost, k == 50 ? 1.0 : 0.0);
+  }
+  const EstimateMetrics m = task.Metrics(0).field->estimates;
+  EXPECT_NEAR(m.own_rmse, std::sqrt((89.0 * 25.0 + 10.0 * 100.0 + 123.0 * 123.0 + 16.0) / 100.0),
+              1e-9);
+  EXPECT_NEAR(m.own_rmse_tail, 10.0, 1e-9);
+  EXPECT_NEAR(m.own_95, 10.0, 0.5) << "99 of 100 are at most 10 m, 90 of them 5 m";
+  EXPECT_NEAR(m.world_rmse, std::hypot(303.0, 404.0), 1e-9);
+  EXPECT_NEAR(m.world_rmse_tail, std::hypot(303.0, 404.0), 1e-9);
+  EXPECT_NEAR(m.world_95, std::hypot(303.0, 404.0), 0.05 * 505.0);
+  EXPECT_NEAR(m.vertical_rmse, 12.0, 1e-9);
+  EXPECT_NEAR(m.lost_in_world, 1.0, 1e-12);
 }
 
 }  // namespace

@@ -127,6 +127,7 @@ void EpisodeJudge::SetField(const SwarmFrame& frame) {
     if (!task) continue;
     f.known = task->target_known ? 1.0 : 0.0;
     f.p_WT = VectorOf(task->target_position);
+    f.r_BT_W = VectorOf(task->target_offset);
     std::copy(task->target_covariance.begin(), task->target_covariance.end(), f.covariance);
     f.age_s = task->target_age;
   }
@@ -250,6 +251,10 @@ void EpisodeJudge::FillSummary(const ros::Time& stamp, const task::EpisodeMetric
   m.tail_colliding_pairs = e.tail_colliding_pairs;
   m.min_separation = e.min_separation;
   m.time_to_band = e.time_to_band;
+  for (const auto& [name, value] : e.Items()) {
+    m.metric_names.push_back(name);
+    m.metrics.push_back(value);
+  }
   m.field = e.field.has_value();
   if (e.field) {
     const task::FieldMetrics& f = *e.field;

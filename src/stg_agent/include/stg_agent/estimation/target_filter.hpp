@@ -58,7 +58,11 @@ class TargetFilter {
   /// An own detection of this target, not of the future.
   virtual void Detect(const dynamics::Detection& detection) = 0;
   /// All of this decision is in.
-  virtual void Settle(TimeNs now) { (void)now; }
+  /// @param position_std_m of the own position, as navigation states it now
+  virtual void Settle(TimeNs now, double position_std_m) {
+    (void)now;
+    (void)position_std_m;
+  }
 
   /// In the frame of the own navigation: what own position and estimate differ by is what the
   /// vehicle has to steer by.

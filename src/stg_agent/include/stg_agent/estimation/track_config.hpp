@@ -6,6 +6,10 @@
 
 namespace stg::agent {
 
+/// How the errors of observers' positions grow in the filter `measurements`: by independent steps,
+/// or at rates that last, as those of AUVs that drift with the water do.
+enum class ObserverErrors { kSteps, kRates };
+
 /// The agents' target filter and their memory of neighbours.
 struct TrackConfig {
   std::string filter = "kalman";         ///< name in the registry of target filters
@@ -20,6 +24,9 @@ struct TrackConfig {
   double velocity_memory_s = 60.0;  ///< correlation time of the target's velocity
   double memory_s = 60.0;           ///< measurements no older than this are taken
   double share_spacing_s = 2.0;     ///< least time between the measurements in one packet
+  ObserverErrors observers = ObserverErrors::kSteps;
+  double shear_std_mps = 0.1;       ///< rates: of what the water differs by between two depths
+  double shear_memory_s = 10800.0;  ///< correlation time of it
 };
 
 /// Keys, units and ranges of the section.

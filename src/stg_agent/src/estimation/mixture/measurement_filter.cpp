@@ -32,8 +32,8 @@ struct Sighting {
 
 /// The filter at a time, all sightings up to it taken.
 struct Snapshot {
-  Snapshot(const StateLayout& layout, int self, int capacity)
-      : mixture(layout.states(), capacity), observers(layout, self) {}
+  Snapshot(const StateLayout& layout, const DriftModel& drift, int self, int capacity)
+      : mixture(layout.states(), capacity), observers(layout, drift, self) {}
 
   TimeNs covers = -1;  ///< sightings up to this time are in it
   TimeNs stamp = 0;    ///< time of the state
@@ -46,6 +46,11 @@ struct Snapshot {
   GaussianMixture mixture;  ///< empty: nothing is known of the target
   Observers observers;
 };
+
+DriftModel DriftModelOf(const AgentModel& s) {
+  return {s.navigation.current_std_mps, s.track.shear_std_mps * s.track.shear_std_mps,
+          s.track.shear_memory_s, s.navigation.start_std_m * s.navigation.start_std_m};
+}
 
 /// Gaussian-sum filter of one target from measurements of any kind, own and shared, whose sharers'
 /// navigation errors are states of it. Sightings lie in a list by time; one that comes late takes
@@ -60,11 +65,11 @@ class MeasurementFilter : public TargetFilter {
         memory_(static_cast<TimeNs>(s.track.memory_s * 1e9)),
         spacing_(static_cast<TimeNs>(s.track.share_spacing_s * 1e9)),
         oldest_shared_(std::min(memory_, 127 * s.run.decision_period())),
-        now_(model_.layout(), self, kMostComponents),
+        now_(model_.layout(), DriftModelOf(s), self, kMostComponents),
         view_(kTargetStates + model_.layout().per_observer, kKeptComponents) {
     snapshots_.reserve(kSnapshots);
     for (int k = 0; k < kSnapshots; ++k) {
-      snapshots_.emplace_back(model_.layout(), self, kKeptComponents);
+      snapshots_.emplace_back(model_.layout(), DriftModelOf(s), self, kKeptComponents);
     }
     sightings_.reserve(kMostSightings + 1);
   }
@@ -111,7 +116,8 @@ class MeasurementFilter : public TargetFilter {
 
   void Detect(const Detection& detection) override { Insert({detection, self_}); }
 
-  void Settle(TimeNs now) override {
+  void Settle(TimeNs now, double position_std_m) override {
+    position_std_m_ = position_std_m;
     while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= now) Play();
     Forget();
     Tell(now);
@@ -210,6 +216,7 @@ class MeasurementFilter : public TargetFilter {
     } else {
       const double dt_s = Seconds(d.stamp - now_.stamp);
       model_.Predict(dt_s, &mixture);
+      now_.observers.Predict(dt_s, &mixture);
       if (mixture.size() > 1) model_.DoubtTheFast(dt_s, &mixture);
     }
     now_.stamp = d.stamp;
@@ -293,7 +300,12 @@ class MeasurementFilter : public TargetFilter {
     view_.Clear();
     for (int k = 0; k < now_.mixture.size(); ++k) view_.AddPart(now_.mixture, k);
     model_.Predict(Seconds(now - now_.stamp), &view_);
-    SetMoments(view_, model_.layout().per_observer > 0, &belief_, &estimate_);
+    const bool in_own_frame = model_.layout().rates;
+    SetMoments(view_, model_.layout().per_observer > 0 && !in_own_frame, &belief_, &estimate_);
+    if (in_own_frame) {
+      belief_.P_WT.xx += position_std_m_ * position_std_m_;
+      belief_.P_WT.yy += position_std_m_ * position_std_m_;
+    }
   }
 
   SightingModel model_;
@@ -305,7 +317,8 @@ class MeasurementFilter : public TargetFilter {
   Snapshot now_;
   std::vector<Snapshot> snapshots_;  // a ring
   int first_ = 0, kept_ = 0;
-  GaussianMixture view_;  // of the target and the own errors, now
+  double position_std_m_ = 0.0;  // of the own position now
+  GaussianMixture view_;         // of the target and the own errors, now
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

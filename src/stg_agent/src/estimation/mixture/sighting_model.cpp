@@ -28,7 +28,9 @@ SightingModel::SightingModel(const AgentModel& s) {
       s.navigation.kind, {s.navigation, s.run.agents, s.run.time.dt_s});
   const auto sensor = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing);
   if (!navigation->perfect()) {
-    layout_.per_observer = sensor->kind() == MeasurementKind::kRange ? 2 : 3;
+    layout_.heading = sensor->kind() != MeasurementKind::kRange;
+    layout_.rates = s.track.observers == ObserverErrors::kRates;
+    layout_.per_observer = layout_.rate() + (layout_.rates ? 2 : 0);
     layout_.observers = std::min(s.run.agents, kMostObservers);
   }
   observer_depth_variance_ =
@@ -38,6 +40,11 @@ SightingModel::SightingModel(const AgentModel& s) {
                                                       : s.target.max_speed_mps * std::sqrt(0.5);
   velocity_variance_ = speed * speed;
   max_speed_mps_ = s.target.max_speed_mps;
+  if (layout_.rates) {
+    // In a frame that goes with the water the target moves against it.
+    velocity_variance_ += s.navigation.current_std_mps * s.navigation.current_std_mps;
+    max_speed_mps_ += 2.0 * s.navigation.current_std_mps;
+  }
   velocity_memory_s_ = s.track.velocity_memory_s;
   const double low = s.sea.open ? -s.sea.target_depth_m.hi : -s.workspace.half_extent_m;
   const double high = s.sea.open ? -s.sea.target_depth_m.lo : s.workspace.half_extent_m;

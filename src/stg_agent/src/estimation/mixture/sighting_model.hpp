@@ -6,11 +6,18 @@
 
 namespace stg::agent {
 
-/// Where the errors of the observers lie in the state: of each one two of position (east, north)
-/// and, where directions are measured, one of heading; none while navigation is perfect.
+/// Where the errors of the observers lie in the state: of each one two of position (east, north),
+/// where directions are measured one of heading, and with `rates` two of the velocity at which the
+/// position error grows; none while navigation is perfect. With `rates` everything is in the own
+/// frame of navigation, errors of position are against the own one, and those of block 0 are zero.
 struct StateLayout {
   int per_observer = 0;
   int observers = 0;
+  bool heading = false;
+  bool rates = false;
+
+  /// Of the first number of a rate within a block.
+  int rate() const { return heading ? 3 : 2; }
 
   int states() const { return kTargetStates + per_observer * observers; }
   int block(int slot) const { return kTargetStates + per_observer * slot; }

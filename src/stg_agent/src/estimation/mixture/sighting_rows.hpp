@@ -10,7 +10,7 @@ namespace stg::agent {
 
 /// Observers whose errors a filter keeps apart; of larger swarms those heard last.
 inline constexpr int kMostObservers = 8;
-inline constexpr int kMostStates = kTargetStates + 3 * kMostObservers;
+inline constexpr int kMostStates = kTargetStates + 5 * kMostObservers;
 inline constexpr int kMostStride = (kMostStates + 3) & ~3;
 
 /// The line from the observer to the target and its covariance, errors of the observer included.

@@ -92,7 +92,7 @@ SightingModel::Row SightingModel::RowOf(const Vec3<double>& u, int slot) const {
 }
 
 void SightingModel::AddHeading(double slope, int slot, Row* row) const {
-  if (layout_.per_observer > 2) row->Add(layout_.block(slot) + 2, slope);
+  if (layout_.heading) row->Add(layout_.block(slot) + 2, slope);
 }
 
 double SightingModel::Excess(const Detection& d, int slot, const GaussianMixture& mixture, int k,
@@ -196,7 +196,7 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   const double far = at.Along(out), across = at.Along(side), mixed = at.Along(out, side);
   Row row = RowOf(side * (1.0 / at.level), slot);
   AddHeading(1.0, slot, &row);
-  const double turned_by = layout_.per_observer > 2 ? g.x[layout_.block(slot) + 2] : 0.0;
+  const double turned_by = layout_.heading ? g.x[layout_.block(slot) + 2] : 0.0;
   const double expected = std::atan2(at.d.y, at.d.x) - mixed / square + turned_by;
   const double bend = (mixed * mixed + far * across) / (square * square);
   *g.weight *= Take(row, WrapAngle(azimuth_rad - expected), noise + bend, 0.0, 0.5 / kPi, g,
@@ -253,7 +253,7 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
   }
   // One detection is true or false as a whole.
   const Geometry prior = GeometryOf(d, slot, *mixture, k);
-  const int heading = layout_.per_observer > 2 ? layout_.block(slot) + 2 : -1;
+  const int heading = layout_.heading ? layout_.block(slot) + 2 : -1;
   Row rows[3];
   double own = 1.0 - false_share_, column[kMostStride];
   for (int axis = 0; axis < 3; ++axis) {

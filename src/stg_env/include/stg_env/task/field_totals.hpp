@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "stg_env/task/estimate_totals.hpp"
 #include "stg_env/task/judge_config.hpp"
 #include "stg_env/task/metrics.hpp"
 #include "stg_env/task/swarm_state.hpp"
@@ -27,8 +28,10 @@ class FieldTotals {
   explicit FieldTotals(const JudgeConfig& scenario);
 
   void Start(const Mask<T>& lanes);
-  /// Adds a decision. @param swarm with its field @param tracking [agents]
-  void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking);
+  /// Adds a decision.
+  /// @param swarm with its field @param tracking [agents] @param tail lanes in their tail
+  void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
+           const Mask<T>& tail);
   /// Of the episode up to now. @param steps decisions of this lane
   FieldMetrics Metrics(int lane, double steps) const;
 
@@ -43,7 +46,9 @@ class FieldTotals {
 
   JudgeConfig scenario_;
   Sums sums_;
+  EstimateTotals<T> estimates_;
   std::vector<T> spell_;  // [agents] decisions of the spell of loss that runs
+  std::vector<T> band_;   // [agents] decisions in the band
 };
 
 extern template class FieldTotals<double>;

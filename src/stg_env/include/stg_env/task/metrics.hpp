@@ -5,16 +5,20 @@
 #include <utility>
 #include <vector>
 
+#include "stg_env/task/estimate_metrics.hpp"
+
 namespace stg::task {
 
 /// Metrics of one episode in open water, beside the others; of the whole episode.
 struct FieldMetrics {
-  double estimate_rmse = 0.0;    ///< of the own estimate against the truth, where there is one [m]
+  double estimate_rmse = 0.0;    ///< of the position in the world, depth included [m]
   double nees = 0.0;             ///< mean normalised square of its error; 3 where it is consistent
   double estimate_known = 0.0;   ///< share of AUV decisions with an estimate
   double information_age = 0.0;  ///< mean age of the newest observation in the estimates [s]
-  double band_share = 0.0;       ///< share of AUV decisions inside [d_l, d_u]
-  double time_lost = 0.0;        ///< mean over AUVs [s]
+  EstimateMetrics estimates;
+  double band_share = 0.0;        ///< share of AUV decisions inside [d_l, d_u]
+  double worst_band_share = 0.0;  ///< of the AUV that was inside least
+  double time_lost = 0.0;         ///< mean over AUVs [s]
   double time_to_reacquire =
       0.0;                     ///< mean length of the spells of loss that ended [s]; 0: none did
   double losses = 0.0;         ///< spells of loss, per AUV

@@ -20,8 +20,11 @@ static_assert(dynamics::kMaxActionSize <= dynamics::kWrenchSize, "an action is a
 /// what its modem did.
 template <class T>
 struct FieldState {
-  T known = T(0.0);  ///< 1: it has an estimate of its target; 0: the next three mean nothing
+  T known = T(0.0);  ///< 1: it has an estimate of its target; 0: the next four mean nothing
   Vec3<T> p_WT;      ///< its estimate of the target's position, world axes [m]
+  /// Its estimate of the vector from itself to the target, world axes [m]: what it steers by. An
+  /// error of its own navigation is in p_WT, but not in this.
+  Vec3<T> r_BT_W;
   /// Covariance of it, xx xy xz yy yz zz [m^2], what its navigation may be off included; all zero
   /// where it knows the truth.
   T covariance[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
@@ -60,7 +63,8 @@ struct Tracking {
   T error = T(0.0);              ///< e = |d - d*| [m]
   T closing = T(0.0);            ///< closing speed [m/s], positive when approaching
   T confidence = T(0.0);         ///< c of Eq. 13
-  T lost = T(0.0);               ///< 1: farther than task.lost_distance_m, else 0
+  /// 1: farther than task.lost_distance_m, or OffInOwnFrame (estimate_totals.hpp); else 0.
+  T lost = T(0.0);
 };
 
 }  // namespace stg::task

@@ -98,6 +98,7 @@ Pack AcousticSource::LinkQuality(const dynamics::World&) const {
 }
 
 void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
+  f->r_BT_W = agents_[static_cast<std::size_t>(i)].knowledge().r_BT_W;
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto u = static_cast<std::size_t>(i);
     const TimeNs now = world.time(lane);

@@ -117,6 +117,7 @@ Pack TruthSource::LinkQuality(const dynamics::World& world) const {
 void TruthSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
   f->known = Pack(1.0);
   f->p_WT = world.target(model_.target.of(i)).p_WT;
+  f->r_BT_W = f->p_WT - world.vehicle(i).p_WB;
 }
 
 }  // namespace stg::env

@@ -67,8 +67,8 @@ void EpisodeTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Trackin
   s.pairs += swarm.separations.colliding_pairs();
   separation_ = Min(separation_, swarm.separations.smallest());
   in_field_ = swarm.field != nullptr;
-  if (in_field_) field_.Add(swarm, tracking);
   const auto tail = steps_ > length_ - T(static_cast<double>(tail_steps_));
+  if (in_field_) field_.Add(swarm, tracking, tail);
   if (Any(tail)) AddTail(tail, swarm, tracking);
 }
 

@@ -37,7 +37,10 @@ T NormalisedSquare(const Vec3<T>& r, const T (&P)[6]) {
 
 template <class T>
 FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
-    : scenario_(scenario), spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)) {}
+    : scenario_(scenario),
+      estimates_(scenario),
+      spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)),
+      band_(spell_) {}
 
 template <class T>
 void FieldTotals<T>::Start(const Mask<T>& lanes) {
@@ -51,10 +54,14 @@ void FieldTotals<T>::Start(const Mask<T>& lanes) {
   restart(&s.min_altitude, 1e9);
   restart(&s.min_clearance, 1e9);
   for (T& spell : spell_) restart(&spell, 0.0);
+  for (T& band : band_) restart(&band, 0.0);
+  estimates_.Start(lanes);
 }
 
 template <class T>
-void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking) {
+void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
+                         const Mask<T>& tail) {
+  estimates_.Add(swarm, tracking, tail);
   const T zero(0.0), one(1.0);
   const config::Interval& band = scenario_.reward.band_m;
   Sums& s = sums_;
@@ -74,6 +81,7 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
     s.age += Select(known, f.age_s, zero);
     const auto inside = (k.distance <= T(band.hi)) && (k.distance >= T(band.lo));
     s.band += Select(inside, one, zero);
+    band_[i] += Select(inside, one, zero);
     s.lost += k.lost;
     const auto lost = k.lost > T(0.5);
     const auto before = spell_[i] > zero;
@@ -112,7 +120,10 @@ FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   m.nees = at(s.nees) / std::max(1.0, at(s.judged));
   m.estimate_known = at(s.known) / all;
   m.information_age = at(s.age) / known;
+  m.estimates = estimates_.Metrics(lane, steps);
   m.band_share = at(s.band) / all;
+  m.worst_band_share = at(band_.front()) / steps;
+  for (const T& band : band_) m.worst_band_share = std::min(m.worst_band_share, at(band) / steps);
   m.time_lost = at(s.lost) * dt_s / agents;
   m.time_to_reacquire = at(s.recovered_steps) * dt_s / std::max(1.0, at(s.recovered));
   m.losses = at(s.losses) / agents;

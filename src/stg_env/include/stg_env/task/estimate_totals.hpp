@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "stg_env/task/estimate_metrics.hpp"
+#include "stg_env/task/judge_config.hpp"
+#include "stg_env/task/swarm_state.hpp"
+
+namespace stg::task {
+
+/// 1 where the AUV has no estimate of its target, or one whose position is off by more than
+/// task.lost_error_m: of the vector from the AUV to the target, or of the position in the world.
+/// Always 0 when that key is 0.
+template <class T>
+T OffInOwnFrame(const agent::TaskConfig& task, const FieldState<T>& field, const Vec3<T>& r_BT_W);
+template <class T>
+T OffInWorld(const agent::TaskConfig& task, const FieldState<T>& field, const Vec3<T>& p_WT);
+
+/// The sums behind EstimateMetrics. Every lane counts its own decisions.
+template <class T>
+class EstimateTotals {
+ public:
+  explicit EstimateTotals(const JudgeConfig& scenario);
+
+  void Start(const Mask<T>& lanes);
+  /// Adds a decision. @param swarm with its field @param tail lanes in the tail of their episode
+  void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
+           const Mask<T>& tail);
+  /// Of the episode up to now. @param steps decisions of this lane
+  EstimateMetrics Metrics(int lane, double steps) const;
+
+ private:
+  static constexpr int kBins = 330;
+  using Histogram = std::array<std::uint32_t, kBins>;
+  struct Sums {
+    T known = T(0.0), known_tail = T(0.0), own = T(0.0), own_tail = T(0.0), world = T(0.0),
+      world_tail = T(0.0), vertical = T(0.0), lost_in_world = T(0.0);
+  };
+  void Count(int lane, double own_m, double world_m);
+
+  JudgeConfig scenario_;
+  Sums sums_;
+  std::vector<Histogram> own_, world_;  // [lanes]
+};
+
+extern template class EstimateTotals<double>;
+extern template class EstimateTotals<Pack>;
+
+}  // namespace stg::task
