@@ -18,6 +18,7 @@
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/env/seed_blocks.hpp"
 #include "stg_env/env/variants.hpp"
+#include "stg_env/record/recorder.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace {
@@ -72,8 +73,9 @@ class CsvOutput {
 /// JSON object on the last line.
 int main(int argc, char** argv) {
   CLI::App app("Evaluates a policy or built-in controller on held-out episodes");
-  std::string policy, scenario = "medium", condition = "nominal", variant = "stg", csv;
+  std::string policy, scenario = "medium", condition = "nominal", variant = "stg", csv, record;
   std::vector<std::string> overrides;
+  int record_episodes = 1;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 3000;
   const stg::agent::PursuitOptions tuned;
@@ -103,6 +105,11 @@ int main(int argc, char** argv) {
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
   app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256));
   app.add_option("--csv", csv, "write one row per episode to this file");
+  app.add_option("--record", record,
+                 "folder for a recording of the first episodes, which ./stg report shows");
+  app.add_option("--record-episodes", record_episodes, "how many of them")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--privileged", privileged,
                "a built-in controller reads true states in acoustic mode, too");
   std::map<std::string, std::string> constants;
@@ -143,6 +150,9 @@ int main(int argc, char** argv) {
     std::vector<double> training_returns;
     for (const auto& episode : own) training_returns.push_back(episode.episode_return);
     table.Write(Table(metrics, training_returns, seed));
+    if (!record.empty()) {
+      stg::env::RecordEpisodes(s, controller, seed, episodes, record_episodes, record);
+    }
     stg::task::MetricSummary summary = stg::task::Summarise(metrics);
     const stg::task::MetricSummary own_summary = stg::task::Summarise(own);
     summary.Append("training_return", own_summary.Mean("return"), own_summary.Std("return"));

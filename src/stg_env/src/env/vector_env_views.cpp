@@ -25,6 +25,10 @@ dynamics::VehicleState<double> VectorEnv::vehicle(int env, int i) const {
   return LaneOf(SliceOf(env).lanes->world().vehicle(i), lane_of(env));
 }
 
+bool VectorEnv::Sense(int env, int i, int k, dynamics::Detection* detection) const {
+  return SliceOf(env).lanes->world().Sense(lane_of(env), i, k, detection);
+}
+
 dynamics::TargetState<double> VectorEnv::target(int env, int k) const {
   return LaneOf(SliceOf(env).lanes->world().target(k), lane_of(env));
 }
@@ -47,6 +51,10 @@ agent::AgentView VectorEnv::agent(int env, int i) const {
 
 const acoustics::Channel& VectorEnv::channel(int env) const {
   return SliceOf(env).lanes->acoustic().channel(lane_of(env));
+}
+
+void VectorEnv::ObservePackets(int env, acoustics::PacketObserver* observer) {
+  SliceOf(env).lanes->acoustic().ObservePackets(lane_of(env), observer);
 }
 
 }  // namespace stg::env

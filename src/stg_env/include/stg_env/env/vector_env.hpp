@@ -13,7 +13,8 @@
 
 namespace stg::acoustics {
 class Channel;
-}
+class PacketObserver;
+}  // namespace stg::acoustics
 
 namespace stg::env {
 
@@ -95,6 +96,8 @@ class VectorEnv {
   /// What an AUV's own navigation believes.
   dynamics::NavState navigation(int env, int i) const;
   dynamics::VehicleState<double> vehicle(int env, int i) const;
+  /// What AUV i's own sensor sees of target k now; false: nothing. See World::Sense.
+  bool Sense(int env, int i, int k, dynamics::Detection* detection) const;
   dynamics::TargetState<double> target(int env, int k) const;
   TimeNs time(int env) const;
   task::Tracking<double> tracking(int env, int i) const;
@@ -104,6 +107,8 @@ class VectorEnv {
   /// Acoustic mode only: what an AUV's agent holds, and the network.
   agent::AgentView agent(int env, int i) const;
   const acoustics::Channel& channel(int env) const;
+  /// The observer is told of all packets of one environment from now on; null: nobody is.
+  void ObservePackets(int env, acoustics::PacketObserver* observer);
 
   /// The environments by SIMD register, for code that computes on registers, too.
   struct Slice {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "stg_env/scenario/scenario.hpp"
+
+namespace stg::env {
+
+/// What stands still in a scenario and is drawn: its region, bands, ranges, bottom and obstacles,
+/// as the message `meta` of a recording has them (docs/recording.md). Lengths [m], world ENU.
+/// Without the bathymetry's file the bottom is left out.
+nlohmann::json SceneOf(const Scenario& scenario);
+
+}  // namespace stg::env
