@@ -1,0 +1,199 @@
+"""Recordings of ROS runs: messages of the graph, from a bag or live, become the messages of a page.
+
+Needs no more of ROS than the messages' fields; what a message lacks (an older bag) is left out.
+"""
+
+import json
+import math
+import subprocess
+
+from stg_view.recording import FATES, Recording
+
+NAN = math.nan
+DELIVERED, DROPPED = 3, 4
+NO_SEQUENCE = 4294967295
+TERMS = ("r_track", "r_obs", "r_coord", "r_comm", "r_sem", "r_sep", "cost")
+MOST_AUVS = 256
+
+
+def scene_of(scenario, tool=("rosrun", "stg_monitor", "view_scene")):
+    """What stands still in a resolved scenario, and a note where that is not known."""
+    try:
+        done = subprocess.run(tool, input=scenario.encode(), capture_output=True, timeout=30, check=False)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return {}, f"The scenario's scene is not known: {error}"
+    if done.returncode != 0:
+        lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
+        return {}, f"The scenario's scene is not known: {lines[-1] if lines else 'no answer'}"
+    scene = json.loads(done.stdout)
+    return scene, ""
+
+
+class Collector:
+    """Takes the messages of a graph, one after the other, into a Recording."""
+
+    def __init__(self, recording):
+        self.recording = recording
+        self.episode = None
+        self.tasks, self.detections, self.reports, self.energy = {}, {}, {}, []
+        self.ages = {}
+        self.state = None
+        self.scenario = ""
+
+    def take(self, topic, m):
+        """Takes one message; of topics that are not shown: nothing."""
+        if topic == "/swarm_state":
+            self.take_state(m)
+        elif topic == "/acoustic_channel/packets":
+            for event in m.events:
+                self.take_packet(event)
+        elif topic.endswith("/task_state"):
+            self.tasks[_auv_of(topic)] = m
+        elif topic.endswith("/target_detection"):
+            self.detections[_auv_of(topic)] = m
+        elif topic == "/step_report":
+            self.reports = {"report": m}
+        elif topic == "/acoustic_channel/links":
+            self.take_links(m)
+        elif topic == "/episode_summary":
+            names = [n for n in m.__slots__ if n not in ("header", "episode", "seed", "scenario")]
+            self.recording.add("summary", episode=int(m.episode), metrics={n: getattr(m, n) for n in names})
+        elif topic == "/scenario":
+            self.scenario = m.data
+
+    def take_links(self, m):
+        """Keeps the energies, and how old what each AUV last heard of the others is."""
+        self.energy = list(getattr(m, "energy", []))
+        sums = {}
+        for link in m.links:
+            total, count = sums.get(link.destination, (0.0, 0))
+            sums[link.destination] = (total + link.age, count + 1)
+        self.ages = {i: total / count for i, (total, count) in sums.items()}
+
+    def take_state(self, m):
+        """A step has ended: what is known of the one before it becomes a row."""
+        if self.state is not None:
+            self.finish()
+        self.state, meta = m, self.recording.meta
+        n = len(m.poses)
+        if n > MOST_AUVS:
+            raise ValueError(f"{n} AUVs, more than {MOST_AUVS}")
+        meta["agents"] = max(n, meta.get("agents", 0))
+        meta["targets"] = max(len(m.target_positions), meta.get("targets", 0))
+        if m.episode != self.episode:
+            self.episode = m.episode
+            self.tasks, self.detections, self.reports = {}, {}, {}
+            seed = int(m.seed)
+            self.recording.add("episode", episode=int(m.episode), seed=seed, start=m.header.stamp.to_sec())
+
+    def finish(self):
+        """Makes a row of the newest state, and of what the agents said about it."""
+        m, self.state = self.state, None
+        if m is None:
+            return
+        n = len(m.poses)
+        t = m.header.stamp.to_sec()
+        targets = [(p.x, p.y, p.z) for p in m.target_positions]
+        row = {"t": t, "position": [], "heading": [], "pitch": [], "phase": [], "distance": []}
+        row.update(estimate=[], covariance=[], age=[], detected=[], range=[])
+        for i, pose in enumerate(m.poses):
+            self.add_vehicle(row, t, i, pose, targets)
+        row["target"] = [x for p in targets for x in p]
+        row["neighbour_age"] = [self.ages.get(i, NAN) for i in range(n)]
+        if len(m.fresh) == n:
+            row["fresh"] = [int(x) for x in m.fresh]
+        if len(self.energy) == n and any(self.energy):
+            row["energy"] = self.energy
+        report = self.reports.get("report")
+        if report is not None:
+            row["reward"] = report.reward
+            terms = [getattr(report, name) for name in TERMS]
+            if all(len(values) == n for values in terms):
+                row["terms"] = [values[i] for i in range(n) for values in terms]
+                self.recording.terms = [name.replace("r_", "") for name in TERMS]
+        self.recording.steps.add(**row)
+
+    def add_vehicle(self, row, t, i, pose, targets):
+        """Adds one AUV to a row."""
+        p, q = pose.position, pose.orientation
+        row["position"] += [p.x, p.y, p.z]
+        row["heading"].append(math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))
+        # Up is positive here, and negative about the body's y axis.
+        row["pitch"].append(-math.asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x)))))
+        target = targets[i % len(targets)] if targets else (NAN,) * 3
+        row["distance"].append(math.dist(target, (p.x, p.y, p.z)))
+        task, detection = self.tasks.get(i), self.detections.get(i)
+        known = task is not None and task.target_known
+        place = task.target_position if known else None
+        row["phase"].append(task.phase if task is not None and task.phase < 4 else 255)
+        row["estimate"] += [place.x, place.y, place.z] if known else [NAN] * 3
+        row["covariance"] += list(task.target_covariance) if known else [NAN] * 6
+        row["age"].append(task.target_age if known else NAN)
+        seen = detection is not None and abs(detection.header.stamp.to_sec() - t) < 1e-6
+        row["detected"].append(int(seen))
+        row["range"].append(detection.range if seen and detection.kind == 1 else NAN)
+
+    def take_packet(self, e):
+        """Adds one packet and receiver whose fate is told."""
+        if e.kind not in (DELIVERED, DROPPED):
+            return
+        fate = 0 if e.kind == DELIVERED else min(int(e.reason), len(FATES) - 1)
+        stamp = lambda time: time.to_sec() if time.to_sec() > 0 else NAN
+        left = e.sequence != NO_SEQUENCE
+        transmit = stamp(e.transmit) if left else NAN
+        # What never left was for everybody it is addressed to.
+        agents = self.recording.meta.get("agents", 0)
+        receivers = [e.receiver] if e.receiver >= 0 else [e.destination] if e.destination >= 0 else [
+            i for i in range(agents) if i != e.source
+        ]  # fmt: skip
+        for receiver in receivers:
+            self.recording.packets.add(
+                int(e.source), int(receiver), int(e.sequence) % (1 << 31) if left else -1, int(e.bytes),
+                fate, stamp(e.offered), transmit, transmit + e.airtime, stamp(e.arrival), e.distance,
+                e.sinr_db, e.loss_probability,
+            )  # fmt: skip
+
+
+def _auv_of(topic):
+    """The number in /auv_<i>/...; ValueError where there is none."""
+    return int(topic.split("/")[1].rpartition("_")[2])
+
+
+TOPICS = ("/swarm_state", "/acoustic_channel/packets", "/acoustic_channel/links", "/step_report",
+          "/episode_summary", "/scenario")  # fmt: skip
+OF_AUV = ("task_state", "target_detection")
+
+
+def read_bag(path, salvage, title):
+    """The bytes of the recording of a bag; BagError for what is damaged, LookupError for no run."""
+    # Beside scripts, which the tool puts on the path; ROS is needed for this one only.
+    from bag_reading import BagError, messages, open_bag
+
+    recording = Recording(title=title)
+    collector, topic = Collector(recording), ""
+    with open_bag(path, salvage) as bag:
+        try:
+            for topic, message in messages(bag, path):
+                parts = topic.split("/")
+                if topic in TOPICS or (len(parts) == 3 and parts[1].startswith("auv_") and parts[2] in OF_AUV):
+                    collector.take(topic, message)
+            collector.finish()
+        except (AttributeError, TypeError, ValueError, LookupError, OverflowError) as error:
+            raise BagError(f"{path}: {topic}: not as this program records it: {error}") from None
+        except BagError as error:
+            # What came before the damage is whole.
+            if not salvage or not recording.steps.rows:
+                raise
+            recording.notes.append(f"The bag is damaged; what is before the damage is shown ({error}).")
+    if not recording.steps.rows and not recording.packets.rows:
+        raise LookupError(f"{path}: holds neither /swarm_state nor /acoustic_channel/packets: not a recorded run")
+    if collector.scenario:
+        scene, note = scene_of(collector.scenario)
+        known = {key: value for key, value in scene.items() if key not in recording.meta}
+        recording.meta.update(known)
+        if note:
+            recording.notes.append(note)
+    if "agents" not in recording.meta:
+        nodes = 1 + max(max(row[0], row[1]) for row in recording.packets.rows)
+        recording.meta.update(agents=min(nodes, MOST_AUVS), targets=0)
+    return recording.encoded()

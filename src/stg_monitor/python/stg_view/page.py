@@ -1,0 +1,93 @@
+"""The page as one HTML file: everything inlined, nothing is asked of any host.
+
+The content security policy names the hash of every script and style, so that the page runs nothing
+else: no text of a recording can become code. The recording is data in base64.
+"""
+
+import base64
+import gzip
+import hashlib
+import html
+import os
+import pathlib
+
+__all__ = ["PageError", "live_page", "report_page"]
+
+WEB = pathlib.Path(__file__).resolve().parent / "web"
+# Where three.js is: beside the page, or where Debian's libjs-three has it.
+THREE = (WEB / "vendor" / "three", pathlib.Path("/usr/share/javascript/three"))
+THREE_FILES = ("build/three.min.js", "examples/js/controls/OrbitControls.js")
+SCRIPTS = ("recording", "story", "scene", "sound", "plots", "network", "table", "overlay", "app")
+
+
+class PageError(Exception):
+    """A page that cannot be made, told in words."""
+
+
+def _read(path):
+    return path.read_text(encoding="utf-8")
+
+
+def _three():
+    folder = next((f for f in THREE if (f / THREE_FILES[0]).is_file()), None)
+    if folder is None:
+        raise PageError(f"no three.js in {' or '.join(map(str, THREE))}: install Debian's libjs-three")
+    return [_read(folder / name) for name in THREE_FILES]
+
+
+def _hash(text):
+    digest = hashlib.sha256(text.encode("utf-8")).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"
+
+
+def _page(title, data, connect):
+    scripts = [*_three(), _read(WEB / "vendor/uplot/uPlot.iife.min.js")]
+    scripts += [_read(WEB / f"{name}.js") for name in SCRIPTS]
+    # A text that ended the element early would change the page; ours and the libraries' have none.
+    if any("</script" in text.lower() for text in scripts):
+        raise PageError("a script holds the end of a script")
+    styles = [_read(WEB / "vendor/uplot/uPlot.min.css"), _read(WEB / "style.css")]
+    policy = (
+        f"default-src 'none'; script-src {' '.join(map(_hash, scripts))}; "
+        f"style-src {' '.join(map(_hash, styles))}; img-src data: blob:; connect-src {connect}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    parts = {
+        "@CSP@": f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
+        "@TITLE@": html.escape(title),
+        "@STYLES@": "\n".join(f"<style>{text}</style>" for text in styles),
+        "@SCRIPTS@": "\n".join(f"<script>{text}</script>" for text in scripts),
+        "@DATA@": data,
+    }
+    text = _read(WEB / "page.html")
+    # Once through the template: what is put in is not looked at again.
+    pieces = []
+    while True:
+        at, mark = min(((text.find(m), m) for m in parts if m in text), default=(-1, ""))
+        if at < 0:
+            return "".join([*pieces, text])
+        pieces += [text[:at], parts[mark]]
+        text = text[at + len(mark) :]
+
+
+def report_page(recording, title):
+    """HTML of a report. recording: its bytes; title: plain text."""
+    packed = base64.b64encode(gzip.compress(recording, 9, mtime=0)).decode()
+    data = f'<script type="application/octet-stream" id="recording">{packed}</script>'
+    return _page(title, data, "'none'")
+
+
+def live_page(title):
+    """HTML of the page of a live run, which follows the websocket /stream of its own host."""
+    return _page(title, '<meta id="socket">', "'self'")
+
+
+def write_page(text, path):
+    """Writes the page; the old file is there until the new one is whole."""
+    temporary = f"{path}.tmp"
+    try:
+        with open(temporary, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise PageError(f"{path}: cannot write the page: {error.strerror}") from None

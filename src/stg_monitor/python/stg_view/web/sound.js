@@ -1,0 +1,106 @@
+/* Packets in the scene: a growing circle of sound around each sender, and a line to each receiver: whole
+ * where the packet is heard, broken with its reason where it is lost. Fast sound is slowed down to be
+ * seen. */
+(function (STG) {
+  "use strict";
+
+  const RINGS = 40, LINES = 600, LABELS = 10, SEEN_S = 0.45;  // of wall time that a packet is seen at least
+
+  class Sound {
+    constructor(app, group, { line, setPoints, circle }) {
+      this.app = app;
+      this.setPoints = setPoints;
+      this.circle = circle;
+      this.rings = [...Array(RINGS)].map(() => line(73, app.colours.sound, 0.7));
+      this.heard = this.segments(app.colours.heard, 0.55);
+      this.missed = this.segments(app.colours.lost, 0.6);
+      this.links = this.segments(app.colours.soft, 0.13);
+      group.add(...this.rings, this.heard, this.missed, this.links);
+      this.labels = [];
+    }
+
+    segments(colour, opacity) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * LINES), 3));
+      const made = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(
+        { color: colour, transparent: true, opacity, depthWrite: false }));
+      made.frustumCulled = false;
+      return made;
+    }
+
+    draw(t, row) {
+      const { recording: r, transmissions, speed, playing, scene, selected } = this.app;
+      const heard = [], missed = [], labels = [];
+      // Fast runs show a packet for longer than it takes, but not several rounds of them at once.
+      const every = (r.end - r.start) / Math.max(1, transmissions.list.length);
+      const least = Math.max(r.meta.decision_s || 0.1, Math.min(playing ? SEEN_S * speed : 0, 1.5 * every));
+      const from = t - Math.max(transmissions.longest || 0, least);
+      let ring = 0;
+      for (const one of transmissions.between(from, t + 1e-9)) {
+        const lasts = Math.max(one.last - one.begin, least), age = t - one.begin;
+        if (!one.left || age > lasts) continue;
+        const p = scene.point(row, "position", one.source);
+        if (!Number.isFinite(p[0])) continue;
+        const share = age / lasts;
+        let reach = 0;
+        for (const packet of one.rows) {
+          const receiver = r.packets.at("receiver", packet), fate = r.packets.at("fate", packet);
+          const q = scene.point(row, "position", receiver);
+          if (!Number.isFinite(q[0])) continue;
+          const away = Math.hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+          reach = Math.max(reach, away);
+          if (selected >= 0 && receiver !== selected && one.source !== selected) continue;
+          if (fate === 0) {
+            if (heard.length < 6 * LINES) heard.push(...p, ...q);
+          } else {
+            this.broken(missed, p, q);
+            labels.push({ p: [0, 1, 2].map((a) => p[a] + 0.62 * (q[a] - p[a])), text: STG.FATES[fate] });
+          }
+        }
+        if (ring < RINGS) {
+          const shape = this.rings[ring++];
+          shape.visible = true;
+          shape.material.opacity = 0.75 * (1 - share) + 0.1;
+          this.setPoints(shape, this.circle(...p, Math.max(1e-6, share * reach)));
+        }
+      }
+      for (; ring < RINGS; ++ring) this.rings[ring].visible = false;
+      this.put(this.heard, heard);
+      this.put(this.missed, missed);
+      this.put(this.links, this.recentLinks(t, row));
+      const stride = Math.max(1, Math.ceil(labels.length / LABELS));
+      this.labels = labels.filter((_, k) => k % stride === 0);
+    }
+
+    /** Seven dashes and a gap at each. */
+    broken(to, p, q) {
+      for (let k = 0; k < 7 && to.length < 6 * LINES; ++k) {
+        for (const u of [k / 7, (k + 0.5) / 7]) to.push(...[0, 1, 2].map((a) => p[a] + u * (q[a] - p[a])));
+      }
+    }
+
+    /** Who has heard whom a short while ago. */
+    recentLinks(t, row) {
+      const { recording: r, transmissions, scene } = this.app;
+      const points = [], window = Math.max(2, 20 * (r.meta.decision_s || 0.1)), seen = new Set();
+      const list = transmissions.between(t - window, t);
+      for (let k = list.length - 1; k >= 0 && points.length < 6 * LINES; --k) {
+        for (const packet of list[k].rows) {
+          if (r.packets.at("fate", packet) !== 0 || r.packets.at("arrival", packet) > t) continue;
+          const a = list[k].source, b = r.packets.at("receiver", packet), key = a < b ? a * 4096 + b : b * 4096 + a;
+          if (seen.has(key)) continue;
+          seen.add(key);
+          points.push(...scene.point(row, "position", a), ...scene.point(row, "position", b));
+        }
+      }
+      return points;
+    }
+
+    put(object, points) {
+      const room = object.geometry.attributes.position.array.length;
+      this.setPoints(object, points.length > room ? points.slice(0, room) : points);
+    }
+  }
+
+  STG.Sound = Sound;
+})(window.STG = window.STG || {});

@@ -1,0 +1,245 @@
+/* What happened, in words: transmissions put together from their rows, and the events of a run with the
+ * reason of each. Read from a recording; draws nothing. */
+(function (STG) {
+  "use strict";
+
+  const LOST = 3;
+  const BEFORE_LOSS_S = 5;  // in which missing packets are told, at least; or so many decisions:
+  const BEFORE_LOSS_STEPS = 50;
+
+  /** The packets of a recording, by transmission, in the order in which they left. */
+  class Transmissions {
+    constructor(recording) {
+      this.recording = recording;
+      this.clear();
+    }
+
+    clear() {
+      this.list = [];
+      this.byKey = new Map();
+      this.rows = 0;
+    }
+
+    /** Takes what came since the last call. */
+    update() {
+      const packets = this.recording.packets;
+      if (packets.count === this.rows) return;
+      if (packets.count < this.rows) this.clear();
+      const at = (name, row) => packets.at(name, row);
+      let sorted = true;
+      for (let row = this.rows; row < packets.count; ++row) {
+        const left = Number.isFinite(at("transmit", row));
+        const begin = left ? at("transmit", row) : at("offered", row);
+        const key = `${at("source", row)}/${at("sequence", row)}/${begin}/${left}`;
+        let one = this.byKey.get(key);
+        if (one === undefined) {
+          one = {
+            source: at("source", row), sequence: at("sequence", row), left, begin,
+            end: left ? at("transmit_end", row) : begin, last: begin, heard: 0, rows: [],
+            bytes: at("bytes", row),
+          };
+          this.byKey.set(key, one);
+          sorted = sorted && (this.list.length === 0 || this.list[this.list.length - 1].begin <= begin);
+          this.list.push(one);
+        }
+        one.rows.push(row);
+        if (at("fate", row) === 0) ++one.heard;
+        const arrival = at("arrival", row);
+        if (arrival > one.last) one.last = arrival;
+      }
+      if (!sorted) this.list.sort((a, b) => a.begin - b.begin);
+      this.rows = packets.count;
+      // How long sound is under way at most: where a window has to begin to look.
+      this.longest = this.list.reduce((most, one) => Math.max(most, one.last - one.begin), 0);
+    }
+
+    /** Index of the first transmission that begins at t or later. */
+    first(t) {
+      let low = 0, high = this.list.length;
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if (this.list[middle].begin < t) low = middle + 1; else high = middle;
+      }
+      return low;
+    }
+    /** Those that begin in [from, to). */
+    between(from, to) { return this.list.slice(this.first(from), this.first(to)); }
+  }
+
+  /** Text of a time or a length with as many digits as it needs. */
+  STG.number = (x, unit = "") => {
+    if (!Number.isFinite(x)) return "–";
+    const size = Math.abs(x);
+    if (size > 0 && size < 0.00095) return x.toExponential(1) + (unit ? ` ${unit}` : "");
+    const digits = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : size >= 0.0995 ? 3 : 4;
+    return x.toFixed(size === 0 ? 0 : digits) + (unit ? ` ${unit}` : "");
+  };
+  STG.clock = (t) => {
+    if (!Number.isFinite(t)) return "–";
+    const tenths = Math.floor(Math.abs(t) * 10 + 1e-6);
+    const s = Math.floor(tenths / 10) % 60, m = Math.floor(tenths / 600);
+    return `${t < 0 ? "−" : ""}${m}:${String(s).padStart(2, "0")}.${tenths % 10}`;
+  };
+
+  /** The events of a run, found step by step: [{t, kind, auv, title}]. */
+  class Story {
+    constructor(recording, transmissions) {
+      this.recording = recording;
+      this.transmissions = transmissions;
+      this.clear();
+    }
+
+    clear() {
+      this.events = [];
+      this.rowT = -Infinity;
+      this.packetRows = 0;
+      this.phase = [];
+      this.seen = [];
+      this.touching = new Set();
+      this.episode = null;
+    }
+
+    update() {
+      const before = this.events.length;
+      this.readSteps();
+      this.readPackets();
+      if (this.events.length !== before) this.events.sort((a, b) => a.t - b.t);
+      return this.events.length !== before;
+    }
+
+    add(t, kind, auv, title) { this.events.push({ t, kind, auv, title }); }
+
+    readSteps() {
+      const r = this.recording, steps = r.steps;
+      for (let row = steps.find("t", this.rowT) + 1; row < steps.count; ++row) {
+        const t = this.rowT = steps.at("t", row);
+        const episode = r.episodeAt(t);
+        if (episode !== this.episode) this.begin(episode);
+        for (let i = 0; i < r.agents; ++i) this.readVehicle(row, t, i);
+        if (r.meta.radius_m > 0) this.readContacts(row, t);
+      }
+    }
+
+    begin(episode) {
+      this.episode = episode;
+      this.phase = [];
+      this.seen = [];
+      this.found = false;
+      this.touching.clear();
+      const seed = episode && episode.seed !== undefined ? `, seed ${episode.seed}` : "";
+      if (episode) this.add(episode.start, "episode", -1, `Episode ${episode.episode} begins${seed}`);
+    }
+
+    readVehicle(row, t, i) {
+      const r = this.recording, steps = r.steps;
+      if (steps.has("detected") && steps.at("detected", row, i) === 1 && !this.seen[i]) {
+        this.seen[i] = true;
+        const first = this.found ? "" : ", the first of all";
+        this.found = true;
+        this.add(t, "detection", i, `${r.name(i)} detects its target${first}`);
+      }
+      const phase = steps.at("phase", row, i), was = this.phase[i];
+      if (Number.isFinite(phase) && phase < 4) {
+        if (was !== undefined && phase === LOST && was !== LOST) {
+          this.add(t, "lost", i, `${r.name(i)} loses the target`);
+        }
+        if (was === LOST && phase !== LOST) this.add(t, "found", i, `${r.name(i)} has the target again`);
+        this.phase[i] = phase;
+      }
+      if (steps.has("fresh") && steps.at("fresh", row, i) === 0 && this.lateAt !== t && row > 0) {
+        this.lateAt = t;
+        this.add(t, "late", i, `${r.name(i)} decides too late; the last command is held`);
+      }
+    }
+
+    readContacts(row, t) {
+      const r = this.recording, reach = 2 * r.meta.radius_m;
+      const at = (i, a) => r.steps.at("position", row, 3 * i + a);
+      for (let i = 0; i < r.agents; ++i) {
+        for (let j = 0; j < i; ++j) {
+          const key = i * 1024 + j;
+          const dx = at(i, 0) - at(j, 0), dy = at(i, 1) - at(j, 1), dz = at(i, 2) - at(j, 2);
+          if (dx * dx + dy * dy + dz * dz < reach * reach) {
+            if (!this.touching.has(key)) {
+              this.touching.add(key);
+              this.add(t, "contact", i, `${r.name(j)} and ${r.name(i)} touch`);
+            }
+          } else {
+            this.touching.delete(key);
+          }
+        }
+      }
+    }
+
+    readPackets() {
+      const r = this.recording, packets = r.packets;
+      if (packets.count < this.packetRows) this.packetRows = packets.count;
+      const collided = new Map();
+      for (let row = this.packetRows; row < packets.count; ++row) {
+        if (packets.at("fate", row) !== 3) continue;
+        const t = packets.at("arrival", row), i = packets.at("receiver", row);
+        const key = Math.round(t);
+        if (!collided.has(key)) collided.set(key, { t, at: new Set() });
+        collided.get(key).at.add(i);
+      }
+      this.packetRows = packets.count;
+      for (const { t, at } of collided.values()) {
+        const names = [...at].slice(0, 3).map((i) => r.name(i)).join(", ");
+        this.add(t, "collision", [...at][0], `Packets collide at ${names}${at.size > 3 ? ", …" : ""}`);
+      }
+    }
+
+    /** Why an AUV lost the target: lines of text, and the packets to it that were missing. */
+    explain(event) {
+      const r = this.recording, row = r.row(event.t), i = event.auv, lines = [];
+      if (i < 0 || row < 0) return { lines, missing: [] };
+      const d = r.steps.at("distance", row, i), limit = r.meta.lost_distance_m;
+      const [error, nees] = r.estimateError(row, i);
+      const age = r.steps.at("age", row, i), std = r.estimateStd(row, i);
+      if (Number.isFinite(d)) {
+        const beyond = limit && d > limit ? `, beyond the limit of ${STG.number(limit, "m")}` : "";
+        lines.push(`It is ${STG.number(d, "m")} from the target${beyond}.`);
+      }
+      if (r.steps.has("detected")) {
+        lines.push(r.steps.at("detected", row, i) === 1
+          ? "Its own sensor sees the target."
+          : "Its own sensor does not see the target" +
+            (r.meta.sensing_range_m ? ` (range ${STG.number(r.meta.sensing_range_m, "m")}).` : "."));
+      }
+      if (Number.isFinite(error)) {
+        lines.push(`Its estimate is off by ${STG.number(error, "m")}` +
+          (Number.isFinite(std) ? `, stated deviation ${STG.number(std, "m")}` : "") +
+          (Number.isFinite(nees) ? ` (NEES ${STG.number(nees)}, consistent: 3).` : "."));
+      }
+      if (Number.isFinite(age)) lines.push(`The newest observation in it is ${STG.number(age, "s")} old.`);
+      const heard = this.missingBefore(event.t, i);
+      if (heard.sent > 0) {
+        const reasons = heard.reasons.map(([fate, count]) => `${count} ${STG.FATES[fate]}`).join(", ");
+        lines.push(`Of ${heard.sent} packets to it in the ${STG.number(heard.window, "s")} before, ` +
+          `${heard.missing.length} are missing${reasons ? `: ${reasons}` : ""}.`);
+      }
+      return { lines, missing: heard.missing };
+    }
+
+    missingBefore(t, i) {
+      const r = this.recording;
+      const window = Math.max(BEFORE_LOSS_S, BEFORE_LOSS_STEPS * (r.meta.decision_s || 0));
+      const missing = [], counts = new Map();
+      let sent = 0;
+      for (const one of this.transmissions.between(t - window, t)) {
+        for (const row of one.rows) {
+          if (r.packets.at("receiver", row) !== i) continue;
+          ++sent;
+          const fate = r.packets.at("fate", row);
+          if (fate === 0) continue;
+          missing.push({ source: one.source, sequence: one.sequence, t: one.begin, fate });
+          counts.set(fate, (counts.get(fate) || 0) + 1);
+        }
+      }
+      return { window, sent, missing, reasons: [...counts].sort((a, b) => b[1] - a[1]) };
+    }
+  }
+
+  STG.Transmissions = Transmissions;
+  STG.Story = Story;
+})(window.STG = window.STG || {});

@@ -1,0 +1,115 @@
+"""Reports of bags: everything of a run gets into the page; damaged bags give a page or one line."""
+
+import contextlib
+import io
+import os
+import pathlib
+import random
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+import view_fixtures  # noqa: E402  (found by the line above, and finds the others)
+import auv_msgs.msg  # noqa: E402
+import genpy  # noqa: E402
+import rosbag  # noqa: E402
+import std_msgs.msg  # noqa: E402
+import report  # noqa: E402  (the program, in scripts/)
+from bag_reading import BagError  # noqa: E402
+from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench  # noqa: E402
+from stg_common.files import FileError  # noqa: E402
+from stg_view.recording import messages  # noqa: E402
+
+AGENTS, STEPS = 3, 40
+
+
+def write_bag(path):
+    """Writes a run of AUVs that stand still, with packets of which every third is lost."""
+    with rosbag.Bag(str(path), "w", compression="lz4", chunk_threshold=8192) as bag:
+        scenario = std_msgs.msg.String(view_fixtures.HOSTILE)
+        bag.write("/scenario", scenario, genpy.Time(1))
+        for k in range(STEPS):
+            t = genpy.Time.from_sec(1.0 + 0.1 * k)
+            state = auv_msgs.msg.SwarmState(episode=0, step=k, seed=5)
+            state.header.stamp = t
+            state.target_positions = [Point(0.5, 0.0, -1.0)]
+            for i in range(AGENTS):
+                pose = Pose()
+                pose.position.x, pose.orientation.w = float(i), 1.0
+                state.poses.append(pose)
+            state.twists, state.velocities = [Twist()] * AGENTS, [Vector3()] * AGENTS
+            state.target_velocities, state.wrenches = [Vector3()], [Wrench()] * AGENTS
+            state.fresh = [True] * AGENTS
+            bag.write("/swarm_state", state, t)
+            task = auv_msgs.msg.TaskState(episode=0, step=k, phase=3 if k >= 20 else 2, target_known=True)
+            task.header.stamp, task.target_position = t, Point(0.6, 0.0, -1.0)
+            task.target_covariance = [0.01, 0, 0, 0.01, 0, 0.01]
+            bag.write("/auv_1/task_state", task, t)
+            bag.write("/acoustic_channel/packets", packets_of(k, t), t)
+        summary = auv_msgs.msg.EpisodeSummary(scenario=view_fixtures.HOSTILE, policy_id=view_fixtures.HOSTILE)
+        bag.write("/episode_summary", summary, t)
+
+
+def packets_of(k, t):
+    """One transmission, and one that never left."""
+    found = auv_msgs.msg.PacketEvents()
+    found.header.stamp = t
+    common = {"source": k % AGENTS, "destination": -1, "sequence": k, "bytes": 32, "offered": t, "transmit": t, "arrival": t}
+    for receiver in range(AGENTS):
+        if receiver != k % AGENTS:
+            lost = (k + receiver) % 3 == 0
+            kind = {"kind": 4, "reason": 2} if lost else {"kind": 3, "reason": 0}
+            found.events.append(auv_msgs.msg.PacketEvent(receiver=receiver, **kind, **common))
+    common.update(sequence=4294967295, transmit=genpy.Time(0), arrival=genpy.Time(0))
+    found.events.append(auv_msgs.msg.PacketEvent(receiver=-1, kind=4, reason=7, **common))
+    return found
+
+
+class BagPageTest(unittest.TestCase):
+    """Each test has a folder with the bag."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.bag = pathlib.Path(folder.name) / "run.bag"
+        self.page = self.bag.with_suffix(".html")
+        write_bag(self.bag)
+
+    def test_a_whole_bag_is_in_the_recording(self):
+        with contextlib.redirect_stderr(io.StringIO()):
+            data = report.read_any(str(self.bag), False, "x")
+        found = {}
+        for header, columns in messages(data):
+            found.setdefault(header["kind"], []).append((header, columns))
+        steps = found["steps"][0][1]
+        self.assertEqual((STEPS, 3 * AGENTS), steps["position"].shape)
+        self.assertEqual([2] * 20 + [3] * 20, steps["phase"][:, 1].tolist())
+        fates = found["packets"][0][1]["fate"].ravel().tolist()
+        # A packet that never left is lost for every receiver.
+        self.assertEqual(STEPS * (AGENTS - 1), fates.count(7))
+        self.assertEqual(STEPS * (AGENTS - 1), fates.count(0) + fates.count(2))
+        self.assertEqual(1, len(found["summary"]))
+
+    def test_fifty_cuts_give_a_page_or_a_line(self):
+        whole, rng, pages = self.bag.read_bytes(), random.Random(3), 0
+        cut = self.bag.with_name("cut.bag")
+        for k in range(50):
+            cut.write_bytes(whole[: rng.randrange(len(whole))])
+            said = io.StringIO()
+            with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+                try:
+                    arguments = [str(cut), "--out", str(self.page), *(["--salvage"] if k % 2 else [])]
+                    status = report.main(arguments)
+                except (BagError, FileError) as error:  # run_program makes one line of them
+                    self.assertNotIn("\n", str(error))
+                    status = 2
+            if status == 0:
+                pages += 1
+                self.assertIn("Content-Security-Policy", self.page.read_text())
+            self.page.unlink(missing_ok=True)
+        self.assertGreater(pages, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
