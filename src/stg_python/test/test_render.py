@@ -31,6 +31,21 @@ class Pictures(unittest.TestCase):
             self.assertGreater(pixels(picture, colour), 50, colour)
         self.assertLess(pixels(picture, render.COLOURS[5]), 20)
 
+    def test_a_report_holds_every_remembered_step(self):
+        from stg_view.recording import messages
+
+        env = self.fly(30)
+        page = stg.report(env)
+        self.assertIn("Content-Security-Policy", page.html)
+        self.assertNotIn("<script", page._repr_html_())
+        data = stg.page.recording_of(env._history, env.scenario, "x")
+        steps = [columns for header, columns in messages(data) if header["kind"] == "steps"]
+        self.assertEqual(31, sum(len(columns["t"]) for columns in steps))
+        np.testing.assert_array_equal(
+            steps[0]["position"][-1], env.snapshot()["position"].ravel().astype(np.float32))  # fmt: skip
+        with self.assertRaisesRegex(ValueError, "render_mode"):
+            stg.report(stg.parallel_env())
+
     def test_tracks_grow(self):
         early, late = self.fly(2).render(), self.fly(60).render()
         self.assertGreater(np.sum(early != late), 1000)

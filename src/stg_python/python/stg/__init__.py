@@ -16,6 +16,7 @@ from stg._core import (
     UserError,
     controllers,
 )
+from stg.page import Page, report
 from stg.parallel import ParallelEnv, parallel_env
 from stg.policies import evaluate, export_policy, load_policy
 from stg.scenarios import load_scenario, scenario_folder, scenario_names
@@ -25,6 +26,7 @@ __all__ = [
     "Agent",
     "NeighbourState",
     "PacketCodec",
+    "Page",
     "ParallelEnv",
     "Policy",
     "Scenario",
@@ -37,6 +39,7 @@ __all__ = [
     "load_policy",
     "load_scenario",
     "parallel_env",
+    "report",
     "scenario_folder",
     "scenario_names",
     "vector_env",
