@@ -29,7 +29,7 @@ struct HillClimbingConfig : AlgorithmConfig {
     table->Add("step", &step, {1e-6, 10}, "standard deviation of the candidates' weights");
   }
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                  WorkerPool* pool) const override;
+                                  const Team& team) const override;
 };
 
 /// Every environment flies a candidate of its own, the best so far with noise on its weights, for
@@ -122,7 +122,7 @@ class HillClimbing : public Algorithm {
 };
 
 std::unique_ptr<Algorithm> HillClimbingConfig::Make(const TrainConfig& common,
-                                                    const Problem& problem, WorkerPool*) const {
+                                                    const Problem& problem, const Team&) const {
   return std::make_unique<HillClimbing>(*this, common, problem);
 }
 

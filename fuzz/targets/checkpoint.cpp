@@ -40,7 +40,7 @@ std::string WithHeader(const std::string& payload) {
     checksum = (checksum ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   }
   std::string bytes = "STGTRAIN";
-  const std::uint32_t version[2] = {2, 0};
+  const std::uint32_t version[2] = {3, 0};
   const std::uint64_t rest[2] = {payload.size(), checksum};
   bytes.append(reinterpret_cast<const char*>(version), sizeof version);
   bytes.append(reinterpret_cast<const char*>(rest), sizeof rest);

@@ -1,5 +1,7 @@
 #include "marl_trainer/learn/algorithm_config.hpp"
 
+#include <algorithm>
+
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithms/happo/happo_config.hpp"
 #include "marl_trainer/learn/algorithms/ippo/ippo_config.hpp"
@@ -11,8 +13,20 @@
 
 namespace stg::learn {
 
-void Algorithm::Join(Communicator*) {
-  throw UserError("this algorithm learns in one process only");
+std::vector<Shard> ShardsOf(const GroupShare& share, int first, int count, int envs) {
+  std::vector<Shard> shards;
+  for (int group = first; group < first + count; ++group) {
+    const int end = share.FirstEnv(group + 1, envs);
+    for (int env = share.FirstEnv(group, envs); env < end;) {
+      Shard shard;
+      shard.first_env = env;
+      shard.envs = std::min((env / Shard::kEnvs + 1) * Shard::kEnvs, end) - env;
+      shard.group = group;
+      shards.push_back(shard);
+      env += shard.envs;
+    }
+  }
+  return shards;
 }
 
 void Algorithm::StartFrom(const Archive&) {

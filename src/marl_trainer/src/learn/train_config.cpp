@@ -14,7 +14,6 @@ void TrainConfig::Describe(OptionTable* table) {
   table->Add("envs", &envs, {1, 65536}, "parallel environments");
   table->Add("horizon", &horizon, {1, 100000}, "decisions of each environment between two updates");
   table->Add("stagger", &stagger, "spread the ends of the first episodes");
-  imitation.Describe(table);
   table->Add("start-from", &start_from,
              "folder of a finished run whose networks and normalisers to start from; steps, "
              "optimiser and exploration start anew; empty: untrained networks");
@@ -47,7 +46,6 @@ OptionTable TrainSetup::Options() {
 
 void TrainSetup::ValidateOrThrow() const {
   TrainSetup(*this).Options().RequireRanges();
-  common.imitation.ValidateOrThrow();
   own->ValidateOrThrow(common);
 }
 

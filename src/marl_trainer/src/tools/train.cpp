@@ -17,13 +17,13 @@
 
 namespace {
 
-bool Leads(const stg::learn::Communicator* ranks) { return ranks == nullptr || ranks->rank() == 0; }
+bool Leads(const stg::learn::Communicator& ranks) { return ranks.rank() == 0; }
 
 /// Says what went wrong and ends all ranks.
-int Fail(const stg::learn::Communicator* ranks, const std::exception& error, int status) {
+int Fail(const stg::learn::Communicator& ranks, const std::exception& error, int status) {
   // What is wrong with all of them is told by one, who ends the others meanwhile.
   if (!Leads(ranks)) std::this_thread::sleep_for(std::chrono::seconds(2));
-  std::cerr << "train" << (Leads(ranks) ? "" : " (rank " + std::to_string(ranks->rank()) + ")")
+  std::cerr << "train" << (Leads(ranks) ? "" : " (rank " + std::to_string(ranks.rank()) + ")")
             << ": " << error.what() << std::endl;
   stg::learn::AbortRanks(status);
   return status;
@@ -123,7 +123,7 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   options.resume = resume;
   options.workers = workers;
   std::ostream nowhere(nullptr);
-  std::ostream& lines = Leads(ranks) ? std::cout : nowhere;
+  std::ostream& lines = Leads(*ranks) ? std::cout : nowhere;
   options.log = &lines;
   options.ranks = ranks;
   if (kept) options.mix = earlier->mix;
@@ -134,7 +134,7 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   options.stop = &stg::HeedStopSignals();
   stg::learn::Trainer trainer(scenario, setup, options);
   if (trainer.Run()) {
-    if (Leads(ranks) && !std::cout.flush()) {
+    if (Leads(*ranks) && !std::cout.flush()) {
       throw stg::UserError("all is saved, but standard output cannot be written");
     }
     return 0;
@@ -147,13 +147,13 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::unique_ptr<stg::learn::Communicator> ranks;
+  std::unique_ptr<stg::learn::Communicator> ranks = std::make_unique<stg::learn::OneRank>();
   try {
     ranks = stg::learn::JoinRanks(&argc, &argv);
     return Train(argc, argv, ranks.get());
   } catch (const stg::UserError& error) {
-    return Fail(ranks.get(), error, 2);
+    return Fail(*ranks, error, 2);
   } catch (const std::exception& error) {
-    return Fail(ranks.get(), error, 1);
+    return Fail(*ranks, error, 1);
   }
 }

@@ -7,6 +7,7 @@
 #include "algorithms/game.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/algorithm_config.hpp"
+#include "marl_trainer/learn/collect/imitation.hpp"
 #include "marl_trainer/learn/nn/gaussian_actor.hpp"
 
 /// What every registered algorithm promises, whatever it learns.
@@ -241,13 +242,15 @@ TEST_P(Conformance, PresetsAreValidAndSurviveJson) {
 
 TEST_P(Conformance, ImitationIsLearntOrRefused) {
   TrainSetup setup(GetParam(), "fast");
-  setup.common.imitation.controller = "pursuit";
-  setup.common.imitation.steps = 1000;
+  nlohmann::ordered_json json = ToJson(setup);
+  json["imitate"] = "pursuit";
+  json["imitation-steps"] = 1000;
   const bool on_policy = GetParam().find("ppo") != std::string::npos;
+  EXPECT_EQ(setup.own->Imitation() != nullptr, on_policy);
   if (on_policy) {
-    EXPECT_NO_THROW(setup.ValidateOrThrow());
+    EXPECT_EQ(TrainSetupFromJson(json).own->Imitation()->controller, "pursuit");
   } else {
-    EXPECT_THROW(setup.ValidateOrThrow(), UserError);
+    EXPECT_THROW(TrainSetupFromJson(json), UserError);
   }
 }
 

@@ -138,16 +138,13 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
 }
 
 double Training::Run(int collections, double progress) {
-  constexpr int kShardEnvs = 16;
   double last = 0.0;
   for (int c = 0; c < collections; ++c) {
     Collection collection;
     collection.number = collection_++;
     collection.steps = setup_.common.horizon;
     collection.taught = game_.teacher != nullptr;
-    for (int first = 0; first < setup_.common.envs; first += kShardEnvs) {
-      collection.shards.push_back({first, std::min(kShardEnvs, setup_.common.envs - first)});
-    }
+    collection.shards = ShardsOf(GroupShare(), 0, kGroups, setup_.common.envs);
     algorithm_->Begin(collection);
     std::vector<double> rewards(collection.shards.size(), 0.0);
     pool_.Run(static_cast<int>(rewards.size()), [&](int shard, int worker) {

@@ -23,7 +23,7 @@ TEST(Happo, TheFactorIsTheRatioOfTheJointDensities) {
   training.Run(5);
   const auto& happo = dynamic_cast<Happo&>(training.algorithm());
   // The buffers hold what the networks saw and did; the parameters are those after the update.
-  const std::vector<double>& factors = happo.update().factors();
+  const std::vector<double>& factors = happo.ratio().factors();
   const Mlp& mean = happo.networks().actor.mean();
   Mlp::Workspace workspace(mean, 1);
   std::size_t sample = 0;
@@ -33,7 +33,7 @@ TEST(Happo, TheFactorIsTheRatioOfTheJointDensities) {
       double log_ratio = 0.0;
       for (int agent = 0; agent < game.agents; ++agent) {
         const auto row = static_cast<std::size_t>(i * game.agents + agent);
-        const float* actor = happo.parameters().actors[static_cast<std::size_t>(agent)].data();
+        const float* actor = happo.actors()[static_cast<std::size_t>(agent)].numbers.data();
         mean.Forward(actor, &b->observations[row], 1, &workspace);
         log_ratio += agent::GaussianLogDensity(workspace.output(),
                                                actor + happo.networks().actor.log_std_offset(),
@@ -46,7 +46,7 @@ TEST(Happo, TheFactorIsTheRatioOfTheJointDensities) {
   }
   ASSERT_EQ(sample, factors.size());
   EXPECT_GT(largest, 0.01);
-  std::vector<int> order = happo.update().order();
+  std::vector<int> order = happo.order();
   std::sort(order.begin(), order.end());
   EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
 }
@@ -68,9 +68,9 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
   const std::size_t spread = happo.networks().actor.log_std_offset();
   std::set<std::vector<int>> orders;
   for (int c = 0; c < 40; ++c) {
-    const HappoParameters before = happo.parameters();
+    const std::vector<Trained> before = happo.actors();
     training.Run(1);
-    orders.insert(happo.update().order());
+    orders.insert(happo.order());
     if (c >= 4) continue;
     std::vector<double> weights;  // advantage times M
     for (const RolloutBuffer* b : happo.rollouts().buffers()) {
@@ -81,10 +81,10 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
     for (const double a : weights) sum += a / n;
     for (const double a : weights) squares += (a - sum) * (a - sum) / n;
     for (double& a : weights) a = (a - sum) / std::sqrt(squares);
-    for (const int agent : happo.update().order()) {
+    for (const int agent : happo.order()) {
       const auto i = static_cast<std::size_t>(agent);
-      const float* old = before.actors[i].data();
-      const float* now = happo.parameters().actors[i].data();
+      const float* old = before[i].numbers.data();
+      const float* now = happo.actors()[i].numbers.data();
       Mlp::Workspace workspace(mean, 1);
       // d / d log sigma of -weight log pi is weight (1 - z^2), the mean over samples.
       double gradient = 0.0;
@@ -102,8 +102,8 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
               static_cast<double>(b->log_prob[row]));
         }
       }
-      const float remembered = happo.parameters().actor_adams[i].first[spread] -
-                               0.9F * before.actor_adams[i].first[spread];
+      const float remembered =
+          happo.actors()[i].adam.first[spread] - 0.9F * before[i].adam.first[spread];
       EXPECT_NEAR(10.0F * remembered, gradient, 1e-4) << "AUV " << agent << " of update " << c;
     }
   }

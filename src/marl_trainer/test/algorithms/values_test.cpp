@@ -86,10 +86,8 @@ TEST(Endless, TruncationIsNoEndForAnOnPolicyCritic) {
   const auto& m = dynamic_cast<Mappo&>(mappo.algorithm());
   const auto& h = dynamic_cast<Happo&>(happo.algorithm());
   for (const float x : {-0.8F, 0.0F, 0.5F}) {
-    EXPECT_NEAR(Value(m.networks().critic, m.parameters().data() + m.networks().critic_offset(),
-                      m.scales(), x),
-                10.0, 0.2);
-    EXPECT_NEAR(Value(h.networks().critic, h.parameters().critic.data(), h.rollouts().scales(), x),
+    EXPECT_NEAR(Value(m.networks().critic, m.critic().numbers.data(), m.scales(), x), 10.0, 0.2);
+    EXPECT_NEAR(Value(h.networks().critic, h.critic().numbers.data(), h.rollouts().scales(), x),
                 10.0, 0.2);
   }
 }
@@ -185,8 +183,7 @@ TEST(TakingTurns, AnOnPolicyCriticKnowsTheStateThatFollows) {
   mappo.Run(150);
   const auto& m = dynamic_cast<Mappo&>(mappo.algorithm());
   for (const float x : {1.0F, -1.0F}) {
-    EXPECT_NEAR(Value(m.networks().critic, m.parameters().data() + m.networks().critic_offset(),
-                      m.scales(), x),
+    EXPECT_NEAR(Value(m.networks().critic, m.critic().numbers.data(), m.scales(), x),
                 (x > 0.0F ? 1.0 : kGamma) / (1.0 - kGamma * kGamma), 0.05);
   }
 }

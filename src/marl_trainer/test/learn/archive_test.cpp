@@ -37,7 +37,7 @@ class ArchiveTest : public ::testing::Test {
   }
 
   /// Writes a payload under a header that fits it.
-  void Write(const std::string& payload, std::uint32_t version = 2) const {
+  void Write(const std::string& payload, std::uint32_t version = 3) const {
     std::uint64_t checksum = 14695981039346656037ULL;
     for (const char c : payload) {
       checksum = (checksum ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
@@ -158,7 +158,7 @@ TEST_F(ArchiveTest, ForeignTruncatedAndDamagedFilesAreRefused) {
     EXPECT_NE(Refusal().find("checksum"), std::string::npos) << at;
   }
   Write("whatever", 1);
-  EXPECT_NE(Refusal().find("version 1 (a libtorch archive), this trainer reads 2"),
+  EXPECT_NE(Refusal().find("version 1 (a libtorch archive), this trainer reads 3"),
             std::string::npos);
 }
 

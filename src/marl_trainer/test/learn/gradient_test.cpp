@@ -125,7 +125,10 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     problem.action_size = actions;
     problem.action_scale = 0.8;
     const ActorCritic networks(problem, config);
-    std::vector<float> p = networks.Initialise(3, -0.7);
+    std::vector<float> p = networks.NewActor(3, 0, -0.7).numbers;
+    const std::vector<float> fresh = networks.NewCritic(3).numbers;
+    const std::size_t split = p.size();
+    p.insert(p.end(), fresh.begin(), fresh.end());
     // Away from the special initial point, so that no term vanishes.
     const std::vector<float> noise = Draw(p.size(), 0.1F, 4);
     for (std::size_t i = 0; i < p.size(); ++i) p[i] += noise[i];
@@ -136,7 +139,7 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     std::vector<float> advantages = Draw(count, 1.0F, 8), targets = Draw(count, 1.0F, 9);
 
     TorchNetwork actor = Reference(networks.actor.mean(), p.data());
-    TorchNetwork critic = Reference(networks.critic, p.data() + networks.critic_offset());
+    TorchNetwork critic = Reference(networks.critic, p.data() + split);
     torch::Tensor log_std =
         torch::from_blob(p.data() + networks.actor.log_std_offset(), {actions}).clone();
     log_std.requires_grad_(true);
@@ -178,13 +181,14 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     batch.states = states.data();
     batch.advantages = advantages.data();
     batch.targets = targets.data();
-    std::vector<float> gradient(networks.parameters(), 0.0F);
-    const PpoSums sums = PpoLoss(networks, config, 1.0, count, agents)
-                             .AddGradient(p.data(), batch, minibatch, gradient.data());
+    std::vector<float> gradient(p.size(), 0.0F);
+    PpoLoss kernels(networks, config, count * agents);
+    PpoSums sums;
+    kernels.AddActor(p.data(), batch, minibatch, gradient.data(), &sums);
+    kernels.AddCritic(p.data() + split, batch, minibatch, gradient.data() + split, &sums);
     EXPECT_LT(GradientError(actor, gradient.data()), 1e-4)
         << activation << ", imitation " << imitation;
-    EXPECT_LT(GradientError(critic, gradient.data() + networks.critic_offset()), 1e-4)
-        << activation;
+    EXPECT_LT(GradientError(critic, gradient.data() + split), 1e-4) << activation;
     for (int i = 0; i < actions; ++i) {
       EXPECT_NEAR(gradient[networks.actor.log_std_offset() + static_cast<std::size_t>(i)],
                   log_std.grad()[i].item<float>(), 1e-4);

@@ -26,8 +26,8 @@ TEST(TrainSetup, EveryFieldSurvivesJson) {
   TrainSetup setup("mappo", "paper");
   setup.common.seed = 5;
   setup.common.stagger = false;
-  setup.common.imitation.controller = "pursuit";
-  setup.common.imitation.steps = 1000000000000;
+  Own(setup).imitation.controller = "pursuit";
+  Own(setup).imitation.steps = 1000000000000;
   Own(setup).lr = 0.125;
   Own(setup).actor_hidden = {7, 8};
   const auto json = ToJson(setup);
@@ -113,7 +113,7 @@ TEST(TrainSetup, NamesTheOptionWithABadValue) {
   Own(setup).initial_log_std = -5.0;  // below the lower bound
   EXPECT_NE(Refusal(setup).find("--initial-log-std"), std::string::npos);
   setup = TrainSetup("mappo", "fast");
-  setup.common.imitation.steps = 100;
+  Own(setup).imitation.steps = 100;
   EXPECT_NE(Refusal(setup).find("--imitation-steps"), std::string::npos);
   setup = TrainSetup("mappo", "fast");
   Own(setup).wall_units = 0.015;

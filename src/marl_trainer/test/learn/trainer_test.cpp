@@ -11,8 +11,12 @@
 namespace stg::learn {
 namespace {
 
-const std::vector<float>& Parameters(Trainer& trainer) {
-  return dynamic_cast<Mappo&>(trainer.algorithm()).parameters();
+/// The actor's, then the critic's.
+std::vector<float> Parameters(Trainer& trainer) {
+  const auto& mappo = dynamic_cast<Mappo&>(trainer.algorithm());
+  std::vector<float> all = mappo.actor().numbers;
+  all.insert(all.end(), mappo.critic().numbers.begin(), mappo.critic().numbers.end());
+  return all;
 }
 
 TEST_F(TrainerTest, WeightsDoNotDependOnTheNumberOfWorkers) {
@@ -24,7 +28,7 @@ TEST_F(TrainerTest, WeightsDoNotDependOnTheNumberOfWorkers) {
     EXPECT_TRUE(one.Run());
     EXPECT_TRUE(two.Run());
     EXPECT_TRUE(three.Run());
-    EXPECT_EQ(one.state().algorithm.Integer("adam_steps"), 8 * 2 * 4);
+    EXPECT_EQ(one.state().algorithm.Integer("actor_adam_steps"), 8 * 2 * 4);
     ExpectSameBits(one.state(), two.state());
     ExpectSameBits(one.state(), three.state());
     TrainSetup other = SmallSetup();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/checkpoint/archive.hpp"
-#include "marl_trainer/learn/comm/communicator.hpp"
+#include "marl_trainer/learn/comm/groups.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::learn {
@@ -24,12 +24,16 @@ struct Problem {
 
 /// Environments that one worker steps through a collection on its own.
 struct Shard {
+  static constexpr int kEnvs = 16;  ///< of a full one
+
   int first_env = 0;  ///< index of its first environment among all
   int envs = 0;
-  // Among several ranks:
-  int group = 0;                      ///< GroupShare's
-  int home_first = 0, home_envs = 0;  ///< the shard that a process alone has them in
+  int group = 0;  ///< GroupShare's; a shard is in one group
 };
+
+/// The shards of `count` groups from `first` on, among `envs` environments of all: cut where groups
+/// end, and where full shards do.
+std::vector<Shard> ShardsOf(const GroupShare& share, int first, int count, int envs);
 
 /// One collection: every environment makes `steps` decisions. Episodes go on in the next one.
 struct Collection {
@@ -116,7 +120,8 @@ struct NetworkSize {
 ///
 /// Act may run concurrently for different workers, Observe for different shards; a shard's steps
 /// come in order, and nothing else runs meanwhile. Recorded episodes come through Observe alone.
-/// Results must depend neither on the number of workers nor on which one does what.
+/// Results must depend neither on the number of workers nor on which one does what. Among several
+/// ranks each observes environments of its own, and all end up with the same state.
 class Algorithm {
  public:
   virtual ~Algorithm() = default;
@@ -127,11 +132,6 @@ class Algorithm {
   virtual void Observe(const Transition& transition) = 0;
   /// Learns from what it observed since Begin, and whatever it keeps.
   virtual UpdateReport Update(const UpdateContext& context) = 0;
-
-  /// Learns together with other ranks, each of which observes environments of its own and ends up
-  /// with the same state; called first, if at all. UserError where the algorithm cannot.
-  /// @param ranks must outlive this object.
-  virtual void Join(Communicator* ranks);
 
   /// Everything that an uninterrupted run would have and a fresh object has not, weights,
   /// optimiser, normalisers, replayed transitions; called between Update and Begin.

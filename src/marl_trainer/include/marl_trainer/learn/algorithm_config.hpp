@@ -3,13 +3,14 @@
 #include <memory>
 #include <string>
 
-#include "auv_common/parallel/worker_pool.hpp"
 #include "auv_common/registry.hpp"
 #include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/learn/comm/team.hpp"
 #include "marl_trainer/learn/options.hpp"
 
 namespace stg::learn {
 
+struct ImitationConfig;
 struct TrainConfig;
 
 /// Configuration of one algorithm, default-initialised to the `fast` preset, and the way to make
@@ -35,9 +36,14 @@ class AlgorithmConfig {
   /// algorithm that cannot.
   virtual void FitPolicy(const agent::Policy& policy);
 
-  /// @param common, problem are copied. @param pool threads of the update; outlives the algorithm.
+  /// The stage of imitation at the start of a training; null: the algorithm has none.
+  virtual const ImitationConfig* Imitation() const { return nullptr; }
+  /// Among how many ranks it can learn, at most.
+  virtual int MostRanks() const { return 1; }
+  /// @param common, problem are copied. @param team who computes the update; outlives the
+  /// algorithm.
   virtual std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                          WorkerPool* pool) const = 0;
+                                          const Team& team) const = 0;
 };
 
 /// What a configuration `Config` derives from, that extends `Base`, to be able to copy itself.

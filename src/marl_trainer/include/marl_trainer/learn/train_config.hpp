@@ -6,7 +6,6 @@
 #include <string>
 
 #include "marl_trainer/learn/algorithm_config.hpp"
-#include "marl_trainer/learn/collect/imitation.hpp"
 #include "marl_trainer/learn/options.hpp"
 #include "stg_env/env/seed_blocks.hpp"
 
@@ -22,7 +21,6 @@ struct TrainConfig {
   int envs = 64;
   int horizon = 50;
   bool stagger = true;
-  ImitationConfig imitation;
   std::string start_from;  ///< folder of another run; empty: untrained networks
 
   std::int64_t validation_interval = 32000;

@@ -51,9 +51,7 @@ void ReplayBuffer::Begin(const Collection& collection) {
     first.push_back(first.back() + static_cast<std::int64_t>(collection.steps) * shard.envs);
   }
   if (!first_.empty() && first != first_) {
-    throw UserError(
-        "the replayed transitions are of other shards of environments: a run of one process does "
-        "not go on among ranks, nor the other way round");
+    throw UserError("the replayed transitions are of environments in other shards");
   }
   first_ = std::move(first);
   const std::size_t chunks = Index(std::max<std::int64_t>(1, capacity_ / first_.back()));

@@ -16,7 +16,7 @@ std::size_t Size(int a, int b = 1, int c = 1, int d = 1) {
 void RolloutBuffer::Begin(const Problem& problem, int new_steps, int new_envs, bool taught) {
   steps = new_steps;
   envs = new_envs;
-  const int agents = problem.agents;
+  agents = problem.agents;
   observations.resize(Size(steps, envs, agents, problem.observation_size));
   actions.resize(Size(steps, envs, agents, problem.action_size));
   teacher.resize(taught ? actions.size() : 0);

@@ -17,7 +17,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little
 
 constexpr char kMagic[8] = {'S', 'T', 'G', 'T', 'R', 'A', 'I', 'N'};
 constexpr std::uint32_t kTorchVersion = 1;  // held a libtorch archive
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint64_t kMaxBytes = 4ULL << 30;
 constexpr std::uint32_t kMaxArrays = 1U << 16;
 constexpr char kTypes[] = {'f', 'd', 'i', 't'};  // by index in Archive::Array

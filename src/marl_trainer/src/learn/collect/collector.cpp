@@ -5,7 +5,6 @@
 
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/clock.hpp"
-#include "marl_trainer/learn/nn/sliced_gradient.hpp"
 #include "stg_env/env/controller.hpp"
 #include "stg_env/env/vector_env.hpp"
 
@@ -27,31 +26,13 @@ namespace {
 
 std::string PastName(int first_env) { return "actions_" + std::to_string(first_env); }
 
-/// The shards of `count` groups from `first` on: cut where groups end, and where full shards do.
-std::vector<Shard> ShardsOf(const GroupShare& share, int first, int count, int envs) {
-  std::vector<Shard> shards;
-  for (int group = first; group < first + count; ++group) {
-    const int end = share.FirstEnv(group + 1, envs);
-    for (int env = share.FirstEnv(group, envs); env < end;) {
-      Shard shard;
-      shard.first_env = env;
-      shard.group = group;
-      shard.home_first = env / Collector::kShardEnvs * Collector::kShardEnvs;
-      shard.home_envs = std::min(Collector::kShardEnvs, envs - shard.home_first);
-      env = std::min(shard.home_first + Collector::kShardEnvs, end);
-      shard.envs = env - shard.first_env;
-      shards.push_back(shard);
-    }
-  }
-  return shards;
-}
-
 }  // namespace
 
 /// The environments of one shard, and memory for one step.
 class Collector::Unit {
  public:
-  Unit(const std::vector<Scenario>& mix, const TrainConfig& config, const Shard& shard)
+  Unit(const std::vector<Scenario>& mix, const TrainConfig& config,
+       const ImitationConfig* imitation, const Shard& shard)
       : seed_(TrainingSeed(config.seed)),
         shard_(shard),
         env_(mix, EnvOptions(config, shard)),
@@ -60,9 +41,9 @@ class Collector::Unit {
     const auto rows = static_cast<std::size_t>(shard.envs * env_.agents());
     actions_.resize(rows * static_cast<std::size_t>(env_.action_size()));
     log_prob_.resize(rows);
-    if (!config.imitation.controller.empty()) {
-      teacher_ = env::MakeController(config.imitation.controller, mix.front().model());
-      teacher_->privileged = config.imitation.privileged;
+    if (imitation != nullptr && !imitation->controller.empty()) {
+      teacher_ = env::MakeController(imitation->controller, mix.front().model());
+      teacher_->privileged = imitation->privileged;
       teacher_actions_.resize(actions_.size());
       taught_.resize(actions_.size());
     }
@@ -168,17 +149,17 @@ void Collector::Unit::AskTeacher() {
                  [](double a) { return static_cast<float>(a); });
 }
 
-Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool,
-                     Communicator* ranks)
-    : horizon_(config.horizon), pool_(pool), ranks_(ranks) {
-  GroupShare share;
-  share.groups = share.count = 1;
-  if (ranks != nullptr) {
-    RequireOption(config.envs >= ranks->size(), "envs", "must be one for each rank at least");
-    share = GroupShare::Of(*ranks, SlicedGradient::kSlices);
+Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config,
+                     const ImitationConfig* imitation, const Team& team)
+    : envs_(config.envs), horizon_(config.horizon), team_(team) {
+  const GroupShare share = team.share();
+  // Of all ranks, so that all refuse together.
+  for (int first = 0; first < share.groups; first += share.count) {
+    RequireOption(!ShardsOf(share, first, share.count, config.envs).empty(), "envs",
+                  "must be " + std::to_string(GroupShare::kBlock) + " for each rank at least");
   }
   for (const Shard& shard : ShardsOf(share, share.first, share.count, config.envs)) {
-    units_.push_back(std::make_unique<Unit>(mix, config, shard));
+    units_.push_back(std::make_unique<Unit>(mix, config, imitation, shard));
   }
   for (const Shard& shard : ShardsOf(share, 0, share.groups, config.envs)) {
     places_.insert(PastName(shard.first_env));
@@ -195,30 +176,22 @@ CollectionReport Collector::Collect(std::uint32_t number, bool teach, Algorithm*
   collection.taught = teach;
   for (const auto& unit : units_) collection.shards.push_back(unit->shard());
   algorithm->Begin(collection);
-  pool_->Run(static_cast<int>(units_.size()), [&](int u, int worker) {
+  team_.pool->Run(static_cast<int>(units_.size()), [&](int u, int worker) {
     units_[static_cast<std::size_t>(u)]->Collect(number, horizon_, teach, u, worker, algorithm);
   });
 
   CollectionReport report;
-  double steps = 0.0;
+  std::vector<double> rewards;  // by shard
   for (const auto& unit : units_) {
     const CollectionReport& part = unit->report();
     report.finished.insert(report.finished.end(), part.finished.begin(), part.finished.end());
-    report.reward += part.reward;
+    rewards.push_back(part.reward);
     report.env_seconds += part.env_seconds;
     report.inference_seconds += part.inference_seconds;
-    steps += static_cast<double>(unit->shard().envs) * horizon_;
   }
-  if (ranks_ != nullptr) {
-    report.finished = ranks_->Gather(report.finished);
-    const std::vector<double> sums = ranks_->Gather(std::vector<double>{report.reward, steps});
-    report.reward = steps = 0.0;
-    for (std::size_t k = 0; k < sums.size(); k += 2) {
-      report.reward += sums[k];
-      steps += sums[k + 1];
-    }
-  }
-  report.reward /= steps;
+  report.finished = team_.ranks->Gather(report.finished);
+  for (const double sum : team_.ranks->Gather(rewards)) report.reward += sum;
+  report.reward /= static_cast<double>(envs_) * horizon_;
   const double wall = watch.seconds();
   const double share = report.env_seconds / (report.env_seconds + report.inference_seconds);
   report.env_seconds = wall * share;
@@ -235,10 +208,6 @@ void Collector::ForgetPast() {
 }
 
 void Collector::Save(Archive* archive) const {
-  if (ranks_ == nullptr) {
-    for (const auto& unit : units_) archive->Put(PastName(unit->shard().first_env), unit->past());
-    return;
-  }
   std::vector<int> places;  // first environment and size of each unit's
   std::vector<float> past;
   for (const auto& unit : units_) {
@@ -246,8 +215,8 @@ void Collector::Save(Archive* archive) const {
     places.push_back(static_cast<int>(unit->past().size()));
     past.insert(past.end(), unit->past().begin(), unit->past().end());
   }
-  const std::vector<int> all_places = ranks_->Gather(places);
-  const std::vector<float> all = ranks_->Gather(past);
+  const std::vector<int> all_places = team_.ranks->Gather(places);
+  const std::vector<float> all = team_.ranks->Gather(past);
   auto from = all.begin();
   for (std::size_t k = 0; k < all_places.size(); k += 2) {
     const auto end = from + all_places[k + 1];
@@ -260,11 +229,7 @@ void Collector::Load(const Archive& archive) {
   if (archive.arrays().empty()) return;  // taken at a start
   std::set<std::string> theirs;
   for (const auto& array : archive.arrays()) theirs.insert(array.first);
-  if (theirs != places_) {
-    throw UserError(
-        "its environments are in other shards: a run of one process does not go on among ranks, "
-        "nor the other way round");
-  }
+  if (theirs != places_) throw UserError("its environments are in other shards");
   for (const auto& unit : units_) {
     const std::vector<float>& past = archive.Floats(PastName(unit->shard().first_env));
     if (past.size() % unit->decision_size() != 0) {
@@ -272,7 +237,7 @@ void Collector::Load(const Archive& archive) {
                       " and on are no whole decisions");
     }
   }
-  pool_->Run(static_cast<int>(units_.size()), [&](int u, int) {
+  team_.pool->Run(static_cast<int>(units_.size()), [&](int u, int) {
     Unit& unit = *units_[static_cast<std::size_t>(u)];
     unit.Repeat(archive.Floats(PastName(unit.shard().first_env)));
   });
@@ -283,8 +248,7 @@ std::uint64_t Collector::round() const {
   for (const auto& unit : units_) {
     for (int e = 0; e < unit->shard().envs; ++e) round = std::max(round, unit->env().round(e));
   }
-  if (ranks_ == nullptr) return round;
-  const std::vector<std::uint64_t> all = ranks_->Gather(std::vector<std::uint64_t>{round});
+  const std::vector<std::uint64_t> all = team_.ranks->Gather(std::vector<std::uint64_t>{round});
   return *std::max_element(all.begin(), all.end());
 }
 
@@ -293,8 +257,7 @@ bool Collector::at_episode_start() const {
   for (const auto& unit : units_) {
     for (int e = 0; e < unit->shard().envs; ++e) at_start = at_start && unit->env().step(e) == 0;
   }
-  if (ranks_ == nullptr) return at_start;
-  const std::vector<char> all = ranks_->Gather(std::vector<char>{at_start ? '1' : '0'});
+  const std::vector<char> all = team_.ranks->Gather(std::vector<char>{at_start ? '1' : '0'});
   return std::count(all.begin(), all.end(), '0') == 0;
 }
 

@@ -1,15 +1,9 @@
 #include "marl_trainer/learn/comm/communicator.hpp"
 
-#include <algorithm>
-
 namespace stg::learn {
-
-GroupShare GroupShare::Of(const Communicator& ranks, int slices) {
-  GroupShare share;
-  share.groups = std::max(slices, ranks.size());
-  share.count = share.groups / ranks.size();
-  share.first = share.count * ranks.rank();
-  return share;
+Communicator* Alone() {
+  static OneRank alone;
+  return &alone;
 }
 
 void SumInPairs(std::vector<std::vector<float>>* parts, std::size_t count, std::size_t begin,

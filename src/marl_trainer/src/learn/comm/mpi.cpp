@@ -81,7 +81,7 @@ class MpiRanks : public Communicator {
 }  // namespace
 
 std::unique_ptr<Communicator> JoinRanks(int* argc, char*** argv) {
-  if (!StartedByMpi()) return nullptr;
+  if (!StartedByMpi()) return std::make_unique<OneRank>();
   return std::make_unique<MpiRanks>(argc, argv);
 }
 

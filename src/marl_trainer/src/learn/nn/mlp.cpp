@@ -206,4 +206,14 @@ void Mlp::InputGradient(const float* parameters, const float* d_output, int rows
                   inputs(), d_input);
 }
 
+void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters) {
+  const int last = network.layers() - 1;
+  const std::size_t end = network.parameters();
+  for (std::size_t i = network.weight_offset(last); i < end; ++i) {
+    parameters[i] = static_cast<float>(static_cast<double>(parameters[i]) * ratio);
+  }
+  float& bias = parameters[network.bias_offset(last)];
+  bias = static_cast<float>(static_cast<double>(bias) + shift);
+}
+
 }  // namespace stg::learn

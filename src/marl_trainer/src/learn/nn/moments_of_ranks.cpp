@@ -6,7 +6,6 @@ namespace stg::learn {
 
 std::vector<RunningMoments> OfAllRanks(Communicator* ranks, const std::vector<RunningMoments>& own,
                                        std::size_t kinds) {
-  if (ranks == nullptr || own.empty()) return own;
   std::vector<double> numbers;
   for (const RunningMoments& moments : own) {
     const std::vector<double> saved = moments.Save();

@@ -1,5 +1,6 @@
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdio>
@@ -180,7 +181,10 @@ RecordedTrainer::Progress RecordedTrainer::Update(const std::vector<RecordedEpis
   Collection collection;
   collection.number = static_cast<std::uint32_t>(state_.collections);
   collection.steps = scenario_.run.time.episode_steps;
-  for (int e = 0; e < static_cast<int>(episodes.size()); ++e) collection.shards.push_back({e, 1});
+  const int count = static_cast<int>(episodes.size());
+  for (int e = 0; e < count; ++e) {
+    collection.shards.push_back({e, 1, e * kGroups / std::max(count, kGroups)});
+  }
   algorithm_->Begin(collection);
   std::vector<double> returns(episodes.size());
   pool_.Run(static_cast<int>(episodes.size()), [&](int e, int) {

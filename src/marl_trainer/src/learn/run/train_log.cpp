@@ -193,7 +193,7 @@ void TrainLog::PrintLine(const TrainRecord& r) {
 
 void TrainLog::WriteSummary(const std::vector<NetworkSize>& networks, int workers,
                             double peak_flops, const std::string& stopped,
-                            const Communicator* ranks) const {
+                            const Communicator& ranks) const {
   nlohmann::ordered_json json;
   json["stopped"] = stopped;
   json["env_steps"] = env_steps_;
@@ -201,12 +201,10 @@ void TrainLog::WriteSummary(const std::vector<NetworkSize>& networks, int worker
   json["env_steps_per_second"] = static_cast<double>(env_steps_) / std::max(wall_seconds_, 1e-9);
   json["workers"] = workers;
   for (const NetworkSize& network : networks) json["parameters"][network.name] = network.parameters;
-  if (ranks != nullptr) {
-    const Communicator::Traffic& traffic = ranks->traffic();
-    json["ranks"] = ranks->size();
-    json["communication"] = {
-        {"bytes_sent", traffic.bytes}, {"calls", traffic.calls}, {"seconds", traffic.seconds}};
-  }
+  const Communicator::Traffic& traffic = ranks.traffic();
+  json["ranks"] = ranks.size();
+  json["communication"] = {
+      {"bytes_sent", traffic.bytes}, {"calls", traffic.calls}, {"seconds", traffic.seconds}};
   for (const char* name : {"no_loss", "1000", "1020", "1030", "1040"}) {
     const auto found = reached_.find(name);
     if (found == reached_.end()) {

@@ -56,8 +56,17 @@ void StartFrom(const std::string& folder, const std::string& algorithm, std::ost
 
 /// The algorithm at its start; UserError where it cannot start so.
 std::unique_ptr<Algorithm> AtStart(const TrainSetup& setup, const Problem& problem,
-                                   const Trainer::Options& options, WorkerPool* pool) {
-  std::unique_ptr<Algorithm> learner = setup.own->Make(setup.common, problem, pool);
+                                   const Trainer::Options& options, const Team& team) {
+  const int size = team.ranks->size(), most = setup.own->MostRanks();
+  if ((size & (size - 1)) != 0) {
+    throw UserError("started with " + std::to_string(size) +
+                    " ranks: their number must be a power of two");
+  }
+  if (size > most) {
+    throw UserError("--algorithm " + setup.algorithm + ": learns among " + std::to_string(most) +
+                    " ranks at most");
+  }
+  std::unique_ptr<Algorithm> learner = setup.own->Make(setup.common, problem, team);
   const std::string& folder = setup.common.start_from;
   if (!options.resume && !folder.empty()) {
     StartFrom(folder, setup.algorithm, options.log, learner.get());
@@ -90,14 +99,14 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
       options_(options),
       problem_(ProblemOf(train_scenario_)),
       pool_(options.workers),
-      algorithm_(AtStart(setup_, problem_, options_, &pool_)),
-      collector_(mix_, setup_.common, &pool_, options.ranks),
+      team_(&pool_, options.ranks),
+      algorithm_(AtStart(setup_, problem_, options_, team_)),
+      collector_(mix_, setup_.common, setup_.own->Imitation(), team_),
       folder_(options.out, options.log) {
   if (leads()) folder_.Lock();
   UseOneBlasThread();
   state_.config = ToJson(setup_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
-  JoinRanks();
   if (options_.resume) {
     Resume();
   } else if (folder_.HoldsRun()) {
@@ -105,7 +114,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
   }
   ScheduleNext();
   // Before anybody writes, all have seen what was there.
-  if (options_.ranks != nullptr) options_.ranks->GatherBytes({});
+  team_.ranks->GatherBytes({});
   if (!leads()) return;
   folder_.WriteSetup(ToJson(setup_), scenario_, options.mix);
   log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
@@ -114,31 +123,15 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
   if (!state_.log.empty()) log_->Load(state_.log);
 }
 
-void Trainer::JoinRanks() {
-  if (options_.ranks == nullptr) return;
-  const int size = options_.ranks->size();
-  if ((size & (size - 1)) != 0) {
-    throw UserError("started with " + std::to_string(size) +
-                    " ranks: their number must be a power of two");
-  }
-  try {
-    algorithm_->Join(options_.ranks);
-  } catch (const UserError& error) {
-    throw UserError("--algorithm " + setup_.algorithm + ": " + error.what());
-  }
-}
-
 void Trainer::Resume() {
   const std::optional<TrainState> loaded = folder_.Newest();
   if (!loaded) throw UserError(options_.out + ": no checkpoint to resume from");
   const std::string where = options_.out + ": cannot resume";
   RequireSameRun(*loaded, ToJson(setup_), state_.scenario, where);
-  if (options_.ranks != nullptr) {
-    for (const std::int64_t steps :
-         options_.ranks->Gather(std::vector<std::int64_t>{loaded->env_steps})) {
-      if (steps != loaded->env_steps) {
-        throw UserError(where + ": the ranks see different checkpoints; the folder must be one");
-      }
+  for (const std::int64_t steps :
+       team_.ranks->Gather(std::vector<std::int64_t>{loaded->env_steps})) {
+    if (steps != loaded->env_steps) {
+      throw UserError(where + ": the ranks see different checkpoints; the folder must be one");
     }
   }
   const std::string config = state_.config;
@@ -148,7 +141,6 @@ void Trainer::Resume() {
   state_.episodes = Archive();
   collector_.RestartAt(state_.round);
   try {
-    // First: what it says of ranks is why an algorithm would not find what it saved.
     collector_.Load(loaded->episodes);
     algorithm_->Load(loaded->algorithm);
   } catch (const UserError& error) {
@@ -190,7 +182,7 @@ bool Trainer::Run() {
   }
   if (leads()) {
     log_->WriteSummary(algorithm_->Sizes(), pool_.workers(), PeakFlops(&pool_),
-                       finished ? "finished" : "signal", options_.ranks);
+                       finished ? "finished" : "signal", *team_.ranks);
   }
   return finished;
 }
@@ -198,16 +190,16 @@ bool Trainer::Run() {
 bool Trainer::Stopped() const {
   const bool asked = options_.stop != nullptr && *options_.stop != 0;
   if (options_.halt_after > 0 && state_.env_steps >= options_.halt_after) return true;
-  if (options_.ranks == nullptr) return asked;
   // One is asked, all stop.
-  const std::vector<char> all = options_.ranks->GatherBytes({asked ? '1' : '0'});
+  const std::vector<char> all = team_.ranks->GatherBytes({asked ? '1' : '0'});
   return std::count(all.begin(), all.end(), '1') > 0;
 }
 
 void Trainer::Iterate(TrainRecord* record) {
   const TrainConfig& config = setup_.common;
   UpdateContext context;
-  context.imitation = config.imitation.Weight(state_.env_steps);
+  const ImitationConfig* imitation = setup_.own->Imitation();
+  if (imitation != nullptr) context.imitation = imitation->Weight(state_.env_steps);
   context.progress = static_cast<double>(state_.env_steps) / static_cast<double>(config.steps);
   const CollectionReport collected = collector_.Collect(
       static_cast<std::uint32_t>(state_.collections), context.imitation > 0.0, algorithm_.get());
@@ -242,8 +234,8 @@ void Trainer::Iterate(TrainRecord* record) {
 void Trainer::RunValidation(TrainRecord* record) {
   const Stopwatch watch;
   const auto fly = [this](const Scenario& scenario) {
-    return task::Summarise(Validate(scenario, setup_.common.validation_episodes, algorithm_.get(),
-                                    &pool_, options_.ranks));
+    return task::Summarise(
+        Validate(scenario, setup_.common.validation_episodes, algorithm_.get(), team_));
   };
   last_validation_ = fly(train_scenario_);
   // The same flights: a reward has no effect on them.

@@ -13,8 +13,7 @@ constexpr int kBlock = 16;  // environments whose actions one pass through the n
 }  // namespace
 
 std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
-                                           Algorithm* algorithm, WorkerPool* pool,
-                                           Communicator* ranks) {
+                                           Algorithm* algorithm, const Team& team) {
   const env::ActFactory make_act = [algorithm](const env::VectorEnv& env,
                                                int worker) -> env::ActFunction {
     std::vector<float> chosen(
@@ -33,19 +32,17 @@ std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episode
   options.episodes = episodes;
   options.seed = kValidationSeed;
   options.block = kBlock;
-  if (ranks == nullptr) return env::Evaluate(scenario, make_act, options, pool);
-
   // Whole blocks, so that what is computed for a block does not depend on who does it.
   const int blocks = (episodes + kBlock - 1) / kBlock;
   const auto first = [&](int rank) {
-    return std::min(episodes, blocks * rank / ranks->size() * kBlock);
+    return std::min(episodes, blocks * rank / team.ranks->size() * kBlock);
   };
-  const int begin = first(ranks->rank());
-  options.episodes = first(ranks->rank() + 1) - begin;
+  const int begin = first(team.ranks->rank());
+  options.episodes = first(team.ranks->rank() + 1) - begin;
   options.seed += static_cast<std::uint64_t>(begin);
   std::vector<task::EpisodeMetrics> own;
-  if (options.episodes > 0) own = env::Evaluate(scenario, make_act, options, pool);
-  return ranks->Gather(own);
+  if (options.episodes > 0) own = env::Evaluate(scenario, make_act, options, team.pool);
+  return team.ranks->Gather(own);
 }
 
 }  // namespace stg::learn

@@ -72,7 +72,9 @@ TEST_F(RanksTest, TheirNumberAndThatOfWorkersDoNotMatter) {
   for (const char* algorithm : {"mappo", "ippo", "happo", "maddpg", "matd3", "masac", "madqn"}) {
     const TrainSetup setup = SetupOf(algorithm);
     const std::string name = algorithm;
-    const TrainState one = Train(setup, 1, 1, Options(name + "1"));
+    Trainer alone(ShortScenario(), setup, Options(name + "1"));
+    ASSERT_TRUE(alone.Run());
+    const TrainState one = alone.state();
     const std::string policy = Policy(name + "1");
     ASSERT_FALSE(policy.empty());
     const std::string progress = Progress(name + "1");
@@ -85,59 +87,27 @@ TEST_F(RanksTest, TheirNumberAndThatOfWorkersDoNotMatter) {
   }
 }
 
-TEST_F(RanksTest, OneProcessAloneDiffersInTheOrderOfSumsOnly) {
-  TrainSetup setup = SetupOf("mappo");
-  setup.common.steps = 640;  // one collection, eight gradient steps
-  const TrainState among = Train(setup, 2, 1, Options("among"));
-  Trainer alone(ShortScenario(), setup, Options("alone"));
-  ASSERT_TRUE(alone.Run());
-  const std::vector<float>& a = among.algorithm.Floats("parameters");
-  const TrainState state = alone.state();
-  const std::vector<float>& b = state.algorithm.Floats("parameters");
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 2e-4) << i;
-}
-
-TEST_F(RanksTest, ARunThatWasStoppedGoesOnWithAnotherNumberOfRanks) {
-  for (const std::string algorithm : {"mappo", "masac"}) {
-    TrainSetup setup = SetupOf(algorithm);
-    setup.common.stagger = true;
-    const TrainState whole = Train(setup, 1, 1, Options(algorithm + "_whole"));
-    Trainer::Options options = Options(algorithm + "_halves");
-    options.halt_after = 1;
-    EXPECT_EQ(Train(setup, 2, 1, options).env_steps, 640);
-    options.halt_after = 0;
-    options.resume = true;
-    ExpectSameBits(Train(setup, 4, 1, options), whole);
-  }
-}
-
-TEST_F(RanksTest, ARunOfOneProcessDoesNotGoOnAmongRanksNorTheOtherWayRound) {
-  const auto refused = [](const auto& resume) {
-    try {
-      resume();
-      ADD_FAILURE() << "accepted";
-    } catch (const UserError& error) {
-      EXPECT_NE(std::string(error.what()).find("does not go on among ranks"), std::string::npos)
-          << error.what();
-    }
-  };
-  for (const std::string algorithm : {"mappo", "madqn"}) {
-    const TrainSetup setup = SetupOf(algorithm);
-    // In the middle of episodes, at a start of all, and at the end.
-    for (const std::int64_t halt : {1, 1280, 1920}) {
-      Trainer::Options alone = Options(algorithm + "_alone" + std::to_string(halt));
-      Trainer::Options among = Options(algorithm + "_among" + std::to_string(halt));
-      alone.halt_after = among.halt_after = halt;
-      Trainer(ShortScenario(), setup, alone).Run();
-      Train(setup, 2, 1, among);
-      alone.resume = among.resume = true;
-      refused([&] { Trainer(ShortScenario(), setup, among); });
-      ThreadRanks(2).Run([&](Communicator* self) {
-        Trainer::Options own = alone;
-        own.ranks = self;
-        refused([&] { Trainer(ShortScenario(), setup, own); });
-      });
+TEST_F(RanksTest, ARunThatWasStoppedGoesOnWithAnyNumberOfRanks) {
+  for (const std::string algorithm : {"mappo", "happo", "masac"}) {
+    for (const bool stagger : {false, true}) {
+      TrainSetup setup = SetupOf(algorithm);
+      setup.common.stagger = stagger;
+      const std::string name = algorithm + (stagger ? "_staggered" : "");
+      Trainer alone(ShortScenario(), setup, Options(name));
+      ASSERT_TRUE(alone.Run());
+      // A third by a process alone, a third among two ranks, the rest by a process alone.
+      Trainer::Options options = Options(name + "_thirds");
+      options.halt_after = 1;
+      EXPECT_FALSE(Trainer(ShortScenario(), setup, options).Run());
+      options.resume = true;
+      options.halt_after = 641;
+      EXPECT_EQ(Train(setup, 2, 1, options).env_steps, 1280);
+      options.halt_after = 0;
+      Trainer last(ShortScenario(), setup, options);
+      EXPECT_TRUE(last.Run());
+      ExpectSameBits(last.state(), alone.state());
+      EXPECT_EQ(Policy(name + "_thirds"), Policy(name));
+      EXPECT_EQ(Progress(name + "_thirds"), Progress(name));
     }
   }
 }

@@ -28,7 +28,7 @@ struct RolloutBuffer {
   std::vector<float> bootstrap;     ///< [E], of the last states
   std::vector<float> advantages;    ///< [T, E]
 
-  int steps = 0, envs = 0;
+  int steps = 0, envs = 0, agents = 0;
   Shard shard;
   int samples() const { return steps * envs; }
 

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/algorithm.hpp"
+#include "marl_trainer/learn/collect/imitation.hpp"
+#include "marl_trainer/learn/comm/team.hpp"
 #include "marl_trainer/learn/train_config.hpp"
 #include "stg_env/scenario/scenario.hpp"
 #include "stg_env/task/metrics.hpp"
@@ -27,15 +28,14 @@ Problem ProblemOf(const Scenario& scenario);
 
 /// Brings environments and algorithm together: the one collection loop. The environments are cut
 /// into fixed shards that a worker steps through a whole collection without waiting for others, so
-/// results do not depend on the number of workers.
+/// results depend neither on the number of workers nor on that of ranks.
 class Collector {
  public:
-  static constexpr int kShardEnvs = 16;  ///< of a full shard; the last one may be smaller
-
   /// @param mix scenarios that the environments cycle through, see env::VectorEnv; of one layout.
-  /// @param ranks that have a share of the environments each; null: this process has them all.
-  Collector(const std::vector<Scenario>& mix, const TrainConfig& config, WorkerPool* pool,
-            Communicator* ranks = nullptr);
+  /// @param imitation whose controller to ask; null: none
+  /// @param team whose ranks have a share of the environments each.
+  Collector(const std::vector<Scenario>& mix, const TrainConfig& config,
+            const ImitationConfig* imitation, const Team& team);
   ~Collector();
 
   /// `config.horizon` decisions of every environment of this rank with exploration, after
@@ -52,8 +52,7 @@ class Collector {
   /// all ranks.
   void Save(Archive* archive) const;
   /// After RestartAt of that start: goes to where Save was called. Throws UserError for an archive
-  /// of other environments or of other shards, which draw other exploration: a process alone has
-  /// other ones than ranks.
+  /// of other environments or of other shards.
   void Load(const Archive& archive);
   /// The largest k of an episode that runs, in any rank.
   std::uint64_t round() const;
@@ -63,9 +62,8 @@ class Collector {
  private:
   class Unit;
 
-  const int horizon_;
-  WorkerPool* pool_;
-  Communicator* ranks_;
+  const int envs_, horizon_;
+  const Team team_;
   std::vector<std::unique_ptr<Unit>> units_;
   std::set<std::string> places_;  // names of all ranks' shards in an archive
 };

@@ -7,9 +7,9 @@
 
 namespace stg::learn {
 
-/// Imitation of a built-in controller at the start of a training: an option of the collection,
-/// which asks the teacher at every state that is visited, and of the loss of the algorithms that
-/// have an actor.
+/// Imitation of a built-in controller at the start of a training, a stage that an algorithm may
+/// have: the collection asks the teacher at every state that is visited, and the algorithm's loss
+/// has a part for it.
 struct ImitationConfig {
   std::string controller;  ///< with constants, see agent::ParseBuiltin; empty: none
   std::int64_t steps = 0;

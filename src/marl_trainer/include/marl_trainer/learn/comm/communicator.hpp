@@ -15,7 +15,7 @@ class Communicator {
  public:
   virtual ~Communicator() = default;
 
-  /// 0 <= rank < size; a power of two of them.
+  /// 0 <= rank < size; the number of ranks is a power of two.
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
@@ -47,20 +47,16 @@ class Communicator {
   Traffic traffic_;
 };
 
-/// The environments are cut into groups whose gradients are added up in one fixed order, whoever
-/// computed them: as many as a process has slices, so that results do not depend on the number of
-/// ranks, or one a rank where there are more ranks than that.
-struct GroupShare {
-  int groups = 0;            ///< of all ranks
-  int first = 0, count = 0;  ///< this rank's
-
-  /// @param slices of a process; a power of two
-  static GroupShare Of(const Communicator& ranks, int slices);
-  /// Environments of a group among `envs`: from First(g) to First(g + 1) - 1.
-  int FirstEnv(int group, int envs) const {
-    return static_cast<int>(static_cast<std::int64_t>(envs) * group / groups);
-  }
+/// A process that trains by itself: the only rank of one.
+class OneRank : public Communicator {
+ public:
+  int rank() const override { return 0; }
+  int size() const override { return 1; }
+  std::vector<char> GatherBytes(const std::vector<char>& mine) override { return mine; }
+  void Sum(float*, std::size_t) override {}
 };
+/// One for all who need no other.
+Communicator* Alone();
 
 /// As a sum over ranks: neighbours, then neighbouring pairs, and so on, into parts[0].
 /// @param count a power of two of arrays [size] each

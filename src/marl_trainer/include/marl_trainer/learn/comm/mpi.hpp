@@ -6,8 +6,8 @@
 
 namespace stg::learn {
 
-/// The ranks that mpirun, srun or an operator of theirs has started this process among; null where
-/// none of them did. Throws UserError where one did and this program was built
+/// The ranks that mpirun, srun or an operator of theirs has started this process among; OneRank
+/// where none of them did. Throws UserError where one of them did and this program was built
 /// without MPI.
 std::unique_ptr<Communicator> JoinRanks(int* argc, char*** argv);
 

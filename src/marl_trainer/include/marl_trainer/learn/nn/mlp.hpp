@@ -65,4 +65,8 @@ class Mlp {
   std::vector<std::size_t> offsets_;
 };
 
+/// Changes the last layer of a network whose first output is a value, so that every output is
+/// multiplied by `ratio` and the value has `shift` added.
+void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters);
+
 }  // namespace stg::learn

@@ -8,7 +8,7 @@
 
 namespace stg::learn {
 
-/// The moments of all ranks, one rank's after the other's; `own` where there are none.
+/// The moments of all ranks, one rank's after the other's.
 /// @param own of this rank's shards, one at least: so many kinds of each shard in turn, of sizes
 /// that are the same in every rank.
 std::vector<RunningMoments> OfAllRanks(Communicator* ranks, const std::vector<RunningMoments>& own,

@@ -4,38 +4,28 @@
 #include <functional>
 #include <vector>
 
-#include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/learn/comm/communicator.hpp"
+#include "marl_trainer/learn/comm/team.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
 
 namespace stg::learn {
 
-/// The gradient of a minibatch, computed by all workers: the samples are cut into kSlices fixed
-/// slices with a gradient each, which are summed in order, so that the result does not depend on
-/// the number of workers. Among several ranks, a slice is a group of environments and a rank has
-/// the slices of its own; they are summed in pairs, so that the result does not depend on the
-/// number of ranks either.
+/// The gradient of a minibatch, computed by all workers of all ranks: the samples are cut into a
+/// slice for each group, which has a gradient of its own. They are summed in pairs, so that the
+/// result depends neither on the number of workers nor on that of ranks.
 class SlicedGradient {
  public:
-  static constexpr int kSlices = 16;
-
   /// Adds the gradient of samples begin .. end-1 to `gradient` [parameters], which is zero.
   using Part = std::function<void(int slice, int worker, int begin, int end, float* gradient)>;
 
-  /// @param pool must outlive this object.
-  SlicedGradient(std::size_t parameters, WorkerPool* pool);
+  SlicedGradient(std::size_t parameters, const Team& team);
 
-  /// @param ranks must outlive this object.
-  void Join(Communicator* ranks) { ranks_ = ranks; }
-
-  /// Runs `part` for every slice, samples bounds[s] .. bounds[s + 1] - 1, then sums, over all
-  /// ranks.
-  /// @param bounds of up to kSlices slices, one more than slices
+  /// Runs `part` for every slice of this rank, samples bounds[s] .. bounds[s + 1] - 1, then sums
+  /// over all ranks.
+  /// @param bounds one more than this rank's groups
   void Compute(const std::vector<int>& bounds, const Part& part);
-  /// The same of the samples 0 .. count-1 in kSlices equal slices, of which every rank has its
-  /// share: of up to kSlices ranks.
+  /// The same of the samples 0 .. count-1 that all ranks have, in kGroups equal slices, of which
+  /// every rank computes its share; `slice` counts those of all. For up to kGroups ranks.
   void ComputeEqual(int count, const Part& part);
-  static std::vector<int> EqualSlices(int first, int count);
 
   /// Runs `work` on ranges that cover 0 .. count-1, on all workers where that pays.
   void ForRanges(std::size_t count,
@@ -52,9 +42,8 @@ class SlicedGradient {
   const std::vector<float>& sum() const { return sum_; }
 
  private:
-  WorkerPool* pool_;
-  Communicator* ranks_ = nullptr;
-  std::vector<std::vector<float>> parts_;  // [kSlices][parameters]
+  const Team team_;
+  std::vector<std::vector<float>> parts_;  // [this rank's groups][parameters]
   std::vector<float> sum_;
 };
 

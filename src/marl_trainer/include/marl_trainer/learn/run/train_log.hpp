@@ -48,9 +48,8 @@ class TrainLog {
   /// Writes summary.json; UserError when that fails.
   /// @param networks of the algorithm.
   /// @param peak_flops measured rate of the matrix product on all workers.
-  /// @param ranks null: there are none.
   void WriteSummary(const std::vector<NetworkSize>& networks, int workers, double peak_flops,
-                    const std::string& stopped, const Communicator* ranks) const;
+                    const std::string& stopped, const Communicator& ranks) const;
 
   /// State for checkpoints, as JSON text.
   std::string Save() const;

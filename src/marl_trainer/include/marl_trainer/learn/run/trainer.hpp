@@ -16,12 +16,12 @@ namespace stg::learn {
 
 /// Collect, update, validate, save: one instance per run, of any algorithm.
 ///
-/// Weights depend on scenario, setup and seed only, not on the number of workers, and among ranks
-/// not on theirs (GroupShare); ranks and a process alone differ in the order of sums. Rank 0 alone
-/// writes, into a folder that all ranks can read. A run and one that was stopped and resumed are
-/// the same bit for bit: a checkpoint, taken between any two collections, holds what was done since
-/// all environments started an episode together. With `stagger`, or a horizon that does not divide
-/// the episode, the running episodes are cut for such a start, in every run, stopped or not.
+/// Weights depend on scenario, setup and seed only, neither on the number of workers nor on that of
+/// ranks, up to kGroups of them. Rank 0 alone writes, into a folder that all ranks can read. A run
+/// and one that was stopped and resumed are the same bit for bit: a checkpoint, taken between any
+/// two collections, holds what was done since all environments started an episode together. With
+/// `stagger`, or a horizon that does not divide the episode, the running episodes are cut for such
+/// a start, in every run, stopped or not.
 class Trainer {
  public:
   struct Options {
@@ -29,7 +29,7 @@ class Trainer {
     bool resume = false;  ///< go on from the newest good checkpoint of `out`
     int workers = 1;
     std::ostream* log = nullptr;
-    Communicator* ranks = nullptr;  ///< to train with; null: alone
+    Communicator* ranks = Alone();  ///< to train with
     /// Set non-zero (by a signal) to save after the collection and return.
     const std::atomic<int>* stop = nullptr;
     /// Scenarios that the training environments cycle through, e.g.
@@ -51,7 +51,6 @@ class Trainer {
   const Problem& problem() const { return problem_; }
 
  private:
-  void JoinRanks();
   void Resume();
   void ScheduleNext();
   void Iterate(TrainRecord* record);
@@ -62,7 +61,7 @@ class Trainer {
   bool Stopped() const;
   void Save();
   void SavePolicy(const std::string& name) const;
-  bool leads() const { return options_.ranks == nullptr || options_.ranks->rank() == 0; }
+  bool leads() const { return options_.ranks->rank() == 0; }
   double Elapsed() const { return state_.wall_seconds + watch_.seconds(); }
 
   // As given; as trained in, which validations fly and checkpoints are chosen by; and that with the
@@ -73,6 +72,7 @@ class Trainer {
   const Options options_;
   const Problem problem_;
   WorkerPool pool_;
+  const Team team_;
   std::unique_ptr<Algorithm> algorithm_;
   Collector collector_;
   RunFolder folder_;

@@ -1,45 +1,42 @@
 #include "marl_trainer/learn/algorithms/happo/happo.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "stg_agent/policy/gaussian.hpp"
+#include "marl_trainer/learn/train_config.hpp"
 
 namespace stg::learn {
 namespace {
 
-std::string ActorName(std::size_t agent) { return "actor_" + std::to_string(agent); }
+/// Epochs of one update that keys keep apart: those of each AUV, then the critic's.
+constexpr std::uint32_t kEpochsOfATurn = 1000;
+/// Index of the draw that orders the AUVs, among the draws of a collection's shuffles.
+constexpr std::uint32_t kOrderDraw = 1;
+
+std::string ActorName(std::size_t auv) { return "actor_" + std::to_string(auv); }
 
 }  // namespace
 
 Happo::Happo(const HappoConfig& config, const TrainConfig& common, const Problem& problem,
-             WorkerPool* pool)
+             const Team& team)
     : config_(config),
-      problem_(problem),
+      seed_(common.seed),
+      agents_(problem.agents),
       networks_(problem, config),
-      update_(networks_, config, common, problem.agents, pool),
-      rollouts_(problem, config, networks_.critic, pool),
-      acting_(PassesOf(networks_.actor.mean(), pool->workers())),
-      own_(acting_.size()) {
-  for (int i = 0; i < problem.agents; ++i) {
-    std::vector<float> actor(networks_.actor.parameters());
-    // Network 1 is the critic's.
-    networks_.actor.Initialise(common.seed, static_cast<std::uint32_t>(i == 0 ? 0 : i + 1),
-                               config.initial_log_std, actor.data());
-    parameters_.actor_adams.emplace_back(actor.size());
-    parameters_.actors.push_back(std::move(actor));
+      critic_(networks_.NewCritic(common.seed)),
+      update_(networks_, config, common.seed, 1, team),
+      ratio_(networks_, team),
+      rollouts_(problem, config, networks_.critic, team),
+      acting_(PassesOf(networks_.actor.mean(), team.pool->workers())),
+      own_(acting_.size()),
+      order_(static_cast<std::size_t>(problem.agents)) {
+  for (int i = 0; i < agents_; ++i) {
+    actors_.push_back(networks_.NewActor(common.seed, i, config.initial_log_std));
   }
-  parameters_.critic.resize(networks_.critic.parameters());
-  InitialiseOrthogonally(networks_.critic.spec(), common.seed, 1, parameters_.critic.data());
-  parameters_.critic_adam = AdamState(parameters_.critic.size());
-}
-
-void Happo::Join(Communicator* ranks) {
-  update_.Join(ranks);
-  rollouts_.Join(ranks);
 }
 
 void Happo::Begin(const Collection& collection) {
@@ -50,51 +47,58 @@ void Happo::Begin(const Collection& collection) {
 void Happo::Act(const Decision& decision, const Actions& out) {
   ObservedPass& acting = acting_[static_cast<std::size_t>(decision.worker)];
   std::vector<float>& own = own_[static_cast<std::size_t>(decision.worker)];
-  const int envs = decision.envs, agents = problem_.agents, size = networks_.action_size();
-  const auto inputs = static_cast<std::size_t>(networks_.actor.inputs());
-  own.resize(static_cast<std::size_t>(envs) * inputs);
-  for (int i = 0; i < agents; ++i) {
-    const float* actor = parameters_.actors[static_cast<std::size_t>(i)].data();
-    for (int e = 0; e < envs; ++e) {
-      std::copy_n(decision.observations + static_cast<std::size_t>(e * agents + i) * inputs, inputs,
-                  own.data() + static_cast<std::size_t>(e) * inputs);
+  const int size = networks_.action_size(), inputs = networks_.actor.inputs();
+  own.resize(static_cast<std::size_t>(decision.envs * inputs));
+  for (int i = 0; i < agents_; ++i) {
+    const Trained& actor = actors_[static_cast<std::size_t>(i)];
+    for (int e = 0; e < decision.envs; ++e) {
+      std::copy_n(decision.observations + static_cast<std::ptrdiff_t>(e * agents_ + i) * inputs,
+                  inputs, own.data() + static_cast<std::ptrdiff_t>(e) * inputs);
     }
-    const float* mean = acting.Evaluate(actor, rollouts_.scales().observations, own.data(), envs);
-    const float* log_std = actor + networks_.actor.log_std_offset();
-    for (int e = 0; e < envs; ++e) {
-      const int row = e * agents + i;
-      float* action = out.actions + static_cast<std::ptrdiff_t>(row) * size;
-      std::copy_n(mean + static_cast<std::ptrdiff_t>(e) * size, size, action);
-      if (decision.explore == nullptr) continue;
-      const DrawKeys& keys = *decision.explore;
-      Random random(keys.seed, Stream::kPolicy, keys.collection, keys.step,
-                    static_cast<std::uint32_t>(keys.first_env * agents + row));
-      const float log_prob = agent::SampleGaussian(log_std, size, &random, action);
-      if (out.log_prob != nullptr) out.log_prob[row] = log_prob;
+    const float* mean = acting.Evaluate(actor.numbers.data(), rollouts_.scales().observations,
+                                        own.data(), decision.envs);
+    for (int e = 0; e < decision.envs; ++e) {
+      const int row = e * agents_ + i;
+      std::copy_n(mean + static_cast<std::ptrdiff_t>(e) * size, size,
+                  out.actions + static_cast<std::ptrdiff_t>(row) * size);
+      if (decision.explore != nullptr) {
+        networks_.Explore(actor, *decision.explore, agents_, row, out);
+      }
     }
   }
 }
 
+void Happo::DrawOrder() {
+  std::iota(order_.begin(), order_.end(), 0);
+  Random random(seed_, Stream::kShuffle, collection_, 0, kOrderDraw);
+  for (std::size_t i = order_.size() - 1; i > 0; --i) {
+    const auto j = static_cast<std::size_t>(random.Uniform() * static_cast<double>(i + 1));
+    std::swap(order_[i], order_[j]);
+  }
+}
+
 UpdateReport Happo::Update(const UpdateContext& context) {
-  const double explained_variance = rollouts_.Estimate(parameters_.critic.data());
-  const double rate = 1.0 - (1.0 - config_.lr_final) * std::min(context.progress, 1.0);
-  const PpoReport ppo = update_.Run(rollouts_.buffers(), rollouts_.scales(), collection_, rate,
-                                    context.imitation, &parameters_);
+  const double explained_variance = rollouts_.Estimate(critic_.numbers.data());
+  update_.Begin(rollouts_.buffers(), rollouts_.scales(), collection_, context);
+  ratio_.Begin(rollouts_.buffers());
+  DrawOrder();
+  std::uint32_t first_epoch = 0;
+  for (const int auv : order_) {
+    Trained& actor = actors_[static_cast<std::size_t>(auv)];
+    update_.TrainActor({auv, 1}, first_epoch, config_.sequential ? &ratio_.factors() : nullptr,
+                       &actor);
+    ratio_.Multiply(auv, actor);
+    first_epoch += kEpochsOfATurn;
+  }
+  update_.TrainCritic(config_.epochs, first_epoch, &critic_);
   rollouts_.UpdateInputScales();
 
-  double sigma = 0.0, entropy = 0.0;
-  for (const std::vector<float>& actor : parameters_.actors) {
-    for (int a = 0; a < networks_.action_size(); ++a) {
-      const auto log_std = static_cast<double>(
-          actor[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)]);
-      sigma += std::exp(log_std) / (networks_.action_size() * problem_.agents);
-      entropy += (log_std + agent::kHalfLogTwoPiE) / problem_.agents;
-    }
-  }
-  UpdateReport report;
-  report.flops = ppo.flops + 2.0 * ppo.samples * networks_.critic.spec().forward_products();
-  report.values = PpoValues(ppo, config_.lr * rate, entropy, explained_variance, sigma);
-  report.values.push_back(update_.ratio_miss());
+  std::vector<const Trained*> actors;
+  for (const Trained& actor : actors_) actors.push_back(&actor);
+  UpdateReport report = update_.Report(explained_variance, actors);
+  report.values.push_back(ratio_.Miss());
+  report.flops +=
+      2.0 * update_.samples().size() * agents_ * networks_.actor.mean().spec().forward_products();
   return report;
 }
 
@@ -106,57 +110,51 @@ std::vector<ReportColumn> Happo::Columns() const {
 
 std::vector<NetworkSize> Happo::Sizes() const {
   std::vector<NetworkSize> sizes;
-  for (std::size_t i = 0; i < parameters_.actors.size(); ++i) {
-    sizes.push_back({ActorName(i), networks_.actor.parameters()});
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    sizes.push_back({ActorName(i), actors_[i].numbers.size()});
   }
-  sizes.push_back({"critic", networks_.critic.parameters()});
+  sizes.push_back({"critic", critic_.numbers.size()});
   return sizes;
 }
 
 void Happo::Save(Archive* archive) const {
-  for (std::size_t i = 0; i < parameters_.actors.size(); ++i) {
-    archive->Put(ActorName(i), parameters_.actors[i]);
-    parameters_.actor_adams[i].Save(ActorName(i) + "_adam", archive);
-  }
-  archive->Put("critic", parameters_.critic);
-  parameters_.critic_adam.Save("critic_adam", archive);
+  for (std::size_t i = 0; i < actors_.size(); ++i) actors_[i].Save(ActorName(i), archive);
+  critic_.Save("critic", archive);
   rollouts_.normalisers().Save(archive);
 }
 
 void Happo::Load(const Archive& archive) {
-  HappoParameters loaded = parameters_;
-  for (std::size_t i = 0; i < loaded.actors.size(); ++i) {
-    loaded.actors[i] = archive.Floats(ActorName(i), loaded.actors[i].size());
-    loaded.actor_adams[i].Load(ActorName(i) + "_adam", archive);
+  std::vector<Trained> actors = actors_;
+  Trained critic = critic_;
+  for (std::size_t i = 0; i < actors.size(); ++i) actors[i].Load(ActorName(i), archive);
+  if (archive.Has(ActorName(actors.size()))) {
+    throw UserError("actors of more AUVs than " + std::to_string(actors.size()));
   }
-  if (archive.Has(ActorName(loaded.actors.size()))) {
-    throw UserError("actors of more AUVs than " + std::to_string(loaded.actors.size()));
-  }
-  loaded.critic = archive.Floats("critic", loaded.critic.size());
-  loaded.critic_adam.Load("critic_adam", archive);
+  critic.Load("critic", archive);
   rollouts_.normalisers().Load(archive);
-  parameters_ = std::move(loaded);
+  actors_ = std::move(actors);
+  critic_ = std::move(critic);
 }
 
 void Happo::StartFrom(const Archive& archive) {
-  const HappoParameters untrained = parameters_;
-  Load(archive);
-  const auto spread = static_cast<std::ptrdiff_t>(networks_.actor.log_std_offset());
-  for (std::size_t i = 0; i < untrained.actors.size(); ++i) {
-    std::copy_n(untrained.actors[i].begin() + spread, networks_.action_size(),
-                parameters_.actors[i].begin() + spread);
+  std::vector<Trained> actors = actors_;
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    const std::vector<float>& theirs = archive.Floats(ActorName(i), actors[i].numbers.size());
+    std::copy_n(theirs.begin(), networks_.actor.log_std_offset(), actors[i].numbers.begin());
   }
-  parameters_.actor_adams = untrained.actor_adams;
-  parameters_.critic_adam = untrained.critic_adam;
+  const std::vector<float>& critic = archive.Floats("critic", critic_.numbers.size());
+  rollouts_.normalisers().Load(archive);
+  actors_ = std::move(actors);
+  critic_.numbers = critic;
 }
 
 std::vector<agent::Policy> Happo::Policies(const agent::PolicyMetadata& metadata) const {
   std::vector<agent::Policy> policies;
-  for (std::size_t i = 0; i < parameters_.actors.size(); ++i) {
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
     agent::PolicyMetadata own = metadata;
     own.id += "-auv" + std::to_string(i);
-    policies.push_back(networks_.actor.ToPolicy(parameters_.actors[i].data(),
-                                                rollouts_.scales().observations, own));
+    policies.push_back(
+        networks_.actor.ToPolicy(actors_[i].numbers.data(), rollouts_.scales().observations, own));
   }
   return policies;
 }

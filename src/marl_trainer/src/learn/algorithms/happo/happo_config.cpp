@@ -21,8 +21,8 @@ void HappoConfig::FitPolicy(const agent::Policy&) {
 }
 
 std::unique_ptr<Algorithm> HappoConfig::Make(const TrainConfig& common, const Problem& problem,
-                                             WorkerPool* pool) const {
-  return std::make_unique<Happo>(*this, common, problem, pool);
+                                             const Team& team) const {
+  return std::make_unique<Happo>(*this, common, problem, team);
 }
 
 }  // namespace stg::learn

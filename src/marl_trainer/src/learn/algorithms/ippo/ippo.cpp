@@ -30,14 +30,14 @@ void IppoConfig::ApplyRecordings(const TrainConfig&) {
 }
 
 std::unique_ptr<Algorithm> IppoConfig::Make(const TrainConfig& common, const Problem& problem,
-                                            WorkerPool* pool) const {
-  return std::make_unique<Ippo>(*this, common, problem, pool);
+                                            const Team& team) const {
+  return std::make_unique<Ippo>(*this, common, problem, team);
 }
 
 Ippo::Ippo(const IppoConfig& config, const TrainConfig& common, const Problem& problem,
-           WorkerPool* pool)
+           const Team& team)
     : agents_(problem.agents),
-      single_(PerAgent(config, problem.agents), common, Single(problem), pool) {}
+      single_(PerAgent(config, problem.agents), common, Single(problem), team) {}
 
 void Ippo::Begin(const Collection& collection) {
   Collection singles = collection;
@@ -46,8 +46,6 @@ void Ippo::Begin(const Collection& collection) {
     Shard& shard = singles.shards[s];
     shard.first_env *= agents_;
     shard.envs *= agents_;
-    shard.home_first *= agents_;
-    shard.home_envs *= agents_;
     told_[s].rewards.resize(static_cast<std::size_t>(shard.envs));
     told_[s].truncated.resize(static_cast<std::size_t>(shard.envs));
   }

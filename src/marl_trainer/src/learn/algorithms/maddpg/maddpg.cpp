@@ -40,13 +40,13 @@ struct Maddpg::Scratch {
 };
 
 Maddpg::Maddpg(const ReplayOptions& options, const DeterministicOptions& own,
-               const TrainConfig& common, const Problem& problem, WorkerPool* pool)
+               const TrainConfig& common, const Problem& problem, const Team& team)
     : CentralCriticLearner(options, DeterministicSpec(problem, options), own.critics, common,
-                           problem, pool),
+                           problem, team),
       own_(own),
       actor_target_(actor_parameters()) {
   Keep("target_actor", &actor_target_);
-  for (int s = 0; s < SlicedGradient::kSlices; ++s) {
+  for (int s = 0; s < kGroups; ++s) {
     scratch_.push_back(std::make_unique<Scratch>(
         actor(), critics(), problem.agents, problem.agents * problem.action_size, slice_rows()));
   }

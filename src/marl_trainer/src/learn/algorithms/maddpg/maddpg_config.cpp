@@ -21,8 +21,8 @@ void MaddpgConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 }
 
 std::unique_ptr<Algorithm> MaddpgConfig::Make(const TrainConfig& common, const Problem& problem,
-                                              WorkerPool* pool) const {
-  return std::make_unique<Maddpg>(*this, *this, common, problem, pool);
+                                              const Team& team) const {
+  return std::make_unique<Maddpg>(*this, *this, common, problem, team);
 }
 
 }  // namespace stg::learn

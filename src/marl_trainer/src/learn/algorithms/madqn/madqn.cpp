@@ -85,33 +85,28 @@ struct Madqn::Scratch {
 };
 
 Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
-             const Problem& problem, WorkerPool* pool)
-    : ReplayLearner(options, common, problem, pool, own.reward == "own"),
+             const Problem& problem, const Team& team)
+    : ReplayLearner(options, common, problem, team, own.reward == "own"),
       own_(own),
       codebook_(problem, own),
       network_(QSpec(problem, options, codebook_)),
       parameters_(network_.parameters()),
       adam_(network_.parameters()),
-      gradient_(network_.parameters(), pool),
-      acting_(PassesOf(network_, pool->workers())),
+      gradient_(network_.parameters(), team),
+      acting_(PassesOf(network_, team.pool->workers())),
       chosen_(acting_.size(), std::vector<int>(static_cast<std::size_t>(codebook_.heads))) {
   InitialiseOrthogonally(network_.spec(), common.seed, 0, parameters_.data());
   target_ = parameters_;
   Keep("network", &parameters_);
   Keep("target_network", &target_);
   Keep("adam", &adam_);
-  for (int s = 0; s < SlicedGradient::kSlices; ++s) {
+  for (int s = 0; s < kGroups; ++s) {
     scratch_.push_back(
         std::make_unique<Scratch>(network_, slice_rows() * problem.agents, problem.agents));
   }
 }
 
 Madqn::~Madqn() = default;
-
-void Madqn::Join(Communicator* ranks) {
-  ReplayLearner::Join(ranks);
-  gradient_.Join(ranks);
-}
 
 void Madqn::Act(const Decision& decision, const Actions& out) {
   const int agents = problem().agents, rows = decision.envs * agents;
@@ -204,7 +199,7 @@ Madqn::Sums Madqn::AddGradient(int slice, float* gradient) {
 
 void Madqn::Step(const StepContext& step) {
   rate_ = step.rate;
-  std::array<Sums, SlicedGradient::kSlices> parts{};
+  std::array<Sums, kGroups> parts{};
   gradient_.ComputeEqual(base().batch, [&](int slice, int, int, int, float* gradient) {
     parts[static_cast<std::size_t>(slice)] = AddGradient(slice, gradient);
   });

@@ -25,11 +25,11 @@ void MadqnConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 }
 
 std::unique_ptr<Algorithm> MadqnConfig::Make(const TrainConfig& common, const Problem& problem,
-                                             WorkerPool* pool) const {
+                                             const Team& team) const {
   RequireOption(heads == "separate" || std::pow(bins, problem.action_size) <= 1000.0, "heads",
                 "joint has more than 1000 combinations of " + std::to_string(bins) + " bins in " +
                     std::to_string(problem.action_size) + " dimensions");
-  return std::make_unique<Madqn>(*this, *this, common, problem, pool);
+  return std::make_unique<Madqn>(*this, *this, common, problem, team);
 }
 
 }  // namespace stg::learn

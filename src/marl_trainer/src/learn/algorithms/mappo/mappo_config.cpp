@@ -22,8 +22,8 @@ void MappoConfig::ValidateOrThrow(const TrainConfig& common) const {
 }
 
 std::unique_ptr<Algorithm> MappoConfig::Make(const TrainConfig& common, const Problem& problem,
-                                             WorkerPool* pool) const {
-  return std::make_unique<Mappo>(*this, common, problem, pool);
+                                             const Team& team) const {
+  return std::make_unique<Mappo>(*this, common, problem, team);
 }
 
 }  // namespace stg::learn

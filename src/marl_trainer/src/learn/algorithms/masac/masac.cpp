@@ -40,17 +40,17 @@ struct Masac::Scratch {
 };
 
 Masac::Masac(const ReplayOptions& options, const SoftOptions& own, const TrainConfig& common,
-             const Problem& problem, WorkerPool* pool)
-    : CentralCriticLearner(options, SoftSpec(problem, options), 2, common, problem, pool),
+             const Problem& problem, const Team& team)
+    : CentralCriticLearner(options, SoftSpec(problem, options), 2, common, problem, team),
       own_(own),
       range_{static_cast<float>(own.min_log_std), static_cast<float>(own.max_log_std)},
       log_alpha_(1, static_cast<float>(std::log(own.initial_alpha))),
       alpha_adam_(1),
-      noise_(static_cast<std::size_t>(pool->workers()),
+      noise_(static_cast<std::size_t>(team.pool->workers()),
              std::vector<float>(static_cast<std::size_t>(problem.action_size))) {
   Keep("log_alpha", &log_alpha_, false);
   Keep("alpha_adam", &alpha_adam_);
-  for (int s = 0; s < SlicedGradient::kSlices; ++s) {
+  for (int s = 0; s < kGroups; ++s) {
     scratch_.push_back(std::make_unique<Scratch>(actor(), critics(), problem, slice_rows()));
   }
 }

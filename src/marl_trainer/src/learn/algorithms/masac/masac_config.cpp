@@ -29,8 +29,8 @@ void MasacConfig::ValidateOrThrow(const TrainConfig& common) const {
 }
 
 std::unique_ptr<Algorithm> MasacConfig::Make(const TrainConfig& common, const Problem& problem,
-                                             WorkerPool* pool) const {
-  return std::make_unique<Masac>(*this, *this, common, problem, pool);
+                                             const Team& team) const {
+  return std::make_unique<Masac>(*this, *this, common, problem, team);
 }
 
 }  // namespace stg::learn

@@ -8,16 +8,16 @@ namespace stg::learn {
 
 CentralCriticLearner::CentralCriticLearner(const ReplayOptions& options, const NetworkSpec& actor,
                                            int critics, const TrainConfig& common,
-                                           const Problem& problem, WorkerPool* pool)
-    : ReplayLearner(options, common, problem, pool),
+                                           const Problem& problem, const Team& team)
+    : ReplayLearner(options, common, problem, team),
       actor_(actor),
       critics_(problem, options, critics, common.seed),
       actor_parameters_(actor_.parameters()),
       actor_adam_(actor_.parameters()),
       critic_adam_(critics_.parameters().size()),
-      actor_gradient_(actor_.parameters(), pool),
-      critic_gradient_(critics_.parameters().size(), pool),
-      acting_(PassesOf(actor_, pool->workers())) {
+      actor_gradient_(actor_.parameters(), team),
+      critic_gradient_(critics_.parameters().size(), team),
+      acting_(PassesOf(actor_, team.pool->workers())) {
   InitialiseOrthogonally(actor_.spec(), common.seed, 0, actor_parameters_.data());
   Keep("actor", &actor_parameters_);
   Keep("critics", &critics_.parameters());
@@ -26,14 +26,8 @@ CentralCriticLearner::CentralCriticLearner(const ReplayOptions& options, const N
   Keep("critic_adam", &critic_adam_);
 }
 
-void CentralCriticLearner::Join(Communicator* ranks) {
-  ReplayLearner::Join(ranks);
-  actor_gradient_.Join(ranks);
-  critic_gradient_.Join(ranks);
-}
-
 void CentralCriticLearner::TrainCritics(const StepContext& step) {
-  std::array<Sums, SlicedGradient::kSlices> parts{};
+  std::array<Sums, kGroups> parts{};
   critic_gradient_.ComputeEqual(base().batch, [&](int slice, int, int, int, float* gradient) {
     AddCriticGradient(step, slice, gradient, &parts[static_cast<std::size_t>(slice)]);
   });
@@ -46,7 +40,7 @@ void CentralCriticLearner::TrainCritics(const StepContext& step) {
 }
 
 CentralCriticLearner::Sums CentralCriticLearner::TrainActor(const StepContext& step) {
-  std::array<Sums, SlicedGradient::kSlices> parts{};
+  std::array<Sums, kGroups> parts{};
   actor_gradient_.ComputeEqual(base().batch, [&](int slice, int, int, int, float* gradient) {
     AddActorGradient(step, slice, gradient, &parts[static_cast<std::size_t>(slice)]);
   });

@@ -57,8 +57,6 @@ void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 }
 
 void ReplayConfig::ValidateOrThrow(const TrainConfig& common) const {
-  RequireOption(common.imitation.controller.empty(), "imitate",
-                "is for methods that learn from their own actions: mappo, ippo, happo");
   const std::int64_t collection = static_cast<std::int64_t>(common.envs) * common.horizon;
   RequireOption(replay >= collection, "replay",
                 "is less than one collection, envs times horizon: " + std::to_string(collection));

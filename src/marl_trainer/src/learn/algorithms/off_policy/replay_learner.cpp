@@ -20,46 +20,35 @@ constexpr double kSmallestRewardStd = 0.01;
 }  // namespace
 
 ReplayLearner::ReplayLearner(const ReplayOptions& options, const TrainConfig& common,
-                             const Problem& problem, WorkerPool* pool, bool own_rewards)
+                             const Problem& problem, const Team& team, bool own_rewards)
     : options_(options),
       problem_(problem),
       seed_(common.seed),
       own_rewards_(own_rewards),
-      pool_(pool),
+      team_(team),
+      slices_(team.share()),
       replay_(problem, options.replay, options.n_step, options.gamma, own_rewards),
       observations_(problem.observation_size),
       states_(problem.state_size),
       rewards_(1) {
-  slices_.groups = slices_.count = SlicedGradient::kSlices;
-  for (int s = 0; s < SlicedGradient::kSlices; ++s) {
+  for (int s = 0; s < kGroups; ++s) {
     batches_.emplace_back(problem, slice_rows(), own_rewards);
   }
   UpdateScales();
 }
 
-int ReplayLearner::slice_rows() const {
-  return (options_.batch + SlicedGradient::kSlices - 1) / SlicedGradient::kSlices;
-}
+int ReplayLearner::slice_rows() const { return (options_.batch + kGroups - 1) / kGroups; }
 
 double ReplayLearner::Rank(int env) const {
   return envs_ > 1 ? static_cast<double>(env) / (envs_ - 1) : 0.5;
 }
 
-void ReplayLearner::Join(Communicator* ranks) {
-  if (ranks->size() > SlicedGradient::kSlices) {
-    throw UserError("learns among " + std::to_string(SlicedGradient::kSlices) + " ranks at most");
-  }
-  ranks_ = ranks;
-  slices_ = GroupShare::Of(*ranks, SlicedGradient::kSlices);
-}
-
 void ReplayLearner::Begin(const Collection& collection) {
   Collection all = collection;
-  if (ranks_ != nullptr) {
-    all.shards = ranks_->Gather(collection.shards);
-    const auto counts = ranks_->Gather(std::vector<std::size_t>{collection.shards.size()});
-    first_shard_ = std::accumulate(counts.begin(), counts.begin() + ranks_->rank(), std::size_t{0});
-  }
+  all.shards = team_.ranks->Gather(collection.shards);
+  const auto counts = team_.ranks->Gather(std::vector<std::size_t>{collection.shards.size()});
+  first_shard_ =
+      std::accumulate(counts.begin(), counts.begin() + team_.ranks->rank(), std::size_t{0});
   replay_.Begin(all);
   collected_.assign(collection.shards.size(),
                     {RunningMoments(problem_.observation_size), RunningMoments(problem_.state_size),
@@ -91,7 +80,7 @@ void ReplayLearner::TakeInMoments() {
   for (const Moments& m : collected_) {
     own.insert(own.end(), {m.observations, m.states, m.rewards});
   }
-  const std::vector<RunningMoments> all = OfAllRanks(ranks_, own, kKinds);
+  const std::vector<RunningMoments> all = OfAllRanks(team_.ranks, own, kKinds);
   for (std::size_t k = 0; k < all.size(); k += kKinds) {
     observations_.Merge(all[k]);
     states_.Merge(all[k + 1]);
@@ -115,10 +104,10 @@ void ReplayLearner::UpdateScales() {
 }
 
 void ReplayLearner::DrawBatch(std::uint32_t number) {
-  pool_->Run(slices_.count, [&](int own, int) {
+  team_.pool->Run(slices_.count, [&](int own, int) {
     const int slice = slices_.first + own;
-    const int begin = options_.batch * slice / SlicedGradient::kSlices;
-    const int end = options_.batch * (slice + 1) / SlicedGradient::kSlices;
+    const int begin = options_.batch * slice / kGroups;
+    const int end = options_.batch * (slice + 1) / kGroups;
     ReplayBatch& batch = batches_[static_cast<std::size_t>(slice)];
     batch.count = end - begin;
     Random random(seed_, Stream::kReplay, number, 0, static_cast<std::uint32_t>(slice));
@@ -137,7 +126,7 @@ void ReplayLearner::DrawBatch(std::uint32_t number) {
 UpdateReport ReplayLearner::Update(const UpdateContext& context) {
   const ReplayScales before = scales_;
   const bool scaled = rewards_.count() > 0.0;  // else an untrained critic knows no scale yet
-  if (ranks_ != nullptr) replay_.Exchange(ranks_, first_shard_, collected_.size());
+  replay_.Exchange(team_.ranks, first_shard_, collected_.size());
   TakeInMoments();
   rewards_.LimitCount(kRewardMemory);
   UpdateScales();
@@ -220,16 +209,6 @@ void MoveTowards(const std::vector<float>& online, double tau, std::vector<float
   const auto t = static_cast<float>(tau);
   float* to = target->data();
   for (std::size_t i = 0; i < online.size(); ++i) to[i] += t * (online[i] - to[i]);
-}
-
-void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters) {
-  const int last = network.layers() - 1;
-  const std::size_t end = network.parameters();
-  for (std::size_t i = network.weight_offset(last); i < end; ++i) {
-    parameters[i] = static_cast<float>(static_cast<double>(parameters[i]) * ratio);
-  }
-  float& bias = parameters[network.bias_offset(last)];
-  bias = static_cast<float>(static_cast<double>(bias) + shift);
 }
 
 }  // namespace stg::learn

@@ -1,5 +1,8 @@
 #include "marl_trainer/learn/algorithms/on_policy/actor_critic.hpp"
 
+#include "auv_common/numbers/random.hpp"
+#include "stg_agent/policy/gaussian.hpp"
+
 namespace stg::learn {
 namespace {
 
@@ -27,11 +30,38 @@ NetworkSpec CriticSpec(const Problem& problem, const PpoOptions& config) {
 ActorCritic::ActorCritic(const Problem& problem, const PpoOptions& config)
     : actor(ActorSpec(problem, config)), critic(CriticSpec(problem, config)) {}
 
-std::vector<float> ActorCritic::Initialise(std::uint64_t seed, double log_std) const {
-  std::vector<float> p(parameters());
-  actor.Initialise(seed, 0, log_std, p.data());
-  InitialiseOrthogonally(critic.spec(), seed, 1, p.data() + critic_offset());
-  return p;
+Trained ActorCritic::NewActor(std::uint64_t seed, int i, double log_std) const {
+  std::vector<float> numbers(actor.parameters());
+  // Network 1 of a seed is the critic.
+  actor.Initialise(seed, static_cast<std::uint32_t>(i == 0 ? 0 : i + 1), log_std, numbers.data());
+  return Trained(std::move(numbers));
+}
+
+Trained ActorCritic::NewCritic(std::uint64_t seed) const {
+  std::vector<float> numbers(critic.parameters());
+  InitialiseOrthogonally(critic.spec(), seed, 1, numbers.data());
+  return Trained(std::move(numbers));
+}
+
+void ActorCritic::Explore(const Trained& trained_actor, const DrawKeys& keys, int agents, int row,
+                          const Actions& out) const {
+  Random random(keys.seed, Stream::kPolicy, keys.collection, keys.step,
+                static_cast<std::uint32_t>(keys.first_env * agents + row));
+  const float log_prob = agent::SampleGaussian(
+      trained_actor.numbers.data() + actor.log_std_offset(), action_size(), &random,
+      out.actions + static_cast<std::ptrdiff_t>(row) * action_size());
+  if (out.log_prob != nullptr) out.log_prob[row] = log_prob;
+}
+
+void Trained::Save(const std::string& name, Archive* archive) const {
+  archive->Put(name, numbers);
+  adam.Save(name + "_adam", archive);
+}
+
+void Trained::Load(const std::string& name, const Archive& archive) {
+  const std::vector<float>& theirs = archive.Floats(name, numbers.size());
+  adam.Load(name + "_adam", archive);
+  numbers = theirs;
 }
 
 }  // namespace stg::learn

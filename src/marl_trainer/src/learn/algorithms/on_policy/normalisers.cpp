@@ -1,5 +1,6 @@
 #include "marl_trainer/learn/algorithms/on_policy/normalisers.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stg::learn {
@@ -7,6 +8,9 @@ namespace {
 
 /// Value targets that the value normaliser remembers [environment steps].
 constexpr double kValueMemory = 100000.0;
+
+/// Observations that the normaliser of a given policy counts for at least.
+constexpr double kStartCount = 10000.0;
 
 double ValueStd(const RunningMoments& values) { return std::sqrt(values.variance(0)) + 1e-4; }
 
@@ -38,16 +42,23 @@ void Normalisers::AddTargets(const RunningMoments& targets, const Mlp& critic, f
   values_.LimitCount(kValueMemory);
   const double mean = values_.mean(0), std = ValueStd(values_);
   const double ratio = static_cast<double>(scales_.value_std) / std;
-  const int last = critic.layers() - 1;
-  for (int i = 0; i < critic.spec().layer_inputs(last); ++i) {
-    float& w = p[critic.weight_offset(last) + static_cast<std::size_t>(i)];
-    w = static_cast<float>(static_cast<double>(w) * ratio);
-  }
-  float& bias = p[critic.bias_offset(last)];
-  bias = static_cast<float>(static_cast<double>(bias) * ratio +
-                            (static_cast<double>(scales_.value_mean) - mean) / std);
+  RescaleOutputs(critic, ratio, (static_cast<double>(scales_.value_mean) - mean) / std, p);
   scales_.value_mean = static_cast<float>(mean);
   scales_.value_std = static_cast<float>(std);
+}
+
+void Normalisers::StartFrom(const agent::Policy& policy, int agents) {
+  const agent::Policy::Parameters& p = policy.parameters();
+  const double count =
+      std::max(kStartCount, static_cast<double>(p.metadata.training_step) * agents);
+  std::vector<double> moments{count};
+  for (const float mean : p.input_mean) moments.push_back(static_cast<double>(mean));
+  for (const float input_std : p.input_std) {
+    const double std = static_cast<double>(input_std) / static_cast<double>(std_scale_);
+    moments.push_back(count * std * std);
+  }
+  observations_.Load(moments);
+  UpdateInputScales();
 }
 
 void Normalisers::Save(Archive* archive) const {

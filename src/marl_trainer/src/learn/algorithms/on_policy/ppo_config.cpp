@@ -35,6 +35,7 @@ void PpoConfig::Describe(OptionTable* t) {
   t->Add("std-scale", &std_scale, {1e-3, 1e3},
          "the actor's inputs are divided by this much of their standard deviation: below 1, the "
          "neighbourhood of the target is seen larger and distant offsets are clipped");
+  imitation.Describe(t);
 }
 
 void PpoConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
@@ -58,6 +59,7 @@ void PpoConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 }
 
 void PpoConfig::ValidateOrThrow(const TrainConfig& common) const {
+  imitation.ValidateOrThrow();
   const std::int64_t samples = static_cast<std::int64_t>(common.envs) * common.horizon;
   RequireOption(samples % minibatch == 0, "minibatch",
                 "must divide envs times horizon, " + std::to_string(samples));

@@ -17,29 +17,19 @@ void PpoSums::Add(const PpoSums& other) {
   samples += other.samples;
 }
 
-PpoLoss::PpoLoss(const ActorCritic& networks, const PpoOptions& config, double imitation_focus,
-                 int max_samples, int agents)
+PpoLoss::PpoLoss(const ActorCritic& networks, const PpoOptions& config, int max_rows)
     : networks_(networks),
       clip_(static_cast<float>(config.clip)),
-      focus_(static_cast<float>(-0.5 * imitation_focus)),
+      focus_(static_cast<float>(-0.5 * config.imitation.focus)),
       entropy_(static_cast<float>(config.entropy)),
       value_weight_(static_cast<float>(config.value_weight)),
-      actor_(networks.actor.mean(), max_samples * agents),
-      critic_(networks.critic, max_samples),
-      d_actor_(static_cast<std::size_t>(max_samples * agents * networks.action_size())),
-      d_critic_(static_cast<std::size_t>(max_samples)),
+      actor_(networks.actor.mean(), max_rows),
+      critic_(networks.critic, max_rows),
+      d_actor_(static_cast<std::size_t>(max_rows * networks.action_size())),
+      d_critic_(static_cast<std::size_t>(max_rows)),
       z_(static_cast<std::size_t>(networks.action_size())),
       inverse_std_(z_.size()),
       d_sigma_(z_.size()) {}
-
-PpoSums PpoLoss::AddGradient(const float* parameters, const PpoBatch& batch, int minibatch,
-                             float* gradient) {
-  PpoSums sums;
-  AddActor(parameters, batch, minibatch, gradient, &sums);
-  const std::size_t critic = networks_.critic_offset();
-  AddCritic(parameters + critic, batch, minibatch, gradient + critic, &sums);
-  return sums;
-}
 
 void PpoLoss::AddActor(const float* actor, const PpoBatch& batch, int minibatch, float* gradient,
                        PpoSums* sums) {

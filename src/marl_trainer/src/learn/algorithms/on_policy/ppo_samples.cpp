@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/learn/nn/sliced_gradient.hpp"
 
 namespace stg::learn {
 
@@ -24,38 +23,17 @@ void PpoSamples::Prepare(const std::vector<const RolloutBuffer*>& rollouts, cons
       targets_.push_back((b.advantages[i] + b.values[i] - scales.value_mean) / scales.value_std);
     }
   }
-  Normalise(ranks_ == nullptr ? advantages_ : OfAllRanks());
+  Normalise();
 }
 
-/// The advantages in the order that a process alone has them in; finds the own ones among them.
-std::vector<float> PpoSamples::OfAllRanks() {
-  share_ = GroupShare::Of(*ranks_, SlicedGradient::kSlices);
-  std::vector<int> places;
-  for (const RolloutBuffer* rollout : rollouts_) {
-    const Shard& s = rollout->shard;
-    for (int t = 0; t < rollout->steps; ++t) {
-      for (int e = 0; e < rollout->envs; ++e) {
-        places.push_back(rollout->steps * s.home_first + t * s.home_envs + s.first_env -
-                         s.home_first + e);
-      }
-    }
-  }
-  const std::vector<float> gathered = ranks_->Gather(advantages_);
-  const std::vector<int> places_of_all = ranks_->Gather(places);
-  std::vector<float> all(gathered.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[static_cast<std::size_t>(places_of_all[i])] = gathered[i];
-  }
+/// Advantages to mean 0 and deviation 1 of the samples of all ranks, which come rank by rank, and
+/// so in the order of their environments.
+void PpoSamples::Normalise() {
+  const std::vector<float> all = ranks_->Gather(advantages_);
+  const std::vector<int> sizes = ranks_->Gather(std::vector<int>{own()});
+  const int before = std::accumulate(sizes.begin(), sizes.begin() + ranks_->rank(), 0);
   own_at_.assign(all.size(), -1);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    own_at_[static_cast<std::size_t>(places[i])] = static_cast<int>(i);
-  }
-  return all;
-}
-
-/// To mean 0 and deviation 1 of the samples of all ranks.
-void PpoSamples::Normalise(const std::vector<float>& all) {
-  size_ = static_cast<int>(all.size());
+  std::iota(own_at_.begin() + before, own_at_.begin() + before + own(), 0);
   double sum = 0.0, squares = 0.0;
   for (const float advantage : all) {
     sum += static_cast<double>(advantage);
@@ -69,43 +47,31 @@ void PpoSamples::Normalise(const std::vector<float>& all) {
 
 void PpoSamples::Shuffle(std::uint64_t seed, std::uint32_t collection, std::uint32_t epoch,
                          int minibatch) {
-  minibatch_ = minibatch;
-  order_.resize(static_cast<std::size_t>(size_));
-  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);
+  std::vector<int> all(own_at_.size());
+  std::iota(all.begin(), all.end(), 0);
   Random random(seed, Stream::kShuffle, collection, epoch, 0);
-  for (std::size_t i = order_.size() - 1; i > 0; --i) {
+  for (std::size_t i = all.size() - 1; i > 0; --i) {
     const auto j = static_cast<std::size_t>(random.Uniform() * static_cast<double>(i + 1));
-    std::swap(order_[i], order_[j]);
+    std::swap(all[i], all[j]);
   }
-  if (ranks_ != nullptr) KeepOwn();
-}
-
-/// Of the order of all samples keeps the own ones, those of a minibatch by their groups.
-void PpoSamples::KeepOwn() {
-  const std::vector<int> all = std::move(order_);
+  // Of the order of all, the own ones, those of a minibatch by their groups.
   order_.clear();
-  slices_.clear();
+  minibatches_.clear();
   std::vector<std::vector<int>> groups(static_cast<std::size_t>(share_.count));
-  for (std::size_t begin = 0; begin < all.size(); begin += static_cast<std::size_t>(minibatch_)) {
+  for (auto from = all.begin(); from != all.end(); from += minibatch) {
     for (std::vector<int>& group : groups) group.clear();
-    for (std::size_t k = begin; k < begin + static_cast<std::size_t>(minibatch_); ++k) {
-      const int sample = own_at_[static_cast<std::size_t>(all[k])];
-      if (sample < 0) continue;
+    std::for_each(from, from + minibatch, [&](int place) {
+      const int sample = own_at_[static_cast<std::size_t>(place)];
+      if (sample < 0) return;
       const int group = rollout(static_cast<std::size_t>(sample)).shard.group - share_.first;
       groups[static_cast<std::size_t>(group)].push_back(sample);
-    }
-    std::vector<int> places{static_cast<int>(order_.size())};
+    });
+    std::vector<int>& begins = minibatches_.emplace_back(1, static_cast<int>(order_.size()));
     for (const std::vector<int>& group : groups) {
       order_.insert(order_.end(), group.begin(), group.end());
-      places.push_back(static_cast<int>(order_.size()));
+      begins.push_back(static_cast<int>(order_.size()));
     }
-    slices_.push_back(std::move(places));
   }
-}
-
-std::vector<int> PpoSamples::Slices(int first) const {
-  if (ranks_ == nullptr) return SlicedGradient::EqualSlices(first, minibatch_);
-  return slices_[static_cast<std::size_t>(first / minibatch_)];
 }
 
 }  // namespace stg::learn

@@ -2,26 +2,19 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
-#include "marl_trainer/learn/algorithms/on_policy/ppo_rows.hpp"
+#include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::learn {
 
-void SlicedSums::EndMinibatch() {
-  for (std::size_t s = 0; s < minibatch_.size(); ++s) {
-    (ranks_ != nullptr ? epoch_[s] : total_).Add(minibatch_[s]);
-  }
-  minibatch_ = Slices();
-}
+SlicedSums::SlicedSums(const Team& team)
+    : ranks_(team.ranks), groups_(static_cast<std::size_t>(team.share().count)) {}
 
 PpoSums SlicedSums::EndEpoch() {
-  if (ranks_ != nullptr) {
-    const std::vector<PpoSums> own(epoch_.begin(), epoch_.end());
-    for (const PpoSums& part : ranks_->Gather(own)) total_.Add(part);
-    epoch_ = Slices();
-  }
-  const PpoSums total = total_;
-  total_ = PpoSums();
+  PpoSums total;
+  for (const PpoSums& part : ranks_->Gather(groups_)) total.Add(part);
+  groups_.assign(groups_.size(), PpoSums());
   return total;
 }
 
@@ -32,127 +25,131 @@ std::vector<ReportColumn> PpoColumns() {
           {"critic_gradient_norm", "", 0}};
 }
 
-std::vector<double> PpoValues(const PpoReport& report, double learning_rate, double entropy,
-                              double explained_variance, double sigma) {
-  const PpoSums& sums = report.sums;
-  return {learning_rate,
-          sums.kl / sums.rows,
-          sums.clipped / sums.rows,
-          sums.actor_loss / sums.rows,
-          sums.value_loss / sums.samples,
-          entropy,
-          explained_variance,
-          sigma,
-          report.actor_norm,
-          report.critic_norm};
-}
-
 /// One worker's memory for a block.
 struct PpoUpdate::Scratch {
-  Scratch(const ActorCritic& networks, const PpoOptions& config, double focus, int agents)
-      : loss(networks, config, focus, kBlock, agents), rows(networks, kBlock, agents) {}
+  Scratch(const ActorCritic& networks, const PpoOptions& options, int most_rows)
+      : loss(networks, options, most_rows), rows(networks, most_rows) {}
   PpoLoss loss;
   PpoRows rows;
 };
 
-PpoUpdate::PpoUpdate(const ActorCritic& networks, const PpoOptions& config,
-                     const TrainConfig& common, int agents, WorkerPool* pool)
+PpoUpdate::PpoUpdate(const ActorCritic& networks, const PpoOptions& options, std::uint64_t seed,
+                     int agents, const Team& team)
     : networks_(networks),
-      config_(config),
-      seed_(common.seed),
-      agents_(agents),
-      gradient_(networks.parameters(), pool) {
-  for (int w = 0; w < pool->workers(); ++w) {
-    scratch_.push_back(std::make_unique<Scratch>(networks, config, common.imitation.focus, agents));
+      options_(options),
+      seed_(seed),
+      actor_gradient_(networks.actor.parameters(), team),
+      critic_gradient_(networks.critic.parameters(), team),
+      sums_(team),
+      samples_(team) {
+  for (int w = 0; w < team.pool->workers(); ++w) {
+    scratch_.push_back(std::make_unique<Scratch>(networks, options, std::max(kBlockRows, agents)));
   }
 }
 
 PpoUpdate::~PpoUpdate() = default;
 
-void PpoUpdate::Join(Communicator* ranks) {
-  gradient_.Join(ranks);
-  samples_.Join(ranks);
-  sums_.Join(ranks);
-}
-
-PpoSums PpoUpdate::Slice(const float* parameters, int begin, int end, int worker, float* gradient) {
-  Scratch& s = *scratch_[static_cast<std::size_t>(worker)];
-  PpoRows& rows = s.rows;
-  PpoSums sums;
-  const auto row = static_cast<std::size_t>(agents_ * networks_.actor.inputs());
-  const auto action = static_cast<std::size_t>(agents_ * networks_.action_size());
-  const auto state = static_cast<std::size_t>(networks_.critic.inputs());
-  const auto agents = static_cast<std::size_t>(agents_);
-  const int blocks = (end - begin + kBlock - 1) / kBlock;
-  for (int block = 0; block < blocks; ++block) {
-    const int from = begin + (end - begin) * block / blocks;
-    const int to = begin + (end - begin) * (block + 1) / blocks;
-    for (int k = from; k < to; ++k) {
-      const std::size_t sample = samples_.at(k);
-      const RolloutBuffer& b = samples_.rollout(sample);
-      const std::size_t i = samples_.index(sample);
-      const auto at = static_cast<std::size_t>(k - from);
-      std::copy_n(b.observations.data() + i * row, row, rows.observations.data() + at * row);
-      std::copy_n(b.actions.data() + i * action, action, rows.actions.data() + at * action);
-      if (imitation_ > 0.0F) {
-        std::copy_n(b.teacher.data() + i * action, action, rows.teacher.data() + at * action);
-      }
-      std::copy_n(b.log_prob.data() + i * agents, agents, rows.log_prob.data() + at * agents);
-      std::copy_n(b.states.data() + i * state, state, rows.states.data() + at * state);
-      rows.advantages[at] = samples_.advantage(sample);
-      rows.targets[at] = samples_.target(sample);
-    }
-    sums.Add(s.loss.AddGradient(parameters, s.rows.Batch(to - from, imitation_), config_.minibatch,
-                                gradient));
-  }
-  return sums;
-}
-
-void PpoUpdate::Step(double learning_rate_scale, std::vector<float>* parameters, AdamState* adam,
-                     PpoReport* report) {
-  const std::size_t split = networks_.critic_offset();
-  const Adam step(config_.adam_eps, adam);
-  report->actor_norm += gradient_.Apply(step, 0, split, config_.lr * learning_rate_scale,
-                                        config_.grad_clip, parameters->data());
-  report->critic_norm +=
-      gradient_.Apply(step, split, networks_.parameters(), config_.critic_lr * learning_rate_scale,
-                      config_.grad_clip, parameters->data());
-  for (int a = 0; a < networks_.action_size(); ++a) {
-    float& log_std = (*parameters)[networks_.actor.log_std_offset() + static_cast<std::size_t>(a)];
-    log_std = std::min(std::max(log_std, static_cast<float>(config_.min_log_std)),
-                       static_cast<float>(config_.max_log_std));
-  }
-}
-
-PpoReport PpoUpdate::Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
-                         std::uint32_t collection, double learning_rate_scale, double imitation,
-                         std::vector<float>* parameters, AdamState* adam) {
-  imitation_ = static_cast<float>(imitation);
+void PpoUpdate::Begin(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
+                      std::uint32_t collection, const UpdateContext& context) {
+  collection_ = collection;
+  rate_ = 1.0 - (1.0 - options_.lr_final) * std::min(context.progress, 1.0);
+  imitation_ = static_cast<float>(context.imitation);
+  last_ = PpoSums();
+  actor_norms_ = critic_norms_ = products_ = 0.0;
+  actor_steps_ = critic_steps_ = 0;
   samples_.Prepare(rollouts, scales);
-  PpoReport report;
-  const int samples = report.samples = samples_.size();
-  assert(samples % config_.minibatch == 0);
-  int steps = 0;
-  for (int epoch = 0; epoch < config_.epochs; ++epoch) {
-    samples_.Shuffle(seed_, collection, static_cast<std::uint32_t>(epoch), config_.minibatch);
-    for (int first = 0; first < samples; first += config_.minibatch) {
-      gradient_.Compute(
-          samples_.Slices(first), [&](int slice, int worker, int begin, int end, float* gradient) {
-            sums_.slice(slice) = Slice(parameters->data(), begin, end, worker, gradient);
-          });
-      sums_.EndMinibatch();
-      Step(learning_rate_scale, parameters, adam, &report);
-      ++steps;
-    }
-    report.sums = sums_.EndEpoch();
-    ++report.epochs;
-    if (config_.target_kl > 0.0 && report.sums.kl / report.sums.rows > config_.target_kl) break;
+  assert(samples_.size() % options_.minibatch == 0);
+}
+
+PpoSums PpoUpdate::Epoch(std::uint32_t epoch, int block, const BlockLoss& add,
+                         SlicedGradient* gradient, const std::function<void()>& step) {
+  samples_.Shuffle(seed_, collection_, epoch, options_.minibatch);
+  for (const std::vector<int>& begins : samples_.minibatches()) {
+    gradient->Compute(begins, [&](int group, int worker, int begin, int end, float* into) {
+      const int blocks = (end - begin + block - 1) / block;
+      for (int k = 0; k < blocks; ++k) {
+        add(scratch_[static_cast<std::size_t>(worker)].get(), begin + (end - begin) * k / blocks,
+            begin + (end - begin) * (k + 1) / blocks, into, &sums_.group(group));
+      }
+    });
+    step();
   }
-  report.actor_norm /= steps;
-  report.critic_norm /= steps;
-  report.flops = 2.0 * report.epochs * samples *
-                 (agents_ * networks_.actor.mean().spec().training_products() +
-                  networks_.critic.spec().training_products());
+  return sums_.EndEpoch();
+}
+
+int PpoUpdate::TrainActor(const AuvRange& auvs, std::uint32_t first_epoch,
+                          const std::vector<double>* weights, Trained* actor) {
+  const BlockLoss add = [&](Scratch* s, int from, int to, float* gradient, PpoSums* sums) {
+    s->loss.AddActor(actor->numbers.data(),
+                     s->rows.Actor(samples_, from, to, auvs, weights, imitation_),
+                     options_.minibatch, gradient, sums);
+  };
+  const auto step = [&] {
+    std::vector<float>& p = actor->numbers;
+    actor_norms_ += actor_gradient_.Apply(Adam(options_.adam_eps, &actor->adam), 0, p.size(),
+                                          options_.lr * rate_, options_.grad_clip, p.data());
+    for (std::size_t a = networks_.actor.log_std_offset(); a < p.size(); ++a) {
+      p[a] = std::min(std::max(p[a], static_cast<float>(options_.min_log_std)),
+                      static_cast<float>(options_.max_log_std));
+    }
+    ++actor_steps_;
+  };
+  PpoSums sums;
+  int epochs = 0;
+  for (bool far = false; epochs < options_.epochs && !far; ++epochs) {
+    sums = Epoch(first_epoch + static_cast<std::uint32_t>(epochs),
+                 std::max(1, kBlockRows / auvs.count), add, &actor_gradient_, step);
+    far = options_.target_kl > 0.0 && sums.kl / sums.rows > options_.target_kl;
+  }
+  last_.Add(sums);
+  products_ += epochs * auvs.count * networks_.actor.mean().spec().training_products();
+  return epochs;
+}
+
+void PpoUpdate::TrainCritic(int epochs, std::uint32_t first_epoch, Trained* critic) {
+  const BlockLoss add = [&](Scratch* s, int from, int to, float* gradient, PpoSums* sums) {
+    s->loss.AddCritic(critic->numbers.data(), s->rows.Critic(samples_, from, to),
+                      options_.minibatch, gradient, sums);
+  };
+  const auto step = [&] {
+    critic_norms_ += critic_gradient_.Apply(Adam(options_.adam_eps, &critic->adam), 0,
+                                            critic->numbers.size(), options_.critic_lr * rate_,
+                                            options_.grad_clip, critic->numbers.data());
+    ++critic_steps_;
+  };
+  PpoSums sums;
+  for (int epoch = 0; epoch < epochs; ++epoch) {
+    sums = Epoch(first_epoch + static_cast<std::uint32_t>(epoch), kBlockRows, add,
+                 &critic_gradient_, step);
+  }
+  last_.Add(sums);
+  products_ += epochs * networks_.critic.spec().training_products();
+}
+
+UpdateReport PpoUpdate::Report(double explained_variance,
+                               const std::vector<const Trained*>& actors) const {
+  double sigma = 0.0, entropy = 0.0;
+  const auto count = static_cast<double>(actors.size());
+  for (const Trained* actor : actors) {
+    for (std::size_t a = networks_.actor.log_std_offset(); a < actor->numbers.size(); ++a) {
+      const auto log_std = static_cast<double>(actor->numbers[a]);
+      sigma += std::exp(log_std) / (networks_.action_size() * count);
+      entropy += (log_std + agent::kHalfLogTwoPiE) / count;
+    }
+  }
+  UpdateReport report;
+  report.values = {options_.lr * rate_,
+                   last_.kl / last_.rows,
+                   last_.clipped / last_.rows,
+                   last_.actor_loss / last_.rows,
+                   last_.value_loss / last_.samples,
+                   entropy,
+                   explained_variance,
+                   sigma,
+                   actor_norms_ / actor_steps_,
+                   critic_norms_ / critic_steps_};
+  // With the values that the advantages were estimated from.
+  report.flops = 2.0 * samples_.size() * (products_ + networks_.critic.spec().forward_products());
   return report;
 }
 

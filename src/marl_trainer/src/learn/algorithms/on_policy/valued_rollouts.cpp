@@ -13,15 +13,16 @@ constexpr int kValueRows = 256;
 }  // namespace
 
 ValuedRollouts::ValuedRollouts(const Problem& problem, const PpoOptions& config, const Mlp& critic,
-                               WorkerPool* pool)
+                               const Team& team)
     : problem_(problem),
       gamma_(static_cast<float>(config.gamma)),
       lambda_(static_cast<float>(config.lambda)),
       moment_stride_(config.moment_stride),
       critic_(critic),
-      pool_(pool),
+      team_(team),
       normalisers_(problem, config),
-      workspaces_(static_cast<std::size_t>(pool->workers()), Mlp::Workspace(critic, kValueRows)) {}
+      workspaces_(static_cast<std::size_t>(team.pool->workers()),
+                  Mlp::Workspace(critic, kValueRows)) {}
 
 void ValuedRollouts::Begin(const Collection& collection) {
   rollouts_.resize(collection.shards.size());
@@ -75,25 +76,20 @@ void ValuedRollouts::EstimateAdvantages(const float* critic, int shard, int work
 }
 
 double ValuedRollouts::Estimate(float* critic) {
-  pool_->Run(static_cast<int>(rollouts_.size()),
-             [&](int shard, int worker) { EstimateAdvantages(critic, shard, worker); });
-  RunningMoments targets(1), errors(1);
+  team_.pool->Run(static_cast<int>(rollouts_.size()),
+                  [&](int shard, int worker) { EstimateAdvantages(critic, shard, worker); });
   std::vector<float> target;
   std::vector<RunningMoments> shards;  // of targets and errors, in turn
   for (const Rollout& r : rollouts_) {
     const RolloutBuffer& b = r.buffer;
     target.resize(b.advantages.size());
     for (std::size_t i = 0; i < target.size(); ++i) target[i] = b.advantages[i] + b.values[i];
-    if (ranks_ == nullptr) {
-      targets.Add(target.data(), b.samples());
-      errors.Add(b.advantages.data(), b.samples());
-      continue;
-    }
     shards.resize(shards.size() + 2, RunningMoments(1));
     shards[shards.size() - 2].Add(target.data(), b.samples());
     shards.back().Add(b.advantages.data(), b.samples());
   }
-  const std::vector<RunningMoments> all = OfAllRanks(ranks_, shards, 2);
+  RunningMoments targets(1), errors(1);
+  const std::vector<RunningMoments> all = OfAllRanks(team_.ranks, shards, 2);
   for (std::size_t k = 0; k < all.size(); ++k) (k % 2 == 0 ? targets : errors).Merge(all[k]);
   normalisers_.AddTargets(targets, critic_, critic);
   return 1.0 - errors.variance(0) / std::max(targets.variance(0), 1e-12);
@@ -105,7 +101,7 @@ void ValuedRollouts::UpdateInputScales() {
     shards.push_back(r.observations);
     shards.push_back(r.states);
   }
-  const std::vector<RunningMoments> all = OfAllRanks(ranks_, shards, 2);
+  const std::vector<RunningMoments> all = OfAllRanks(team_.ranks, shards, 2);
   for (std::size_t k = 0; k < all.size(); k += 2) normalisers_.Add(all[k], all[k + 1]);
   normalisers_.UpdateInputScales();
 }

@@ -15,7 +15,7 @@ struct HappoConfig : CopyableConfig<HappoConfig, PpoConfig> {
   void ApplyRecordings(const TrainConfig& common) override;
   void FitPolicy(const agent::Policy& policy) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                  WorkerPool* pool) const override;
+                                  const Team& team) const override;
 };
 
 }  // namespace stg::learn

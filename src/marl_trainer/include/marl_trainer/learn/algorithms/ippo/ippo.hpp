@@ -14,9 +14,8 @@ namespace stg::learn {
 class Ippo : public Algorithm {
  public:
   Ippo(const IppoConfig& config, const TrainConfig& common, const Problem& problem,
-       WorkerPool* pool);
+       const Team& team);
 
-  void Join(Communicator* ranks) override { single_.Join(ranks); }
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
   void Observe(const Transition& transition) override;

@@ -11,7 +11,7 @@ namespace stg::learn {
 struct IppoConfig : CopyableConfig<IppoConfig, MappoConfig> {
   void ApplyRecordings(const TrainConfig& common) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                  WorkerPool* pool) const override;
+                                  const Team& team) const override;
 };
 
 }  // namespace stg::learn

@@ -14,7 +14,7 @@ namespace stg::learn {
 class Maddpg : public CentralCriticLearner {
  public:
   Maddpg(const ReplayOptions& options, const DeterministicOptions& own, const TrainConfig& common,
-         const Problem& problem, WorkerPool* pool);
+         const Problem& problem, const Team& team);
   ~Maddpg() override;
 
   void Act(const Decision& decision, const Actions& out) override;

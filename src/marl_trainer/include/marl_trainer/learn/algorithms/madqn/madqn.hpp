@@ -27,13 +27,12 @@ struct Codebook {
 class Madqn : public ReplayLearner {
  public:
   Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
-        const Problem& problem, WorkerPool* pool);
+        const Problem& problem, const Team& team);
   ~Madqn() override;
 
   void Act(const Decision& decision, const Actions& out) override;
   /// The greedy one.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
-  void Join(Communicator* ranks) override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
 

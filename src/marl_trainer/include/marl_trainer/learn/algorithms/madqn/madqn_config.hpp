@@ -22,7 +22,7 @@ struct MadqnConfig : CopyableConfig<MadqnConfig, ReplayConfig>, QOptions {
   void Describe(OptionTable* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                  WorkerPool* pool) const override;
+                                  const Team& team) const override;
 };
 
 }  // namespace stg::learn

@@ -15,17 +15,17 @@ namespace stg::learn {
 class Mappo : public Algorithm {
  public:
   Mappo(const MappoConfig& config, const TrainConfig& common, const Problem& problem,
-        WorkerPool* pool);
+        const Team& team);
 
-  void Join(Communicator* ranks) override;
   void Begin(const Collection& collection) override;
   void Act(const Decision& decision, const Actions& out) override;
-  void Observe(const Transition& transition) override;
+  void Observe(const Transition& transition) override { rollouts_.Observe(transition); }
   UpdateReport Update(const UpdateContext& context) override;
 
   void Save(Archive* archive) const override;
   void Load(const Archive& archive) override;
   void StartFrom(const Archive& archive) override;
+  /// The critic stays untrained.
   void StartFrom(const agent::Policy& policy) override;
 
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
@@ -33,18 +33,17 @@ class Mappo : public Algorithm {
   std::vector<NetworkSize> Sizes() const override;
 
   const ActorCritic& networks() const { return networks_; }
-  const std::vector<float>& parameters() const { return parameters_; }
+  const Trained& actor() const { return actor_; }
+  const Trained& critic() const { return critic_; }
   const Scales& scales() const { return rollouts_.scales(); }
 
  private:
-  const MappoConfig config_;
+  const double wall_units_;
   const Problem problem_;
-  const std::uint64_t seed_;
   const ActorCritic networks_;
+  Trained actor_, critic_;
   PpoUpdate update_;
   ValuedRollouts rollouts_;
-  std::vector<float> parameters_;
-  AdamState adam_;
   std::vector<ObservedPass> acting_;  // by worker
   std::uint32_t collection_ = 0;
 };

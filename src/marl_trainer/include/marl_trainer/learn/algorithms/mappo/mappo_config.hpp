@@ -13,7 +13,7 @@ struct MappoConfig : CopyableConfig<MappoConfig, PpoConfig> {
   void Describe(OptionTable* table) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                  WorkerPool* pool) const override;
+                                  const Team& team) const override;
 };
 
 }  // namespace stg::learn

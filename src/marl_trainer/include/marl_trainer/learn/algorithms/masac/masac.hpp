@@ -14,7 +14,7 @@ namespace stg::learn {
 class Masac : public CentralCriticLearner {
  public:
   Masac(const ReplayOptions& options, const SoftOptions& own, const TrainConfig& common,
-        const Problem& problem, WorkerPool* pool);
+        const Problem& problem, const Team& team);
   ~Masac() override;
 
   void Act(const Decision& decision, const Actions& out) override;

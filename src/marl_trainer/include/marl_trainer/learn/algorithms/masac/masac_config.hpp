@@ -21,7 +21,7 @@ struct MasacConfig : CopyableConfig<MasacConfig, ReplayConfig>, SoftOptions {
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
-                                  WorkerPool* pool) const override;
+                                  const Team& team) const override;
 };
 
 }  // namespace stg::learn

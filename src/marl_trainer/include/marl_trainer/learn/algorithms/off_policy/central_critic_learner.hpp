@@ -15,9 +15,8 @@ class CentralCriticLearner : public ReplayLearner {
  public:
   /// @param critics how many
   CentralCriticLearner(const ReplayOptions& options, const NetworkSpec& actor, int critics,
-                       const TrainConfig& common, const Problem& problem, WorkerPool* pool);
+                       const TrainConfig& common, const Problem& problem, const Team& team);
 
-  void Join(Communicator* ranks) override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
 

@@ -40,6 +40,7 @@ struct ReplayConfig : AlgorithmConfig, ReplayOptions {
   /// The common part of `fast` and `paper`.
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
+  int MostRanks() const override { return kGroups; }
 };
 
 }  // namespace stg::learn

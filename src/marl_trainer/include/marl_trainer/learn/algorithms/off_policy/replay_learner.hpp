@@ -7,10 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_batch.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
-#include "marl_trainer/learn/comm/communicator.hpp"
 #include "marl_trainer/learn/nn/mlp.hpp"
 #include "marl_trainer/learn/nn/sliced_gradient.hpp"
 #include "marl_trainer/learn/train_config.hpp"
@@ -19,19 +17,17 @@ namespace stg::learn {
 
 /// What all off-policy methods share: the replayed transitions, the normalisers, when a gradient
 /// step is due and on which samples, and checkpoints. A method adds its networks: how to act and
-/// what a gradient step does.
+/// what a gradient step does. Every rank keeps what all of them have seen, and computes the
+/// gradient of its slices of a batch.
 class ReplayLearner : public Algorithm {
  public:
   /// @param own_rewards whether samples have each AUV's own rewards, and values their scale
   ReplayLearner(const ReplayOptions& options, const TrainConfig& common, const Problem& problem,
-                WorkerPool* pool, bool own_rewards = false);
+                const Team& team, bool own_rewards = false);
 
   void Begin(const Collection& collection) override;
   void Observe(const Transition& transition) override;
   UpdateReport Update(const UpdateContext& context) override;
-  /// Every rank keeps what all of them have seen, and computes the gradient of its slices of a
-  /// batch. UserError for more ranks than slices.
-  void Join(Communicator* ranks) override;
 
   void Save(Archive* archive) const override;
   void Load(const Archive& archive) override;
@@ -64,7 +60,7 @@ class ReplayLearner : public Algorithm {
   const Problem& problem() const { return problem_; }
   const ReplayOptions& base() const { return options_; }
   std::uint64_t seed() const { return seed_; }
-  WorkerPool* pool() { return pool_; }
+  WorkerPool* pool() { return team_.pool; }
   std::vector<ReplayBatch>& batches() { return batches_; }
   /// Whether actions are still random.
   bool warming_up() const { return seen_ < options_.warmup; }
@@ -74,14 +70,9 @@ class ReplayLearner : public Algorithm {
   int slice_rows() const;
   /// What was computed of each slice: of all ranks, from those of this rank's.
   template <class T>
-  std::array<T, SlicedGradient::kSlices> OfAllSlices(
-      const std::array<T, SlicedGradient::kSlices>& own) const {
-    if (ranks_ == nullptr) return own;
+  std::vector<T> OfAllSlices(const std::array<T, kGroups>& own) const {
     const auto from = own.begin() + slices_.first;
-    const std::vector<T> all = ranks_->Gather(std::vector<T>(from, from + slices_.count));
-    std::array<T, SlicedGradient::kSlices> parts;
-    std::copy(all.begin(), all.end(), parts.begin());
-    return parts;
+    return team_.ranks->Gather(std::vector<T>(from, from + slices_.count));
   }
 
  private:
@@ -94,9 +85,8 @@ class ReplayLearner : public Algorithm {
   const Problem problem_;
   const std::uint64_t seed_;
   const bool own_rewards_;
-  WorkerPool* pool_;
-  Communicator* ranks_ = nullptr;
-  GroupShare slices_;            // of a batch
+  const Team team_;
+  const GroupShare slices_;      // of a batch
   std::size_t first_shard_ = 0;  // of this rank among those of all
   ReplayBuffer replay_;
   RunningMoments observations_, states_, rewards_;
@@ -122,8 +112,5 @@ class ReplayLearner : public Algorithm {
 
 /// target += tau (online - target).
 void MoveTowards(const std::vector<float>& online, double tau, std::vector<float>* target);
-
-/// Rescales the outputs of a network whose first output is a value: RescaleValues, for one.
-void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters);
 
 }  // namespace stg::learn

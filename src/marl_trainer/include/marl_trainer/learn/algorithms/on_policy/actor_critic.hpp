@@ -1,15 +1,32 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "marl_trainer/learn/algorithms/on_policy/ppo_config.hpp"
+#include "marl_trainer/learn/nn/adam.hpp"
 #include "marl_trainer/learn/nn/gaussian_actor.hpp"
 
 namespace stg::learn {
 
-/// The actor that all AUVs share and the central critic, which maps the true state of the swarm to
-/// one value per environment step. Parameters in one flat array: actor (with log sigma), critic.
+/// A network with the numbers that are trained, and the optimiser's memory of them.
+struct Trained {
+  explicit Trained(std::vector<float> initial)
+      : numbers(std::move(initial)), adam(numbers.size()) {}
+
+  /// As `name` and `name`_adam.
+  void Save(const std::string& name, Archive* archive) const;
+  /// Throws UserError for another size.
+  void Load(const std::string& name, const Archive& archive);
+
+  std::vector<float> numbers;
+  AdamState adam;
+};
+
+/// Shapes of an actor, with log sigma, and of the critic, which maps the true state of the swarm to
+/// one value per environment step.
 struct ActorCritic {
   ActorCritic(const Problem& problem, const PpoOptions& config);
 
@@ -17,10 +34,15 @@ struct ActorCritic {
   Mlp critic;
 
   int action_size() const { return actor.action_size(); }
-  std::size_t critic_offset() const { return actor.parameters(); }
-  std::size_t parameters() const { return critic_offset() + critic.parameters(); }
 
-  std::vector<float> Initialise(std::uint64_t seed, double log_std) const;
+  /// Replaces the mean of an AUV's action by a draw around it.
+  /// @param row of the AUV in `out`, its environment times `agents` plus its number
+  void Explore(const Trained& trained_actor, const DrawKeys& keys, int agents, int row,
+               const Actions& out) const;
+
+  /// The i-th actor of a seed, and the critic.
+  Trained NewActor(std::uint64_t seed, int i, double log_std) const;
+  Trained NewCritic(std::uint64_t seed) const;
 };
 
 }  // namespace stg::learn

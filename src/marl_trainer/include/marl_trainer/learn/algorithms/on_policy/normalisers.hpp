@@ -33,6 +33,9 @@ class Normalisers {
   /// @param parameters of the critic.
   void AddTargets(const RunningMoments& targets, const Mlp& critic, float* parameters);
 
+  /// Takes the observations' moments of a policy file, as of all that it was trained on.
+  void StartFrom(const agent::Policy& policy, int agents);
+
   void Save(Archive* archive) const;
   /// Throws UserError for another size and leaves this object as it was.
   void Load(const Archive& archive);

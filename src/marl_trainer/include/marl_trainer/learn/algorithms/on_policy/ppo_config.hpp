@@ -1,9 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "marl_trainer/learn/algorithm_config.hpp"
+#include "marl_trainer/learn/collect/imitation.hpp"
 
 namespace stg::learn {
 
@@ -31,6 +33,7 @@ struct PpoOptions {
   double observation_clip = 10.0;
   double std_floor = 0.01;
   double std_scale = 1.0;
+  ImitationConfig imitation;
   /// The normalisers take in every n-th decision; no option of the command line.
   int moment_stride = 4;
 };
@@ -42,6 +45,8 @@ struct PpoConfig : AlgorithmConfig, PpoOptions {
   void ValidateOrThrow(const TrainConfig& common) const override;
   void ApplyRecordings(const TrainConfig& common) override;
   void FitPolicy(const agent::Policy& policy) override;
+  const ImitationConfig* Imitation() const override { return &imitation; }
+  int MostRanks() const override { return std::numeric_limits<int>::max(); }
 };
 
 }  // namespace stg::learn

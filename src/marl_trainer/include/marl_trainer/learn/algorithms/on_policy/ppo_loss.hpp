@@ -14,7 +14,8 @@ struct PpoSums {
   void Add(const PpoSums& other);
 };
 
-/// Minibatch rows, gathered; [count] environment steps of `agents` rows each.
+/// Minibatch rows, gathered; [count] environment steps of `agents` rows each. The actor's loss
+/// reads no states and targets, the critic's nothing else.
 struct PpoBatch {
   int count = 0, agents = 0;
   const float* observations = nullptr;  ///< [count, agents, F]
@@ -33,19 +34,14 @@ struct PpoBatch {
 /// Loss of Eqs. 41-44 and its gradient, on one worker's scratch memory.
 class PpoLoss {
  public:
-  /// @param networks must outlive this object. @param max_samples of a batch, `agents` rows each.
-  PpoLoss(const ActorCritic& networks, const PpoOptions& config, double imitation_focus,
-          int max_samples, int agents);
+  /// @param networks must outlive this object. @param max_rows of a batch
+  PpoLoss(const ActorCritic& networks, const PpoOptions& config, int max_rows);
 
-  /// Adds the gradient of the loss to gradient [parameters]. Every term is
-  /// weighted as one of `minibatch` environment steps.
-  PpoSums AddGradient(const float* parameters, const PpoBatch& batch, int minibatch,
-                      float* gradient);
-
-  /// The actor's part alone: its parameters and their gradient, with log sigma.
+  /// Adds the gradient of the actor's loss (Eqs. 41, 42), log sigma's too, to gradient
+  /// [parameters]. Every term is weighted as one of `minibatch` environment steps.
   void AddActor(const float* actor, const PpoBatch& batch, int minibatch, float* gradient,
                 PpoSums* sums);
-  /// The critic's part alone.
+  /// The same of the critic (Eq. 43).
   void AddCritic(const float* critic, const PpoBatch& batch, int minibatch, float* gradient,
                  PpoSums* sums);
 

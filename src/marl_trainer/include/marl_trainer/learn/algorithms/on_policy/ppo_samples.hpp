@@ -5,28 +5,26 @@
 
 #include "marl_trainer/learn/algorithms/on_policy/normalisers.hpp"
 #include "marl_trainer/learn/buffers/rollout_buffer.hpp"
-#include "marl_trainer/learn/comm/communicator.hpp"
 
 namespace stg::learn {
 
-/// The environment steps of all rollouts of a collection as one list of samples, in the random
-/// order of an epoch. Among several ranks the list is that of all ranks, and this one has the part
-/// of it that its environments made.
+/// The environment steps of a collection, of all ranks, as one list of samples in the random order
+/// of an epoch. Every rank draws the order of all, and has the samples that its environments made.
 class PpoSamples {
  public:
+  explicit PpoSamples(const Team& team) : ranks_(team.ranks), share_(team.share()) {}
+
   /// @param rollouts must outlive the use of this object.
   void Prepare(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales);
-  /// @param ranks must outlive this object.
-  void Join(Communicator* ranks) { ranks_ = ranks; }
   /// @param epoch keys the order, with seed and collection. @param minibatch samples of one
   void Shuffle(std::uint64_t seed, std::uint32_t collection, std::uint32_t epoch, int minibatch);
 
   /// Samples of all ranks, and this one's.
-  int size() const { return size_; }
+  int size() const { return static_cast<int>(own_at_.size()); }
   int own() const { return static_cast<int>(advantages_.size()); }
-  /// The own places, in order, of the slices of the minibatch that begins at sample `first` of all:
-  /// for SlicedGradient.
-  std::vector<int> Slices(int first) const;
+  /// For each minibatch of the epoch's order, where this rank's part of each group begins, and
+  /// where the last one ends: for SlicedGradient.
+  const std::vector<std::vector<int>>& minibatches() const { return minibatches_; }
   /// The own sample at this place of the epoch's order.
   std::size_t at(int place) const {
     return static_cast<std::size_t>(order_[static_cast<std::size_t>(place)]);
@@ -44,19 +42,16 @@ class PpoSamples {
   float target(std::size_t sample) const { return targets_[sample]; }
 
  private:
-  void Normalise(const std::vector<float>& all);
-  std::vector<float> OfAllRanks();
-  void KeepOwn();
+  void Normalise();
 
-  std::vector<const RolloutBuffer*> rollouts_;
-  std::vector<int> order_, rollout_of_, index_of_;
-  std::vector<float> advantages_, targets_;
-  int size_ = 0, minibatch_ = 1;
-  // Among several ranks.
-  Communicator* ranks_ = nullptr;
+  Communicator* ranks_;
   GroupShare share_;
+  std::vector<const RolloutBuffer*> rollouts_;
+  std::vector<int> rollout_of_, index_of_;  // by own sample
+  std::vector<float> advantages_, targets_;
   std::vector<int> own_at_;  // own sample at a place of the samples of all; -1: not own
-  std::vector<std::vector<int>> slices_;  // by minibatch: own places
+  std::vector<int> order_;   // of the own samples
+  std::vector<std::vector<int>> minibatches_;
 };
 
 }  // namespace stg::learn

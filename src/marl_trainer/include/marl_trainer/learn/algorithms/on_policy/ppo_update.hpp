@@ -2,87 +2,86 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
-#include "auv_common/parallel/worker_pool.hpp"
-#include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
-#include "marl_trainer/learn/algorithms/on_policy/ppo_samples.hpp"
+#include "marl_trainer/learn/algorithms/on_policy/ppo_rows.hpp"
 #include "marl_trainer/learn/nn/sliced_gradient.hpp"
-#include "marl_trainer/learn/train_config.hpp"
 
 namespace stg::learn {
-
-/// What one update did.
-struct PpoReport {
-  PpoSums sums;                                ///< of the last epoch
-  double actor_norm = 0.0, critic_norm = 0.0;  ///< mean gradient norms before clipping
-  int epochs = 0;
-  int samples = 0;     ///< of all ranks
-  double flops = 0.0;  ///< floating-point operations in matrix products, of all ranks
-};
 
 /// Sums of an epoch, in an order that depends neither on workers nor on ranks.
 class SlicedSums {
  public:
-  /// @param ranks must outlive this object.
-  void Join(Communicator* ranks) { ranks_ = ranks; }
-  /// Of a slice of the minibatch; whoever computes it writes it.
-  PpoSums& slice(int s) { return minibatch_[static_cast<std::size_t>(s)]; }
-  void EndMinibatch();
+  explicit SlicedSums(const Team& team);
+
+  /// Of this rank's group; whoever computes its gradient adds to it.
+  PpoSums& group(int g) { return groups_[static_cast<std::size_t>(g)]; }
   /// Sums of all minibatches of all ranks; the next epoch begins.
   PpoSums EndEpoch();
 
  private:
-  using Slices = std::array<PpoSums, SlicedGradient::kSlices>;
-
-  Slices minibatch_, epoch_;
-  PpoSums total_;
-  Communicator* ranks_ = nullptr;
+  Communicator* ranks_;
+  std::vector<PpoSums> groups_;
 };
 
 /// What all methods of this family report, in the order of the columns.
-/// @param sigma, entropy of the exploration, the mean over actors
 std::vector<ReportColumn> PpoColumns();
-std::vector<double> PpoValues(const PpoReport& report, double learning_rate, double entropy,
-                              double explained_variance, double sigma);
 
-/// Epochs of minibatch gradient steps over one collection.
+/// Epochs of minibatch gradient steps over one collection, on an actor or on the critic. A method
+/// says whose, in which order and with which weights.
 class PpoUpdate {
  public:
-  /// @param networks, pool must outlive this object.
-  PpoUpdate(const ActorCritic& networks, const PpoOptions& config, const TrainConfig& common,
-            int agents, WorkerPool* pool);
+  /// @param networks must outlive this object.
+  PpoUpdate(const ActorCritic& networks, const PpoOptions& options, std::uint64_t seed, int agents,
+            const Team& team);
   ~PpoUpdate();
 
-  /// As Algorithm::Join.
-  void Join(Communicator* ranks);
+  /// Begins the update on what was collected. The number of samples must be a multiple of the
+  /// minibatch.
+  /// @param rollouts must outlive the update. @param collection its number
+  void Begin(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
+             std::uint32_t collection, const UpdateContext& context);
 
-  /// The number of samples must be a multiple of the minibatch.
-  /// @param collection number of the update, for the order of the minibatches.
-  /// @param learning_rate_scale multiplies both learning rates.
-  /// @param imitation share of the teacher in the actor's loss, see PpoBatch.
-  PpoReport Run(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
-                std::uint32_t collection, double learning_rate_scale, double imitation,
-                std::vector<float>* parameters, AdamState* adam);
+  /// Trains an actor on the rows of these AUVs, until it is too far from the one that acted.
+  /// @param first_epoch keys the order of the minibatches, with those that follow
+  /// @param weights of the advantages, by sample; null: 1
+  /// @return how many epochs
+  int TrainActor(const AuvRange& auvs, std::uint32_t first_epoch,
+                 const std::vector<double>* weights, Trained* actor);
+  void TrainCritic(int epochs, std::uint32_t first_epoch, Trained* critic);
+
+  /// The numbers of PpoColumns, means over the actors.
+  UpdateReport Report(double explained_variance, const std::vector<const Trained*>& actors) const;
+
+  const PpoSamples& samples() const { return samples_; }
 
  private:
-  struct Scratch;                    // per worker
-  static constexpr int kBlock = 64;  // environment steps per pass through the networks
+  struct Scratch;                         // per worker
+  static constexpr int kBlockRows = 256;  // of a pass through a network
 
-  PpoSums Slice(const float* parameters, int begin, int end, int worker, float* gradient);
-  void Step(double learning_rate_scale, std::vector<float>* parameters, AdamState* adam,
-            PpoReport* report);
+  /// Adds the gradient of the loss of the samples at places from .. to-1.
+  using BlockLoss =
+      std::function<void(Scratch* scratch, int from, int to, float* gradient, PpoSums* sums)>;
+  PpoSums Epoch(std::uint32_t epoch, int block, const BlockLoss& add, SlicedGradient* gradient,
+                const std::function<void()>& step);
 
   const ActorCritic& networks_;
-  const PpoOptions config_;
+  const PpoOptions options_;
   const std::uint64_t seed_;
-  const int agents_;
-  SlicedGradient gradient_;
+  SlicedGradient actor_gradient_, critic_gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   SlicedSums sums_;
   PpoSamples samples_;
+  // Of the update.
+  std::uint32_t collection_ = 0;
+  double rate_ = 1.0;
   float imitation_ = 0.0F;
+  PpoSums last_;                                   // of the last epochs
+  double actor_norms_ = 0.0, critic_norms_ = 0.0;  // sums over steps, before clipping
+  int actor_steps_ = 0, critic_steps_ = 0;
+  double products_ = 0.0;  // multiplications a sample
 };
 
 }  // namespace stg::learn

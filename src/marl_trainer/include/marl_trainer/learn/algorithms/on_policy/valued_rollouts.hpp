@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/algorithms/on_policy/normalisers.hpp"
 #include "marl_trainer/learn/buffers/rollout_buffer.hpp"
 
@@ -12,12 +11,9 @@ namespace stg::learn {
 /// networks see, and advantages by the critic.
 class ValuedRollouts {
  public:
-  /// @param critic, pool must outlive this object.
+  /// @param critic must outlive this object.
   ValuedRollouts(const Problem& problem, const PpoOptions& config, const Mlp& critic,
-                 WorkerPool* pool);
-
-  /// As Algorithm::Join.
-  void Join(Communicator* ranks) { ranks_ = ranks; }
+                 const Team& team);
 
   void Begin(const Collection& collection);
   void Observe(const Transition& transition);
@@ -50,8 +46,7 @@ class ValuedRollouts {
   const float gamma_, lambda_;
   const int moment_stride_;
   const Mlp& critic_;
-  WorkerPool* pool_;
-  Communicator* ranks_ = nullptr;
+  const Team team_;
   Normalisers normalisers_;
   std::vector<Mlp::Workspace> workspaces_;  // per worker
   std::vector<Rollout> rollouts_;
