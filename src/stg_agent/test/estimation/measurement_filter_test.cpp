@@ -258,5 +258,34 @@ TEST(MeasurementFilter, KalmanRefusesWhatItCannotUse) {
   EXPECT_TRUE(FindFilterConflict(s).has_value());
 }
 
+TEST(MeasurementFilter, AWrongImageIsGivenUpAlsoWhereThreeStandTogether) {
+  // Three observers in a pile pass the target, then turn towards it. Their filter begins with the
+  // image on the other side of their way, which the first minute cannot tell from the truth.
+  const AgentModel s = Scenario("range");
+  const Vec3<double> target{60.0, 100.0, -50.0};
+  auto f = Filter(s);
+  f->Start({60.0, -100.0, -50.0}, 10.0, 0);
+  double error_m = 0.0;
+  for (int k = 1; k <= 180; ++k) {
+    const double t = k, x = std::min(t, 60.0), y = std::max(0.0, 0.5 * (t - 60.0));
+    f->Predict(k * kSecond);
+    const int source = k % 3;
+    const Vec3<double> p_WO{x + 5.0 * source, y, -50.0};
+    const dynamics::Detection d = Range(k * kSecond, p_WO, Norm(target - p_WO));
+    if (source == 0) {
+      f->Detect(d);
+    } else {
+      f->Hear(Shared(source, d));
+    }
+    f->Settle(k * kSecond, 0.0);
+    const Vec3<double> off = f->belief().p_WT - target;
+    error_m = std::hypot(off.x, off.y);
+    if (k == 30) {
+      EXPECT_GT(error_m, 100.0) << "there is nothing to give up";
+    }
+  }
+  EXPECT_LT(error_m, 20.0);
+}
+
 }  // namespace
 }  // namespace stg::agent

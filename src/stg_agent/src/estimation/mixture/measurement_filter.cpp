@@ -21,8 +21,13 @@ constexpr std::size_t kForgottenTogether = 32;  ///< sightings, so that the rest
 /// Two ranges leave two places, mirrored at the line between the observers, and the filter may have
 /// taken the wrong one when the target crossed that line: the other one gets a chance so often.
 constexpr TimeNs kMirrorPeriod = 5'000'000'000;
-constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer, who tells the two apart
 constexpr double kMirrorWeight = 0.03;
+/// Three observers that stand around the target tell the two places apart, so the other one needs
+/// less. It needs a chance all the same: seen from a wrong place, a pile stands around it.
+constexpr double kLeastMirrorWeight = 0.002;
+constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer
+constexpr double kAround_s = 30.0;         ///< what observers saw counts for this long
+constexpr double kLeastAround = 0.3;       ///< of Around(), for the other place to need less
 
 /// A detection and who made it.
 struct Sighting {
@@ -39,12 +44,30 @@ struct Snapshot {
   TimeNs stamp = 0;    ///< time of the state
   TimeNs information = 0;
   bool observed = false;
-  Sighting last;            ///< the newest one in it
-  Sighting other;           ///< the newest one of another AUV than that
-  TimeNs third = 0;         ///< when there was last one of a third AUV
-  TimeNs mirrored = 0;      ///< when the mirror image was last given a chance
-  GaussianMixture mixture;  ///< empty: nothing is known of the target
+  Sighting last;                                  ///< the newest one in it
+  Sighting other;                                 ///< the newest one of another AUV than that
+  TimeNs third = 0;                               ///< when there was last one of a third AUV
+  double axis_x = 0.0, axis_y = 0.0, seen = 0.0;  ///< see Around()
+  TimeNs mirrored = 0;                            ///< when the mirror image was last given a chance
+  GaussianMixture mixture;                        ///< empty: nothing is known of the target
   Observers observers;
+
+  /// 0: all of the last observers stood on one line through the target; 1: on all sides. One minus
+  /// the length of the mean of e^{2 i theta}, theta the bearing of an observer from the target; two
+  /// on opposite sides are on one line, and see one axis.
+  double Around() const { return seen > 0.0 ? 1.0 - std::hypot(axis_x, axis_y) / seen : 0.0; }
+  void LookFrom(const Vec3<double>& p_WO, double dt_s) {
+    Vec3<double> p_WT;
+    for (int k = 0; k < mixture.size(); ++k) {
+      const Gaussian g = mixture.at(k);
+      p_WT += Vec3<double>{g.x[0], g.x[1], 0.0} * *g.weight;
+    }
+    const double x = p_WO.x - p_WT.x, y = p_WO.y - p_WT.y, square = std::max(x * x + y * y, 1e-6);
+    const double kept = std::exp(-dt_s / kAround_s);
+    axis_x = kept * axis_x + (x * x - y * y) / square;
+    axis_y = kept * axis_y + 2.0 * x * y / square;
+    seen = kept * seen + 1.0;
+  }
 };
 
 DriftModel DriftModelOf(const AgentModel& s) {
@@ -86,6 +109,7 @@ class MeasurementFilter : public TargetFilter {
     now_.last.source = now_.other.source = -1;
     now_.mirrored = 0;
     now_.third = -kAlone;
+    now_.axis_x = now_.axis_y = now_.seen = 0.0;
     now_.mixture.Clear();
     now_.observers.Clear();
     first_ = 0;
@@ -210,14 +234,14 @@ class MeasurementFilter : public TargetFilter {
     const Detection& d = s.detection;
     GaussianMixture& mixture = now_.mixture;
     const bool fresh = mixture.size() == 0;
+    const double since_s = Seconds(d.stamp - now_.stamp);
     if (fresh) {
       model_.Seed(d, &mixture);
       now_.observers.Clear();
     } else {
-      const double dt_s = Seconds(d.stamp - now_.stamp);
-      model_.Predict(dt_s, &mixture);
-      now_.observers.Predict(dt_s, &mixture);
-      if (mixture.size() > 1) model_.DoubtTheFast(dt_s, &mixture);
+      model_.Predict(since_s, &mixture);
+      now_.observers.Predict(since_s, &mixture);
+      if (mixture.size() > 1) model_.DoubtTheFast(since_s, &mixture);
     }
     now_.stamp = d.stamp;
     const int slot =
@@ -232,6 +256,7 @@ class MeasurementFilter : public TargetFilter {
     for (int k = 0; k < mixture.size(); ++k) model_.Update(d, slot, k >= one_way, &mixture, k);
     mixture.Normalise();
     mixture.Reduce(kKeptComponents);
+    now_.LookFrom(d.p_WO, since_s);
     if (now_.last.source != s.source) {
       if (now_.other.source >= 0 && now_.other.source != s.source) {
         now_.third = now_.other.detection.stamp;
@@ -248,12 +273,13 @@ class MeasurementFilter : public TargetFilter {
     const Sighting &a = now_.last, &b = now_.other;
     if (a.detection.kind != dynamics::MeasurementKind::kRange || b.source < 0 ||
         a.detection.stamp - b.detection.stamp > kMirrorPeriod ||
-        a.detection.stamp - now_.mirrored < kMirrorPeriod ||
-        a.detection.stamp - now_.third < kAlone || now_.mixture.full()) {
+        a.detection.stamp - now_.mirrored < kMirrorPeriod || now_.mixture.full()) {
       return;
     }
     now_.mirrored = a.detection.stamp;
-    if (model_.AddMirror(a.detection.p_WO, b.detection.p_WO, kMirrorWeight, &now_.mixture)) {
+    const bool clear = a.detection.stamp - now_.third < kAlone && now_.Around() > kLeastAround;
+    const double weight = clear ? kLeastMirrorWeight : kMirrorWeight;
+    if (model_.AddMirror(a.detection.p_WO, b.detection.p_WO, weight, &now_.mixture)) {
       now_.mixture.Normalise();
       now_.mixture.Reduce(kKeptComponents);
     }
