@@ -6,6 +6,7 @@
 #include "../filters.hpp"
 #include "moments.hpp"
 #include "observers.hpp"
+#include "surround.hpp"
 
 namespace stg::agent {
 namespace {
@@ -26,8 +27,7 @@ constexpr double kMirrorWeight = 0.03;
 /// less. It needs a chance all the same: seen from a wrong place, a pile stands around it.
 constexpr double kLeastMirrorWeight = 0.002;
 constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer
-constexpr double kAround_s = 30.0;         ///< what observers saw counts for this long
-constexpr double kLeastAround = 0.3;       ///< of Around(), for the other place to need less
+constexpr double kLeastSurround = 0.3;     ///< for the other place to need less
 
 /// A detection and who made it.
 struct Sighting {
@@ -44,30 +44,13 @@ struct Snapshot {
   TimeNs stamp = 0;    ///< time of the state
   TimeNs information = 0;
   bool observed = false;
-  Sighting last;                                  ///< the newest one in it
-  Sighting other;                                 ///< the newest one of another AUV than that
-  TimeNs third = 0;                               ///< when there was last one of a third AUV
-  double axis_x = 0.0, axis_y = 0.0, seen = 0.0;  ///< see Around()
-  TimeNs mirrored = 0;                            ///< when the mirror image was last given a chance
-  GaussianMixture mixture;                        ///< empty: nothing is known of the target
+  Sighting last;            ///< the newest one in it
+  Sighting other;           ///< the newest one of another AUV than that
+  TimeNs third = 0;         ///< when there was last one of a third AUV
+  Surround surround;        ///< of the target by what observed it
+  TimeNs mirrored = 0;      ///< when the mirror image was last given a chance
+  GaussianMixture mixture;  ///< empty: nothing is known of the target
   Observers observers;
-
-  /// 0: all of the last observers stood on one line through the target; 1: on all sides. One minus
-  /// the length of the mean of e^{2 i theta}, theta the bearing of an observer from the target; two
-  /// on opposite sides are on one line, and see one axis.
-  double Around() const { return seen > 0.0 ? 1.0 - std::hypot(axis_x, axis_y) / seen : 0.0; }
-  void LookFrom(const Vec3<double>& p_WO, double dt_s) {
-    Vec3<double> p_WT;
-    for (int k = 0; k < mixture.size(); ++k) {
-      const Gaussian g = mixture.at(k);
-      p_WT += Vec3<double>{g.x[0], g.x[1], 0.0} * *g.weight;
-    }
-    const double x = p_WO.x - p_WT.x, y = p_WO.y - p_WT.y, square = std::max(x * x + y * y, 1e-6);
-    const double kept = std::exp(-dt_s / kAround_s);
-    axis_x = kept * axis_x + (x * x - y * y) / square;
-    axis_y = kept * axis_y + 2.0 * x * y / square;
-    seen = kept * seen + 1.0;
-  }
 };
 
 DriftModel DriftModelOf(const AgentModel& s) {
@@ -109,7 +92,7 @@ class MeasurementFilter : public TargetFilter {
     now_.last.source = now_.other.source = -1;
     now_.mirrored = 0;
     now_.third = -kAlone;
-    now_.axis_x = now_.axis_y = now_.seen = 0.0;
+    now_.surround = Surround();
     now_.mixture.Clear();
     now_.observers.Clear();
     first_ = 0;
@@ -256,7 +239,7 @@ class MeasurementFilter : public TargetFilter {
     for (int k = 0; k < mixture.size(); ++k) model_.Update(d, slot, k >= one_way, &mixture, k);
     mixture.Normalise();
     mixture.Reduce(kKeptComponents);
-    now_.LookFrom(d.p_WO, since_s);
+    now_.surround.LookFrom(d.p_WO, since_s, mixture);
     if (now_.last.source != s.source) {
       if (now_.other.source >= 0 && now_.other.source != s.source) {
         now_.third = now_.other.detection.stamp;
@@ -277,7 +260,8 @@ class MeasurementFilter : public TargetFilter {
       return;
     }
     now_.mirrored = a.detection.stamp;
-    const bool clear = a.detection.stamp - now_.third < kAlone && now_.Around() > kLeastAround;
+    const bool clear =
+        a.detection.stamp - now_.third < kAlone && now_.surround.Share() > kLeastSurround;
     const double weight = clear ? kLeastMirrorWeight : kMirrorWeight;
     if (model_.AddMirror(a.detection.p_WO, b.detection.p_WO, weight, &now_.mixture)) {
       now_.mixture.Normalise();
