@@ -10,7 +10,7 @@
 #include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
-#include "marl_trainer/learn/nn/torch/torch_network.hpp"
+#include "oracle/torch_network.hpp"
 
 /// The kernels against libtorch on the networks of the presets, one thread: what docs/adr/009
 /// quotes.
@@ -127,13 +127,20 @@ struct Minibatch {
     config.activation = width == 64 ? "tanh" : "relu";
     return config;
   }
+  /// The actor's, then the critic's.
+  std::vector<float> Parameters() const {
+    std::vector<float> all = networks.NewActor(1, 0, -1.0).numbers;
+    const std::vector<float> critic = networks.NewCritic(1).numbers;
+    all.insert(all.end(), critic.begin(), critic.end());
+    return all;
+  }
   double products() const {
     return kAgents * networks.actor.mean().spec().training_products() +
            networks.critic.spec().training_products();
   }
 
   const ActorCritic networks;
-  std::vector<float> parameters = networks.Initialise(1, -1.0);
+  std::vector<float> parameters = Parameters();
   std::vector<float> observations = Draw(Size(kRows, kFeatures)),
                      states = Draw(Size(kSamples, kState));
   std::vector<float> actions = Draw(Size(kRows, kActions)), old = Draw(kRows);
@@ -147,10 +154,11 @@ void KernelsStep(benchmark::State& state) {
   constexpr int kBlock = 64;
   Minibatch m(width);
   const PpoOptions config = Minibatch::MakeConfig(width);
-  PpoLoss loss(m.networks, config, 1.0, kBlock, Minibatch::kAgents);
-  AdamState adam(m.networks.parameters());
-  std::vector<float> gradient(m.networks.parameters());
-  const std::size_t split = m.networks.critic_offset(), count = gradient.size();
+  PpoLoss loss(m.networks, config, kBlock * Minibatch::kAgents);
+  PpoSums sums;
+  AdamState adam(m.parameters.size());
+  std::vector<float> gradient(m.parameters.size());
+  const std::size_t split = m.networks.actor.parameters(), count = gradient.size();
   for (auto _ : state) {
     std::fill(gradient.begin(), gradient.end(), 0.0F);
     for (int first = 0; first < Minibatch::kSamples; first += kBlock) {
@@ -164,7 +172,9 @@ void KernelsStep(benchmark::State& state) {
       batch.states = m.states.data() + Size(first, Minibatch::kState);
       batch.advantages = m.advantages.data() + first;
       batch.targets = m.targets.data() + first;
-      loss.AddGradient(m.parameters.data(), batch, Minibatch::kSamples, gradient.data());
+      loss.AddActor(m.parameters.data(), batch, Minibatch::kSamples, gradient.data(), &sums);
+      loss.AddCritic(m.parameters.data() + split, batch, Minibatch::kSamples,
+                     gradient.data() + split, &sums);
     }
     const Adam step(1e-5, &adam);
     step.Apply(0, split, 1e-4, ShrinkTo(5.0, GradientNorm(gradient.data(), 0, split)),
@@ -182,7 +192,7 @@ void TorchStep(benchmark::State& state) {
   Minibatch m(static_cast<int>(state.range(0)));
   TorchNetwork actor(m.networks.actor.mean().spec()), critic(m.networks.critic.spec());
   SetParameters(m.parameters.data(), actor.get());
-  SetParameters(m.parameters.data() + m.networks.critic_offset(), critic.get());
+  SetParameters(m.parameters.data() + m.networks.actor.parameters(), critic.get());
   torch::Tensor log_std = torch::full({Minibatch::kActions}, -1.0F).requires_grad_(true);
   std::vector<torch::Tensor> actors = actor->parameters(), all;
   actors.push_back(log_std);

@@ -13,8 +13,8 @@ enum class HiddenActivation { kTanh, kRelu };
 /// "tanh" or "relu"; UserError for another name.
 HiddenActivation ActivationNamed(const std::string& name);
 
-/// A multilayer perceptron, described once for both back ends: the hand-written kernels (Mlp) and
-/// libtorch's modules (torch/).
+/// A multilayer perceptron, described once for the hand-written kernels (Mlp) and for libtorch's
+/// modules, which tests compare them with.
 ///
 /// Either keeps its parameters in one flat array: for every layer the weight [outputs, inputs],
 /// row-major, then the bias [outputs]. So an optimiser, a checkpoint or an exporter does not know

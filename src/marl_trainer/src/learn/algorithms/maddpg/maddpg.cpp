@@ -44,6 +44,7 @@ Maddpg::Maddpg(const ReplayOptions& options, const DeterministicOptions& own,
     : CentralCriticLearner(options, DeterministicSpec(problem, options), own.critics, common,
                            problem, team),
       own_(own),
+      others_act_now_(own.others == "policy"),
       actor_target_(actor_parameters()) {
   Keep("target_actor", &actor_target_);
   for (int s = 0; s < kGroups; ++s) {
@@ -113,9 +114,9 @@ void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Su
   actor().Forward(actor_parameters().data(), batch.observations.data(), batch.count * agents,
                   &s.actor);
   const float* own = s.actor.output();
-  const int copies = own_.others == "policy" ? 1 : agents;  // joint actions of a sample
+  const int copies = others_act_now_ ? 1 : agents;  // joint actions of a sample
   const int rows = batch.count * copies;
-  if (own_.others == "policy") {
+  if (others_act_now_) {
     std::copy_n(own, batch.count * joint, s.actions.data());
     std::copy_n(batch.states.data(), batch.count * state, s.states.data());
   } else {
@@ -162,7 +163,7 @@ Maddpg::Products Maddpg::ProductsPerSample() const {
   return {own_.critics * (q.forward_products() + q.training_products()) +
               agents * actor().spec().forward_products(),
           agents * actor().spec().training_products() +
-              2.0 * q.forward_products() * (own_.others == "policy" ? 1 : agents)};
+              2.0 * q.forward_products() * (others_act_now_ ? 1 : agents)};
 }
 
 std::vector<agent::Policy> Maddpg::Policies(const agent::PolicyMetadata& metadata) const {

@@ -30,6 +30,7 @@ class Maddpg : public CentralCriticLearner {
   struct Scratch;  // per slice
 
   const DeterministicOptions own_;
+  const bool others_act_now_;  ///< in the actor's loss; else as they did
   std::vector<float> actor_target_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };

@@ -6,7 +6,7 @@
 
 #include "marl_trainer/learn/algorithms/masac/squashed_gaussian.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/joint_critics.hpp"
-#include "marl_trainer/learn/nn/torch/torch_network.hpp"
+#include "oracle/torch_network.hpp"
 
 /// What off-policy methods differentiate by hand, against libtorch's automatic differentiation.
 namespace stg::learn {

@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/nn/torch/torch_network.hpp"
+#include "oracle/torch_network.hpp"
 
 #include <torch/nn/functional/linear.h>
 

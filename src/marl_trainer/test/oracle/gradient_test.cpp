@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "draw.hpp"
+#include "learn/draw.hpp"
 #include "marl_trainer/learn/algorithms/on_policy/ppo_loss.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
-#include "marl_trainer/learn/nn/torch/torch_network.hpp"
+#include "oracle/torch_network.hpp"
 
 /// The kernels against libtorch's automatic differentiation.
 namespace stg::learn {

@@ -8,9 +8,8 @@
 
 #include "marl_trainer/learn/nn/network_spec.hpp"
 
-/// The libtorch back end of networks: modules of any architecture with automatic differentiation,
-/// and the reference that the kernels (Mlp) are tested against. A library of its own, marl_torch:
-/// nothing that flies or trains with the kernels needs libtorch.
+/// Networks in libtorch, whose automatic differentiation the kernels are tested against. Nothing
+/// but tests and a benchmark needs libtorch.
 namespace stg::learn {
 
 /// The network that a spec describes, as a module.
