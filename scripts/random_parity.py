@@ -54,44 +54,57 @@ CHOICES = {
     "target.motion": MOTIONS,
     "reset.stage": ("easy", "medium", "hard"),
     "vehicle.integrator": ("semi_implicit", "rk4"),
-    "vehicle.added_mass_coriolis": ("full", "no_munk", "off"),
+    "vehicle.fully_actuated.added_mass_coriolis": ("full", "no_munk", "off"),
     "control.heading": ("free", "along_velocity"),
     "navigation.kind": ("perfect", "dead_reckoning"),
-    "channel.modem.profile": MODEMS,
-    "channel.modem.queue": ("newest", "fifo"),
-    "channel.propagation.paths": (1, 3, 8),
-    "channel.water.sound_speed": ("mackenzie", "profile"),
-    "channel.water.absorption": ("thorp", "francois_garrison"),
+    "channel.physical.modem.profile": MODEMS,
+    "channel.physical.modem.queue": ("newest", "fifo"),
+    "channel.physical.propagation.paths": (1, 3, 8),
+    "channel.physical.water.sound_speed": ("mackenzie", "profile"),
+    "channel.physical.water.absorption": ("thorp", "francois_garrison"),
     "observation.order": ("nearest", "index"),
     "observation.graph": (True, False),
     "reward.kind": ("paper", "release", "release_raw"),
-    "sensing.ambiguous": (True, False),
+    "sensing.bearing.ambiguous": (True, False),
 }
 NUMBERS = {
     "control.smoothing": (0.0, 0.9),
     "control.max_delta": (0.0, 0.6),
     "disturbance.force_std_n": (0.0, 5.0),
     "sensing.detection_probability": (0.0, 1.0),
-    "sensing.outlier_probability": (0.0, 0.5),
-    "sensing.false_alarm_probability": (0.0, 0.5),
-    "sensing.field_of_view_deg": (30.0, 360.0),
-    "sensing.bearing_std_deg": (0.5, 20.0),
-    "navigation.heading_std_deg": (0.0, 10.0),
-    "channel.modem.clock_offset_std_s": (0.0, 5.0),
-    "channel.noise.burst_every_s": (1.0, 20.0),
-    "channel.noise.site_db": (0.0, 110.0),
+    "sensing.range.outlier_probability": (0.0, 0.5),
+    "sensing.range.false_alarm_probability": (0.0, 0.5),
+    "sensing.range.field_of_view_deg": (30.0, 360.0),
+    "sensing.bearing.bearing_std_deg": (0.5, 20.0),
+    "navigation.dead_reckoning.heading_std_deg": (0.0, 10.0),
+    "channel.physical.modem.clock_offset_std_s": (0.0, 5.0),
+    "channel.physical.noise.burst_every_s": (1.0, 20.0),
+    "channel.physical.noise.site_db": (0.0, 110.0),
     "channel.contention.rest_s": (0.0, 3.0),
     "channel.slots.length_s": (1.0, 8.0),
-    "channel.sound_speed_mps": (100.0, 1500.0),
+    "channel.extended.sound_speed_mps": (100.0, 1500.0),
     "reward.weights.separation": (0.0, 2.0),
-    "reward.terms.effort": (0.0, 1.0),
-    "track.memory_s": (1.0, 60.0),
+    "reward.terms.effort.weight": (0.0, 1.0),
+    "track.measurements.memory_s": (1.0, 60.0),
     "track.neighbour_max_age_s": (0.5, 20.0),
+}
+# Sections of things, each with the key that chooses the thing and the names that read the section.
+THINGS = {
+    "channel.physical": ("channel.model", ("physical",)),
+    "channel.extended": ("channel.model", ("extended",)),
+    "channel.periodic": ("channel.access", ("periodic",)),
+    "channel.slots": ("channel.access", ("tdma", "slotted_aloha")),
+    "channel.contention": ("channel.access", ("aloha", "csma")),
+    "navigation.dead_reckoning": ("navigation.kind", ("dead_reckoning",)),
+    "sensing.position": ("sensing.sensor", ("position",)),
+    "sensing.range": ("sensing.sensor", ("range",)),
+    "sensing.bearing": ("sensing.sensor", ("bearing",)),
+    "track.measurements": ("track.filter", ("measurements",)),
 }
 LENGTHS = {
     "sensing.range_m": (0.2, 1.5),
-    "sensing.noise_std_m": (0.0, 0.1),
-    "sensing.range_std_m": (0.005, 0.2),
+    "sensing.position.noise_std_m": (0.0, 0.1),
+    "sensing.range.range_std_m": (0.005, 0.2),
     "sensing.cue_std_m": (0.0, 1.5),
 }
 
@@ -120,7 +133,12 @@ def draw(seed):
     keys["target.count"] = r.randint(1, 2)
     if r.random() < 0.3:  # long decisions
         keys.update({"time.decision_steps": r.choice((20, 60, 120)), "sensing.period_s": 0.0,
-                     "channel.transmit_period_s": 120.0})
+                     "channel.periodic.transmit_period_s": 120.0})
+    for section, (chooser, names) in THINGS.items():
+        if keys.get(chooser) not in names:  # what nothing reads is refused
+            keys = {k: v for k, v in keys.items() if not k.startswith(section + ".")}
+    if base.startswith(OF_SEA):
+        keys.pop("vehicle.fully_actuated.added_mass_coriolis", None)
     tree = {"base": f"{base}.yaml", "name": "drawn", "agents": agents}
     for key, value in keys.items():
         *sections, last = key.split(".")

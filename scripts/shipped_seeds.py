@@ -2,7 +2,7 @@
 """Evaluates the shipped policies' recipe over seeds of training, with and without messages.
 
 In a built and sourced workspace. Writes OUT/seeds.md and OUT/seeds.csv. RUNS/SCENARIO_SEED and
-RUNS/silent_SCENARIO_SEED are what train_shipped.sh left, the silent ones trained with `--set channel.loss_probability=1.0`.
+RUNS/silent_SCENARIO_SEED are what train_shipped.sh left, the silent ones trained with `--set channel.extended.loss_probability=1.0`.
 """
 
 import argparse

@@ -28,7 +28,7 @@ RETUNED = (
     "pursuit_separated:gain=3.555,cap=1,standoff=0.01383,repulsion=0.1501,repulsion-range=0.05969,"
     "feedforward=1.26,approach-speed=0.0006658,approach-gain=0.865,wall-margin=0.02707"
 )
-SILENCE = ("--set", "channel.loss_probability=1.0")
+SILENCE = ("--set", "channel.extended.loss_probability=1.0")
 COLUMNS = (
     ("return", 1), ("return_std", 1), ("tail_distance", 4), ("tracking_error", 5),
     ("lost_rate", 3), ("colliding_pairs", 3), ("tail_colliding_pairs", 3), ("band_rate", 2),

@@ -34,11 +34,13 @@ struct Orbit {
   }
 };
 
-std::unique_ptr<Controller> MakeOrbit(ControllerConstants& constants) {
-  Orbit orbit;
-  constants.Read("radius", 100.0, &orbit.radius_m);
-  constants.Read("speed", 10.0, &orbit.speed_mps);
-  constants.Read("gain", 10.0, &orbit.gain_per_s);
+void Describe(Orbit* o, config::Table* t) {
+  t->Add("radius", &o->radius_m, config::Positive(100), "m", "of the circle");
+  t->Add("speed", &o->speed_mps, config::NonNegative(10), "m/s", "along the circle");
+  t->Add("gain", &o->gain_per_s, config::NonNegative(10), "1/s", "towards the circle");
+}
+
+std::unique_ptr<Controller> MakeOrbit(const Orbit& orbit) {
   return std::make_unique<ControllerOf<Orbit>>(orbit);
 }
 

@@ -7,6 +7,7 @@
 
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/channel/channel.hpp"
+#include "auv_common/config/loader.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace {
@@ -14,11 +15,18 @@ namespace {
 using namespace stg;
 using namespace stg::acoustics;
 
+struct LotteryOptions {
+  double mean_s = 0.5;  // between two packets
+};
+
+void Describe(LotteryOptions* o, config::Table* t) {
+  t->Add("mean_s", &o->mean_s, config::Positive(1e4), "s", "mean time between two packets");
+}
+
 class Lottery : public MediumAccess {
  public:
-  Lottery(const ChannelConfig& config, const RunConfig& run)
-      : period_(run.decision_period()),
-        probability_(run.decision_dt_s() / config.transmit_period_s) {}
+  Lottery(const LotteryOptions& options, const RunConfig& run)
+      : period_(run.decision_period()), probability_(run.decision_dt_s() / options.mean_s) {}
 
   void Reset(std::uint64_t seed, std::uint32_t episode) override {
     seed_ = seed;
@@ -44,8 +52,9 @@ class Lottery : public MediumAccess {
   std::uint32_t episode_ = 0;
 };
 
-std::unique_ptr<MediumAccess> MakeLottery(const ChannelConfig& config, const RunConfig& run) {
-  return std::make_unique<Lottery>(config, run);
+std::unique_ptr<MediumAccess> MakeLottery(const LotteryOptions& options, const ChannelConfig&,
+                                          const RunConfig& run) {
+  return std::make_unique<Lottery>(options, run);
 }
 
 }  // namespace
@@ -55,9 +64,9 @@ int main() {
 
   NetworkConfig network;
   network.run.agents = 2;
-  network.channel.model = "range";
-  network.channel.access = "lottery";
-  network.channel.transmit_period_s = 0.5;  // every fifth decision, on average
+  // Every fifth decision, on average.
+  config::Override(&network,
+                   {"channel.model=range", "channel.access=lottery", "channel.lottery.mean_s=0.5"});
   const TimeNs period = network.run.decision_period();
   constexpr int kDecisions = 20000;
 

@@ -31,9 +31,11 @@ struct Spiral {
   }
 };
 
-std::unique_ptr<agent::Controller> MakeSpiral(agent::ControllerConstants& constants) {
-  Spiral spiral;
-  constants.Read("speed", 1.0, &spiral.speed);
+void Describe(Spiral* o, config::Table* t) {
+  t->Add("speed", &o->speed, config::kFraction, "-", "of the largest velocity");
+}
+
+std::unique_ptr<agent::Controller> MakeSpiral(const Spiral& spiral) {
   return std::make_unique<agent::ControllerOf<Spiral>>(spiral);
 }
 

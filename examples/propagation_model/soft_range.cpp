@@ -6,36 +6,46 @@
 #include <cstdio>
 
 #include "acoustic_channel/models/independent_model.hpp"
+#include "auv_common/config/loader.hpp"
 
 namespace {
 
 using namespace stg;
 using namespace stg::acoustics;
 
+struct SoftRangeOptions {
+  double steepness = 8.0;
+  double sound_speed_mps = 1500.0;
+  double freshness_s = 2.0;
+};
+
+void Describe(SoftRangeOptions* o, config::Table* t) {
+  t->Add("steepness", &o->steepness, config::Positive(1e3), "-", "of the fall around the range");
+  t->Add("sound_speed_mps", &o->sound_speed_mps, config::Positive(1e5), "m/s", "of packets");
+  t->Add("freshness_s", &o->freshness_s, config::Positive(1e5), "s", "in which news grows old");
+}
+
 class SoftRange {
  public:
-  explicit SoftRange(const ChannelConfig& config)
-      : range_m_(config.range_m),
-        sound_speed_mps_(config.sound_speed_mps),
-        freshness_s_(config.freshness_s) {}
+  SoftRange(const SoftRangeOptions& options, const ChannelConfig& config)
+      : options_(options), range_m_(config.range_m) {}
 
   template <class T>
   T DelayS(const T& d) const {
-    return d / T(sound_speed_mps_);
+    return d / T(options_.sound_speed_mps);
   }
   template <class T>
   LinkValues<T> At(const T& d, const T& age_s) const {
-    const T arrives = T(1.0) / (T(1.0) + Exp((d / T(range_m_) - T(1.0)) * T(kSteepness)));
-    return {T(1.0) - arrives, arrives * Exp(-age_s / T(freshness_s_))};
+    const T arrives = T(1.0) / (T(1.0) + Exp((d / T(range_m_) - T(1.0)) * T(options_.steepness)));
+    return {T(1.0) - arrives, arrives * Exp(-age_s / T(options_.freshness_s))};
   }
   bool Reaches(double d) const { return d < 3.0 * range_m_; }
   bool ages() const { return true; }
-  double freshness_s() const { return freshness_s_; }
+  double freshness_s() const { return options_.freshness_s; }
 
  private:
-  static constexpr double kSteepness = 8.0;
-
-  double range_m_, sound_speed_mps_, freshness_s_;
+  SoftRangeOptions options_;
+  double range_m_;
 };
 
 /// Share of the packets that node 1 receives of node 0 at distance d [m].
@@ -59,11 +69,11 @@ double ShareAt(double d, const NetworkConfig& network) {
 }  // namespace
 
 int main() {
-  PropagationModels().Add("soft_range", MakeIndependentModel<SoftRange>);
+  PropagationModels().Add("soft_range", MakeIndependentModel<SoftRange, SoftRangeOptions>);
 
   NetworkConfig network;
   network.run.agents = 2;
-  network.channel.model = "soft_range";
+  config::Override(&network, {"channel.model=soft_range", "channel.soft_range.steepness=6"});
   network.channel.range_m = 100.0;
   network.channel.transmit_period_s = network.run.decision_dt_s();  // a packet in every decision
 
@@ -72,7 +82,7 @@ int main() {
   const double quality = MakeLinkEstimator(network.channel, 2)->Quality(100.0, 0.0);
   std::printf("arrived: %.3f at 60 m, %.3f at 100 m, %.3f at 301 m; quality at 100 m %.3f\n", near,
               at, ShareAt(301.0, network), quality);
-  const double expected = 1.0 / (1.0 + std::exp(-0.4 * 8.0));
+  const double expected = 1.0 / (1.0 + std::exp(-0.4 * 6.0));
   const bool good = std::abs(near - expected) < 0.02 && std::abs(at - 0.5) < 0.04 &&
                     ShareAt(301.0, network) == 0.0 && std::abs(quality - 0.5) < 1e-12;
   return good ? 0 : 1;

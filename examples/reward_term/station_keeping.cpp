@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "auv_common/config/loader.hpp"
+#include "stg_env/scenario/scenario.hpp"
 #include "stg_env/task/task.hpp"
 
 namespace {
@@ -13,31 +15,47 @@ using namespace stg::task;
 
 /// Minus the speed relative to the target, as a share of the vehicle's largest, at most 1: in
 /// [-1, 0], and 0 for an AUV that moves as its target does.
+struct StationKeepingOptions {
+  double full_share = 1.0;
+};
+
+void Describe(StationKeepingOptions* o, config::Table* t) {
+  t->Add("full_share", &o->full_share, config::Positive(10), "-",
+         "share of the largest speed that costs all of the weight");
+}
+
 class StationKeeping : public TermOf<StationKeeping> {
  public:
-  explicit StationKeeping(const JudgeConfig& config) : config_(config) {}
+  StationKeeping(const StationKeepingOptions& options, const JudgeConfig& config)
+      : options_(options), config_(config) {}
 
   template <class T>
   T Of(const TermInput<T>& in) const {
     const auto i = static_cast<std::size_t>(in.agent);
     const auto k = static_cast<std::size_t>(config_.world.target.of(in.agent));
     const T speed = Norm(in.swarm.vehicles[i].v_WB - in.swarm.targets[k].v_WT);
-    return -Min(speed * T(1.0 / config_.world.vehicle.max_velocity_mps[0]), T(1.0));
+    return -Min(speed * T(1.0 / (options_.full_share * config_.world.vehicle.max_velocity_mps[0])),
+                T(1.0));
   }
 
  private:
+  StationKeepingOptions options_;
   JudgeConfig config_;
 };
 
-std::unique_ptr<const RewardTerm> MakeStationKeeping(const JudgeConfig& config) {
-  return std::make_unique<StationKeeping>(config);
+std::unique_ptr<const RewardTerm> MakeStationKeeping(const StationKeepingOptions& options,
+                                                     const JudgeConfig& config) {
+  return std::make_unique<StationKeeping>(options, config);
 }
 
 /// What one AUV earns that stands beside a target of this speed, as a share of the largest.
 double Earned(double share, double weight) {
-  JudgeConfig config;
+  Scenario config;
   config.run.agents = 1;
-  config.reward.terms["station_keeping"] = weight;
+  if (weight > 0.0) {
+    config::Override(&config, {"reward.terms.station_keeping.weight=" + std::to_string(weight),
+                               "reward.terms.station_keeping.full_share=0.5"});
+  }
 
   std::vector<dynamics::VehicleState<double>> vehicles(1);
   std::vector<dynamics::TargetState<double>> targets(1);
@@ -48,7 +66,7 @@ double Earned(double share, double weight) {
   const Efforts<double> idle(1);
   const SwarmState<double> swarm{vehicles, targets, separations, idle, idle};
 
-  Task<double> task(config);
+  Task<double> task(config.judge());
   task.Start(true, swarm, 500.0);
   task.Step(swarm);
   return task.terms(0).total;
@@ -59,10 +77,10 @@ double Earned(double share, double weight) {
 int main() {
   RewardTermsByName().Add("station_keeping", MakeStationKeeping);
 
-  // A quarter of the largest speed costs a quarter of the weight; beyond the largest it is all.
+  // A quarter of the largest speed is half of what costs all of the weight.
   const double quarter = Earned(0.25, 0.5) - Earned(0.25, 0.0);
   const double most = Earned(3.0, 0.5) - Earned(3.0, 0.0);
   std::printf("of a weight of 0.5, a quarter of the speed costs %.4f, three times it %.4f\n",
               -quarter, -most);
-  return std::abs(quarter + 0.125) < 1e-9 && std::abs(most + 0.5) < 1e-9 ? 0 : 1;
+  return std::abs(quarter + 0.25) < 1e-9 && std::abs(most + 0.5) < 1e-9 ? 0 : 1;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_dynamics/targets/steered_motion.hpp"
 #include "auv_dynamics/world/world.hpp"
 
@@ -12,23 +13,36 @@ namespace {
 using namespace stg;
 using namespace stg::dynamics;
 
+struct ZigzagOptions {
+  double leg_s = 10.0;
+  double rate_radps = 0.1;
+};
+
+void Describe(ZigzagOptions* o, config::Table* t) {
+  t->Add("leg_s", &o->leg_s, config::Positive(1e5), "s", "time between two changes of side");
+  t->Add("rate_radps", &o->rate_radps, config::NonNegative(10), "rad/s", "turn rate");
+}
+
 class Zigzag : public SteeredMotion {
  public:
-  using SteeredMotion::SteeredMotion;
+  Zigzag(const ZigzagOptions& options, const MotionSetup& setup)
+      : SteeredMotion(setup), options_(options) {}
 
  private:
   Vec3<double> Steer(const Situation& now) override {
     // A function of the clock, not of a counter of its own: nothing to reset, and every lane and
     // every program agree.
     const double time = dt() * now.clock.step;
-    const bool left = std::fmod(time / config().turn_period_s, 2.0) < 1.0;
+    const bool left = std::fmod(time / options_.leg_s, 2.0) < 1.0;
     const Vec3<double> up{0.0, 0.0, left ? 1.0 : -1.0};
-    return TurnTowards(now.v_WT, Cross(up, now.v_WT), config().turn_rate_radps * dt());
+    return TurnTowards(now.v_WT, Cross(up, now.v_WT), options_.rate_radps * dt());
   }
+
+  ZigzagOptions options_;
 };
 
-std::unique_ptr<TargetMotion> MakeZigzag(const MotionSetup& setup) {
-  return std::make_unique<Zigzag>(setup);
+std::unique_ptr<TargetMotion> MakeZigzag(const ZigzagOptions& options, const MotionSetup& setup) {
+  return std::make_unique<Zigzag>(options, setup);
 }
 
 }  // namespace
@@ -38,9 +52,7 @@ int main() {
 
   WorldScenario config;
   config.run.agents = 1;
-  config.world.target.motion = "zigzag";
-  config.world.target.turn_rate_radps = 0.1;
-  config.world.target.turn_period_s = 5.0;
+  config::Override(&config, {"target.motion=zigzag", "target.zigzag.leg_s=5"});
   World world(config);
   world.Place(0, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.02, 0.0, 0.0}});
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_dynamics/world/world.hpp"
 
 namespace {
@@ -11,10 +12,19 @@ namespace {
 using namespace stg;
 using namespace stg::dynamics;
 
+struct UnicycleOptions {
+  double lag_s = 2.0;
+};
+
+void Describe(UnicycleOptions* o, config::Table* t) {
+  t->Add("lag_s", &o->lag_s, config::Positive(1e3), "s", "time constant of speed and turn rate");
+}
+
 class Unicycle : public Vehicle {
  public:
-  explicit Unicycle(const VehicleConfig& config)
-      : actuators_{{"speed", "m/s", 0.0, config.max_velocity_mps[0]},
+  Unicycle(const UnicycleOptions& options, const VehicleConfig& config)
+      : lag_s_(options.lag_s),
+        actuators_{{"speed", "m/s", 0.0, config.max_velocity_mps[0]},
                    {"turn_rate", "rad/s", -config.max_rate_radps[2], config.max_rate_radps[2]}} {}
 
   const Space& actuators() const override { return actuators_; }
@@ -23,7 +33,7 @@ class Unicycle : public Vehicle {
 
   void Step(const Pack* command, const Surroundings& around, double dt, VehicleState<Pack>* state,
             Pack* internal) const override {
-    const Pack share(1.0 - std::exp(-dt / kLag_s));
+    const Pack share(1.0 - std::exp(-dt / lag_s_));
     Pack& speed = internal[0];
     Pack& rate = state->w_WB_B.z;
     speed += (Within(0, command[0]) - speed) * share;
@@ -39,17 +49,17 @@ class Unicycle : public Vehicle {
   }
 
  private:
-  static constexpr double kLag_s = 2.0;
-
   Pack Within(std::size_t k, const Pack& x) const {
     return Clip(x, actuators_[k].lo, actuators_[k].hi);
   }
 
+  double lag_s_;
   Space actuators_, none_;
 };
 
-std::unique_ptr<const Vehicle> MakeUnicycle(const VehicleConfig& config) {
-  return std::make_unique<Unicycle>(config);
+std::unique_ptr<const Vehicle> MakeUnicycle(const UnicycleOptions& options,
+                                            const VehicleConfig& config) {
+  return std::make_unique<Unicycle>(options, config);
 }
 
 }  // namespace
@@ -57,9 +67,10 @@ std::unique_ptr<const Vehicle> MakeUnicycle(const VehicleConfig& config) {
 int main() {
   Vehicles().Add("unicycle", MakeUnicycle);
 
-  WorldScenario config;  // or config::Load<WorldScenario>({file}), with model: unicycle in it
+  WorldScenario
+      config;  // or config::Load<WorldScenario>({file}), where the file says model: unicycle
   config.run.agents = 1;
-  config.world.vehicle.model = "unicycle";
+  config::Override(&config, {"vehicle.model=unicycle", "vehicle.unicycle.lag_s=1.5"});
   config.world.workspace.half_extent_m = 100.0;
   World world(config);
   world.Place(0, {{0.0, 0.0, -5.0}}, {{20.0, 0.0, -5.0}}, {{0.0, 0.0, 0.0}});

@@ -16,7 +16,7 @@ CONDITIONS = (
     "strong_current", "combined_stress",
 )
 # So much noise at the site that no frame is recognised.
-SILENCE = ("channel.noise.site_db=200.0",)
+SILENCE = ("channel.physical.noise.site_db=200.0",)
 
 
 class FlightError(Exception):

@@ -11,14 +11,41 @@ void Describe(ChannelConfig* c, config::Table* t) {
          "propagation model: range is Eq. 5, extended Eq. 6, physical a network of modems");
   t->Add("access", config::Name(&c->access, MediumAccesses().Names()), config::kNone, "-",
          "medium access: when a packet that waits in a modem leaves it");
-  Describe(static_cast<RangeConfig*>(c), t);
-  Describe(static_cast<PeriodicConfig*>(c), t);
-  Describe(static_cast<ExtendedConfig*>(c), t);
-  Describe(static_cast<PhysicalConfig*>(c), t);
+  t->Add("range_m", &c->range_m, config::Positive(1e6), "m",
+         "R_c of Eq. 5: of the model range, and of links between true states");
+  const auto describe = [](auto* options, config::Table* table) { Describe(options, table); };
+  const auto model = [c] { return std::vector<std::string>{c->model}; };
+  const auto of_model = [&](const char* name) {
+    return config::Owner{"propagation model", {name}, "channel.model", model};
+  };
+  t->Thing(of_model("range"), "channel.range", static_cast<RangeConfig*>(c), describe);
+  t->Thing(of_model("extended"), "channel.extended", static_cast<ExtendedConfig*>(c), describe);
+  t->Thing(of_model("physical"), "channel.physical", static_cast<PhysicalConfig*>(c), describe);
+  PropagationModels().Describe("channel", "channel.model", model, &c->models, t);
+
+  const auto access = [c] { return std::vector<std::string>{c->access}; };
+  const auto of_access = [&](std::vector<std::string> names) {
+    return config::Owner{"medium access", std::move(names), "channel.access", access};
+  };
+  t->Thing(of_access({"periodic"}), "channel.periodic", static_cast<PeriodicConfig*>(c), describe);
+  t->Thing(of_access({"tdma", "slotted_aloha"}), "channel.slots", &c->slots, describe);
+  t->Thing(of_access({"slotted_aloha"}), "channel.slots", &c->slots, DescribeDraw);
+  t->Thing(of_access({"aloha", "csma"}), "channel.contention", &c->contention, describe);
+  t->Thing(of_access({"csma"}), "channel.contention", &c->contention, DescribeBackoff);
+  MediumAccesses().Describe("channel", "channel.access", access, &c->accesses, t);
+
+  t->Moved("channel.transmit_period_s", "channel.periodic.transmit_period_s");
+  for (const char* key : {"sound_speed_mps", "max_range_m", "attenuation_per_m", "loss_probability",
+                          "loss_distance_m", "freshness_s"}) {
+    t->Moved(std::string("channel.") + key, std::string("channel.extended.") + key);
+  }
+  for (const char* section : {"modem", "water", "noise", "propagation"}) {
+    t->Moved(std::string("channel.") + section, std::string("channel.physical.") + section);
+  }
 }
 
 std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunConfig& run) {
-  const auto model = PropagationModels().Make(c.model, c);
+  const auto model = PropagationModels().Make(c.model, c.models, c);
   if (auto violation = model->FindConflict(c, run.agents)) return violation;
   const auto access = MakeMediumAccess(c, run);
   if (access->adapts() && !model->has_modems()) {

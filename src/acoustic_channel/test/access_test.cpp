@@ -74,7 +74,7 @@ TEST(Periodic, RefusesAPeriodShorterThanADecision) {
   s.channel.transmit_period_s = 0.05;
   const auto violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->keys.front(), "channel.transmit_period_s");
+  EXPECT_EQ(violation->keys.front(), "channel.periodic.transmit_period_s");
   s.channel.transmit_period_s = 0.1;
   EXPECT_FALSE(config::FindViolation(s));
 }

@@ -17,7 +17,7 @@ TEST(LinkEstimator, OfRangeIsEquation5WhateverTheAge) {
   ChannelConfig c;
   c.model = "range";
   c.range_m = 0.5;
-  c.freshness_s = 3.0;
+  c.estimate_freshness_s = 3.0;
   const auto links = MakeLinkEstimator(c, 2);
   for (const double age : {0.0, 1.0, 100.0}) {
     EXPECT_EQ(links->Quality(0.0, age), 1.0);

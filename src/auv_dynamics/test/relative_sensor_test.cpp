@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "physics.hpp"
 
@@ -57,9 +58,9 @@ Moments Of(const std::vector<Detection>& all, const Value& value) {
 }
 
 TEST_F(RelativeSensorTest, NoiseHasTheConfiguredMoments) {
-  s_.world.sensing.range_std_m = 2.0;
-  s_.world.sensing.range_std_share = 0.02;
-  s_.world.sensing.bearing_std_deg = 1.5;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".range_std_m=2.0"});
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".range_std_share=0.02"});
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".bearing_std_deg=1.5"});
   const Vec3<double> r{120.0, -160.0, 0.0};  // 200 m
   const auto all = Look(r, 4000);
   ASSERT_EQ(all.size(), 4000U);
@@ -79,7 +80,7 @@ TEST_F(RelativeSensorTest, NoiseHasTheConfiguredMoments) {
 
 TEST_F(RelativeSensorTest, ProbabilityFallsWithTheSquareOfTheRangeToTheShareAtItsEnd) {
   s_.world.sensing.detection_probability = 0.8;
-  s_.world.sensing.probability_at_range = 0.25;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".probability_at_range=0.25"});
   for (const double range : {60.0, 300.0, 599.0}) {
     const double share = range / 600.0;
     const double expected = 0.8 * (1.0 - 0.75 * share * share);
@@ -93,15 +94,15 @@ TEST_F(RelativeSensorTest, ProbabilityFallsWithTheSquareOfTheRangeToTheShareAtIt
 
 TEST_F(RelativeSensorTest, OutliersAndFalseAlarmsAreUniformInRange) {
   s_.world.sensing.sensor = "range";
-  s_.world.sensing.outlier_probability = 0.2;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".outlier_probability=0.2"});
   const auto far_off = [](const Detection& d) { return std::abs(d.range_m - 100.0) > 20.0; };
   int outliers = 0;
   for (const Detection& d : Look({100.0, 0.0, 0.0}, 3000)) outliers += far_off(d) ? 1 : 0;
   const double expected = 0.2 * (1.0 - 40.0 / 600.0);
   EXPECT_NEAR(outliers, 3000.0 * expected, 5.0 * std::sqrt(3000.0 * expected));
 
-  s_.world.sensing.outlier_probability = 0.0;
-  s_.world.sensing.false_alarm_probability = 0.3;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".outlier_probability=0.0"});
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".false_alarm_probability=0.3"});
   const auto alarms = Look({900.0, 0.0, 0.0}, 3000);  // nothing is there
   EXPECT_NEAR(static_cast<double>(alarms.size()), 900.0, 5.0 * std::sqrt(3000.0 * 0.21));
   EXPECT_NEAR(Of(alarms, [](const Detection& d) { return d.range_m; }).mean, 300.0,
@@ -118,7 +119,7 @@ TEST_F(RelativeSensorTest, LooksOnlyAtItsPeriod) {
 }
 
 TEST_F(RelativeSensorTest, FieldOfViewIsAConeAroundTheBow) {
-  s_.world.sensing.field_of_view_deg = 90.0;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".field_of_view_deg=90.0"});
   const auto seen = [&](double azimuth_deg, double elevation_deg) {
     const double c = std::cos(elevation_deg * kDegree);
     return !Look({100.0 * c * std::cos(azimuth_deg * kDegree),
@@ -137,8 +138,8 @@ TEST_F(RelativeSensorTest, FieldOfViewIsAConeAroundTheBow) {
 
 TEST_F(RelativeSensorTest, AnAmbiguousBearingNamesPortAndStarboardAlike) {
   s_.world.sensing.sensor = "bearing";
-  s_.world.sensing.ambiguous = true;
-  s_.world.sensing.bearing_std_deg = 0.001;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".ambiguous=true"});
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".bearing_std_deg=0.001"});
   for (const double azimuth_deg : {30.0, -30.0}) {  // the bow points east
     const Detection d = Look({100.0 * std::cos(azimuth_deg * kDegree),
                               100.0 * std::sin(azimuth_deg * kDegree), 0.0},
@@ -156,9 +157,9 @@ TEST_F(RelativeSensorTest, TellsInTheFrameOfItsOwnNavigation) {
   s_.world.navigation.kind = "dead_reckoning";
   s_.world.navigation.heading_std_deg = 10.0;
   s_.world.navigation.start_std_m = 30.0;
-  s_.world.sensing.range_std_m = 1e-9;
-  s_.world.sensing.range_std_share = 0.0;
-  s_.world.sensing.bearing_std_deg = 1e-9;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".range_std_m=1e-9"});
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".range_std_share=0.0"});
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".bearing_std_deg=1e-9"});
   const Vec3<double> r{120.0, -160.0, 20.0};
   for (const char* sensor : {"position", "range_bearing"}) {
     s_.world.sensing.sensor = sensor;
@@ -177,7 +178,7 @@ TEST_F(RelativeSensorTest, TellsInTheFrameOfItsOwnNavigation) {
 }
 
 TEST_F(RelativeSensorTest, ARepeatedLookSeesTheSame) {
-  s_.world.sensing.outlier_probability = 0.5;
+  config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".outlier_probability=0.5"});
   World world(s_);
   for (int lane = 0; lane < kLanes; ++lane) {
     world.Place(lane, {kAt}, {kAt + Vec3<double>{100.0, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "physics.hpp"
 
@@ -78,7 +79,7 @@ TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
     WorldScenario scenario = TargetScenario(motion);
     // As fast as the reset stage may start it: fast enough to meet every wall.
     scenario.world.reset.stages[2].target_speed_mps = {0.01, 0.05};
-    scenario.world.target.evasion_range_m = 1.0;
+    if (motion == "evasive") config::Override(&scenario, {"target.evasive.range_m=1"});
     World world(scenario);
     for (int n = 0; n < 6; ++n) {
       for (int l = 0; l < kLanes; ++l) {
@@ -92,7 +93,7 @@ TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
 
 TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
   WorldScenario scenario = TargetScenario("coordinated_turn");
-  scenario.world.target.turn_period_s = 1.0;
+  config::Override(&scenario, {"target.coordinated_turn.period_s=1"});
   scenario.world.workspace.half_extent_m = 100.0;  // no wall interferes
   World world(scenario);
   world.Reset(0, 3, 0, ResetStage::kMedium);
@@ -161,8 +162,7 @@ Tour FollowTour(const WorldScenario& scenario, std::uint64_t seed, int steps) {
     const Vec3<double> p = Lane(world.target(0).p_WT, 0);
     tour.longest_wait = std::max(tour.longest_wait, ++wait);
     for (std::uint32_t ahead = 0; ahead < 3; ++ahead) {
-      if (Norm(p - Waypoint(seed, next + ahead)) >= scenario.world.target.waypoint_radius_m)
-        continue;
+      if (Norm(p - Waypoint(seed, next + ahead)) >= 0.05) continue;
       tour.skipped += static_cast<int>(ahead);
       ++tour.visited;
       next += ahead + 1;

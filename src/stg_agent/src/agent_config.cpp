@@ -41,7 +41,7 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
   if (auto violation = FindConflict(s.channel, s.run)) return violation;
   if (acoustics::MaxPayload(s.channel, s.run.agents) < kPacketBytes) {
     return config::Violation{
-        {"channel.modem.packet_bytes", "channel.modem.profile"},
+        {"channel.physical.modem.packet_bytes", "channel.physical.modem.profile"},
         "the packet of an agent has " + std::to_string(kPacketBytes) + " bytes"};
   }
   const AgentModel model = ModelOf(s.run, s.world, s.channel, s.agent);

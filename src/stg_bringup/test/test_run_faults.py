@@ -329,7 +329,7 @@ class Lost(WithFolder):
     def test_motion_out_of_hand_names_the_vehicle_and_the_step(self):
         process, _ = self.start(
             "real_time_factor:=0", "policy:=pursuit", "table:=false",
-            "overrides:=[vehicle.clip_velocity=false, 'vehicle.linear_damping=[1e6,1e6,1e6,1e6,1e6,1e6]']")
+            "overrides:=[vehicle.clip_velocity=false, 'vehicle.fully_actuated.linear_damping=[1e6,1e6,1e6,1e6,1e6,1e6]']")
         status, output = self.finish(process)
         self.assertEqual(status, 1, output)
         self.assertRegex(output, "state of AUV [0-3] is not finite or beyond 1e6 after step [0-9]+")

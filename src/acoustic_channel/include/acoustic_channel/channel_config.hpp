@@ -3,11 +3,13 @@
 #include <optional>
 #include <string>
 
+#include "acoustic_channel/access/contention_config.hpp"
 #include "acoustic_channel/access/periodic_config.hpp"
+#include "acoustic_channel/access/slots_config.hpp"
 #include "acoustic_channel/models/extended_config.hpp"
 #include "acoustic_channel/models/range_config.hpp"
 #include "acoustic_channel/network/physical_config.hpp"
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 #include "auv_common/config/run_config.hpp"
 
 namespace stg::acoustics {
@@ -17,6 +19,10 @@ namespace stg::acoustics {
 struct ChannelConfig : RangeConfig, PeriodicConfig, ExtendedConfig, PhysicalConfig {
   std::string model = "extended";   ///< of PropagationModels()
   std::string access = "periodic";  ///< of MediumAccesses()
+  SlotsConfig slots;
+  ContentionConfig contention;
+  config::OptionsByName models = {},
+                        accesses = {};  ///< options of models and rules that are registered
 };
 
 /// Keys, units and ranges of the section.

@@ -9,11 +9,13 @@
 namespace stg::acoustics {
 
 void Describe(ContentionConfig* c, config::Table* t) {
-  t->Section("channel.contention");
-  t->AddOptional("rest_s", &c->rest_s, "0.0", config::NonNegative(1e4), "s",
-                 "aloha, csma: mean of the random rest after a transmission; 0: none");
-  t->AddOptional("backoff_s", &c->backoff_s, "1.0", config::Within(1e-3, 1e4), "s",
-                 "csma: longest first wait of who hears a carrier; it doubles up to 32 times this");
+  t->Add("rest_s", &c->rest_s, config::NonNegative(1e4), "s",
+         "mean of the random rest after a transmission; 0: none");
+}
+
+void DescribeBackoff(ContentionConfig* c, config::Table* t) {
+  t->Add("backoff_s", &c->backoff_s, config::Within(1e-3, 1e4), "s",
+         "longest first wait of who hears a carrier; it doubles up to 32 times this");
 }
 
 void Aloha::Reset(std::uint64_t seed, std::uint32_t episode) {

@@ -25,7 +25,7 @@ MediumAccessRegistry& MediumAccesses() {
 }
 
 std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, const RunConfig& run) {
-  return MediumAccesses().Make(config.access, config, run);
+  return MediumAccesses().Make(config.access, config.accesses, config, run);
 }
 
 Turns::Turns(const ChannelConfig& config, const RunConfig& run)

@@ -9,7 +9,7 @@ namespace stg::acoustics {
 
 void Describe(PeriodicConfig* c, config::Table* t) {
   t->Add("transmit_period_s", &c->transmit_period_s, config::Positive(1e4), "s",
-         "periodic: every AUV sends one packet per period, staggered; at least one decision");
+         "every AUV sends one packet per period, staggered; at least one decision");
 }
 
 Periodic::Periodic(const PeriodicConfig& config, const RunConfig& run)
@@ -20,8 +20,9 @@ Periodic::Periodic(const PeriodicConfig& config, const RunConfig& run)
 
 std::optional<config::Violation> Periodic::FindConflict(const PacketTime& /*packet*/) const {
   if (transmit_period_s_ >= decision_s_ * (1.0 - 1e-9)) return {};
-  return config::Violation{{"channel.transmit_period_s", "time.dt_s", "time.decision_steps"},
-                           "an AUV sends at most one packet per decision"};
+  return config::Violation{
+      {"channel.periodic.transmit_period_s", "time.dt_s", "time.decision_steps"},
+      "an AUV sends at most one packet per decision"};
 }
 
 TimeNs Periodic::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {

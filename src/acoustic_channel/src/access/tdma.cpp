@@ -8,20 +8,22 @@
 namespace stg::acoustics {
 
 void Describe(SlotsConfig* c, config::Table* t) {
-  t->Section("channel.slots");
-  t->AddOptional("length_s", &c->length_s, "1.5", config::Within(1e-3, 1e4), "s",
-                 "tdma, slotted_aloha: length of a slot: airtime and guard");
-  t->AddOptional("guard_s", &c->guard_s, "0.6", config::NonNegative(1e4), "s",
-                 "end of a slot in which nobody sends: the way to the farthest node");
-  t->AddOptional("send_probability", &c->send_probability, "1.0", config::Within(1e-6, 1.0), "-",
-                 "slotted_aloha: chance that a packet that waits leaves in a slot");
+  t->Add("length_s", &c->length_s, config::Within(1e-3, 1e4), "s",
+         "length of a slot: airtime and guard");
+  t->Add("guard_s", &c->guard_s, config::NonNegative(1e4), "s",
+         "end of a slot in which nobody sends: the way to the farthest node");
+}
+
+void DescribeDraw(SlotsConfig* c, config::Table* t) {
+  t->Add("send_probability", &c->send_probability, config::Within(1e-6, 1.0), "-",
+         "chance that a packet that waits leaves in a slot");
 }
 
 std::optional<config::Violation> FindSlotConflict(const SlotsConfig& config, TimeNs airtime) {
   const double needed_s = Seconds(airtime) + config.guard_s;
   if (config.length_s >= needed_s * (1.0 - 1e-12)) return {};
   return config::Violation{
-      {"channel.slots.length_s", "channel.slots.guard_s", "channel.modem.packet_bytes"},
+      {"channel.slots.length_s", "channel.slots.guard_s", "channel.physical.modem.packet_bytes"},
       "a slot of " + std::to_string(config.length_s) + " s cannot hold a packet of " +
           std::to_string(Seconds(airtime)) + " s and the guard"};
 }
@@ -39,7 +41,7 @@ std::optional<config::Violation> Tdma::FindConflict(const PacketTime& packet) co
   if (auto violation = FindSlotConflict(config_, packet.airtime)) return violation;
   const TimeNs busy = packet.airtime + packet.turnaround;
   if (busy <= frame_) return {};
-  return config::Violation{{"channel.slots.length_s", "channel.modem.profile"},
+  return config::Violation{{"channel.slots.length_s", "channel.physical.modem.profile"},
                            "a modem is busy for " + std::to_string(Seconds(busy)) +
                                " s with a packet, a round of slots is shorter"};
 }

@@ -17,8 +17,8 @@ const ChannelConfig& CheckedForModems(const ChannelConfig& config, const RunConf
   const auto require = [](bool fits, const char* key, const char* what) {
     if (!fits) throw UserError(std::string(key) + ": emulated modems need " + what);
   };
-  require(PropagationModels().Make(config.model, config)->has_modems(), "channel.model",
-          "a model with modems, such as physical");
+  require(PropagationModels().Make(config.model, config.models, config)->has_modems(),
+          "channel.model", "a model with modems, such as physical");
   const auto access = MakeMediumAccess(config, run);
   access->Reset(0, 0);
   Attempt again;
@@ -28,7 +28,7 @@ const ChannelConfig& CheckedForModems(const ChannelConfig& config, const RunConf
     require(!access->listens() && access->Next(run.agents - 1, t, again) == t, "channel.access",
             "one that lets every packet leave at once: aloha, with channel.contention.rest_s 0");
   }
-  require(config.modem.queue == QueuePolicy::kFifo, "channel.modem.queue", "fifo");
+  require(config.modem.queue == QueuePolicy::kFifo, "channel.physical.modem.queue", "fifo");
   return config;
 }
 

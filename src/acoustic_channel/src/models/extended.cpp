@@ -8,15 +8,15 @@ void Describe(ExtendedConfig* c, config::Table* t) {
   t->Add("sound_speed_mps", &c->sound_speed_mps, config::Within(1.0, 1e5), "m/s",
          "propagation speed of packets");
   t->Add("max_range_m", &c->max_range_m, config::Positive(1e6), "m",
-         "extended: nothing arrives beyond this distance");
+         "nothing arrives beyond this distance");
   t->Add("attenuation_per_m", &c->attenuation_per_m, config::NonNegative(1e4), "1/m",
-         "extended: alpha of Eq. 6");
+         "alpha of Eq. 6");
   t->Add("loss_probability", &c->loss_probability, config::kFraction, "-",
-         "extended: probability p0 that a packet is lost at zero distance");
+         "probability p0 that a packet is lost at zero distance");
   t->Add("loss_distance_m", &c->loss_distance_m, config::Positive(1e6), "m",
-         "extended: scale D of p_loss(d) = 1 - (1 - p0) exp(-(d/D)^2)");
+         "scale D of p_loss(d) = 1 - (1 - p0) exp(-(d/D)^2)");
   t->Add("freshness_s", &c->freshness_s, config::Positive(1e5), "s",
-         "extended: decay time tau_f of Eq. 6 with the age of the information");
+         "decay time tau_f of Eq. 6 with the age of the information");
 }
 
 ExtendedModel::ExtendedModel(const ChannelConfig& config) : config_(config) {}

@@ -40,8 +40,6 @@ class PhysicalModel : public PropagationModel {
 
 void Describe(PhysicalConfig* c, config::Table* t) {
   Describe(&c->modem, t);
-  Describe(&c->slots, t);
-  Describe(&c->contention, t);
   Describe(&c->water, t);
   Describe(&c->noise, t);
   Describe(&c->propagation, t);

@@ -22,16 +22,18 @@ PropagationModelRegistry& PropagationModels() {
 
 std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run,
                                      LineOfSight line_of_sight) {
-  const auto model = PropagationModels().Make(config.model, config);
+  const auto model = PropagationModels().Make(config.model, config.models, config);
   return model->MakeChannel(config, run, std::move(line_of_sight));
 }
 
 std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& config, int nodes) {
-  return PropagationModels().Make(config.model, config)->MakeLinkEstimator(config, nodes);
+  return PropagationModels()
+      .Make(config.model, config.models, config)
+      ->MakeLinkEstimator(config, nodes);
 }
 
 std::size_t MaxPayload(const ChannelConfig& config, int nodes) {
-  return PropagationModels().Make(config.model, config)->max_payload(config, nodes);
+  return PropagationModels().Make(config.model, config.models, config)->max_payload(config, nodes);
 }
 
 }  // namespace stg::acoustics

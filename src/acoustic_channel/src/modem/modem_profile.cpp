@@ -124,23 +124,23 @@ Profile Evologics() {
 }  // namespace
 
 void Describe(ModemConfig* c, config::Table* t) {
-  t->Section("channel.modem");
-  t->AddOptional("profile", config::Name(&c->profile, ModemProfiles().Names()), "evologics_s2c",
-                 config::kNone, "-", "physical: modem of every node");
-  t->AddOptional("profiles", config::NamesRef{&c->profiles, ModemProfiles().Names()}, "[]",
-                 config::kNone, "-", "modems of a mixed fleet, one a node; empty: all are alike");
-  t->AddOptional("packet_bytes", &c->packet_bytes, "0", config::Within(0.0, 2048.0), "bytes",
-                 "longest payload of the network, which a slot must hold; 0: what the modems take");
+  t->Section("modem");
+  t->Add("profile", config::Name(&c->profile, ModemProfiles().Names()), config::kNone, "-",
+         "modem of every node");
+  t->Add("profiles", config::NamesRef{&c->profiles, ModemProfiles().Names()}, config::kNone, "-",
+         "modems of a mixed fleet, one a node; empty: all are alike");
+  t->Add("packet_bytes", &c->packet_bytes, config::Within(0.0, 2048.0), "bytes",
+         "longest payload of the network, which a slot must hold; 0: what the modems take");
   t->AddOptional("queue", config::Enum(&c->queue, {"newest", "fifo"}), "newest", config::kNone, "-",
                  "a packet replaces the one that waits, or waits behind it");
-  t->AddOptional("queue_length", &c->queue_length, "8", config::Within(1.0, 1000.0), "packets",
-                 "fifo: how many may wait; one more is refused");
-  t->AddOptional("clock_offset_std_s", &c->clock_offset_std_s, "0.0", config::NonNegative(1e3), "s",
-                 "standard deviation of a modem's clock at the start of an episode");
-  t->AddOptional("clock_drift_std_ppm", &c->clock_drift_std_ppm, "0.0", config::NonNegative(1e3),
-                 "1e-6", "standard deviation of the rate of a modem's clock");
-  t->AddOptional("freshness_s", &c->freshness_s, "30.0", config::Positive(1e5), "s",
-                 "decay time of link quality with the age of the information");
+  t->Add("queue_length", &c->queue_length, config::Within(1.0, 1000.0), "packets",
+         "fifo: how many may wait; one more is refused");
+  t->Add("clock_offset_std_s", &c->clock_offset_std_s, config::NonNegative(1e3), "s",
+         "standard deviation of a modem's clock at the start of an episode");
+  t->Add("clock_drift_std_ppm", &c->clock_drift_std_ppm, config::NonNegative(1e3), "1e-6",
+         "standard deviation of the rate of a modem's clock");
+  t->Add("freshness_s", &c->freshness_s, config::Positive(1e5), "s",
+         "decay time of link quality with the age of the information");
 }
 
 TimeNs ModemProfile::airtime(std::size_t bytes) const {
@@ -166,8 +166,8 @@ ModemProfileRegistry& ModemProfiles() {
 std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
   const std::vector<std::string>& names = config.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
-    throw UserError("channel.modem.profiles: " + std::to_string(names.size()) + " modems for " +
-                    std::to_string(nodes) + " nodes");
+    throw UserError("channel.physical.modem.profiles: " + std::to_string(names.size()) +
+                    " modems for " + std::to_string(nodes) + " nodes");
   }
   std::vector<ModemProfile> fleet;
   for (int i = 0; i < nodes; ++i) {
@@ -181,14 +181,14 @@ std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
   const std::vector<std::string>& names = c.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
     return config::Violation{
-        {"channel.modem.profiles", "agents"},
+        {"channel.physical.modem.profiles", "agents"},
         std::to_string(names.size()) + " modems for " + std::to_string(nodes) + " nodes"};
   }
   for (const ModemProfile& p : MakeFleet(c, nodes)) {
     if (static_cast<std::size_t>(c.packet_bytes) <= p.max_payload()) continue;
     return config::Violation{
-        {"channel.modem.packet_bytes",
-         names.empty() ? "channel.modem.profile" : "channel.modem.profiles"},
+        {"channel.physical.modem.packet_bytes",
+         names.empty() ? "channel.physical.modem.profile" : "channel.physical.modem.profiles"},
         "a packet of " + p.name + " takes " + std::to_string(p.max_payload()) + " bytes at most"};
   }
   return {};

@@ -8,23 +8,21 @@
 namespace stg::acoustics {
 
 void Describe(NoiseConfig* c, config::Table* t) {
-  t->Section("channel.noise");
-  t->AddOptional("shipping", &c->shipping, "0.5", config::kFraction, "-",
-                 "activity of distant ships");
-  t->AddOptional("wind_mps", &c->wind_mps, "5.0", config::NonNegative(60.0), "m/s",
-                 "wind over the surface");
-  t->AddOptional("site_db", &c->site_db, "0.0", config::Within(-100.0, 200.0), "dB re 1 uPa^2/Hz",
-                 "flat noise of the site, its power added to the formulas'");
-  t->AddOptional("own_db", &c->own_db, "65.0", config::Within(-100.0, 200.0), "dB re 1 uPa^2/Hz",
-                 "a vehicle's own noise at its receiver at 1 kHz and 1 m/s; falls 6 dB an octave");
-  t->AddOptional("own_slope_db", &c->own_slope_db, "60.0", config::NonNegative(200.0), "dB/decade",
-                 "growth of a vehicle's own noise with its speed");
-  t->AddOptional("burst_db", &c->burst_db, "20.0", config::NonNegative(100.0), "dB",
-                 "by which a burst raises ambient and site noise");
-  t->AddOptional("burst_every_s", &c->burst_every_s, "0.0", config::NonNegative(1e6), "s",
-                 "mean time from the end of a burst at a receiver to the next; 0: no bursts");
-  t->AddOptional("burst_length_s", &c->burst_length_s, "0.5", config::Within(1e-3, 1e6), "s",
-                 "mean length of a burst");
+  t->Section("noise");
+  t->Add("shipping", &c->shipping, config::kFraction, "-", "activity of distant ships");
+  t->Add("wind_mps", &c->wind_mps, config::NonNegative(60.0), "m/s", "wind over the surface");
+  t->Add("site_db", &c->site_db, config::Within(-100.0, 200.0), "dB re 1 uPa^2/Hz",
+         "flat noise of the site, its power added to the formulas'");
+  t->Add("own_db", &c->own_db, config::Within(-100.0, 200.0), "dB re 1 uPa^2/Hz",
+         "a vehicle's own noise at its receiver at 1 kHz and 1 m/s; falls 6 dB an octave");
+  t->Add("own_slope_db", &c->own_slope_db, config::NonNegative(200.0), "dB/decade",
+         "growth of a vehicle's own noise with its speed");
+  t->Add("burst_db", &c->burst_db, config::NonNegative(100.0), "dB",
+         "by which a burst raises ambient and site noise");
+  t->Add("burst_every_s", &c->burst_every_s, config::NonNegative(1e6), "s",
+         "mean time from the end of a burst at a receiver to the next; 0: no bursts");
+  t->Add("burst_length_s", &c->burst_length_s, config::Within(1e-3, 1e6), "s",
+         "mean length of a burst");
 }
 
 double TurbulenceNoise(double khz) { return 17.0 - 30.0 * std::log10(khz); }

@@ -3,26 +3,24 @@
 namespace stg::acoustics {
 
 void Describe(WaterConfig* c, config::Table* t) {
-  t->Section("channel.water");
-  t->AddOptional("surface_z_m", &c->surface_z_m, "0.0", config::Within(-1e4, 1e4), "m, world",
-                 "height of the water's surface; depths count from here");
-  t->AddOptional("depth_m", &c->depth_m, "1000.0", config::Positive(1e6), "m",
-                 "depth of the flat bottom that reflects sound");
-  t->AddOptional("temperature_c", &c->temperature_c, "14.0", config::Within(-2.0, 30.0), "deg C",
-                 "of the water, for sound speed and absorption");
-  t->AddOptional("salinity_psu", &c->salinity_psu, "35.0", config::Within(25.0, 40.0), "psu",
-                 "of the water, for sound speed and absorption");
-  t->AddOptional("ph", &c->ph, "8.0", config::Within(7.0, 9.0), "-",
-                 "of the water, for absorption by francois_garrison");
+  t->Section("water");
+  t->Add("surface_z_m", &c->surface_z_m, config::Within(-1e4, 1e4), "m, world",
+         "height of the water's surface; depths count from here");
+  t->Add("depth_m", &c->depth_m, config::Positive(1e6), "m",
+         "depth of the flat bottom that reflects sound");
+  t->Add("temperature_c", &c->temperature_c, config::Within(-2.0, 30.0), "deg C",
+         "of the water, for sound speed and absorption");
+  t->Add("salinity_psu", &c->salinity_psu, config::Within(25.0, 40.0), "psu",
+         "of the water, for sound speed and absorption");
+  t->Add("ph", &c->ph, config::Within(7.0, 9.0), "-",
+         "of the water, for absorption by francois_garrison");
   t->AddOptional("sound_speed", config::Enum(&c->sound_speed, {"mackenzie", "profile"}),
                  "mackenzie", config::kNone, "-",
                  "by Mackenzie's equation of temperature, salinity and depth, or a profile");
-  t->AddOptional("profile_depths_m", config::Numbers(&c->profile_depths_m),
-                 "[0.0, 20.0, 50.0, 100.0]", config::NonNegative(12000.0), "m",
-                 "profile: depths of its knots, ascending; linear between, constant outside");
-  t->AddOptional("profile_speeds_mps", config::Numbers(&c->profile_speeds_mps),
-                 "[1500.0, 1500.0, 1500.0, 1500.0]", config::Within(1300.0, 1700.0), "m/s",
-                 "profile: sound speed at its knots");
+  t->Add("profile_depths_m", config::Numbers(&c->profile_depths_m), config::NonNegative(12000.0),
+         "m", "profile: depths of its knots, ascending; linear between, constant outside");
+  t->Add("profile_speeds_mps", config::Numbers(&c->profile_speeds_mps),
+         config::Within(1300.0, 1700.0), "m/s", "profile: sound speed at its knots");
   t->AddOptional("absorption", config::Enum(&c->absorption, {"thorp", "francois_garrison"}),
                  "thorp", config::kNone, "-", "formula of the absorption of sound");
 }
@@ -30,7 +28,7 @@ void Describe(WaterConfig* c, config::Table* t) {
 std::optional<config::Violation> FindConflict(const WaterConfig& c) {
   for (std::size_t i = 1; i < c.profile_depths_m.size(); ++i) {
     if (c.profile_depths_m[i] <= c.profile_depths_m[i - 1]) {
-      return config::Violation{{"channel.water.profile_depths_m"}, "depths must ascend"};
+      return config::Violation{{"channel.physical.water.profile_depths_m"}, "depths must ascend"};
     }
   }
   return {};

@@ -82,12 +82,12 @@ TEST(Configuration, APacketThatNoFrameTakesIsRefused) {
   s.channel.modem.packet_bytes = 9;
   auto violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->keys.front(), "channel.modem.packet_bytes");
+  EXPECT_EQ(violation->keys.front(), "channel.physical.modem.packet_bytes");
   s.channel.modem.packet_bytes = 0;
   s.channel.modem.profiles = {"janus", "evologics_s2c"};  // of 4 nodes
   violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->keys.front(), "channel.modem.profiles");
+  EXPECT_EQ(violation->keys.front(), "channel.physical.modem.profiles");
 }
 
 TEST(Configuration, CarrierSenseNeedsModems) {

@@ -4,9 +4,11 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "auv_common/config/options.hpp"
 #include "auv_common/names.hpp"
 
 /// Things of one kind that a scenario chooses by name: vehicles, propagation models, algorithms ...
@@ -21,46 +23,82 @@
 ///     return registry;
 ///   }
 ///
-/// A thing is added by its own file and one line there. A program with things of its own adds them
-/// at its start, `TargetMotions().Add("spiral", MakeSpiral)`, before it loads a scenario: the
-/// key's range (config::Name) lists the names that are registered when the file is read. The
-/// function-local object exists from its first use on, so this may happen in static initialisers
-/// too. Add while another thread uses the registry is a race; Make and Names may run concurrently.
+/// A thing is added by its own file and one line there. Its factory takes the arguments that all
+/// things of its kind take; or, of a thing with options of its own, a struct with Describe before
+/// them (auv_common/config/options.hpp):
+///
+///   std::unique_ptr<TargetMotion> MakeEvasive(const EvasiveOptions&, const MotionSetup&);
+///
+/// A program with things of its own adds them at its start, `TargetMotions().Add("spiral",
+/// MakeSpiral)`, before it loads a scenario: the key's range (config::Name) lists the names, and
+/// Describe the keys, that are registered when the file is read. The function-local object exists
+/// from its first use on, so this may happen in static initialisers too. Add while another thread
+/// uses the registry is a race; Make and Names may run concurrently.
 namespace stg {
 
 template <class Interface, class... Args>
 class Registry {
  public:
-  using Factory = std::function<std::unique_ptr<Interface>(Args...)>;
+  using Pointer = std::unique_ptr<Interface>;
+  using Factory = std::function<Pointer(Args...)>;
+
+  /// A name, what it makes, and the defaults of its options.
   struct Entry {
+    Entry(std::string name, Factory make) : name(std::move(name)) {
+      if (!make) return;
+      this->make = [make = std::move(make)](const config::Options&, Args... args) {
+        return make(std::forward<Args>(args)...);
+      };
+    }
+    template <class Make, class = std::enable_if_t<std::is_invocable_r_v<Pointer, Make, Args...>>>
+    Entry(std::string name, Make make) : Entry(std::move(name), Factory(std::move(make))) {}
+    template <class Options, class Made>
+    Entry(std::string name, Made (*make)(const Options&, Args...), Options defaults = {})
+        : name(std::move(name)),
+          defaults(config::Options::Of(std::move(defaults))),
+          make([make](const config::Options& options, Args... args) -> Pointer {
+            return make(*options.As<Options>(), std::forward<Args>(args)...);
+          }) {}
+
     std::string name;
-    Factory make;
+    config::Options defaults;
+    std::function<Pointer(const config::Options&, Args...)> make;
   };
 
   /// @param kind what is registered, for messages: "target motion".
   Registry(std::string kind, std::vector<Entry> entries) : kind_(std::move(kind)) {
-    for (Entry& entry : entries) Add(std::move(entry.name), std::move(entry.make));
+    for (Entry& entry : entries) Add(std::move(entry));
   }
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
   /// Throws std::logic_error for a name that is taken or cannot stand in a file (see IsName), and
   /// for an empty factory: bugs of the program, not of its input.
-  void Add(std::string name, Factory make) {
-    if (!IsName(name)) throw std::logic_error(kind_ + ": '" + name + "' is no name");
-    if (Has(name)) throw std::logic_error(kind_ + ": '" + name + "' is registered twice");
-    if (!make) throw std::logic_error(kind_ + ": '" + name + "' has no factory");
-    entries_.push_back({std::move(name), std::move(make)});
+  void Add(Entry entry) {
+    if (!IsName(entry.name)) throw std::logic_error(kind_ + ": '" + entry.name + "' is no name");
+    if (Has(entry.name)) {
+      throw std::logic_error(kind_ + ": '" + entry.name + "' is registered twice");
+    }
+    if (!entry.make) throw std::logic_error(kind_ + ": '" + entry.name + "' has no factory");
+    entries_.push_back(std::move(entry));
+  }
+  template <class Make>
+  void Add(std::string name, Make make) {
+    Add(Entry(std::move(name), std::move(make)));
   }
 
-  /// What the factory of this name makes of the arguments; never null. Throws UserError that lists
-  /// the names for an unknown one, and whatever the factory throws.
-  std::unique_ptr<Interface> Make(const std::string& name, Args... args) const {
-    const Entry* entry = Find(name);
-    if (entry == nullptr) throw UnknownName(kind_, name, Names());
-    auto made = entry->make(std::forward<Args>(args)...);
+  /// What the factory of this name makes of its options and the arguments; never null. Throws
+  /// UserError that lists the names for an unknown one, and whatever the factory throws.
+  Pointer Make(const std::string& name, const config::OptionsByName& options, Args... args) const {
+    const Entry& entry = Need(name);
+    const config::Options* own = options.Find(name);
+    auto made = entry.make(own == nullptr ? entry.defaults : *own, std::forward<Args>(args)...);
     if (made == nullptr) throw std::logic_error(kind_ + ": '" + name + "' made nothing");
     return made;
+  }
+  /// The same with default options.
+  Pointer Make(const std::string& name, Args... args) const {
+    return Make(name, config::OptionsByName(), std::forward<Args>(args)...);
   }
 
   bool Has(const std::string& name) const { return Find(name) != nullptr; }
@@ -72,12 +110,47 @@ class Registry {
     return names;
   }
 
+  /// Adds the keys of every thing that has options, each in the section of its name below
+  /// `section`.
+  /// @param chooser key that chooses among the things @param chosen what it says
+  /// @param options filled by the keys; must outlive the table
+  void Describe(const std::string& section, const std::string& chooser,
+                const std::function<std::vector<std::string>()>& chosen,
+                config::OptionsByName* options, config::Table* table) const {
+    for (const Entry& entry : entries_) {
+      DescribeIn(section + "." + entry.name, entry.name, chooser, chosen, options, table);
+    }
+  }
+  /// The same of one thing, in the section of that name itself.
+  void DescribeIn(const std::string& section, const std::string& name, const std::string& chooser,
+                  const std::function<std::vector<std::string>()>& chosen,
+                  config::OptionsByName* options, config::Table* table) const {
+    config::Options defaults = Need(name).defaults;
+    if (defaults.empty()) return;
+    table->Thing(
+        {kind_, {name}, chooser, chosen}, section,
+        [&](config::Table* t) { DescribeOne(name, options, t); },
+        [&](config::Table* t) { defaults.DescribeTo(t); });
+  }
+  /// Adds the keys of one thing; none where it has no options. Throws UserError for an unknown
+  /// name.
+  void DescribeOne(const std::string& name, config::OptionsByName* options,
+                   config::Table* table) const {
+    const Entry& entry = Need(name);
+    if (!entry.defaults.empty()) options->Need(name, entry.defaults)->DescribeTo(table);
+  }
+
  private:
   const Entry* Find(const std::string& name) const {
     for (const Entry& entry : entries_) {
       if (entry.name == name) return &entry;
     }
     return nullptr;
+  }
+  const Entry& Need(const std::string& name) const {
+    const Entry* entry = Find(name);
+    if (entry == nullptr) throw UnknownName(kind_, name, Names());
+    return *entry;
   }
 
   std::string kind_;

@@ -1,8 +1,24 @@
 #include "auv_common/config/field.hpp"
 
+#include <algorithm>
+
+#include "auv_common/config/value.hpp"
 #include "key_path.hpp"
 
 namespace stg::config {
+
+bool Owner::IsChosen() const {
+  const std::vector<std::string> choice = chosen();
+  return std::find_first_of(choice.begin(), choice.end(), names.begin(), names.end()) !=
+         choice.end();
+}
+
+const Owner* Field::Unchosen() const {
+  for (const auto& owner : owners) {
+    if (!owner->IsChosen() && !(also_read && also_read())) return owner.get();
+  }
+  return nullptr;
+}
 
 void Table::Add(const std::string& key, ValueRef value, Limits limits, std::string unit,
                 std::string meaning) {
@@ -19,6 +35,36 @@ void Table::AddOptional(const std::string& key, ValueRef value, const std::strin
                         Limits limits, std::string unit, std::string meaning) {
   Add(key, std::move(value), limits, std::move(unit), std::move(meaning));
   fields_.back().fallback = fallback;
+}
+
+void Table::Thing(Owner owner, const std::string& section, const std::function<void(Table*)>& now,
+                  const std::function<void(Table*)>& defaults) {
+  Table plain;
+  defaults(&plain);
+  const std::string root = root_, prefix = prefix_;
+  Section(section);
+  root_ = prefix_;
+  const std::size_t first = fields_.size();
+  now(this);
+  const auto shared = std::make_shared<const Owner>(std::move(owner));
+  for (std::size_t k = 0; k < plain.fields().size(); ++k) {
+    Field& field = fields_[first + k];
+    field.fallback = FormatValue(plain.fields()[k].value);
+    field.owners.push_back(shared);
+  }
+  root_ = root;
+  prefix_ = prefix;
+}
+
+void Table::Own(const std::string& section, const Owner& owner) {
+  const auto shared = std::make_shared<const Owner>(owner);
+  for (Field& field : fields_) {
+    if (field.path.rfind(section + ".", 0) == 0) field.owners.push_back(shared);
+  }
+}
+
+void Table::AlsoReadIf(const std::string& path, std::function<bool()> holds) {
+  fields_[index_.at(path)].also_read = std::move(holds);
 }
 
 const Field* Table::Find(const std::string& path) const {

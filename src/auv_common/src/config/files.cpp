@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include "auv_common/error.hpp"
@@ -85,6 +86,21 @@ std::string ScenarioFolder() {
       "no folder with scenarios found; tried STG_SCENARIOS (not set), "
       "stg_bringup/scenarios on ROS_PACKAGE_PATH (" +
       std::string(package_path != nullptr ? package_path : "not set") + ")" + tried);
+}
+
+std::vector<std::string> ConditionNames(const std::string& folder) {
+  std::set<std::string> names;
+  std::error_code error;
+  const fs::path root = fs::path(folder) / "conditions";
+  for (fs::recursive_directory_iterator it(root, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() != ".yaml") continue;
+    const std::string stem = it->path().stem().string();
+    names.insert(it.depth() > 0 ? stem : stem.substr(stem.find('_') + 1));
+  }
+  std::vector<std::string> all{"nominal"};
+  all.insert(all.end(), names.begin(), names.end());
+  return all;
 }
 
 Source NamedSource(const std::string& folder, const std::string& scenario,

@@ -17,6 +17,13 @@ std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";
 }
 
+/// 'a' or 'b'; "none" where there are no names.
+std::string QuotedNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + name + "'";
+  return text.empty() ? "none" : text;
+}
+
 /// User text without the quotes, shortened.
 std::string Shortened(const std::string& text) {
   const std::string quoted = Quoted(text);
@@ -34,6 +41,7 @@ std::size_t SlipDistance(const std::string& text, const std::string& key, std::s
 
 void Loader::Apply(const Source& source) {
   ApplyFile(source.file);
+  ++layer_;
   for (const std::string& overlay : source.overlays) ApplyOverlay(overlay);
   for (const std::string& text : source.overrides) ApplyOverride(text);
 }
@@ -54,9 +62,9 @@ void Loader::ApplyPart(const YamlTree& map, const std::string& prefix, const std
 }
 
 void Loader::Refuse(const Violation& violation) const {
-  std::string text = Origin(violation.keys[0]) + violation.keys[0] + ": " + violation.message;
+  std::string text = WhereOf(violation.keys[0]) + violation.keys[0] + ": " + violation.message;
   for (std::size_t i = 1; i < violation.keys.size(); ++i) {
-    text += "\n  " + Origin(violation.keys[i]) + violation.keys[i] + " is " +
+    text += "\n  " + WhereOf(violation.keys[i]) + violation.keys[i] + " is " +
             FormatValue(table_.Find(violation.keys[i])->value);
   }
   throw UserError(text);
@@ -70,7 +78,10 @@ void Loader::ApplyFile(const std::string& path) {
   const auto base = std::find_if(root.entries.begin(), root.entries.end(),
                                  [](const auto& entry) { return entry.key == "base"; });
   const bool whole = base == root.entries.end();
-  if (!whole) ApplyBase(path, *base);
+  if (!whole) {
+    ApplyBase(path, *base);
+    ++layer_;
+  }
   ApplyMap(root, "", path, &given);
   if (whole) RequireAll(root, path, given);
   open_.pop_back();
@@ -124,7 +135,8 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
     if (const Field* field = table_.Find(path)) {
       Set(*field, entry.value, where);
       given->insert(path);
-    } else if (table_.sections().count(path) != 0) {
+    } else if (table_.sections().count(path) != 0 &&
+               (entry.value.kind == YamlTree::Kind::kMap || !NewName(path))) {
       const bool empty = entry.value.kind == YamlTree::Kind::kNull;
       if (entry.value.kind != YamlTree::Kind::kMap && !empty) {
         throw UserError(where + path + ": expected a map of keys, found " + KindName(entry.value));
@@ -132,6 +144,11 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
       section_lines_[path] = entry.line;
       ApplyMap(entry.value, path + ".", file, given);
     } else if (!Foreign(path)) {
+      // Of a section that has moved, the key is what helps.
+      const YamlTree& value = entry.value;
+      if (value.kind == YamlTree::Kind::kMap && !value.entries.empty() && NewName(path)) {
+        ApplyMap(value, path + ".", file, given);
+      }
       throw UserError(where + Unknown(path));
     }
   }
@@ -141,13 +158,14 @@ void Loader::Set(const Field& field, const YamlTree& value, const std::string& w
   if (const auto message = ParseValue(field, value)) {
     throw UserError(where + field.path + ": " + *message);
   }
-  origin_[field.path] = where;
+  origin_[field.path] = {where, layer_};
 }
 
 void Loader::RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const {
   std::vector<std::string> missing;
   for (const Field& field : table_.fields()) {
-    if (given.count(field.path) == 0 && !field.fallback) missing.push_back(field.path);
+    if (given.count(field.path) != 0 || field.fallback || field.Unchosen()) continue;
+    missing.push_back(field.path);
   }
   if (missing.empty()) return;
   int line = root.line;
@@ -161,9 +179,7 @@ void Loader::RequireAll(const YamlTree& root, const std::string& file, const Key
 /// A key at the top level, or in a section there, that this table says nothing of.
 bool Loader::Foreign(const std::string& path) const {
   if (scope_ == Scope::kWhole) return false;
-  for (const auto& item : table_.moved()) {
-    if (path == item.first) return false;
-  }
+  if (NewName(path)) return false;
   const std::string top = path.substr(0, path.find('.'));
   return table_.Find(top) == nullptr && table_.sections().count(top) == 0;
 }
@@ -172,8 +188,8 @@ bool Loader::Foreign(const std::string& path) const {
 /// the same section; or "".
 std::string Loader::Nearest(const std::string& path) const {
   std::vector<const std::string*> keys;
-  for (const std::string& section : table_.sections()) keys.push_back(&section);
   for (const Field& field : table_.fields()) keys.push_back(&field.path);
+  for (const std::string& section : table_.sections()) keys.push_back(&section);
   const std::string section = Parent(path), leaf = Leaf(path);
   std::string best;
   std::size_t least = std::max<std::size_t>(2, leaf.size() / 3) + 1;
@@ -192,9 +208,7 @@ std::string Loader::Nearest(const std::string& path) const {
 }
 
 std::string Loader::Unknown(const std::string& path) const {
-  for (const auto& [from, to] : table_.moved()) {
-    if (path == from) return path + ": this key is called " + to;
-  }
+  if (const auto name = NewName(path)) return path + ": this key is called " + *name;
   const std::string best = path.size() <= 200 ? Nearest(path) : "";
   const std::string name = Shortened(path);
   const std::string text = name + ": unknown key";
@@ -202,9 +216,31 @@ std::string Loader::Unknown(const std::string& path) const {
   return best.empty() ? text : text + ", did you mean " + best + "?";
 }
 
-std::string Loader::Origin(const std::string& key) const {
+/// What replaces a key of earlier versions, or a key of a section that has moved.
+std::optional<std::string> Loader::NewName(const std::string& path) const {
+  for (const auto& [from, to] : table_.moved()) {
+    if (path == from) return to;
+    if (path.rfind(from + ".", 0) == 0) return to + path.substr(from.size());
+  }
+  return {};
+}
+
+void Loader::RefuseUnread() const {
+  for (const Field& field : table_.fields()) {
+    const auto set = origin_.find(field.path);
+    const Owner* const owner = field.Unchosen();
+    if (set == origin_.end() || owner == nullptr) continue;
+    const auto choice = origin_.find(owner->key);
+    if (choice != origin_.end() && set->second.layer < choice->second.layer) continue;
+    throw UserError(set->second.where + field.path + ": belongs to the " + owner->kind + " " +
+                    QuotedNames(owner->names) + "; this configuration chose " +
+                    QuotedNames(owner->chosen()) + " (" + owner->key + ")");
+  }
+}
+
+std::string Loader::WhereOf(const std::string& key) const {
   const auto found = origin_.find(key);
-  return found == origin_.end() ? "" : found->second;
+  return found == origin_.end() ? "" : found->second.where;
 }
 
 std::optional<Violation> FindBadValue(const Table& table) {

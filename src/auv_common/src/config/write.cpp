@@ -10,7 +10,9 @@ std::string ToYaml(const Table& table) {
   std::string text;
   std::string open;  // section whose heading was written last
   for (const Field& field : table.fields()) {
-    if (field.fallback && FormatValue(field.value) == *field.fallback) continue;
+    if (field.Unchosen() != nullptr) continue;
+    if (field.owners.empty() && field.fallback && FormatValue(field.value) == *field.fallback)
+      continue;
     const std::string section = Parent(field.path);
     const auto indent = [](const std::string& path) {
       return std::string(static_cast<std::size_t>(2 * std::count(path.begin(), path.end(), '.')),

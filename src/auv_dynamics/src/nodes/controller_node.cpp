@@ -38,7 +38,10 @@ ControllerNode::ControllerNode()
     actuators_.header.frame_id = body_frame_;
     actuators_.vehicle = model;
     actuators_.values.resize(
-        dynamics::Vehicles().Make(model, scenario_.world.vehicle)->actuators().size());
+        dynamics::Vehicles()
+            .Make(model, scenario_.world.vehicle.kinds, scenario_.world.vehicle)
+            ->actuators()
+            .size());
     publisher_ = node.advertise<auv_msgs::ActuatorCommand>(
         topics::AuvTopic(id_, topics::kActuators), kQueue, true);
     frames_ = node.subscribe(topics::AuvTopic(id_, topics::kSensorFrame), kQueue,

@@ -10,11 +10,12 @@ namespace {
 /// uniform in range and direction.
 class RelativeSensor : public TargetSensor {
  public:
-  RelativeSensor(const SensingConfig& config, MeasurementKind kind)
-      : config_(config),
+  RelativeSensor(const RelativeOptions& options, const SensingConfig& config, MeasurementKind kind)
+      : options_(options),
+        config_(config),
         kind_(kind),
-        bearing_std_(config.bearing_std_deg * kPi / 180.0),
-        cos_half_view_(std::cos(0.5 * config.field_of_view_deg * kPi / 180.0)) {}
+        bearing_std_(options.bearing_std_deg * kPi / 180.0),
+        cos_half_view_(std::cos(0.5 * options.field_of_view_deg * kPi / 180.0)) {}
 
   MeasurementKind kind() const override { return kind_; }
 
@@ -38,7 +39,7 @@ class RelativeSensor : public TargetSensor {
     const Vec3<double> r = look.p_WT() - look.p_WB();
     const double range = Norm(r);
     if (range > config_.range_m || range < 1e-9) return false;
-    if (config_.field_of_view_deg < 360.0) {
+    if (options_.field_of_view_deg < 360.0) {
       const Mat3<Pack>& R = look.vehicle_state.R_WB;
       const double ahead = Lane(R.m[0][0], look.lane) * r.x + Lane(R.m[1][0], look.lane) * r.y +
                            Lane(R.m[2][0], look.lane) * r.z;
@@ -48,13 +49,13 @@ class RelativeSensor : public TargetSensor {
     Random random = look.clock.Draw(Stream::kMeasurement, look.pair);
     const double share = range / config_.range_m;
     const double probability = config_.detection_probability *
-                               (1.0 - (1.0 - config_.probability_at_range) * share * share);
+                               (1.0 - (1.0 - options_.probability_at_range) * share * share);
     if (random.Uniform() >= probability) return false;
-    if (random.Uniform() < config_.outlier_probability) {
+    if (random.Uniform() < options_.outlier_probability) {
       *m = Anywhere(&random);
       return true;
     }
-    const double range_std = config_.range_std_m + config_.range_std_share * range;
+    const double range_std = options_.range_std_m + options_.range_std_share * range;
     m->range_m = std::abs(range + range_std * random.Normal());
     m->azimuth_rad = std::atan2(r.y, r.x) + bearing_std_ * random.Normal();
     m->elevation_rad = std::asin(Clip(r.z / range, -1.0, 1.0)) + bearing_std_ * random.Normal();
@@ -62,9 +63,9 @@ class RelativeSensor : public TargetSensor {
   }
 
   bool FalseAlarm(const Look& look, Measured* m) const {
-    if (config_.false_alarm_probability <= 0.0) return false;
+    if (options_.false_alarm_probability <= 0.0) return false;
     Random random = look.clock.Draw(Stream::kFalseAlarm, look.pair);
-    if (random.Uniform() >= config_.false_alarm_probability) return false;
+    if (random.Uniform() >= options_.false_alarm_probability) return false;
     *m = Anywhere(&random);
     return true;
   }
@@ -85,13 +86,13 @@ class RelativeSensor : public TargetSensor {
     out->ambiguous = false;
     if (has_range) {
       out->range_m = m.range_m;
-      out->range_std_m = config_.range_std_m + config_.range_std_share * m.range_m;
+      out->range_std_m = options_.range_std_m + options_.range_std_share * m.range_m;
     }
     if (!has_bearing) return;
     out->azimuth_rad = WrapAngle(m.azimuth_rad + look.observer.heading_error_rad);
     out->elevation_rad = m.elevation_rad;
     out->bearing_std_rad = bearing_std_;
-    if (config_.ambiguous) TellBothSides(look, out);
+    if (options_.ambiguous) TellBothSides(look, out);
     if (!has_range) return;
     const double c = std::cos(out->elevation_rad);
     out->p_WT += Vec3<double>{c * std::cos(out->azimuth_rad), c * std::sin(out->azimuth_rad),
@@ -111,6 +112,7 @@ class RelativeSensor : public TargetSensor {
     out->mirror_azimuth_rad = WrapAngle(heading - off);
   }
 
+  RelativeOptions options_;
   SensingConfig config_;
   MeasurementKind kind_;
   double bearing_std_, cos_half_view_;
@@ -118,16 +120,19 @@ class RelativeSensor : public TargetSensor {
 
 }  // namespace
 
-std::unique_ptr<const TargetSensor> MakeRangeSensor(const SensingConfig& config) {
-  return std::make_unique<RelativeSensor>(config, MeasurementKind::kRange);
+std::unique_ptr<const TargetSensor> MakeRangeSensor(const RelativeOptions& options,
+                                                    const SensingConfig& config) {
+  return std::make_unique<RelativeSensor>(options, config, MeasurementKind::kRange);
 }
 
-std::unique_ptr<const TargetSensor> MakeBearingSensor(const SensingConfig& config) {
-  return std::make_unique<RelativeSensor>(config, MeasurementKind::kBearing);
+std::unique_ptr<const TargetSensor> MakeBearingSensor(const RelativeOptions& options,
+                                                      const SensingConfig& config) {
+  return std::make_unique<RelativeSensor>(options, config, MeasurementKind::kBearing);
 }
 
-std::unique_ptr<const TargetSensor> MakeRangeBearingSensor(const SensingConfig& config) {
-  return std::make_unique<RelativeSensor>(config, MeasurementKind::kRangeBearing);
+std::unique_ptr<const TargetSensor> MakeRangeBearingSensor(const RelativeOptions& options,
+                                                           const SensingConfig& config) {
+  return std::make_unique<RelativeSensor>(options, config, MeasurementKind::kRangeBearing);
 }
 
 }  // namespace stg::dynamics

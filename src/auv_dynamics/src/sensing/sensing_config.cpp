@@ -11,14 +11,36 @@ using config::kNone;
 using config::NonNegative;
 using config::Positive;
 
+void Describe(RelativeOptions* o, config::Table* t) {
+  if (o->has_range) {
+    t->Add("range_std_m", &o->range_std_m, Positive(1e4), "m",
+           "a of the standard deviation a + b r of a range r");
+    t->Add("range_std_share", &o->range_std_share, kFraction, "-",
+           "b of the standard deviation a + b r of a range r");
+  }
+  if (o->has_bearing) {
+    t->Add("bearing_std_deg", &o->bearing_std_deg, Positive(60), "deg",
+           "standard deviation of azimuth and elevation");
+    t->Add("ambiguous", &o->ambiguous, kNone, "-",
+           "a bearing cannot tell port from starboard, as that of a line array");
+  }
+  t->Add("probability_at_range", &o->probability_at_range, kFraction, "-",
+         "share of the detection probability that is left at the detection range, falling with the "
+         "square of the range");
+  t->Add("outlier_probability", &o->outlier_probability, kFraction, "-",
+         "chance that a detection is drawn from anywhere in range");
+  t->Add("false_alarm_probability", &o->false_alarm_probability, kFraction, "-",
+         "chance that a look without a detection reports one");
+  t->Add("field_of_view_deg", &o->field_of_view_deg, Positive(360), "deg, body",
+         "full angle of the cone around the bow that is seen");
+}
+
 void Describe(SensingConfig* c, config::Table* t) {
   t->Section("sensing");
   t->Add("sensor", config::Name(&c->sensor, TargetSensors().Names()), config::kNone, "-",
          "what an AUV's own sensor measures of a target");
   t->Add("range_m", &c->range_m, config::Positive(1e5), "m",
          "R_s: detection range, and scale of the confidence of Eq. 13");
-  t->Add("noise_std_m", &c->noise_std_m, config::NonNegative(1e4), "m, world ENU",
-         "standard deviation of each component of a detection");
   t->Add("detection_probability", &c->detection_probability, config::kFraction, "-",
          "chance of a detection per decision within range");
   t->Add("dropout_rate_hz", &c->dropout_rate_hz, config::NonNegative(1e3), "Hz",
@@ -29,23 +51,21 @@ void Describe(SensingConfig* c, config::Table* t) {
          "acoustic mode: standard deviation of each component of the initial datum");
   t->AddOptional("period_s", &c->period_s, "0.0", NonNegative(1e5), "s",
                  "time between two looks, whole decisions; 0: every decision");
-  t->AddOptional("range_std_m", &c->range_std_m, "1.0", Positive(1e4), "m",
-                 "range, range_bearing: a of the standard deviation a + b r");
-  t->AddOptional("range_std_share", &c->range_std_share, "0.01", config::kFraction, "-",
-                 "range, range_bearing: b of the standard deviation a + b r");
-  t->AddOptional("bearing_std_deg", &c->bearing_std_deg, "2.0", Positive(60), "deg",
-                 "bearing, range_bearing: standard deviation of azimuth and elevation");
-  t->AddOptional("probability_at_range", &c->probability_at_range, "1.0", config::kFraction, "-",
-                 "share of the detection probability that is left at the detection range, falling "
-                 "with the square of the range; not of position");
-  t->AddOptional("outlier_probability", &c->outlier_probability, "0.0", config::kFraction, "-",
-                 "chance that a detection is drawn from anywhere in range; not of position");
-  t->AddOptional("false_alarm_probability", &c->false_alarm_probability, "0.0", config::kFraction,
-                 "-", "chance that a look without a detection tells of one; not of position");
-  t->AddOptional("field_of_view_deg", &c->field_of_view_deg, "360.0", Positive(360), "deg, body",
-                 "full angle of the cone around the bow that is seen; not of position");
-  t->AddOptional("ambiguous", &c->ambiguous, "false", kNone, "-",
-                 "bearing, range_bearing: cannot tell port from starboard, as a line array");
+  const auto sensor = [c] { return std::vector<std::string>{c->sensor}; };
+  t->Thing({"target sensor", {"position"}, "sensing.sensor", sensor}, "sensing.position", c,
+           [](SensingConfig* o, config::Table* table) {
+             table->Add("noise_std_m", &o->noise_std_m, config::NonNegative(1e4), "m, world ENU",
+                        "standard deviation of each component of a detection");
+           });
+  TargetSensors().Describe("sensing", "sensing.sensor", sensor, &c->sensors, t);
+  t->Moved("sensing.noise_std_m", "sensing.position.noise_std_m");
+  for (const char* key : {"range_std_m", "range_std_share", "probability_at_range",
+                          "outlier_probability", "false_alarm_probability", "field_of_view_deg"}) {
+    t->Moved(std::string("sensing.") + key, std::string("sensing.range.") + key);
+  }
+  for (const char* key : {"bearing_std_deg", "ambiguous"}) {
+    t->Moved(std::string("sensing.") + key, std::string("sensing.bearing.") + key);
+  }
 }
 
 std::optional<config::Violation> FindConflict(const SensingConfig& c, double decision_dt_s) {

@@ -9,9 +9,12 @@
 namespace stg::dynamics {
 
 std::unique_ptr<const TargetSensor> MakePositionSensor(const SensingConfig& config);
-std::unique_ptr<const TargetSensor> MakeRangeSensor(const SensingConfig& config);
-std::unique_ptr<const TargetSensor> MakeBearingSensor(const SensingConfig& config);
-std::unique_ptr<const TargetSensor> MakeRangeBearingSensor(const SensingConfig& config);
+std::unique_ptr<const TargetSensor> MakeRangeSensor(const RelativeOptions& options,
+                                                    const SensingConfig& config);
+std::unique_ptr<const TargetSensor> MakeBearingSensor(const RelativeOptions& options,
+                                                      const SensingConfig& config);
+std::unique_ptr<const TargetSensor> MakeRangeBearingSensor(const RelativeOptions& options,
+                                                           const SensingConfig& config);
 
 /// Whether a look falls on the sensor's period.
 bool LooksNow(const SensingConfig& config, const Look& look);

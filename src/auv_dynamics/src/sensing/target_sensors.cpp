@@ -4,12 +4,13 @@
 namespace stg::dynamics {
 
 SensorRegistry& TargetSensors() {
-  static SensorRegistry registry("target sensor", {
-                                                      {"position", MakePositionSensor},
-                                                      {"range", MakeRangeSensor},
-                                                      {"bearing", MakeBearingSensor},
-                                                      {"range_bearing", MakeRangeBearingSensor},
-                                                  });
+  static SensorRegistry registry("target sensor",
+                                 {
+                                     {"position", MakePositionSensor},
+                                     {"range", MakeRangeSensor, RelativeOptions{true, false}},
+                                     {"bearing", MakeBearingSensor, RelativeOptions{false, true}},
+                                     {"range_bearing", MakeRangeBearingSensor},
+                                 });
   return registry;
 }
 

@@ -4,17 +4,24 @@
 #include "motions.hpp"
 
 namespace stg::dynamics {
+
+void Describe(EvasiveOptions* o, config::Table* t) {
+  t->Add("range_m", &o->range_m, config::NonNegative(1e4), "m",
+         "the target flees AUVs closer than this");
+}
+
 namespace {
 
 /// Away from every vehicle in range, the closer the stronger, in open water at its depth; straight
 /// on while none is.
 class Evasive : public SteeredMotion {
  public:
-  using SteeredMotion::SteeredMotion;
+  Evasive(const EvasiveOptions& options, const MotionSetup& setup)
+      : SteeredMotion(setup), options_(options) {}
 
  private:
   Vec3<double> Steer(const Situation& now) override {
-    const double range = config().evasion_range_m;
+    const double range = options_.range_m;
     Vec3<double> away;
     double closest = range;
     for (const VehicleState<Pack>& vehicle : now.vehicles) {
@@ -27,12 +34,14 @@ class Evasive : public SteeredMotion {
     }
     return closest < range ? TurnTowards(now.v_WT, away, largest_turn()) : now.v_WT;
   }
+
+  EvasiveOptions options_;
 };
 
 }  // namespace
 
-std::unique_ptr<TargetMotion> MakeEvasive(const MotionSetup& setup) {
-  return std::make_unique<Evasive>(setup);
+std::unique_ptr<TargetMotion> MakeEvasive(const EvasiveOptions& options, const MotionSetup& setup) {
+  return std::make_unique<Evasive>(options, setup);
 }
 
 }  // namespace stg::dynamics

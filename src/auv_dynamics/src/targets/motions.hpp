@@ -8,9 +8,24 @@
 /// their name.
 namespace stg::dynamics {
 
+struct CoordinatedTurnOptions {
+  double rate_radps = 0.1, period_s = 10.0;
+};
+void Describe(CoordinatedTurnOptions* o, config::Table* t);
+struct RandomWaypointOptions {
+  double radius_m = 0.05;
+};
+void Describe(RandomWaypointOptions* o, config::Table* t);
+struct EvasiveOptions {
+  double range_m = 0.10;
+};
+void Describe(EvasiveOptions* o, config::Table* t);
+
 std::unique_ptr<TargetMotion> MakeConstantVelocity(const MotionSetup& setup);
-std::unique_ptr<TargetMotion> MakeCoordinatedTurn(const MotionSetup& setup);
-std::unique_ptr<TargetMotion> MakeRandomWaypoint(const MotionSetup& setup);
-std::unique_ptr<TargetMotion> MakeEvasive(const MotionSetup& setup);
+std::unique_ptr<TargetMotion> MakeCoordinatedTurn(const CoordinatedTurnOptions& options,
+                                                  const MotionSetup& setup);
+std::unique_ptr<TargetMotion> MakeRandomWaypoint(const RandomWaypointOptions& options,
+                                                 const MotionSetup& setup);
+std::unique_ptr<TargetMotion> MakeEvasive(const EvasiveOptions& options, const MotionSetup& setup);
 
 }  // namespace stg::dynamics

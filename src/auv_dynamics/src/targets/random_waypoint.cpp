@@ -2,6 +2,12 @@
 #include "motions.hpp"
 
 namespace stg::dynamics {
+
+void Describe(RandomWaypointOptions* o, config::Table* t) {
+  t->Add("radius_m", &o->radius_m, config::Positive(1e4), "m",
+         "distance at which a waypoint counts as reached");
+}
+
 namespace {
 
 /// Whether `to`, relative to a target of velocity v, lies inside the circle of
@@ -19,8 +25,10 @@ bool InsideTurningCircle(const Vec3<double>& v, const Vec3<double>& to, double m
 /// depth.
 class RandomWaypoint : public SteeredMotion {
  public:
-  explicit RandomWaypoint(const MotionSetup& setup)
-      : SteeredMotion(setup), index_(static_cast<size_t>(setup.target.count) * kLanes, 0) {}
+  RandomWaypoint(const RandomWaypointOptions& options, const MotionSetup& setup)
+      : SteeredMotion(setup),
+        options_(options),
+        index_(static_cast<size_t>(setup.target.count) * kLanes, 0) {}
 
   void Reset(int lane) override {
     for (int k = 0; k < config().count; ++k) index_[Slot(lane, k)] = 0;
@@ -38,7 +46,7 @@ class RandomWaypoint : public SteeredMotion {
     };
     const Vec3<double> to = waypoint() - now.p_WT;
     // A point that cannot be reached by turning is given up for the next one.
-    if (Norm(to) < config().waypoint_radius_m ||
+    if (Norm(to) < options_.radius_m ||
         InsideTurningCircle(now.v_WT, to, config().max_turn_rate_radps)) {
       ++index;
     }
@@ -49,13 +57,15 @@ class RandomWaypoint : public SteeredMotion {
     return static_cast<size_t>(lane * config().count + target);
   }
 
+  RandomWaypointOptions options_;
   std::vector<std::uint32_t> index_;  // [lane, target] points reached or given up
 };
 
 }  // namespace
 
-std::unique_ptr<TargetMotion> MakeRandomWaypoint(const MotionSetup& setup) {
-  return std::make_unique<RandomWaypoint>(setup);
+std::unique_ptr<TargetMotion> MakeRandomWaypoint(const RandomWaypointOptions& options,
+                                                 const MotionSetup& setup) {
+  return std::make_unique<RandomWaypoint>(options, setup);
 }
 
 }  // namespace stg::dynamics

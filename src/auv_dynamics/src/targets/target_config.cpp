@@ -18,14 +18,13 @@ void Describe(TargetConfig* c, config::Table* t) {
   t->Add("max_speed_mps", &c->max_speed_mps, config::Positive(10), "m/s", "no target is faster");
   t->Add("max_turn_rate_radps", &c->max_turn_rate_radps, config::Positive(10), "rad/s",
          "no target turns faster, walls apart");
-  t->Add("turn_rate_radps", &c->turn_rate_radps, config::NonNegative(10), "rad/s",
-         "coordinated_turn: mean magnitude of the turn rate");
-  t->Add("turn_period_s", &c->turn_period_s, config::Positive(1e5), "s",
-         "coordinated_turn: time between new turn rates");
-  t->Add("waypoint_radius_m", &c->waypoint_radius_m, config::Positive(1e4), "m",
-         "random_waypoint: distance at which a waypoint counts as reached");
-  t->Add("evasion_range_m", &c->evasion_range_m, config::NonNegative(1e4), "m",
-         "evasive: the target flees AUVs closer than this");
+  TargetMotions().Describe(
+      "target", "target.motion", [c] { return std::vector<std::string>{c->motion}; }, &c->motions,
+      t);
+  t->Moved("target.turn_rate_radps", "target.coordinated_turn.rate_radps");
+  t->Moved("target.turn_period_s", "target.coordinated_turn.period_s");
+  t->Moved("target.waypoint_radius_m", "target.random_waypoint.radius_m");
+  t->Moved("target.evasion_range_m", "target.evasive.range_m");
 }
 
 }  // namespace stg::dynamics

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
           stg::config::Load<stg::dynamics::WorldScenario>(source, stg::config::Scope::kOwnSections)
               .world.vehicle;
       const std::string& model = vehicle.model_of(0);
-      const auto flown = stg::dynamics::Vehicles().Make(model, vehicle);
+      const auto flown = stg::dynamics::Vehicles().Make(model, vehicle.kinds, vehicle);
       if (dynamic_cast<const stg::dynamics::Torpedo*>(flown.get()) == nullptr) {
         throw stg::UserError("--scenario: '" + scenario + "' flies " + model +
                              ", and recorded motions are of a torpedo (--set "

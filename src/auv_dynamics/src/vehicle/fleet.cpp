@@ -11,7 +11,7 @@ Fleet::Fleet(const VehicleConfig& config, int vehicles) {
   for (int i = 0; i < vehicles; ++i) {
     const auto [kind, is_new] = known.try_emplace(config.model_of(i));
     if (is_new) {
-      kinds_.push_back(Vehicles().Make(kind->first, config));
+      kinds_.push_back(Vehicles().Make(kind->first, config.kinds, config));
       kind->second = kinds_.back().get();
     }
     of_.push_back(kind->second);

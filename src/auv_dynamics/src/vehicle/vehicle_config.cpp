@@ -33,16 +33,10 @@ using config::Numbers;
 using config::Positive;
 using config::Within;
 
-void Describe(VehicleConfig* c, config::Table* t) {
+namespace {
+
+void DescribeFullyActuated(VehicleConfig* c, config::Table* t) {
   const std::string axes = "surge sway heave roll pitch yaw";
-  t->Section("vehicle");
-  t->Add("model", config::Name(&c->model, Vehicles().Names()), config::kNone, "-",
-         "what moves an AUV: its equations, actuators and action space");
-  t->AddOptional(
-      "models", config::NamesRef{&c->models, Vehicles().Names()}, "[]", kNone, "-",
-      "kinds of a mixed fleet: AUV i is the i-th of them, from the first again when they "
-      "are used up; empty: all are `model`");
-  t->Add("profile", &c->profile, config::kNone, "-", "label of this set of vehicle constants");
   t->Add("mass_kg", &c->mass_kg, config::Positive(1e6), "kg", "mass m");
   t->Add("inertia_kgm2", config::Numbers(&c->inertia_kgm2), config::Positive(1e8), "kg m^2, body",
          "moments of inertia Ix Iy Iz");
@@ -64,6 +58,22 @@ void Describe(VehicleConfig* c, config::Table* t) {
          "C(nu) nu enters with the wrong sign, an error of the release that its traces hold");
   t->Add("restoring", &c->restoring, config::kNone, "-",
          "weight, buoyancy and righting moment act");
+  t->Add("float32_tau", &c->float32_tau, config::kNone, "-",
+         "round the commanded force and torque to float32, as the release does");
+}
+
+}  // namespace
+
+void Describe(VehicleConfig* c, config::Table* t) {
+  const std::string axes = "surge sway heave roll pitch yaw";
+  t->Section("vehicle");
+  t->Add("model", config::Name(&c->model, Vehicles().Names()), config::kNone, "-",
+         "what moves an AUV: its equations, actuators and action space");
+  t->AddOptional(
+      "models", config::NamesRef{&c->models, Vehicles().Names()}, "[]", kNone, "-",
+      "kinds of a mixed fleet: AUV i is the i-th of them, from the first again when they "
+      "are used up; empty: all are `model`");
+  t->Add("profile", &c->profile, config::kNone, "-", "label of this set of vehicle constants");
   t->Add("max_velocity_mps", config::Numbers(&c->max_velocity_mps), config::Positive(100),
          "m/s, body", "largest u v w; scales actions and observations");
   t->Add("max_rate_radps", config::Numbers(&c->max_rate_radps), config::Positive(100),
@@ -72,21 +82,34 @@ void Describe(VehicleConfig* c, config::Table* t) {
          "clip body velocity and rates to these limits after every step");
   t->Add("max_tau", config::Numbers(&c->max_tau), config::Positive(1e6), "N, N m, body",
          "actuator limits, " + axes);
-  t->Add("float32_tau", &c->float32_tau, config::kNone, "-",
-         "round the commanded force and torque to float32, as the release does");
   t->Add("integrator", config::Enum(&c->integrator, {"semi_implicit", "rk4"}), config::kNone, "-",
          "time integration: the release's step, or Runge-Kutta of order 4");
   t->Add("substeps", &c->substeps, config::Within(1, 1000), "-",
          "integrator steps per physics step");
   t->Add("radius_m", &c->radius_m, config::Positive(100), "m", "collision radius of one AUV");
-  Describe(&c->torpedo, t);
-  Describe(&c->kinematic, t);
+  const auto chosen = [c] {
+    return c->models.empty() ? std::vector<std::string>{c->model} : c->models;
+  };
+  const auto describe = [](auto* options, config::Table* table) { Describe(options, table); };
+  const auto of = [&](const char* name) {
+    return config::Owner{"vehicle", {name}, "vehicle.model", chosen};
+  };
+  t->Thing(of("fully_actuated"), "vehicle.fully_actuated", c, DescribeFullyActuated);
+  t->Thing(of("torpedo"), "vehicle.torpedo", &c->torpedo, describe);
+  t->Thing(of("kinematic"), "vehicle.kinematic", &c->kinematic, describe);
+  Vehicles().Describe("vehicle", "vehicle.model", chosen, &c->kinds, t);
+  for (const char* key : {"mass_kg", "inertia_kgm2", "added_mass", "linear_damping",
+                          "quadratic_damping", "r_BG_m", "r_BB_m", "weight_n", "buoyancy_n",
+                          "added_mass_coriolis", "reversed_coriolis", "restoring", "float32_tau"}) {
+    t->Moved(std::string("vehicle.") + key, std::string("vehicle.fully_actuated.") + key);
+  }
 }
 
 std::optional<config::Violation> FindConflict(const VehicleConfig& c) {
   if (!MassMatrixIsPositive(c)) {
-    return config::Violation{{"vehicle.r_BG_m", "vehicle.inertia_kgm2"},
-                             "the mass matrix is not positive definite"};
+    return config::Violation{
+        {"vehicle.fully_actuated.r_BG_m", "vehicle.fully_actuated.inertia_kgm2"},
+        "the mass matrix is not positive definite"};
   }
   return {};
 }

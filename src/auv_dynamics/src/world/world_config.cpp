@@ -61,6 +61,11 @@ void Describe(WorldConfig* c, config::Table* t) {
   Describe(&c->navigation, t);
   Describe(&c->sensing, t);
   Describe(&c->control, t);
+  t->Own("control.autopilot", {"vehicle", Autopilots().Names(), "vehicle.model", [c] {
+                                 return c->vehicle.models.empty()
+                                            ? std::vector<std::string>{c->vehicle.model}
+                                            : c->vehicle.models;
+                               }});
 }
 
 std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunConfig& run) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "auv_dynamics/world/current.hpp"
 #include "physics.hpp"
@@ -132,7 +133,7 @@ TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
     if (motion == "lift") continue;  // of another test
     WorldScenario s = OpenWater(1);
     s.world.target.motion = motion;
-    s.world.target.evasion_range_m = 300.0;
+    if (motion == "evasive") config::Override(&s, {"target.evasive.range_m=300"});
     World world(s);
     world.Reset(0, 9, 0, ResetStage::kMedium);
     const double speed = Norm(Lane(world.target(0).v_WT, 0));

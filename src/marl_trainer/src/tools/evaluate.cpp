@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +15,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
 #include "seed_check.hpp"
-#include "stg_agent/controllers/pursuit.hpp"
+#include "stg_agent/controllers/controller.hpp"
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/env/seed_blocks.hpp"
 #include "stg_env/env/variants.hpp"
@@ -67,6 +68,48 @@ class CsvOutput {
   std::optional<stg::DurableFile> file_;
 };
 
+/// The constants of all controllers as options of the command line: --gain 2 is pursuit:gain=2.
+class Constants {
+ public:
+  explicit Constants(CLI::App* app) {
+    for (const std::string& name : stg::agent::Controllers().Names()) {
+      stg::config::OptionsByName options;
+      stg::config::Table table;
+      stg::agent::Controllers().DescribeOne(name, &options, &table);
+      for (const stg::config::Field& field : table.fields()) {
+        Constant& constant = constants_[field.path];
+        constant.owners.push_back(name);
+        if (constant.owners.size() > 1) continue;
+        const std::string unit = field.unit == "-" ? "" : " [" + field.unit + "]";
+        app->add_option("--" + field.path, constant.value, field.meaning + unit)
+            ->group("Constants of controllers");
+      }
+    }
+  }
+  /// The policy with what was given. Throws UserError for a constant that it does not have.
+  std::string AddTo(const std::string& policy) const {
+    std::string text = policy;
+    const std::string name = policy.substr(0, policy.find(':'));
+    for (const auto& [key, constant] : constants_) {
+      if (constant.value.empty()) continue;
+      const auto& owners = constant.owners;
+      if (std::find(owners.begin(), owners.end(), name) == owners.end()) {
+        throw stg::UserError("--" + key + ": belongs to " + stg::JoinNames(owners) +
+                             "; this evaluation flies '" + policy + "'");
+      }
+      text += (text.find(':') == std::string::npos ? ":" : ",") + key + "=" + constant.value;
+    }
+    return text;
+  }
+
+ private:
+  struct Constant {
+    std::string value;
+    std::vector<std::string> owners;
+  };
+  std::map<std::string, Constant> constants_;
+};
+
 }  // namespace
 
 /// The paper's metrics of one policy or built-in controller: a table, and one
@@ -78,14 +121,15 @@ int main(int argc, char** argv) {
   int record_episodes = 1;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 3000;
-  const stg::agent::PursuitOptions tuned;
   bool privileged = false;
-  app.add_option("--policy", policy, "ONNX file, or encircle, pursuit, pursuit_separated, idle")
+  app.add_option("--policy", policy,
+                 "ONNX file, or one of " + stg::JoinNames(stg::agent::Controllers().Names()) +
+                     ", with constants after a colon: pursuit:gain=2,cap=0.5")
       ->required();
   app.add_option("--scenario", scenario, "name or file")->capture_default_str();
   app.add_option("--condition", condition,
-                 "nominal, fast_target, far_initialization, limited_sensing, "
-                 "degraded_communication, combined_stress")
+                 "a file, or one of " +
+                     stg::JoinNames(stg::config::ConditionNames(stg::config::ScenarioFolder())))
       ->capture_default_str();
   app.add_option(
          "--variant", variant,
@@ -112,10 +156,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--privileged", privileged,
                "a built-in controller reads true states in acoustic mode, too");
-  std::map<std::string, std::string> constants;
-  stg::agent::VisitPursuitOptions(tuned, [&](const char* name, double, const char* text) {
-    app.add_option(std::string("--") + name, constants[name], text);
-  });
+  Constants constants(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -125,12 +166,7 @@ int main(int argc, char** argv) {
     const stg::Scenario given =
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
-    std::string full = policy;
-    for (const auto& [name, value] : constants) {
-      if (value.empty()) continue;
-      full += (full.find(':') == std::string::npos ? ":" : ",") + name + "=" + value;
-    }
-    stg::env::Controller controller = stg::env::MakeController(full, s.model());
+    stg::env::Controller controller = stg::env::MakeController(constants.AddTo(policy), s.model());
     controller.privileged = privileged;
     CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));

@@ -1,9 +1,5 @@
 #include "stg_agent/controllers/controller.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-#include <sstream>
-
 #include "auv_common/error.hpp"
 #include "auv_common/names.hpp"
 
@@ -18,48 +14,15 @@ void Controller::Act(const AgentView& agent, float* action) const {
     action[k] = static_cast<float>(a[k]);
 }
 
-ControllerConstants::ControllerConstants(const std::string& text) : text_(text) {
-  const std::size_t colon = text.find(':');
-  std::istringstream rest(colon == std::string::npos ? "" : text.substr(colon + 1));
-  for (std::string item; std::getline(rest, item, ',');) {
-    const std::size_t equals = item.find('=');
-    items_.push_back({item.substr(0, equals),
-                      equals == std::string::npos ? "" : item.substr(equals + 1), false});
-  }
-}
-
-void ControllerConstants::Read(const std::string& name, double largest, double* value) {
-  known_.push_back(name);
-  for (Item& item : items_) {
-    if (item.name != name) continue;
-    item.read = true;
-    char* end = nullptr;
-    *value = std::strtod(item.value.c_str(), &end);
-    if (item.value.empty() || *end != '\0' || !(*value >= 0.0 && *value <= largest)) {
-      std::ostringstream range;
-      range << "'" << text_ << "': " << name << " must be a number from 0 to " << largest;
-      throw UserError(range.str());
-    }
-  }
-}
-
-void ControllerConstants::RequireAllRead() const {
-  for (const Item& item : items_) {
-    if (item.read) continue;
-    std::string text = "'" + text_ + "': no such constant: " + item.name;
-    const std::string nearest = NearestName(item.name, known_);
-    if (!nearest.empty()) text += "; did you mean " + nearest + "?";
-    throw UserError(text);
-  }
-}
-
 std::shared_ptr<const Controller> MakeController(const std::string& text) {
-  const std::string name = text.substr(0, text.find(':'));
+  const std::size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
   if (!Controllers().Has(name)) return nullptr;
-  ControllerConstants constants(text);
-  std::shared_ptr<const Controller> controller = Controllers().Make(name, constants);
-  constants.RequireAllRead();
-  return controller;
+  config::OptionsByName options;
+  config::Table table;
+  Controllers().DescribeOne(name, &options, &table);
+  if (colon != std::string::npos) config::ApplyPairs(table, text.substr(colon + 1), text);
+  return Controllers().Make(name, options);
 }
 
 void RequirePolicyFileName(const std::string& text) {

@@ -3,6 +3,9 @@
 namespace stg::agent {
 namespace {
 
+using config::kFraction;
+using config::NonNegative;
+
 constexpr double kTwoPi = 2.0 * kPi;
 
 /// Of an angle within +-2 pi: the same in [0, 2 pi).
@@ -38,7 +41,8 @@ T Encircle::Radius(const ControllerInput<T>& in, const T& dz) const {
   if (team > options.ring_team) {
     d *= (in.id / s.target.count) % 2 == 0 ? 1.0 - options.ring : 1.0 + options.ring;
   }
-  return Sqrt(Max(T(d * d) - dz * dz, T(0.25 * d * d)));
+  const double least = options.smallest_circle;
+  return Sqrt(Max(T(d * d) - dz * dz, T(least * least * d * d)));
 }
 
 template <class T>
@@ -58,7 +62,7 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
   const T side = Select(Dot(miss, starboard) > T(0.5), -one, one);
   const Level<T> away = r * (-distance / (range * clearance));
   const T speed = Norm(v);
-  return (starboard * side + away) * (T(1.5) * strength * speed);
+  return (starboard * side + away) * (T(options.dodge) * strength * speed);
 }
 
 template <class T>
@@ -94,12 +98,12 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   // Gaps to those on this circle, and what is due to everybody else.
   const double d = s.task.desired_distance_m;
   const T phase = Atan2(-now.y, -now.x), distance = Norm(now);
-  const auto on_circle = Abs(distance - R) < T(0.5 * d);
+  const auto on_circle = Abs(distance - R) < T(o.on_circle * d);
   T ahead(kTwoPi), behind(kTwoPi);
   Level<T> aside;
   const int team = (s.run.agents + s.target.count - 1) / s.target.count;
   const bool rings = team > o.ring_team;
-  const T reach = rings ? T(o.ring * d) : T(0.6 * d);
+  const T reach = rings ? T(o.ring * d) : T(o.mate_on_circle * d);
   for (int j = 0; j < in.neighbour_count; ++j) {
     const NeighbourSight<T>& n = in.neighbours[j];
     const Circler<T> c = CircleOn(n, p_WT, v_T, R, reach);
@@ -116,7 +120,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
       Clip((ahead - behind) * T(0.5 * o.spread_gain), T(-o.spread_limit), T(o.spread_limit));
 
   // Relative speed: enough on the side that runs back, more on the way to the circle.
-  const T hurry = Clip((rho - R) * T(1.0 / d) - T(0.3), zero, one);
+  const T hurry = Clip((rho - R) * T(1.0 / d) - T(o.hurry_from), zero, one);
   const T on_it = (T(cruise) + Norm(v_T)) * (one + spread);
   T u = on_it + (T(fast) - on_it) * hurry;
   u = Min(u, SpeedAlong(v_T, direction, T(fast), u));
@@ -140,11 +144,47 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
 template Vec3<double> Encircle::Velocity(const ControllerInput<double>& in) const;
 template Vec3<Pack> Encircle::Velocity(const ControllerInput<Pack>& in) const;
 
-std::unique_ptr<Controller> MakeEncircle(ControllerConstants& constants) {
-  EncircleOptions options;
-  VisitEncircleOptions(options, [&](const char* name, double& field, double largest) {
-    constants.Read(name, largest, &field);
-  });
+void Describe(EncircleOptions* o, config::Table* t) {
+  t->Add("cruise", &o->cruise_mps, NonNegative(100), "m/s",
+         "speed over ground on the side of the circle that runs back");
+  t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "speed over ground, at least");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s",
+         "speed over ground on the way to the circle, and at most");
+  t->Add("inward", &o->inward_gain, NonNegative(1e3), "-",
+         "how steeply the way to the circle points at it");
+  t->Add("lead", &o->lead_s, NonNegative(1e3), "s",
+         "the vehicle is taken to be where it will be then");
+  t->Add("spread", &o->spread_gain, NonNegative(1e3), "1/rad",
+         "change of speed off the middle of the gap");
+  t->Add("spread-limit", &o->spread_limit, kFraction, "-", "largest such change");
+  t->Add("clearance", &o->clearance_m, NonNegative(1e4), "m",
+         "others are to be missed by this, in the plane");
+  t->Add("doubt", &o->doubt_mps, NonNegative(100), "m/s",
+         "and by this times the age of what they said");
+  t->Add("mate-clearance", &o->mate_clearance_m, NonNegative(1e4), "m",
+         "the same of others on the own circle");
+  t->Add("horizon", &o->horizon_s, NonNegative(1e4), "s",
+         "closest approaches later than this do not matter");
+  t->Add("layer", &o->layer_m, NonNegative(1e4), "m",
+         "others this much above or below do not matter");
+  t->Add("depth-gain", &o->depth_gain_ps, NonNegative(1e3), "1/s", "climb rate per missing depth");
+  t->Add("climb", &o->climb_mps, NonNegative(100), "m/s", "largest climb rate that is asked for");
+  t->Add("ring", &o->ring, config::Within(0.0, 0.9), "-",
+         "large teams: two circles, this share inside and outside of d*");
+  t->Add("ring-team", &o->ring_team, NonNegative(1e4), "AUVs", "teams larger than this are large");
+  t->Add("smallest-circle", &o->smallest_circle, kFraction, "-",
+         "share of d* that the circle keeps far below or above the target");
+  t->Add("dodge", &o->dodge, NonNegative(100), "-",
+         "speed aside of an AUV in the way, as a share of the own speed");
+  t->Add("on-circle", &o->on_circle, NonNegative(10), "-",
+         "closer to the circle than this share of d*, the AUV is on it");
+  t->Add("mate-on-circle", &o->mate_on_circle, NonNegative(10), "-",
+         "the same of other AUVs, where there is one circle");
+  t->Add("hurry-from", &o->hurry_from, NonNegative(10), "-",
+         "farther outside than this share of d*, the AUV begins to hurry");
+}
+
+std::unique_ptr<Controller> MakeEncircle(const EncircleOptions& options) {
   return std::make_unique<ControllerOf<Encircle>>(Encircle{options});
 }
 

@@ -2,8 +2,6 @@
 
 namespace stg::agent {
 
-std::unique_ptr<Controller> MakeIdle(ControllerConstants&) {
-  return std::make_unique<ControllerOf<Idle>>(Idle());
-}
+std::unique_ptr<Controller> MakeIdle() { return std::make_unique<ControllerOf<Idle>>(Idle()); }
 
 }  // namespace stg::agent

@@ -1,33 +1,35 @@
 #include "stg_agent/controllers/pursuit.hpp"
 
 namespace stg::agent {
-namespace {
 
-std::unique_ptr<Controller> Make(PursuitOptions options, ControllerConstants* constants) {
-  VisitPursuitOptions(options, [&](const char* name, double& field, const char*) {
-    constants->Read(name, &field == &options.cap ? 1.0 : 1e3, &field);
-  });
+using config::kFraction;
+using config::NonNegative;
+
+void Describe(PursuitOptions* o, config::Table* t) {
+  t->Add("gain", &o->gain_per_s, NonNegative(1e3), "1/s", "gain");
+  t->Add("standoff", &o->standoff_m, NonNegative(1e3), "m", "distance to hold");
+  t->Add("cap", &o->cap, kFraction, "-", "speed cap per axis, fraction of the maximum");
+  t->Add("repulsion", &o->repulsion_gain_per_s, NonNegative(1e3), "1/s",
+         "repulsion gain; 0: neighbours are ignored");
+  t->Add("repulsion-range", &o->repulsion_range_m, NonNegative(1e3), "m",
+         "neighbours closer than this repel");
+  t->Add("tangential-range", &o->tangential_range_m, NonNegative(1e3), "m",
+         "closer to the target than this, repulsion only turns aside");
+  t->Add("feedforward", &o->feedforward, NonNegative(1e3), "-",
+         "share of the target's velocity that is added");
+  t->Add("approach-speed", &o->approach_speed_mps, NonNegative(1e3), "m/s",
+         "speed from which the gain falls");
+  t->Add("approach-gain", &o->approach_gain_per_s, NonNegative(1e3), "1/s", "gain from there on");
+  t->Add("wall-margin", &o->wall_margin_m, NonNegative(1e3), "m",
+         "targets are kept this far from the walls");
+}
+
+std::unique_ptr<Controller> MakePursuit(const PursuitOptions& options) {
   return std::make_unique<ControllerOf<Pursuit>>(Pursuit{options});
 }
 
-}  // namespace
-
-PursuitOptions TunedPursuit() { return PursuitOptions(); }
-
-PursuitOptions TunedPursuitSeparated() {
-  PursuitOptions o;
-  o.gain_per_s = 3.0;
-  o.standoff_m = 0.0142;
-  o.repulsion_gain_per_s = 2.0;
-  return o;
-}
-
-std::unique_ptr<Controller> MakePursuit(ControllerConstants& constants) {
-  return Make(TunedPursuit(), &constants);
-}
-
-std::unique_ptr<Controller> MakePursuitSeparated(ControllerConstants& constants) {
-  return Make(TunedPursuitSeparated(), &constants);
+std::unique_ptr<Controller> MakePursuitSeparated(const PursuitSeparatedOptions& options) {
+  return MakePursuit(options);
 }
 
 }  // namespace stg::agent

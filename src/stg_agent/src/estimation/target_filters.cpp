@@ -19,9 +19,10 @@ PacketLayout LayoutOf(const AgentModel& model) {
 
 std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
   const auto filter = TargetFilters().Make(model.track.filter, model, 0);
-  const auto sensor = dynamics::TargetSensors().Make(model.sensing.sensor, model.sensing);
-  if (filter->Takes(sensor->kind(), model.sensing.ambiguous)) return {};
-  return config::Violation{{"track.filter", "sensing.sensor", "sensing.ambiguous"},
+  const auto sensor =
+      dynamics::TargetSensors().Make(model.sensing.sensor, model.sensing.sensors, model.sensing);
+  if (filter->Takes(sensor->kind(), model.sensing.relative().ambiguous)) return {};
+  return config::Violation{{"track.filter", "sensing.sensor"},
                            "this filter has no use for what this sensor measures"};
 }
 

@@ -4,6 +4,30 @@
 
 namespace stg::agent {
 
+namespace {
+
+void DescribeMeasurements(TrackConfig* c, config::Table* t) {
+  t->Add("velocity_std_mps", &c->velocity_std_mps, config::NonNegative(100), "m/s",
+         "standard deviation of each component of the target's velocity; 0: "
+         "target.max_speed_mps over the root of 2");
+  t->Add("velocity_memory_s", &c->velocity_memory_s, config::Positive(1e5), "s",
+         "correlation time of the target's velocity");
+  t->Add("memory_s", &c->memory_s, config::Positive(1e5), "s",
+         "oldest measurement that is still taken");
+  t->Add("share_spacing_s", &c->share_spacing_s, config::NonNegative(1e5), "s",
+         "least time between the two measurements in one packet");
+  t->Add("observers", config::Enum(&c->observers, {"steps", "rates"}), config::kNone, "-",
+         "errors of observers' positions grow by independent steps, or at "
+         "lasting rates while their logs find no bottom");
+  t->Add("shear_std_mps", &c->shear_std_mps, config::NonNegative(10), "m/s",
+         "rates: standard deviation of each component of the current that an AUV does not "
+         "share with the others");
+  t->Add("shear_memory_s", &c->shear_memory_s, config::Positive(1e7), "s",
+         "rates: correlation time of that current");
+}
+
+}  // namespace
+
 void Describe(TrackConfig* c, config::Table* t) {
   t->Section("track");
   t->Add("process_accel_std_mps2", &c->process_accel_std_mps2, config::Positive(100), "m/s^2",
@@ -21,24 +45,15 @@ void Describe(TrackConfig* c, config::Table* t) {
   t->AddOptional(
       "filter", config::Name(&c->filter, TargetFilters().Names()), "kalman", config::kNone, "-",
       "target filter: of positions and shared estimates, or of measurements of any kind");
-  t->AddOptional("velocity_std_mps", &c->velocity_std_mps, "0.0", config::NonNegative(100), "m/s",
-                 "measurements: standard deviation of each component of the target's velocity; 0: "
-                 "target.max_speed_mps over the root of 2");
-  t->AddOptional("velocity_memory_s", &c->velocity_memory_s, "60.0", config::Positive(1e5), "s",
-                 "measurements: correlation time of the target's velocity");
-  t->AddOptional("memory_s", &c->memory_s, "60.0", config::Positive(1e5), "s",
-                 "measurements: oldest measurement that is still taken");
-  t->AddOptional("share_spacing_s", &c->share_spacing_s, "2.0", config::NonNegative(1e5), "s",
-                 "measurements: least time between the two measurements in one packet");
-  t->AddOptional("observers", config::Enum(&c->observers, {"steps", "rates"}), "steps",
-                 config::kNone, "-",
-                 "measurements: errors of observers' positions grow by independent steps, or at "
-                 "lasting rates while their logs find no bottom");
-  t->AddOptional("shear_std_mps", &c->shear_std_mps, "0.1", config::NonNegative(10), "m/s",
-                 "rates: standard deviation of each component of the current that an AUV does not "
-                 "share with the others");
-  t->AddOptional("shear_memory_s", &c->shear_memory_s, "10800.0", config::Positive(1e7), "s",
-                 "rates: correlation time of that current");
+  t->Thing({"target filter",
+            {"measurements"},
+            "track.filter",
+            [c] { return std::vector<std::string>{c->filter}; }},
+           "track.measurements", c, DescribeMeasurements);
+  for (const char* key : {"velocity_std_mps", "velocity_memory_s", "memory_s", "share_spacing_s",
+                          "observers", "shear_std_mps", "shear_memory_s"}) {
+    t->Moved(std::string("track.") + key, std::string("track.measurements.") + key);
+  }
 }
 
 }  // namespace stg::agent

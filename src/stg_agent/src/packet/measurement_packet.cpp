@@ -95,16 +95,20 @@ double MeasurementPacket::Logarithm::Value(std::uint64_t code) const {
 }
 
 MeasurementPacket::MeasurementPacket(const AgentModel& s)
-    : agents_(s.run.agents), targets_(s.target.count), sensing_(s.sensing) {
+    : agents_(s.run.agents),
+      targets_(s.target.count),
+      sensing_(s.sensing),
+      relative_(s.sensing.relative()) {
   const double half = s.workspace.half_extent_m;
   const double current = s.max_current_mps;
   const double speed = Length(s.vehicle.max_velocity_mps) + current;
   const double longest = std::min(s.track.memory_s, 127.0 * s.run.decision_dt_s());
-  const auto sensor = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing);
+  const auto sensor =
+      dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing.sensors, s.sensing);
   const auto navigation = dynamics::NavigationSystems().Make(
-      s.navigation.kind, {s.navigation, s.run.agents, s.run.time.dt_s});
+      s.navigation.kind, s.navigation.kinds, {s.navigation, s.run.agents, s.run.time.dt_s});
   kind_ = sensor->kind();
-  ambiguous_ = s.sensing.ambiguous &&
+  ambiguous_ = relative_.ambiguous &&
                (kind_ == MeasurementKind::kBearing || kind_ == MeasurementKind::kRangeBearing);
   const double degree = kPi / 180.0;
   heading_variance_ = heading_walk_ = 0.0;
@@ -284,10 +288,10 @@ void MeasurementPacket::SetDeviations(const NeighbourState& s, Detection* d) con
   d->p_WO_std_m = s.position_std_m;
   d->heading_std_rad = std::sqrt(heading_variance_ + heading_walk_ * Seconds(d->stamp));
   d->bearing_std_rad = kind_ == MeasurementKind::kBearing || kind_ == MeasurementKind::kRangeBearing
-                           ? sensing_.bearing_std_deg * kPi / 180.0
+                           ? relative_.bearing_std_deg * kPi / 180.0
                            : 0.0;
   d->range_std_m = kind_ == MeasurementKind::kRange || kind_ == MeasurementKind::kRangeBearing
-                       ? sensing_.range_std_m + sensing_.range_std_share * d->range_m
+                       ? relative_.range_std_m + relative_.range_std_share * d->range_m
                        : 0.0;
   d->std_m = kind_ == MeasurementKind::kPosition
                  ? sensing_.noise_std_m

@@ -42,7 +42,7 @@ TEST(Controllers, AreFoundByNameAndNothingElseIs) {
 TEST(Controllers, ANameMayCarryConstants) {
   const AgentModel s;
   const Agent agent = Experienced(s);
-  PursuitOptions options = TunedPursuitSeparated();
+  PursuitSeparatedOptions options;
   options.gain_per_s = 0.25;
   options.feedforward = 1.2;
   const auto named = MakeController("pursuit_separated:gain=0.25,feedforward=1.2");
@@ -63,8 +63,8 @@ TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
                           "pursuit:gain=-1", "pursuit:cap=1.1", "pursuit:speed=1", "idle:gain=1"}) {
     EXPECT_THROW(MakeController(bad), UserError) << bad;
   }
-  EXPECT_EQ(ErrorOf("pursuit:gain=2x"), "'pursuit:gain=2x': gain must be a number from 0 to 1000");
-  EXPECT_EQ(ErrorOf("pursuit:cap=2"), "'pursuit:cap=2': cap must be a number from 0 to 1");
+  EXPECT_EQ(ErrorOf("pursuit:gain=2x"), "'pursuit:gain=2x': gain: expected a number, found '2x'");
+  EXPECT_EQ(ErrorOf("pursuit:cap=2"), "'pursuit:cap=2': cap: 2.0 is out of range [0, 1]");
   EXPECT_EQ(ErrorOf("pursuit:speed=1"), "'pursuit:speed=1': no such constant: speed");
   EXPECT_EQ(ErrorOf("pursuit:gian=2"),
             "'pursuit:gian=2': no such constant: gian; did you mean gain?");

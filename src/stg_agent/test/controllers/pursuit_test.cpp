@@ -20,7 +20,7 @@ std::vector<NeighbourSight<T>> At(const std::vector<Vec3<T>>& offsets) {
 
 TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
   const dynamics::VehicleConfig vehicle;
-  const PursuitOptions o = TunedPursuit();
+  const PursuitOptions o;
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m, 0.0}, V{0.01, 0.0, -0.02}, nullptr, 0, a);
   EXPECT_NEAR(a[0] * vehicle.max_velocity_mps[0], 0.01, 1e-15);
@@ -30,7 +30,7 @@ TEST(Pursuit, HoldsTheStandoffAndMovesWithTheTarget) {
 
 TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
   const dynamics::VehicleConfig vehicle;
-  const PursuitOptions o = TunedPursuit();
+  const PursuitOptions o;
   double a[3];
   PursuitAction<double>(o, vehicle, V{0.03, 0.0, 0.04}, V{}, nullptr, 0, a);
   EXPECT_NEAR(a[0] * 1.5, 4.66 * (0.05 - 0.009) * 0.6, 1e-15);
@@ -42,7 +42,7 @@ TEST(Pursuit, ClosesWithTheGainAndIsCappedPerAxis) {
 
 TEST(Pursuit, NeighboursRepelWithinTheirRangeOnly) {
   const dynamics::VehicleConfig vehicle;
-  PursuitOptions o = TunedPursuitSeparated();
+  PursuitSeparatedOptions o;
   double a[3], b[3];
   const V target{0.5, 0.0, 0.0};
   const auto far = At<double>({{0.0, 0.030001, 0.0}});
@@ -57,7 +57,7 @@ TEST(Pursuit, NeighboursRepelWithinTheirRangeOnly) {
 
 TEST(Pursuit, CloseToTheTargetRepulsionLeavesTheDistanceAlone) {
   const dynamics::VehicleConfig vehicle;
-  const PursuitOptions o = TunedPursuitSeparated();
+  const PursuitSeparatedOptions o;
   const V target{o.standoff_m, 0.0, 0.0};
   const auto neighbours = At<double>({{0.01, 0.01, 0.0}, {-0.005, 0.0, 0.012}});
   double a[3];
@@ -68,7 +68,7 @@ TEST(Pursuit, CloseToTheTargetRepulsionLeavesTheDistanceAlone) {
 }
 
 TEST(Pursuit, ZeroOffsetsAreFiniteAndRepelNothing) {
-  const PursuitOptions o = TunedPursuitSeparated();
+  const PursuitSeparatedOptions o;
   const auto zero = At<double>({{}});
   double a[3];
   PursuitAction<double>(o, dynamics::VehicleConfig(), V{}, V{}, zero.data(), 1, a);
@@ -76,7 +76,7 @@ TEST(Pursuit, ZeroOffsetsAreFiniteAndRepelNothing) {
 }
 
 TEST(Pursuit, PacksAndScalarsAgreeBitForBit) {
-  const PursuitOptions o = TunedPursuitSeparated();
+  const PursuitSeparatedOptions o;
   for (int n = 0; n < 200; ++n) {
     const double t = 0.01 * n;
     const V r{0.1 * std::sin(7 * t), 0.2 * t - 0.1, 0.03}, v{0.01, -t * 0.01, 0.0};
@@ -93,7 +93,7 @@ TEST(Pursuit, PacksAndScalarsAgreeBitForBit) {
 }
 
 TEST(Pursuit, ApproachIsUnhurriedAndTheHoldStaysStiff) {
-  PursuitOptions o = TunedPursuit();
+  PursuitOptions o;
   o.gain_per_s = 3.0;
   o.approach_speed_mps = 0.01;
   o.approach_gain_per_s = 0.5;
@@ -127,7 +127,7 @@ TEST(Pursuit, WithoutAMarginTheWallChangesNothing) {
 }
 
 TEST(Pursuit, FeedforwardScalesTheTargetsVelocityAlone) {
-  PursuitOptions o = TunedPursuit();
+  PursuitOptions o;
   o.feedforward = 1.5;
   const dynamics::VehicleConfig vehicle;
   double a[3];

@@ -49,6 +49,7 @@ Bounded Compare(int observers) {
   prior.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * o.cue_std_m * o.cue_std_m;
   prior(2, 2) = depth * depth / 12.0;  // what the filter knows beforehand: an even spread
   prior(5, 5) = 1e-9;
+  const dynamics::RelativeOptions sensor = s.world.sensing.relative();
   Fleet fleet(s, o);
   Bounded r;
   for (int e = 0; e < kFlights; e += kLanes) {
@@ -62,7 +63,7 @@ Bounded Compare(int observers) {
         const Vec3<double> r_BT =
             Lane(fleet.world().target(0).p_WT, lane) - Lane(fleet.world().vehicle(i).p_WB, lane);
         const double range = Norm(r_BT);
-        const double std_m = s.world.sensing.range_std_m + s.world.sensing.range_std_share * range;
+        const double std_m = sensor.range_std_m + sensor.range_std_share * range;
         Eigen::Matrix<double, 6, 1> h = Eigen::Matrix<double, 6, 1>::Zero();
         h.head<3>() << r_BT.x / range, r_BT.y / range, r_BT.z / range;
         const double found = s.world.sensing.detection_probability;

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "auv_common/config/loader.hpp"
 #include "estimation/fleet.hpp"
 
 namespace stg::agent {
@@ -76,8 +77,8 @@ TEST_P(Sensors, OutliersAndFalseAlarmsAreSetAside) {
   if (std::string(GetParam()) == "position") return;  // has none
   const FleetOptions o = Options(2);
   AgentScenario s = FleetScenario(o);
-  s.world.sensing.outlier_probability = 0.02;
-  s.world.sensing.false_alarm_probability = 0.02;
+  config::Override(&s, {"sensing." + s.world.sensing.sensor + ".outlier_probability=0.02"});
+  config::Override(&s, {"sensing." + s.world.sensing.sensor + ".false_alarm_probability=0.02"});
   const Consistency c = Judge(o, s);
   for (const double nees : c.nees) EXPECT_LT(nees, kUpper) << o.sensor;
 }
@@ -120,7 +121,7 @@ TEST(Consistency, AnAmbiguousBearingIsResolvedByTwo) {
   o.seconds = 150.0;
   o.observers = 3;
   AgentScenario s = FleetScenario(o);
-  s.world.sensing.ambiguous = true;
+  config::Override(&s, {"sensing." + s.world.sensing.sensor + ".ambiguous=true"});
   const Consistency c = Judge(o, s);
   for (const double nees : c.nees) EXPECT_LT(nees, kUpper);
   EXPECT_LT(c.error_m[2], 15.0);

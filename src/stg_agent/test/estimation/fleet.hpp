@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_dynamics/world/world.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 
@@ -49,8 +50,10 @@ inline AgentScenario FleetScenario(const FleetOptions& o) {
   s.world.sea.open = true;
   s.world.target.motion = o.motion;
   s.world.target.max_speed_mps = 0.9;
-  s.world.target.turn_rate_radps = o.turn_rate_radps;
-  s.world.target.turn_period_s = o.turn_period_s;
+  if (o.motion == "coordinated_turn") {
+    config::Override(&s, {"target.coordinated_turn.rate_radps=" + std::to_string(o.turn_rate_radps),
+                          "target.coordinated_turn.period_s=" + std::to_string(o.turn_period_s)});
+  }
   s.world.sensing.sensor = o.sensor;
   s.world.sensing.range_m = 600.0;
   s.world.sensing.noise_std_m = 3.0;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <random>
 
+#include "auv_common/config/loader.hpp"
 #include "estimation/fleet.hpp"
 
 namespace stg::agent {
@@ -241,7 +242,7 @@ TEST(MeasurementFilter, WhatItSharesIsItsNewestAndOneBefore) {
   ASSERT_EQ(state.sightings, 2);
   EXPECT_EQ(state.sighting[0].stamp, 4 * kSecond);
   EXPECT_EQ(state.sighting[0].range_m, 104.0);
-  EXPECT_EQ(state.sighting[1].stamp, 2 * kSecond);  // track.share_spacing_s
+  EXPECT_EQ(state.sighting[1].stamp, 2 * kSecond);  // track.measurements.share_spacing_s
   EXPECT_EQ(state.sighting[1].range_m, 102.0);
   state.generation = 300 * kSecond;
   f->Tell(false, &state);
@@ -254,7 +255,7 @@ TEST(MeasurementFilter, KalmanRefusesWhatItCannotUse) {
   EXPECT_TRUE(FindFilterConflict(s).has_value());
   s.sensing.sensor = "range_bearing";
   EXPECT_FALSE(FindFilterConflict(s).has_value());
-  s.sensing.ambiguous = true;
+  config::Override(&s.sensing, {"sensing.range_bearing.ambiguous=true"});
   EXPECT_TRUE(FindFilterConflict(s).has_value());
 }
 

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/attitude.hpp"
 #include "estimation/fleet.hpp"
@@ -19,9 +20,9 @@ AgentModel Scenario(const std::string& sensor, bool ambiguous = false) {
   FleetOptions o;
   o.sensor = sensor;
   o.observers = 4;
-  AgentModel s = FleetScenario(o).model();
-  s.sensing.ambiguous = ambiguous;
-  return s;
+  AgentScenario s = FleetScenario(o);
+  if (ambiguous) config::Override(&s, {"sensing." + sensor + ".ambiguous=true"});
+  return s.model();
 }
 
 class MeasurementPackets : public ::testing::TestWithParam<std::tuple<const char*, bool>> {

@@ -1,6 +1,17 @@
 #include "terms.hpp"
 
 namespace stg::task {
+
+void Describe(SeabedOptions* o, config::Table* t) {
+  t->Add("margin_m", &o->margin_m, config::Positive(1e4), "m",
+         "altitude above the bottom from which on nothing is subtracted");
+}
+
+void Describe(ObstacleOptions* o, config::Table* t) {
+  t->Add("margin_m", &o->margin_m, config::Positive(1e4), "m",
+         "distance to the nearest obstacle from which on nothing is subtracted");
+}
+
 namespace {
 
 /// Minus the share of a margin that is missing to something to be kept clear of: 0 from the margin
@@ -17,30 +28,39 @@ struct ClearanceTerm {
   }
 };
 
-/// Altitude above the bottom; the margin is that of survey vehicles over rough ground, 10 m.
+/// Altitude above the bottom.
 struct SeabedTerm : TermOf<SeabedTerm> {
+  explicit SeabedTerm(const SeabedOptions& options) : clearance{options.margin_m} {}
+
+  ClearanceTerm clearance;
+
   template <class T>
   T Of(const TermInput<T>& in) const {
-    return ClearanceTerm{10.0}.Of(in, &FieldState<T>::altitude_m);
+    return clearance.Of(in, &FieldState<T>::altitude_m);
   }
 };
 
-/// Distance to the nearest obstacle; the margin is the turning circle of a torpedo, 25 m.
+/// Distance to the nearest obstacle.
 struct ObstacleTerm : TermOf<ObstacleTerm> {
+  explicit ObstacleTerm(const ObstacleOptions& options) : clearance{options.margin_m} {}
+
+  ClearanceTerm clearance;
+
   template <class T>
   T Of(const TermInput<T>& in) const {
-    return ClearanceTerm{25.0}.Of(in, &FieldState<T>::clearance_m);
+    return clearance.Of(in, &FieldState<T>::clearance_m);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<const RewardTerm> MakeSeabedTerm(const JudgeConfig&) {
-  return std::make_unique<SeabedTerm>();
+std::unique_ptr<const RewardTerm> MakeSeabedTerm(const SeabedOptions& options, const JudgeConfig&) {
+  return std::make_unique<SeabedTerm>(options);
 }
 
-std::unique_ptr<const RewardTerm> MakeObstacleTerm(const JudgeConfig&) {
-  return std::make_unique<ObstacleTerm>();
+std::unique_ptr<const RewardTerm> MakeObstacleTerm(const ObstacleOptions& options,
+                                                   const JudgeConfig&) {
+  return std::make_unique<ObstacleTerm>(options);
 }
 
 }  // namespace stg::task

@@ -2,12 +2,21 @@
 #include "terms.hpp"
 
 namespace stg::task {
+
+void Describe(EstimateOptions* o, config::Table* t) {
+  t->Add("good_m", &o->good_m, config::NonNegative(1e5), "m",
+         "an estimate that is off by no more earns all");
+  t->Add("fall_m", &o->fall_m, config::Positive(1e5), "m",
+         "farther off than that by this much it earns nothing");
+}
+
 namespace {
 
-/// What the own estimate of the target is worth: 1 where it is off by 10 m or less, falling to 0 at
-/// 50 m, as UTracking rewards it (arXiv 2505.08222); 0 without an estimate or open water.
+/// What the own estimate of the target is worth: 1 where it is off by `good_m` or less, falling to
+/// 0 within the next `fall_m`; 0 without an estimate or open water.
 struct EstimateTerm : TermOf<EstimateTerm> {
-  explicit EstimateTerm(const dynamics::TargetConfig& targets) : targets_(targets) {}
+  EstimateTerm(const EstimateOptions& options, const dynamics::TargetConfig& targets)
+      : options_(options), targets_(targets) {}
 
   template <class T>
   T Of(const TermInput<T>& in) const {
@@ -15,17 +24,20 @@ struct EstimateTerm : TermOf<EstimateTerm> {
     const FieldState<T>& f = (*in.swarm.field)[static_cast<std::size_t>(in.agent)];
     const auto target = static_cast<std::size_t>(targets_.of(in.agent));
     const T error = Norm(f.p_WT - in.swarm.targets[target].p_WT);
-    return f.known * Clip((T(50.0) - error) * T(1.0 / 40.0), T(0.0), T(1.0));
+    return f.known * Clip((T(options_.good_m + options_.fall_m) - error) * T(1.0 / options_.fall_m),
+                          T(0.0), T(1.0));
   }
 
  private:
+  EstimateOptions options_;
   dynamics::TargetConfig targets_;
 };
 
 }  // namespace
 
-std::unique_ptr<const RewardTerm> MakeEstimateTerm(const JudgeConfig& scenario) {
-  return std::make_unique<EstimateTerm>(scenario.world.target);
+std::unique_ptr<const RewardTerm> MakeEstimateTerm(const EstimateOptions& options,
+                                                   const JudgeConfig& scenario) {
+  return std::make_unique<EstimateTerm>(options, scenario.world.target);
 }
 
 }  // namespace stg::task

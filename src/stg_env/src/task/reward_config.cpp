@@ -44,10 +44,23 @@ void Describe(RewardConfig* c, config::Table* t) {
          "separation penalty: none beyond this distance of two AUVs");
   t->Add("total_limit", &c->total_limit, config::Positive(1e6), "-",
          "an agent's total reward is clipped to +- this value");
-  t->Section("reward.terms");
   for (const std::string& name : RewardTermsByName().Names()) {
-    t->AddOptional(name, &c->terms[name], "0.0", config::NonNegative(1e3), "-",
-                   "weight of the registered term of this name");
+    const std::string section = "reward.terms." + name;
+    t->Moved(section, section + ".weight");
+    t->Section(section);
+    double* weight = &c->terms[name];
+    t->AddOptional("weight", weight, "0.0", config::NonNegative(1e3), "-",
+                   "weight of this registered term; 0: it is not evaluated");
+    RewardTermsByName().DescribeIn(
+        section, name, section + ".weight",
+        [c] {
+          std::vector<std::string> chosen;
+          for (const auto& [term, w] : c->terms) {
+            if (w > 0.0) chosen.push_back(term);
+          }
+          return chosen;
+        },
+        &c->term_options, t);
   }
 }
 

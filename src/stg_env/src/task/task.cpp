@@ -17,7 +17,9 @@ Task<T>::Task(const JudgeConfig& scenario)
   previous_tau_.assign(tracking_.size(), zero);
   previous_action_ = previous_tau_;
   for (const auto& [name, weight] : scenario_.reward.terms) {
-    if (weight != 0.0) extra_.push_back({weight, RewardTermsByName().Make(name, scenario_)});
+    if (weight != 0.0)
+      extra_.push_back(
+          {weight, RewardTermsByName().Make(name, scenario_.reward.term_options, scenario_)});
   }
 }
 

@@ -91,7 +91,7 @@ TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
     EXPECT_EQ(AllocationsAfterWarmUp(
                   Shipped("hard", "nominal",
                           {mode, "agents=20", "target.count=3", "target.motion=evasive",
-                           "reset.min_separation_m=0.03", "sensing.noise_std_m=0.01",
+                           "reset.min_separation_m=0.03", "sensing.position.noise_std_m=0.01",
                            "sensing.detection_probability=0.8", "sensing.dropout_rate_hz=0.1",
                            "disturbance.force_std_n=1.0", "reward.weights.separation=0.1"})),
               0)

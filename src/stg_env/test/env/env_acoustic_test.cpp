@@ -209,14 +209,15 @@ TEST(PhysicalChannel, BringsTheAgentsOfTheFieldTheirNeighboursOverModems) {
 }
 
 TEST(PhysicalChannel, AModemWhoseFrameIsShorterThanAnAgentsPacketIsRefused) {
-  for (const char* key : {"channel.modem.profile=janus", "channel.modem.packet_bytes=31"}) {
+  for (const char* key :
+       {"channel.physical.modem.profile=janus", "channel.physical.modem.packet_bytes=31"}) {
     std::string error;
     try {
       Shipped("physical", "nominal", {key});
     } catch (const UserError& e) {
       error = e.what();
     }
-    EXPECT_NE(error.find("channel.modem.packet_bytes"), std::string::npos) << key << error;
+    EXPECT_NE(error.find("channel.physical.modem.packet_bytes"), std::string::npos) << key << error;
   }
 }
 

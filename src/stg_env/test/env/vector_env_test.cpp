@@ -175,7 +175,7 @@ TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
     for (const char* mode : {"mode=truth", "mode=acoustic"}) {
       const Scenario s =
           Short(Shipped(name, "nominal",
-                        {mode, "sensing.noise_std_m=0.004", "disturbance.force_std_n=1"}),
+                        {mode, "sensing.position.noise_std_m=0.004", "disturbance.force_std_n=1"}),
                 40);
       VectorEnvOptions o;
       o.seed = 70;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "auv_common/config/files.hpp"
+#include "auv_common/config/loader.hpp"
 #include "scenario/scenario_fields.hpp"
 #include "scenario/scenario_input.hpp"
 
@@ -63,7 +64,7 @@ TEST(Scenario, HashAndFileChangeWithEveryKey) {
   Scenario scenario;
   std::set<std::string> hashes{ScenarioHash(scenario)};
   const std::size_t count = ScenarioFields(&scenario).size();
-  std::size_t fixed = 0;
+  std::size_t fixed = 0, unread = 0;
   for (std::size_t i = 0; i < count; ++i) {
     Scenario changed;
     const config::Field field = ScenarioFields(&changed)[i];
@@ -71,9 +72,14 @@ TEST(Scenario, HashAndFileChangeWithEveryKey) {
       ++fixed;
       continue;
     }
+    if (field.Unchosen() != nullptr) {
+      ++unread;
+      EXPECT_EQ(ScenarioHash(changed), ScenarioHash(scenario)) << field.path;
+      continue;
+    }
     EXPECT_TRUE(hashes.insert(ScenarioHash(changed)).second) << field.path;
   }
-  EXPECT_EQ(hashes.size(), count - fixed + 1);
+  EXPECT_EQ(hashes.size(), count - fixed - unread + 1);
   EXPECT_LT(fixed, 4u) << "keys with one value only";
   EXPECT_EQ(ScenarioHash(scenario), ScenarioHash(Scenario{}));
 }
@@ -167,6 +173,13 @@ TEST_F(ScenarioInput, AMovedKeyNamesItsNewPlace) {
       {"reward.desired_distance_m", "task.desired_distance_m"},
       {"reward.lost_distance_m", "task.lost_distance_m"},
       {"observation.link_radius_m", "channel.range_m"},
+      {"channel.loss_probability", "channel.extended.loss_probability"},
+      {"channel.modem.profile", "channel.physical.modem.profile"},
+      {"vehicle.mass_kg", "vehicle.fully_actuated.mass_kg"},
+      {"sensing.range_std_m", "sensing.range.range_std_m"},
+      {"navigation.dvl_noise_mps", "navigation.dead_reckoning.dvl_noise_mps"},
+      {"target.evasion_range_m", "target.evasive.range_m"},
+      {"reward.terms.spread", "reward.terms.spread.weight"},
   };
   for (const auto& [from, to] : moved) {
     const std::string message =
@@ -174,6 +187,45 @@ TEST_F(ScenarioInput, AMovedKeyNamesItsNewPlace) {
     EXPECT_NE(message.find(std::string(from) + ": this key is called " + to), std::string::npos)
         << message;
   }
+}
+
+/// Every key of every thing that a scenario did not choose, of four scenarios with other choices.
+TEST_F(ScenarioInput, AKeyOfAThingThatWasNotChosenIsRefusedWithTheChoice) {
+  for (const char* name : {"medium", "field", "physical", "utracking"}) {
+    const Scenario scenario = LoadNamedScenario(STG_SCENARIO_FOLDER, name);
+    Scenario copy = scenario;
+    int refused = 0;
+    for (const config::Field& field : ScenarioFields(&copy)) {
+      const config::Owner* owner = field.Unchosen();
+      if (owner == nullptr) continue;
+      ++refused;
+      const std::string text = field.path + "=" + config::FormatValue(field.value);
+      const std::string message =
+          ErrorOf([&] { LoadNamedScenario(STG_SCENARIO_FOLDER, name, "nominal", {text}); });
+      EXPECT_EQ(message.rfind("--set '" + field.path, 0), 0u) << message;
+      EXPECT_NE(message.find(field.path + ": belongs to the " + owner->kind), std::string::npos)
+          << message;
+      EXPECT_NE(message.find("; this configuration chose "), std::string::npos) << message;
+    }
+    EXPECT_GT(refused, 40) << name;
+  }
+}
+
+TEST_F(ScenarioInput, KeysOfABaseArePassedOverWhereAnotherThingIsChosenOnTopOfIt) {
+  const std::string base = Write("base.yaml", ToYaml(Scenario{}));  // chooses extended
+  const std::string choice = "base: base.yaml\nchannel:\n  model: range\n";
+  EXPECT_EQ(LoadScenario(Write("other.yaml", choice)).channel.model, "range");
+  // In the file that chooses, in an overlay and in an override they would have no effect.
+  const std::string key = "  extended:\n    loss_probability: 1.0\n";
+  const std::string said =
+      "channel.extended.loss_probability: belongs to the propagation model "
+      "'extended'; this configuration chose 'range' (channel.model)";
+  const std::string same = Write("same.yaml", choice + key);
+  EXPECT_EQ(ErrorOf([&] { LoadScenario(same); }), same + ":5: " + said);
+  const std::string overlay = Write("overlay.yaml", "channel:\n" + key);
+  EXPECT_EQ(ErrorOf([&] { LoadScenario(base, {overlay}, {"channel.model=range"}); }),
+            overlay + ":3: " + said);
+  EXPECT_EQ(LoadScenario(base, {overlay}).channel.loss_probability, 1.0);
 }
 
 }  // namespace

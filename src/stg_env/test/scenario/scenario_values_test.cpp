@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "auv_common/config/loader.hpp"
 #include "scenario/scenario_fields.hpp"
 #include "scenario/scenario_input.hpp"
 
@@ -20,8 +21,10 @@ TEST_F(ScenarioInput, WrongTypesAreRefused) {
   ExpectRefused("agents", "agents: true", "agents", "expected an integer");
   ExpectRefused("seed", "seed: -1", "seed", "out of range");
   ExpectRefused("seed", "seed: 18446744073709551616", "seed", "out of range");
-  ExpectRefused("restoring", "restoring: yes", "vehicle.restoring", "expected true or false");
-  ExpectRefused("restoring", "restoring: 1", "vehicle.restoring", "expected true or false");
+  ExpectRefused("restoring", "restoring: yes", "vehicle.fully_actuated.restoring",
+                "expected true or false");
+  ExpectRefused("restoring", "restoring: 1", "vehicle.fully_actuated.restoring",
+                "expected true or false");
   ExpectRefused("name", "name: [a]", "name", "expected a name");
   ExpectRefused("name", "name: ../etc", "name", "no name");
   ExpectRefused("max_tau", "max_tau: [1, 2, 3]", "vehicle.max_tau",
@@ -49,8 +52,10 @@ TEST_F(ScenarioInput, WrongEnumerationValueListsTheAllowedOnes) {
 
 TEST_F(ScenarioInput, NonFiniteNumbersAreRefused) {
   for (const char* text : {".nan", ".NaN", "nan", ".inf", "-.inf", "inf", "-Infinity", "1e999"}) {
-    ExpectRefused("mass_kg", std::string("mass_kg: ") + text, "vehicle.mass_kg", text);
-    ExpectRefused("r_BG_m", std::string("r_BG_m: [0, 0, ") + text + "]", "vehicle.r_BG_m", text);
+    ExpectRefused("mass_kg", std::string("mass_kg: ") + text, "vehicle.fully_actuated.mass_kg",
+                  text);
+    ExpectRefused("r_BG_m", std::string("r_BG_m: [0, 0, ") + text + "]",
+                  "vehicle.fully_actuated.r_BG_m", text);
     ExpectRefused("band_m", std::string("band_m: [0.01, ") + text + "]", "reward.band_m", text);
   }
 }
@@ -81,6 +86,13 @@ TEST_F(ScenarioInput, EveryNumberIsRefusedOutsideItsRange) {
         continue;
       }
       ++checked;
+      if (field.Unchosen() != nullptr) {
+        Scenario other;
+        const std::string text = field.path + "=" + config::FormatValue(field.value);
+        const std::string message = ErrorOf([&] { config::Override(&other, {text}); });
+        EXPECT_NE(message.find("out of range"), std::string::npos) << message;
+        continue;
+      }
       const std::string file = Write("range.yaml", ToYaml(s));
       const std::string in_file = ErrorOf([&] { LoadScenario(file); });
       EXPECT_EQ(in_file.rfind(file + ":", 0), 0u) << in_file;
@@ -115,7 +127,7 @@ TEST_F(ScenarioInput, KeysThatContradictEachOtherAreRefused) {
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{"time.dt_s=0.10000000004"}, "time.dt_s"},
       {{"target.count=5"}, "target.count"},
-      {{"vehicle.r_BG_m=[0, 0, 5]"}, "vehicle.r_BG_m"},
+      {{"vehicle.fully_actuated.r_BG_m=[0, 0, 5]"}, "vehicle.fully_actuated.r_BG_m"},
       {{"vehicle.radius_m=2"}, "vehicle.radius_m"},
       {{"reset.start_half_extent_m=1.5"}, "reset.start_half_extent_m"},
       {{"reset.curriculum_medium_resets=10"}, "reset.curriculum_medium_resets"},
@@ -124,7 +136,7 @@ TEST_F(ScenarioInput, KeysThatContradictEachOtherAreRefused) {
       {{"target.max_speed_mps=0.01"}, "reset.stages.hard.target_speed_mps"},
       {{"reset.start_half_extent_m=0.3"}, "reset.stages.hard.auv_distance_m"},
       {{"reset.min_separation_m=1"}, "agents"},
-      {{"channel.transmit_period_s=0.05"}, "channel.transmit_period_s"},
+      {{"channel.periodic.transmit_period_s=0.05"}, "channel.periodic.transmit_period_s"},
       {{"observation.quality_medium=0.9"}, "observation.quality_medium"},
       {{"reward.band_m=[0.02, 0.01]"}, "reward.band_m"},
       {{"task.lost_distance_m=0.01"}, "task.lost_distance_m"},

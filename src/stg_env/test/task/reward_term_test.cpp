@@ -51,30 +51,32 @@ std::vector<double> Totals(const Scenario& s) {
 
 TEST(RewardTerms, AWeightOfZeroChangesNoBit) {
   RegisterOnce();
-  EXPECT_EQ(Totals(With({})), Totals(With({"reward.terms.effort=0"})));
+  EXPECT_EQ(Totals(With({})), Totals(With({"reward.terms.effort.weight=0"})));
   EXPECT_EQ(Totals(With({"mode=truth"})),
-            Totals(With({"mode=truth", "reward.terms.test_index=0"})));
+            Totals(With({"mode=truth", "reward.terms.test_index.weight=0"})));
 }
 
 TEST(RewardTerms, AreAddedToEveryAuvsTotalTimesTheirWeight) {
   RegisterOnce();
-  const auto plain = Totals(With({})), more = Totals(With({"reward.terms.test_index=0.125"}));
+  const auto plain = Totals(With({})),
+             more = Totals(With({"reward.terms.test_index.weight=0.125"}));
   for (std::size_t k = 0; k < plain.size(); ++k) {
     EXPECT_NEAR(more[k], plain[k] + 0.125 * static_cast<double>(k % 4), 1e-12);
   }
-  const auto both = Totals(With({"reward.terms.test_index=0.125", "reward.terms.effort=0.5"}));
+  const auto both =
+      Totals(With({"reward.terms.test_index.weight=0.125", "reward.terms.effort.weight=0.5"}));
   EXPECT_NE(both[0], more[0]);
 }
 
 TEST(RewardTerms, TheTotalIsClippedAfterThem) {
   RegisterOnce();
-  for (const double total : Totals(With({"reward.terms.test_index=900"}))) {
+  for (const double total : Totals(With({"reward.terms.test_index.weight=900"}))) {
     EXPECT_LE(total, 2.0);
   }
 }
 
 TEST(RewardTerms, EffortIsTheMeanSquareOfTheForces) {
-  const Scenario s = With({"control.interface=tau6", "reward.terms.effort=1", "agents=1"});
+  const Scenario s = With({"control.interface=tau6", "reward.terms.effort.weight=1", "agents=1"});
   const Scenario without = With({"control.interface=tau6", "agents=1"});
   double total[2];
   for (int k = 0; k < 2; ++k) {
@@ -111,24 +113,25 @@ TEST(RewardTerms, OfTwoNumberTypesGiveTheSame) {
 
 TEST(RewardTerms, AnUnknownNameIsRefusedWithTheKey) {
   try {
-    With({"reward.terms.efort=0.1"});
+    With({"reward.terms.efort.weight=0.1"});
     ADD_FAILURE() << "no UserError";
   } catch (const UserError& e) {
     const std::string message = e.what();
-    EXPECT_NE(message.find("reward.terms.efort: unknown key"), std::string::npos) << message;
+    EXPECT_NE(message.find("reward.terms.efort.weight: unknown key"), std::string::npos) << message;
     EXPECT_NE(message.find("reward.terms.effort"), std::string::npos) << message;
   }
-  EXPECT_THROW(With({"reward.terms.effort=1e9"}), UserError);
+  EXPECT_THROW(With({"reward.terms.effort.weight=1e9"}), UserError);
   Scenario s = With({});
   s.reward.terms["no_such_term"] = 1.0;
   EXPECT_THROW(Task<double> task(s.judge()), UserError);
 }
 
 TEST(RewardTerms, StandInASavedScenarioOnlyWhenTheyCount) {
-  const std::string plain = ToYaml(With({})), with = ToYaml(With({"reward.terms.effort=0.25"}));
+  const std::string plain = ToYaml(With({})),
+                    with = ToYaml(With({"reward.terms.effort.weight=0.25"}));
   EXPECT_EQ(plain.find("terms:"), std::string::npos);
-  EXPECT_NE(with.find("  terms:\n    effort: 0.25\n"), std::string::npos) << with;
-  EXPECT_NE(ScenarioHash(With({})), ScenarioHash(With({"reward.terms.effort=0.25"})));
+  EXPECT_NE(with.find("  terms:\n    effort:\n      weight: 0.25\n"), std::string::npos) << with;
+  EXPECT_NE(ScenarioHash(With({})), ScenarioHash(With({"reward.terms.effort.weight=0.25"})));
 }
 
 }  // namespace

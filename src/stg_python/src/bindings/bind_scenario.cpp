@@ -98,7 +98,9 @@ void BindScenario(py::module_& module) {
           "Raises UserError that names file, line and key.")
       .def_static(
           "from_yaml",
-          [](const std::string& text) { return config::LoadText<Scenario>(text, "text"); },
+          [](const std::string& text) {
+            return config::LoadText<Scenario>(text, "text", config::Unread::kPassOver);
+          },
           py::arg("text"), "The scenario of a whole file given as text, as a node's `/scenario`.")
       .def(
           "to_yaml", [](const Scenario& s) { return ToYaml(s); }, "Every key with its value.")

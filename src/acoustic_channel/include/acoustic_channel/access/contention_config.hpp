@@ -9,6 +9,8 @@ struct ContentionConfig {
   double rest_s = 0.0;     ///< mean of the random rest after a transmission
   double backoff_s = 1.0;  ///< csma: longest first wait where a carrier is heard
 };
+/// The keys of both, and those of csma alone.
 void Describe(ContentionConfig* c, config::Table* t);
+void DescribeBackoff(ContentionConfig* c, config::Table* t);
 
 }  // namespace stg::acoustics

@@ -4,7 +4,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel` that the medium access `periodic` reads.
+/// Keys of `channel.periodic`.
 struct PeriodicConfig {
   double transmit_period_s = 0.5;  ///< every node sends one packet per period, staggered
 };

@@ -4,7 +4,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel` that the model `extended` reads: Eq. 6 and the way of its packets.
+/// Keys of `channel.extended`: Eq. 6 and the way of its packets.
 struct ExtendedConfig {
   double sound_speed_mps = 1500.0;
   double max_range_m = 3.5;        ///< nothing arrives beyond

@@ -49,4 +49,11 @@ std::unique_ptr<PropagationModel> MakeIndependentModel(const ChannelConfig& conf
   return std::make_unique<IndependentModel<Formula>>(Formula(config));
 }
 
+/// For a formula with options of its own.
+template <class Formula, class Options>
+std::unique_ptr<PropagationModel> MakeIndependentModel(const Options& options,
+                                                       const ChannelConfig& config) {
+  return std::make_unique<IndependentModel<Formula>>(Formula(options, config));
+}
+
 }  // namespace stg::acoustics

@@ -13,7 +13,7 @@ enum class QueuePolicy {
   kFifo     ///< up to `queue_length` wait; one more is refused
 };
 
-/// Keys of `channel.modem`. Read by the model `physical`.
+/// Keys of `channel.physical.modem`.
 struct ModemConfig {
   std::string profile = "evologics_s2c";  ///< of ModemProfiles(), for every node
   std::vector<std::string> profiles;      ///< one for each node; empty: all have `profile`

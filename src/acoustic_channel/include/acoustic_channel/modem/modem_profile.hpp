@@ -47,8 +47,8 @@ struct ModemProfile {
   TimeNs turnaround() const;
 };
 
-/// All profiles, by the name that `channel.modem.profile` takes. A program adds its own before it
-/// loads a configuration: ModemProfiles().Add("mine", [] { return ...; }).
+/// All profiles, by the name that `channel.physical.modem.profile` takes. A program adds its own
+/// before it loads a configuration: ModemProfiles().Add("mine", [] { return ...; }).
 using ModemProfileRegistry = Registry<ModemProfile>;
 ModemProfileRegistry& ModemProfiles();
 

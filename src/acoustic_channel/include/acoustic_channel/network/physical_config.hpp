@@ -1,7 +1,5 @@
 #pragma once
 
-#include "acoustic_channel/access/contention_config.hpp"
-#include "acoustic_channel/access/slots_config.hpp"
 #include "acoustic_channel/modem/modem_config.hpp"
 #include "acoustic_channel/propagation/propagation_config.hpp"
 #include "acoustic_channel/water/noise.hpp"
@@ -9,11 +7,9 @@
 
 namespace stg::acoustics {
 
-/// Sections of `channel` that the model `physical` reads. Files need not state them.
+/// Sections of `channel.physical`.
 struct PhysicalConfig {
   ModemConfig modem;
-  SlotsConfig slots;
-  ContentionConfig contention;
   WaterConfig water;
   NoiseConfig noise;
   PropagationConfig propagation;

@@ -10,7 +10,7 @@
 
 namespace stg::acoustics {
 
-/// The water of the sections `channel.water`, `.noise` and `.propagation`.
+/// The water of the sections `channel.physical.water`, `.noise` and `.propagation`.
 class WaterMedium : public Medium {
  public:
   WaterMedium(const PhysicalConfig& config, int nodes, LineOfSight line_of_sight = {});

@@ -4,8 +4,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel.propagation`: how sound gets from one vehicle to another. Read by the model
-/// `physical`.
+/// Keys of `channel.physical.propagation`: how sound gets from one vehicle to another.
 struct PropagationConfig {
   double spreading = 1.5;  ///< k of 10 k lg d, of every path
   int paths = 1;           ///< straight one and images, in order of reflections

@@ -6,7 +6,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel.noise`. Read by the model `physical`.
+/// Keys of `channel.physical.noise`.
 struct NoiseConfig {
   double shipping = 0.5;        ///< activity, 0 to 1
   double wind_mps = 5.0;        ///< at the surface

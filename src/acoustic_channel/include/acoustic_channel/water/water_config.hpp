@@ -7,7 +7,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel.water`: what the water is made of. Read by the model `physical`.
+/// Keys of `channel.physical.water`: what the water is made of.
 struct WaterConfig {
   enum class SoundSpeed { kMackenzie, kProfile };
   enum class Absorption { kThorp, kFrancoisGarrison };

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -93,6 +94,18 @@ struct NameOrFileRef {
 using ValueRef = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef,
                               NumbersRef, Interval*, NamesRef, RowsRef, NameOrFileRef>;
 
+/// The thing, or the few things, that a key belongs to, of those that a configuration chooses
+/// among. A key of a thing that was not chosen has no effect, and is refused.
+struct Owner {
+  std::string kind;                ///< "target motion"
+  std::vector<std::string> names;  ///< "evasive"; of a key that several share, all of them
+  std::string key;                 ///< which chooses: "target.motion"
+  /// What the configuration chooses; reads the struct that the table was made for.
+  std::function<std::vector<std::string>()> chosen;
+
+  bool IsChosen() const;
+};
+
 /// One key of a file and the member of the struct that it fills.
 struct Field {
   std::string path;     ///< dotted, e.g. "time.dt_s"
@@ -102,22 +115,44 @@ struct Field {
   std::string meaning;  ///< one sentence
   /// The value, as text, of a key that a file need not state; saving leaves it out, too.
   std::optional<std::string> fallback = {};
+  std::vector<std::shared_ptr<const Owner>> owners = {};  ///< all of which must be chosen
+  std::function<bool()> also_read = {};                   ///< whatever was chosen
+
+  /// The owner that was not chosen, so that the key has no effect; null: it has its effect.
+  const Owner* Unchosen() const;
 };
 
 /// All keys of a configuration in file order; keys of one section are adjacent. The references
 /// are valid as long as the described struct stays where it is.
 class Table {
  public:
-  /// Keys added from here on lie in this section; "" is the top level.
-  void Section(const std::string& path) { prefix_ = path.empty() ? "" : path + "."; }
+  /// Keys added from here on lie in this section; "" is the top level. While a thing is described,
+  /// the path counts from the thing's own section.
+  void Section(const std::string& path) { prefix_ = path.empty() ? root_ : root_ + path + "."; }
   void Add(const std::string& key, ValueRef value, Limits limits, std::string unit,
            std::string meaning);
   /// A key that a file need not state: of things that are registered, for which the files of others
   /// shall not change. The member must have the value `fallback` by default.
   void AddOptional(const std::string& key, ValueRef value, const std::string& fallback,
                    Limits limits, std::string unit, std::string meaning);
-  /// A key that files of earlier versions may have, and the one that replaces it: the refusal
-  /// names it.
+  /// Keys of a thing, in a section of their own, which a file need not state.
+  /// @param now, defaults describe the options that the keys fill, and default ones
+  void Thing(Owner owner, const std::string& section, const std::function<void(Table*)>& now,
+             const std::function<void(Table*)>& defaults);
+  /// The same of options that are members of a struct. @param describe (T*, Table*) adds them
+  template <class T, class F>
+  void Thing(Owner owner, const std::string& section, T* options, F describe) {
+    T defaults;
+    Thing(
+        std::move(owner), section, [&](Table* t) { describe(options, t); },
+        [&](Table* t) { describe(&defaults, t); });
+  }
+  /// Says that all keys of a section, at every depth, belong to this owner as well.
+  void Own(const std::string& section, const Owner& owner);
+  /// A key of a thing that is read where this holds, too, whatever was chosen.
+  void AlsoReadIf(const std::string& path, std::function<bool()> holds);
+  /// A key or a section that files of earlier versions may have, and the one that replaces it: the
+  /// refusal names it.
   void Moved(const std::string& from, const std::string& to) { moved_.emplace_back(from, to); }
 
   const std::vector<Field>& fields() const { return fields_; }
@@ -128,7 +163,7 @@ class Table {
   const std::vector<std::pair<std::string, std::string>>& moved() const { return moved_; }
 
  private:
-  std::string prefix_;
+  std::string root_, prefix_;
   std::vector<Field> fields_;
   std::unordered_map<std::string, std::size_t> index_;  ///< of a path's field
   std::set<std::string> sections_;

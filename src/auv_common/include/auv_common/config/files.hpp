@@ -17,6 +17,9 @@ Source NamedSource(const std::string& folder, const std::string& scenario,
                    const std::string& condition = "nominal",
                    const std::vector<std::string>& overrides = {});
 
+/// Names of the conditions of all scenarios of a folder.
+std::vector<std::string> ConditionNames(const std::string& folder);
+
 /// The folder with the shipped scenarios: $STG_SCENARIOS if set, else the
 /// stg_bringup package found on ROS_PACKAGE_PATH or beside the source tree.
 std::string ScenarioFolder();

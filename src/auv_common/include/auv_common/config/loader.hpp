@@ -43,6 +43,12 @@ class Loader {
   /// Keys of a map that lies at `prefix` ("" or with a point at its end) in `file`; those it leaves
   /// out keep their values. For files of other programs that hold a described section.
   void ApplyPart(const YamlTree& map, const std::string& prefix, const std::string& file);
+  /// "key.path=value".
+  void ApplyOverride(const std::string& text);
+  /// Call after all that was applied. Throws UserError for a key of a thing that was not chosen:
+  /// one that stands in the file that chose another, or in one on top of it, an overlay or an
+  /// override. What a base states for a thing of its own choice is passed over.
+  void RefuseUnread() const;
   /// Throws the violation with the origin of each of its keys.
   [[noreturn]] void Refuse(const Violation& violation) const;
 
@@ -50,20 +56,28 @@ class Loader {
   using Keys = std::set<std::string>;
   void ApplyFile(const std::string& path);
   void ApplyOverlay(const std::string& path);
-  void ApplyOverride(const std::string& text);
   void ApplyBase(const std::string& path, const YamlTree::Entry& entry);
   void ApplyMap(const YamlTree& map, const std::string& prefix, const std::string& file,
                 Keys* given);
   void Set(const Field& field, const YamlTree& value, const std::string& where);
   void RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const;
   bool Foreign(const std::string& path) const;
+  std::optional<std::string> NewName(const std::string& path) const;
   std::string Nearest(const std::string& path) const;
   std::string Unknown(const std::string& path) const;
-  std::string Origin(const std::string& key) const;
+  std::string WhereOf(const std::string& key) const;
 
   const Table& table_;
   const Scope scope_;
-  std::map<std::string, std::string> origin_;  ///< key to "file:line: "
+  /// Where a value comes from.
+  struct Origin {
+    std::string where;  ///< "file:line: "
+    /// Of the files from the last base to the one that was named; overlays and overrides, which are
+    /// asked for together, share the last one.
+    int layer = 0;
+  };
+  std::map<std::string, Origin> origin_;
+  int layer_ = 0;
   std::map<std::string, int> section_lines_;
   std::vector<std::string> open_;  ///< files whose bases are being loaded
 };
@@ -80,20 +94,37 @@ Config Load(const Source& source, Scope scope = Scope::kWhole) {
   Describe(&config, &table);
   Loader loader(table, scope);
   loader.Apply(source);
+  loader.RefuseUnread();
   if (const auto violation = FindConflict(config)) loader.Refuse(*violation);
   return config;
 }
 
-/// The same from the text of a whole file.
+/// What happens to keys of things that were not chosen.
+enum class Unread { kRefuse, kPassOver };
+
+/// The same from the text of a whole file. ResolvedText merges what bases state for things of their
+/// own choice, so that its text needs kPassOver.
 template <class Config>
-Config LoadText(const std::string& text, const std::string& origin) {
+Config LoadText(const std::string& text, const std::string& origin,
+                Unread unread = Unread::kRefuse) {
   Config config;
   Table table;
   Describe(&config, &table);
   Loader loader(table, Scope::kWhole);
   loader.ApplyText(text, origin);
+  if (unread == Unread::kRefuse) loader.RefuseUnread();
   if (const auto violation = FindConflict(config)) loader.Refuse(*violation);
   return config;
+}
+
+/// Sets keys of a struct, "key.path=value" each. Throws UserError as Load does.
+template <class Config>
+void Override(Config* config, const std::vector<std::string>& overrides) {
+  Table table;
+  Describe(config, &table);
+  Loader loader(table, Scope::kWhole);
+  for (const std::string& text : overrides) loader.ApplyOverride(text);
+  loader.RefuseUnread();
 }
 
 /// First violation of a range or of a rule between keys, else nothing.
@@ -114,8 +145,8 @@ void ValidateOrThrow(const Config& config, const std::string& what = "scenario")
   if (const auto violation = FindViolation(config)) ThrowViolation(what, *violation);
 }
 
-/// Every key with its value, but optional ones at their fallback; loading the result gives the same
-/// struct.
+/// Every key that is read with its value, but optional ones at their fallback that belong to no
+/// thing; loading the result gives the same struct, but for what is not read.
 std::string ToYaml(const Table& table);
 template <class Config>
 std::string ToYaml(const Config& config) {

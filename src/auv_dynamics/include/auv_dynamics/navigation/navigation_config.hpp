@@ -2,14 +2,16 @@
 
 #include <string>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::dynamics {
 
 /// What the vehicles know of their own motion. Deviations are those that each episode, or each
 /// ping, draws from; docs/navigation.md says where the numbers come from.
 struct NavigationConfig {
-  std::string kind = "perfect";   ///< name in the registry of navigation systems
+  std::string kind = "perfect";      ///< name in the registry of navigation systems
+  config::OptionsByName kinds = {};  ///< options of systems that are registered
+  // Of dead_reckoning.
   double period_s = 1.0;          ///< between two pings of the Doppler log
   double dvl_scale_std = 0.002;   ///< scale error of the Doppler log
   double dvl_noise_mps = 0.01;    ///< noise of each horizontal component of a ping

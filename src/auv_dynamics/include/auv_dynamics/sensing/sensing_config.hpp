@@ -3,29 +3,38 @@
 #include <optional>
 #include <string>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::dynamics {
+
+/// Options of the sensors `range`, `bearing` and `range_bearing`; docs/sensors.md says where the
+/// numbers come from.
+struct RelativeOptions {
+  bool has_range = true, has_bearing = true;  ///< which keys there are
+  double range_std_m = 1.0;                   ///< a of the deviation a + b r of a range
+  double range_std_share = 0.01;              ///< b of it
+  double bearing_std_deg = 2.0;               ///< of azimuth and elevation
+  double probability_at_range = 1.0;          ///< share of detection_probability left at range_m
+  double outlier_probability = 0.0;           ///< that a detection is drawn from anywhere
+  double false_alarm_probability = 0.0;       ///< that a look without a detection tells of one
+  double field_of_view_deg = 360.0;           ///< full angle around the bow
+  bool ambiguous = false;                     ///< a bearing cannot tell port from starboard
+};
+void Describe(RelativeOptions* o, config::Table* t);
 
 /// The agents' own target sensor.
 struct SensingConfig {
   std::string sensor = "position";  ///< name in the registry of target sensors
   double range_m = 0.45;            ///< R_s: detection range and confidence scale (Eq. 13)
-  double noise_std_m = 0.0;         ///< per component
+  double noise_std_m = 0.0;         ///< position: per component
   double detection_probability = 1.0;
-  double dropout_rate_hz = 0.0;     ///< rate at which the sensor goes blind
-  double dropout_duration_s = 1.0;  ///< mean duration of a blind spell
-  double cue_std_m = 0.05;          ///< uncertainty of the initial datum, per component
-  double period_s = 0.0;            ///< between two looks; 0: every decision
-  // Of range and bearing; docs/sensors.md says where the numbers come from.
-  double range_std_m = 1.0;              ///< a of the deviation a + b r of a range
-  double range_std_share = 0.01;         ///< b of it
-  double bearing_std_deg = 2.0;          ///< of azimuth and elevation
-  double probability_at_range = 1.0;     ///< share of detection_probability left at range_m
-  double outlier_probability = 0.0;      ///< that a detection is drawn from anywhere
-  double false_alarm_probability = 0.0;  ///< that a look without a detection tells of one
-  double field_of_view_deg = 360.0;      ///< full angle around the bow
-  bool ambiguous = false;                ///< a bearing cannot tell port from starboard
+  double dropout_rate_hz = 0.0;        ///< rate at which the sensor goes blind
+  double dropout_duration_s = 1.0;     ///< mean duration of a blind spell
+  double cue_std_m = 0.05;             ///< uncertainty of the initial datum, per component
+  double period_s = 0.0;               ///< between two looks; 0: every decision
+  config::OptionsByName sensors = {};  ///< options of each, but of position
+
+  RelativeOptions relative() const { return sensors.Get<RelativeOptions>(sensor); }
 };
 
 /// Keys, units and ranges of the section.

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::dynamics {
 
@@ -12,10 +12,7 @@ struct TargetConfig {
   std::string motion = "constant_velocity";  ///< name in the registry of target motions
   double max_speed_mps = 0.05;
   double max_turn_rate_radps = 0.5;
-  double turn_rate_radps = 0.1;     ///< coordinated_turn: mean magnitude
-  double turn_period_s = 10.0;      ///< coordinated_turn: time between new turn rates
-  double waypoint_radius_m = 0.05;  ///< random_waypoint: arrival radius
-  double evasion_range_m = 0.10;    ///< evasive: flees AUVs closer than this
+  config::OptionsByName motions = {};  ///< options of each
 
   /// Target that an AUV is tasked with: its index modulo the number of targets.
   int of(int agent) const { return agent % count; }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 #include "auv_dynamics/vehicle/kinematic_config.hpp"
 #include "auv_dynamics/vehicle/torpedo_config.hpp"
 
@@ -42,10 +42,11 @@ struct VehicleConfig {
   std::array<double, 6> max_tau{35.0, 20.0, 20.0, 8.0, 10.0, 10.0};
   bool float32_tau = false;  ///< round force and torque to float32 (release)
   Integrator integrator = Integrator::kRk4;
-  int substeps = 1;           ///< integrator steps per physics step
-  double radius_m = 0.011;    ///< collision radius
-  TorpedoConfig torpedo;      ///< read by that model alone
-  KinematicConfig kinematic;  ///< read by that model alone
+  int substeps = 1;                  ///< integrator steps per physics step
+  double radius_m = 0.011;           ///< collision radius
+  TorpedoConfig torpedo;             ///< read by that model alone
+  KinematicConfig kinematic;         ///< read by that model alone
+  config::OptionsByName kinds = {};  ///< options of models that are registered
 
   /// Name of what AUV i is.
   const std::string& model_of(int i) const {

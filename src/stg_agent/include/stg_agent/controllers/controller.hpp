@@ -74,30 +74,9 @@ inline void AskForVelocity(const ControllerInput<T>& input, const T* velocity, T
       action);
 }
 
-/// What follows a controller's name, as in "pursuit:gain=2,cap=0.5".
-class ControllerConstants {
- public:
-  /// @param text name and constants; messages quote it
-  explicit ControllerConstants(const std::string& text);
-
-  /// Replaces the value by the given one, if there is one. Throws UserError unless it is a number
-  /// from 0 to `largest`.
-  void Read(const std::string& name, double largest, double* value);
-  /// Throws UserError when a constant was given that nobody read.
-  void RequireAllRead() const;
-
- private:
-  struct Item {
-    std::string name, value;
-    bool read = false;
-  };
-  std::string text_;
-  std::vector<Item> items_;
-  std::vector<std::string> known_;  ///< constants that the controller asked for
-};
-
-/// All controllers by name; a program may add its own at its start.
-using ControllerRegistry = Registry<Controller, ControllerConstants&>;
+/// All controllers by name; a program may add its own at its start. A controller's options are its
+/// constants, which follow its name: "pursuit:gain=2,cap=0.5".
+using ControllerRegistry = Registry<Controller>;
 ControllerRegistry& Controllers();
 /// The name of the one that flies where neither policy nor controller is named.
 std::string DefaultController();

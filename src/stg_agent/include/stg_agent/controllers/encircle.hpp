@@ -28,28 +28,14 @@ struct EncircleOptions {
   double climb_mps = 0.25;         ///< largest climb rate that is asked for
   double ring = 0.2;               ///< two circles, this share inside and outside of d*
   double ring_team = 10.0;         ///< of teams larger than this
+  double smallest_circle = 0.5;    ///< share of d* that the circle keeps below or above the target
+  double dodge = 1.5;              ///< speed aside of an AUV in the way, as a share of the own
+  double on_circle = 0.5;          ///< closer to the circle than this share of d*: it is on it
+  double mate_on_circle = 0.6;     ///< the same of others, where there is one circle
+  double hurry_from = 0.3;         ///< farther outside than this share of d* it begins to hurry
 };
 
-/// Calls visit(name, field, largest) for every constant that a user may set.
-template <class Visitor>
-void VisitEncircleOptions(EncircleOptions& o, Visitor&& visit) {
-  visit("cruise", o.cruise_mps, 100.0);
-  visit("slow", o.slow_mps, 100.0);
-  visit("fast", o.fast_mps, 100.0);
-  visit("inward", o.inward_gain, 1e3);
-  visit("lead", o.lead_s, 1e3);
-  visit("spread", o.spread_gain, 1e3);
-  visit("spread-limit", o.spread_limit, 1.0);
-  visit("clearance", o.clearance_m, 1e4);
-  visit("doubt", o.doubt_mps, 100.0);
-  visit("mate-clearance", o.mate_clearance_m, 1e4);
-  visit("horizon", o.horizon_s, 1e4);
-  visit("layer", o.layer_m, 1e4);
-  visit("depth-gain", o.depth_gain_ps, 1e3);
-  visit("climb", o.climb_mps, 100.0);
-  visit("ring", o.ring, 0.9);
-  visit("ring-team", o.ring_team, 1e4);
-}
+void Describe(EncircleOptions* o, config::Table* t);
 
 /// A vector in the plane.
 template <class T>
@@ -157,6 +143,6 @@ struct Encircle {
                 const T& matters) const;
 };
 
-std::unique_ptr<Controller> MakeEncircle(ControllerConstants& constants);
+std::unique_ptr<Controller> MakeEncircle(const EncircleOptions& options);
 
 }  // namespace stg::agent

@@ -14,6 +14,6 @@ struct Idle {
   }
 };
 
-std::unique_ptr<Controller> MakeIdle(ControllerConstants& constants);
+std::unique_ptr<Controller> MakeIdle();
 
 }  // namespace stg::agent

@@ -9,7 +9,7 @@
 /// Controllers that fly at the target: `pursuit`, and `pursuit_separated`, whose AUVs keep apart.
 namespace stg::agent {
 
-/// Constants of the pursuit law; the defaults are those of `pursuit`.
+/// Constants of the pursuit law; the defaults are the tuned ones of `pursuit`.
 struct PursuitOptions {
   double gain_per_s = 4.66;
   double standoff_m = 0.009;
@@ -29,24 +29,16 @@ struct PursuitOptions {
   double wall_margin_m = 0.0;
 };
 
-/// Calls visit(name, field, description) for every constant that a user may set; one list for
-/// command lines and for names such as "pursuit:gain=2". Values are from 0 to 1000, the cap to 1.
-template <class Options, class Visitor>
-void VisitPursuitOptions(Options& o, Visitor&& visit) {
-  visit("gain", o.gain_per_s, "pursuit: gain [1/s]");
-  visit("standoff", o.standoff_m, "pursuit: distance to hold [m]");
-  visit("cap", o.cap, "pursuit: speed cap per axis, fraction of the maximum");
-  visit("repulsion", o.repulsion_gain_per_s, "pursuit_separated: repulsion gain [1/s]");
-  visit("repulsion-range", o.repulsion_range_m, "pursuit_separated: range [m]");
-  visit("feedforward", o.feedforward, "pursuit: share of the target's velocity that is added");
-  visit("approach-speed", o.approach_speed_mps, "pursuit: speed from which the gain falls [m/s]");
-  visit("approach-gain", o.approach_gain_per_s, "pursuit: gain from there on [1/s]");
-  visit("wall-margin", o.wall_margin_m, "pursuit: targets are kept this far from the walls [m]");
-}
+void Describe(PursuitOptions* o, config::Table* t);
 
-/// The tuned constants of `pursuit` and of `pursuit_separated`.
-PursuitOptions TunedPursuit();
-PursuitOptions TunedPursuitSeparated();
+/// The same, tuned for AUVs that keep apart.
+struct PursuitSeparatedOptions : PursuitOptions {
+  PursuitSeparatedOptions() {
+    gain_per_s = 3.0;
+    standoff_m = 0.0142;
+    repulsion_gain_per_s = 2.0;
+  }
+};
 
 /// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than
 /// the repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
@@ -125,7 +117,7 @@ struct Pursuit {
   }
 };
 
-std::unique_ptr<Controller> MakePursuit(ControllerConstants& constants);
-std::unique_ptr<Controller> MakePursuitSeparated(ControllerConstants& constants);
+std::unique_ptr<Controller> MakePursuit(const PursuitOptions& options);
+std::unique_ptr<Controller> MakePursuitSeparated(const PursuitSeparatedOptions& options);
 
 }  // namespace stg::agent

@@ -62,6 +62,7 @@ class MeasurementPacket {
   dynamics::MeasurementKind kind_;
   bool ambiguous_;
   dynamics::SensingConfig sensing_;
+  dynamics::RelativeOptions relative_;
   double heading_variance_, heading_walk_;  // [rad^2], [rad^2/s]
   TimeNs age_step_;
   Quantiser position_, velocity_, unit_, offset_, rise_, range_, azimuth_, elevation_;

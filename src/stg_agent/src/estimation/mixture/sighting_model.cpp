@@ -25,8 +25,9 @@ constexpr double kLeastFalseShare = 1e-3;
 
 SightingModel::SightingModel(const AgentModel& s) {
   const auto navigation = dynamics::NavigationSystems().Make(
-      s.navigation.kind, {s.navigation, s.run.agents, s.run.time.dt_s});
-  const auto sensor = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing);
+      s.navigation.kind, s.navigation.kinds, {s.navigation, s.run.agents, s.run.time.dt_s});
+  const auto sensor =
+      dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing.sensors, s.sensing);
   if (!navigation->perfect()) {
     layout_.heading = sensor->kind() != MeasurementKind::kRange;
     layout_.rates = s.track.observers == ObserverErrors::kRates;
@@ -52,8 +53,9 @@ SightingModel::SightingModel(const AgentModel& s) {
   depth_mean_ = 0.5 * (low + high);
   depth_variance_ = std::max((high - low) * (high - low) / 12.0, floor_std_m_ * floor_std_m_);
   range_m_ = s.sensing.range_m;
-  false_share_ = std::max(kLeastFalseShare, 1.0 - (1.0 - s.sensing.outlier_probability) *
-                                                      (1.0 - s.sensing.false_alarm_probability));
+  const dynamics::RelativeOptions relative = s.sensing.relative();
+  false_share_ = std::max(kLeastFalseShare, 1.0 - (1.0 - relative.outlier_probability) *
+                                                      (1.0 - relative.false_alarm_probability));
 }
 
 void SightingModel::Predict(double t, GaussianMixture* mixture) const {

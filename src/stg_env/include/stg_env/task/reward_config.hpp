@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::task {
 
@@ -28,6 +28,7 @@ struct RewardConfig {
   double separation_distance_m = 0.024;  ///< separation reward: 0 beyond, -1 at contact centres
   /// Weights of registered terms by name (reward_term.hpp); one of weight 0 is not evaluated.
   std::map<std::string, double> terms;
+  config::OptionsByName term_options = {};
   double total_limit = 2.0;
 };
 

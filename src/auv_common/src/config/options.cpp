@@ -1,0 +1,33 @@
+#include "auv_common/config/options.hpp"
+
+#include <sstream>
+
+#include "auv_common/config/value.hpp"
+#include "auv_common/config/yaml_tree.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
+
+namespace stg::config {
+
+void ApplyPairs(const Table& table, const std::string& pairs, const std::string& whole) {
+  std::istringstream items(pairs);
+  for (std::string item; std::getline(items, item, ',');) {
+    const std::size_t equals = item.find('=');
+    const std::string key = item.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
+    const std::string where = "'" + whole + "': ";
+    const Field* field = table.Find(key);
+    if (field == nullptr) {
+      std::vector<std::string> keys;
+      for (const Field& known : table.fields()) keys.push_back(known.path);
+      const std::string nearest = NearestName(key, keys);
+      throw UserError(where + "no such constant: " + key +
+                      (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    }
+    if (const auto message = ParseValue(*field, ParseYaml(value, where + key, false))) {
+      throw UserError(where + key + ": " + *message);
+    }
+  }
+}
+
+}  // namespace stg::config
