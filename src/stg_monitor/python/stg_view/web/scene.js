@@ -17,6 +17,14 @@
     return DEPTHS[k].map((c, a) => c + (x - k) * (DEPTHS[k + 1][a] - c));
   };
 
+  /** Whether the processor draws: smooth edges would then cost half of the frames. */
+  function drawnBySoftware() {
+    const gl = document.createElement("canvas").getContext("webgl");
+    const info = gl && gl.getExtension("WEBGL_debug_renderer_info");
+    const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+    return /swiftshader|llvmpipe|software/i.test(name);
+  }
+
   function line(points, colour, opacity = 1, dashed = 0) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * points), 3));
@@ -55,7 +63,8 @@
     constructor(app, canvas) {
       this.app = app;
       this.canvas = canvas;
-      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+      this.soft = drawnBySoftware();
+      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.soft });
       this.scene = new THREE.Scene();
       this.camera = new THREE.PerspectiveCamera(42, 1, 0.01, 1e5);
       this.camera.up.set(0, 0, 1);
@@ -226,7 +235,7 @@
       if (box.width === this.width && box.height === this.height) return;
       this.width = box.width;
       this.height = box.height;
-      this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+      this.renderer.setPixelRatio(this.soft ? 1 : Math.min(window.devicePixelRatio || 1, 2));
       this.renderer.setSize(Math.max(1, box.width), Math.max(1, box.height), false);
       this.camera.aspect = box.width / Math.max(1, box.height);
       this.camera.updateProjectionMatrix();
