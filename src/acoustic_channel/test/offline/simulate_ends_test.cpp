@@ -30,7 +30,7 @@ class SimulateEnds : public Simulate {
   static std::string Network(double duration_s, const std::string& flow) {
     return "duration_s: " + std::to_string(duration_s) +
            "\nseed: 1\nchannel:\n  model: physical\n  access: aloha\n"
-           "  modem: {profile: evologics_s2c}\n" +
+           "  physical:\n    modem: {profile: evologics_s2c}\n" +
            kSteadyWater + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n  - " +
            flow + "\n";
   }

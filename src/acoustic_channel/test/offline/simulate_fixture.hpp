@@ -117,9 +117,9 @@ inline std::string Ring(int senders, double radius_m) {
   return text;
 }
 
-/// Water in which nothing fades and sound takes 1500 m/s.
+/// In `channel.physical`: water in which nothing fades and sound takes 1500 m/s.
 inline const char* kSteadyWater =
-    "  water: {sound_speed: profile}\n"
-    "  propagation: {shadowing_db: 0.0, rician_k: 1.0e+9}\n";
+    "    water: {sound_speed: profile}\n"
+    "    propagation: {shadowing_db: 0.0, rician_k: 1.0e+9}\n";
 
 }  // namespace stg::acoustics

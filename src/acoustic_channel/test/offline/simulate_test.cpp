@@ -9,7 +9,7 @@ namespace {
 std::string Head(const std::string& more = "", double duration_s = 20.0) {
   return "duration_s: " + std::to_string(duration_s) +
          "\nseed: 1\nchannel:\n  model: physical\n  access: aloha\n"
-         "  modem: {profile: evologics_s2c}\n" +
+         "  physical:\n    modem: {profile: evologics_s2c}\n" +
          kSteadyWater + more;
 }
 
@@ -83,9 +83,14 @@ TEST_F(Simulate, EveryPacketAndReceiverIsAccountedFor) {
   text += "  - {source: 2, destination: 5, kind: poisson, rate_hz: 0.2, bytes: 32}\n";
   for (const char* model : {"physical", "range", "extended"}) {
     std::string of_model = text;
-    of_model.replace(of_model.find("model: physical"), 15,
-                     std::string("model: ") + model + "\n  range_m: 900.0\n  max_range_m: 900.0\n" +
-                         "  loss_distance_m: 800.0\n  transmit_period_s: 0.5");
+    if (std::string(model) != "physical") {
+      const std::size_t from = of_model.find("  physical:"), to = of_model.find("nodes:");
+      of_model.replace(from, to - from,
+                       std::string(model) == "range"
+                           ? "  range_m: 900.0\n"
+                           : "  extended: {max_range_m: 900.0, loss_distance_m: 800.0}\n");
+      of_model.replace(of_model.find("model: physical"), 15, std::string("model: ") + model);
+    }
     const Result r = Run(of_model);
     ASSERT_EQ(r.code, 0) << r.err;
     std::size_t dropped = 0, delivered = 0;

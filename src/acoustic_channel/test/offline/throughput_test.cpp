@@ -24,8 +24,8 @@ std::string Sources(int senders, int bytes, const std::string& kind) {
 std::string Head(double duration_s, const std::string& access, const std::string& modem,
                  const std::string& slots = "") {
   return "duration_s: " + std::to_string(duration_s) + "\nseed: 5\nstep_s: 10.0\nchannel:\n" +
-         "  model: physical\n  access: " + access + "\n  modem: " + modem + "\n" + slots +
-         kSteadyWater;
+         "  model: physical\n  access: " + access + "\n" + slots +
+         "  physical:\n    modem: " + modem + "\n" + kSteadyWater;
 }
 
 class Throughput : public Simulate {
@@ -113,8 +113,8 @@ TEST_F(Throughput, DeliveryOverDistanceIsTheMeanOverTheFading) {
   const std::vector<double> distances = {500.0, 1000.0, 1500.0, 2000.0};
   std::string text =
       "duration_s: 80000.0\nstep_s: 10.0\nchannel:\n  model: physical\n  access: aloha\n"
-      "  modem: {profile: micromodem_fsk_r0}\n  water: {sound_speed: profile}\n"
-      "  propagation: {shadowing_time_s: 0.1}\n  noise: {site_db: 99.0}\nnodes:\n" +
+      "  physical:\n    modem: {profile: micromodem_fsk_r0}\n    water: {sound_speed: profile}\n"
+      "    propagation: {shadowing_time_s: 0.1}\n    noise: {site_db: 99.0}\nnodes:\n" +
       NodeAt(0, 0.0, 0.0);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     text += NodeAt(static_cast<int>(i) + 1, distances[i], 0.0);
@@ -162,9 +162,9 @@ class Age : public Simulate {
   Result Tdma(double duration_s, double site_db) {
     std::string text = "duration_s: " + std::to_string(duration_s) +
                        "\nseed: 2\nstep_s: 10.0\nchannel:\n  model: physical\n  access: tdma\n"
-                       "  modem: {profile: micromodem_fsk_r0}\n"
                        "  slots: {length_s: 5.0, guard_s: 1.0}\n"
-                       "  noise: {site_db: " +
+                       "  physical:\n    modem: {profile: micromodem_fsk_r0}\n"
+                       "    noise: {site_db: " +
                        std::to_string(site_db) + "}\n" + kSteadyWater + Ring(7, 1500.0) +
                        "traffic:\n";
     for (int i = 1; i <= 7; ++i) {
