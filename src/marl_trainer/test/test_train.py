@@ -70,6 +70,42 @@ class Train(unittest.TestCase):
         summary = json.loads((self.run_folder / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["stopped"], "finished")
 
+    def test_the_pages_say_truly_what_chooses_a_checkpoint_and_which_return_is_which(self):
+        """What report.CONVENTIONS says of returns and checkpoints, of the programs that the numbers
+        come from: a training on another reward, and its evaluation."""
+        status, output = self.train("--steps", "2000", "--variant", "tau6", "--validation-interval", "200",
+                                    "--validation-episodes", "2")  # fmt: skip
+        self.assertEqual(status, 0, output)
+        with open(self.run_folder / "progress.csv", encoding="utf-8", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["validation_return"]]
+        self.assertGreater(len(rows), 5)
+        best = max(rows, key=lambda row: float(row["validation_return"]))
+        with open(self.run_folder / "policy_best.onnx", "rb") as file:
+            kept = file.read()
+        # The policy's name ends with the step that it was saved at.
+        self.assertIn(f"-seed0-{best['env_steps']}".encode(), kept)
+        self.assertNotEqual(best["validation_return"], best["validation_scenario_return"])
+
+        (evaluate,) = roslib.packages.find_node("marl_trainer", "evaluate")
+        done = {}
+        # Validation's own episodes, once with the reward of the scenario and once with that of the
+        # variant, as both would be flown without a variant's name.
+        for reward in ("paper", "release"):
+            command = [evaluate, "--policy", str(self.run_folder / "policy_best.onnx"), "--scenario",
+                       "medium_release", "--variant", "tau6", "--episodes", "2", "--seed", "900000",
+                       "--set", f"reward.kind={reward}"]  # fmt: skip
+            text = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+            done[reward] = json.loads(text.splitlines()[-1])
+        self.assertEqual(done["release"]["seed_block"], "choosing")
+        # The scenario's reward makes `return`, whatever the variant trains with ...
+        self.assertNotEqual(done["paper"]["return"], done["release"]["return"])
+        # ... and has no part in `training_return`, which is that of the validation.
+        self.assertEqual(done["paper"]["training_return"], done["release"]["training_return"])
+        self.assertAlmostEqual(done["release"]["training_return"], float(best["validation_return"]),
+                               delta=0.01 * abs(float(best["validation_return"])))  # fmt: skip
+        self.assertAlmostEqual(done["release"]["return"], float(best["validation_scenario_return"]),
+                               delta=0.01 * abs(float(best["validation_scenario_return"])))  # fmt: skip
+
     def wait_for_rows(self, process):
         """Waits until a training has told of three collections."""
         end = time.monotonic() + 30

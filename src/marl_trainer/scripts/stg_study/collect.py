@@ -77,8 +77,26 @@ def _options_of(job):
     return texts
 
 
-def collect(study, trainings, evaluations, out):
-    """Writes the CSV files into `out` from the complete jobs; returns how many are not."""
+class Kept:
+    """The rows that the CSV files of a folder have of some methods and controllers."""
+
+    def __init__(self, folder, names):
+        self._folder, self._names = folder, set(names)
+
+    def rows(self, kind, header):
+        """Rows of `header`'s columns, empty where an older file has none."""
+        path = os.path.join(self._folder, FILES[kind])
+        if not self._names or not os.path.exists(path):
+            return []
+        found = [row for row in read_rows(path) if row.get("method") in self._names]
+        return [[row.get(name, "") for name in header] for row in found]
+
+
+def collect(study, trainings, evaluations, out, kept=()):
+    """Writes the CSV files into `out` from the complete jobs, and what those there have of the
+    methods and controllers named in `kept`; returns how many jobs are not complete."""
+    kept = Kept(out, kept)
+    places = {name: place for place, name in enumerate(study.method_names())}
     results, episodes, curves, runs, options = [], [], [], [], {}
     metrics, curve_metrics = [], []
     missing = 0
@@ -112,6 +130,10 @@ def collect(study, trainings, evaluations, out):
     os.makedirs(out, exist_ok=True)
 
     def write(name, header, rows):
+        before = kept.rows(name, header)
+        if before:
+            method = header.index("method")
+            rows = sorted([*before, *rows], key=lambda row: places[row[method]])
         write_rows(os.path.join(out, FILES[name]), header, rows)
 
     key = ["scenario", "condition", "method", "seed"]

@@ -31,8 +31,16 @@ RUN = {
     **{f"seconds_to_{name}": optional(number) for name in THRESHOLDS},
 }  # fmt: skip
 OPTION = {"method": str, "option": str, "value": str}
+# By another reward than `return`; a row of before these were measured has none.
+OTHER_RETURNS = ("training_return", "scenario_return")
 CURVE = {"scenario": str, "method": str, "seed": count}  # and numbers
 EPISODE = {**CURVE, "condition": str}  # and numbers
+
+
+
+def _kind(name):
+    """Of a column of episodes or curves: a number, or with `return` and its kin perhaps none."""
+    return optional(number) if name == "return" or name in OTHER_RETURNS else number
 
 
 class Paper:
@@ -74,10 +82,10 @@ class Results:
         self._options = {}  # method -> {option: value as text}
         for row in table_rows(self._path["options"], OPTION):
             self._options.setdefault(row["method"], {})[row["option"]] = row["value"]
-        for row in table_rows(self._path["episodes"], EPISODE, lambda name: number):
+        for row in table_rows(self._path["episodes"], EPISODE, _kind):
             key = tuple(row.pop(name) for name in ("scenario", "condition", "method", "seed"))
             self._append(self._scores, key, row)
-        for row in table_rows(self._path["curves"], CURVE, lambda name: number):
+        for row in table_rows(self._path["curves"], CURVE, _kind):
             key = tuple(row.pop(name) for name in ("scenario", "method", "seed"))
             self._append(self._curves, key, row)
 
@@ -98,8 +106,9 @@ class Results:
             self._column("episodes", columns, metric)
             for key, columns in sorted(self._scores.items())
             if key[:3] == (scenario, condition, method)
+            and (metric in columns or metric not in OTHER_RETURNS)
         ]
-        if not rows:
+        if not rows or any(value is None for row in rows for value in row):
             return None
         episodes = min(len(row) for row in rows)
         return np.array([row[:episodes] for row in rows])
@@ -135,16 +144,22 @@ class Results:
         return sorted({key[2] for key in self._curves if key[0] == scenario})
 
     def curve(self, scenario, method, seed, column):
-        """Values of a validation column, one per validation."""
-        return self._column("curves", self._curves[(scenario, method, seed)], column)
+        """Values of a validation column, one per validation; None where one is not known."""
+        columns = self._curves[(scenario, method, seed)]
+        if column in OTHER_RETURNS and column not in columns:
+            return None
+        values = self._column("curves", columns, column)
+        return None if any(value is None for value in values) else values
 
     def final_points(self, scenario, method, seed, column):
-        """The last fifth of the validations."""
-        return final_stage(self.curve(scenario, method, seed, column))
+        """The last fifth of the validations, or None."""
+        values = self.curve(scenario, method, seed, column)
+        return None if values is None else final_stage(values)
 
     def final_over_seeds(self, scenario, method, column):
         """(mean, std) over seeds of the final-stage means, as Tables S3, S5, S9; or None."""
         seeds = self.seeds(scenario, method)
         if not seeds:
             return None
-        return mean_std([np.mean(self.final_points(scenario, method, s, column)) for s in seeds])
+        points = [self.final_points(scenario, method, s, column) for s in seeds]
+        return None if any(p is None for p in points) else mean_std([np.mean(p) for p in points])

@@ -52,8 +52,6 @@ plt.rcParams.update(
         "axes.axisbelow": True,
         "grid.color": "#e6e6e6",
         "legend.frameon": False,
-        "svg.fonttype": "none",
-        "svg.hashsalt": "stg",
     }
 )
 
@@ -102,15 +100,11 @@ def title(figure, text):
 
 
 def save(figure, folder, name):
-    """Writes the figure as PNG and SVG, the same bytes for the same content; returns its name."""
+    """Writes the figure as PNG, the same bytes for the same content; returns its name."""
     os.makedirs(folder, exist_ok=True)
-    for kind, options in (
-        ("png", {"dpi": 150, "metadata": {"Software": None}}),
-        ("svg", {"metadata": {"Date": None}}),
-    ):
-        drawn = io.BytesIO()
-        figure.savefig(drawn, format=kind, **options)
-        write_atomically(os.path.join(folder, f"{name}.{kind}"), drawn.getvalue())
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=150, metadata={"Software": None})
+    write_atomically(os.path.join(folder, f"{name}.png"), drawn.getvalue())
     plt.close(figure)
     return name
 

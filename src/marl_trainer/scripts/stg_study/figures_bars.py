@@ -6,29 +6,17 @@ from matplotlib.ticker import MaxNLocator
 from stg_study import figure_style as style
 from stg_study.figure_style import PAPER_COLOUR, colours, plt, save, title
 from stg_study.figures_curves import comparable
-from stg_study.tables import PAPER_NAME, ablated, condition_label
+from stg_study.tables import (
+    RETURNS, ablated, condition_label, final_value, paper_value, training_metric,
+)  # fmt: skip
 
 FINAL = [
-    ("Return, mean over AUVs", "return", "{:.1f}"),
+    ("Return, mean over AUVs", "scenario_return", "{:.1f}"),
     ("Tail distance", "tail_distance", "{:.3f}"),
     ("Tracking error, whole episode", "mean_error", "{:.3f}"),
     ("Target lost, share of decisions", "whole_lost_rate", "{:.3f}"),
 ]
 ABLATION = [FINAL[0], FINAL[1], FINAL[3], ("Saturated actions, share", "saturation_rate", "{:.3f}")]
-
-
-def _value(study, results, scenario, name, metric):
-    """Final stage of a method, nominal evaluation of a controller; (mean, std) or None."""
-    value = results.final_over_seeds(scenario, name, metric)
-    others = {m.name for m in study.methods} - {m.name for m in comparable(study.methods, metric)}
-    if name in others:
-        return None
-    if value is None:
-        value = results.over_seeds(scenario, "nominal", name, metric)
-    if value is None or metric != "return":
-        return value
-    mean, std = value
-    return mean / study.agents, std and std / study.agents
 
 
 def _bars(axis, rows, number):
@@ -61,11 +49,11 @@ def final_stage(study, results, paper, scenario, table, folder):
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 1.6 + 0.27 * count), sharey=True)
     for axis, (name, metric, number) in zip(axes, FINAL):
         rows = [
-            (labels[n], _value(study, results, scenario, n, metric), colour[n], None)
+            (labels[n], final_value(study, results, scenario, n, metric), colour[n], None)
             for n in study.method_names()
         ]
         for algorithm in paper.algorithms(table):
-            value = paper.get(table, algorithm, PAPER_NAME.get(metric, metric))
+            value = paper_value(paper, table, algorithm, metric)
             rows.append((f"{algorithm} (paper)", value, PAPER_COLOUR, "///"))
         _bars(axis, rows, number)
         axis.set_title(name)
@@ -87,10 +75,10 @@ def ablation(study, results, paper, scenario, folder, with_paper):
     for name, metric, _ in ABLATION:
         rows = []
         for method in ablated(study):
-            value = _value(study, results, scenario, method.name, metric)
+            value = final_value(study, results, scenario, method.name, metric)
             rows.append((method.label, value, colour[method.name], None))
             if with_paper and method.ablation in paper.algorithms("S9"):
-                theirs = paper.get("S9", method.ablation, PAPER_NAME.get(metric, metric))
+                theirs = paper_value(paper, "S9", method.ablation, metric)
                 rows.append(("(paper)", theirs, PAPER_COLOUR, "///"))
         rows_of[name] = rows
     count = len(rows_of[ABLATION[0][0]])
@@ -123,15 +111,16 @@ def final_boxes(study, results, scenario, folder):
     colour = colours(study)
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 3.9))
     for axis, (name, metric, _) in zip(axes, FINAL):
-        scale = 1.0 / study.agents if metric == "return" else 1.0
+        scale = 1.0 / study.agents if metric in RETURNS else 1.0
         for place, method in enumerate(study.methods):
             if method not in comparable(study.methods, metric):
                 continue
+            column = training_metric(study, method.name, metric)
             points = [
-                results.final_points(scenario, method.name, seed, metric)
+                results.final_points(scenario, method.name, seed, column)
                 for seed in results.seeds(scenario, method.name)
             ]
-            if points:
+            if points and all(p is not None for p in points):
                 _box(axis, place, scale * np.concatenate(points), colour[method.name])
         if metric == "whole_lost_rate":
             axis.set_ylim(-0.002, max(0.02, axis.get_ylim()[1]))

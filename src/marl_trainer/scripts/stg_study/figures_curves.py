@@ -5,11 +5,11 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import EngFormatter
 
 from stg_study.figure_style import colours, legend_below, logarithmic, plt, save, title
-from stg_study.tables import PAPER_NAME
+from stg_study.tables import RETURNS, final_value, paper_value, training_metric
 
 # Title, axis label, metric, logarithmic.
 PANELS = [
-    ("Return", "per episode, mean over AUVs", "return", False),
+    ("Return by the scenario's reward", "per episode, mean over AUVs", "scenario_return", False),
     ("Tracking error", "|d − d*|, whole episode", "mean_error", True),
     ("Tail distance", "d, last 100 decisions", "tail_distance", True),
     ("Target lost", "share of decisions", "whole_lost_rate", False),
@@ -30,14 +30,12 @@ def curve_band(results, scenario, method, metric, scale=1.0):
     seeds = results.seeds(scenario, method)
     if not seeds:
         return None
+    values = [results.curve(scenario, method, seed, metric) for seed in seeds]
+    if any(value is None for value in values):
+        return None
     curves = [
-        dict(
-            zip(
-                results.curve(scenario, method, seed, "env_steps"),
-                results.curve(scenario, method, seed, metric),
-            )
-        )
-        for seed in seeds
+        dict(zip(results.curve(scenario, method, seed, "env_steps"), value))
+        for seed, value in zip(seeds, values)
     ]
     steps = sorted(set.intersection(*(set(c) for c in curves)))
     if not steps:
@@ -55,15 +53,15 @@ def step_axis(axis):
 
 
 def comparable(methods, metric):
-    """The methods whose trainings' validations can stand on one axis: each returns what its own
-    training rewards."""
-    if metric != "return":
+    """The methods whose trainings' validations can stand on one axis: those that tell of a return
+    by the scenario's reward."""
+    if metric not in RETURNS:
         return list(methods)
-    return [m for m in methods if not any(key.startswith("reward.") for key in m.train_set)]
+    return [m for m in methods if m.reward() != "own"]
 
 
 def _scale(study, metric):
-    return 1.0 / study.agents if metric == "return" else 1.0
+    return 1.0 / study.agents if metric in RETURNS else 1.0
 
 
 def _focus_returns(axis, bands, references):
@@ -83,7 +81,8 @@ def convergence(study, results, paper, scenario, table, folder):
     for axis, (name, label, metric, is_logarithmic) in zip(axes.flat, PANELS):
         bands, references = [], []
         for method in comparable(study.methods, metric):
-            band = curve_band(results, scenario, method.name, metric, _scale(study, metric))
+            column = training_metric(study, method.name, metric)
+            band = curve_band(results, scenario, method.name, column, _scale(study, metric))
             if band is None:
                 continue
             steps, mean, std = band
@@ -95,14 +94,14 @@ def convergence(study, results, paper, scenario, table, folder):
             (line,) = axis.plot(steps, mean, color=colour[method.name], lw=1.6)
             handles[labels[method.name]] = line
         for controller in study.controllers:
-            value = results.over_seeds(scenario, "nominal", controller.name, metric)
+            value = final_value(study, results, scenario, controller.name, metric)
             if controller.name == "idle" or value is None:
                 continue
-            references.append(value[0] * _scale(study, metric))
+            references.append(value[0])
             style = {"pursuit": "--", "pursuit_separated": "-."}.get(controller.name, ":")
             line = axis.axhline(references[-1], color=colour[controller.name], lw=1.2, ls=style)
             handles[labels[controller.name]] = line
-        theirs = paper.get(table, "STG-MAPPO", PAPER_NAME.get(metric, metric))
+        theirs = paper_value(paper, table, "STG-MAPPO", metric)
         if theirs is not None:
             references.append(theirs[0])
             line = axis.axhline(theirs[0], color="#B22222", lw=1.0, ls=(0, (6, 2, 1, 2, 1, 2)))
@@ -137,7 +136,11 @@ def per_seed(study, results, scenario, folder):
         drawn = []
         for method in comparable(methods, metric):
             for i, seed in enumerate(results.seeds(scenario, method.name)):
-                values = np.array(results.curve(scenario, method.name, seed, metric))
+                column = training_metric(study, method.name, metric)
+                values = results.curve(scenario, method.name, seed, column)
+                if values is None:
+                    continue
+                values = np.array(values)
                 drawn.append(values)
                 axis.plot(
                     results.curve(scenario, method.name, seed, "env_steps"),

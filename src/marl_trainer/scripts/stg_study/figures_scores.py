@@ -5,6 +5,7 @@ import numpy as np
 from stg_study.figure_style import colours, legend_below, plt, save
 from stg_study.figures_curves import comparable, curve_band, step_axis
 from stg_study.statistics import performance_profile
+from stg_study.tables import training_metric
 
 LINES = {"pursuit": "--", "pursuit_separated": "-."}
 PROFILE_POINTS = 200
@@ -43,10 +44,14 @@ def profiles(study, results, scenario, folder):
 def _against_seconds(axis, study, results, scenario, handles):
     """Returns of the validations against wall time, every training a line."""
     colour = colours(study)
-    for method in comparable(study.methods, "return"):
+    for method in comparable(study.methods, "scenario_return"):
         for seed in results.seeds(scenario, method.name):
             seconds = results.curve(scenario, method.name, seed, "wall_seconds")
-            returns = np.array(results.curve(scenario, method.name, seed, "return"))
+            column = training_metric(study, method.name, "scenario_return")
+            returns = results.curve(scenario, method.name, seed, column)
+            if returns is None:
+                continue
+            returns = np.array(returns)
             (handles[method.label],) = axis.plot(
                 seconds, returns / study.agents, color=colour[method.name], lw=1.0, alpha=0.6
             )

@@ -10,6 +10,9 @@ from stg_common.csv_files import number, optional, table_rows, written
 from stg_common.files import Damaged, FileError, expect, member, opened, read_json
 from stg_study.files import locked, write_atomically
 
+# Of stg_env/env/seed_blocks.hpp, as evaluate names it: no choice has seen these episodes.
+REPORTING = "reporting"
+
 
 def read_record(path):
     """The object in a JSON file, or None where a job that was cut off left none, or part of it; a
@@ -229,6 +232,12 @@ class Evaluation:
     def finish(self, output):
         """Keeps the result: `output` ends with the JSON object of the evaluate command."""
         summary = json.loads(output.strip().splitlines()[-1])
+        block = summary.get("seed_block")
+        if block != REPORTING:
+            raise FileError(
+                self.name,
+                f"its episodes are of the {block} block, and tables are of the {REPORTING} block",
+            )
         os.replace(self.csv + ".part", self.csv)
         result = {"identity": self._identity(), "summary": summary}
         write_atomically(self.json, json.dumps(result, indent=1))

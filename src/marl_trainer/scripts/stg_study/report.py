@@ -11,27 +11,30 @@ PAPER_TABLES = {"medium": ("1", "S3", "S4", "S7"), "hard": ("2", "S5", "S6", "S8
 
 CONVENTIONS = """\
 - Distances are in workspace units, which this simulator reads as metres and the paper labels km.
-- The return of an evaluation is the scenario's own reward for every method, whatever it was trained
-  with; that of a validation is the training's reward. So figures of the training leave out the
-  return of methods that train with another reward, and final stages tell it as the training's own.
-  Evaluations (Tables 1, 2, S7, S8, comparison, interquartile means) **sum** it over the AUVs,
-  training curves and final stages (Tables S3-S6, S9, curves, bars) **average** it over them, as the
-  paper does; the two differ by the number of AUVs, {agents}.
+- **Return** is by the scenario's own reward for every method, whatever it was trained with.
+  **Training's return** is of the same flights by the reward that the method was trained with; a dash
+  where it was not measured, and for controllers, which no reward trains. Figures show the former.
+- The paper's rows: its authors' release tabulates the return of each algorithm by the reward that
+  the algorithm trained with. For STG-MAPPO that is the scenario's reward; for the baselines it is
+  another, so that their figures stand under the training's return only.
+- Evaluations (Tables 1, 2, S7, S8, comparison, interquartile means) **sum** returns over the AUVs,
+  training curves and final stages (Tables S3-S6, S9, curves, bars) **average** them over the AUVs, as
+  the paper does; the two differ by the number of AUVs, {agents}.
 - Tail: the last 100 decisions. Tables S3-S6: tracking error and lost rate are of the whole episode;
   Tables 1, 2, S7, S8: of the tail.
 - Final stage: the last 20 % of the validations of a training, which fly the deterministic policy
-  on held-out episodes. Best checkpoint: the validation with the highest return; the evaluations
-  reload it.
-- Evaluation: {episodes} episodes from seed {first} + {stride} x training seed, shared with no
-  training and no validation. The controllers fly the same episodes as the policies.
-- mean ± std: over seeds in Tables 1, 2 (distances, lost), S3, S5, S9; over episodes of all seeds in
-  Tables S7 and S8. The average return of Tables 1 and 2 is over all conditions, its std over the
-  means of every seed and condition.
-- Interquartile means with 95 % bootstrap intervals: seeds, then episodes within each seed and
-  condition, are drawn again 2000 times. With three seeds the intervals are rough.
+  on held-out episodes. Best checkpoint: the validation with the highest training's return; the
+  evaluations reload it.
+- Evaluation: {episodes} episodes from seed {first} + {stride} x training seed, of the reporting
+  block, which no training, validation or other choice has seen. The controllers fly the same episodes as the policies.
+- mean ± std: over seeds of training in Tables 1, 2, S3, S5 and S9 (of a controller over as many
+  blocks of episodes); over episodes of all seeds in Tables S7, S8 and the comparison.
+- Interquartile means are over runs: each training scores the mean of its episodes on each condition,
+  and the middle half of these scores is averaged. 95 % bootstrap intervals draw the trainings again
+  2000 times. With three seeds the intervals are rough.
 - Probability of improvement: Agarwal et al. 2021; a half for what is equal.
 - Colliding pairs: pairs of AUVs in contact per decision, over the whole episode and over the tail.
-  The paper tells neither.
+  The paper tells neither. In band: share of the tail with d between d_l and d_u.
 - Rows marked (paper) are the paper's own figures.
 """
 

@@ -21,12 +21,12 @@ def interquartile_mean(values, axis=-1):
 
 
 def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
-    """Interquartile mean of all scores and its stratified bootstrap interval.
+    """Interquartile mean over runs and its stratified bootstrap interval (Agarwal et al. 2021).
 
-    The strata are the conditions: scores[condition] is [seeds, episodes], the same seeds in each.
-    A resample draws seeds, the same in every condition because they are one training run, and then
-    episodes of each seed in each condition. With one seed only episodes are drawn, and the interval
-    says nothing about other trainings.
+    scores[condition] is [seeds, episodes], the same seeds in each. A run on a condition scores the
+    mean of its episodes, and the middle half of all those scores is averaged. A resample draws
+    seeds, the same in every condition because they are one training run. With one seed there is no
+    interval: its ends are the mean.
 
     Returns (interquartile mean, lower end, upper end), percentiles of the resamples.
     """
@@ -34,18 +34,13 @@ def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
     seeds = strata[0].shape[0]
     if any(stratum.ndim != 2 or stratum.shape[0] != seeds for stratum in strata):
         raise ValueError("every condition needs scores of the same seeds, [seeds, episodes]")
+    runs = np.array([stratum.mean(axis=1) for stratum in strata])  # [conditions, seeds]
     random = np.random.default_rng(seed)
-    drawn_seeds = random.integers(seeds, size=(resamples, seeds))
-    parts = []
-    for stratum in strata:
-        episodes = stratum.shape[1]
-        drawn = random.integers(episodes, size=(resamples, seeds, episodes))
-        parts.append(stratum[drawn_seeds[:, :, None], drawn].reshape(resamples, -1))
-    values = interquartile_mean(np.concatenate(parts, axis=1))
+    drawn = random.integers(seeds, size=(resamples, seeds))
+    values = interquartile_mean(runs[:, drawn].transpose(1, 0, 2).reshape(resamples, -1))
     tail = 100.0 * (1.0 - confidence) / 2.0
     low, high = np.percentile(values, [tail, 100.0 - tail])
-    point = interquartile_mean(np.concatenate([stratum.ravel() for stratum in strata]))
-    return float(point), float(low), float(high)
+    return float(interquartile_mean(runs.ravel())), float(low), float(high)
 
 
 def probability_of_improvement(ours, theirs, resamples=RESAMPLES, confidence=0.95, seed=0):

@@ -9,6 +9,7 @@ CONTACT = [
 ]
 STRESS = [
     ("Return", "return", 1),
+    ("Training's return", "training_return", 1),
     ("Tail dist.", "tail_distance", 4),
     ("Track err.", "tracking_error", 4),
     ("Lost", "lost_rate", 3),
@@ -20,7 +21,8 @@ STRESS = [
 # Training curves: the paper averages the agents' returns and takes the error and the lost rate
 # over the whole episode (its final errors of .012 go with tail distances of .014).
 FINAL = [
-    ("Return", "return", 2),
+    ("Return", "scenario_return", 2),
+    ("Training's return", "return", 2),
     ("Tail dist.", "tail_distance", 4),
     ("Track err.", "mean_error", 4),
     ("Lost", "whole_lost_rate", 3),
@@ -28,6 +30,8 @@ FINAL = [
     ("Control", "control_cost", 3),
 ]
 PAPER_NAME = {"mean_error": "tracking_error", "whole_lost_rate": "lost_rate"}
+RETURNS = ("return", "training_return", "scenario_return")
+FINAL_TABLES = ("S3", "S4", "S5", "S6", "S9")
 CONDITION_LABELS = {
     "nominal": "Nominal",
     "fast_target": "Fast target",
@@ -37,8 +41,33 @@ CONDITION_LABELS = {
     "combined_stress": "Combined stress",
 }
 NOTHING = "–"
-TEXT_COLUMNS = {"Algorithm", "Condition", "Method", "Scenario", "Seed IDs", "Variant", "Who"}
+TEXT_COLUMNS = {"Algorithm", "Condition", "Flown by", "Method", "Scenario", "Seed IDs", "Variant"}
 TEXT_COLUMNS |= {"of these"}
+
+
+def paper_value(paper, table, algorithm, metric, *key):
+    """The paper's figure of a metric. Its release tabulates returns by the reward that each
+    algorithm trained with, which for STG-MAPPO alone is the scenario's."""
+    training = "return" if table in FINAL_TABLES else "training_return"
+    if metric in RETURNS:
+        if metric != training and not algorithm.startswith("STG-MAPPO"):
+            return None
+        metric = "return"
+    return paper.get(table, algorithm, PAPER_NAME.get(metric, metric), *key)
+
+
+def training_metric(study, name, metric):
+    """Which column holds a metric of a method or controller: where both returns are one, only
+    `return` is measured; None where it is not measured."""
+    rewards = {method.name: method.reward() for method in study.methods}
+    if metric not in RETURNS[1:]:
+        return metric
+    reward = rewards.get(name, "scenario")
+    if reward == "variant":
+        return metric
+    if name not in rewards and metric == "training_return":
+        return None  # a controller is trained with no reward
+    return "return" if reward == "scenario" else None
 
 
 def condition_label(condition):
@@ -73,22 +102,31 @@ def markdown(header, rows):
     return "\n".join(lines) + "\n"
 
 
+def over_seeds(study, results, scenario, conditions, name, metric):
+    """(mean, std) over seeds of their means over the conditions, or None."""
+    column = training_metric(study, name, metric)
+    scores = [results.scores(scenario, c, name, column) for c in conditions if column]
+    if not scores or any(s is None or len(s) != len(scores[0]) for s in scores):
+        return None
+    return mean_std(sum(s.mean(axis=1) for s in scores) / len(scores))
+
+
 def main_table(study, results, paper, scenario, table):
-    """Tables 1 and 2: distances and losses, mean ± std of the seeds' means; the return averaged
-    over all conditions, its std over seeds and conditions together."""
+    """Tables 1 and 2: distances, losses and returns averaged over all conditions, mean ± std of the
+    seeds' means."""
     header = ["Algorithm", "Nominal dist.", "Combined dist.", "Nominal lost", "Combined lost"]
-    header += ["Avg. return", "Nominal coll. pairs", "tail", "Combined coll. pairs", "tail"]
+    header += ["Avg. return", "Avg. training's return"]
+    header += ["Nominal coll. pairs", "tail", "Combined coll. pairs", "tail"]
     cells = [(c, m) for m in ("tail_distance", "lost_rate") for c in ("nominal", "combined_stress")]
     rows = []
     for name in study.method_names():
         row = [study.labels()[name]]
         for condition, metric in cells:
             row.append(cell(results.over_seeds(scenario, condition, name, metric), 4))
-        means = []
-        for condition in study.conditions:
-            scores = results.scores(scenario, condition, name, "return")
-            means += [] if scores is None else list(scores.mean(axis=1))
-        row.append(cell(mean_std(means) if means else None, 2))
+        for metric in RETURNS[:2]:
+            row.append(
+                cell(over_seeds(study, results, scenario, study.conditions, name, metric), 2)
+            )
         for condition in ("nominal", "combined_stress"):
             for _, metric, digits in CONTACT:
                 row.append(cell(results.over_seeds(scenario, condition, name, metric), digits))
@@ -96,21 +134,32 @@ def main_table(study, results, paper, scenario, table):
     for algorithm in paper.algorithms(table):
         row = [f"{algorithm} (paper)"]
         row += [cell(paper.get(table, algorithm, m, c), 3) for c, m in cells]
-        row += [cell(paper.get(table, algorithm, "return", "all"), 2)] + [NOTHING] * 4
-        rows.append(row)
+        for metric in RETURNS[:2]:
+            row.append(cell(paper_value(paper, table, algorithm, metric, "all"), 2))
+        rows.append(row + [NOTHING] * 4)
     return markdown(header, rows)
+
+
+def final_value(study, results, scenario, name, metric):
+    """(mean, std) over seeds of the final stage of a method, or of a controller's nominal
+    evaluation; None where there is none. Returns are averaged over the AUVs."""
+    column = training_metric(study, name, metric)
+    value = column and results.final_over_seeds(scenario, name, column)
+    if not value and column and not results.seeds(scenario, name):
+        own = metric == "return" and name not in {m.name for m in study.methods}
+        value = None if own else results.over_seeds(scenario, "nominal", name, column)
+    if not value or metric not in RETURNS:
+        return value or None
+    mean, std = value
+    return mean / study.agents, std and std / study.agents
 
 
 def _final_row(study, results, scenario, name, columns):
     """Final-stage cells of a method, or of a controller from its nominal evaluation."""
-    row = []
-    for _, metric, digits in columns:
-        scale = 1.0 / study.agents if metric == "return" else 1.0
-        value = results.final_over_seeds(scenario, name, metric)
-        if value is None:
-            value = results.over_seeds(scenario, "nominal", name, metric)
-        row.append(cell(value, digits, scale))
-    return row
+    return [
+        cell(final_value(study, results, scenario, name, metric), digits)
+        for _, metric, digits in columns
+    ]
 
 
 def final_table(study, results, paper, scenario, table):
@@ -125,8 +174,7 @@ def final_table(study, results, paper, scenario, table):
     for algorithm in paper.algorithms(table):
         row = [f"{algorithm} (paper)", 3]
         for _, metric, digits in FINAL:
-            value = paper.get(table, algorithm, PAPER_NAME.get(metric, metric))
-            row.append(cell(value, min(digits, 3)))
+            row.append(cell(paper_value(paper, table, algorithm, metric), min(digits, 3)))
         rows.append(row + [NOTHING] * len(CONTACT))
     return markdown(["Algorithm", "Seeds"] + [c[0] for c in columns], rows)
 
@@ -138,33 +186,34 @@ def seed_table(study, results, paper, scenario, table):
     rows = []
     for method in study.methods:
         for seed in results.seeds(scenario, method.name):
-            points = len(results.curve(scenario, method.name, seed, "return"))
+            points = len(results.curve(scenario, method.name, seed, "tail_distance"))
             row = [method.label, seed, points]
             for _, metric, digits in columns:
-                values = results.final_points(scenario, method.name, seed, metric)
-                scale = 1.0 / study.agents if metric == "return" else 1.0
-                row.append(cell((sum(values) / len(values), None), digits, scale))
+                column = training_metric(study, method.name, metric)
+                values = column and results.final_points(scenario, method.name, seed, column)
+                scale = 1.0 / study.agents if metric in RETURNS else 1.0
+                value = (sum(values) / len(values), None) if values else None
+                row.append(cell(value, digits, scale))
             rows.append(row)
     for controller in study.controllers:
-        scores = {
-            metric: results.scores(scenario, "nominal", controller.name, metric)
-            for _, metric, _ in columns
-        }
-        if scores["return"] is None:
-            continue
         seeds = results.evaluated_seeds(scenario, "nominal", controller.name)
         for block, seed in enumerate(seeds):
             row = [controller.label, seed, NOTHING]
             for _, metric, digits in columns:
-                scale = 1.0 / study.agents if metric == "return" else 1.0
-                row.append(cell((scores[metric][block].mean(), None), digits, scale))
+                scale = 1.0 / study.agents if metric in RETURNS else 1.0
+                column = training_metric(study, controller.name, metric)
+                if metric == "return":
+                    row.append(NOTHING)
+                    continue
+                scores = results.scores(scenario, "nominal", controller.name, column)
+                row.append(cell((scores[block].mean(), None), digits, scale))
             rows.append(row)
     for algorithm in paper.algorithms(table):
         for seed in paper.seeds(table, algorithm):
             points = paper.get(table, algorithm, "evaluation_points", seed=seed)
             row = [f"{algorithm} (paper)", seed, cell(points, 0)]
             for _, metric, digits in FINAL:
-                value = paper.get(table, algorithm, PAPER_NAME.get(metric, metric), seed=seed)
+                value = paper_value(paper, table, algorithm, metric, "nominal", seed)
                 row.append(cell(value, min(digits, 3)))
             rows.append(row + [NOTHING] * len(CONTACT))
     return markdown(["Algorithm", "Seed", "Eval pts"] + [c[0] for c in columns], rows)
@@ -178,13 +227,15 @@ def stress_table(study, results, paper, scenario, table):
         for condition in study.conditions:
             row = [study.labels()[name], condition_label(condition)]
             for _, metric, digits in columns:
-                row.append(cell(results.over_episodes(scenario, condition, name, metric), digits))
+                column = training_metric(study, name, metric)
+                value = column and results.over_episodes(scenario, condition, name, column)
+                row.append(cell(value or None, digits))
             rows.append(row)
     for algorithm in paper.algorithms(table):
         for condition in study.conditions:
             row = [f"{algorithm} (paper)", condition_label(condition)]
             for _, metric, digits in STRESS:
-                value = paper.get(table, algorithm, metric, condition)
+                value = paper_value(paper, table, algorithm, metric, condition)
                 row.append(cell(value, min(digits, 3)))
             rows.append(row + [NOTHING] * len(CONTACT))
     return markdown(["Algorithm", "Condition"] + [c[0] for c in columns], rows)
@@ -209,8 +260,7 @@ def ablation_table(study, results, paper, scenario, with_paper):
     for algorithm in paper.algorithms("S9") if with_paper else []:
         row = [f"{algorithm} (paper)", 3, "0,1,2"]
         for _, metric, digits in columns[: -len(CONTACT)]:
-            value = paper.get("S9", algorithm, PAPER_NAME.get(metric, metric))
-            row.append(cell(value, min(digits, 3)))
+            row.append(cell(paper_value(paper, "S9", algorithm, metric), min(digits, 3)))
         rows.append(row + [NOTHING] * len(CONTACT))
     return markdown(["Variant", "Seeds", "Seed IDs"] + [c[0] for c in columns], rows)
 
@@ -242,9 +292,8 @@ def iqm_table(study, results, scenario):
 def comparison_table(study, results, paper, scenario, table):
     """Return, tail distance, tail error, lost rate and contacts side by side, by condition."""
     reference = [c.name for c in study.controllers if c.name != "idle"]
-    header = ["Condition", "Who", "Return", "Tail dist.", "Tail err.", "Lost"]
-    header += [c[0] for c in CONTACT]
-    metrics = [c for c in STRESS[:4]]
+    metrics = STRESS[:1] + STRESS[2:5] + [("In band", "band_rate", 2)]
+    header = ["Condition", "Flown by"] + [c[0] for c in metrics + CONTACT]
     rows = []
     for condition in study.conditions:
         for name in [m.name for m in study.methods if m.variant == "stg"] + reference:
