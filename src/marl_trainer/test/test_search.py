@@ -24,6 +24,7 @@ SEARCH = """
 scenario: medium_release
 steps: 1000
 trials: 4
+training_seeds: [1000, 1001]
 fixed: {masac: {critic-hidden: "128,128"}}
 algorithms:
   mappo: {lr: {log: [1.0e-4, 1.0e-2]}, epochs: [2, 3]}
@@ -60,8 +61,26 @@ class Draws(unittest.TestCase):
         other = search.trials_of(sample(draw_seed=2), "mappo")
         self.assertNotEqual(other, search.trials_of(sample(), "mappo"))
 
+    def test_the_same_trial_of_every_algorithm_has_the_same_options(self):
+        folder = os.path.join(study.shipped_studies(), "search")
+        shipped = search.load_search(os.path.join(folder, "equal_terms.yaml"))
+        self.assertGreaterEqual(shipped.trials, 20)
+        self.assertGreaterEqual(len(shipped.training_seeds), 3)
+        on_policy = [search.trials_of(shipped, name) for name in ("mappo", "ippo", "happo")]
+        self.assertEqual(on_policy[0], on_policy[1])
+        self.assertEqual(on_policy[0], on_policy[2])
+        # So the gradient steps an update (epochs times minibatches) are equal, too.
+        maddpg, masac = (search.trials_of(shipped, name) for name in ("maddpg", "masac"))
+        shared = set(shipped.algorithms["maddpg"]) & set(shipped.algorithms["masac"])
+        self.assertGreaterEqual(shared, {"lr", "critic-lr", "tau", "n-step", "batch"})
+        for option in shared:
+            self.assertEqual([t.get(option) for t in maddpg], [t.get(option) for t in masac], option)
+        for mappo, other in zip(on_policy[0], masac):
+            self.assertEqual(mappo.get("lr"), other.get("lr"))
+        self.assertGreater(len({str(trial) for trial in on_policy[0]}), 19)
+
     def test_the_best_is_the_highest_return_and_the_earlier_of_equals(self):
-        scores = [None] + [search.Score(value, 0.0, 1.0) for value in (3.0, 5.0, 5.0)]
+        scores = [None] + [search.Score(value, 0.0, 0.0, 1.0) for value in (3.0, 5.0, 5.0)]
         self.assertEqual(search.choose_best(scores), 2)
         self.assertIsNone(search.choose_best([None]))
 
@@ -71,6 +90,7 @@ class Draws(unittest.TestCase):
             ({"algorithms": {"mappo": {"lr": []}}}, "mappo.lr"),
             ({"algorithms": {"mappo": 3}}, "algorithms.mappo"),
             ({"trials": 0}, "trials"),
+            ({"training_seeds": [1, 1]}, "training_seeds"),
             ({"scenaro": "a"}, "scenaro"),
             ({"algorithms": {"mappo": {"lr": {"log": [1.0, math.inf]}}}}, "mappo.lr"),
             ({"algorithms": {"mappo": {"lr": [[1]]}}}, "mappo.lr"),
@@ -93,7 +113,7 @@ class Draws(unittest.TestCase):
         shipped = search.load_search(os.path.join(folder, "equal_terms.yaml"))
         self.assertEqual(len(shipped.algorithms), 7)
         trained = study.load_study(study.find_study("equal_terms"))
-        self.assertNotIn(shipped.training_seed, trained.seeds)
+        self.assertFalse(set(shipped.training_seeds) & set(trained.seeds))
 
 
 class Tune(unittest.TestCase):
@@ -117,10 +137,10 @@ class Tune(unittest.TestCase):
         done = self.tune()
         self.assertEqual(done.returncode, 0, done.stdout)
         calls = stub_programs.calls(self.folder)
-        self.assertEqual(len(calls), 8)
+        self.assertEqual(len(calls), 16)
         masac = [call for call in calls if "--algorithm masac" in call]
-        self.assertEqual(sum("--critic-hidden 128,128" in call for call in masac), 4)
-        self.assertEqual(sum("--tau 0.01" in call for call in masac), 3)
+        self.assertEqual(sum("--critic-hidden 128,128" in call for call in masac), 8)
+        self.assertEqual(sum("--tau 0.01" in call for call in masac), 6)
         with open(os.path.join(self.folder, "out", "trials.csv"), encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 8)
@@ -136,7 +156,7 @@ class Tune(unittest.TestCase):
         self.assertEqual(stub_programs.calls(self.folder), [])
 
     def test_the_table_has_the_digits_that_the_choice_was_made_from(self):
-        scores = [search.Score(value, 0.0, 1.0) for value in (1000.01, 1000.02, 1000.04, 1000.03)]
+        scores = [search.Score(value, 0.0, 0.0, 1.0) for value in (1000.01, 1000.02, 1000.04, 1000.03)]
         with mock.patch.object(search, "score_of", lambda score: score):
             search.write_search(sample(), {"masac": scores}, self.folder)
         with open(os.path.join(self.folder, "trials.csv"), encoding="utf-8") as file:

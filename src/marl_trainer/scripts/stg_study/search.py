@@ -5,7 +5,7 @@ import math
 import os
 import random
 import reprlib
-from typing import Dict
+from typing import Dict, List
 
 import yaml
 
@@ -14,7 +14,7 @@ from stg_common.yaml_files import read_yaml
 from stg_study.files import write_atomically
 from stg_study.jobs import Training
 from stg_study.collect import csv_text
-from stg_study.statistics import final_stage
+from stg_study.statistics import final_stage, mean_std
 from stg_study.study import Method, ScenarioEntry, Study, StudyError, build, is_name, is_option
 
 LOG_DIGITS = 2  # significant digits of a value drawn from an interval, where they lie in it
@@ -30,7 +30,7 @@ class Search:
     preset: str = "fast"
     steps: int = 256000  # environment steps of a trial
     trials: int = 10  # of each algorithm; the first is the preset as it is
-    training_seed: int = 1000  # of every trial
+    training_seeds: List[int] = dataclasses.field(default_factory=lambda: [1000, 1001, 1002])
     draw_seed: int = 1
     train: Dict[str, object] = dataclasses.field(default_factory=dict)  # options of every trial
     fixed: dict = dataclasses.field(default_factory=dict)  # options of all of an algorithm's trials
@@ -40,8 +40,11 @@ class Search:
 def load_search(path):
     """Reads a search from a YAML file; StudyError where it cannot be one."""
     search = build(Search, path, read_yaml(path))
-    if search.trials < 1 or search.steps < 1 or search.training_seed < 0:
-        raise StudyError(f"{path}: trials and steps must be positive, training_seed not negative")
+    seeds = search.training_seeds
+    if search.trials < 1 or search.steps < 1:
+        raise StudyError(f"{path}: trials and steps must be positive")
+    if not seeds or min(seeds) < 0 or len(set(seeds)) != len(seeds):
+        raise StudyError(f"{path}: training_seeds: must be some, not negative, and must not repeat")
     for key, table in (("algorithms", search.algorithms), ("fixed", search.fixed)):
         for algorithm, options in table.items():
             where = f"{path}: {key}.{algorithm}"
@@ -83,18 +86,22 @@ def draw(source, generator):
 
 
 def trials_of(search, algorithm):
-    """The options of every trial of an algorithm; they depend on no other algorithm's."""
-    generator = random.Random(f"{search.draw_seed} {algorithm}")
+    """The options of every trial of an algorithm. Draws are paired: an option that algorithms draw
+    from the same source has the same value in the same trial of all of them, and with equal epochs
+    and minibatches they make as many gradient steps an update."""
     space = search.algorithms[algorithm]
     drawn = [
-        {option: draw(source, generator) for option, source in space.items()}
-        for _ in range(search.trials - 1)
+        {
+            option: draw(source, random.Random(f"{search.draw_seed} {trial} {option}"))
+            for option, source in space.items()
+        }
+        for trial in range(1, search.trials)
     ]
     return [{}] + drawn
 
 
 def plan_search(search, algorithms, work, bin_dir):
-    """Returns {algorithm: [Training]} of all trials."""
+    """Returns {algorithm: [[Training]]}: of all trials, those of each seed."""
     study = Study(
         name="search",
         title="",
@@ -109,14 +116,17 @@ def plan_search(search, algorithms, work, bin_dir):
     fixed = search.fixed
     return {
         algorithm: [
-            Training(
-                study,
-                study.scenarios[0],
-                Method(f"{algorithm}_{k}", "", train={"algorithm": algorithm, **fixed.get(algorithm, {}), **options}),
-                search.training_seed,
-                work,
-                bin_dir,
-            )
+            [
+                Training(
+                    study,
+                    study.scenarios[0],
+                    Method(f"{algorithm}_{k}", "", train={"algorithm": algorithm, **fixed.get(algorithm, {}), **options}),
+                    seed,
+                    work,
+                    bin_dir,
+                )
+                for seed in search.training_seeds
+            ]
             for k, options in enumerate(trials_of(search, algorithm))
         ]
         for algorithm in algorithms
@@ -125,26 +135,34 @@ def plan_search(search, algorithms, work, bin_dir):
 
 @dataclasses.dataclass
 class Score:
-    """What a trial is judged by: means over the last fifth of its validations."""
+    """What a trial is judged by: means over its seeds and the last fifth of their validations."""
 
     value: float  # return, summed over the AUVs
+    std: float  # of the return, over seeds; 0 of one
     lost_rate: float
-    wall_seconds: float
+    wall_seconds: float  # of one training
 
 
-def score_of(training):
-    """Score of a finished trial, or None."""
-    if not training.complete():
-        return None
+def _training_score(training):
+    """(return, lost rate, wall seconds) of a finished training."""
     rows = training.validations()
     if not rows:
         raise Damaged(training.progress_file, "tells of no validation")
     rows = final_stage(rows)
-    return Score(
+    return (
         sum(row["validation_return"] for row in rows) / len(rows),
         sum(row["validation_lost_rate"] for row in rows) / len(rows),
         rows[-1]["wall_seconds"],
     )
+
+
+def score_of(trainings):
+    """Score of a trial whose trainings are all finished, or None."""
+    if not all(training.complete() for training in trainings):
+        return None
+    returns, lost, seconds = zip(*map(_training_score, trainings))
+    value, std = mean_std(returns)
+    return Score(value, std or 0.0, sum(lost) / len(lost), sum(seconds) / len(seconds))
 
 
 def choose_best(scores):
@@ -159,10 +177,12 @@ def write_search(search, trainings, out):
     page = [
         "# The search before the study of equal terms\n",
         f"{search.trials} trials of {search.steps:,} environment steps for every algorithm on "
-        f"`{search.scenario}`, training seed {search.training_seed}, drawn at random from "
-        "[what can be chosen](search.yaml); trial 0 is the preset as it is. Score: the return of "
-        "the held-out episodes that a training validates on (of the choosing block), mean over "
-        "the last fifth of its validations. No evaluation of the study took part.\n",
+        f"`{search.scenario}`, each with the training seeds "
+        f"{', '.join(map(str, search.training_seeds))}, drawn at random from "
+        "[what can be chosen](search.yaml): the same options for the same trial of every "
+        "algorithm; trial 0 is the preset as it is. Score: the return of the held-out episodes "
+        "that a training validates on (of the choosing block), mean over the last fifth of its "
+        "validations, mean ± std over seeds. No evaluation of the study took part.\n",
         "| Algorithm | Trial | Options | Score | Lost | Wall s |",
         "|---|---:|---|---:|---:|---:|",
     ]
@@ -173,10 +193,11 @@ def write_search(search, trainings, out):
         for k, (options, score) in enumerate(zip(trials_of(search, algorithm), scores)):
             text = " ".join(f"--{name} {value}" for name, value in options.items())
             # The table keeps the digits that the choice was made from; the page rounds.
-            figures, cells = ["", "", ""], ["", "", ""]
+            figures, cells = [""] * 4, [""] * 3
             if score is not None:
                 figures = [f"{value:.9g}" for value in dataclasses.astuple(score)]
-                cells = [f"{score.value:.1f}", f"{score.lost_rate:.4f}", f"{score.wall_seconds:.1f}"]
+                cells = [f"{score.value:.1f} ± {score.std:.1f}", f"{score.lost_rate:.4f}"]
+                cells.append(f"{score.wall_seconds:.1f}")
             rows.append((algorithm, k, text, *figures, int(k == best)))
             mark = "**" if k == best else ""
             cells = [f"{mark}{cell or '–'}{mark}" for cell in cells]
@@ -184,7 +205,8 @@ def write_search(search, trainings, out):
         if best is not None:
             chosen[algorithm] = trials_of(search, algorithm)[best]
     os.makedirs(out, exist_ok=True)
-    header = ["algorithm", "trial", "options", "return", "lost_rate", "wall_seconds", "chosen"]
+    header = ["algorithm", "trial", "options", "return", "return_std", "lost_rate"]
+    header += ["wall_seconds", "chosen"]
     write_atomically(os.path.join(out, "trials.csv"), csv_text(header, rows))
     text = "# The options of the best trial of each algorithm; none: the preset as it is.\n"
     text += yaml.safe_dump(chosen, sort_keys=False)
