@@ -106,6 +106,11 @@ class Reproduce(StudyCase):
         self.assertEqual(self.reproduce()[0], 0)
         before = {name: self.rows(name) for name in ("results.csv", "curves.csv", "runs.csv")}
         shutil.rmtree(self.path("work"))
+        kept = self.path("study.yaml")
+        with open(kept, encoding="utf-8") as file:
+            text = file.read()
+        with open(kept, "w", encoding="utf-8") as file:
+            file.write(text.replace("label: STG-MAPPO", "label: Flown before"))
         status, output, calls = self.reproduce("--methods", "tau6", "--keep")
         self.assertEqual(status, 0, output)
         self.assertEqual(sum(c.startswith("train ") for c in calls), 2)
@@ -115,7 +120,8 @@ class Reproduce(StudyCase):
             for method in ("stg", "tau6", "pursuit", "simple"):
                 of_method = [row for row in rows if row["method"] == method]
                 self.assertEqual([row for row in made if row["method"] == method], of_method)
-        self.assertEqual([m.name for m in load_study(self.path("study.yaml")).methods], ["stg", "tau6"])
+        self.assertEqual([(m.name, m.label) for m in load_study(kept).methods],
+                         [("stg", "Flown before"), ("tau6", "raw")])  # fmt: skip
         status, output, _ = self.reproduce("--methods", "tau6", "--keep", "--episodes", "5")
         self.assertEqual(status, 2)
         self.assertIn("--keep: ", output)
