@@ -7,11 +7,11 @@ void Describe(WaterConfig* c, config::Table* t) {
   t->Add("surface_z_m", &c->surface_z_m, config::Within(-1e4, 1e4), "m, world",
          "height of the water's surface; depths count from here");
   t->Add("depth_m", &c->depth_m, config::Positive(1e6), "m",
-         "depth of the flat bottom that reflects sound");
+         "depth of the flat bottom that reflects sound with more than one of propagation.paths");
   t->Add("temperature_c", &c->temperature_c, config::Within(-2.0, 30.0), "deg C",
-         "of the water, for sound speed and absorption");
+         "of the water, for sound speed and for absorption by francois_garrison");
   t->Add("salinity_psu", &c->salinity_psu, config::Within(25.0, 40.0), "psu",
-         "of the water, for sound speed and absorption");
+         "of the water, for sound speed and for absorption by francois_garrison");
   t->Add("ph", &c->ph, config::Within(7.0, 9.0), "-",
          "of the water, for absorption by francois_garrison");
   t->AddOptional("sound_speed", config::Enum(&c->sound_speed, {"mackenzie", "profile"}),
@@ -21,8 +21,10 @@ void Describe(WaterConfig* c, config::Table* t) {
          "m", "profile: depths of its knots, ascending; linear between, constant outside");
   t->Add("profile_speeds_mps", config::Numbers(&c->profile_speeds_mps),
          config::Within(1300.0, 1700.0), "m/s", "profile: sound speed at its knots");
-  t->AddOptional("absorption", config::Enum(&c->absorption, {"thorp", "francois_garrison"}),
-                 "thorp", config::kNone, "-", "formula of the absorption of sound");
+  t->AddOptional(
+      "absorption", config::Enum(&c->absorption, {"thorp", "francois_garrison"}), "thorp",
+      config::kNone, "-",
+      "formula of the absorption of sound; thorp is for 4 deg C, whatever the temperature");
 }
 
 std::optional<config::Violation> FindConflict(const WaterConfig& c) {
