@@ -5,6 +5,7 @@
 #include <exception>
 #include <iostream>
 #include <iterator>
+#include <string>
 
 #include "auv_common/config/loader.hpp"
 #include "stg_env/record/scene.hpp"
@@ -12,8 +13,8 @@
 int main() {
   try {
     const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-    const auto scenario = stg::config::LoadText<stg::Scenario>(text, "standard input",
-                                                               stg::config::Unread::kPassOver);
+    const auto scenario =
+        stg::config::LoadText<stg::Scenario>(text, "the scenario", stg::config::Unread::kPassOver);
     std::cout << stg::env::SceneOf(scenario).dump() << "\n";
     return 0;
   } catch (const std::exception& e) {
