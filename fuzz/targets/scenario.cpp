@@ -1,11 +1,7 @@
 #include "stg_env/scenario/scenario.hpp"
 
-#include <utility>
-
 #include "auv_common/config/loader.hpp"
 #include "target.hpp"
-
-namespace {
 
 /// A scenario file. What is accepted is the same when it is written and read again.
 bool stg::fuzz::RunScenario(const std::string& bytes) {
