@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "acoustic_channel/emulator/modem_engine.hpp"
+#include "acoustic_channel/engine/modem_engine.hpp"
 #include "acoustic_channel/network/network.hpp"
 
 namespace stg::acoustics {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "acoustic_channel/emulator/modem_engine.hpp"
+#include "acoustic_channel/engine/modem_engine.hpp"
 #include "acoustic_channel/s2c/header.hpp"
 #include "acoustic_channel/s2c/reader.hpp"
 #include "acoustic_channel/s2c/settings.hpp"

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acoustic_channel/channel_config.hpp"
+
+namespace stg::acoustics {
+
+/// The modem of one vehicle and where its host finds it.
+struct ModemPlace {
+  std::string protocol = "s2c";    ///< of ModemProtocols()
+  int tcp = -1;                    ///< port to listen on, 0: any; -1: none
+  std::string pty;                 ///< symbolic link to make to a pseudo terminal
+  std::string serial;              ///< device
+  int baud = 19200;                ///< of `serial`
+  std::string interpreter = "at";  ///< of s2c: at or net
+  int address = 0;                 ///< 0: the id and one
+  int broadcast = 255;
+  bool defer = true;
+  double rssi_offset_db = -190.0;
+  std::string firmware = "1.9";
+};
+
+/// A vehicle in the water of emulated modems.
+struct ModemVehicle {
+  std::string name;
+  int id = 0;
+  std::string odom;                    ///< topic of its odometry
+  bool moored = false;                 ///< it stays at position_m and has no odometry
+  std::array<double, 3> position_m{};  ///< ENU, z up
+  std::optional<ModemPlace> modem;     ///< none: it has ROS topics
+};
+
+/// Emulated modems, their vehicles and their water.
+struct ModemFile {
+  std::string listen = "127.0.0.1";  ///< address of TCP ports
+  NetworkConfig network;
+  std::vector<ModemVehicle> vehicles;
+};
+
+/// Reads a file with the list `vehicles`, the address `listen` and what a network's file has: seed,
+/// time, channel. Throws UserError with file, line and key; also where two vehicles share a name,
+/// an id or a port.
+ModemFile LoadModemFile(const std::string& path);
+
+/// Names of protocols, and why a modem of one of them cannot have the profile; empty: it can.
+std::vector<std::string> ModemProtocols();
+std::string WhyNot(const std::string& protocol, const std::string& profile);
+
+}  // namespace stg::acoustics

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acoustic_channel/emulator/modem_file.hpp"
+#include "acoustic_channel/emulator/modem_water.hpp"
+#include "acoustic_channel/ports/byte_port.hpp"
+
+namespace stg::acoustics {
+
+/// Emulated modems behind real ports, in real time: one thread waits for their bytes, puts a time
+/// on them as they come, and lets the water go on.
+class ModemServer : private ModemHosts {
+ public:
+  /// Opens the ports. Throws UserError.
+  /// @param command_log CSV of everything that hosts did, with times, from which a run can be
+  ///        replayed; empty: none
+  ModemServer(const ModemFile& file, const std::string& command_log);
+
+  ModemWater& water() { return water_; }
+  /// Waits for bytes, the next event of the water, or `until` (time of the network), and does what
+  /// is due.
+  void Serve(TimeNs until);
+  /// Time of the network now: since the server was made.
+  TimeNs Now() const { return SteadyNow() - start_; }
+
+  const BytePort* port(int node) const {
+    return places_[static_cast<std::size_t>(node)].port.get();
+  }
+  std::uint64_t bytes_read() const { return bytes_read_; }
+  /// What is to be told to the user: a port has a client, two modems have one address.
+  std::function<void(const std::string&)> say = [](const std::string&) {};
+
+ private:
+  struct Place {
+    std::unique_ptr<BytePort> port;
+    PortListener listener;
+    std::string name;
+  };
+  void Write(int node, const std::string& bytes) override;
+  void HangUp(int node) override;
+  void OnSharedAddress(int node, int address) override;
+  PortListener ListenerOf(int node);
+  void Log(int node, const char* what, const char* bytes, std::size_t size);
+
+  TimeNs start_ = SteadyNow();
+  ModemWater water_;
+  std::vector<Place> places_;
+  std::vector<BytePort*> ports_;
+  std::ofstream log_;
+  std::uint64_t bytes_read_ = 0;
+};
+
+/// The engine that a place asks for.
+std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundings* world);
+
+}  // namespace stg::acoustics

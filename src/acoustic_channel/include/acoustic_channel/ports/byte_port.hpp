@@ -1,0 +1,88 @@
+#pragma once
+
+#include <poll.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "auv_common/time.hpp"
+
+/// Streams of bytes to the outside: sockets, pseudo terminals and serial lines behind one interface
+/// for poll(2). Nothing here blocks.
+namespace stg::acoustics {
+
+/// Told what comes over a port.
+struct PortListener {
+  std::function<void()> connected;
+  std::function<void()> disconnected;
+  std::function<void(const char* bytes, std::size_t size)> read;
+};
+
+/// One stream at a time. What the other side does not read is kept up to 256 KiB, then dropped and
+/// counted; a connection that has not been read for ten seconds is closed.
+class BytePort {
+ public:
+  virtual ~BytePort();
+  BytePort(const BytePort&) = delete;
+  BytePort& operator=(const BytePort&) = delete;
+
+  /// What poll has to watch, appended.
+  virtual void Watch(std::vector<pollfd>* watched) const;
+  /// Accepts, connects, reads and writes what is possible now [ns of any clock that does not jump].
+  /// Reads at most 16 KiB, so that who floods does not keep others waiting.
+  virtual void Serve(TimeNs now, const PortListener& listener);
+  /// Earliest time at which Serve is wanted without an event.
+  virtual TimeNs next() const;
+  void Write(const std::string& bytes);
+  /// Closes the connection, where it is one; the port waits for another.
+  void HangUp() { hang_up_ = true; }
+
+  bool connected() const { return stream_ >= 0; }
+  std::uint64_t dropped() const { return dropped_; }
+  /// In words: "tcp 127.0.0.1:9201".
+  const std::string& name() const { return name_; }
+
+ protected:
+  explicit BytePort(std::string name) : name_(std::move(name)) {}
+  /// False: the stream stays open when nobody reads it or a hang-up is wanted (a terminal).
+  virtual bool closes() const { return true; }
+  void Open(int stream);
+  void Close(const PortListener& listener);
+  void ReadSome(const PortListener& listener);
+  void WriteSome(TimeNs now, const PortListener& listener);
+
+  std::string name_;
+  int stream_ = -1;
+
+ private:
+  std::string out_;
+  TimeNs stalled_ = -1;  ///< since when nothing could be written
+  bool hang_up_ = false;
+  std::uint64_t dropped_ = 0;
+};
+
+/// Listens on an address; one client at a time, a second one is refused and counted. Throws
+/// UserError where the port cannot be had. Port 0: any that is free.
+std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port);
+/// Connects, and again after 1, 2, 4, ... up to 30 s.
+std::unique_ptr<BytePort> MakeTcpClient(const std::string& host, int port);
+/// A pseudo terminal, raw, without echo, mode 0600; `link` becomes a symbolic link to it and is
+/// removed at the end. Throws UserError where the link is something else than a link of an earlier
+/// run that leads nowhere. @param link empty: none
+std::unique_ptr<BytePort> MakePty(const std::string& link);
+/// A serial device, raw. Opened again when it vanishes.
+std::unique_ptr<BytePort> MakeSerial(const std::string& device, int baud);
+
+/// tcp://HOST:PORT or a serial device. Throws UserError for what is neither.
+std::unique_ptr<BytePort> MakePortTo(const std::string& where, int baud);
+
+/// Waits until something happens at a port, or `until` by the steady clock.
+void WaitForPorts(const std::vector<BytePort*>& ports, TimeNs until);
+/// Of the steady clock.
+TimeNs SteadyNow();
+
+}  // namespace stg::acoustics

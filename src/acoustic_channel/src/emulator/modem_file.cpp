@@ -1,0 +1,163 @@
+#include "acoustic_channel/emulator/modem_file.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "acoustic_channel/modem/modem_profile.hpp"
+#include "auv_common/config/loader.hpp"
+#include "auv_common/error.hpp"
+
+namespace stg::acoustics {
+namespace {
+
+using config::YamlTree;
+
+const YamlTree::Entry* FindEntry(const YamlTree& map, const std::string& key) {
+  for (const YamlTree::Entry& entry : map.entries) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+YamlTree Without(const YamlTree& map, const std::string& key) {
+  YamlTree rest = map;
+  rest.entries.clear();
+  for (const YamlTree::Entry& entry : map.entries) {
+    if (entry.key != key) rest.entries.push_back(entry);
+  }
+  return rest;
+}
+
+[[noreturn]] void Fail(const std::string& file, int line, const std::string& key,
+                       const std::string& why) {
+  throw UserError(file + ":" + std::to_string(line) + ": " + key + ": " + why);
+}
+
+/// Texts that are no names: paths, topics, addresses. They are taken out of the map.
+void TakeText(const std::string& file, const std::string& prefix, const std::string& key,
+              YamlTree* map, std::string* text) {
+  const YamlTree::Entry* entry = FindEntry(*map, key);
+  if (entry == nullptr) return;
+  if (entry->value.kind != YamlTree::Kind::kScalar || entry->value.scalar.empty()) {
+    Fail(file, entry->line, prefix + key, "expected a text");
+  }
+  *text = entry->value.scalar;
+  *map = Without(*map, key);
+}
+
+ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& prefix) {
+  ModemPlace place;
+  if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
+  TakeText(file, prefix + ".", "pty", &map, &place.pty);
+  TakeText(file, prefix + ".", "serial", &map, &place.serial);
+  TakeText(file, prefix + ".", "firmware", &map, &place.firmware);
+  config::Table t;
+  t.Section(prefix);
+  t.Add("protocol", config::Name(&place.protocol, ModemProtocols()), config::kNone, "-", "");
+  t.Add("tcp", &place.tcp, config::Within(0, 65535), "-", "");
+  t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
+  t.Add("interpreter", config::Name(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
+  t.Add("address", &place.address, config::Within(1, 254), "-", "");
+  t.Add("broadcast", &place.broadcast, config::Within(0, 255), "-", "");
+  t.Add("defer", &place.defer, config::kNone, "-", "");
+  t.Add("rssi_offset_db", &place.rssi_offset_db, config::Within(-1e3, 1e3), "dB", "");
+  config::Loader loader(t, config::Scope::kWhole);
+  loader.ApplyPart(map, prefix + ".", file);
+  const int ports = (place.tcp >= 0) + !place.pty.empty() + !place.serial.empty();
+  if (ports != 1) Fail(file, map.line, prefix, "needs one of tcp, pty and serial");
+  return place;
+}
+
+ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index) {
+  const std::string prefix = "vehicles[" + std::to_string(index) + "]";
+  if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
+  ModemVehicle v;
+  v.id = index;
+  config::Table t;
+  t.Section(prefix);
+  t.Add("name", &v.name, config::kNone, "-", "");
+  t.Add("id", &v.id, config::Within(0, 254), "-", "");
+  t.Add("position_m", config::Numbers(&v.position_m), config::Within(-1e7, 1e7), "m", "");
+  config::Loader loader(t, config::Scope::kWhole);
+  YamlTree rest = Without(map, "modem");
+  TakeText(file, prefix + ".", "odom", &rest, &v.odom);
+  loader.ApplyPart(rest, prefix + ".", file);
+  if (v.name.empty()) Fail(file, map.line, prefix + ".name", "missing key");
+  v.moored = FindEntry(map, "position_m") != nullptr;
+  if (v.moored && !v.odom.empty()) Fail(file, map.line, prefix + ".odom", "not beside position_m");
+  if (v.odom.empty()) v.odom = "/" + v.name + "/odom";
+  if (const YamlTree::Entry* modem = FindEntry(map, "modem")) {
+    v.modem = ReadPlace(file, modem->value, prefix + ".modem");
+    if (v.modem->address == 0) v.modem->address = v.id + 1;
+  }
+  return v;
+}
+
+void RefuseTwins(const std::string& file, const YamlTree& list,
+                 const std::vector<ModemVehicle>& vehicles) {
+  std::set<std::string> seen;
+  const auto once = [&](const std::string& what, std::size_t i) {
+    if (seen.insert(what).second) return;
+    Fail(file, list.items[i].line, "vehicles[" + std::to_string(i) + "]",
+         "a second vehicle with " + what);
+  };
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const ModemVehicle& v = vehicles[i];
+    once("name " + v.name, i);
+    once("id " + std::to_string(v.id), i);
+    if (!v.modem) continue;
+    if (v.modem->tcp > 0) once("TCP port " + std::to_string(v.modem->tcp), i);
+    if (!v.modem->pty.empty()) once("terminal " + v.modem->pty, i);
+    if (!v.modem->serial.empty()) once("device " + v.modem->serial, i);
+    once("modem address " + std::to_string(v.modem->address), i);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> ModemProtocols() { return {"s2c"}; }
+
+std::string WhyNot(const std::string& protocol, const std::string& profile) {
+  const std::string waveform = ModemProfiles().Make(profile)->waveform;
+  if (protocol == "s2c" && waveform == "evologics_s2c") return "";
+  return "a modem with the protocol " + protocol + " cannot have the profile " + profile;
+}
+
+ModemFile LoadModemFile(const std::string& path) {
+  const YamlTree root = config::ParseYaml(config::ReadBoundedFile(path), path);
+  const YamlTree::Entry* list = FindEntry(root, "vehicles");
+  if (list == nullptr) Fail(path, root.line, "vehicles", "missing key");
+  if (list->value.kind != YamlTree::Kind::kSequence || list->value.items.empty()) {
+    Fail(path, list->line, "vehicles", "expected a list that is not empty");
+  }
+  ModemFile file;
+  for (const YamlTree& item : list->value.items) {
+    file.vehicles.push_back(ReadVehicle(path, item, static_cast<int>(file.vehicles.size())));
+  }
+  RefuseTwins(path, list->value, file.vehicles);
+
+  file.network.run.agents = static_cast<int>(file.vehicles.size());
+  file.network.run.name = "modems";
+  config::Table t;
+  Describe(&file.network.run.time, &t);
+  t.Section("");
+  t.Add("seed", &file.network.run.seed, config::kNone, "-", "");
+  Describe(&file.network.channel, &t);
+  config::Loader loader(t, config::Scope::kWhole);
+  YamlTree rest = Without(root, "vehicles");
+  TakeText(path, "", "listen", &rest, &file.listen);
+  loader.ApplyPart(rest, "", path);
+  if (const auto violation = config::FindBadValue(t)) loader.Refuse(*violation);
+  if (const auto violation = FindConflict(file.network.channel, file.network.run)) {
+    loader.Refuse(*violation);
+  }
+  const auto profiles = MakeFleet(file.network.channel.modem, file.network.run.agents);
+  for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
+    if (!file.vehicles[i].modem) continue;
+    const std::string why = WhyNot(file.vehicles[i].modem->protocol, profiles[i].name);
+    if (!why.empty()) Fail(path, list->value.items[i].line, "vehicles", why);
+  }
+  return file;
+}
+
+}  // namespace stg::acoustics

@@ -1,0 +1,126 @@
+#include "acoustic_channel/emulator/modem_server.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "acoustic_channel/s2c/s2c_modem.hpp"
+#include "auv_common/error.hpp"
+
+namespace stg::acoustics {
+namespace {
+
+TimeNs UtcNow() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::unique_ptr<BytePort> OpenPort(const ModemPlace& place, const std::string& listen) {
+  if (place.tcp >= 0) return MakeTcpServer(listen, place.tcp);
+  if (!place.serial.empty()) return MakeSerial(place.serial, place.baud);
+  return MakePty(place.pty);
+}
+
+}  // namespace
+
+std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundings* world) {
+  s2c::ModemOptions options;
+  options.net = place.interpreter == "net";
+  options.address = place.address;
+  options.broadcast = place.broadcast;
+  options.defer = place.defer;
+  options.rssi_offset_db = place.rssi_offset_db;
+  options.firmware = place.firmware;
+  return std::make_unique<s2c::S2cModem>(options, world);
+}
+
+ModemServer::ModemServer(const ModemFile& file, const std::string& command_log)
+    : water_(file.network.channel, file.network.run, this), places_(file.vehicles.size()) {
+  if (!command_log.empty()) {
+    log_.open(command_log);
+    if (!log_) throw UserError(command_log + ": cannot be written");
+    log_ << "t_ns,vehicle,what,bytes_hex\n";
+  }
+  for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
+    const ModemVehicle& v = file.vehicles[i];
+    const int node = static_cast<int>(i);
+    places_[i].name = v.name;
+    if (!v.modem) continue;
+    places_[i].port = OpenPort(*v.modem, file.listen);
+    places_[i].listener = ListenerOf(node);
+    ports_.push_back(places_[i].port.get());
+    water_.Attach(node, v.modem->address,
+                  [&](ModemSurroundings* world) { return MakeEngine(*v.modem, world); });
+  }
+  water_.SetUtcStart(UtcNow() - Now());
+  water_.Reset(file.network.run.seed, 0);
+  for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
+    const ModemVehicle& v = file.vehicles[i];
+    const Vec3<double> place{v.position_m[0], v.position_m[1], v.position_m[2]};
+    water_.Move(static_cast<int>(i), 0, {place, {0.0, 0.0, 0.0}});
+    // A vehicle without word of its place is not in the water.
+    if (!v.moored) water_.SetPresent(static_cast<int>(i), 0, false);
+  }
+}
+
+PortListener ModemServer::ListenerOf(int node) {
+  PortListener listener;
+  const auto time = [this] { return std::max(Now(), water_.now()); };
+  listener.connected = [this, node, time] {
+    const Place& place = places_[static_cast<std::size_t>(node)];
+    say(place.name + ": a host at " + place.port->name());
+    Log(node, "connect", nullptr, 0);
+    water_.Connect(node, time());
+  };
+  listener.disconnected = [this, node, time] {
+    say(places_[static_cast<std::size_t>(node)].name + ": its host has gone");
+    Log(node, "disconnect", nullptr, 0);
+    water_.Disconnect(node, time());
+  };
+  listener.read = [this, node, time](const char* bytes, std::size_t size) {
+    bytes_read_ += size;
+    const TimeNs t = time();
+    water_.Advance(t);
+    Log(node, "read", bytes, size);
+    water_.Read(node, t, {reinterpret_cast<const std::uint8_t*>(bytes), size});
+  };
+  return listener;
+}
+
+void ModemServer::Serve(TimeNs until) {
+  WaitForPorts(ports_, start_ + std::min(until, water_.next()));
+  water_.Advance(std::max(Now(), water_.now()));
+  for (const Place& place : places_) {
+    if (place.port) place.port->Serve(SteadyNow(), place.listener);
+  }
+}
+
+void ModemServer::Write(int node, const std::string& bytes) {
+  BytePort* port = places_[static_cast<std::size_t>(node)].port.get();
+  if (port != nullptr) port->Write(bytes);
+}
+
+void ModemServer::HangUp(int node) {
+  BytePort* port = places_[static_cast<std::size_t>(node)].port.get();
+  if (port != nullptr) port->HangUp();
+}
+
+void ModemServer::OnSharedAddress(int node, int address) {
+  say(places_[static_cast<std::size_t>(node)].name + ": the address " + std::to_string(address) +
+      " is also another modem's");
+}
+
+void ModemServer::Log(int node, const char* what, const char* bytes, std::size_t size) {
+  if (!log_.is_open()) return;
+  static const char kDigits[] = "0123456789abcdef";
+  std::string hex;
+  for (std::size_t k = 0; k < size; ++k) {
+    const auto byte = static_cast<unsigned char>(bytes[k]);
+    hex += kDigits[byte >> 4];
+    hex += kDigits[byte & 0xf];
+  }
+  log_ << water_.now() << ',' << places_[static_cast<std::size_t>(node)].name << ',' << what << ','
+       << hex << '\n';
+}
+
+}  // namespace stg::acoustics

@@ -1,0 +1,170 @@
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "acoustic_channel/access/medium_access.hpp"
+#include "acoustic_channel/ports/byte_port.hpp"
+#include "auv_common/error.hpp"
+
+namespace stg::acoustics {
+namespace {
+
+constexpr TimeNs kFirstWait = 1'000'000'000, kLongestWait = 30'000'000'000;
+
+void SendAtOnce(int stream) {
+  const int on = 1;
+  setsockopt(stream, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+}
+
+[[noreturn]] void Fail(const std::string& name) {
+  throw UserError(name + ": " + std::strerror(errno));
+}
+
+class TcpServer : public BytePort {
+ public:
+  TcpServer(const std::string& address, int port) : BytePort("tcp " + address) {
+    name_ += ":" + std::to_string(port);
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(static_cast<std::uint16_t>(port));
+    if (inet_pton(AF_INET, address.c_str(), &place.sin_addr) != 1) {
+      throw UserError("listen: '" + address + "' is no IPv4 address");
+    }
+    listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    const int on = 1;
+    setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+    if (bind(listener_, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0 ||
+        listen(listener_, 4) != 0) {
+      const int error = errno;
+      close(listener_);
+      errno = error;
+      Fail(name_);
+    }
+    socklen_t size = sizeof(place);
+    getsockname(listener_, reinterpret_cast<sockaddr*>(&place), &size);
+    name_ = "tcp " + address + ":" + std::to_string(ntohs(place.sin_port));
+  }
+  ~TcpServer() override { close(listener_); }
+
+  void Watch(std::vector<pollfd>* watched) const override {
+    watched->push_back({listener_, POLLIN, 0});
+    BytePort::Watch(watched);
+  }
+  void Serve(TimeNs now, const PortListener& listener) override {
+    // Who has gone makes room for who comes.
+    BytePort::Serve(now, listener);
+    for (;;) {
+      const int client = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+      if (client < 0) return;
+      if (connected()) {
+        close(client);  // a port has one client
+        continue;
+      }
+      SendAtOnce(client);
+      Open(client);
+      listener.connected();
+      BytePort::Serve(now, listener);
+    }
+  }
+
+ private:
+  int listener_ = -1;
+};
+
+class TcpClient : public BytePort {
+ public:
+  TcpClient(const std::string& host, int port)
+      : BytePort("tcp " + host + ":" + std::to_string(port)), host_(host), port_(port) {}
+  ~TcpClient() override {
+    if (trying_ >= 0) close(trying_);
+  }
+
+  void Watch(std::vector<pollfd>* watched) const override {
+    if (trying_ >= 0) watched->push_back({trying_, POLLOUT, 0});
+    BytePort::Watch(watched);
+  }
+  TimeNs next() const override { return connected() || trying_ >= 0 ? BytePort::next() : retry_; }
+  void Serve(TimeNs now, const PortListener& listener) override {
+    const bool before = connected();
+    BytePort::Serve(now, listener);
+    if (connected()) return;
+    if (before) Later(now, true);
+    if (trying_ < 0 && now >= retry_) Try(now);
+    if (trying_ >= 0) Finish(now, listener);
+  }
+
+ private:
+  void Later(TimeNs now, bool first) {
+    if (trying_ >= 0) close(trying_);
+    trying_ = -1;
+    wait_ = first ? kFirstWait : std::min(2 * wait_, kLongestWait);
+    retry_ = now + wait_;
+  }
+  void Try(TimeNs now) {
+    addrinfo hints{};
+    hints.ai_family = AF_INET;
+    hints.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    if (getaddrinfo(host_.c_str(), std::to_string(port_).c_str(), &hints, &found) != 0) {
+      return Later(now, false);
+    }
+    trying_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    const int result = connect(trying_, found->ai_addr, found->ai_addrlen);
+    freeaddrinfo(found);
+    if (result != 0 && errno != EINPROGRESS) Later(now, false);
+  }
+  void Finish(TimeNs now, const PortListener& listener) {
+    pollfd ready{trying_, POLLOUT, 0};
+    if (poll(&ready, 1, 0) <= 0) return;
+    int error = 0;
+    socklen_t size = sizeof(error);
+    getsockopt(trying_, SOL_SOCKET, SO_ERROR, &error, &size);
+    if (error != 0) return Later(now, false);
+    SendAtOnce(trying_);
+    Open(trying_);
+    trying_ = -1;
+    wait_ = kFirstWait / 2;
+    listener.connected();
+    BytePort::Serve(now, listener);
+  }
+
+  std::string host_;
+  int port_;
+  int trying_ = -1;
+  TimeNs retry_ = 0, wait_ = kFirstWait / 2;
+};
+
+}  // namespace
+
+std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port) {
+  return std::make_unique<TcpServer>(address, port);
+}
+std::unique_ptr<BytePort> MakeTcpClient(const std::string& host, int port) {
+  return std::make_unique<TcpClient>(host, port);
+}
+
+std::unique_ptr<BytePort> MakePortTo(const std::string& where, int baud) {
+  const std::string scheme = "tcp://";
+  if (where.compare(0, scheme.size(), scheme) != 0) return MakeSerial(where, baud);
+  const std::size_t colon = where.rfind(':');
+  const std::string host = where.substr(scheme.size(), colon - scheme.size());
+  int port = 0;
+  try {
+    port = colon > scheme.size() ? std::stoi(where.substr(colon + 1)) : 0;
+  } catch (const std::exception&) {
+    port = 0;
+  }
+  if (host.empty() || port < 1 || port > 65535) {
+    throw UserError("port: '" + where + "' is not tcp://HOST:PORT");
+  }
+  return MakeTcpClient(host, port);
+}
+
+}  // namespace stg::acoustics
