@@ -53,6 +53,12 @@ class LaunchFiles(unittest.TestCase):
                         f"no node {node.package}/{node.type}",
                     )
 
+    def test_each_node_is_free_of_what_earlier_launches_told_it(self):
+        for path in [*launch_files(), *sorted((LAUNCH / "include").glob("*.launch"))]:
+            for node in ElementTree.parse(path).getroot().iter("node"):
+                with self.subTest(f"{path.name}: {node.get('name')}"):
+                    self.assertEqual(node.get("clear_params"), "true")
+
     def test_each_argument_is_documented(self):
         for path in launch_files():
             with self.subTest(path.name):

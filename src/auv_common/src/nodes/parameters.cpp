@@ -17,11 +17,10 @@
 namespace stg::nodes {
 namespace {
 
-/// The value of `name` in the private namespace or the nearest one above; false: nowhere.
-bool Find(const std::string& name, XmlRpc::XmlRpcValue* value) {
-  const ros::NodeHandle node("~");
-  std::string key;
-  return node.searchParam(name, key) && node.getParam(key, *value);
+/// The value of a parameter; false: it is not set.
+bool Find(const std::string& name, Reach reach, XmlRpc::XmlRpcValue* value) {
+  if (ros::NodeHandle("~").getParam(name, *value)) return true;
+  return reach == Reach::kRun && ros::param::get("/" + name, *value);
 }
 
 [[noreturn]] void Refuse(const std::string& name, const std::string& wanted) {
@@ -37,9 +36,9 @@ std::vector<std::string> Words(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> TextsParameter(const std::string& name) {
+std::vector<std::string> TextsParameter(const std::string& name, Reach reach) {
   XmlRpc::XmlRpcValue value;
-  if (!Find(name, &value)) return {};
+  if (!Find(name, reach, &value)) return {};
   if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return Words(value);
   if (value.getType() != XmlRpc::XmlRpcValue::TypeArray) Refuse(name, "a list of texts");
   std::vector<std::string> list;
@@ -50,23 +49,24 @@ std::vector<std::string> TextsParameter(const std::string& name) {
   return list;
 }
 
-std::string TextParameter(const std::string& name, const std::string& fallback) {
+std::string TextParameter(const std::string& name, const std::string& fallback, Reach reach) {
   XmlRpc::XmlRpcValue value;
-  if (!Find(name, &value)) return fallback;
+  if (!Find(name, reach, &value)) return fallback;
   if (value.getType() != XmlRpc::XmlRpcValue::TypeString) Refuse(name, "a text");
   return value;
 }
 
 bool FlagParameter(const std::string& name, bool fallback) {
   XmlRpc::XmlRpcValue value;
-  if (!Find(name, &value)) return fallback;
+  if (!Find(name, Reach::kNode, &value)) return fallback;
   if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean) Refuse(name, "true or false");
   return value;
 }
 
-double NumberParameter(const std::string& name, double fallback, double lo, double hi) {
+double NumberParameter(const std::string& name, double fallback, double lo, double hi,
+                       Reach reach) {
   XmlRpc::XmlRpcValue value;
-  if (!Find(name, &value)) return fallback;
+  if (!Find(name, reach, &value)) return fallback;
   double number = 0.0;
   if (value.getType() == XmlRpc::XmlRpcValue::TypeInt) {
     number = static_cast<int>(value);
@@ -81,15 +81,15 @@ double NumberParameter(const std::string& name, double fallback, double lo, doub
   return number;
 }
 
-int IntegerParameter(const std::string& name, int fallback, int lo, int hi) {
-  const double number = NumberParameter(name, fallback, lo, hi);
+int IntegerParameter(const std::string& name, int fallback, int lo, int hi, Reach reach) {
+  const double number = NumberParameter(name, fallback, lo, hi, reach);
   if (number != std::floor(number)) Refuse(name, "a whole number");
   return static_cast<int>(number);
 }
 
 void RequireIndices(const std::string& name, int count) {
   XmlRpc::XmlRpcValue value;
-  if (!Find(name, &value)) return;
+  if (!Find(name, Reach::kNode, &value)) return;
   XmlRpc::XmlRpcValue list = value;
   if (value.getType() != XmlRpc::XmlRpcValue::TypeArray) {
     list = XmlRpc::XmlRpcValue();
@@ -116,23 +116,24 @@ bool SimulatedTimeParameter() {
 }
 
 config::Source ScenarioSource() {
-  std::vector<std::string> overrides = TextsParameter("overrides");
-  const int agents = IntegerParameter("agents", 0, 0, 255);
+  std::vector<std::string> overrides = TextsParameter("overrides", Reach::kRun);
+  const int agents = IntegerParameter("agents", 0, 0, 255, Reach::kRun);
   if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
   overrides.emplace_back("mode=acoustic");
-  return config::NamedSource(config::ScenarioFolder(), TextParameter("scenario", "medium"),
-                             TextParameter("condition", "nominal"), overrides);
+  return config::NamedSource(config::ScenarioFolder(),
+                             TextParameter("scenario", "medium", Reach::kRun),
+                             TextParameter("condition", "nominal", Reach::kRun), overrides);
 }
 
 void RequireAgents(int agents) {
-  const int wanted = IntegerParameter("agents", 0, 0, 255);
+  const int wanted = IntegerParameter("agents", 0, 0, 255, Reach::kRun);
   if (wanted > 0 && agents != wanted) {
     throw UserError("parameter overrides: the number of AUVs is the launch argument 'agents'");
   }
 }
 
 void WarnOfOverriddenAgents(int agents) {
-  const std::string name = TextParameter("scenario", "medium");
+  const std::string name = TextParameter("scenario", "medium", Reach::kRun);
   const config::Source file = config::NamedSource(config::ScenarioFolder(), name);
   const int own = config::Load<RunConfig>(file, config::Scope::kOwnSections).agents;
   if (own == agents) return;

@@ -109,7 +109,9 @@ void RunInRealTime(int priority) {
 
 }  // namespace
 
-int RealtimePriorityParameter() { return IntegerParameter("realtime_priority", 0, 0, 99); }
+int RealtimePriorityParameter() {
+  return IntegerParameter("realtime_priority", 0, 0, 99, Reach::kRun);
+}
 
 void ReservePollLoop() { RoundSlot::Get(); }
 
