@@ -13,6 +13,9 @@ namespace {
 /// do not depend on whose first word came in.
 constexpr TimeNs kHour = 3'600'000'000'000;
 
+/// Packets of a vehicle whose steps are still to come.
+constexpr std::size_t kMostWaiting = 10'000;
+
 TimeNs Nanoseconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9)); }
 
 MotionTrack::Limits LimitsOf(const FleetPatience& p) {
@@ -56,8 +59,12 @@ FleetChannel::Word FleetChannel::Move(int vehicle, TimeNs stamp, const Motion& m
 
 FleetChannel::Word FleetChannel::Offer(const Transmission& packet) {
   channel_->CheckOrThrow(packet);
-  if (first_ < 0 || packet.stamp < first_) first_ = packet.stamp;
   auto& queue = waiting_[static_cast<std::size_t>(packet.source)];
+  if (queue.size() >= kMostWaiting) {
+    throw UserError("packet: " + std::to_string(kMostWaiting) +
+                    " of its vehicle wait already for their steps");
+  }
+  if (first_ < 0 || packet.stamp < first_) first_ = packet.stamp;
   const auto later =
       std::upper_bound(queue.begin(), queue.end(), packet.stamp,
                        [](TimeNs t, const Offered& o) { return t < o.packet.stamp; });
@@ -168,12 +175,28 @@ void FleetChannel::Collect() {
         listener_->OnAbsent(offered.packet);
         continue;
       }
-      sending_.push_back(std::move(offered));
-      if (!channel_->continuous()) break;  // one a step
+      const bool one_a_step = !channel_->continuous();
+      if (one_a_step && !sending_.empty() && sending_.back().packet.source == static_cast<int>(i)) {
+        Discard(sending_.back());  // as a modem does that has room for one
+        sending_.back() = std::move(offered);
+      } else {
+        sending_.push_back(std::move(offered));
+      }
     }
   }
   offers_.clear();
   for (const Offered& offered : sending_) Hand(offered);
+}
+
+void FleetChannel::Discard(const Offered& offered) const {
+  PacketInfo info;
+  info.source = offered.packet.source;
+  info.destination = offered.packet.destination;
+  info.tag = offered.packet.tag;
+  info.bytes = offered.bytes.size();
+  info.offered = offered.packet.stamp - start_;
+  info.generation = offered.packet.generation - start_;
+  listener_->OnDiscarded(info, DropReason::kQueue, next_ - start_);
 }
 
 void FleetChannel::Hand(const Offered& offered) {

@@ -292,5 +292,38 @@ TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
             std::string::npos);
 }
 
+TEST(FleetChannel, WithoutModemsTheNewestPacketOfAStepLeavesAndTheOthersAreTold) {
+  Scribe scribe;
+  FleetChannel fleet(FleetNetwork(0.0), FleetPatience(), &scribe);
+  for (int step = 0; step <= 10; ++step) {
+    const TimeNs t = kEpoch + step * 100 * kFleetMs;
+    for (int i = 0; i < 3; ++i) fleet.Move(i, t, {{10.0 * i, 0.0, -5.0}, {}});
+    for (std::uint32_t k = 0; k < 5; ++k) {
+      fleet.Offer(Saying(0, 10U * static_cast<std::uint32_t>(step) + k, t - k * kFleetMs, "x"));
+    }
+  }
+  fleet.Finish();
+  int discarded = 0;
+  for (const std::string& line : scribe.lines) discarded += line.rfind("discarded 0", 0) == 0;
+  EXPECT_EQ(discarded, 11 * 4);
+  EXPECT_TRUE(scribe.Has("heard 1 0 50 ")) << "the newest of step 5, in step 5";
+  EXPECT_FALSE(scribe.Has("heard 1 0 51 "));
+}
+
+TEST(FleetChannel, PacketsOfTheFutureWaitInALimitedNumber) {
+  Scribe scribe;
+  FleetChannel fleet(FleetNetwork(), FleetPatience(), &scribe);
+  fleet.Move(0, kEpoch, {});
+  int taken = 0;
+  EXPECT_THROW(
+      {
+        for (std::uint32_t k = 0; k < 1'000'000; ++k, ++taken) {
+          fleet.Offer(Saying(0, k, kEpoch + 1'000'000'000, "x"));
+        }
+      },
+      UserError);
+  EXPECT_EQ(taken, 10'000);
+}
+
 }  // namespace
 }  // namespace stg::acoustics

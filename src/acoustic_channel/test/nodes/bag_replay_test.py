@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import random
+import resource
 import signal
 import subprocess
 import sys
@@ -84,7 +85,7 @@ class BagReplay(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def run_channel(self, name, **parameters):
+    def run_channel(self, name, popen=None, **parameters):
         """Starts the channel by itself; returns the process and its packet log."""
         log = pathlib.Path(self.folder.name) / f"{name}.csv"
         config = pathlib.Path(roslib.packages.get_pkg_dir("acoustic_channel")) / "config"
@@ -94,7 +95,60 @@ class BagReplay(unittest.TestCase):
             "packet_log": str(log), **parameters}
         rospy.set_param("/acoustic_channel", private)
         command = [self.channel, "__name:=acoustic_channel", f"__log:={log}.log"]
-        return subprocess.Popen(command), log
+        return subprocess.Popen(command, **(popen or {})), log
+
+    def end_of(self, name, popen=None, **parameters):
+        """Returns (exit status, output) of a channel that reads a bag."""
+        process, _ = self.run_channel(
+            name, {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, **(popen or {})},
+            **{"bag": str(self.bag), **parameters})
+        output = process.communicate(timeout=60.0)[0].decode(errors="replace")
+        return process.returncode, output
+
+    def test_a_log_that_does_not_fit_on_the_disk_is_told(self):
+        def little_room():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+        status, output = self.end_of("full", {"preexec_fn": little_room})
+        self.assertEqual(status, 4, output)
+        self.assertRegex(output, "not all packets are in .*/full.csv")
+
+    def test_nothing_is_emptied_before_the_bag_is_known_to_be_there(self):
+        log = pathlib.Path(self.folder.name) / "before.csv"
+        log.write_text("of an earlier run\n")
+        status, output = self.end_of("before", bag="/nonexistent.bag")
+        self.assertEqual(status, 2, output)
+        self.assertEqual(log.read_text(), "of an earlier run\n")
+        bag = self.bag.read_bytes()
+        link = pathlib.Path(self.folder.name) / "link.bag"
+        link.symlink_to(self.bag)
+        for same in (self.bag, link):
+            status, output = self.end_of("same", packet_log=str(same))
+            self.assertEqual(status, 2, output)
+            self.assertIn("is the bag that is read", output)
+        self.assertEqual(self.bag.read_bytes(), bag)
+
+    def test_a_pipe_is_neither_log_nor_bag(self):
+        pipe = pathlib.Path(self.folder.name) / "pipe"
+        os.mkfifo(pipe)
+        for name in ("packet_log", "bag"):
+            status, output = self.end_of("piped", **{name: str(pipe)})
+            self.assertEqual(status, 2, output)
+            self.assertRegex(output, f"parameter {name}: .*/pipe: not a regular file")
+
+    def test_a_damaged_bag_is_named(self):
+        whole = self.bag.read_bytes()
+        frame = b"\x05\x00\x00\x00world"
+        self.assertGreater(whole.count(frame), 100)
+        at = whole.index(frame, len(whole) // 2)
+        damaged = pathlib.Path(self.folder.name) / "damaged.bag"
+        for content in (whole[:len(whole) // 2],
+                        whole[:at] + b"\xff\xff\xff\x0fworld" + whole[at + len(frame):]):
+            damaged.write_bytes(content)
+            status, output = self.end_of("damaged", bag=str(damaged))
+            self.assertEqual(status, 2, output)
+            self.assertIn(f"parameter bag: {damaged}: ", output)
 
     def replayed_by_the_channel(self, name):
         """Returns the log of the channel that reads the bag itself."""

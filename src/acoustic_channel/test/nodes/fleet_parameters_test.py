@@ -55,6 +55,15 @@ class FleetParameters(unittest.TestCase):
         self.assertIn("/nonexistent.yaml", self.refusal(config="/nonexistent.yaml"))
         self.assertIn("config", self.refusal(config=""))
 
+    def test_a_clock_that_nobody_publishes(self):
+        # As another run leaves it on a master that lives longer.
+        rospy.set_param("/use_sim_time", True)
+        try:
+            self.assertIn("/use_sim_time is true, but nobody has published /clock",
+                          self.refusal(clock_timeout=1.0))
+        finally:
+            rospy.delete_param("/use_sim_time")
+
     def test_parameters_out_of_range(self):
         for wrong in ({"silent_after": -1.0}, {"twist": "sideways"}, {"lag": "long"},
                       {"packet_log": "/dev/null/packets.csv"}, {"bag": "/nonexistent.bag"}):

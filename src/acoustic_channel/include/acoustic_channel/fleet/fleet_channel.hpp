@@ -61,8 +61,9 @@ class FleetChannel {
 
   /// Numbers must be finite.
   Word Move(int vehicle, TimeNs stamp, const Motion& motion);
-  /// Throws UserError that says why the modem would never take the packet. `kLate`: it is offered
-  /// now instead.
+  /// Throws UserError that says why the modem would never take the packet, or that too many wait.
+  /// `kLate`: it is offered now instead. Where the model has no modems, one packet of a vehicle
+  /// leaves in a step: the newest, and the others of the step are discarded (kQueue).
   Word Offer(const Transmission& packet);
   /// See Channel::Ping; asked at the next step. The listener hears how it ends.
   void Ping(int source, int destination, TimeNs timeout, std::uint32_t tag);
@@ -101,6 +102,7 @@ class FleetChannel {
   void Ask(TimeNs now);
   void Place();
   void Collect();
+  void Discard(const Offered& offered) const;
   void Hand(const Offered& offered);
 
   TimeNs period_, lag_, patience_, silent_after_;

@@ -12,6 +12,8 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMostDoubtful = 10'000;
+/// Frames that diagnostics tell, and characters of each.
+constexpr std::size_t kMostFrames = 8, kFrameText = 64;
 /// A clock that is on its way is here after this wall time.
 constexpr double kDoubt_s = 0.5;
 
@@ -51,8 +53,9 @@ void FleetNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mess
   const auto& pose = message->pose.pose;
   const auto& twist = message->twist.twist;
   if (!frame_.empty() && message->header.frame_id != frame_) {
-    return RefuseOdometry(vehicle, Refusals::kFrame,
-                          "frame '" + message->header.frame_id + "' instead of " + frame_);
+    return RefuseOdometry(
+        vehicle, Refusals::kFrame,
+        "frame '" + message->header.frame_id.substr(0, kFrameText) + "' instead of " + frame_);
   }
   // An orientation matters only where the twist is told in it.
   const bool placed = twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position);
@@ -79,7 +82,7 @@ void FleetNode::Place(int vehicle, const nav_msgs::Odometry& message) {
     return RefuseOdometry(vehicle, Refusals::kStale, "too late for its stamp");
   }
   ++odometry_;
-  ++frames_[message.header.frame_id];
+  if (frames_.size() < kMostFrames) frames_.insert(message.header.frame_id.substr(0, kFrameText));
 }
 
 void FleetNode::OnPacket(int vehicle, const auv_msgs::AcousticPacket::ConstPtr& message) {
@@ -148,9 +151,11 @@ void FleetNode::AskPings() {
   for (const PingDesk::Question& q : pings_.TakeQuestions()) {
     const int source = IndexOf(vehicles_, q.source);
     const int destination = IndexOf(vehicles_, q.destination);
-    if (source == kNobody || destination == kNobody || source == destination) {
-      pings_.Refuse(q.tag, "there is no vehicle " + std::to_string(q.source) +
-                               " that could ask a vehicle " + std::to_string(q.destination));
+    if (source == kNobody || destination == kNobody) {
+      const auto missing = source == kNobody ? q.source : q.destination;
+      pings_.Refuse(q.tag, "there is no vehicle " + std::to_string(missing));
+    } else if (source == destination) {
+      pings_.Refuse(q.tag, "vehicle " + std::to_string(q.source) + " cannot ping itself");
     } else if (!fleet_.heard_of(source) || !fleet_.heard_of(destination)) {
       pings_.Refuse(q.tag, "no odometry yet of one of the two");
     } else {

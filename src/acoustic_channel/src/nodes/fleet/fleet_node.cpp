@@ -1,10 +1,8 @@
 #include "fleet_node.hpp"
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "acoustic_channel/fleet/fleet_config.hpp"
 #include "acoustic_channel/nodes/conversions.hpp"
@@ -13,6 +11,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
+#include "auv_common/regular_file.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -58,6 +57,21 @@ std::vector<int> IdsOf(const std::vector<Vehicle>& vehicles) {
   return ids;
 }
 
+/// Null where `path` is empty. Opened before anything is written.
+std::unique_ptr<rosbag::Bag> OpenBag(const std::string& path) {
+  if (path.empty()) return nullptr;
+  auto bag = std::make_unique<rosbag::Bag>();
+  try {
+    RequireRegularFile(path);
+    bag->open(path, rosbag::bagmode::Read);
+  } catch (const UserError& error) {
+    throw UserError(std::string("parameter bag: ") + error.what());
+  } catch (const std::exception& error) {  // a damaged one throws many kinds
+    throw UserError("parameter bag: " + path + ": " + error.what());
+  }
+  return bag;
+}
+
 }  // namespace
 
 FleetNode::TwistFrame FleetNode::TwistParameter() {
@@ -77,9 +91,11 @@ FleetNode::FleetNode()
       tolerance_(Nanoseconds(NumberParameter("stamp_tolerance", 5.0, 0.0, 1e6))),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),
       bag_(TextParameter("bag", "")),
+      clock_deadline_s_(WallSeconds() + NumberParameter("clock_timeout", 30.0, 0.0, 1e6)),
       members_(vehicles_.size()),
       reports_(IdsOf(vehicles_)),
-      files_(TextParameter("packet_log", ""), IdsOf(vehicles_)),
+      recording_(OpenBag(bag_)),
+      files_(TextParameter("packet_log", ""), IdsOf(vehicles_), bag_),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   Connect();
 }
@@ -115,10 +131,19 @@ void FleetNode::Spin() {
   fleet_.Finish();
   Tell();
   files_.Flush();
+  if (!files_.lost().empty()) {
+    throw LostOutput("acoustic channel: not all packets are in " + files_.lost() +
+                     ", which could not be written");
+  }
 }
 
 double FleetNode::Work() {
   WatchClock(NsOf(ros::Time::now()));
+  if (now_ == 0 && WallSeconds() > clock_deadline_s_) {
+    throw UserError(
+        "parameter /use_sim_time is true, but nobody has published /clock: start the simulator "
+        "first, or, where another run has left the parameter, `rosparam delete /use_sim_time`");
+  }
   if (now_ > 0) {
     JudgeAgain();
     AskPings();
@@ -171,13 +196,18 @@ void FleetNode::ReplayBag() {
     packets[vehicles_[i].Topic(topics::kAcousticTx)] = static_cast<int>(i);
     wanted.insert(wanted.end(), {vehicles_[i].odom, vehicles_[i].Topic(topics::kAcousticTx)});
   }
-  rosbag::Bag bag;
   try {
-    bag.open(bag_, rosbag::bagmode::Read);
-  } catch (const rosbag::BagException& error) {
+    ReadBag(rosbag::View(*recording_, rosbag::TopicQuery(wanted)), odometry, packets);
+  } catch (const std::exception& error) {  // of rosbag, of a message, or out of memory
     throw UserError("parameter bag: " + bag_ + ": " + error.what());
   }
-  rosbag::View view(bag, rosbag::TopicQuery(wanted));
+  fleet_.Finish();
+  Tell();
+  Conclude();
+}
+
+void FleetNode::ReadBag(rosbag::View view, const std::map<std::string, int>& odometry,
+                        const std::map<std::string, int>& packets) {
   for (const rosbag::MessageInstance& m : view) {
     if (!ros::ok()) return;
     WatchClock(NsOf(m.getTime()));
@@ -193,9 +223,6 @@ void FleetNode::ReplayBag() {
     }
     health_.Tick();
   }
-  fleet_.Finish();
-  Tell();
-  Conclude();
 }
 
 /// Says how the bag went.

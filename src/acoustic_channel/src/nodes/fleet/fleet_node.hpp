@@ -6,10 +6,14 @@
 #include <auv_msgs/TransmitStatus.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,6 +60,8 @@ class FleetNode : private acoustics::FleetListener {
   void Connect();
   double Work();
   void ReplayBag();
+  void ReadBag(rosbag::View view, const std::map<std::string, int>& odometry,
+               const std::map<std::string, int>& packets);
   void Conclude();
   void WatchClock(TimeNs now);
   void StartAnew();
@@ -105,8 +111,10 @@ class FleetNode : private acoustics::FleetListener {
   TimeNs tolerance_;   ///< of stamps against the clock [ns]
   double display_period_s_;
   std::string bag_;
+  double clock_deadline_s_;  ///< wall time until which the first time of the clock is waited for
   std::vector<Member> members_;
   PacketReports reports_;
+  std::unique_ptr<rosbag::Bag> recording_;  ///< null: the vehicles speak
   PacketFiles files_;
   acoustics::PacketObserver* log_ = nullptr;  ///< of this run
 
@@ -114,7 +122,7 @@ class FleetNode : private acoustics::FleetListener {
   TimeNs settled_ = 0;      ///< the clock a moment ago: what was on its way then has come in
   double settled_s_ = 0.0;  ///< wall time of that
   std::deque<Doubtful> doubtful_;
-  std::map<std::string, int> frames_;  ///< of odometry that was taken
+  std::set<std::string> frames_;  ///< of odometry that was taken, the first few
   std::uint64_t runs_ = 0, receptions_ = 0, odometry_ = 0, packets_ = 0;
   std::uint64_t foreign_messages_ = 0;  ///< of the bag, of some other type
   Refusals refused_odometry_, refused_packets_;

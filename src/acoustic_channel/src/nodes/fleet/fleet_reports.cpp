@@ -174,7 +174,7 @@ void FleetNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
   if (frames_.size() > 1) {
     std::string names;
-    for (const auto& [name, count] : frames_) names += (names.empty() ? "" : ", ") + name;
+    for (const std::string& name : frames_) names += (names.empty() ? "" : ", ") + name;
     status.mergeSummary(DiagnosticStatus::WARN, "odometry in different frames: " + names);
   }
   ReportVehicles(&status);

@@ -2,15 +2,23 @@
 
 #include <ros/console.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "auv_common/error.hpp"
+#include "auv_common/regular_file.hpp"
 
 namespace stg::nodes {
 
-PacketFiles::PacketFiles(std::string path, const std::vector<int>& ids) : path_(std::move(path)) {
+PacketFiles::PacketFiles(std::string path, const std::vector<int>& ids, const std::string& bag)
+    : path_(std::move(path)) {
   for (const int id : ids) names_.push_back(std::to_string(id));
-  if (!path_.empty()) Open(1);
+  if (path_.empty()) return;
+  std::error_code ignored;  // of one that is not there yet
+  if (!bag.empty() && std::filesystem::equivalent(path_, bag, ignored)) {
+    throw UserError("parameter packet_log: " + path_ + " is the bag that is read");
+  }
+  Open(1);
 }
 
 std::string PacketFiles::Path(int run) const {
@@ -23,12 +31,21 @@ std::string PacketFiles::Path(int run) const {
 }
 
 void PacketFiles::Open(int run) {
+  // To open a pipe that nobody reads would wait for ever.
+  if (std::filesystem::exists(Path(run))) {
+    try {
+      RequireRegularFile(Path(run));
+    } catch (const UserError& error) {
+      throw UserError(std::string("parameter packet_log: ") + error.what());
+    }
+  }
   file_ = std::ofstream(Path(run));
   if (!file_) throw UserError("parameter packet_log: cannot write " + Path(run));
 }
 
 acoustics::PacketObserver* PacketFiles::Begin(TimeNs start) {
   if (path_.empty()) return nullptr;
+  Flush();
   log_.reset();
   if (++runs_ > 1) Open(runs_);
   log_ = std::make_unique<acoustics::PacketLog>(&file_, static_cast<int>(names_.size()), names_,
@@ -39,7 +56,9 @@ acoustics::PacketObserver* PacketFiles::Begin(TimeNs start) {
 void PacketFiles::Flush() {
   if (!log_) return;
   file_.flush();
-  if (!file_) ROS_ERROR_THROTTLE(10.0, "%s: cannot be written", Path(runs_).c_str());
+  if (file_) return;
+  ROS_ERROR_THROTTLE(10.0, "%s: cannot be written", Path(runs_).c_str());
+  if (lost_.empty()) lost_ = Path(runs_);
 }
 
 }  // namespace stg::nodes

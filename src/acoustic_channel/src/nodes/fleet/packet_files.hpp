@@ -13,20 +13,23 @@ namespace stg::nodes {
 /// with vehicles by id and times of the clock.
 class PacketFiles {
  public:
-  /// @param path of the first file; empty: none. Throws UserError when it cannot be written.
-  PacketFiles(std::string path, const std::vector<int>& ids);
+  /// @param path of the first file; empty: none. Throws UserError when it cannot be written, is
+  ///        there and no file, or is the same file as `bag`, which is read.
+  PacketFiles(std::string path, const std::vector<int>& ids, const std::string& bag);
 
   /// A run begins, whose times count from `start` [ns]. Its log, null without a file, is valid
   /// until the next.
   acoustics::PacketObserver* Begin(TimeNs start);
-  /// What was written is in the file.
+  /// What was written is in the file, or is lost.
   void Flush();
+  /// The first file that does not hold all of its rows; empty: all do.
+  const std::string& lost() const { return lost_; }
 
  private:
   void Open(int run);
   std::string Path(int run) const;
 
-  std::string path_;
+  std::string path_, lost_;
   std::vector<std::string> names_;
   int runs_ = 0;
   std::ofstream file_;
