@@ -9,6 +9,7 @@ nothing failed.
 """
 
 import argparse
+import difflib
 import glob
 import json
 import os
@@ -181,9 +182,12 @@ def main(argv):
     tests = [lint_test(build_dir)] if options.lint else []
     tests += registered_tests(build_dir)
     total_passed, total_failed = 0, 0
-    for test in tests:
-        if not test.matches(options.pattern):
-            continue
+    wanted = [test for test in tests if test.matches(options.pattern)]
+    if not wanted:
+        near = difflib.get_close_matches(options.pattern, [test.name for test in tests], 3, 0.3)
+        print(f"no test has '{options.pattern}' in its name, nor in that of a source file"
+              + (f"; the nearest are {', '.join(near)}" if near else ""))
+    for test in wanted:
         remove_results(test.result_file)
         log_path = os.path.join(log_dir, f"{test.name}.log")
         start = time.monotonic()

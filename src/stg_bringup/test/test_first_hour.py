@@ -58,6 +58,22 @@ class Help(unittest.TestCase):
         self.assertEqual(status, 2, output)
         self.assertIn("no scenario 'nowhere'", output)
 
+    def test_a_slip_of_the_pen_is_answered_in_two_lines(self):
+        for words, hint in ((("run", "meduim"), "did you mean 'medium'?"),
+                            (("tset",), "did you mean 'test'?"),
+                            (("lnit",), "did you mean 'lint'?")):
+            with self.subTest(words):
+                status, output = run(ROOT / "stg", *words)
+                self.assertEqual(status, 2, output)
+                self.assertIn(hint, output.splitlines()[0])
+                self.assertEqual(len(output.splitlines()), 2, output)
+
+    def test_help_of_a_run_names_the_controllers(self):
+        for scenario in ("medium", "hard", "swarm", "field"):
+            output = run(ROOT / "stg", "run", scenario, "--help")[1]
+            for controller in ("pursuit,", "pursuit_separated", "encircle", "idle"):
+                self.assertIn(controller, output, scenario)
+
 
     def test_scripts_tell_their_usage_without_a_master(self):
         for script in ("auv_common/scripts/ends_launch", "acoustic_channel/scripts/chat.py",
