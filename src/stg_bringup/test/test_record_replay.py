@@ -17,7 +17,8 @@ import rosgraph
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from run_launcher import launch, process_of, processes_with, stop  # noqa: E402  (lies beside this file)
+from graph_listener import wait_for  # noqa: E402  (these lie beside this file)
+from run_launcher import free_port, launch, process_of, processes_with, stop  # noqa: E402
 
 STEPS = 60
 AGENTS = 4
@@ -82,23 +83,29 @@ class RecordReplay(unittest.TestCase):
         self.assertEqual(len(reports[-1].final_state), len(reports[-1].global_state))
 
     def test_replay_publishes_what_was_recorded(self):
-        # The delay gives the recorder time to subscribe, also on a busy machine.
-        process, environment = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
-                                      "rate:=4", "delay:=8")
+        port = free_port()
+        environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}",
+                           ROS_IP="127.0.0.1", ROS_HOME=str(self.folder / "ros_home"))
+        output = self.folder / "replayed.bag"
+        topics = {"/auv_0/odom", "/auv_3/task_state"}
+        programs = []
         try:
-            output = self.folder / "replayed.bag"
-            end = time.monotonic() + 20.0
-            while not rosgraph.is_master_online(environment["ROS_MASTER_URI"]):
-                self.assertLess(time.monotonic(), end, "no master")
-                time.sleep(0.1)
-            with subprocess.Popen(["rosrun", "rosbag", "record", "-q", "-O", str(output),
-                                   "/auv_0/odom", "/auv_3/task_state"],
-                                  env=environment) as recorder:
-                process.wait(timeout=40)
-                recorder.send_signal(signal.SIGINT)
-                recorder.wait(timeout=10)
+            programs.append(subprocess.Popen(["roscore", "-p", str(port)], env=environment,
+                                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+            master = rosgraph.Master("/record_replay", master_uri=environment["ROS_MASTER_URI"])
+            wait_for(master.is_online, 40.0, "a master")
+            programs.append(subprocess.Popen(
+                ["rosrun", "rosbag", "record", "-q", "-O", str(output), *topics], env=environment))
+            # It listens before the replay begins, however busy the machine is.
+            wait_for(lambda: topics <= {name for name, _ in master.getSystemState()[1]}, 40.0,
+                     "the recorder listens")
+            process, _ = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
+                                "rate:=4", "delay:=3", port=port)
+            programs.append(process)
+            process.communicate(timeout=80)
         finally:
-            stop(process)
+            for program in reversed(programs):  # the recorder closes its bag before the master ends
+                stop(program)
         for topic in ("/auv_0/odom", "/auv_3/task_state"):
             with rosbag.Bag(str(self.bag)) as bag, rosbag.Bag(str(output)) as replayed:
                 before = [m for _, m, _ in bag.read_messages(topics=[topic])]
@@ -107,13 +114,13 @@ class RecordReplay(unittest.TestCase):
             self.assertEqual(after, before[len(before) - len(after):])
 
     def test_replay_from_the_middle_has_the_scenario_and_the_static_frames(self):
-        # Both were published once, before the part that is shown.
+        # Both were published once, before the part that is shown, which lasts 150 s here.
         process, environment = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
-                                      "start:=3", "rate:=0.3", "delay:=0.1")
+                                      "start:=3", "rate:=0.02", "delay:=0.1")
         try:
             for topic, content in (("/scenario", "name: medium"), ("/tf_static", "world_ned")):
                 heard = subprocess.run(
-                    ["timeout", "15", "bash", "-c",
+                    ["timeout", "60", "bash", "-c",
                      f"until rostopic echo -n 1 {topic} 2>/dev/null; do sleep 0.2; done"],
                     env=environment, stdout=subprocess.PIPE, universal_newlines=True, check=False)
                 self.assertIn(content, heard.stdout, topic)
