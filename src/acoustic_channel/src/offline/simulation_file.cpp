@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "acoustic_channel/channel/channel.hpp"
+#include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 
@@ -201,6 +202,32 @@ TrafficSpec ReadFlow(const std::string& file, const YamlTree& map, std::size_t i
   return flow;
 }
 
+/// Refuses nodes of modems that are, while they take part, in the air or in the ground: the model
+/// knows neither. Between the points of a track the way is straight.
+void RequireInWater(const std::string& file, const Reader& reader, const SimulationFile& s) {
+  if (!PropagationModels().Make(s.channel.model, s.channel.models, s.channel)->has_modems()) return;
+  const WaterConfig& water = s.channel.water;
+  const auto& items = reader.List("nodes");
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const SimulatedNode& node = s.nodes[i];
+    const double end_s = node.leaves_s > 0.0 ? std::min(node.leaves_s, s.duration_s) : s.duration_s;
+    for (const double t_s : node.track.Corners(node.joins_s, end_s)) {
+      Vec3<double> p_W, v_W;
+      node.track.At(t_s, &p_W, &v_W);
+      const double depth_m = water.surface_z_m - p_W.z;
+      if (depth_m >= 0.0 && depth_m <= water.depth_m) continue;
+      const std::string where =
+          depth_m < 0.0 ? std::to_string(-depth_m) + " m above the surface"
+                        : std::to_string(depth_m) + " m deep, where the water has " +
+                              std::to_string(water.depth_m) + " m (channel.physical.water.depth_m)";
+      const bool tracked = Reader(file, items[i], Item("nodes", i)).Has("track");
+      Reader(file, items[i], Item("nodes", i))
+          .Fail(tracked ? "track" : "position_m",
+                "at " + std::to_string(t_s) + " s the node is " + where);
+    }
+  }
+}
+
 void ReadNodes(const std::string& file, const Reader& reader, SimulationFile* simulation) {
   const auto& items = reader.List("nodes");
   if (items.size() < 2) reader.Fail("nodes", "a network needs two nodes");
@@ -217,6 +244,7 @@ void ReadNodes(const std::string& file, const Reader& reader, SimulationFile* si
           std::to_string(id) + " is also the id of nodes[" + std::to_string(seen[id]) + "]");
     }
   }
+  RequireInWater(file, reader, *simulation);
   std::sort(simulation->nodes.begin(), simulation->nodes.end(),
             [](const SimulatedNode& a, const SimulatedNode& b) { return a.id < b.id; });
 }

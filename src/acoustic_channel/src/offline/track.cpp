@@ -105,4 +105,13 @@ void Track::At(double t_s, Vec3<double>* p_W, Vec3<double>* v_W) const {
   }
 }
 
+std::vector<double> Track::Corners(double from_s, double to_s) const {
+  std::vector<double> times{from_s};
+  for (const Point& point : points_) {
+    if (point.t_s > from_s && point.t_s < to_s) times.push_back(point.t_s);
+  }
+  times.push_back(to_s);
+  return times;
+}
+
 }  // namespace stg::acoustics

@@ -197,6 +197,24 @@ TEST_F(Simulate, BadFilesAreRefusedWithFileLineAndKey) {
   }
 }
 
+TEST_F(Simulate, NodesWithModemsStayInTheWaterWhileTheyTakePart) {
+  Write("t,x,y,z\n0,100,0,-20\n10,100,0,52\n15,100,0,-20\n", "leap.csv");
+  const auto with = [](const std::string& node) {
+    return Head() + "nodes:\n" + NodeAt(0, 0, 0) + "  - {id: 1, " + node + "}\n" + "traffic:\n" +
+           At(0, "1.0");
+  };
+  for (const auto& [node, message] : std::vector<std::pair<std::string, std::string>>{
+           {"position_m: [90, 0, 52]", "nodes[1].position_m: at 0.000000 s the node is 52.0"},
+           {"position_m: [90, 0, -1e5]", "m deep, where the water has"},
+           {"position_m: [90, 0, -20], velocity_mps: [0, 0, 2]", "at 20.000000 s the node is 20.0"},
+           {"track: leap.csv", "nodes[1].track: at 10.000000 s the node is 52.0"}}) {
+    const Result r = Run(with(node));
+    EXPECT_EQ(r.code, 2) << node;
+    EXPECT_NE(r.err.find(message), std::string::npos) << r.err;
+  }
+  EXPECT_EQ(Run(with("track: leap.csv, leaves_s: 5.0")).code, 0) << "it has left before";
+}
+
 TEST_F(Simulate, ListsOfTimesMayBeLong) {
   const auto file = [](int count) {
     std::string times;

@@ -23,6 +23,7 @@ struct Layout {
   nc_type type = NC_SHORT;
   const char *lat = "lat", *lon = "lon", *name = "elevation";
   const char *lat_units = "degrees_north", *lon_units = "degrees_east";
+  std::string positive, units;  // of the elevations; empty: not said
   bool descending = false, transposed = false, coordinates = true, uneven = false;
   double scale = 1.0, offset = 0.0, fill = 0.0, sign = 1.0;
   bool packed = false, has_fill = false;
@@ -64,7 +65,11 @@ class GridFile : public ::testing::Test {
       Ok(nc_put_att_double(nc, var, "add_offset", NC_DOUBLE, 1, &l.offset));
     }
     if (l.has_fill) Ok(nc_put_att_double(nc, var, "_FillValue", l.type, 1, &l.fill));
-    if (l.sign < 0.0) Ok(nc_put_att_text(nc, var, "positive", 4, "down"));
+    const std::string positive = l.sign < 0.0 ? "down" : l.positive;
+    if (!positive.empty()) {
+      Ok(nc_put_att_text(nc, var, "positive", positive.size(), positive.data()));
+    }
+    if (!l.units.empty()) Ok(nc_put_att_text(nc, var, "units", l.units.size(), l.units.data()));
     Ok(nc_enddef(nc));
     std::vector<double> lats, lons, values;
     for (int r = 0; r < l.rows; ++r) {
@@ -227,8 +232,18 @@ TEST_F(GridFile, SaysWhatIsWrongWithAFile) {
   l.value = [](int row, int column) { return row == 1 && column == 1 ? 32767.0 : -50.0; };
   says(Refusal(l), "1 of 35 elevations there are missing");
   l = Layout();
-  l.value = [](int, int) { return 20000.0; };
-  says(Refusal(l), "nowhere on Earth");
+  for (const double nowhere : {20000.0, 9500.0, -13000.0}) {
+    l.value = [nowhere](int, int) { return nowhere; };
+    says(Refusal(l), "nowhere on Earth");
+  }
+  for (const char* units : {"feet", "ft", "km", "cm", "fathoms"}) {
+    l = Layout();
+    l.units = units;
+    says(Refusal(l), ("is in '" + std::string(units) + "'; convert it to metres").c_str());
+  }
+  l = Layout();
+  l.positive = "sideways";
+  says(Refusal(l), "positive = 'sideways', which is neither up nor down");
   l = Layout();
   l.type = NC_FLOAT;
   l.value = [](int, int) { return std::nan(""); };

@@ -25,6 +25,8 @@ class Track {
   static Track Load(const std::string& file);
 
   void At(double t_s, Vec3<double>* p_W, Vec3<double>* v_W) const;
+  /// Both times, and those between them at which the way may turn.
+  std::vector<double> Corners(double from_s, double to_s) const;
 
  private:
   std::vector<Point> points_;

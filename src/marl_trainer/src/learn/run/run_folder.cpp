@@ -23,7 +23,8 @@ void WriteScenario(const fs::path& file, const Scenario& scenario) {
 RunFolder::RunFolder(std::string path, std::ostream* log) : path_(std::move(path)), log_(log) {
   std::error_code error;
   fs::create_directories(path_, error);
-  if (!fs::is_directory(path_)) throw UserError(path_ + ": cannot create the folder");
+  if (!error && fs::is_directory(path_, error)) fs::directory_iterator readable(path_, error);
+  if (error) throw UserError(path_ + ": cannot be the folder of a run: " + error.message());
 }
 
 bool RunFolder::HoldsRun() const {
