@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "auv_common/durable_file.hpp"
@@ -11,8 +12,8 @@ namespace {
 using Variable = NetcdfFile::Variable;
 
 constexpr std::size_t kLongestAxis = 1'000'000;
-/// Deeper or higher than anything on Earth [m].
-constexpr double kAbsurd_m = 15'000.0;
+/// The Challenger Deep and Mount Everest, with room for errors of a survey [m].
+constexpr double kLowest_m = -11'100.0, kHighest_m = 8'900.0;
 /// Share of a step by which an axis may be uneven: GEBCO's cells are not whole in binary.
 constexpr double kUneven = 0.01;
 /// A tenth of a millimetre on the ground: what is closer is no grid but damage [degrees].
@@ -113,13 +114,37 @@ Span SpanOf(const NetcdfFile& file, const std::vector<double>& axis, double lo, 
   return {std::min(first, last - 1), last - std::min(first, last - 1) + 1};
 }
 
+std::string LowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+/// Whether values are depths below the sea.
+bool PointsDown(const NetcdfFile& file, const Variable& variable) {
+  const std::string positive = file.Text(variable, "positive").value_or("up");
+  const std::string word = LowerCase(positive);
+  if (word != "up" && word != "down") {
+    file.Refuse(variable.name + " has positive = '" + positive + "', which is neither up nor down");
+  }
+  return word == "down";
+}
+
+/// A file that does not say is taken to be in metres.
+void RequireMetres(const NetcdfFile& file, const Variable& variable) {
+  const std::string units = file.Text(variable, "units").value_or("");
+  if (OneOf(LowerCase(units), {"", "m", "meter", "meters", "metre", "metres"})) return;
+  file.Refuse(variable.name + " is in '" + units + "'; convert it to metres");
+}
+
 /// Metres above the sea from what the file holds.
 void Unpack(const NetcdfFile& file, const Variable& variable, std::vector<float>* values) {
   const double scale = file.Number(variable, "scale_factor").value_or(1.0);
   const double offset = file.Number(variable, "add_offset").value_or(0.0);
   const auto fill = file.Number(variable, "_FillValue");
   const auto missing = file.Number(variable, "missing_value");
-  const bool down = file.Text(variable, "positive").value_or("up") == "down";
+  const bool down = PointsDown(file, variable);
+  RequireMetres(file, variable);
   std::size_t gaps = 0;
   for (float& value : *values) {
     const bool gap = !std::isfinite(value) || (fill && value == static_cast<float>(*fill)) ||
@@ -129,7 +154,7 @@ void Unpack(const NetcdfFile& file, const Variable& variable, std::vector<float>
       continue;
     }
     const double metres = (down ? -1.0 : 1.0) * (value * scale + offset);
-    if (!(std::abs(metres) <= kAbsurd_m)) {
+    if (!(metres >= kLowest_m && metres <= kHighest_m)) {
       file.Refuse(variable.name + " holds " + std::to_string(metres) +
                   " m, which is nowhere on Earth");
     }
@@ -205,38 +230,39 @@ Bathymetry Bathymetry::Load(const std::string& file, const GeoRegion& region) {
 }
 
 void Bathymetry::Save(const std::string& path, const std::string& note) const {
+  const NetcdfLibrary& netcdf = NetcdfLibrary::Get();
   DurableFile durable(path, "the terrain");
   int file = -1, dimensions[2] = {}, lat = -1, lon = -1, elevation = -1;
   const auto check = [&](int status) {
     if (status == NC_NOERR) return;
-    if (file >= 0) nc_close(file);
-    durable.Fail(nc_strerror(status));
+    if (file >= 0) netcdf.close(file);
+    durable.Fail(netcdf.strerror(status));
   };
   const auto text = [&](int variable, const char* name, const std::string& value) {
-    check(nc_put_att_text(file, variable, name, value.size(), value.data()));
+    check(netcdf.put_att_text(file, variable, name, value.size(), value.data()));
   };
-  check(nc_create(durable.temporary().c_str(), NC_CLOBBER, &file));
-  check(nc_def_dim(file, "lat", latitudes_.size(), &dimensions[0]));
-  check(nc_def_dim(file, "lon", longitudes_.size(), &dimensions[1]));
-  check(nc_def_var(file, "lat", NC_DOUBLE, 1, &dimensions[0], &lat));
-  check(nc_def_var(file, "lon", NC_DOUBLE, 1, &dimensions[1], &lon));
-  check(nc_def_var(file, "elevation", NC_SHORT, 2, dimensions, &elevation));
+  check(netcdf.create(durable.temporary().c_str(), NC_CLOBBER, &file));
+  check(netcdf.def_dim(file, "lat", latitudes_.size(), &dimensions[0]));
+  check(netcdf.def_dim(file, "lon", longitudes_.size(), &dimensions[1]));
+  check(netcdf.def_var(file, "lat", NC_DOUBLE, 1, &dimensions[0], &lat));
+  check(netcdf.def_var(file, "lon", NC_DOUBLE, 1, &dimensions[1], &lon));
+  check(netcdf.def_var(file, "elevation", NC_SHORT, 2, dimensions, &elevation));
   text(lat, "units", "degrees_north");
   text(lon, "units", "degrees_east");
   text(elevation, "units", "m");
   text(elevation, "positive", "up");
   text(NC_GLOBAL, "Conventions", "CF-1.6");
   text(NC_GLOBAL, "history", note);
-  check(nc_enddef(file));
+  check(netcdf.enddef(file));
   std::vector<short> rounded;
   rounded.reserve(elevation_.size());
   for (const float value : elevation_) rounded.push_back(static_cast<short>(std::lround(value)));
-  check(nc_put_var_double(file, lat, latitudes_.data()));
-  check(nc_put_var_double(file, lon, longitudes_.data()));
-  check(nc_put_var_short(file, elevation, rounded.data()));
+  check(netcdf.put_var_double(file, lat, latitudes_.data()));
+  check(netcdf.put_var_double(file, lon, longitudes_.data()));
+  check(netcdf.put_var_short(file, elevation, rounded.data()));
   const int closing = file;
   file = -1;
-  check(nc_close(closing));
+  check(netcdf.close(closing));
   durable.Commit();
 }
 

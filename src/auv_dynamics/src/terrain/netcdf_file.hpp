@@ -1,10 +1,10 @@
 #pragma once
 
-#include <netcdf.h>
-
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "netcdf_library.hpp"
 
 namespace stg::dynamics {
 
@@ -40,6 +40,7 @@ class NetcdfFile {
  private:
   void Check(int status, const char* doing) const;
 
+  const NetcdfLibrary& netcdf_;
   std::string path_;
   int id_ = -1;
 };

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <netcdf.h>
+
+namespace stg::dynamics {
+
+/// The functions of libnetcdf, which is opened when the first terrain is. With what it is linked to
+/// (HDF5, curl, TLS, Kerberos, XML, ...) it fills seven megabytes, in every agent, where only a
+/// world reads terrain.
+class NetcdfLibrary {
+ public:
+  /// Throws UserError where the library is not installed.
+  static const NetcdfLibrary& Get();
+
+  decltype(&::nc_strerror) strerror = nullptr;
+  decltype(&::nc_open) open = nullptr;
+  decltype(&::nc_close) close = nullptr;
+  decltype(&::nc_inq_nvars) inq_nvars = nullptr;
+  decltype(&::nc_inq_var) inq_var = nullptr;
+  decltype(&::nc_inq_vardimid) inq_vardimid = nullptr;
+  decltype(&::nc_inq_dim) inq_dim = nullptr;
+  decltype(&::nc_inq_att) inq_att = nullptr;
+  decltype(&::nc_get_att_string) get_att_string = nullptr;
+  decltype(&::nc_free_string) free_string = nullptr;
+  decltype(&::nc_get_att_text) get_att_text = nullptr;
+  decltype(&::nc_get_att_double) get_att_double = nullptr;
+  decltype(&::nc_get_vara_double) get_vara_double = nullptr;
+  decltype(&::nc_get_vara_float) get_vara_float = nullptr;
+  decltype(&::nc_create) create = nullptr;
+  decltype(&::nc_def_dim) def_dim = nullptr;
+  decltype(&::nc_def_var) def_var = nullptr;
+  decltype(&::nc_put_att_text) put_att_text = nullptr;
+  decltype(&::nc_enddef) enddef = nullptr;
+  decltype(&::nc_put_var_double) put_var_double = nullptr;
+  decltype(&::nc_put_var_short) put_var_short = nullptr;
+
+ private:
+  NetcdfLibrary();
+};
+
+}  // namespace stg::dynamics
