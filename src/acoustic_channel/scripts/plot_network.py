@@ -154,7 +154,7 @@ def draw_ages(axes, log):
     whole = share_of_time(together, grid)
     axes.plot(grid, whole, color="#4a8cff", linewidth=2, label=f"all {len(pieces)} links")
     reach = grid[np.searchsorted(whole, 0.99).clip(max=len(grid) - 1)]
-    axes.set_xlim(0.0, max(reach * 1.3, 1e-9))
+    axes.set_xlim(0.0, max(min(reach * 1.3, grid[-1]), 1e-9))
     axes.legend(loc="lower right")
 
 
@@ -206,20 +206,25 @@ def draw_energy(axes, summary):
     axes.set_xticks(range(0, len(nodes), -(-len(nodes) // 20)))
 
 
+def airtime_per_time(edges, begin, length, weight=1.0):
+    """Share of each span between two edges that packets fill, each with its part and its weight."""
+    before = [(weight * np.clip(edge - begin, 0.0, length)).sum() for edge in edges]
+    return np.diff(before) / np.diff(edges)
+
+
 def draw_load(axes, log, sent):
     """Airtime that is sent, and airtime that is delivered per receiver, over the run."""
     axes.set_title("load over time")
     axes.set_xlabel("time [s]")
     axes.set_ylabel("airtime per time")
     edges = np.linspace(0.0, log.end_s, 61)
-    width = edges[1] - edges[0]
     begin = np.array([s[0] for s in sent])
     length = np.array([s[1] - s[0] for s in sent])
-    if not len(begin) or not width > 0.0:
+    if not len(begin) or not log.end_s > 0.0:
         return
     share = np.array([s[3] for s in sent])
-    offered = np.histogram(begin, edges, weights=length)[0] / width
-    arrived = np.histogram(begin, edges, weights=length * share)[0] / width
+    offered = airtime_per_time(edges, begin, length)
+    arrived = airtime_per_time(edges, begin, length, share)
     middle = 0.5 * (edges[1:] + edges[:-1])
     axes.step(middle, offered, where="mid", color=GREY, label="sent")
     axes.step(middle, arrived, where="mid", color=GOOD, label="delivered, mean receiver")

@@ -75,6 +75,17 @@ class PlotNetwork(unittest.TestCase):
         self.assertEqual(done.stderr, f"plot_network: {picture}.svg: No space left on device\n")
         self.assertEqual(done.returncode, 2)
 
+    def test_a_packet_fills_every_span_that_it_is_in(self):
+        # One sender that never stops: nine seconds from 0.5 s on, then one more.
+        load = plot_network.airtime_per_time(
+            np.arange(0.0, 12.0, 2.0), np.array([0.5, 9.5]), np.array([9.0, 0.5])
+        )
+        np.testing.assert_allclose(load, [0.75, 1.0, 1.0, 1.0, 1.0])
+        half = plot_network.airtime_per_time(
+            np.array([0.0, 4.0]), np.array([1.0, 2.0]), np.array([1.0, 1.0]), np.array([0.5, 1.0])
+        )
+        np.testing.assert_allclose(half, [1.5 / 4.0])
+
     def test_age_is_the_sawtooth_of_the_deliveries(self):
         log = plot_network.Log(
             self.write(

@@ -3,7 +3,9 @@
 import unittest
 
 import matplotlib.colors
+import matplotlib.figure
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import stg
 from stg import render
@@ -45,6 +47,28 @@ class Pictures(unittest.TestCase):
             steps[0]["position"][-1], env.snapshot()["position"].ravel().astype(np.float32))  # fmt: skip
         with self.assertRaisesRegex(ValueError, "render_mode"):
             stg.report(stg.parallel_env())
+
+    def test_the_legend_of_eight_is_in_the_picture(self):
+        env = self.fly(2, overrides={"agents": 8})
+        figure = matplotlib.figure.Figure(figsize=(10.0, 5.4), dpi=100)
+        canvas = FigureCanvasAgg(figure)
+        render.draw_views(figure, [env.snapshot()], env.scenario)
+        canvas.draw()
+        box = figure.legends[0].get_window_extent()
+        self.assertGreater(box.x0, 0.0)
+        self.assertLess(box.x1, 1000.0)
+        self.assertLess(box.y1, figure.axes[0].xaxis.label.get_window_extent().y0)
+
+    def test_a_flat_swarm_has_heights_of_its_own_scale(self):
+        env = self.fly(2)
+        shot = env.snapshot()
+        for name in ("position", "target_position", "estimate"):
+            shot[name][:, 2] *= 0.01
+        figure = matplotlib.figure.Figure()
+        render.draw_views(figure, [shot], env.scenario)
+        side = figure.axes[1]
+        self.assertIn("heights", side.get_title())
+        self.assertLess(np.ptp(side.get_ylim()), 0.2 * np.ptp(side.get_xlim()))
 
     def test_tracks_grow(self):
         early, late = self.fly(2).render(), self.fly(60).render()

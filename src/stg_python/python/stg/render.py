@@ -13,6 +13,8 @@ __all__ = ["COLOURS", "draw", "draw_views"]
 COLOURS = ("#2a6fb0", "#b3641c", "#1b7f79", "#7a4fa3", "#b03a5b", "#4d6680", "#8a8a1c", "#333333")
 _VIEWS = ((0, 1, "from above", "x, east [m]", "y, north [m]"),
           (0, 2, "from the side", "x, east [m]", "z, up [m]"))  # fmt: skip
+_LEGEND_COLUMNS = 7  # that the narrowest picture of a user has room for
+_FLAT = 0.3  # a side view that is flatter has heights of its own scale
 
 
 def _colour(i):
@@ -46,12 +48,17 @@ def _draw_view(axes, history, scenario, view):
     extent = scenario["workspace.half_extent_m"]
     half = min(max(0.55 * np.ptp(shown, axis=0).max(), 0.05 * extent), 1.02 * extent)
     middle = 0.5 * (shown.max(axis=0) + shown.min(axis=0))
-    for set_limits, centre in zip((axes.set_xlim, axes.set_ylim), middle):
-        set_limits(centre - half, centre + half)
+    halves = [half, half]
+    upright = 0.55 * float(np.ptp(shown[:, 1]))
+    if b == 2 and 0.0 < upright < _FLAT * half:
+        halves[1] = max(1.2 * upright, 0.02 * half)
+        title += f" (heights {half / halves[1]:.0f} times)"
+    for set_limits, centre, reach in zip((axes.set_xlim, axes.set_ylim), middle, halves):
+        set_limits(centre - reach, centre + reach)
     for wall in (-extent, extent):
         axes.axhline(wall, color="#333333", lw=2.0)
         axes.axvline(wall, color="#333333", lw=2.0)
-    axes.set(title=title, xlabel=x_label, ylabel=y_label, aspect="equal")
+    axes.set(title=title, xlabel=x_label, ylabel=y_label, box_aspect=1.0)
     axes.grid(True, color="#e4e4e4", lw=0.6)
 
 
@@ -69,10 +76,13 @@ def draw_views(figure, history, scenario):
         f"{scenario.name}: {now['time']:.1f} s, mean distance to the target "
         f"{now['tracking'][:, 0].mean():.3f} m" + (f", {lost} lost" if lost else "")
     )
+    rows = 0
     if len(now["position"]) <= len(COLOURS):
-        figure.legend(*top.get_legend_handles_labels(), loc="lower center",
-                      ncol=len(now["position"]) + 2, frameon=False)  # fmt: skip
-    figure.subplots_adjust(left=0.08, right=0.98, top=0.86, bottom=0.19, wspace=0.28)
+        handles, labels = top.get_legend_handles_labels()
+        rows = -(-len(labels) // _LEGEND_COLUMNS)
+        figure.legend(handles, labels, loc="lower center", ncol=-(-len(labels) // rows),
+                      frameon=False)  # fmt: skip
+    figure.subplots_adjust(left=0.08, right=0.98, top=0.86, bottom=0.15 + 0.04 * rows, wspace=0.28)
 
 
 def draw(history, scenario, width=1000, height=540):
