@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 namespace stg::learn {
 namespace {
 
+constexpr double kPoor = 0.05;         // share of losses from which a policy is called poor
 constexpr double kLineInterval = 2.0;  // [s] between progress lines without a validation
 const std::pair<const char*, double> kThresholds[] = {
     {"1000", 1000.0}, {"1020", 1020.0}, {"1030", 1030.0}, {"1040", 1040.0}};
@@ -113,8 +115,8 @@ std::string TrainLog::Header() const {
 void TrainLog::Add(const TrainRecord& r) {
   assert(r.algorithm.size() == columns_.size());
   if (line_wall_ < 0.0) {
-    line_wall_ = wall_seconds_;
-    line_steps_ = env_steps_;
+    line_wall_ = began_wall_ = wall_seconds_;
+    line_steps_ = began_steps_ = env_steps_;
   }
   env_seconds_ += r.env_seconds;
   inference_seconds_ += r.inference_seconds;
@@ -152,6 +154,7 @@ void TrainLog::Add(const TrainRecord& r) {
     }
     if (best_validation_.empty() || value > best_validation_.at("return")) {
       best_validation_ = last_validation_;
+      best_steps_ = r.env_steps;
     }
   }
   if (r.validated || r.wall_seconds - line_wall_ >= kLineInterval) PrintLine(r);
@@ -161,10 +164,12 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   const double elapsed = std::max(r.wall_seconds - line_wall_, 1e-9);
   const double rate = static_cast<double>(r.env_steps - line_steps_) / elapsed;
   const double left = static_cast<double>(std::max<std::int64_t>(total_steps_ - r.env_steps, 0));
+  const double so_far = static_cast<double>(r.env_steps - began_steps_) /
+                        std::max(r.wall_seconds - began_wall_, 1e-9);
   char text[400];
   std::snprintf(text, sizeof text, "%5.1f%% %9" PRId64 " steps %6.1f s  %6.0f steps/s  ETA %4.0f s",
                 PercentDone(r.env_steps, total_steps_), r.env_steps, r.wall_seconds, rate,
-                left / std::max(rate, 1.0));
+                left / std::max(so_far, 1.0));
   *lines_ << text;
   if (r.validated) {
     std::snprintf(text, sizeof text, " | return %7.1f tail %.4f m lost %.3f contacts %.2f",
@@ -189,6 +194,27 @@ void TrainLog::PrintLine(const TrainRecord& r) {
   line_wall_ = r.wall_seconds;
   line_steps_ = r.env_steps;
   line_env_ = line_inference_ = line_update_ = 0.0;
+}
+
+void TrainLog::Conclude() const {
+  if (best_steps_ < 0) return;
+  const auto folder = std::filesystem::absolute(out_).lexically_normal();
+  const std::string policy = (folder / "policy_best.onnx").string();
+  const double lost = best_validation_.at("lost_rate");
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "best of the validations: at %" PRId64 " steps, return %.1f, tail %.4f m, lost %.3f",
+      best_steps_, best_validation_.at("return"), best_validation_.at("tail_distance"), lost);
+  *lines_ << text << "\n  it is   " << policy
+          << "\n  fly it  ./stg run medium scenario:=" << (folder / "scenario.yaml").string()
+          << " policy:=" << policy << std::endl;
+  if (lost >= kPoor) {
+    *lines_ << "  it is poor: a target is lost in " << std::lround(100.0 * lost)
+            << " % of the last part of its episodes; evaluate a controller beside it, such as "
+               "--policy encircle in open water, pursuit_separated elsewhere"
+            << std::endl;
+  }
 }
 
 void TrainLog::WriteSummary(const std::vector<NetworkSize>& networks, int workers,
@@ -237,6 +263,7 @@ std::string TrainLog::Save() const {
     json["reached"][name] = {moment.seconds, moment.steps};
   json["last"] = last_validation_;
   json["best"] = best_validation_;
+  json["best_steps"] = best_steps_;
   json["seconds"] = {env_seconds_,        inference_seconds_, update_seconds_,
                      validation_seconds_, update_flops_,      wall_seconds_};
   json["env_steps"] = env_steps_;
@@ -263,6 +290,7 @@ void TrainLog::Load(const std::string& text) {
     update_flops_ = s.at(4).get<double>();
     wall_seconds_ = s.at(5).get<double>();
     TakeMember(json, "env_steps", &env_steps_);
+    if (json.contains("best_steps")) TakeMember(json, "best_steps", &best_steps_);
   } catch (const std::exception& error) {
     throw UserError(std::string("checkpoint: the log cannot be read: ") + error.what());
   }

@@ -181,6 +181,7 @@ bool Trainer::Run() {
                   << " steps; policy_last is what was learned" << std::endl;
   }
   if (leads()) {
+    log_->Conclude();
     log_->WriteSummary(algorithm_->Sizes(), pool_.workers(), PeakFlops(&pool_),
                        finished ? "finished" : "signal", *team_.ranks);
   }

@@ -51,6 +51,10 @@ class TrainLog {
   void WriteSummary(const std::vector<NetworkSize>& networks, int workers, double peak_flops,
                     const std::string& stopped, const Communicator& ranks) const;
 
+  /// Says which validation was the best, where its policy lies and how to fly it; nothing before
+  /// the first one.
+  void Conclude() const;
+
   /// State for checkpoints, as JSON text.
   std::string Save() const;
   void Load(const std::string& text);
@@ -72,7 +76,10 @@ class TrainLog {
   std::map<std::string, double> last_validation_, best_validation_;
   double env_seconds_ = 0.0, inference_seconds_ = 0.0, update_seconds_ = 0.0,
          validation_seconds_ = 0.0, update_flops_ = 0.0, wall_seconds_ = 0.0;
-  std::int64_t env_steps_ = 0;
+  std::int64_t env_steps_ = 0, best_steps_ = -1;
+  // Of this process, for the time that is left: validations take their part of it.
+  double began_wall_ = 0.0;
+  std::int64_t began_steps_ = 0;
   // Since the last printed line; not part of the state.
   double line_wall_ = -1.0, line_env_ = 0.0, line_inference_ = 0.0, line_update_ = 0.0;
   std::int64_t line_steps_ = 0;
