@@ -17,10 +17,12 @@ namespace {
 constexpr std::uint32_t kQueue = 20;
 /// The clock starts here: ROS takes time zero for "not known yet".
 constexpr TimeNs kFirstStamp = 1'000'000'000;
-constexpr std::size_t kMaxDelays = 10'000;
 /// Observers get a step when it is answered, or this long after it was opened [s]: a message on
 /// /clock wakes every node, and would do so just when all of them are to decide.
 constexpr double kViewDelay_s = 0.005;
+/// Warnings wait so long: when a run is stopped its nodes end one after the other, the world last,
+/// and nobody needs to hear that an AUV has fallen silent.
+constexpr double kWarningDelay_s = 2.0;
 
 Pacer::Options PacerParameters(TimeNs period) {
   Pacer::Options options;
@@ -46,6 +48,7 @@ WorldNode::WorldNode()
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
       barrier_(scenario_.run.agents + 1, period_),
+      told_s_(WallSeconds()),
       fresh_(static_cast<std::size_t>(scenario_.run.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.run.agents);
@@ -69,6 +72,7 @@ WorldNode::WorldNode()
 
 void WorldNode::Spin() {
   PollLoop([this] { return Work(); }, RealtimePriorityParameter());
+  if (!StoppedBySignal()) Warn();
   if (summary_lost_) throw LostOutput("world: the last episode's summary did not come");
   if (!done_ && !StoppedBySignal()) {
     const std::string asked = episodes_ > 0 ? " of " + std::to_string(episodes_) : "";
@@ -78,6 +82,7 @@ void WorldNode::Spin() {
 }
 
 double WorldNode::Work() {
+  if (!warning_.empty() && WallSeconds() - warned_s_ >= kWarningDelay_s) Warn();
   if (shown_ || pacer_.lockstep()) health_.Tick();
   if (finishing_) {
     if (WallSeconds() > give_up_s_) done_ = summary_lost_ = true;
@@ -100,7 +105,10 @@ double WorldNode::WaitTime() const {
 void WorldNode::Advance() {
   const double now = WallSeconds();
   for (const int party : barrier_.GiveUp(now)) WarnOfLoss(party);
-  if (!barrier_.Complete()) return;
+  if (!barrier_.Complete()) {
+    if (!pacer_.running()) TellWhoIsMissing(now);
+    return;
+  }
   if (reset_) {
     StartEpisode(episode_ + 1);
     return;
@@ -136,17 +144,6 @@ bool WorldNode::ListenersReady(double now) {
         awaited_->node().c_str(), awaited_->connections());
   }
   return true;
-}
-
-void WorldNode::WarnOfLoss(int party) {
-  if (!losses_.Due()) return;
-  if (party == Channel()) {
-    ROS_WARN("world: acoustic channel did not close step %u, going on without it%s", step_,
-             losses_.more().c_str());
-  } else {
-    ROS_WARN("world: no command of AUV %d for step %u, holding its last command%s", party, step_,
-             losses_.more().c_str());
-  }
 }
 
 void WorldNode::ShowStep() {
@@ -257,26 +254,6 @@ StepBarrier::Word WorldNode::Hear(int i, TimeNs stamp) {
   return word;
 }
 
-void WorldNode::KeepDelay() {
-  if (!pacer_.running()) return;  // the first answers wait for nodes to start
-  const auto delay = static_cast<float>(OpenFor() * 1e3);
-  if (answer_ms_.size() < kMaxDelays) {
-    answer_ms_.push_back(delay);
-  } else {
-    answer_ms_[next_answer_++ % kMaxDelays] = delay;
-  }
-}
-
-/// Time from detection to wrench that `share` of the answers stayed within [ms].
-double WorldNode::DelayQuantile(double share) const {
-  if (answer_ms_.empty()) return 0.0;
-  std::vector<float> sorted = answer_ms_;
-  const auto index = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(index),
-                   sorted.end());
-  return sorted[index];
-}
-
 void WorldNode::OnChannelDone(const std_msgs::Header::ConstPtr& message) {
   barrier_.Hear(Channel(), NsOf(message->stamp));
 }
@@ -314,36 +291,6 @@ bool WorldNode::OnPause(auv_msgs::Pause::Request& request, auv_msgs::Pause::Resp
   }
   response.success = true;
   return true;
-}
-
-void WorldNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const char* state = pacer_.paused()    ? "paused"
-                      : pacer_.running() ? "running"
-                                         : "waiting for the first answers";
-  status.summary(diagnostic_msgs::DiagnosticStatus::OK, state);
-  const double rate = static_cast<double>(steps_.TakeRecent()) / health_.period_s();
-  status.add("episode", episode_);
-  status.add("step", step_);
-  status.add("steps per second", rate);
-  status.add("real time factor", rate * Seconds(period_));
-  status.add("from detection to wrench, median [ms]", DelayQuantile(0.5));
-  status.add("from detection to wrench, 99 % [ms]", DelayQuantile(0.99));
-  status.add("steps with a deadline miss", missed_steps_);
-  status.add("deadline misses of the channel", barrier_.misses(Channel()));
-  for (int i = 0; i < scenario_.run.agents; ++i) {
-    const std::string name = topics::AuvTopic(i, commands_.topic());
-    status.add("deadline misses " + name, barrier_.misses(i));
-    commands_.refused(i).Report(name, &status);
-    if (scenario_.world.sea.open) {
-      status.add("groundings " + name, Lane(world_.sea().groundings(i), 0));
-    }
-    if (!barrier_.present(i)) {
-      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no " + name);
-    }
-  }
-  if (!barrier_.present(Channel())) {
-    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no acoustic channel");
-  }
 }
 
 }  // namespace stg::nodes

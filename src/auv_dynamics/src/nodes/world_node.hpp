@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "auv_common/nodes/connection_watch.hpp"
@@ -61,6 +62,8 @@ class WorldNode {
   void Advance();
   bool ListenersReady(double now);
   void WarnOfLoss(int party);
+  void Warn();
+  void TellWhoIsMissing(double now);
   void StepWorld();
   void OpenPart();
   /// Throws UserError when a vehicle's state is beyond what the nodes take.
@@ -96,8 +99,11 @@ class WorldNode {
   bool reset_ = false;       ///< the next episode begins when the open step is answered
   bool summarised_ = false;  ///< the episode that has ended
   std::uint64_t missed_steps_ = 0;
-  Throttle losses_;    ///< of warnings about those who are given up
-  bool shown_ = true;  ///< observers have the present step
+  Throttle losses_;        ///< of warnings about those who are given up
+  std::string warning_;    ///< that waits; empty: none
+  double warned_s_ = 0.0;  ///< wall time when it came up
+  double told_s_;          ///< wall time when the start's delay was told
+  bool shown_ = true;      ///< observers have the present step
   EventRate steps_;
   double began_ = 0.0;            ///< WallSeconds() when the run began
   double opened_ = 0.0;           ///< when the present step's sensor data began to go out

@@ -96,8 +96,10 @@ void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascap
     }
     if (!placed) {
       throw UserError(
-          "reset: every start of a target lies in the bottom or an obstacle; see "
-          "sea.target_depth_m, sea.latitude_deg, sea.longitude_deg");
+          "reset: every start of a target lies in the bottom or an obstacle; the water is " +
+          std::to_string(scape.Altitude({})) +
+          " m deep at the world's origin; see sea.target_depth_m, sea.latitude_deg, "
+          "sea.longitude_deg");
     }
     const double speed = random.Uniform(r.target_speed_mps.lo, r.target_speed_mps.hi);
     target.v_WT = LevelDirection(&random) * speed;

@@ -212,6 +212,7 @@ TEST_F(SeaOverAFile, EpisodesStartClearOfTheBottomOrSayThatTheyCannot) {
   }
   s.world.sea.target_depth_m = {70.0, 80.0};
   EXPECT_NE(Refusal(s).find("every start of a target lies in the bottom"), std::string::npos);
+  EXPECT_NE(Refusal(s).find("the water is 60."), std::string::npos) << Refusal(s);
   s.world.sea.target_depth_m = {20.0, 40.0};
   s.world.sea.auv_depth_m = {70.0, 80.0};
   EXPECT_NE(Refusal(s).find("no room for 1 vehicles"), std::string::npos);

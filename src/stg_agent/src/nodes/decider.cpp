@@ -1,8 +1,14 @@
 #include "decider.hpp"
 
-#include <fstream>
+#include <ros/console.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <system_error>
 
 #include "auv_common/config/files.hpp"
+#include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "stg_agent/policy/gaussian.hpp"
@@ -11,16 +17,54 @@ namespace stg::nodes {
 
 namespace {
 
-std::string Resolve(const std::string& name, const agent::AgentModel& model) {
+namespace fs = std::filesystem;
+
+std::string ShippedScenario(const std::string& name) {
+  return config::ScenarioFolder() + "/" + name + ".yaml";
+}
+
+std::string Resolve(const std::string& name, const agent::AgentModel& model, int agent) {
   if (name != "auto") return name;
   const std::string shipped = config::ScenarioFolder() + "/../policies/" + model.run.name + ".onnx";
-  return std::ifstream(shipped).good() ? shipped : agent::DefaultController();
+  std::error_code ignored;
+  if (fs::exists(shipped, ignored)) return shipped;
+  // Whoever derives a scenario from a shipped one and names it may think that its policy flies.
+  if (agent == 0 && !fs::exists(ShippedScenario(model.run.name), ignored)) {
+    ROS_WARN(
+        "no policy is shipped for a scenario named '%s': '%s' flies; policy:=FILE.onnx says "
+        "who else shall",
+        model.run.name.c_str(), agent::DefaultController().c_str());
+  }
+  return agent::DefaultController();
+}
+
+/// Names the shipped scenarios that a policy fits, for whoever tried another one.
+std::string WhereItFits(const agent::Policy& policy) {
+  std::set<std::string> names;
+  std::error_code ignored;
+  for (const auto& file : fs::directory_iterator(config::ScenarioFolder(), ignored)) {
+    if (file.path().extension() != ".yaml") continue;
+    const std::string name = file.path().stem().string();
+    try {
+      policy.RequireFits(
+          config::Load<agent::AgentScenario>(
+              config::NamedSource(config::ScenarioFolder(), name, "nominal", {"mode=acoustic"}),
+              config::Scope::kOwnSections)
+              .model());
+      names.insert(name);
+    } catch (const UserError&) {
+      continue;
+    }
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "" : "; of the shipped scenarios it fits scenario:= " + text;
 }
 
 }  // namespace
 
 Decider::Decider(const std::string& wanted, const agent::AgentModel& model, int agent) {
-  const std::string name = Resolve(wanted, model);
+  const std::string name = Resolve(wanted, model, agent);
   builtin_ = agent::MakeController(name);
   if (builtin_) {
     id_ = name;
@@ -29,7 +73,11 @@ Decider::Decider(const std::string& wanted, const agent::AgentModel& model, int 
   agent::RequirePolicyFileName(name);
   file_ = agent::PolicyFileOf(name, agent);
   policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(file_));
-  policy_->RequireFits(model);
+  try {
+    policy_->RequireFits(model);
+  } catch (const UserError& error) {
+    throw UserError(error.what() + WhereItFits(*policy_));
+  }
   id_ = policy_->metadata().id;
 }
 

@@ -72,6 +72,11 @@ inline void SayWhyItEnds(const char* why) {
   }
 }
 
+/// A configuration that was refused once will be refused again. roslaunch starts a node anew
+/// whatever its exit status: where its launch file says so (STG_REFUSAL_ENDS_LAUNCH), it is asked
+/// to end instead, as by Ctrl-C. `./stg run` hears of the status itself.
+void EndLaunchOfRefused();
+
 /// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
 /// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
 /// a UserError, 3 after any other exception, 4 after LostOutput.
@@ -103,6 +108,7 @@ int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = No
     node.Spin();
   } catch (const UserError& error) {
     SayWhyItEnds(error.what());
+    EndLaunchOfRefused();
     return 2;
   } catch (const LostOutput& error) {
     SayWhyItEnds(error.what());

@@ -1,0 +1,58 @@
+"""A configuration that a node refuses ends the launch, and says what would do."""
+
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import rospkg
+
+from run_launcher import launch, stop
+
+BRINGUP = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
+
+
+class Refusals(unittest.TestCase):
+    """Plain roslaunch, and `./stg run`."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def test_plain_roslaunch_ends_when_an_agent_refuses_its_policy(self):
+        (self.folder / "mine.yaml").write_text("base: medium.yaml\nname: mine\nobservation:\n"
+                                               "  semantic: false\n")
+        process, _ = launch(self.folder, "medium.launch", "table:=false",
+                            f"policy:={BRINGUP}/policies/medium.onnx", "scenario:=mine.yaml",
+                            program=shutil.which("roslaunch"))
+        self.addCleanup(stop, process)
+        output = process.communicate(timeout=60)[0]
+        self.assertIn("the launch ends, as this node refuses its configuration", output)
+        self.assertIn("of the shipped scenarios it fits scenario:= ", output)
+        self.assertRegex(output, "it fits scenario:= .*medium")
+        self.assertLess(output.count("observation layout"), 9, "each agent at most twice")
+
+    def test_a_scenario_of_another_name_says_who_flies(self):
+        (self.folder / "mine.yaml").write_text("base: medium.yaml\nname: mine\n")
+        process, _ = launch(self.folder, "medium.launch", "table:=false", "scenario:=mine.yaml",
+                            "episodes:=1", "real_time_factor:=0", "deadline:=20", "agents:=1",
+                            "overrides:=[time.episode_steps=40, time.tail_steps=10]")
+        self.addCleanup(stop, process)
+        output = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 0, output)
+        self.assertEqual(output.count("no policy is shipped for a scenario named 'mine': "
+                                      "'pursuit_separated' flies"), 1, output)
+
+    def test_an_agent_that_nobody_starts_is_named_while_it_is_waited_for(self):
+        process, _ = launch(self.folder, "medium.launch", "table:=false", "external:=[2]",
+                            "policy:=idle", "episodes:=1")
+        self.addCleanup(stop, process)
+        for line in process.stdout:
+            if "world: waiting for AUV 2, at most 2" in line:
+                return
+        self.fail("the run has ended")
+
+
+if __name__ == "__main__":
+    unittest.main()
