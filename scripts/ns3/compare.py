@@ -68,11 +68,11 @@ def run_ns3(program, folder, places, calls, duration, threshold):
 
 def run_ours(program, folder, places, calls, duration, fading):
     """Packets sent, and delivered by (source, receiver)."""
-    water = "" if fading else f"  {STEADY}\n"
+    water = "" if fading else f"    {STEADY}\n"
     text = (
         f"duration_s: {duration}\nseed: 1\nstep_s: 10.0\nchannel:\n  model: physical\n"
-        "  access: aloha\n  modem: {profile: micromodem_psk_r3}\n"
-        f"  water: {{sound_speed: profile}}\n{water}nodes:\n"
+        "  access: aloha\n  physical:\n    modem: {profile: micromodem_psk_r3}\n"
+        f"    water: {{sound_speed: profile}}\n{water}nodes:\n"
     )
     for i, place in enumerate(places):
         text += f"  - {{id: {i}, position_m: {list(map(float, place))}}}\n"

@@ -240,7 +240,8 @@ TEST_F(CommandLine, EvaluateTakesTheConstantsOfPursuit) {
 
 TEST_F(CommandLine, MotionOutOfHandNamesTheVehicleAndFails) {
   const std::string unstable = Scenario(
-      "vehicle:\n  clip_velocity: false\n  linear_damping: [1e6, 1e6, 1e6, 1e6, 1e6, 1e6]\n");
+      "vehicle:\n  clip_velocity: false\n  fully_actuated:\n"
+      "    linear_damping: [1e6, 1e6, 1e6, 1e6, 1e6, 1e6]\n");
   for (const char* what : {"pursuit", "pursuit --set mode=acoustic"}) {
     const Result r = Run(STG_EVALUATE, "--episodes 2 --scenario " + unstable + " --policy " + what);
     EXPECT_EQ(r.code, 2) << r.out;
