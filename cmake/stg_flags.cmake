@@ -63,7 +63,13 @@ if(NOT TARGET stg_abi)
   add_library(stg::abi ALIAS stg_abi)
   target_compile_features(stg_abi INTERFACE cxx_std_17)
   target_compile_options(stg_abi INTERFACE ${STG_ABI_OPTIONS})
+  # The old kind of path, which the loader asks before LD_LIBRARY_PATH, and which also holds for the
+  # libraries that those of this repository need: a program flies with the build that it was linked
+  # with, whatever workspace is sourced.
+  target_link_options(stg_abi INTERFACE -Wl,--disable-new-dtags)
 endif()
+# Installed, libraries lie beside each other, and the programs of a package in a folder there.
+set(CMAKE_INSTALL_RPATH "\$ORIGIN;\$ORIGIN/..")
 
 add_compile_options(${STG_ABI_OPTIONS} -Wall -Wextra)
 # Registers are copied whole, and never by "rep movs", which takes longer to start than a vehicle's

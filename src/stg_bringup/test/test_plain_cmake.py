@@ -26,8 +26,9 @@ message(STATUS "flags: ${options}")
 
 
 def environment(**changed):
-    """The environment without anything that leads to ROS, and then `changed`."""
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(("ROS", "CMAKE", "CATKIN"))}
+    """The environment without anything that leads to ROS or this workspace, and then `changed`."""
+    leads = ("ROS", "CMAKE", "CATKIN", "LD_LIBRARY_PATH", "PYTHONPATH")
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(leads)}
     kept["PATH"] = "/usr/bin:/bin"
     kept.update(changed)
     return kept
@@ -97,6 +98,15 @@ class PlainCMake(unittest.TestCase):
         printed = run(user / "build" / "spiral").splitlines()
         flown = {line.split()[0]: [float(x) for x in line.split()[1:]] for line in printed}
         self.assertEqual(set(flown), {"spiral:speed=0.3", "pursuit_separated"})
+        # In a sourced workspace as well, program and module load the libraries that were installed.
+        (module,) = self.prefix.rglob("stg/_core.*.so")
+        (ours,) = {os.path.dirname(path) for path in self.prefix.rglob("libstg_env.so")}
+        for program in (user / "build" / "spiral", module):
+            told = run("ldd", program, LD_LIBRARY_PATH=os.environ["LD_LIBRARY_PATH"])
+            loaded = re.findall(r"(?:lib(?:auv|acoustic|stg|marl)_\w+\.so\S*) => (\S+)", told)
+            self.assertGreaterEqual(len(loaded), 5, told)
+            self.assertEqual({os.path.dirname(os.path.realpath(x)) for x in loaded},
+                             {os.path.realpath(ours)}, told)  # fmt: skip
         # Packs that were laid out otherwise here than in the libraries would fly otherwise.
         (evaluate,) = roslib.packages.find_node("marl_trainer", "evaluate")
         told = run(evaluate, "--policy", "pursuit_separated", "--episodes", "4",
