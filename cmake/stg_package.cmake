@@ -3,6 +3,8 @@
 # CMakeLists.txt of the repository starts, and which needs neither catkin nor ROS.
 include_guard(DIRECTORY)
 include(${CMAKE_CURRENT_LIST_DIR}/stg_flags.cmake)
+# The one place of the version; `./stg lint versions` compares what else must state it.
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../VERSION STG_VERSION)
 
 option(STG_UNITY "Compile the sources of a target a dozen at a time, which halves the build" ON)
 
@@ -16,6 +18,12 @@ function(stg_optimise target option)
   if(NOT STG_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${option}>)
   endif()
+endfunction()
+
+# stg_shared_version(TARGET): headers and libraries belong together within a minor version.
+function(stg_shared_version target)
+  string(REGEX MATCH "^[0-9]+\\.[0-9]+" minor ${STG_VERSION})
+  set_target_properties(${target} PROPERTIES VERSION ${STG_VERSION} SOVERSION ${minor})
 endfunction()
 
 # stg_core_library(TARGET [PACKAGE ...]): a library of a core, on top of other packages' cores.
@@ -37,6 +45,7 @@ function(stg_core_library target)
     endif()
   endforeach()
   stg_unity(${target})
+  stg_shared_version(${target})
   if(STG_CORE_ONLY)
     add_dependencies(stg_cores ${target})
     install(TARGETS ${target} EXPORT ${STG_EXPORT})
@@ -115,6 +124,10 @@ function(stg_node_target target)
   target_link_libraries(${target} PUBLIC ${ARGN} ${catkin_LIBRARIES})
   if(catkin_EXPORTED_TARGETS)
     add_dependencies(${target} ${catkin_EXPORTED_TARGETS})
+  endif()
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY")
+    stg_shared_version(${target})
   endif()
   stg_unity(${target})
   stg_optimise(${target} -O2)

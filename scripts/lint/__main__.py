@@ -14,6 +14,7 @@ import xml.etree.ElementTree as ElementTree
 import house
 from tidy import check_tidy
 from tools import check_catkin, check_format, check_python, check_shell
+from versions import check_versions
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "src" / "auv_common" / "scripts"))
 from stg_common.program import run_program  # noqa: E402  (found by the line above)
@@ -59,6 +60,7 @@ def main(argv):
         "topics": house.check_topics,
         "namespaces": house.check_namespaces,
         "registries": house.check_registries,
+        "versions": check_versions,
         "tidy": lambda: check_tidy(options.build),
     }
     options = parse(argv, list(checkers))
