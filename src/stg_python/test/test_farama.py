@@ -46,6 +46,13 @@ for _ in range(60):
     total += rewards
 assert truncated.all() and (infos["episode"]["l"] == 60).all(), infos
 assert numpy.allclose(infos["episode"]["r"], total, atol=1e-3)
+team = gymnasium.make("stg/Team-v1", scenario="hard", overrides=short)
+assert team.reset(seed=4)[0].shape == (4 * 74,) and team.step(team.action_space.sample())[3] is False
+many = gymnasium.make_vec("stg/Team-v1", num_envs=6, condition="combined_stress")
+assert isinstance(many.unwrapped, gymnasium.vector.VectorEnv)
+assert many.reset(seed=4)[0].shape == (6, 4 * 74)
+from stg import swarm_v1
+api_test(swarm_v1.env(overrides=short), num_cycles=50)
 print("all passed")
 """
 

@@ -1,5 +1,7 @@
 #include "auv_common/config/files.hpp"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -56,6 +58,17 @@ std::vector<fs::path> CandidatesUnder(const fs::path& entry) {
   return candidates;
 }
 
+/// Where the packages of one installation have the scenarios, below its prefix.
+constexpr char kInstalled[] = "share/stg_bringup/scenarios";
+
+/// The folder of the library, or of the program or Python module, that this code was linked into.
+fs::path FolderOfThisCode() {
+  Dl_info info{};
+  if (dladdr(kInstalled, &info) == 0) return {};
+  std::error_code error;
+  return fs::canonical(info.dli_fname, error).parent_path();
+}
+
 }  // namespace
 
 std::string ScenarioFolder() {
@@ -64,6 +77,10 @@ std::string ScenarioFolder() {
       throw UserError("STG_SCENARIOS: " + std::string(folder) + " is not a folder");
     }
     return folder;
+  }
+  const fs::path code = FolderOfThisCode();
+  for (const fs::path& folder : {code, code.parent_path()}) {
+    if (!folder.empty() && IsFolder(folder / kInstalled)) return (folder / kInstalled).string();
   }
   const char* package_path = std::getenv("ROS_PACKAGE_PATH");
   std::istringstream entries(package_path != nullptr ? package_path : "");
@@ -75,17 +92,19 @@ std::string ScenarioFolder() {
   }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  std::string tried;
-  for (const char* relative :
-       {"../../share/stg_bringup/scenarios", "../../../src/stg_bringup/scenarios"}) {
-    const fs::path candidate = (program / relative).lexically_normal();
-    if (!error && IsFolder(candidate)) return candidate.string();
-    tried += ", " + candidate.string();
+  for (fs::path folder : {code, program}) {
+    for (; folder.has_relative_path(); folder = folder.parent_path()) {
+      for (const char* relative : {kInstalled, "src/stg_bringup/scenarios"}) {
+        if (IsFolder(folder / relative)) return (folder / relative).string();
+      }
+    }
   }
   throw UserError(
-      "no folder with scenarios found; tried STG_SCENARIOS (not set), "
-      "stg_bringup/scenarios on ROS_PACKAGE_PATH (" +
-      std::string(package_path != nullptr ? package_path : "not set") + ")" + tried);
+      "no folder with scenarios found; tried STG_SCENARIOS (not set), stg_bringup/scenarios on "
+      "ROS_PACKAGE_PATH (" +
+      std::string(package_path != nullptr ? package_path : "not set") + "), " + kInstalled +
+      " and src/stg_bringup/scenarios in the folders above " + code.string() + " and " +
+      program.string());
 }
 
 std::vector<std::string> ConditionNames(const std::string& folder) {

@@ -6,7 +6,12 @@
 docs/python.md is the tutorial, docs/environment.md says what every number means.
 """
 
-from stg._core import (
+from stg import _engine
+
+_engine.choose()
+
+from stg._core import (  # noqa: E402
+    INSTRUCTION_SET,
     Agent,
     NeighbourState,
     PacketCodec,
@@ -14,15 +19,18 @@ from stg._core import (
     Scenario,
     TargetTrack,
     UserError,
+    __version__,
     controllers,
 )
 from stg.page import Page, report
 from stg.parallel import ParallelEnv, parallel_env
 from stg.policies import evaluate, export_policy, load_policy
-from stg.scenarios import load_scenario, scenario_folder, scenario_names
+from stg.registration import register as _register
+from stg.scenarios import load_scenario, policy_file, scenario_folder, scenario_names
 from stg.vector import VectorEnv, vector_env
 
 __all__ = [
+    "INSTRUCTION_SET",
     "Agent",
     "NeighbourState",
     "PacketCodec",
@@ -33,14 +41,18 @@ __all__ = [
     "TargetTrack",
     "UserError",
     "VectorEnv",
+    "__version__",
     "controllers",
     "evaluate",
     "export_policy",
     "load_policy",
     "load_scenario",
     "parallel_env",
+    "policy_file",
     "report",
     "scenario_folder",
     "scenario_names",
     "vector_env",
 ]
+
+_register()

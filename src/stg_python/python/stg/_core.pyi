@@ -4,7 +4,9 @@ from typing import Any, Sequence
 
 import numpy as np
 
+INSTRUCTION_SET: str
 MIX_BLOCK: int
+__version__: str
 
 class UserError(ValueError):
     """Bad input: the message names file, line and key where they are known."""

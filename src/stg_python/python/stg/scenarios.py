@@ -5,26 +5,38 @@ import pathlib
 
 from stg import _core
 
-__all__ = ["load_scenario", "scenario_folder", "scenario_names"]
+__all__ = ["load_scenario", "policy_file", "scenario_folder", "scenario_names"]
 
 
 def scenario_folder():
     """Returns the folder of the shipped scenarios.
 
-    $STG_SCENARIOS where it is set, else that of stg_bringup on ROS_PACKAGE_PATH, else the one that
-    belongs to the files of this module.
+    $STG_SCENARIOS where it is set, else the one inside this module's folder (a wheel's), else that
+    of stg_bringup on ROS_PACKAGE_PATH, else the one that belongs to the files of this module.
     """
-    if os.environ.get("STG_SCENARIOS") or os.environ.get("ROS_PACKAGE_PATH"):
-        try:
-            return _core.scenario_folder()
-        except _core.UserError:
-            if os.environ.get("STG_SCENARIOS"):
-                raise
-    for parent in pathlib.Path(__file__).resolve().parents:
-        for folder in ("stg_bringup/scenarios", "share/stg_bringup/scenarios"):
-            if (parent / folder).is_dir():
-                return str(parent / folder)
-    return _core.scenario_folder()
+    try:
+        return _core.scenario_folder()
+    except _core.UserError:
+        if os.environ.get("STG_SCENARIOS"):
+            raise
+        for parent in pathlib.Path(__file__).resolve().parents:
+            for folder in ("stg_bringup/scenarios", "share/stg_bringup/scenarios"):
+                if (parent / folder).is_dir():
+                    return str(parent / folder)
+        raise
+
+
+def policy_file(name):
+    """Returns the file of the policy that ships for a scenario, "medium" or "hard".
+
+    Raises ValueError for others.
+    """
+    folder = pathlib.Path(scenario_folder()).parent / "policies"
+    file = folder / f"{name}.onnx"
+    if not file.is_file():
+        there = ", ".join(sorted(path.stem for path in folder.glob("*.onnx")))
+        raise ValueError(f"policy '{name}': none ships by this name; there are: {there}")
+    return str(file)
 
 
 def scenario_names():

@@ -5,6 +5,8 @@ namespace py = pybind11;
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The C++ engine of the package stg; its public face is the package itself.";
+  module.attr("__version__") = STG_VERSION;
+  module.attr("INSTRUCTION_SET") = STG_INSTRUCTION_SET;
   py::register_exception<stg::UserError>(module, "UserError", PyExc_ValueError).doc() =
       "Bad input: the message names file, line and key where they are known.";
   stg::python::BindScenario(module);

@@ -20,8 +20,8 @@ Source NamedSource(const std::string& folder, const std::string& scenario,
 /// Names of the conditions of all scenarios of a folder.
 std::vector<std::string> ConditionNames(const std::string& folder);
 
-/// The folder with the shipped scenarios: $STG_SCENARIOS if set, else the
-/// stg_bringup package found on ROS_PACKAGE_PATH or beside the source tree.
+/// The folder with the shipped scenarios: $STG_SCENARIOS, else the one that was installed with this
+/// code, else stg_bringup's on ROS_PACKAGE_PATH, else that of this code's tree. Throws UserError.
 std::string ScenarioFolder();
 
 }  // namespace stg::config

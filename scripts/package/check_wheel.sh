@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Installs the wheel of dist/ into a new virtual environment, without index, compiler and ROS, and flies.
+set -euo pipefail
+
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+alone=(env -i PATH=/usr/bin:/bin HOME="$folder" LC_ALL=C.UTF-8)
+# Debian's numpy, for want of an index.
+"${alone[@]}" python3 -m venv --system-site-packages venv
+start=$SECONDS
+"${alone[@]}" venv/bin/pip install --no-index "$root"/dist/stg_swarm-*.whl
+"${alone[@]}" venv/bin/python -m stg.examples.random_actions
+echo "check_wheel: $((SECONDS - start)) s from pip install to random_actions"
+for set in baseline x86-64-v3; do
+  "${alone[@]}" STG_INSTRUCTION_SET=$set venv/bin/python - <<'PYTHON'
+import stg
+print("check_wheel:", stg.INSTRUCTION_SET, stg.evaluate(stg.policy_file("medium"), "medium", episodes=4)["return"])
+PYTHON
+done

@@ -1,0 +1,56 @@
+"""Chooses the engine for this processor, where there are several, as in a wheel.
+
+$STG_INSTRUCTION_SET names one; results differ in their last
+bits between instruction sets, see docs/platforms.md.
+"""
+
+import importlib.machinery
+import importlib.util
+import os
+import pathlib
+import sys
+
+# What a processor must have, by the names of /proc/cpuinfo.
+NEEDS = {"x86-64-v3": {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"}}
+
+
+def _processor():
+    """Returns the set of what this machine's processors have."""
+    try:
+        text = pathlib.Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
+    except OSError:
+        return set()
+    flags = [line.split(":", 1)[1].split() for line in text.splitlines() if line.startswith("flags")]
+    return set.intersection(*map(set, flags)) if flags else set()
+
+
+def _file(name):
+    """Returns the engine of an instruction set, or None."""
+    folder = pathlib.Path(__file__).parent / f"_{name.replace('-', '_')}"
+    return next(iter(sorted(folder.glob("_core.*.so"))), None)
+
+
+def _load(file):
+    """Makes a file the module stg._core."""
+    loader = importlib.machinery.ExtensionFileLoader("stg._core", str(file))
+    module = importlib.util.module_from_spec(
+        importlib.util.spec_from_file_location("stg._core", str(file), loader=loader)
+    )
+    sys.modules["stg._core"] = module
+    loader.exec_module(module)
+
+
+def choose():
+    """Makes the engine to use the module stg._core; to be called before all else imports that."""
+    wanted = os.environ.get("STG_INSTRUCTION_SET", "")
+    for name, needs in NEEDS.items():
+        file = _file(name)
+        if file and wanted in ("", name) and needs <= _processor():
+            _load(file)
+            break
+    from stg import _core  # pylint: disable=import-outside-toplevel
+
+    if wanted not in ("", _core.INSTRUCTION_SET):
+        raise ImportError(
+            f"STG_INSTRUCTION_SET: no engine of stg for '{wanted}' here, or not for this processor"
+        )

@@ -1,0 +1,43 @@
+"""Names for `gymnasium.make`: stg/Team-v1, the swarm as one agent, and many swarms for `make_vec`.
+
+Registered by `import stg`, and by Gymnasium itself where stg is installed as a wheel.
+"""
+
+__all__ = ["make_team", "make_vector", "register"]
+
+TEAM = "stg/Team-v1"
+
+
+def make_team(scenario="medium", **options):
+    """Returns one swarm as a gymnasium.Env, see stg.parallel_env and stg.wrappers.joint."""
+    from stg.parallel import parallel_env  # pylint: disable=import-outside-toplevel
+    from stg.wrappers import joint  # pylint: disable=import-outside-toplevel
+
+    return joint(parallel_env(scenario, **options))
+
+
+def make_vector(scenario="medium", num_envs=4, **options):
+    """Returns many swarms, each as one agent, see stg.vector_env and stg.wrappers.joint."""
+    from stg.vector import vector_env  # pylint: disable=import-outside-toplevel
+    from stg.wrappers import joint  # pylint: disable=import-outside-toplevel
+
+    return joint(vector_env(scenario, num_envs, **options))
+
+
+def register():
+    """Tells Gymnasium the names, once; does nothing where it is not installed."""
+    try:
+        from gymnasium.envs import registration  # pylint: disable=import-outside-toplevel
+    except ImportError:
+        return
+    if TEAM in registration.registry:
+        return
+    namespace, registration.current_namespace = registration.current_namespace, None
+    try:
+        registration.register(
+            TEAM,
+            entry_point="stg.registration:make_team",
+            vector_entry_point="stg.registration:make_vector",
+        )
+    finally:
+        registration.current_namespace = namespace
