@@ -13,8 +13,9 @@ import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402,F401  (found by the line above; finds stg_view)
+HERE = os.path.dirname(os.path.realpath(__file__))
+for up in ("../python", "../scripts", "../../auv_common/scripts"):
+    sys.path.insert(0, os.path.join(HERE, up))
 from stg_view.recording import MAGIC, messages  # noqa: E402
 
 URL, BEFORE, AFTER = "http://127.0.0.1:8317", 20, 10
