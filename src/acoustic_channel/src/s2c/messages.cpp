@@ -86,7 +86,7 @@ std::string S2cModem::SendIm(Header header, const std::string& payload, const st
     return "ERROR WRONG DESTINATION ADDRESS";
   }
   if (message_) return kBusy;
-  message_.emplace();
+  message_ = Message();
   message_->header = header;
   message_->payload = payload;
   message_->retries_left = settings_.at("RI");
@@ -100,7 +100,7 @@ std::string S2cModem::SendIms(Header header, const std::string& payload, const s
   const auto start_us = WholeNumber(clock);
   if (!start_us && !clock.empty()) return "ERROR WRONG FORMAT";
   if (message_) return kBusy;
-  message_.emplace();
+  message_ = Message();
   message_->header = header;
   message_->payload = payload;
   if (!start_us) return "OK";

@@ -212,7 +212,7 @@ TEST_F(Simulate, NodesWithModemsStayInTheWaterWhileTheyTakePart) {
     EXPECT_EQ(r.code, 2) << node;
     EXPECT_NE(r.err.find(message), std::string::npos) << r.err;
   }
-  EXPECT_EQ(Run(with("track: leap.csv, leaves_s: 5.0")).code, 0) << "it has left before";
+  EXPECT_EQ(Run(with("track: leap.csv, leaves_s: 2.0")).code, 0) << "it leaves before";
 }
 
 TEST_F(Simulate, ListsOfTimesMayBeLong) {

@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
     options.episodes = episodes;
     options.seed = seed;
     const auto fly = [&](const stg::Scenario& flown) {
-      const auto metrics = stg::env::Evaluate(flown, controller, options, &pool, [&](int done) {
+      auto metrics = stg::env::Evaluate(flown, controller, options, &pool, [&](int done) {
         std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
       });
       std::fprintf(stderr, "\n");

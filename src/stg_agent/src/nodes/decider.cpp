@@ -25,7 +25,7 @@ std::string ShippedScenario(const std::string& name) {
 
 std::string Resolve(const std::string& name, const agent::AgentModel& model, int agent) {
   if (name != "auto") return name;
-  const std::string shipped = config::ScenarioFolder() + "/../policies/" + model.run.name + ".onnx";
+  std::string shipped = config::ScenarioFolder() + "/../policies/" + model.run.name + ".onnx";
   std::error_code ignored;
   if (fs::exists(shipped, ignored)) return shipped;
   // Whoever derives a scenario from a shipped one and names it may think that its policy flies.
