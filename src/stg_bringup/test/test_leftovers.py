@@ -4,19 +4,22 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
 import rosgraph
 
-from run_launcher import free_port, launch, stop
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from run_launcher import free_port, launch, stop  # noqa: E402  (found by the line above)
 
 SHORT = ("episodes:=1", "real_time_factor:=0", "deadline:=20", "seed:=3", "policy:=pursuit_separated",
          "table:=false", "overrides:=[time.episode_steps=60, time.tail_steps=20]")
 # As channel.launch, a recorded run, or a user's rosparam leaves them.
 LEFT = {
-    "/acoustic_channel/overrides": ["channel.loss_probability=0.9"],
+    "/acoustic_channel/overrides": ["channel.extended.loss_probability=0.9"],
     "/acoustic_channel/seed": 5,
     "/world/wait_for_node": "/nobody",
     "/world/start_timeout": 60.0,

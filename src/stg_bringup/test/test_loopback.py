@@ -4,6 +4,7 @@ import os
 import pathlib
 import socket
 import struct
+import sys
 import tempfile
 import time
 import unittest
@@ -11,7 +12,9 @@ import xmlrpc.client
 
 import rosgraph
 
-from run_launcher import launch, process_of, stop
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from run_launcher import launch, process_of, stop  # noqa: E402  (found by the line above)
 
 LISTENS = "0A"
 ANOTHER = "127.0.0.2"  # of this machine, as one of an Ethernet would be
