@@ -13,7 +13,7 @@ from stg_common.files import Damaged, expect, member, read_text  # noqa: E402  (
 
 CONDITIONS = (
     "nominal", "fast_target", "far_initialization", "limited_sensing", "degraded_communication",
-    "strong_current", "combined_stress",
+    "strong_current", "no_bottom_lock", "combined_stress",
 )
 # So much noise at the site that no frame is recognised.
 SILENCE = ("channel.physical.noise.site_db=200.0",)
@@ -47,15 +47,20 @@ class Flights:
                 key = member(file, flight, "key", str)
                 self.known[key] = member(file, flight, "found", dict)
 
-    def fly(self, policy, scenario, condition, episodes, seed, overrides=()):
-        """Returns the metrics of `evaluate`: means, and standard deviations as <name>_std."""
+    def fly(self, policy, scenario, condition, episodes, seed, overrides=(), privileged=False):
+        """Returns the metrics of `evaluate`: means, and standard deviations as <name>_std.
+        privileged: a built-in controller reads true states."""
         asked = [policy, scenario, condition, episodes, seed, *overrides]
+        if privileged:
+            asked.append("--privileged")
         key = hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:16]
         if key not in self.known:
             command = self.program + [
                 "--policy", policy, "--scenario", scenario, "--condition", condition,
                 "--episodes", str(episodes), "--seed", str(seed), "--workers", str(self.workers),
             ]
+            if privileged:
+                command.append("--privileged")
             for override in overrides:
                 command += ["--set", override]
             run = subprocess.run(
