@@ -14,6 +14,7 @@ import yaml
 
 PACKAGE = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
 SOURCES = PACKAGE.parent
+MARKERS = SOURCES / "stg_monitor" / "src" / "nodes" / "markers"
 FRAMES = {"world", "world_ned", r"auv_\d+/base_link", r"auv_\d+/altimeter", r"target_\d+"}
 PLUGINS = "/usr/share/rviz/plugin_description.xml"
 
@@ -38,15 +39,14 @@ def published_markers():
         for node in ElementTree.parse(PACKAGE / "launch" / "view.launch").getroot().iter("node")
         if node.get("type") == "marker_node"
     ]
-    header = (PACKAGE / "src" / "nodes" / "markers" / "topics.hpp").read_text()
+    header = (MARKERS / "topics.hpp").read_text()
     names = re.findall(r'constexpr char k\w+\[\] = "(\w+)"', header)
     return {f"/{node.get('name')}/{name}" for name in names}
 
 
 def marker_namespaces():
     """Returns the namespaces that the markers are built with."""
-    folder = PACKAGE / "src" / "nodes" / "markers"
-    source = "".join(path.read_text() for path in sorted(folder.rglob("*.cpp")))
+    source = "".join(path.read_text() for path in sorted(MARKERS.rglob("*.cpp")))
     return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail|Clashes)\("(\w+)"', source))
 
 
@@ -122,7 +122,7 @@ class RvizFiles(unittest.TestCase):
                 asked, made = pathlib.Path(folder) / "s.yaml", pathlib.Path(folder) / "v.rviz"
                 asked.write_text(yaml.safe_dump(scenario))
                 subprocess.run(
-                    ["/usr/bin/python3", PACKAGE.parent / "stg_monitor" / "scripts" / "view.py", view, "--scenario-file",
+                    ["/usr/bin/python3", SOURCES / "stg_monitor" / "scripts" / "view.py", view, "--scenario-file",
                      asked, "--write", made], check=True,
                 )  # fmt: skip
                 content = yaml.safe_load(made.read_text())
@@ -161,7 +161,7 @@ class RvizFiles(unittest.TestCase):
                 else:
                     file.write_text(text)
                 run = subprocess.run(
-                    ["/usr/bin/python3", PACKAGE.parent / "stg_monitor" / "scripts" / "view.py", "follow", "--scenario-file",
+                    ["/usr/bin/python3", SOURCES / "stg_monitor" / "scripts" / "view.py", "follow", "--scenario-file",
                      file, "--write", folder / "view"], stderr=subprocess.PIPE, check=False,
                     universal_newlines=True, timeout=60,
                 )  # fmt: skip
