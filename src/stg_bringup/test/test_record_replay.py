@@ -76,7 +76,14 @@ class RecordReplay(unittest.TestCase):
         self.assertEqual({b - a for a, b in zip(clock, clock[1:])}, {100_000_000})
         for i in range(AGENTS):
             for name in OF_EVERY_STEP:
-                self.assertEqual(len(stamps[f"/auv_{i}/{name}"]), STEPS + 1, f"/auv_{i}/{name}")
+                told = stamps[f"/auv_{i}/{name}"]
+                if name == "acoustic/rx":
+                    # What arrives in a step bears its end. Of the first step, which nothing was sent
+                    # in, the recorder may hear or not.
+                    self.assertLessEqual(set(clock[1:]), told, f"/auv_{i}/{name}")
+                    self.assertIn(len(told), (STEPS + 1, STEPS + 2), f"/auv_{i}/{name}")
+                else:
+                    self.assertEqual(len(told), STEPS + 1, f"/auv_{i}/{name}")
             self.assertEqual(sorted(stamps[f"/auv_{i}/acoustic/tx"]), clock[i % SLOTS::SLOTS])
         self.assertEqual([r.step for r in reports], list(range(STEPS)))
         self.assertTrue(reports[-1].truncated)
