@@ -33,6 +33,7 @@ LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
       links_(acoustics::MakeLinkEstimator(constants->model.channel, constants->model.run.agents)),
       neighbours_(constants->model),
       mind_(constants->model),
+      memory_(static_cast<std::size_t>(kLanesOf<T>)),
       neighbours_before_(neighbours_),
       mind_before_(mind_) {
   inboxes_.reserve(static_cast<std::size_t>(kLanesOf<T>));
@@ -45,6 +46,17 @@ void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& 
   links_->Reset(lane);
   neighbours_.Clear(lane);
   mind_.Reset(lane);
+  memory_[static_cast<std::size_t>(lane)] = EntityMemory();
+}
+
+template <class T>
+void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
+  At(lane).Detect(detection);
+  EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
+  if (detection.target != inbox(lane).target()) return;
+  if (memory.ranged && detection.stamp <= memory.own_detection) return;
+  memory.ranged = true;
+  memory.own_detection = detection.stamp;
 }
 
 template <class T>
@@ -80,6 +92,9 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
     At(lane).Advance(OfLane(nav.stamp, lane), Lane(nav.position_std_m, lane));
+    EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
+    memory.now = OfLane(nav.stamp, lane);
+    memory.position_std_m = Lane(nav.position_std_m, lane);
     SetLaneOf(&target, lane, inbox(lane).Target(links_->freshness_s()));
   }
   mind_.SetNavigation(nav);
@@ -116,8 +131,12 @@ template <class T>
 AgentView LanedAgent<T>::view(int lane) const {
   std::array<double, dynamics::kMaxActionSize> action;
   for (std::size_t k = 0; k < action.size(); ++k) action[k] = Lane(mind_.action[k], lane);
-  return {model(), inbox(lane), LaneOf(mind_.knowledge, lane), action,
-          SightReader(neighbours_.sights(), lane)};
+  return {model(),
+          inbox(lane),
+          LaneOf(mind_.knowledge, lane),
+          action,
+          SightReader(neighbours_.sights(), lane),
+          &memory_[static_cast<std::size_t>(lane)]};
 }
 
 template class LanedAgent<double>;

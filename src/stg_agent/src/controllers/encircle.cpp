@@ -24,13 +24,14 @@ Level<T> Within(const Level<T>& v, double lo, double hi) {
 }  // namespace
 
 template <class T>
-T Encircle::Height(const ControllerInput<T>& in) const {
+T Encircle::Height(const ControllerInput<T>& in, const T& deeper_m) const {
   const T target = in.knowledge.p_WB.z + in.knowledge.r_BT_W.z;
   const AgentModel& s = in.model;
   if (!s.sea.open) return target;
   const config::Interval& band = s.sea.auv_depth_m;
   const double share = s.run.agents > 1 ? static_cast<double>(in.id) / (s.run.agents - 1) : 0.5;
-  return T(-(band.lo + share * (band.hi - band.lo)));
+  const T layer(-(band.lo + share * (band.hi - band.lo)));
+  return Select(deeper_m == T(0.0), layer, Clip(layer - deeper_m, T(-band.hi), T(-band.lo)));
 }
 
 template <class T>
@@ -66,7 +67,7 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
 }
 
 template <class T>
-Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
+Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guidance) const {
   const AgentModel& s = in.model;
   const EncircleOptions& o = options;
   const Knowledge<T>& k = in.knowledge;
@@ -81,8 +82,9 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
     return v * (Min(Norm(v), T(s.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
   }();
   const Vec3<T> p_WT = k.p_WB + k.r_BT_W;
-  const T z = Height(in);
-  const T R = Radius(in, z - p_WT.z);
+  const T z = Height(in, guidance.depth_m);
+  const T own_circle = Radius(in, z - p_WT.z);
+  const T R = Max(own_circle + guidance.radius_m, T(0.25) * own_circle);
 
   // Where the vehicle will be: commands take effect late, and last a decision.
   const Level<T> own{k.v_WB.x, k.v_WB.y};
@@ -90,7 +92,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   const Level<T> r = now + (v_T - own) * T(o.lead_s + 0.5 * s.run.decision_dt_s());
   const T rho = Max(Norm(r), T(1e-3));
   const Level<T> in_W = r * (one / rho);
-  const Level<T> around{in_W.y, -in_W.x};
+  const Level<T> around{in_W.y * guidance.sense, -in_W.x * guidance.sense};
   const T radial = T(o.inward_gain) * (rho * rho - R * R), tangential = T(2.0) * rho * R;
   const T length = one / Max(Sqrt(radial * radial + tangential * tangential), T(1e-6));
   const Level<T> direction = in_W * (radial * length) + around * (tangential * length);
@@ -116,13 +118,14 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
         Select(with_us, T(o.mate_clearance_m), T(o.clearance_m) + n.age_s * T(o.doubt_mps));
     aside = aside + Miss(own, c.q + now, c.w, clearance, Select(beside, one, zero));
   }
+  const T early = (ahead - behind) * T(0.5 * o.spread_gain) * guidance.sense;
   const T spread =
-      Clip((ahead - behind) * T(0.5 * o.spread_gain), T(-o.spread_limit), T(o.spread_limit));
+      Clip(early + guidance.phase_rad * T(o.spread_gain), T(-o.spread_limit), T(o.spread_limit));
 
   // Relative speed: enough on the side that runs back, more on the way to the circle.
   const T hurry = Clip((rho - R) * T(1.0 / d) - T(o.hurry_from), zero, one);
   const T on_it = (T(cruise) + Norm(v_T)) * (one + spread);
-  T u = on_it + (T(fast) - on_it) * hurry;
+  T u = on_it + (T(fast) - on_it) * hurry + guidance.speed_mps;
   u = Min(u, SpeedAlong(v_T, direction, T(fast), u));
   u = Max(u, SpeedAlong(v_T, direction, T(slow), u));
   const Level<T> wanted = Within(v_T + direction * u, slow, fast);
@@ -141,8 +144,10 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in) const {
   return {v.x, v.y, climb};
 }
 
-template Vec3<double> Encircle::Velocity(const ControllerInput<double>& in) const;
-template Vec3<Pack> Encircle::Velocity(const ControllerInput<Pack>& in) const;
+template Vec3<double> Encircle::Velocity(const ControllerInput<double>& in,
+                                         const Guidance<double>& guidance) const;
+template Vec3<Pack> Encircle::Velocity(const ControllerInput<Pack>& in,
+                                       const Guidance<Pack>& guidance) const;
 
 void Describe(EncircleOptions* o, config::Table* t) {
   t->Add("cruise", &o->cruise_mps, NonNegative(100), "m/s",

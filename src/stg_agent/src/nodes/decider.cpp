@@ -11,6 +11,7 @@
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "stg_agent/entities/entity_pilot.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::nodes {
@@ -72,6 +73,11 @@ Decider::Decider(const std::string& wanted, const agent::AgentModel& model, int 
   }
   agent::RequirePolicyFileName(name);
   file_ = agent::PolicyFileOf(name, agent);
+  if (agent::EntityPolicy::IsOne(file_)) {
+    entities_ = std::make_unique<const agent::EntityPolicy>(agent::EntityPolicy::LoadOnnx(file_));
+    id_ = entities_->metadata().id;
+    return;
+  }
   policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(file_));
   try {
     policy_->RequireFits(model);
@@ -84,6 +90,8 @@ Decider::Decider(const std::string& wanted, const agent::AgentModel& model, int 
 void Decider::Mean(const agent::Agent& agent, const float* observation, float* action) const {
   if (policy_) {
     policy_->Mean(observation, action);
+  } else if (entities_) {
+    agent::Fly(*entities_, agent.view(), action);
   } else {
     builtin_->Act(agent.view(), action);
   }

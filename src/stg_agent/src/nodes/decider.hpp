@@ -7,6 +7,7 @@
 
 #include "stg_agent/agent/agent.hpp"
 #include "stg_agent/controllers/controller.hpp"
+#include "stg_agent/entities/entity_policy.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::nodes {
@@ -35,7 +36,8 @@ class Decider {
 
  private:
   std::string id_, file_;
-  std::unique_ptr<const agent::Policy> policy_;  // null: builtin_
+  std::unique_ptr<const agent::Policy> policy_;  // null: one of the following
+  std::unique_ptr<const agent::EntityPolicy> entities_;
   std::shared_ptr<const agent::Controller> builtin_;
 };
 

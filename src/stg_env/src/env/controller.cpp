@@ -1,9 +1,11 @@
 #include "stg_env/env/controller.hpp"
 
 #include "acoustic_channel/models/range.hpp"
+#include "auv_common/error.hpp"
 #include "environment.hpp"
 #include "sources/acoustic_source.hpp"
 #include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/entities/entity_pilot.hpp"
 
 namespace stg::env {
 namespace {
@@ -42,6 +44,11 @@ void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float
   const Scenario& s = slice.lanes->scenario();
   const int n = s.run.agents, size = s.world.control.action_size();
   const int width = s.agent.observation_size();
+  if (c.entities != nullptr && s.mode == InformationMode::kTruth) {
+    throw UserError("policy '" + c.name +
+                    "' decides on what an AUV finds out by itself; the scenario '" + s.run.name +
+                    "' is of mode truth");
+  }
   if (c.builtin != nullptr && (c.privileged || s.mode == InformationMode::kTruth)) {
     DecideTruly(*c.builtin, slice, actions);
     return;
@@ -52,6 +59,8 @@ void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float
       const std::size_t own = c.policies.size() == 1 ? 0 : static_cast<std::size_t>(row % n);
       c.policies[own]->Mean(
           observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
+    } else if (c.entities != nullptr) {
+      agent::Fly(*c.entities, slice.lanes->acoustic().agent(row % n).view(row / n), a);
     } else {
       c.builtin->Act(slice.lanes->acoustic().agent(row % n).view(row / n), a);
     }
@@ -68,6 +77,10 @@ Controller MakeController(const std::string& name, const agent::AgentModel& mode
   c.builtin = agent::MakeController(name);
   if (c.builtin) return c;
   agent::RequirePolicyFileName(name);
+  if (agent::EntityPolicy::IsOne(name)) {
+    c.entities = std::make_shared<agent::EntityPolicy>(agent::EntityPolicy::LoadOnnx(name));
+    return c;
+  }
   std::string last;
   for (int i = 0; i < model.run.agents; ++i) {
     const std::string file = agent::PolicyFileOf(name, i);

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "env/env_fixture.hpp"
+#include "stg_agent/entities/entity_pilot.hpp"
 
 namespace {
 std::atomic<long> g_allocations{0};  // other tests here have threads
@@ -97,6 +98,20 @@ TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
               0)
         << mode;
   }
+}
+
+TEST(Allocation, AnAgentsPassThroughAPolicyOverEntitiesTakesNone) {
+  TestEnv env(Short(LoadNamedScenario(STG_SCENARIO_FOLDER, "field", "nominal", {"agents=20"}), 60));
+  env.Reset();
+  agent::EntityPolicy::Parameters p;
+  p.numbers.assign(agent::PoolBlocks(agent::EntityActorSpec(5)).size, 0.01F);
+  p.log_std.assign(5, -1.0F);
+  const agent::EntityPolicy policy(p);
+  const agent::AgentView view = env.agent(0, 3);
+  float action[dynamics::kMaxActionSize];
+  const long before = g_allocations;
+  agent::Fly(policy, view, action);
+  EXPECT_EQ(g_allocations - before, 0);
 }
 
 }  // namespace

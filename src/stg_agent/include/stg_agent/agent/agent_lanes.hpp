@@ -28,7 +28,7 @@ class LanedAgent {
   /// Starts an episode in one lane, which forgets everything. The cue was true at time 0, whenever
   /// the first Observe is: one that comes late finds it as uncertain as it has become.
   void Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue);
-  void Detect(int lane, const dynamics::Detection& detection) { At(lane).Detect(detection); }
+  void Detect(int lane, const dynamics::Detection& detection);
   void Receive(int lane, const acoustics::Reception& reception);
 
   /// Brings all knowledge to nav.stamp; the observation is BuildObservation of knowledge().
@@ -69,6 +69,7 @@ class LanedAgent {
   std::unique_ptr<acoustics::LinkEstimator> links_;
   Neighbourhood<T> neighbours_;
   Mind<T> mind_;
+  mutable std::vector<EntityMemory> memory_;  // [lanes]; a view hands it to the pilot
   // As before the present Observe, for lanes that do not take part in it.
   Neighbourhood<T> neighbours_before_;
   Mind<T> mind_before_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "auv_dynamics/control/control_config.hpp"
+#include "stg_agent/agent/entity_memory.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/graph/neighbourhood.hpp"
 #include "stg_agent/graph/task_view.hpp"
@@ -18,8 +19,13 @@ class AgentView {
   using Action = std::array<double, dynamics::kMaxActionSize>;
 
   AgentView(const AgentModel& model, const Inbox& inbox, const Knowledge<double>& knowledge,
-            const Action& action, const SightReader& sights)
-      : model_(model), inbox_(inbox), knowledge_(knowledge), action_(action), sights_(sights) {}
+            const Action& action, const SightReader& sights, EntityMemory* memory)
+      : model_(model),
+        inbox_(inbox),
+        knowledge_(knowledge),
+        action_(action),
+        sights_(sights),
+        memory_(memory) {}
 
   const AgentModel& model() const { return model_; }
   int id() const { return inbox_.id(); }
@@ -45,6 +51,10 @@ class AgentView {
   /// first); returns how many there were.
   int Nearest(int count, NeighbourSight<double>* sights) const;
 
+  /// What it remembers for its entities, and the command that it flies by; a pilot writes the
+  /// latter, which is why it is not constant.
+  EntityMemory& memory() const { return *memory_; }
+
   /// Packets of this episode that did not decode.
   std::uint64_t refused_packets() const { return inbox_.refused_packets(); }
 
@@ -54,6 +64,7 @@ class AgentView {
   Knowledge<double> knowledge_;
   Action action_;
   SightReader sights_;
+  EntityMemory* memory_;
 };
 
 }  // namespace stg::agent

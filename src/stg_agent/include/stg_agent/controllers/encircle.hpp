@@ -37,6 +37,16 @@ struct EncircleOptions {
 
 void Describe(EncircleOptions* o, config::Table* t);
 
+/// What the law is told to do otherwise; as it stands here: nothing.
+template <class T>
+struct Guidance {
+  T radius_m = T(0.0);   ///< added to the radius of the circle in the plane [m]
+  T speed_mps = T(0.0);  ///< added to the speed relative to the target [m/s]
+  T phase_rad = T(0.0);  ///< ahead of the middle of the gap [rad]
+  T sense = T(1.0);      ///< 1: anticlockwise; -1: clockwise
+  T depth_m = T(0.0);    ///< deeper than the own layer [m]; not in a closed basin
+};
+
 /// A vector in the plane.
 template <class T>
 struct Level {
@@ -116,8 +126,13 @@ struct Encircle {
 
   template <class T>
   void Act(const ControllerInput<T>& in, T* action) const {
+    Act(in, Guidance<T>(), action);
+  }
+  /// The same law, guided.
+  template <class T>
+  void Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T* action) const {
     const dynamics::VehicleConfig& vehicle = in.model.vehicle;
-    const Vec3<T> v = Velocity(in);
+    const Vec3<T> v = Velocity(in, guidance);
     const auto& vmax = vehicle.max_velocity_mps;
     const T velocity[3] = {Clip(v.x * T(1.0 / vmax[0]), T(-1.0), T(1.0)),
                            Clip(v.y * T(1.0 / vmax[1]), T(-1.0), T(1.0)),
@@ -128,10 +143,10 @@ struct Encircle {
  private:
   /// Desired velocity over ground, world axes [m/s].
   template <class T>
-  Vec3<T> Velocity(const ControllerInput<T>& in) const;
+  Vec3<T> Velocity(const ControllerInput<T>& in, const Guidance<T>& guidance) const;
   /// Height to fly at [m].
   template <class T>
-  T Height(const ControllerInput<T>& in) const;
+  T Height(const ControllerInput<T>& in, const T& deeper_m) const;
   /// Radius of the circle in the plane for a difference of height to the target [m].
   template <class T>
   T Radius(const ControllerInput<T>& in, const T& dz) const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stg_agent/controllers/controller.hpp"
+#include "stg_agent/entities/entity_policy.hpp"
 #include "stg_agent/policy/policy.hpp"
 #include "stg_env/env/vector_env.hpp"
 
@@ -15,7 +16,9 @@ struct Controller {
   std::string name;
   /// One for all AUVs or one for each; empty: built-in.
   std::vector<std::shared_ptr<const agent::Policy>> policies;
-  std::shared_ptr<const agent::Controller> builtin;  ///< null: policies
+  std::shared_ptr<const agent::Controller> builtin;  ///< null: policies or entities
+  /// One for all AUVs, of any number, that decides on entities; acoustic mode only.
+  std::shared_ptr<const agent::EntityPolicy> entities;
   bool privileged = false;  ///< a built-in controller reads true states in acoustic mode, too
 };
 

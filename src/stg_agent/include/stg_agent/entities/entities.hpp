@@ -1,0 +1,58 @@
+#pragma once
+
+#include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/agent/entity_memory.hpp"
+#include "stg_agent/entities/layout.hpp"
+
+namespace stg::agent {
+
+/// The rows of one AUV. Rows past the counts mean nothing.
+struct Entities {
+  int targets = 0, neighbours = 0, obstacles = 0;
+  float self[kSelfNumbers];
+  float search[kSearchNumbers];
+  float target[kTargetRows][kTargetNumbers];
+  float neighbour[kNeighbourRows][kNeighbourNumbers];
+  float obstacle[kObstacleRows][kObstacleNumbers];
+  float edge[kTargetRows][kNeighbourRows][kEdgeNumbers];  ///< of target t and neighbour n
+};
+
+/// A neighbour as the entities take it.
+struct EntityNeighbour {
+  NeighbourSight<double> sight;
+  const NeighbourState* report = nullptr;  ///< its newest packet
+};
+
+/// All that the entities are made of. World axes.
+struct EntityInput {
+  const AgentModel& model;
+  int id;
+  int target;  ///< that it is tasked with
+  const Knowledge<double>& knowledge;
+  const EntityMemory& memory;
+  TargetBelief belief;
+  double velocity_std_mps = 0.0;                ///< of the target's estimate, each axis
+  double information_age_s = 0.0;               ///< of the newest observation in it
+  const EntityNeighbour* neighbours = nullptr;  ///< [neighbour_count], nearest first
+  int neighbour_count = 0;
+};
+
+/// Writes the rows; allocates nothing. Their order is that of the input for neighbours, and by
+/// distance for obstacles.
+///
+/// Always zero today, because nothing in the agent tells them: of a target the second mixture
+/// component and the last innovation, of a neighbour the share of its packets missed and their
+/// SINR, of an edge the share of the information, of self the site's noise, and all of search.
+void BuildEntities(const EntityInput& input, Entities* out);
+
+/// The same of an agent after Observe, with its nearest neighbours.
+void BuildEntities(const AgentView& agent, Entities* out);
+
+/// The scales of lengths, times and deviations (docs/packages/stg_agent.md).
+float FarScale(double distance_m);                       ///< L
+float MiddleScale(double distance_m, double desired_m);  ///< M
+float BandScale(double distance_m, double desired_m);    ///< B
+float AgeScale(double time_s);                           ///< A
+float DeviationScale(double std_m);                      ///< S
+
+}  // namespace stg::agent

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stg_agent/entities/entities.hpp"
+#include "stg_agent/entities/pool_network.hpp"
+#include "stg_agent/policy/policy.hpp"
+
+namespace stg::agent {
+
+/// What the numbers of a command mean (docs/packages/stg_agent.md), named in the policy file.
+enum class EntityAction {
+  kGuidance,  ///< five: how the law `encircle` is to circle. All zero: as it does by itself
+  kCourse3    ///< three: change of course, speed and climb; no law
+};
+inline constexpr int CommandSize(EntityAction action) {
+  return action == EntityAction::kGuidance ? 5 : 3;
+}
+/// "guidance" or "course3".
+std::string EntityActionName(EntityAction action);
+/// Throws UserError for another name.
+EntityAction EntityActionNamed(const std::string& name);
+
+/// The network of an actor over entities.
+/// @param outputs CommandSize
+PoolSpec EntityActorSpec(int outputs);
+/// The rows that such a network takes, in its order: targets, neighbours, obstacles.
+inline constexpr int kEntitySets = 3;
+void EntityRows(const Entities& entities, PoolRows (*sets)[kEntitySets]);
+
+/// A policy over entities: one file for any number of AUVs. command = tanh(network). Immutable.
+class EntityPolicy {
+ public:
+  struct Parameters {
+    std::vector<float> numbers;  ///< PoolBlocks(EntityActorSpec)
+    EntityAction action = EntityAction::kGuidance;
+    std::vector<float> log_std;  ///< [CommandSize], for exploration; not used by Command
+    PolicyMetadata metadata;     ///< layout and interface are set by the constructor
+  };
+  static constexpr std::int64_t kMaxFileBytes = 16LL << 20;
+
+  /// Throws UserError when shapes disagree or a number is not finite.
+  explicit EntityPolicy(Parameters parameters);
+
+  /// Whether a file says that it is one; false for what cannot be read.
+  static bool IsOne(const std::string& path);
+  /// Reads a file that SaveOnnx wrote, and no other graph; throws UserError that names the file.
+  static EntityPolicy LoadOnnx(const std::string& path);
+  /// Inputs `self` [1, 26], `search` [1, 28], `targets` [T, 40], `neighbours` [N, 22], `obstacles`
+  /// [O, 10]; output `command` [1, n].
+  void SaveOnnx(const std::string& path) const;
+
+  /// @param command [CommandSize], in [-1, 1]
+  void Command(const Entities& entities, float* command) const;
+
+  EntityAction action() const { return parameters_.action; }
+  const Parameters& parameters() const { return parameters_; }
+  const PolicyMetadata& metadata() const { return parameters_.metadata; }
+  const PoolNetwork& network() const { return network_; }
+
+ private:
+  Parameters parameters_;
+  PoolNetwork network_;
+};
+
+}  // namespace stg::agent

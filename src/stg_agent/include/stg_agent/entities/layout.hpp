@@ -1,0 +1,34 @@
+#pragma once
+
+/// The observation layout `stg-2:entities`: what one AUV knows, as a row about itself and any
+/// number of rows about others. docs/packages/stg_agent.md lists every number.
+///
+/// Frame K of an AUV: origin its own navigated position, x along its course over ground (its
+/// heading below 0.3 m/s), y to port, z up. No number depends on where north is.
+namespace stg::agent {
+
+inline constexpr char kEntityLayout[] = "stg-2:entities";
+
+/// Numbers of one row.
+inline constexpr int kSelfNumbers = 26;
+inline constexpr int kTargetNumbers = 40;
+inline constexpr int kNeighbourNumbers = 22;
+inline constexpr int kEdgeNumbers = 8;
+inline constexpr int kObstacleNumbers = 10;
+inline constexpr int kSearchNumbers = 28;
+
+/// Most rows of a kind. Of more neighbours or obstacles the nearest are shown.
+inline constexpr int kTargetRows = 5;
+inline constexpr int kNeighbourRows = 16;
+inline constexpr int kObstacleRows = 8;
+
+/// Every number is clipped to +-this.
+inline constexpr float kEntityClip = 3.0F;
+
+/// Where some of the numbers stand.
+inline constexpr int kSelfCommand = 9;  ///< the five of the last command
+inline constexpr int kSelfGraph = 14;   ///< the six of Eq. 18
+inline constexpr int kNeighbourQuality = 12;
+inline constexpr int kNeighbourError = 21;
+
+}  // namespace stg::agent

@@ -1,0 +1,300 @@
+#include "stg_agent/entities/entities.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "auv_common/numbers/attitude.hpp"
+#include "stg_agent/graph/features.hpp"
+
+namespace stg::agent {
+namespace {
+
+constexpr double kSpeedScale = 2.3, kCourseFrom = 0.3, kGeometryAge = 60.0, kObstacleRange = 500.0;
+constexpr double kDrift = 0.3;  // growth of a neighbour's deviation [m/s]
+
+/// Writes numbers one after another, each clipped.
+class Row {
+ public:
+  explicit Row(float* out) : out_(out) {}
+  Row& Put(double value) {
+    const auto x = static_cast<float>(value);
+    *out_++ = std::min(std::max(x, -kEntityClip), kEntityClip);
+    return *this;
+  }
+  const float* end() const { return out_; }
+
+ private:
+  float* out_;
+};
+
+/// The horizontal frame K.
+struct Frame {
+  double c = 1.0, s = 0.0;  // course
+
+  double x(const Vec3<double>& v) const { return c * v.x + s * v.y; }
+  double y(const Vec3<double>& v) const { return c * v.y - s * v.x; }
+};
+
+Frame FrameOf(const Knowledge<double>& k) {
+  const double speed = std::hypot(k.v_WB.x, k.v_WB.y);
+  if (speed >= kCourseFrom) return {k.v_WB.x / speed, k.v_WB.y / speed};
+  return {k.trig.cos_psi, k.trig.sin_psi};
+}
+
+/// cos and sin of the bearing in K of a horizontal vector; straight ahead where there is none.
+void PutBearing(const Frame& K, const Vec3<double>& r, Row* row) {
+  const double d = std::hypot(r.x, r.y);
+  if (d < 1e-6) {
+    row->Put(1.0).Put(0.0);
+  } else {
+    row->Put(K.x(r) / d).Put(K.y(r) / d);
+  }
+}
+
+double ClosestApproach(const Vec3<double>& r, const Vec3<double>& w, double* miss) {
+  const double square = w.x * w.x + w.y * w.y + w.z * w.z;
+  const double t = square < 1e-8 ? 0.0 : std::clamp(-Dot(r, w) / square, 0.0, 300.0);
+  *miss = Norm(r + w * t);
+  return t;
+}
+
+/// The newest own measurement of the target that a packet holds; false: none.
+bool Sighted(const EntityInput& in, const NeighbourState& report, double* age_s) {
+  if (report.target != in.target || report.sightings <= 0) return false;
+  *age_s = std::max(0.0, Seconds(in.memory.now - report.sighting[0].stamp));
+  return true;
+}
+
+void PutSelf(const EntityInput& in, const Frame& K, float* out) {
+  const Knowledge<double>& k = in.knowledge;
+  const AgentModel& m = in.model;
+  const double now = Seconds(in.memory.now);
+  Row row(out);
+  row.Put(k.v_WB_B.x / kSpeedScale).Put(std::hypot(k.v_WB.x, k.v_WB.y) / kSpeedScale);
+  row.Put(K.s * k.trig.cos_psi - K.c * k.trig.sin_psi);  // sin(course - heading)
+  row.Put(K.c * k.trig.cos_psi + K.s * k.trig.sin_psi);
+  row.Put(k.w_WB_B.z / 0.0873).Put(k.v_WB.z / 0.5);
+  const config::Interval& depth = m.sea.auv_depth_m;
+  row.Put((-k.p_WB.z - depth.lo) / std::max(depth.hi - depth.lo, 1.0));
+  row.Put(std::clamp((m.sea.bottom_m + k.p_WB.z - 10.0) / 20.0, -1.0, 1.0));
+  row.Put(DeviationScale(in.memory.position_std_m));
+  for (const float c : in.memory.command) row.Put(static_cast<double>(c));
+  double graph[kGraphNumbers];
+  GraphSummary(m.observation, k, &graph);
+  for (const double g : graph) row.Put(g);
+  row.Put(std::log(1.0 + in.neighbour_count) / 3.0);
+  row.Put(std::log(1.0 + (in.belief.started ? 1 : 0)) / 2.0);
+  const double slot = m.channel.slots.length_s, frame = slot * m.run.agents;
+  const bool turns = m.channel.access == "tdma" && frame > 0.0;
+  const double since = turns ? std::fmod(now - slot * in.id + frame * 4096.0, frame) : 0.0;
+  row.Put(turns ? AgeScale(since) : 0.0F).Put(turns ? 1.0 - since / frame : 0.0);
+  int silent = 0;
+  for (int j = 0; j < in.neighbour_count; ++j) {
+    if (turns && in.neighbours[j].sight.age_s > 3.0 * frame) ++silent;
+  }
+  row.Put(in.neighbour_count > 0 ? static_cast<double>(silent) / in.neighbour_count : 0.0);
+  row.Put(0.0);
+}
+
+/// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target of who measured it
+/// in the last minute; both 1, as of one observer, where nobody did.
+void Geometry(const EntityInput& in, double* once, double* twice) {
+  const Vec3<double>& r = in.knowledge.r_BT_W;
+  std::complex<double> first, second;
+  int count = 0;
+  const auto add = [&](double x, double y) {
+    const double d = std::hypot(x, y);
+    if (d < 1e-6) return;
+    const std::complex<double> e(x / d, y / d);
+    first += e;
+    second += e * e;
+    ++count;
+  };
+  if (in.memory.ranged && Seconds(in.memory.now - in.memory.own_detection) <= kGeometryAge) {
+    add(-r.x, -r.y);
+  }
+  for (int j = 0; j < in.neighbour_count; ++j) {
+    double age = 0.0;
+    if (!Sighted(in, *in.neighbours[j].report, &age) || age > kGeometryAge) continue;
+    const Vec3<double>& n = in.neighbours[j].sight.r_BN_W;
+    add(n.x - r.x, n.y - r.y);
+  }
+  *once = count > 0 ? std::abs(first) / count : 1.0;
+  *twice = count > 0 ? std::abs(second) / count : 1.0;
+}
+
+void PutTarget(const EntityInput& in, const Frame& K, float* out) {
+  const Knowledge<double>& k = in.knowledge;
+  const ObservationConfig& c = in.model.observation;
+  const double desired = in.model.task.desired_distance_m;
+  const Vec3<double>& r = k.r_BT_W;
+  const double level = std::max(std::hypot(r.x, r.y), 1e-6);
+  Row row(out);
+  PutBearing(K, r, &row);
+  row.Put(FarScale(k.distance)).Put(BandScale(k.distance, desired));
+  row.Put(MiddleScale(k.distance, desired));
+  row.Put(r.z / 40.0);
+  const double lx = r.x / level, ly = r.y / level;  // the line of sight
+  const auto along = [&](const Vec3<double>& v) { return (v.x * lx + v.y * ly) / kSpeedScale; };
+  const auto across = [&](const Vec3<double>& v) { return (v.y * lx - v.x * ly) / kSpeedScale; };
+  row.Put(along(k.v_WT)).Put(across(k.v_WT)).Put(along(k.v_WB)).Put(across(k.v_WB));
+  row.Put((across(k.v_WT) - across(k.v_WB)) * kSpeedScale / std::max(level, 1.0) * 60.0);
+  const Covariance3& P = in.belief.P_WT;
+  const double mean = 0.5 * (P.xx + P.yy), half = 0.5 * (P.xx - P.yy);
+  const double radius = std::hypot(half, P.xy);
+  const double s1 = std::sqrt(std::max(mean + radius, 0.0));
+  const double s2 = std::sqrt(std::max(mean - radius, 0.0));
+  row.Put(DeviationScale(s1)).Put(DeviationScale(s2));
+  // Of twice the angle between the long axis and the line of sight.
+  const double cos2 = radius > 1e-12 ? half / radius : 1.0;
+  const double sin2 = radius > 1e-12 ? P.xy / radius : 0.0;
+  const double c2 = lx * lx - ly * ly, s2l = 2.0 * lx * ly;
+  const double a = (s1 - s2) / std::max(s1 + s2, 1e-9);
+  row.Put(a * (cos2 * c2 + sin2 * s2l)).Put(a * (sin2 * c2 - cos2 * s2l));
+  row.Put(DeviationScale(std::sqrt(std::max(P.zz, 0.0)))).Put(in.velocity_std_mps / 0.9);
+  for (int n = 0; n < 4; ++n) row.Put(0.0);
+  row.Put(AgeScale(in.information_age_s));
+  row.Put(in.memory.ranged ? AgeScale(Seconds(in.memory.now - in.memory.own_detection)) : 1.0F);
+  row.Put(0.0);
+  double once = 1.0, twice = 1.0;
+  Geometry(in, &once, &twice);
+  row.Put(once).Put(twice);
+  row.Put(k.confidence).Put(ShownProgress(c, k)).Put(std::log(1.0 + k.mean_error / 30.0) / 4.0);
+  row.Put(k.lost).Put(AgeScale(k.lost_steps * in.model.run.decision_dt_s()));
+  double phase[kPhases], quality[kQualities];
+  PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);
+  // What is known, not only how near it is.
+  QualityOneHot(c, std::min(k.confidence, std::max(0.0, 1.0 - s1 / 100.0)), &quality);
+  for (const double p : phase) row.Put(p);
+  for (const double q : quality) row.Put(q);
+  row.Put(1.0);
+}
+
+void PutNeighbour(const EntityInput& in, const Frame& K, const EntityNeighbour& n, float* out) {
+  const NeighbourSight<double>& s = n.sight;
+  const Vec3<double> w = s.v_W - in.knowledge.v_WB;
+  Row row(out);
+  PutBearing(K, s.r_BN_W, &row);
+  row.Put(FarScale(s.distance_m)).Put((s.distance_m - 20.0) / 20.0).Put(s.r_BN_W.z / 20.0);
+  row.Put(K.x(w) / kSpeedScale).Put(K.y(w) / kSpeedScale);
+  double miss = 0.0;
+  row.Put(AgeScale(ClosestApproach(s.r_BN_W, w, &miss)));
+  row.Put(miss / 40.0).Put(AgeScale(s.age_s));
+  row.Put(DeviationScale(n.report->position_std_m)).Put(DeviationScale(kDrift * s.age_s));
+  row.Put(s.link_quality).Put(0.0).Put(0.0);
+  for (int p = 0; p < kPhases; ++p) row.Put(n.report->phase == p ? 1.0 : 0.0);
+  row.Put(n.report->confidence).Put(std::log(1.0 + s.tracking_error / 30.0) / 4.0);
+  row.Put(std::clamp(s.tracking_error / in.model.observation.error_scale_m, 0.0, 1.0));
+}
+
+void PutEdge(const EntityInput& in, const EntityNeighbour& n, float* out) {
+  const Vec3<double>& r = in.knowledge.r_BT_W;
+  const Vec3<double>& s = n.sight.r_BN_W;
+  const Vec3<double> q = s - r;  // of the neighbour, from the target
+  const double d = Norm(q);
+  const double level = std::hypot(q.x, q.y), own = std::hypot(r.x, r.y);
+  const double both = std::max(level * own, 1e-9);
+  Row row(out);
+  row.Put(FarScale(d)).Put(BandScale(d, in.model.task.desired_distance_m));
+  row.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
+  row.Put(n.report->target == in.target ? 1.0 : 0.0);
+  double age = 0.0;
+  row.Put(Sighted(in, *n.report, &age) ? AgeScale(age) : 1.0F);
+  row.Put(0.0);
+  const double share = Dot(s, r) / std::max(Dot(r, r), 1e-9);
+  const bool between = share > 0.0 && share < 1.0 && Norm(s - r * share) < 20.0;
+  row.Put(between ? 1.0 : 0.0);
+}
+
+/// One obstacle of the chart, seen from the AUV.
+struct Seen {
+  int kind;  // 0 sphere, 1 upright
+  Vec3<double> r;
+  double clearance, radius;
+};
+
+int SeeObstacles(const EntityInput& in, Seen* seen) {
+  int count = 0;
+  const auto offer = [&](const Seen& s) {
+    if (s.clearance > kObstacleRange) return;
+    int rank = count;
+    while (rank > 0 && s.clearance < seen[rank - 1].clearance) --rank;
+    if (rank >= kObstacleRows) return;
+    if (count < kObstacleRows) ++count;
+    for (int k = count - 1; k > rank; --k) seen[k] = seen[k - 1];
+    seen[rank] = s;
+  };
+  const Vec3<double>& p = in.knowledge.p_WB;
+  for (const auto& b : in.model.sea.spheres) {
+    const Vec3<double> r{b[0] - p.x, b[1] - p.y, b[2] - p.z};
+    offer({0, r, Norm(r) - b[3], b[3]});
+  }
+  for (const auto& b : in.model.sea.cylinders) {
+    const double z = std::clamp(p.z, b[2], b[2] + b[4]);
+    const Vec3<double> r{b[0] - p.x, b[1] - p.y, z - p.z};
+    offer({1, r, std::hypot(std::max(std::hypot(r.x, r.y) - b[3], 0.0), r.z), b[3]});
+  }
+  return count;
+}
+
+void PutObstacle(const EntityInput& in, const Frame& K, const Seen& o, float* out) {
+  const double d = std::max(Norm(o.r), 1e-6);
+  Row row(out);
+  row.Put(o.kind == 0 ? 1.0 : 0.0).Put(o.kind == 1 ? 1.0 : 0.0).Put(0.0);
+  PutBearing(K, o.r, &row);
+  row.Put(FarScale(std::max(o.clearance, 0.0))).Put((o.clearance - 25.0) / 25.0);
+  row.Put(Dot(in.knowledge.v_WB, o.r) / d / kSpeedScale).Put(FarScale(o.radius)).Put(o.r.z / 20.0);
+}
+
+}  // namespace
+
+float FarScale(double d) { return static_cast<float>(std::log(1.0 + d / 30.0) / 4.215); }
+float MiddleScale(double d, double desired) {
+  return static_cast<float>(std::tanh((d - desired) / 200.0));
+}
+float BandScale(double d, double desired) {
+  return static_cast<float>(std::clamp((d - desired) / 30.0, -3.0, 3.0));
+}
+float AgeScale(double t) {
+  return static_cast<float>(std::log(1.0 + std::max(t, 0.0) / 5.0) / 4.11);
+}
+float DeviationScale(double s) { return static_cast<float>(std::log(1.0 + s / 5.0) / 5.30); }
+
+void BuildEntities(const EntityInput& in, Entities* out) {
+  const Frame K = FrameOf(in.knowledge);
+  PutSelf(in, K, out->self);
+  std::fill(out->search, out->search + kSearchNumbers, 0.0F);
+  out->targets = in.belief.started ? 1 : 0;
+  if (out->targets > 0) PutTarget(in, K, out->target[0]);
+  out->neighbours = std::min(in.neighbour_count, kNeighbourRows);
+  for (int j = 0; j < out->neighbours; ++j) {
+    PutNeighbour(in, K, in.neighbours[j], out->neighbour[j]);
+    if (out->targets > 0) PutEdge(in, in.neighbours[j], out->edge[0][j]);
+  }
+  Seen seen[kObstacleRows];
+  out->obstacles = SeeObstacles(in, seen);
+  for (int o = 0; o < out->obstacles; ++o) PutObstacle(in, K, seen[o], out->obstacle[o]);
+}
+
+void BuildEntities(const AgentView& agent, Entities* out) {
+  const TargetEstimate estimate = agent.estimate();
+  EntityInput in{agent.model(),     agent.id(),     agent.target(),
+                 agent.knowledge(), agent.memory(), agent.belief()};
+  in.velocity_std_mps = std::sqrt(std::max(estimate.vv, 0.0));
+  in.information_age_s = std::max(0.0, Seconds(in.memory.now - in.belief.information));
+  EntityNeighbour nearest[kNeighbourRows];
+  for (const int id : agent.neighbours().known()) {
+    const NeighbourSight<double> sight = agent.sight(id);
+    int rank = in.neighbour_count;
+    while (rank > 0 && sight.distance_m < nearest[rank - 1].sight.distance_m) --rank;
+    if (rank >= kNeighbourRows) continue;
+    if (in.neighbour_count < kNeighbourRows) ++in.neighbour_count;
+    for (int k = in.neighbour_count - 1; k > rank; --k) nearest[k] = nearest[k - 1];
+    nearest[rank] = {sight, &agent.neighbours().state(id)};
+  }
+  in.neighbours = nearest;
+  BuildEntities(in, out);
+}
+
+}  // namespace stg::agent

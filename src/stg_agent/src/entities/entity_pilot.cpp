@@ -1,0 +1,95 @@
+#include "stg_agent/entities/entity_pilot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stg::agent {
+namespace {
+
+constexpr double kRadius_m = 60.0, kSpeed_mps = 0.8, kPhase_rad = kPi / 3.0, kDepth_m = 15.0;
+constexpr double kTurn_rad = kPi / 3.0;
+constexpr float kClockwiseFrom = -0.8F;
+
+/// The neighbours as the built-in laws see them.
+void Steer(const AgentView& agent, const Guidance<double>& guidance, double* action) {
+  NeighbourSight<double> nearest[Controller::kNearestKnown];
+  const int count = agent.Nearest(Controller::kNearestKnown, nearest);
+  const Encircle law{};
+  law.Act(ControllerInput<double>{agent.model(), agent.id(), agent.knowledge(), nearest, count},
+          guidance, action);
+}
+
+/// What a command of `course3` asks for: a change of the present course, a speed over ground and a
+/// climb rate. Zeros keep the course at the middle speed.
+Vec3<double> VelocityOf(const AgentView& agent, const float* command) {
+  const Knowledge<double>& k = agent.knowledge();
+  const double most = agent.model().vehicle.max_velocity_mps[0];
+  const double least = std::min(most, agent.model().control.autopilot.min_speed_mps);
+  const bool moves = std::hypot(k.v_WB.x, k.v_WB.y) >= 0.3;
+  const double course =
+      moves ? std::atan2(k.v_WB.y, k.v_WB.x) : std::atan2(k.trig.sin_psi, k.trig.cos_psi);
+  const double to = course + kTurn_rad * static_cast<double>(command[0]);
+  const double speed = least + (most - least) * 0.5 * (1.0 + static_cast<double>(command[1]));
+  const double climb = agent.model().vehicle.max_velocity_mps[2] * static_cast<double>(command[2]);
+  return {speed * std::cos(to), speed * std::sin(to), climb};
+}
+
+}  // namespace
+
+Guidance<double> GuidanceOf(const float* command) {
+  Guidance<double> g;
+  g.radius_m = kRadius_m * static_cast<double>(command[0]);
+  g.speed_mps = kSpeed_mps * static_cast<double>(command[1]);
+  g.phase_rad = kPhase_rad * static_cast<double>(command[2]);
+  g.sense = command[3] <= kClockwiseFrom ? -1.0 : 1.0;
+  g.depth_m = kDepth_m * static_cast<double>(command[4]);
+  return g;
+}
+
+bool CommandDue(const EntityMemory& memory) {
+  return !memory.commanded || Seconds(memory.now - memory.command_time) >= kCommandPeriod_s - 1e-6;
+}
+
+void TakeCommand(const AgentView& agent, EntityAction action, const float* command) {
+  EntityMemory& memory = agent.memory();
+  memory.commanded = true;
+  memory.command_time = memory.now;
+  memory.command.fill(0.0F);
+  for (int k = 0; k < CommandSize(action); ++k) {
+    memory.command[static_cast<std::size_t>(k)] = std::clamp(command[k], -1.0F, 1.0F);
+  }
+  if (action == EntityAction::kCourse3) {
+    memory.velocity_W = VelocityOf(agent, memory.command.data());
+  }
+}
+
+void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
+  const AgentModel& model = agent.model();
+  const EntityMemory& memory = agent.memory();
+  double wanted[dynamics::kMaxActionSize];
+  if (action == EntityAction::kGuidance) {
+    Steer(agent, GuidanceOf(memory.command.data()), wanted);
+  } else {
+    const auto& most = model.vehicle.max_velocity_mps;
+    const Vec3<double>& v = memory.velocity_W;
+    const double velocity[3] = {std::clamp(v.x / most[0], -1.0, 1.0),
+                                std::clamp(v.y / most[1], -1.0, 1.0),
+                                std::clamp(v.z / most[2], -1.0, 1.0)};
+    AskForVelocity(ControllerInput<double>{model, agent.id(), agent.knowledge(), nullptr, 0},
+                   velocity, wanted);
+  }
+  for (int k = 0; k < model.control.action_size(); ++k) out[k] = static_cast<float>(wanted[k]);
+}
+
+void Fly(const EntityPolicy& policy, const AgentView& agent, float* out) {
+  if (CommandDue(agent.memory())) {
+    Entities entities;
+    BuildEntities(agent, &entities);
+    float command[kCommandNumbers];
+    policy.Command(entities, command);
+    TakeCommand(agent, policy.action(), command);
+  }
+  FollowCommand(agent, policy.action(), out);
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,328 @@
+#include <onnx/onnx_pb.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <utility>
+
+#include "auv_common/durable_file.hpp"
+#include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
+#include "stg_agent/entities/entity_policy.hpp"
+
+/// Files of policies over entities. The reader takes the numbers out of a file, makes the one
+/// graph that the writer would make of them, and refuses the file unless it holds that graph and
+/// nothing else. So a file can never run code, and every shape is checked.
+namespace stg::agent {
+namespace {
+
+constexpr int kEntityOpset = 10, kEntityIrVersion = 5;
+constexpr char kEntityMetric[] = "stg.metric.";
+constexpr const char* kSetNames[kEntitySets] = {"targets", "neighbours", "obstacles"};
+
+/// Writes the operators of PoolNetwork.
+class GraphWriter {
+ public:
+  GraphWriter(onnx::GraphProto* graph, const PoolBlocks& blocks, const std::vector<float>& numbers)
+      : graph_(graph), blocks_(blocks), numbers_(numbers) {}
+
+  void Write(const PoolSpec& spec) {
+    graph_->set_name("policy");
+    Value(graph_->add_input(), "self", 1, spec.self);
+    Value(graph_->add_input(), "search", 1, spec.search);
+    for (int s = 0; s < spec.sets_count(); ++s) {
+      Value(graph_->add_input(), kSetNames[s], 0, spec.sets[static_cast<std::size_t>(s)]);
+    }
+    Value(graph_->add_output(), "command", 1, spec.outputs);
+    std::vector<std::string> joined = {Dense("self", "self", blocks_.self, true), "search"};
+    for (int s = 0; s < spec.sets_count(); ++s) Pool(s, &joined);
+    Node("Concat", joined, "joined", {{"axis", 1}});
+    const std::string first = Dense("joined", "trunk1", blocks_.trunk1, true);
+    const std::string second = Dense(first, "trunk2", blocks_.trunk2, true);
+    Node("Tanh", {Dense(second, "head", blocks_.head, false)}, "command", {});
+  }
+
+ private:
+  /// @param rows 0: any number, named after the value
+  static void Value(onnx::ValueInfoProto* info, const std::string& name, int rows, int columns) {
+    info->set_name(name);
+    auto* type = info->mutable_type()->mutable_tensor_type();
+    type->set_elem_type(onnx::TensorProto::FLOAT);
+    auto* dimension = type->mutable_shape()->add_dim();
+    if (rows > 0) {
+      dimension->set_dim_value(rows);
+    } else {
+      dimension->set_dim_param("rows_of_" + name);
+    }
+    type->mutable_shape()->add_dim()->set_dim_value(columns);
+  }
+
+  void Node(const std::string& op, const std::vector<std::string>& inputs,
+            const std::string& output,
+            const std::vector<std::pair<std::string, std::int64_t>>& attributes) {
+    onnx::NodeProto* node = graph_->add_node();
+    node->set_op_type(op);
+    node->set_name(output);
+    for (const std::string& input : inputs) node->add_input(input);
+    node->add_output(output);
+    for (const auto& [name, value] : attributes) {
+      onnx::AttributeProto* a = node->add_attribute();
+      a->set_name(name);
+      if (name == "axes") {
+        a->set_type(onnx::AttributeProto::INTS);
+        a->add_ints(value);
+      } else {
+        a->set_type(onnx::AttributeProto::INT);
+        a->set_i(value);
+      }
+    }
+  }
+
+  /// The block as a constant [rows, columns]; of a matrix its transpose, for x W.
+  std::string Constant(const std::string& name, const PoolBlock& block) {
+    std::vector<float> data(block.size());
+    const float* from = numbers_.data() + block.offset;
+    for (int r = 0; r < block.rows; ++r) {
+      for (int c = 0; c < block.cols; ++c) {
+        data[static_cast<std::size_t>(c * block.rows + r)] = *from++;
+      }
+    }
+    onnx::TensorProto* tensor = graph_->add_initializer();
+    tensor->set_name(name);
+    tensor->set_data_type(onnx::TensorProto::FLOAT);
+    tensor->add_dims(block.cols);
+    tensor->add_dims(block.rows);
+    tensor->set_raw_data(data.data(), data.size() * sizeof(float));
+    return name;
+  }
+
+  std::string Dense(const std::string& input, const std::string& name,
+                    const PoolBlocks::Layer& layer, bool relu) {
+    Node("MatMul", {input, Constant(name + "_weight", layer.weight)}, name + "_product", {});
+    Node("Add", {name + "_product", Constant(name + "_bias", layer.bias)}, name + "_sum", {});
+    if (!relu) return name + "_sum";
+    Node("Relu", {name + "_sum"}, name + "_out", {});
+    return name + "_out";
+  }
+
+  void Pool(int s, std::vector<std::string>* joined) {
+    const PoolBlocks::Set& set = blocks_.sets[static_cast<std::size_t>(s)];
+    const std::string name = kSetNames[s];
+    const std::string rows =
+        Dense(Dense(name, name + "_1", set.first, true), name + "_2", set.second, true);
+    Node("Concat", {rows, Constant(name + "_nobody", set.nobody)}, name + "_all", {{"axis", 0}});
+    for (const char* op : {"ReduceMean", "ReduceMax"}) {
+      const std::string out = name + "_" + (op[6] == 'M' && op[7] == 'e' ? "mean" : "max");
+      Node(op, {name + "_all"}, out, {{"axes", 0}, {"keepdims", 1}});
+      joined->push_back(out);
+    }
+  }
+
+  onnx::GraphProto* graph_;
+  const PoolBlocks& blocks_;
+  const std::vector<float>& numbers_;
+};
+
+std::string ExactText(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+std::string BytesOf(const onnx::ModelProto& model) {
+  std::string bytes;
+  model.SerializeToString(&bytes);
+  return bytes;
+}
+
+/// FNV-1a, 64 bits, to tell a damaged file from a good one.
+std::string ChecksumOf(const std::string& bytes) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+onnx::ModelProto ModelOf(const EntityPolicy::Parameters& p) {
+  onnx::ModelProto model;
+  model.set_ir_version(kEntityIrVersion);
+  model.set_producer_name("stg");
+  model.add_opset_import()->set_version(kEntityOpset);
+  const PoolSpec spec = EntityActorSpec(CommandSize(p.action));
+  const PoolBlocks blocks(spec);
+  GraphWriter(model.mutable_graph(), blocks, p.numbers).Write(spec);
+  const auto put = [&model](const std::string& key, const std::string& value) {
+    onnx::StringStringEntryProto* entry = model.add_metadata_props();
+    entry->set_key(key);
+    entry->set_value(value);
+  };
+  const PolicyMetadata& m = p.metadata;
+  put("stg.id", m.id);
+  put("stg.observation_layout", kEntityLayout);
+  put("stg.action_interface", EntityActionName(p.action));
+  put("stg.action_scale", "1");
+  put("stg.scenario_hash", m.scenario_hash);
+  put("stg.training_step", std::to_string(m.training_step));
+  put("stg.seed", std::to_string(m.seed));
+  std::string log_std;
+  for (const float s : p.log_std) {
+    log_std += (log_std.empty() ? "" : " ") + ExactText(static_cast<double>(s));
+  }
+  put("stg.log_std", log_std);
+  for (const auto& [name, value] : m.metrics) put(kEntityMetric + name, value);
+  put("stg.checksum", "3:" + ChecksumOf(BytesOf(model)));
+  return model;
+}
+
+onnx::ModelProto ParseModel(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) throw UserError(path + ": no such policy file");
+  if (!S_ISREG(info.st_mode)) throw UserError(path + ": not a policy: not a regular file");
+  if (info.st_size > Policy::kMaxFileBytes) {
+    throw UserError(path + ": not a policy: larger than " + std::to_string(Policy::kMaxFileBytes) +
+                    " bytes");
+  }
+  std::string bytes(static_cast<std::size_t>(info.st_size), '\0');
+  std::ifstream in(path, std::ios::binary);
+  if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+    throw UserError(path + ": cannot read the policy");
+  }
+  onnx::ModelProto model;
+  if (bytes.empty() || !model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    throw UserError(path + ": not a policy: not an ONNX file, or a truncated one");
+  }
+  return model;
+}
+
+/// Takes the numbers and the metadata out of a file, believing nothing else of it.
+class EntityReader {
+ public:
+  EntityReader(std::string path, const onnx::ModelProto& model)
+      : path_(std::move(path)), model_(model) {}
+
+  EntityPolicy::Parameters Read() {
+    Require(model_.metadata_props_size() <= 1000, "has too much metadata");
+    for (const auto& entry : model_.metadata_props()) {
+      Require(entry.value().size() <= 65536 && IsText(entry.key()) && IsText(entry.value()),
+              "metadata that is no text");
+      Require(properties_.emplace(entry.key(), entry.value()).second,
+              "metadata '" + entry.key() + "' is there twice");
+    }
+    EntityPolicy::Parameters p;
+    Require(Property("stg.observation_layout") == kEntityLayout, "is of another layout");
+    p.action = EntityActionNamed(Property("stg.action_interface"));
+    p.metadata.id = Property("stg.id");
+    p.metadata.scenario_hash = Property("stg.scenario_hash");
+    p.metadata.training_step = std::strtoll(Property("stg.training_step").c_str(), nullptr, 10);
+    p.metadata.seed = std::strtoull(Property("stg.seed").c_str(), nullptr, 10);
+    ReadDeviations(&p);
+    for (const auto& [key, value] : properties_) {
+      if (key.rfind(kEntityMetric, 0) == 0) {
+        p.metadata.metrics[key.substr(std::strlen(kEntityMetric))] = value;
+      }
+    }
+    ReadNumbers(&p);
+    Require(BytesOf(ModelOf(p)) == BytesOf(model_),
+            "it is damaged, or its graph is not what these numbers make");
+    return p;
+  }
+
+ private:
+  void Require(bool ok, const std::string& what) const {
+    if (!ok) throw UserError(path_ + ": not a policy: " + what);
+  }
+  const std::string& Property(const std::string& key) const {
+    const auto found = properties_.find(key);
+    Require(found != properties_.end(), "metadata '" + key + "' is missing");
+    return found->second;
+  }
+
+  void ReadDeviations(EntityPolicy::Parameters* p) const {
+    const std::string& text = Property("stg.log_std");
+    const char* at = text.c_str();
+    while (*at != '\0' && p->log_std.size() <= PoolNetwork::kMaxOutputs) {
+      char* end = nullptr;
+      p->log_std.push_back(std::strtof(at, &end));
+      Require(end != at, "metadata 'stg.log_std' is not a list of numbers");
+      at = end;
+    }
+  }
+
+  /// The constants come in the order in which the writer puts them.
+  void ReadNumbers(EntityPolicy::Parameters* p) const {
+    const PoolBlocks blocks(EntityActorSpec(CommandSize(p->action)));
+    std::vector<PoolBlock> order;
+    order.push_back(blocks.self.weight);
+    order.push_back(blocks.self.bias);
+    for (const PoolBlocks::Set& s : blocks.sets) {
+      for (const PoolBlock& b :
+           {s.first.weight, s.first.bias, s.second.weight, s.second.bias, s.nobody}) {
+        order.push_back(b);
+      }
+    }
+    for (const auto& l : {blocks.trunk1, blocks.trunk2, blocks.head}) {
+      order.push_back(l.weight);
+      order.push_back(l.bias);
+    }
+    const onnx::GraphProto& graph = model_.graph();
+    Require(graph.initializer_size() == static_cast<int>(order.size()),
+            "has another number of constants");
+    p->numbers.resize(blocks.size);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const onnx::TensorProto& tensor = graph.initializer(static_cast<int>(k));
+      const PoolBlock& block = order[k];
+      Require(tensor.dims_size() == 2 && tensor.dims(0) == block.cols &&
+                  tensor.dims(1) == block.rows &&
+                  tensor.raw_data().size() == block.size() * sizeof(float),
+              "constant '" + tensor.name() + "' has another shape");
+      std::vector<float> data(block.size());
+      std::memcpy(data.data(), tensor.raw_data().data(), tensor.raw_data().size());
+      float* to = p->numbers.data() + block.offset;
+      for (int r = 0; r < block.rows; ++r) {
+        for (int c = 0; c < block.cols; ++c) {
+          *to++ = data[static_cast<std::size_t>(c * block.rows + r)];
+        }
+      }
+    }
+  }
+
+  std::string path_;
+  const onnx::ModelProto& model_;
+  std::map<std::string, std::string> properties_;
+};
+
+}  // namespace
+
+bool EntityPolicy::IsOne(const std::string& path) {
+  try {
+    const onnx::ModelProto model = ParseModel(path);
+    for (const auto& entry : model.metadata_props()) {
+      if (entry.key() == "stg.observation_layout") return entry.value() == kEntityLayout;
+    }
+  } catch (const UserError&) {
+    return false;
+  }
+  return false;
+}
+
+EntityPolicy EntityPolicy::LoadOnnx(const std::string& path) {
+  const onnx::ModelProto model = ParseModel(path);
+  try {
+    return EntityPolicy(EntityReader(path, model).Read());
+  } catch (const UserError& error) {
+    const std::string what = error.what();
+    if (what.compare(0, path.size(), path) == 0) throw;
+    throw UserError(path + ": not a policy: " + what);
+  }
+}
+
+void EntityPolicy::SaveOnnx(const std::string& path) const {
+  WriteDurably(BytesOf(ModelOf(parameters_)), path, "the policy");
+}
+
+}  // namespace stg::agent
