@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "stg_agent/entities/entity_policy.hpp"
+#include "stg_env/scenario/scenario.hpp"
+
+namespace stg::learn {
+
+/// Hyperparameters of learning with swarms of any size (docs/training.md). A policy step is a
+/// command, which lasts 5 s.
+struct SwarmConfig {
+  std::uint64_t seed = 0;
+  std::int64_t steps = 6'000'000;  ///< decisions of a swarm, 1 s each in the field
+  agent::EntityAction action = agent::EntityAction::kGuidance;
+
+  int envs = 128;
+  int horizon = 40;         ///< policy steps of one collection
+  int segment = 20;         ///< collections until all environments start anew
+  int episode_steps = 960;  ///< decisions of a training episode
+  double gamma = 0.9835;    ///< per policy step: 300 s
+  double lambda = 0.95;
+  double own_reward = 0.7;  ///< share of the AUV's own reward; the rest is the mean of its team
+  double shaping = 1.0;     ///< weight of gamma Phi(s') - Phi(s), Phi = -|d - d*| / 100 m
+
+  int epochs = 3;
+  int minibatch = 7000;  ///< rows of AUVs
+  double learning_rate = 5e-4, last_learning_rate = 5e-5;
+  double clip = 0.2, target_kl = 0.02, gradient_norm = 0.5, adam_eps = 1e-5;
+  double log_std = -1.0, least_log_std = -3.0, most_log_std = -0.5;
+  double value_memory = 500'000;  ///< rows that the moments of the returns remember
+
+  int validation_interval = 2;  ///< segments
+  int validation_episodes = 32;
+  std::uint64_t validation_seed = 900'000;
+};
+
+/// One kind of waters in the mixture that a training flies.
+struct SwarmTask {
+  std::string name;
+  Scenario scenario;
+};
+
+/// The mixture of the field for `count` shards: sizes of 3 to 8 AUVs, conditions, and the reward of
+/// training in place of the scenario's.
+/// @param folder of the shipped scenarios
+std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
+                                    const SwarmConfig& config, int count);
+/// What a training is validated in: the scenario itself and the stresses, unchanged.
+std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::string& scenario);
+
+}  // namespace stg::learn

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "auv_common/parallel/worker_pool.hpp"
+#include "marl_trainer/learn/checkpoint/archive.hpp"
+#include "marl_trainer/learn/nn/adam.hpp"
+#include "marl_trainer/learn/swarm/swarm_shard.hpp"
+
+namespace stg::learn {
+
+/// MAPPO over entities: the clipped update of Eqs. 37-44 with one actor for all AUVs, and a value
+/// and an advantage for each AUV instead of one for the swarm. Returns are normalised by PopArt
+/// (van Hasselt et al. 2016). Results do not depend on the number of workers.
+class SwarmLearner {
+ public:
+  explicit SwarmLearner(const SwarmConfig& config);
+
+  SwarmActor actor() const {
+    return {actor_, actor_numbers_.data(), actor_numbers_.data() + actor_.parameters()};
+  }
+  /// Learns from one collection. @param progress share of the training that is done, in [0, 1]
+  /// Returns what it did, by name.
+  using Report = std::vector<std::pair<std::string, double>>;
+  Report Update(std::vector<SwarmRollout>* rollouts, std::uint32_t collection, double progress,
+                WorkerPool* pool);
+
+  agent::EntityPolicy Policy(const agent::PolicyMetadata& metadata) const;
+  void Save(Archive* archive) const;
+  /// Throws UserError for an archive of other sizes.
+  void Load(const Archive& archive);
+
+ private:
+  static constexpr int kSlices = 8;
+  struct Row {
+    int rollout, row;
+  };
+  struct Part {
+    PackedRows actor_rows, critic_rows;
+    PoolBatch::Workspace actor, critic;
+    std::vector<float> d_actor, d_critic, actor_gradient, critic_gradient;
+    double kl = 0.0, clipped = 0.0, value_loss = 0.0;
+  };
+
+  void Evaluate(SwarmRollout* rollout, Part* part) const;
+  void Advantages(SwarmRollout* rollout, const std::vector<float>& finals,
+                  const std::vector<float>& next) const;
+  void Normalise(const std::vector<SwarmRollout>& rollouts);
+  void Gradient(const std::vector<SwarmRollout>& rollouts, const std::vector<Row>& rows,
+                std::size_t begin, std::size_t end, std::size_t batch, Part* part) const;
+
+  SwarmConfig config_;
+  int size_;
+  PoolBatch actor_, critic_;
+  std::vector<float> actor_numbers_, critic_numbers_;  // the actor's with its log deviations
+  AdamState actor_adam_, critic_adam_;
+  double mean_ = 0.0, square_ = 1.0, seen_ = 0.0;  // moments of the returns
+  double std_ = 1.0;
+  float advantage_mean_ = 0.0F, advantage_scale_ = 1.0F;
+  std::vector<Part> parts_;
+};
+
+}  // namespace stg::learn

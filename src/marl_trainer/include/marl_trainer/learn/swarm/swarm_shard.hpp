@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "marl_trainer/learn/swarm/pool_batch.hpp"
+#include "marl_trainer/learn/swarm/swarm_config.hpp"
+#include "stg_env/env/vector_env.hpp"
+
+namespace stg::learn {
+
+/// What one shard saw in a collection. Row of AUV i of environment e at policy step t:
+/// (t envs + e) agents + i.
+struct SwarmRollout {
+  SwarmRollout();
+
+  int steps = 0, envs = 0, agents = 0;
+  PackedRows actor, critic;
+  std::vector<float> commands;      // [rows, command size], unclipped
+  std::vector<float> log_prob;      // [rows]
+  std::vector<float> own, rewards;  // [rows], the AUV's own mean reward; what it learns from
+  std::vector<std::uint8_t> done;   // [rows], the episode ended with this step
+  PackedRows finals;                // critic's rows of the states that ended an episode,
+  std::vector<int> final_of;        // [rows], which of them; -1: the episode went on
+  PackedRows next;                  // critic's rows of the state after the last step
+  std::vector<float> values, advantages, returns;  // [rows], by the learner
+  std::vector<task::EpisodeMetrics> finished;      // episodes that ended
+};
+
+/// The actor as a shard needs it.
+struct SwarmActor {
+  const PoolBatch& network;
+  const float* parameters;
+  const float* log_std;  ///< [command size]
+};
+
+/// Environments of one scenario, so of one size of swarm, that one worker flies on its own.
+class SwarmShard {
+ public:
+  /// @param first_env index of the first environment among all, @param total_envs of all
+  SwarmShard(const Scenario& scenario, const SwarmConfig& config, int first_env, int envs,
+             int total_envs);
+
+  /// Starts the k-th episode of every environment; their first ones are cut to different lengths.
+  void RestartAt(std::uint64_t k);
+  /// `config.horizon` policy steps with exploration. @param collection keys the draws
+  void Collect(std::uint32_t collection, const SwarmActor& actor, SwarmRollout* out);
+
+ private:
+  void Observe(const SwarmActor& actor, std::uint32_t collection, int step, SwarmRollout* out);
+  void FlyOn(int step, SwarmRollout* out);
+  void Reward(int step, SwarmRollout* out) const;
+  double Potential(int e, int i) const;
+
+  SwarmConfig config_;
+  int first_env_;
+  env::VectorEnv env_;
+  env::EnvMemory memory_;
+  std::vector<agent::Entities> entities_;  // [envs, agents]
+  std::vector<float> actions_, sums_, potential_, next_potential_;
+  PackedRows now_, last_;
+  PoolBatch::Workspace workspace_;
+};
+
+}  // namespace stg::learn

@@ -1,0 +1,290 @@
+#include "marl_trainer/learn/swarm/swarm_learner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "auv_common/error.hpp"
+#include "auv_common/numbers/random.hpp"
+#include "marl_trainer/learn/buffers/gae.hpp"
+#include "marl_trainer/learn/swarm/swarm_truth.hpp"
+#include "marl_trainer/learn/train_config.hpp"
+#include "stg_agent/policy/gaussian.hpp"
+
+namespace stg::learn {
+
+SwarmLearner::SwarmLearner(const SwarmConfig& config)
+    : config_(config),
+      size_(agent::CommandSize(config.action)),
+      actor_(agent::EntityActorSpec(size_)),
+      critic_(SwarmCriticSpec()),
+      actor_numbers_(actor_.parameters() + static_cast<std::size_t>(size_)),
+      critic_numbers_(critic_.parameters()),
+      actor_adam_(actor_numbers_.size()),
+      critic_adam_(critic_numbers_.size()) {
+  InitialisePool(actor_.blocks(), 0.01, config.seed, 0, actor_numbers_.data());
+  InitialisePool(critic_.blocks(), 1.0, config.seed, 1, critic_numbers_.data());
+  std::fill(actor_numbers_.end() - size_, actor_numbers_.end(), static_cast<float>(config.log_std));
+  for (int s = 0; s < kSlices; ++s) {
+    parts_.push_back({PackedRows(actor_.spec()),
+                      PackedRows(critic_.spec()),
+                      {},
+                      {},
+                      {},
+                      {},
+                      {},
+                      {},
+                      0.0,
+                      0.0,
+                      0.0});
+  }
+}
+
+void SwarmLearner::Evaluate(SwarmRollout* r, Part* part) const {
+  const auto values_of = [&](const PackedRows& rows) {
+    critic_.Forward(critic_numbers_.data(), rows, &part->critic);
+    std::vector<float> values(static_cast<std::size_t>(rows.rows()));
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] = static_cast<float>(mean_ + std_ * static_cast<double>(part->critic.output()[k]));
+    }
+    return values;
+  };
+  r->values = values_of(r->critic);
+  Advantages(r, values_of(r->finals), values_of(r->next));
+}
+
+void SwarmLearner::Advantages(SwarmRollout* r, const std::vector<float>& finals,
+                              const std::vector<float>& next) const {
+  const int stride = r->envs * r->agents;
+  std::vector<float> final_values(r->values.size(), 0.0F);
+  for (std::size_t k = 0; k < final_values.size(); ++k) {
+    if (r->final_of[k] >= 0) final_values[k] = finals[static_cast<std::size_t>(r->final_of[k])];
+  }
+  r->advantages.resize(r->values.size());
+  r->returns.resize(r->values.size());
+  for (int k = 0; k < stride; ++k) {
+    GeneralisedAdvantages(r->rewards.data() + k, r->values.data() + k, r->done.data() + k,
+                          final_values.data() + k, next[static_cast<std::size_t>(k)], r->steps,
+                          stride, static_cast<float>(config_.gamma),
+                          static_cast<float>(config_.lambda), r->advantages.data() + k);
+  }
+  for (std::size_t k = 0; k < r->values.size(); ++k) {
+    r->returns[k] = r->values[k] + r->advantages[k];
+  }
+}
+
+void SwarmLearner::Normalise(const std::vector<SwarmRollout>& rollouts) {
+  double sum = 0.0, square = 0.0, a = 0.0, aa = 0.0, count = 0.0;
+  for (const SwarmRollout& r : rollouts) {
+    for (std::size_t k = 0; k < r.returns.size(); ++k) {
+      const auto g = static_cast<double>(r.returns[k]), x = static_cast<double>(r.advantages[k]);
+      sum += g;
+      square += g * g;
+      a += x;
+      aa += x * x;
+      count += 1.0;
+    }
+  }
+  seen_ += count;
+  const double share = count / std::min(seen_, std::max(config_.value_memory, count));
+  const double old_mean = mean_, old_std = std_;
+  mean_ += share * (sum / count - mean_);
+  square_ += share * (square / count - square_);
+  std_ = std::sqrt(std::max(square_ - mean_ * mean_, 1e-4));
+  // What the critic says stays the same.
+  const agent::PoolBlocks::Layer& head = critic_.blocks().head;
+  float* w = critic_numbers_.data() + head.weight.offset;
+  for (std::size_t k = 0; k < head.weight.size(); ++k) {
+    w[k] = static_cast<float>(static_cast<double>(w[k]) * old_std / std_);
+  }
+  float* b = critic_numbers_.data() + head.bias.offset;
+  *b = static_cast<float>((static_cast<double>(*b) * old_std + old_mean - mean_) / std_);
+  advantage_mean_ = static_cast<float>(a / count);
+  const double spread = std::sqrt(std::max(aa / count - a / count * a / count, 0.0));
+  advantage_scale_ = static_cast<float>(1.0 / (spread + 1e-6));
+}
+
+void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std::vector<Row>& rows,
+                            std::size_t begin, std::size_t end, std::size_t batch,
+                            Part* part) const {
+  part->actor_rows.Clear();
+  part->critic_rows.Clear();
+  part->actor_gradient.assign(actor_numbers_.size(), 0.0F);
+  part->critic_gradient.assign(critic_numbers_.size(), 0.0F);
+  part->kl = part->clipped = part->value_loss = 0.0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const SwarmRollout& r = rollouts[static_cast<std::size_t>(rows[k].rollout)];
+    part->actor_rows.Add(r.actor, rows[k].row);
+    part->critic_rows.Add(r.critic, rows[k].row);
+  }
+  actor_.Forward(actor_numbers_.data(), part->actor_rows, &part->actor);
+  critic_.Forward(critic_numbers_.data(), part->critic_rows, &part->critic);
+  part->d_actor.resize((end - begin) * static_cast<std::size_t>(size_));
+  part->d_critic.resize(end - begin);
+  const float* log_std = actor_numbers_.data() + actor_.parameters();
+  float* d_log_std = part->actor_gradient.data() + actor_.parameters();
+  const float share = 1.0F / static_cast<float>(batch);
+  const auto clip = static_cast<float>(config_.clip);
+  for (std::size_t k = begin; k < end; ++k) {
+    const SwarmRollout& r = rollouts[static_cast<std::size_t>(rows[k].rollout)];
+    const auto row = static_cast<std::size_t>(rows[k].row);
+    const std::size_t at = (k - begin) * static_cast<std::size_t>(size_);
+    const float* command = r.commands.data() + row * static_cast<std::size_t>(size_);
+    float mean[agent::kCommandNumbers], z[agent::kCommandNumbers];
+    float log_prob = 0.0F;
+    for (int c = 0; c < size_; ++c) {
+      mean[c] = std::tanh(part->actor.output()[at + static_cast<std::size_t>(c)]);
+      z[c] = (command[c] - mean[c]) * std::exp(-log_std[c]);
+      log_prob -= 0.5F * z[c] * z[c] + log_std[c] + agent::kHalfLogTwoPi;
+    }
+    const float log_ratio = log_prob - r.log_prob[row], ratio = std::exp(log_ratio);
+    const float advantage = (r.advantages[row] - advantage_mean_) * advantage_scale_;
+    const bool cut =
+        (advantage > 0.0F && ratio > 1.0F + clip) || (advantage < 0.0F && ratio < 1.0F - clip);
+    part->kl += static_cast<double>(ratio - 1.0F - log_ratio);
+    part->clipped += std::abs(ratio - 1.0F) > clip ? 1.0 : 0.0;
+    const float d_log_prob = cut ? 0.0F : -share * advantage * ratio;
+    for (int c = 0; c < size_; ++c) {
+      const float d_mean = d_log_prob * z[c] * std::exp(-log_std[c]);
+      part->d_actor[at + static_cast<std::size_t>(c)] = d_mean * (1.0F - mean[c] * mean[c]);
+      d_log_std[c] += d_log_prob * (z[c] * z[c] - 1.0F);
+    }
+    const auto wanted = static_cast<float>((static_cast<double>(r.returns[row]) - mean_) / std_);
+    const float miss = part->critic.output()[k - begin] - wanted;
+    part->value_loss += static_cast<double>(miss) * static_cast<double>(miss);
+    part->d_critic[k - begin] = share * miss;
+  }
+  actor_.Backward(actor_numbers_.data(), part->actor_rows, part->d_actor.data(), &part->actor,
+                  part->actor_gradient.data());
+  critic_.Backward(critic_numbers_.data(), part->critic_rows, part->d_critic.data(), &part->critic,
+                   part->critic_gradient.data());
+}
+
+SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
+                                          std::uint32_t collection, double progress,
+                                          WorkerPool* pool) {
+  std::vector<Part> scratch;
+  for (int w = 0; w < pool->workers(); ++w) scratch.push_back(parts_.front());
+  pool->Run(static_cast<int>(rollouts->size()), [&](int k, int worker) {
+    Evaluate(&(*rollouts)[static_cast<std::size_t>(k)], &scratch[static_cast<std::size_t>(worker)]);
+  });
+  Normalise(*rollouts);
+  std::vector<Row> rows;
+  double reward = 0.0, miss = 0.0, spread = 0.0;
+  for (std::size_t r = 0; r < rollouts->size(); ++r) {
+    const SwarmRollout& rollout = (*rollouts)[r];
+    for (int k = 0; k < rollout.critic.rows(); ++k) {
+      rows.push_back({static_cast<int>(r), k});
+      const auto i = static_cast<std::size_t>(k);
+      const auto a = static_cast<double>(rollout.advantages[i]);
+      const double g = static_cast<double>(rollout.returns[i]) - mean_;
+      reward += static_cast<double>(rollout.own[i]);
+      miss += a * a;
+      spread += g * g;
+    }
+  }
+  const std::size_t count = rows.size();
+  const std::size_t batches =
+      std::max<std::size_t>(1, (count + static_cast<std::size_t>(config_.minibatch) / 2) /
+                                   static_cast<std::size_t>(config_.minibatch));
+  const double rate =
+      config_.learning_rate + (config_.last_learning_rate - config_.learning_rate) * progress;
+  double kl = 0.0, clipped = 0.0, value_loss = 0.0, norm = 0.0;
+  int updates = 0, epochs = 0;
+  for (int epoch = 0; epoch < config_.epochs; ++epoch) {
+    Random random(config_.seed, Stream::kShuffle, collection, static_cast<std::uint32_t>(epoch), 0);
+    for (std::size_t k = count - 1; k > 0; --k) {
+      const auto j = static_cast<std::size_t>(random.Uniform() * static_cast<double>(k + 1));
+      std::swap(rows[k], rows[std::min(j, k)]);
+    }
+    double epoch_kl = 0.0;
+    for (std::size_t b = 0; b < batches; ++b) {
+      const std::size_t begin = count * b / batches, batch = count * (b + 1) / batches - begin;
+      pool->Run(kSlices, [&](int s, int) {
+        const auto i = static_cast<std::size_t>(s);
+        Gradient(*rollouts, rows, begin + batch * i / kSlices, begin + batch * (i + 1) / kSlices,
+                 batch, &parts_[i]);
+      });
+      for (std::size_t s = 1; s < kSlices; ++s) {
+        for (std::size_t k = 0; k < actor_numbers_.size(); ++k) {
+          parts_[0].actor_gradient[k] += parts_[s].actor_gradient[k];
+        }
+        for (std::size_t k = 0; k < critic_numbers_.size(); ++k) {
+          parts_[0].critic_gradient[k] += parts_[s].critic_gradient[k];
+        }
+      }
+      for (const Part& p : parts_) {
+        epoch_kl += p.kl;
+        clipped += p.clipped / static_cast<double>(batch);
+        value_loss += p.value_loss / static_cast<double>(batch);
+      }
+      const auto step = [&](std::vector<float>* gradient, std::vector<float>* numbers,
+                            AdamState* state) {
+        const double length = GradientNorm(gradient->data(), 0, gradient->size());
+        if (!std::isfinite(length))
+          throw UserError("the training diverged: a gradient is not finite");
+        Adam(config_.adam_eps, state)
+            .Apply(0, numbers->size(), rate, ShrinkTo(config_.gradient_norm, length),
+                   gradient->data(), numbers->data());
+        return length;
+      };
+      norm += step(&parts_[0].actor_gradient, &actor_numbers_, &actor_adam_);
+      step(&parts_[0].critic_gradient, &critic_numbers_, &critic_adam_);
+      for (auto s = actor_numbers_.end() - size_; s != actor_numbers_.end(); ++s) {
+        *s = std::clamp(*s, static_cast<float>(config_.least_log_std),
+                        static_cast<float>(config_.most_log_std));
+      }
+      ++updates;
+    }
+    kl = epoch_kl / static_cast<double>(count);
+    ++epochs;
+    if (kl > 1.5 * config_.target_kl) break;
+  }
+  double sigma = 0.0;
+  for (auto s = actor_numbers_.end() - size_; s != actor_numbers_.end(); ++s) {
+    sigma += std::exp(static_cast<double>(*s)) / size_;
+  }
+  return {{"reward", reward / static_cast<double>(count)},
+          {"kl", kl},
+          {"clipped", clipped / updates},
+          {"epochs", epochs},
+          {"explained_variance", 1.0 - miss / std::max(spread, 1e-9)},
+          {"value_loss", value_loss / updates},
+          {"gradient_norm", norm / updates},
+          {"sigma", sigma},
+          {"return_mean", mean_},
+          {"return_std", std_},
+          {"rows", static_cast<double>(count)}};
+}
+
+agent::EntityPolicy SwarmLearner::Policy(const agent::PolicyMetadata& metadata) const {
+  agent::EntityPolicy::Parameters p;
+  p.numbers.assign(actor_numbers_.begin(), actor_numbers_.end() - size_);
+  p.log_std.assign(actor_numbers_.end() - size_, actor_numbers_.end());
+  p.action = config_.action;
+  p.metadata = metadata;
+  return agent::EntityPolicy(std::move(p));
+}
+
+void SwarmLearner::Save(Archive* archive) const {
+  archive->Put("actor", actor_numbers_);
+  archive->Put("critic", critic_numbers_);
+  actor_adam_.Save("actor_adam", archive);
+  critic_adam_.Save("critic_adam", archive);
+  archive->Put("returns", std::vector<double>{mean_, square_, seen_, std_});
+}
+
+void SwarmLearner::Load(const Archive& archive) {
+  const std::vector<float>& actor = archive.Floats("actor", actor_numbers_.size());
+  const std::vector<float>& critic = archive.Floats("critic", critic_numbers_.size());
+  const std::vector<double>& returns = archive.Doubles("returns", 4);
+  actor_adam_.Load("actor_adam", archive);
+  critic_adam_.Load("critic_adam", archive);
+  actor_numbers_ = actor;
+  critic_numbers_ = critic;
+  mean_ = returns[0];
+  square_ = returns[1];
+  seen_ = returns[2];
+  std_ = returns[3];
+}
+
+}  // namespace stg::learn

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "auv_common/config/files.hpp"
+#include "auv_common/error.hpp"
+#include "marl_trainer/learn/swarm/swarm_trainer.hpp"
+
+/// Trainings with swarms of several sizes, in miniature.
+namespace stg::learn {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string TextIn(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+SwarmTask Waters(int agents) {
+  return {std::to_string(agents),
+          LoadNamedScenario(
+              config::ScenarioFolder(), "field", "nominal",
+              {"agents=" + std::to_string(agents), "time.episode_steps=60", "time.tail_steps=60"})};
+}
+
+class SwarmTraining : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "swarm_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    config_.envs = 16;
+    config_.horizon = 4;
+    config_.segment = 2;
+    config_.episode_steps = 60;
+    config_.steps = 4 * 320;
+    config_.minibatch = 200;
+    config_.validation_episodes = 4;
+    config_.validation_interval = 1;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Whether the training came to its end.
+  bool Train(const std::string& name, int workers, bool resume,
+             const std::atomic<int>* stop = nullptr) const {
+    SwarmTrainer::Options options;
+    options.out = (folder_ / name).string();
+    options.workers = workers;
+    options.resume = resume;
+    options.stop = stop;
+    return SwarmTrainer({Waters(3), Waters(5)}, {Waters(4)}, config_, options).Run();
+  }
+  agent::EntityPolicy Last(const std::string& name) const {
+    return agent::EntityPolicy::LoadOnnx(folder_ / name / "policy_last.onnx");
+  }
+
+  fs::path folder_;
+  SwarmConfig config_;
+};
+
+TEST_F(SwarmTraining, DoesNotDependOnTheNumberOfWorkers) {
+  EXPECT_TRUE(Train("one", 1, false));
+  EXPECT_TRUE(Train("three", 3, false));
+  EXPECT_EQ(Last("one").parameters().numbers, Last("three").parameters().numbers);
+  EXPECT_EQ(Last("one").metadata().training_step, config_.steps);
+}
+
+TEST_F(SwarmTraining, ResumedEqualsUninterruptedBitForBit) {
+  ASSERT_TRUE(Train("whole", 1, false));
+  const std::atomic<int> stop{1};  // asked to end from the start: it ends at the first checkpoint
+  EXPECT_FALSE(Train("halves", 1, false, &stop));
+  EXPECT_LT(Last("halves").metadata().training_step, config_.steps);
+  ASSERT_TRUE(Train("halves", 1, true));
+  EXPECT_EQ(Last("whole").parameters().numbers, Last("halves").parameters().numbers);
+  EXPECT_EQ(TextIn(folder_ / "whole/config.json"), TextIn(folder_ / "halves/config.json"));
+}
+
+TEST_F(SwarmTraining, RefusesAFolderOfAnotherTraining) {
+  config_.steps = 320;
+  ASSERT_TRUE(Train("run", 1, false));
+  EXPECT_THROW(Train("run", 1, false), UserError);
+  EXPECT_THROW(Train("none", 1, true), UserError);
+  config_.gamma = 0.5;
+  EXPECT_THROW(Train("run", 1, true), UserError);
+}
+
+TEST_F(SwarmTraining, TheCriticLearnsToExplainReturns) {
+  config_.horizon = 12;
+  config_.learning_rate = 3e-3;
+  config_.epochs = 6;
+  config_.steps = 10 * 960;
+  ASSERT_TRUE(Train("run", 2, false));
+  std::istringstream table(TextIn(folder_ / "run/progress.csv"));
+  std::string line, cell;
+  std::getline(table, line);
+  int column = 0;
+  std::istringstream header(line);
+  while (std::getline(header, cell, ',') && cell != "explained_variance") ++column;
+  std::vector<double> explained;
+  while (std::getline(table, line)) {
+    std::istringstream cells(line);
+    for (int k = 0; k <= column; ++k) std::getline(cells, cell, ',');
+    explained.push_back(std::stod(cell));
+  }
+  ASSERT_EQ(explained.size(), 10u);
+  EXPECT_GT(explained.back(), explained.front() + 0.5);
+}
+
+}  // namespace
+}  // namespace stg::learn
