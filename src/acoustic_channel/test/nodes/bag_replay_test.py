@@ -150,6 +150,24 @@ class BagReplay(unittest.TestCase):
             self.assertEqual(status, 2, output)
             self.assertIn(f"parameter bag: {damaged}: ", output)
 
+    def test_an_index_that_leaves_the_bag_is_not_followed(self):
+        # rosbag reads what the index says, wherever that leads.
+        whole = bytearray(self.bag.read_bytes())
+        damaged = pathlib.Path(self.folder.name) / "index.bag"
+        operation = whole.index(b"op=\x04")
+        field_length = operation + len("op=") + 1
+        count = whole.index(b"count=", operation) + len("count=")
+        entry_offset = count + 4 + 4 + 8  # behind the count, the length of the data and a time
+        for place, value, reason in (
+                (entry_offset, b"\xff\xff\xff\x0f", "an index entry points at no message"),
+                (count, b"\xff\xff\x00\x00", "another size than stated"),
+                (field_length, b"\x00\x00\x0f\x00", "a field ends behind its header")):
+            content = bytes(whole[:place]) + value + bytes(whole[place + len(value):])
+            damaged.write_bytes(content)
+            status, output = self.end_of("index", bag=str(damaged))
+            self.assertEqual(status, 2, output)
+            self.assertRegex(output, f"parameter bag: {damaged}: damaged at byte .*{reason}")
+
     def replayed_by_the_channel(self, name):
         """Returns the log of the channel that reads the bag itself."""
         process, log = self.run_channel(name, bag=str(self.bag))

@@ -11,6 +11,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/nodes/sound_bag.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "record_inlet.hpp"
 #include "stg_agent/nodes/topics.hpp"
@@ -73,6 +74,7 @@ BagContents ReadBag(const std::string& path, const Scenario& scenario) {
   BagContents contents;
   RecordInlet inlet(scenario, path);
   try {
+    RequireSoundBag(path);
     rosbag::Bag bag(path, rosbag::bagmode::Read);
     ReadMessages(bag, scenario, &inlet, &contents);
   } catch (const UserError& error) {

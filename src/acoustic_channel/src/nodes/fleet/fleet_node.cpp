@@ -11,6 +11,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
+#include "auv_common/nodes/sound_bag.hpp"
 #include "auv_common/regular_file.hpp"
 
 namespace stg::nodes {
@@ -63,6 +64,7 @@ std::unique_ptr<rosbag::Bag> OpenBag(const std::string& path) {
   auto bag = std::make_unique<rosbag::Bag>();
   try {
     RequireRegularFile(path);
+    RequireSoundBag(path);
     bag->open(path, rosbag::bagmode::Read);
   } catch (const UserError& error) {
     throw UserError(std::string("parameter bag: ") + error.what());
