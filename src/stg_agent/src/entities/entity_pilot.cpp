@@ -6,7 +6,9 @@
 namespace stg::agent {
 namespace {
 
-constexpr double kRadius_m = 60.0, kSpeed_mps = 0.8, kPhase_rad = kPi / 3.0, kDepth_m = 15.0;
+// Beyond kWideFrom the radius grows faster, up to kRadius_m + kWide_m: circles to search on.
+constexpr double kRadius_m = 60.0, kWide_m = 540.0, kWideFrom = 0.6;
+constexpr double kSpeed_mps = 0.8, kPhase_rad = kPi / 3.0, kDepth_m = 15.0;
 constexpr double kTurn_rad = kPi / 3.0;
 constexpr float kClockwiseFrom = -0.8F;
 
@@ -38,7 +40,9 @@ Vec3<double> VelocityOf(const AgentView& agent, const float* command) {
 
 Guidance<double> GuidanceOf(const float* command) {
   Guidance<double> g;
-  g.radius_m = kRadius_m * static_cast<double>(command[0]);
+  const double wide =
+      std::max(0.0, static_cast<double>(command[0]) - kWideFrom) / (1.0 - kWideFrom);
+  g.radius_m = kRadius_m * static_cast<double>(command[0]) + kWide_m * wide * wide;
   g.speed_mps = kSpeed_mps * static_cast<double>(command[1]);
   g.phase_rad = kPhase_rad * static_cast<double>(command[2]);
   g.sense = command[3] <= kClockwiseFrom ? -1.0 : 1.0;

@@ -34,10 +34,11 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
         "reward.w_too_close=2.0",
         "reward.weights.semantic=0.3",
         "reward.weights.control_cost=0.0",
-        "reward.weights.separation=0.5",
+        "reward.weights.separation=1.5",
         "reward.separation_distance_m=40.0",
         "reward.terms.estimate.weight=0.2",
-        "reward.terms.spread.weight=0.15",
+        "reward.terms.spread.weight=0.5",
+        "reward.total_limit=10.0",
     };
     mixture.push_back({std::string(condition) + "/" + std::to_string(agents),
                        LoadNamedScenario(folder, scenario, condition, overrides)});

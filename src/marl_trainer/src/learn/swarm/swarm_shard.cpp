@@ -127,7 +127,14 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
       }
     }
     env_.Step(actions_.data(), memory_.arrays());
-    for (std::size_t row = 0; row < sums_.size(); ++row) sums_[row] += memory_.rewards[row];
+    for (std::size_t row = 0; row < sums_.size(); ++row) {
+      const auto e = static_cast<int>(row) / n, i = static_cast<int>(row) % n;
+      const config::Interval& band = env_.scenario().reward.band_m;
+      const double distance = env_.tracking(e, i).distance;
+      sums_[row] += memory_.rewards[row];
+      if (distance >= band.lo && distance <= band.hi)
+        sums_[row] += static_cast<float>(config_.band);
+    }
     if (!last) {
       assert(std::none_of(memory_.truncated.begin(), memory_.truncated.end(),
                           [](std::uint8_t t) { return t != 0; }));

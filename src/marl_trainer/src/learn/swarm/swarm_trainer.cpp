@@ -147,8 +147,9 @@ void SwarmTrainer::Validate() {
   o.episodes = config_.validation_episodes;
   o.seed = config_.validation_seed;
   double sum = 0.0;
-  const std::vector<std::string> columns = {"band_share", "spread",        "whole_lost_rate",
-                                            "near_pairs", "estimate_rmse", "return"};
+  const std::vector<std::string> columns = {"band_share",   "spread",        "whole_lost_rate",
+                                            "near_pairs",   "estimate_rmse", "return",
+                                            "time_to_band", "tracking_error"};
   if (table_.empty()) {
     table_ = "steps,seconds,task";
     for (const std::string& c : columns) table_ += "," + c;

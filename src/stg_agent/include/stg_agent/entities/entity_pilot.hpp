@@ -9,8 +9,9 @@ namespace stg::agent {
 /// 5 s.
 inline constexpr double kCommandPeriod_s = 5.0;
 
-/// What a `guidance` command says to the law: +-60 m of radius, +-0.8 m/s, +-60 deg of phase,
-/// clockwise from -0.8 down, +-15 m of depth.
+/// What a `guidance` command says to the law: 60 m of radius, growing from 0.6 on to 600 m at 1, so
+/// that a lost target is searched for on wide circles; +-0.8 m/s, +-60 deg of phase, clockwise from
+/// -0.8 down, +-15 m of depth.
 Guidance<double> GuidanceOf(const float* command);
 
 /// Whether the AUV needs a new command at this decision.
