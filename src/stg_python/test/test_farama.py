@@ -53,6 +53,9 @@ assert isinstance(many.unwrapped, gymnasium.vector.VectorEnv)
 assert many.reset(seed=4)[0].shape == (6, 4 * 74)
 from stg import swarm_v1
 api_test(swarm_v1.env(overrides=short), num_cycles=50)
+if hasattr(pettingzoo, "make"):  # 1.27
+    parallel_api_test(pettingzoo.make("parallel", "stg/Swarm-v1", scenario="hard", overrides=short), num_cycles=50)
+    api_test(pettingzoo.make("aec", "stg/Swarm-v1", overrides=short), num_cycles=50)
 print("all passed")
 """
 

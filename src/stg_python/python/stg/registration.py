@@ -1,11 +1,13 @@
-"""Names for `gymnasium.make`: stg/Team-v1, the swarm as one agent, and many swarms for `make_vec`.
+"""Names for `gymnasium.make` and `pettingzoo.make`, registered by `import stg`.
 
-Registered by `import stg`, and by Gymnasium itself where stg is installed as a wheel.
+Gymnasium knows stg/Team-v1, the swarm as one agent, and many swarms for `make_vec`; where stg is
+installed as a wheel, without that import, too. PettingZoo, from 1.27 on, knows stg/Swarm-v1.
 """
 
 __all__ = ["make_team", "make_vector", "register"]
 
 TEAM = "stg/Team-v1"
+SWARM = "stg/Swarm-v1"
 
 
 def make_team(scenario="medium", **options):
@@ -25,7 +27,12 @@ def make_vector(scenario="medium", num_envs=4, **options):
 
 
 def register():
-    """Tells Gymnasium the names, once; does nothing where it is not installed."""
+    """Tells both packages the names, once; does nothing for one that is not installed."""
+    _tell_gymnasium()
+    _tell_pettingzoo()
+
+
+def _tell_gymnasium():
     try:
         from gymnasium.envs import registration  # pylint: disable=import-outside-toplevel
     except ImportError:
@@ -41,3 +48,14 @@ def register():
         )
     finally:
         registration.current_namespace = namespace
+
+
+def _tell_pettingzoo():
+    try:
+        from pettingzoo.env_registry import registration  # pylint: disable=import-outside-toplevel
+    except ImportError:  # not there, or older than its registry
+        return
+    if SWARM in registration.parallel_registry:
+        return
+    registration.register("parallel", SWARM, entry_point="stg.swarm_v1:parallel_env")
+    registration.register("aec", SWARM, entry_point="stg.swarm_v1:env")
