@@ -233,6 +233,17 @@ class VectorEnv(_Base):
         """The truth of one swarm in SI units and world axes, for drawing; see render.Snapshot."""
         return self._core.snapshot(env)
 
+    def entities(self, env=0, agent=0):
+        """What one AUV knows, as rows: the layout `stg-2:entities`, in acoustic mode.
+
+        Returns {"self": [1, 26], "search": [1, 28], "targets": [T, 40], "neighbours": [n, 22],
+        "obstacles": [O, 10], "edges": [T, n, 8]}, float32; a policy file over entities has inputs of
+        the same names.
+        """
+        if not self._started:
+            raise RuntimeError("reset must come before entities")
+        return self._core.entities(env, agent)
+
     def controller_actions(self, controller, privileged=False):
         """Returns what a controller does now: actions [num_envs, N, A].
 

@@ -36,6 +36,8 @@ void BindVectorEnv(py::module_& module) {
       .def("close", &BoundEnv::Close, "Frees everything; later calls raise RuntimeError.")
       .def("metrics", &BoundEnv::Metrics, py::arg("env"), "Of the episode that ended last.")
       .def("snapshot", &BoundEnv::Snapshot, py::arg("env"), "The truth, for drawing.")
+      .def("entities", &BoundEnv::Entities, py::arg("env"), py::arg("agent"),
+           "What one AUV knows, as rows: the layout stg-2:entities.")
       .def("scenario", &BoundEnv::scenario, py::arg("env"), py::return_value_policy::copy)
       .def("seed", &BoundEnv::seed, py::arg("env"), "World seed of the episode under way.")
       .def("round", &BoundEnv::round, py::arg("env"), "k of the episode under way.")

@@ -42,6 +42,8 @@ class BoundEnv {
 
   py::dict Metrics(int env) const;
   py::dict Snapshot(int env) const;
+  /// The rows of the layout `stg-2:entities` of one AUV, by their names.
+  py::dict Entities(int env, int agent) const;
   Scenario scenario(int env) const;
   std::uint64_t seed(int env) const;
   std::uint64_t round(int env) const;
