@@ -23,7 +23,7 @@ struct SwarmConfig {
   double gamma = 0.9835;    ///< per policy step: 300 s
   double lambda = 0.95;
   double own_reward = 0.7;  ///< share of the AUV's own reward; the rest is the mean of its team
-  double band = 1.0;         ///< reward of a decision inside the band, beside the scenario's
+  double band = 1.0;        ///< reward of a decision inside the band, beside the scenario's
   double shaping = 1.0;     ///< weight of gamma Phi(s') - Phi(s), Phi = -|d - d*| / 100 m
 
   int epochs = 3;
