@@ -27,18 +27,16 @@ COLUMNS = (("band_share", "in band", 3), ("worst_band_share", "worst AUV", 3), (
            ("time_to_band", "to the band [s]", 0), ("return", "return", 0))
 
 
-def fly(arguments, name, pilot, scenario, condition, overrides, privileged=False):
+def fly(arguments, name, pilot, scenario, condition, overrides, episodes):
     """Numbers of every episode, {column: array}; flown once and kept."""
     kept = arguments.out / "field_policy" / "episodes" / f"{name}.csv"
     kept.parent.mkdir(parents=True, exist_ok=True)
     if not kept.exists():
         command = [arguments.evaluate, "--policy", str(pilot), "--scenario", scenario, "--condition", condition,
-                   "--episodes", str(arguments.episodes), "--seed", str(SEED), "--workers", str(arguments.workers),
+                   "--episodes", str(episodes), "--seed", str(SEED), "--workers", str(arguments.workers),
                    "--csv", str(kept)]
         for pair in overrides:
             command += ["--set", pair]
-        if privileged:
-            command.append("--privileged")
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with open(kept, encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -53,16 +51,16 @@ def interval(differences, resamples=4000):
     return float(differences.mean()), float(low), float(high)
 
 
-def table(arguments, tasks, pilots):
+def table(arguments, tasks, pilots, episodes):
     """Markdown rows and CSV rows of tasks [(heading, scenario, condition, overrides)]."""
     lines = ["| waters | who | " + " | ".join(head for _, head, _ in COLUMNS) + " | in band, policy − it |",
              "|---|---|" + "---:|" * (len(COLUMNS) + 1)]
     records = []
     for heading, scenario, condition, overrides in tasks:
         flown = {}
-        for who, pilot, extra, privileged in pilots:
-            slug = f"{heading}_{who}".replace(" ", "-").replace(",", "")
-            flown[who] = fly(arguments, slug, pilot, scenario, condition, [*overrides, *extra], privileged)
+        for who, pilot, extra in pilots:
+            slug = f"{heading}_{who}".replace(" ", "-").replace(",", "").replace("`", "")
+            flown[who] = fly(arguments, slug, pilot, scenario, condition, [*overrides, *extra], episodes)
             print(heading, who, round(float(flown[who]["band_share"].mean()), 4), flush=True)
         ours = flown[pilots[0][0]]["band_share"]
         for who, numbers in flown.items():
@@ -102,34 +100,37 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--policy", type=pathlib.Path, required=True)
     parser.add_argument("--episodes", type=int, default=100)
+    parser.add_argument("--swarm-episodes", type=int, default=32, help="of the tables of sizes and of silence")
     parser.add_argument("--evaluate", default="evaluate", help="program, where not in the path")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     parser.add_argument("--training", nargs="*", default=[], help="folders of the trainings to show curves of")
     parser.add_argument("--notes", type=pathlib.Path, help="Markdown that the page begins with")
     parser.add_argument("--sizes", nargs="*", type=int, default=list(SIZES))
     arguments = parser.parse_args()
-    policy = ("policy", arguments.policy, [], False)
-    pilots = [policy, ("`encircle`", "encircle", [], False), ("`pursuit_separated`", PURSUIT, [], False),
-              ("`encircle`, true states", "encircle", [], True),
-              ("policy, silent", arguments.policy, SILENCE, False)]
-    stress, records = table(arguments, [(c, "field", c, []) for c in CONDITIONS], pilots)
+    policy, law = ("policy", arguments.policy, []), ("`encircle`", "encircle", [])
+    pilots = [policy, law, ("`pursuit_separated`", PURSUIT, [])]
+    stress, records = table(arguments, [(c, "field", c, []) for c in CONDITIONS], pilots, arguments.episodes)
     swarms, more = table(arguments, [(f"{n} AUVs", "field", "nominal", [f"agents={n}"]) for n in arguments.sizes],
-                         pilots[:2])
+                         [policy, law], arguments.swarm_episodes)
+    silence, last = table(arguments, [(f"{c}, silent", "field", c, SILENCE) for c in ("nominal", "combined_stress")],
+                          [policy, law], arguments.swarm_episodes)
     page = ["# The field, flown by one learned policy",
-            f"{arguments.episodes} episodes a cell from seed {SEED}, the same for everybody; by "
+            f"{arguments.episodes} episodes a cell from seed {SEED}, the same for everybody ({arguments.swarm_episodes} in "
+            "the tables of sizes and of silence); by "
             "`scripts/controllers/field_policy.py`. The last column is the paired difference of the shares in the "
             "band with its 95 % bootstrap interval over episodes. Metrics: [field.md](../field.md#metrics); what the "
             "policy sees and does: [entities.md](../entities.md).", ""]
     if arguments.notes:
         page += [arguments.notes.read_text(encoding="utf-8").rstrip(), ""]
-    page += ["## Four AUVs under stress", *stress, "", "## Other sizes, same file", *swarms, ""]
+    page += ["## Four AUVs under stress", *stress, "", "## Other sizes, same file", *swarms, "",
+             "## Every packet lost", *silence, ""]
     for folder in arguments.training:
         page += ["## The training", *curve(folder), ""]
     (arguments.out / "field_policy.md").write_text("\n".join(page).rstrip() + "\n", encoding="utf-8")
     with open(arguments.out / "field_policy" / "cells.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["waters", "who", "episodes", *(key for key, _, _ in COLUMNS), "difference", "low", "high"])
-        writer.writerows(records + more)
+        writer.writerows(records + more + last)
 
 
 if __name__ == "__main__":
