@@ -1,6 +1,8 @@
 #include <benchmark/benchmark.h>
 
 #include "agent/agent_fixture.hpp"
+#include "entities/entity_examples.hpp"
+#include "stg_agent/entities/entity_policy.hpp"
 
 /// Nanoseconds per agent and decision: Observe, Act, a detection, and as many packets as
 /// arrive on average.
@@ -95,6 +97,30 @@ void Decode(benchmark::State& bench) {
   }
 }
 BENCHMARK(Decode);
+
+/// Entities and command of one AUV. @param neighbours that it knows; @param targets rows
+void EntityCommand(benchmark::State& bench) {
+  const int neighbours = static_cast<int>(bench.range(0)),
+            targets = static_cast<int>(bench.range(1));
+  EntityPolicy::Parameters p;
+  p.numbers.assign(PoolBlocks(EntityActorSpec(5)).size, 0.01F);
+  p.log_std.assign(5, -1.0F);
+  const EntityPolicy policy(p);
+  const EntityExample example = MakeExample(1, neighbours);
+  const EntityInput input = example.input();
+  Entities entities;
+  float command[5];
+  for (auto _ : bench) {
+    BuildEntities(input, &entities);
+    for (int t = 1; t < targets; ++t) {
+      std::copy(entities.target[0], entities.target[0] + kTargetNumbers, entities.target[t]);
+    }
+    entities.targets = targets;
+    policy.Command(entities, command);
+    benchmark::DoNotOptimize(command);
+  }
+}
+BENCHMARK(EntityCommand)->Args({3, 1})->Args({7, 3})->Args({16, 5});
 
 }  // namespace
 }  // namespace stg::agent
