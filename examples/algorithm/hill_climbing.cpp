@@ -11,6 +11,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "auv_common/plugin.hpp"
 #include "marl_trainer/learn/nn/gaussian_actor.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 
@@ -143,8 +144,11 @@ double Train(const Scenario& scenario, TrainSetup setup, int collections, int wo
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { Algorithms().Add("hill_climbing", std::make_unique<HillClimbingConfig>); }
+
 int main() {
-  Algorithms().Add("hill_climbing", std::make_unique<HillClimbingConfig>);
+  stg_plugin_register();
 
   std::string folder = (std::filesystem::temp_directory_path() / "hill_XXXXXX").string();
   if (mkdtemp(folder.data()) == nullptr) return 1;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "auv_common/plugin.hpp"
 #include "stg_agent/agent/agent.hpp"
 #include "stg_agent/controllers/controller.hpp"
 
@@ -46,8 +47,11 @@ std::unique_ptr<Controller> MakeOrbit(const Orbit& orbit) {
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { Controllers().Add("orbit", MakeOrbit); }
+
 int main() {
-  Controllers().Add("orbit", MakeOrbit);
+  stg_plugin_register();
 
   AgentModel config;
   config.run.agents = 1;

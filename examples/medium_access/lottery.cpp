@@ -9,6 +9,7 @@
 #include "acoustic_channel/channel/channel.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "auv_common/plugin.hpp"
 
 namespace {
 
@@ -59,8 +60,11 @@ std::unique_ptr<MediumAccess> MakeLottery(const LotteryOptions& options, const C
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { MediumAccesses().Add("lottery", MakeLottery); }
+
 int main() {
-  MediumAccesses().Add("lottery", MakeLottery);
+  stg_plugin_register();
 
   NetworkConfig network;
   network.run.agents = 2;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "auv_common/parallel/worker_pool.hpp"
+#include "auv_common/plugin.hpp"
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -40,7 +41,7 @@ std::unique_ptr<agent::Controller> MakeSpiral(const Spiral& spiral) {
 }
 
 int Fly() {
-  agent::Controllers().Add("spiral", MakeSpiral);
+  stg_plugin_register();
   const Scenario scenario = LoadNamedScenario(STG_SCENARIOS, "medium", "nominal", {});
   WorkerPool pool(2);
   env::EvaluationOptions options;
@@ -56,6 +57,8 @@ int Fly() {
 }
 
 }  // namespace
+
+STG_PLUGIN { agent::Controllers().Add("spiral", MakeSpiral); }
 
 int main() {
   try {

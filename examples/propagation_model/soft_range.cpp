@@ -7,6 +7,7 @@
 
 #include "acoustic_channel/models/independent_model.hpp"
 #include "auv_common/config/loader.hpp"
+#include "auv_common/plugin.hpp"
 
 namespace {
 
@@ -68,8 +69,13 @@ double ShareAt(double d, const NetworkConfig& network) {
 
 }  // namespace
 
-int main() {
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN {
   PropagationModels().Add("soft_range", MakeIndependentModel<SoftRange, SoftRangeOptions>);
+}
+
+int main() {
+  stg_plugin_register();
 
   NetworkConfig network;
   network.run.agents = 2;

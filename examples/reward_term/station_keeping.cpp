@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "auv_common/config/loader.hpp"
+#include "auv_common/plugin.hpp"
 #include "stg_env/scenario/scenario.hpp"
 #include "stg_env/task/task.hpp"
 
@@ -74,8 +75,11 @@ double Earned(double share, double weight) {
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { RewardTermsByName().Add("station_keeping", MakeStationKeeping); }
+
 int main() {
-  RewardTermsByName().Add("station_keeping", MakeStationKeeping);
+  stg_plugin_register();
 
   // A quarter of the largest speed is half of what costs all of the weight.
   const double quarter = Earned(0.25, 0.5) - Earned(0.25, 0.0);

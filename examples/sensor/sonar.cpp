@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "auv_common/config/loader.hpp"
+#include "auv_common/plugin.hpp"
 #include "auv_dynamics/world/world.hpp"
 
 namespace {
@@ -58,8 +59,11 @@ std::unique_ptr<const TargetSensor> MakeSonar(const SonarOptions& options,
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { TargetSensors().Add("sonar", MakeSonar); }
+
 int main() {
-  TargetSensors().Add("sonar", MakeSonar);
+  stg_plugin_register();
 
   WorldScenario config;
   config.run.agents = 1;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "auv_common/config/loader.hpp"
+#include "auv_common/plugin.hpp"
 #include "auv_dynamics/targets/steered_motion.hpp"
 #include "auv_dynamics/world/world.hpp"
 
@@ -47,8 +48,11 @@ std::unique_ptr<TargetMotion> MakeZigzag(const ZigzagOptions& options, const Mot
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { TargetMotions().Add("zigzag", MakeZigzag); }
+
 int main() {
-  TargetMotions().Add("zigzag", MakeZigzag);
+  stg_plugin_register();
 
   WorldScenario config;
   config.run.agents = 1;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "auv_common/config/loader.hpp"
+#include "auv_common/plugin.hpp"
 #include "auv_dynamics/world/world.hpp"
 
 namespace {
@@ -64,8 +65,11 @@ std::unique_ptr<const Vehicle> MakeUnicycle(const UnicycleOptions& options,
 
 }  // namespace
 
+// As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
+STG_PLUGIN { Vehicles().Add("unicycle", MakeUnicycle); }
+
 int main() {
-  Vehicles().Add("unicycle", MakeUnicycle);
+  stg_plugin_register();
 
   WorldScenario
       config;  // or config::Load<WorldScenario>({file}), where the file says model: unicycle

@@ -36,4 +36,8 @@ def check_versions(root=ROOT):
     for path, version in versions.items():
         if version != wanted:
             findings.append(f"{path.relative_to(root)}: states {version}, VERSION {wanted}")
+    header = root / "src/auv_common/include/auv_common/version.hpp"
+    minor = _first(header, r'kMinorVersion\[\] = "([^"]+)"') if header.exists() else None
+    if header.exists() and minor != wanted.rpartition(".")[0]:
+        findings.append(f"{header.relative_to(root)}: states {minor}, VERSION {wanted}")
     return f"{len(versions)} files", findings

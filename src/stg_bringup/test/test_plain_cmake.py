@@ -114,6 +114,11 @@ class PlainCMake(unittest.TestCase):
         numbers = json.loads(told.splitlines()[-1])
         self.assertEqual(flown["pursuit_separated"], [numbers["return"], numbers["tail_distance"]])
         self.assertGreater(flown["spiral:speed=0.3"][0], 0.0)
+        told = run(evaluate, "--plugin", user / "build" / "libspiral.so", "--policy",
+                   "spiral:speed=0.3", "--episodes", "4",
+                   STG_SCENARIOS=str(ROOT / "src" / "stg_bringup" / "scenarios"))  # fmt: skip
+        numbers = json.loads(told.splitlines()[-1])
+        self.assertEqual(flown["spiral:speed=0.3"], [numbers["return"], numbers["tail_distance"]])
         commands = []
         for build in (self.build, user / "build"):
             entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))

@@ -29,6 +29,7 @@ def main():
     rospy.init_node("agent")
     me, graph = rospy.get_param("~id"), rospy.get_param
     changes = [f"agents={graph('/agents')}", *graph("/overrides", []), "mode=acoustic"]
+    changes += [f'plugins=["{library}"]' for library in graph("/plugins", [])]
     scenario = stg.load_scenario(graph("/scenario"), graph("/condition"), changes)
     mind, policy = stg.Agent(scenario, me), stg.load_policy(graph("~policy"))
     policy.require_fits(scenario)

@@ -125,6 +125,7 @@ std::string WhyNot(const std::string& protocol, const std::string& profile) {
 
 ModemFile LoadModemFile(const std::string& path) {
   const YamlTree root = config::ParseYaml(config::ReadBoundedFile(path), path);
+  config::LoadPluginsIn(root, path);
   const YamlTree::Entry* list = FindEntry(root, "vehicles");
   if (list == nullptr) Fail(path, root.line, "vehicles", "missing key");
   if (list->value.kind != YamlTree::Kind::kSequence || list->value.items.empty()) {

@@ -263,6 +263,7 @@ RunConfig SimulationFile::Run() const {
 
 SimulationFile LoadSimulation(const std::string& path) {
   const YamlTree root = config::ParseYaml(config::ReadBoundedFile(path), path, true, kMaxValues);
+  config::LoadPluginsIn(root, path);
   Reader reader(path, root, "");
   SimulationFile simulation;
   config::Table* t = reader.table();

@@ -18,6 +18,7 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/folder_lock.hpp"
+#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
 
@@ -209,6 +210,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", quiet, "print nothing but the summary");
   app.add_flag("--summary-only", summary_only,
                "do not write packets.csv, and remove one that is there");
+  stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -101,6 +101,7 @@ void Loader::ApplyOverlay(const std::string& path) {
 void Loader::ApplyOverride(const std::string& text) {
   const std::string origin = OverrideOrigin(text);
   const auto [path, value] = SplitOverride(text);
+  if (path == "plugins") return;
   if (const Field* field = table_.Find(path)) {
     Set(*field, ParseYaml(value, origin + ": " + path, false), origin + ": ");
   } else if (!Foreign(path)) {
@@ -130,7 +131,7 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
                       Keys* given) {
   for (const YamlTree::Entry& entry : map.entries) {
     const std::string path = prefix + entry.key;
-    if (path == "base") continue;
+    if (path == "base" || path == "plugins") continue;  // read before the keys
     const std::string where = Where(file, entry.line);
     if (const Field* field = table_.Find(path)) {
       Set(*field, entry.value, where);

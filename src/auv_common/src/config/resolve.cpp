@@ -20,7 +20,7 @@ YamlTree::Entry* FindEntry(YamlTree* map, const std::string& key) {
 void Merge(const YamlTree& from, YamlTree* into) {
   into->kind = YamlTree::Kind::kMap;
   for (const YamlTree::Entry& entry : from.entries) {
-    if (entry.key == "base") continue;
+    if (entry.key == "base" || entry.key == "plugins") continue;
     YamlTree::Entry* old = FindEntry(into, entry.key);
     if (old == nullptr) {
       into->entries.push_back(entry);
@@ -92,13 +92,15 @@ void Write(const YamlTree& map, const std::string& indent, std::string* text) {
 }  // namespace
 
 std::string ResolvedText(const Source& source) {
+  LoadPluginsOf(source);
   YamlTree root = MergedFile(source.file);
   for (const std::string& overlay : source.overlays) Merge(ReadMap(overlay), &root);
   for (const std::string& text : source.overrides) {
     const auto [path, value] = SplitOverride(text);
+    if (path == "plugins") continue;
     SetPath(path, ParseYaml(value, OverrideOrigin(text) + ": " + path, false), &root);
   }
-  std::string text;
+  std::string text = PluginLine();
   Write(root, "", &text);
   return text;
 }

@@ -120,6 +120,9 @@ config::Source ScenarioSource() {
   const int agents = IntegerParameter("agents", 0, 0, 255, Reach::kRun);
   if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
   overrides.emplace_back("mode=acoustic");
+  for (const std::string& library : TextsParameter("plugins", Reach::kRun)) {
+    overrides.push_back("plugins=[\"" + library + "\"]");
+  }
   return config::NamedSource(config::ScenarioFolder(),
                              TextParameter("scenario", "medium", Reach::kRun),
                              TextParameter("condition", "nominal", Reach::kRun), overrides);

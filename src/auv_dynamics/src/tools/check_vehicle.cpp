@@ -6,6 +6,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "auv_dynamics/check/recorded_motion.hpp"
 #include "auv_dynamics/vehicle/torpedo.hpp"
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
   app.add_option("--set", overrides, "key=value over the scenario, e.g. vehicle.substeps=2");
   app.add_flag("--advance-over-ground", over_ground,
                "propeller inflow from the speed over ground, as the public model has it");
+  stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

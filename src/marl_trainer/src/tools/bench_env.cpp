@@ -7,6 +7,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
+#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "stg_env/env/vector_env.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -73,6 +74,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   app.add_flag("--scaling", scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
+  stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -13,6 +13,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "seed_check.hpp"
 #include "stg_agent/controllers/controller.hpp"
@@ -157,6 +158,7 @@ int main(int argc, char** argv) {
   app.add_flag("--privileged", privileged,
                "a built-in controller reads true states in acoustic mode, too");
   Constants constants(&app);
+  stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -9,6 +9,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/plugin_option.hpp"
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
@@ -59,6 +60,7 @@ struct Declare {
 };
 
 int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
+  stg::LoadPluginArguments(argc, argv);
   // A resumed run is what its folder says; options may repeat it.
   std::optional<stg::learn::RunSetup> earlier;
   const std::string folder = Argument(argc, argv, "--out", "");
@@ -105,6 +107,7 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   for (const stg::learn::Option& option : table.options()) {
     std::visit(Declare{app, option}, option.value);
   }
+  stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
   app.add_option("--validation-episodes", config.validation_episodes, "for each validation task")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
+  stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -38,6 +38,6 @@ Scenario LoadNamedScenario(const std::string& folder, const std::string& scenari
 
 std::string ToYaml(const Scenario& scenario) { return config::ToYaml(scenario); }
 
-std::string ScenarioHash(const Scenario& scenario) { return config::HashOf(ToYaml(scenario)); }
+std::string ScenarioHash(const Scenario& scenario) { return config::HashOfKeys(scenario); }
 
 }  // namespace stg

@@ -21,6 +21,7 @@ from stg._core import (  # noqa: E402
     UserError,
     __version__,
     controllers,
+    load_plugin,
 )
 from stg.page import Page, report
 from stg.parallel import ParallelEnv, parallel_env
@@ -45,6 +46,7 @@ __all__ = [
     "controllers",
     "evaluate",
     "export_policy",
+    "load_plugin",
     "load_policy",
     "load_scenario",
     "parallel_env",

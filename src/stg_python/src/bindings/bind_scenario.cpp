@@ -83,6 +83,13 @@ py::array_t<double> Bottom(const Scenario& s, int points) {
 
 void BindScenario(py::module_& module) {
   module.def("scenario_folder", &config::ScenarioFolder, "Where the shipped scenarios lie.");
+  module.def(
+      "load_plugin", [](const std::string& library) { config::LoadPlugin(library, ""); },
+      py::arg("library"),
+      "Loads a shared library whose controllers, reward terms, ... can then be chosen by name. The "
+      "key `plugins` of a scenario does the same.\n"
+      "library: a path, or the name of a file that the system's loader finds. Raises UserError for "
+      "a library that is missing, was built for another version, or adds a name that is taken.");
   py::class_<Scenario>(module, "Scenario", "Everything an episode depends on besides its seed.")
       .def_static(
           "load",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "auv_common/config/field.hpp"
+#include "auv_common/config/plugins.hpp"
 #include "auv_common/config/value.hpp"
 #include "auv_common/config/yaml_tree.hpp"
 
@@ -24,6 +25,11 @@ struct Source {
   std::vector<std::string> overlays = {};   ///< files
   std::vector<std::string> overrides = {};  ///< key.path=value
 };
+
+/// Loads the libraries that the key `plugins` lists, in bases, the file, overlays and overrides
+/// (`plugins=[libmine.so]`, paths from the current folder): the keys and names that they add must
+/// be there before a table is made. Throws UserError.
+void LoadPluginsOf(const Source& source);
 
 /// What a file may hold besides the described keys: nothing, or sections that belong to others. A
 /// program that needs some sections of a file leaves the rest to the program that knows them all.
@@ -89,6 +95,7 @@ std::optional<Violation> FindBadValue(const Table& table);
 /// std::optional<Violation> FindConflict(const Config&). Throws UserError.
 template <class Config>
 Config Load(const Source& source, Scope scope = Scope::kWhole) {
+  LoadPluginsOf(source);
   Config config;
   Table table;
   Describe(&config, &table);
@@ -107,6 +114,7 @@ enum class Unread { kRefuse, kPassOver };
 template <class Config>
 Config LoadText(const std::string& text, const std::string& origin,
                 Unread unread = Unread::kRefuse) {
+  LoadPluginsIn(ParseYaml(text, origin), origin);
   Config config;
   Table table;
   Describe(&config, &table);
@@ -120,6 +128,7 @@ Config LoadText(const std::string& text, const std::string& origin,
 /// Sets keys of a struct, "key.path=value" each. Throws UserError as Load does.
 template <class Config>
 void Override(Config* config, const std::vector<std::string>& overrides) {
+  LoadPluginsOf({"", {}, overrides});
   Table table;
   Describe(config, &table);
   Loader loader(table, Scope::kWhole);
@@ -145,19 +154,28 @@ void ValidateOrThrow(const Config& config, const std::string& what = "scenario")
   if (const auto violation = FindViolation(config)) ThrowViolation(what, *violation);
 }
 
+/// FNV-1a 64, hexadecimal.
+std::string HashOf(const std::string& text);
+
 /// Every key that is read with its value, but optional ones at their fallback that belong to no
-/// thing; loading the result gives the same struct, but for what is not read.
+/// thing; loading the result gives the same struct, but for what is not read. Of a struct, the
+/// libraries that are loaded come first: its keys may need them.
 std::string ToYaml(const Table& table);
 template <class Config>
 std::string ToYaml(const Config& config) {
   Config copy = config;
   Table table;
   Describe(&copy, &table);
-  return ToYaml(table);
+  return PluginLine() + ToYaml(table);
 }
-
-/// FNV-1a 64, hexadecimal.
-std::string HashOf(const std::string& text);
+/// Hash of the keys alone: where libraries lie is no part of what they say.
+template <class Config>
+std::string HashOfKeys(const Config& config) {
+  Config copy = config;
+  Table table;
+  Describe(&copy, &table);
+  return HashOf(ToYaml(table));
+}
 
 /// The source as one file: base, overlays and overrides merged, numbers as ToYaml writes them.
 /// Checks nothing but the syntax.

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "auv_common/config/plugins.hpp"
+#include "auv_common/error.hpp"
+
+namespace stg {
+
+/// Adds the option --plugin, which loads what it names when the command line is parsed.
+inline void AddPluginOption(CLI::App* app) {
+  app->add_option_function<std::vector<std::string>>(
+         "--plugin",
+         [](const std::vector<std::string>& libraries) {
+           for (const std::string& library : libraries) {
+             try {
+               config::LoadPlugin(library, "");
+             } catch (const UserError& error) {
+               throw CLI::ValidationError("--plugin", error.what());
+             }
+           }
+         },
+         "shared library whose controllers, reward terms, ... can then be chosen; repeatable; the "
+         "key `plugins` of a scenario does the same")
+      ->type_name("LIB")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+/// Loads what --plugin names before the command line is parsed, of a program whose other options
+/// depend on it. Throws UserError.
+inline void LoadPluginArguments(int argc, char** argv) {
+  const std::string name = "--plugin";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == name && i + 1 < argc) {
+      config::LoadPlugin(argv[++i], name + ": ");
+    } else if (argument.rfind(name + "=", 0) == 0) {
+      config::LoadPlugin(argument.substr(name.size() + 1), name + ": ");
+    }
+  }
+}
+
+}  // namespace stg
