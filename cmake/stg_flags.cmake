@@ -68,8 +68,13 @@ if(NOT TARGET stg_abi)
   # with, whatever workspace is sourced.
   target_link_options(stg_abi INTERFACE -Wl,--disable-new-dtags)
 endif()
-# Installed, libraries lie beside each other, and the programs of a package in a folder there.
-set(CMAKE_INSTALL_RPATH "\$ORIGIN;\$ORIGIN/..")
+set(STG_INSTALL_RPATH "" CACHE STRING "Where installed programs look for libraries, if not beside themselves")
+if(STG_INSTALL_RPATH)
+  set(CMAKE_INSTALL_RPATH "${STG_INSTALL_RPATH}")
+else()
+  # Installed, libraries lie beside each other, and the programs of a package in a folder there.
+  set(CMAKE_INSTALL_RPATH "\$ORIGIN;\$ORIGIN/..")
+endif()
 
 add_compile_options(${STG_ABI_OPTIONS} -Wall -Wextra)
 # Registers are copied whole, and never by "rep movs", which takes longer to start than a vehicle's

@@ -26,6 +26,19 @@ function(stg_shared_version target)
   set_target_properties(${target} PROPERTIES VERSION ${STG_VERSION} SOVERSION ${minor})
 endfunction()
 
+# stg_use(TARGET PUBLIC|PRIVATE [PACKAGE ...]): compiles and links a target with other packages' cores.
+function(stg_use target scope)
+  foreach(package IN LISTS ARGN)
+    if(TARGET ${package})
+      target_link_libraries(${target} ${scope} ${package})
+    else()
+      # Built apart, as catkin_make_isolated and Debian's dh-ros do; catkin found it.
+      target_include_directories(${target} SYSTEM ${scope} ${${package}_INCLUDE_DIRS})
+      target_link_libraries(${target} ${scope} ${${package}_LIBRARIES})
+    endif()
+  endforeach()
+endfunction()
+
 # stg_core_library(TARGET [PACKAGE ...]): a library of a core, on top of other packages' cores.
 # Plain CMake exports it with the set STG_EXPORT.
 set(STG_EXPORT stgTargets)
@@ -35,15 +48,7 @@ function(stg_core_library target)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
   )
   target_link_libraries(${target} PUBLIC stg_abi)
-  foreach(package IN LISTS ARGN)
-    if(TARGET ${package})
-      target_link_libraries(${target} PUBLIC ${package})
-    else()
-      # Built apart, as catkin_make_isolated does; catkin found it.
-      target_include_directories(${target} SYSTEM PUBLIC ${${package}_INCLUDE_DIRS})
-      target_link_libraries(${target} PUBLIC ${${package}_LIBRARIES})
-    endif()
-  endforeach()
+  stg_use(${target} PUBLIC ${ARGN})
   stg_unity(${target})
   stg_shared_version(${target})
   if(STG_CORE_ONLY)

@@ -1,0 +1,54 @@
+/* Starts the program of this name and package that was compiled for this processor:
+ *
+ *   /usr/lib/PACKAGE/PROGRAM  becomes  PRIVATE/SET/PACKAGE/PROGRAM
+ *
+ * SET is x86-64-v3 where the processor has it and the package brings it, else baseline;
+ * STG_INSTRUCTION_SET names one. The process stays the same, so do its name and its signals. */
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *best_set(void) {
+#ifdef __x86_64__
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("x86-64-v3")) return "x86-64-v3";
+#endif
+  return "baseline";
+}
+
+/* Writes the path of the program to `target`, whether there is one or not. */
+static void locate(char *target, const char *set, const char *program) {
+  if (snprintf(target, PATH_MAX, "%s/%s/%s", PRIVATE, set, program) >= PATH_MAX) target[0] = '\0';
+}
+
+int main(int argc, char **argv) {
+  char self[PATH_MAX], target[PATH_MAX];
+  ssize_t length = readlink("/proc/self/exe", self, sizeof(self) - 1);
+  (void)argc;
+  if (length <= 0) {
+    perror("stg: /proc/self/exe");
+    return 126;
+  }
+  self[length] = '\0';
+  /* The last two parts of the path are package and program. */
+  char *program = strrchr(self, '/');
+  while (program > self && program[-1] != '/') --program;
+
+  const char *wanted = getenv("STG_INSTRUCTION_SET");
+  if (wanted != NULL && wanted[0] != '\0') {
+    if (strcmp(wanted, "baseline") != 0 && strcmp(wanted, best_set()) != 0) {
+      fprintf(stderr, "stg: STG_INSTRUCTION_SET: this processor has no '%s'\n", wanted);
+      return 2;
+    }
+    locate(target, wanted, program);
+  } else {
+    locate(target, best_set(), program);
+    if (access(target, X_OK) != 0) locate(target, "baseline", program);
+  }
+  execv(target, argv);
+  fprintf(stderr, "stg: ");
+  perror(target);
+  return 126;
+}
