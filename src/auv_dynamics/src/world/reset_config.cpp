@@ -11,6 +11,11 @@ void Describe(ResetConfig* c, config::Table* t) {
   t->Section("reset");
   t->Add("stage", config::Enum(&c->stage, {"easy", "medium", "hard"}), config::kNone, "-",
          "reset stage of evaluation and of training without a curriculum");
+  t->AddOptional(
+      "deploy", config::Enum(&c->deploy, {"around", "point", "area"}), "around", config::kNone, "-",
+      "AUVs start around their targets; or on a line, reset.min_separation_m apart, whose "
+      "middle is reset.stages.*.auv_distance_m from the first target; or anywhere within "
+      "reset.start_half_extent_m. The last two need sea.open");
   t->Add("curriculum", &c->curriculum, config::kNone, "-",
          "training draws the stage from the number of resets: easy, medium, then hard");
   t->Add("curriculum_easy_resets", &c->curriculum_easy_resets, config::NonNegative(1e9), "resets",
@@ -27,7 +32,7 @@ void Describe(ResetConfig* c, config::Table* t) {
     t->Add("target_radius_m", &c->stages[i].target_radius_m, config::NonNegative(1e5), "m",
            "[low, high] distance of a target from the origin of the world");
     t->Add("auv_distance_m", &c->stages[i].auv_distance_m, config::NonNegative(1e5), "m",
-           "[low, high] distance of an AUV from its target");
+           "[low, high] distance of an AUV from its target; see reset.deploy");
     t->Add("target_speed_mps", &c->stages[i].target_speed_mps, config::NonNegative(10), "m/s",
            "[low, high] speed of a target, in a uniformly drawn direction");
   }

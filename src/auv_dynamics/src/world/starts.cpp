@@ -30,6 +30,21 @@ Vec3<double> LevelDirection(Random* random) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
+/// The vehicles on a level line, min_separation_m apart, whose middle is a drawn distance and
+/// direction from the first target.
+std::vector<Vec3<double>> DrawLine(const ResetConfig& config, const ResetStageConfig& stage,
+                                   const Start& start, Random* random) {
+  const double distance = random->Uniform(stage.auv_distance_m.lo, stage.auv_distance_m.hi);
+  const Vec3<double> middle = start.targets.front().p_WT + LevelDirection(random) * distance;
+  const Vec3<double> along = LevelDirection(random) * config.min_separation_m;
+  std::vector<Vec3<double>> line;
+  const double half = 0.5 * (static_cast<double>(start.p_WB.size()) - 1.0);
+  for (std::size_t i = 0; i < start.p_WB.size(); ++i) {
+    line.push_back(middle + along * (static_cast<double>(i) - half));
+  }
+  return line;
+}
+
 /// Draws a position for each vehicle until it lies in the region and apart from those before it.
 /// @param draw  random, position of the vehicle's target -> a position
 /// @param clear whether a position is water
@@ -104,9 +119,28 @@ void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascap
     const double speed = random.Uniform(r.target_speed_mps.lo, r.target_speed_mps.hi);
     target.v_WT = LevelDirection(&random) * speed;
   }
+  if (config.deploy == Deploy::kPoint) {
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+      start->p_WB = DrawLine(config, r, *start, &random);
+      bool placed = true;
+      for (Vec3<double>& p_WB : start->p_WB) {
+        p_WB = at_depth(p_WB, &random, sea.auv_depth_m);
+        placed = placed && Inside(p_WB, config.start_half_extent_m) && clear(p_WB);
+      }
+      if (placed) return;
+    }
+    throw UserError(
+        "reset: no room for a line of vehicles at reset.stages.*.auv_distance_m from the first "
+        "target, clear of walls, bottom and obstacles");
+  }
   PlaceVehicles(
       config, &random,
       [&](Random* draw, const Vec3<double>& p_WT) {
+        if (config.deploy == Deploy::kArea) {
+          const double half = config.start_half_extent_m;
+          const double x = draw->Uniform(-half, half), y = draw->Uniform(-half, half);
+          return at_depth({x, y, 0.0}, draw, sea.auv_depth_m);
+        }
         const double d = draw->Uniform(r.auv_distance_m.lo, r.auv_distance_m.hi);
         return at_depth(p_WT + LevelDirection(draw) * d, draw, sea.auv_depth_m);
       },

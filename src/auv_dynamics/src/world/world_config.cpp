@@ -39,7 +39,8 @@ std::optional<Violation> CheckStage(const WorldConfig& s, int agents, int index)
     return Violation{{path + "auv_distance_m", "reset.start_half_extent_m"},
                      "AUVs cannot start this far from a target within the start region"};
   }
-  const bool used = s.reset.curriculum || static_cast<int>(s.reset.stage) == index;
+  const bool used = s.reset.deploy == Deploy::kAround &&
+                    (s.reset.curriculum || static_cast<int>(s.reset.stage) == index);
   if (used && !StartsFit(s.reset, stage, agents)) {
     return Violation{{"agents", path + "auv_distance_m", "reset.min_separation_m"},
                      "so many AUVs do not fit around a target with this separation"};
@@ -104,6 +105,10 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunCon
   if (s.reset.curriculum_medium_resets < s.reset.curriculum_easy_resets) {
     return Violation{{"reset.curriculum_medium_resets", "reset.curriculum_easy_resets"},
                      "the medium stage cannot end before the easy one"};
+  }
+  if (s.reset.deploy != Deploy::kAround && !s.sea.open) {
+    return Violation{{"reset.deploy", "sea.open"},
+                     "in a closed basin AUVs start around their targets"};
   }
   for (int i = 0; i < 3; ++i) {
     if (auto violation = CheckStage(s, run.agents, i)) return violation;

@@ -128,6 +128,49 @@ TEST(Sea, EpisodesStartAtTheirDepthsApartFromEachOther) {
   }
 }
 
+TEST(Sea, DeployedFromOnePlaceVehiclesStandInALine) {
+  WorldScenario s = OpenWater(5);
+  s.world.reset.deploy = Deploy::kPoint;
+  World world(s);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    world.Reset(0, seed, 0, ResetStage::kMedium);
+    const Vec3<double> t = Lane(world.target(0).p_WT, 0), middle = world.Nav(0, 2).p_WB;
+    const double distance = std::hypot(middle.x - t.x, middle.y - t.y);
+    EXPECT_GE(distance, 50.0 - 1e-9);
+    EXPECT_LE(distance, 150.0 + 1e-9);
+    const Vec3<double> step = world.Nav(0, 1).p_WB - world.Nav(0, 0).p_WB;
+    EXPECT_NEAR(std::hypot(step.x, step.y), 20.0, 1e-9);
+    for (int i = 0; i < 5; ++i) {
+      const Vec3<double> p = world.Nav(0, i).p_WB;
+      EXPECT_NEAR(p.x, middle.x + (i - 2) * step.x, 1e-9);
+      EXPECT_NEAR(p.y, middle.y + (i - 2) * step.y, 1e-9);
+    }
+  }
+}
+
+TEST(Sea, DeployedInAnAreaVehiclesStartAnywhereInIt) {
+  WorldScenario s = OpenWater(4);
+  s.world.reset.deploy = Deploy::kArea;
+  World world(s);
+  int far = 0;
+  double least = 0.0, most = 0.0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    world.Reset(0, seed, 0, ResetStage::kMedium);
+    const Vec3<double> t = Lane(world.target(0).p_WT, 0);
+    for (int i = 0; i < 4; ++i) {
+      const Vec3<double> p = world.Nav(0, i).p_WB;
+      EXPECT_LE(std::max(std::abs(p.x), std::abs(p.y)), 500.0);
+      least = std::min(least, p.x);
+      most = std::max(most, p.x);
+      far += std::hypot(p.x - t.x, p.y - t.y) > 150.0 ? 1 : 0;
+    }
+  }
+  // The ring around the target is a small part of the square.
+  EXPECT_GT(far, 300);
+  EXPECT_LT(least, -450.0);
+  EXPECT_GT(most, 450.0);
+}
+
 TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
   for (const std::string& motion : TargetMotions().Names()) {
     if (motion == "lift") continue;  // of another test

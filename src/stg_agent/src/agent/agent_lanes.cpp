@@ -36,6 +36,9 @@ LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
       memory_(static_cast<std::size_t>(kLanesOf<T>)),
       neighbours_before_(neighbours_),
       mind_before_(mind_) {
+  if (constants->model.track.search_cell_m > 0.0) {
+    search_.resize(static_cast<std::size_t>(kLanesOf<T>), SearchMemory(constants->model));
+  }
   inboxes_.reserve(static_cast<std::size_t>(kLanesOf<T>));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) inboxes_.emplace_back(constants, id);
 }
@@ -47,6 +50,9 @@ void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& 
   neighbours_.Clear(lane);
   mind_.Reset(lane);
   memory_[static_cast<std::size_t>(lane)] = EntityMemory();
+  if (!search_.empty() && cue.target == inbox(lane).target()) {
+    search_[static_cast<std::size_t>(lane)].Start(cue);
+  }
 }
 
 template <class T>
@@ -54,6 +60,7 @@ void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
   At(lane).Detect(detection);
   EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
   if (detection.target != inbox(lane).target()) return;
+  if (!search_.empty()) search_[static_cast<std::size_t>(lane)].Detect(detection);
   if (memory.ranged && detection.stamp <= memory.own_detection) return;
   memory.ranged = true;
   memory.own_detection = detection.stamp;
@@ -95,6 +102,10 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
     EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
     memory.now = OfLane(nav.stamp, lane);
     memory.position_std_m = Lane(nav.position_std_m, lane);
+    if (!search_.empty()) {
+      search_[static_cast<std::size_t>(lane)].Update(memory.now, Lane(nav.p_WB, lane),
+                                                     inbox(lane).neighbours());
+    }
     SetLaneOf(&target, lane, inbox(lane).Target(links_->freshness_s()));
   }
   mind_.SetNavigation(nav);
@@ -136,7 +147,8 @@ AgentView LanedAgent<T>::view(int lane) const {
           LaneOf(mind_.knowledge, lane),
           action,
           SightReader(neighbours_.sights(), lane),
-          &memory_[static_cast<std::size_t>(lane)]};
+          &memory_[static_cast<std::size_t>(lane)],
+          search_.empty() ? nullptr : &search_[static_cast<std::size_t>(lane)]};
 }
 
 template class LanedAgent<double>;

@@ -149,6 +149,15 @@ template Vec3<double> Encircle::Velocity(const ControllerInput<double>& in,
 template Vec3<Pack> Encircle::Velocity(const ControllerInput<Pack>& in,
                                        const Guidance<Pack>& guidance) const;
 
+template double Encircle::Height(const ControllerInput<double>&, const double&) const;
+template Pack Encircle::Height(const ControllerInput<Pack>&, const Pack&) const;
+template double Encircle::Radius(const ControllerInput<double>&, const double&) const;
+template Pack Encircle::Radius(const ControllerInput<Pack>&, const Pack&) const;
+template Level<double> Encircle::Miss(const Level<double>&, const Level<double>&,
+                                      const Level<double>&, const double&, const double&) const;
+template Level<Pack> Encircle::Miss(const Level<Pack>&, const Level<Pack>&, const Level<Pack>&,
+                                    const Pack&, const Pack&) const;
+
 void Describe(EncircleOptions* o, config::Table* t) {
   t->Add("cruise", &o->cruise_mps, NonNegative(100), "m/s",
          "speed over ground on the side of the circle that runs back");

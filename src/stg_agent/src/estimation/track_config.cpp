@@ -42,6 +42,9 @@ void Describe(TrackConfig* c, config::Table* t) {
          "a track whose position is no better than this counts as lost");
   t->Add("neighbour_max_age_s", &c->neighbour_max_age_s, config::Positive(1e5), "s",
          "a neighbour is forgotten after this silence");
+  t->AddOptional("search_cell_m", &c->search_cell_m, "0.0", config::NonNegative(1e4), "m",
+                 "side of the 32 x 32 cells of each agent's map of where its target may be, around "
+                 "the datum; 0: it keeps none");
   t->AddOptional(
       "filter", config::Name(&c->filter, TargetFilters().Names()), "kalman", config::kNone, "-",
       "target filter: of positions and shared estimates, or of measurements of any kind");

@@ -25,6 +25,7 @@ std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
                                                     {"packet_loss", packet_loss},
                                                     {"modem_energy", modem_energy}};
   for (const auto& item : estimates.Items()) items.push_back(item);
+  for (const auto& item : search.Items()) items.push_back(item);
   return items;
 }
 

@@ -9,6 +9,10 @@ namespace stg::dynamics {
 /// Stages of the curriculum: how far out and how fast targets start.
 enum class ResetStage { kEasy, kMedium, kHard };
 
+/// Where vehicles start: each around its target, or all on a line in one place, or anywhere. Around
+/// the target their positions tell where it is.
+enum class Deploy { kAround, kPoint, kArea };
+
 /// Where and how fast an episode starts.
 struct ResetStageConfig {
   config::Interval target_radius_m{0.25, 0.55};
@@ -19,7 +23,8 @@ struct ResetStageConfig {
 /// How episodes start; stages are in the order easy, medium, hard.
 struct ResetConfig {
   ResetStage stage = ResetStage::kMedium;  ///< evaluation and fixed training
-  bool curriculum = false;                 ///< training: easy, medium, hard by reset count
+  Deploy deploy = Deploy::kAround;
+  bool curriculum = false;  ///< training: easy, medium, hard by reset count
   int curriculum_easy_resets = 800;
   int curriculum_medium_resets = 2000;
   double min_separation_m = 0.10;

@@ -70,6 +70,7 @@ class LanedAgent {
   Neighbourhood<T> neighbours_;
   Mind<T> mind_;
   mutable std::vector<EntityMemory> memory_;  // [lanes]; a view hands it to the pilot
+  mutable std::vector<SearchMemory> search_;  // [lanes], or empty: no map; a view hands it to a law
   // As before the present Observe, for lanes that do not take part in it.
   Neighbourhood<T> neighbours_before_;
   Mind<T> mind_before_;

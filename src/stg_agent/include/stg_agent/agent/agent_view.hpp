@@ -9,6 +9,7 @@
 #include "stg_agent/graph/neighbourhood.hpp"
 #include "stg_agent/graph/task_view.hpp"
 #include "stg_agent/inbox/inbox.hpp"
+#include "stg_agent/search/search_memory.hpp"
 
 namespace stg::agent {
 
@@ -19,13 +20,15 @@ class AgentView {
   using Action = std::array<double, dynamics::kMaxActionSize>;
 
   AgentView(const AgentModel& model, const Inbox& inbox, const Knowledge<double>& knowledge,
-            const Action& action, const SightReader& sights, EntityMemory* memory)
+            const Action& action, const SightReader& sights, EntityMemory* memory,
+            SearchMemory* search = nullptr)
       : model_(model),
         inbox_(inbox),
         knowledge_(knowledge),
         action_(action),
         sights_(sights),
-        memory_(memory) {}
+        memory_(memory),
+        search_(search) {}
 
   const AgentModel& model() const { return model_; }
   int id() const { return inbox_.id(); }
@@ -54,6 +57,8 @@ class AgentView {
   /// What it remembers for its entities, and the command that it flies by; a pilot writes the
   /// latter, which is why it is not constant.
   EntityMemory& memory() const { return *memory_; }
+  /// Where it has searched; null: it keeps no map. A law writes its plan into it.
+  SearchMemory* search() const { return search_; }
 
   /// Packets of this episode that did not decode.
   std::uint64_t refused_packets() const { return inbox_.refused_packets(); }
@@ -65,6 +70,7 @@ class AgentView {
   Action action_;
   SightReader sights_;
   EntityMemory* memory_;
+  SearchMemory* search_;
 };
 
 }  // namespace stg::agent

@@ -27,8 +27,8 @@ struct ControllerInput {
   int neighbour_count;
 };
 
-/// A rule from what one AUV knows to its action. Has no memory: one object serves all AUVs, and any
-/// number of threads.
+/// A rule from what one AUV knows to its action. Has no memory of its own: one object serves all
+/// AUVs, and any number of threads.
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -38,8 +38,9 @@ class Controller {
   virtual void Act(const ControllerInput<Pack>& input, Pack* action) const = 0;
 
   /// The same from an agent's own knowledge after Observe, with its kNearestKnown nearest
-  /// neighbours, nearest first; rounded to float, as a policy's action is.
-  void Act(const AgentView& agent, float* action) const;
+  /// neighbours, nearest first; rounded to float, as a policy's action is. A law that searches
+  /// reads more of the agent than a ControllerInput holds, and keeps its plan there.
+  virtual void Act(const AgentView& agent, float* action) const;
 
   static constexpr int kNearestKnown = 16;
 };

@@ -140,10 +140,7 @@ struct Encircle {
     AskForVelocity(in, velocity, action);
   }
 
- private:
-  /// Desired velocity over ground, world axes [m/s].
-  template <class T>
-  Vec3<T> Velocity(const ControllerInput<T>& in, const Guidance<T>& guidance) const;
+  // What laws that fly in a ring, too, have in common with it.
   /// Height to fly at [m].
   template <class T>
   T Height(const ControllerInput<T>& in, const T& deeper_m) const;
@@ -156,6 +153,11 @@ struct Encircle {
   template <class T>
   Level<T> Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
                 const T& matters) const;
+
+ private:
+  /// Desired velocity over ground, world axes [m/s].
+  template <class T>
+  Vec3<T> Velocity(const ControllerInput<T>& in, const Guidance<T>& guidance) const;
 };
 
 std::unique_ptr<Controller> MakeEncircle(const EncircleOptions& options);

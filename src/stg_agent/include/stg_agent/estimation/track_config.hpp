@@ -19,6 +19,7 @@ struct TrackConfig {
   double gate_sigma = 5.0;  ///< own detections beyond it are set aside, three in a row restart
   double lost_std_m = 0.2;  ///< track no better than this counts as lost
   double neighbour_max_age_s = 10.0;  ///< a neighbour is forgotten after this silence
+  double search_cell_m = 0.0;         ///< side of a cell of the search map; 0: the agents keep none
   // Of the filter `measurements`.
   double velocity_std_mps = 0.0;    ///< of the target, each component; 0: largest speed / root 2
   double velocity_memory_s = 60.0;  ///< correlation time of the target's velocity

@@ -21,6 +21,35 @@ T Spread(const SwarmState<T>& swarm, int target);
 template <class T>
 T NormalisedSquare(const Vec3<T>& r, const T (&covariance)[6]);
 
+/// The sums behind SearchMetrics. Every lane counts its own decisions.
+template <class T>
+class SearchTotals {
+ public:
+  explicit SearchTotals(const JudgeConfig& scenario);
+
+  void Start(const Mask<T>& lanes);
+  /// Adds a decision. @param swarm with its field
+  void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking);
+  /// Of the episode up to now. @param steps decisions of this lane
+  SearchMetrics Metrics(int lane, double steps) const;
+
+ private:
+  struct OfTarget {
+    T detected = T(-1.0);          ///< decision of the first observation; -1: not yet
+    T followed = T(0.0);           ///< decisions
+    T way = T(0.0), net = T(0.0);  ///< in the whole windows up to now [m]
+    Vec3<T> p_WT, p_window;        ///< at the last decision, and where the window began
+    T window_way = T(0.0);
+  };
+  T InBand(const Tracking<T>& k) const;
+  void Follow(const Vec3<T>& p_WT, OfTarget* target) const;
+
+  JudgeConfig scenario_;
+  double window_;  // decisions
+  T decisions_ = T(0.0), gathered_ = T(-1.0), info_spread_ = T(0.0);
+  std::vector<OfTarget> targets_;
+};
+
 /// The sums behind FieldMetrics. Every lane counts its own decisions.
 template <class T>
 class FieldTotals {
@@ -47,10 +76,13 @@ class FieldTotals {
   JudgeConfig scenario_;
   Sums sums_;
   EstimateTotals<T> estimates_;
+  SearchTotals<T> search_;
   std::vector<T> spell_;  // [agents] decisions of the spell of loss that runs
   std::vector<T> band_;   // [agents] decisions in the band
 };
 
+extern template class SearchTotals<double>;
+extern template class SearchTotals<Pack>;
 extern template class FieldTotals<double>;
 extern template class FieldTotals<Pack>;
 

@@ -9,6 +9,24 @@
 
 namespace stg::task {
 
+/// How soon targets are found, how well they are surrounded, and how many of them are followed.
+struct SearchMetrics {
+  double found = 0.0;           ///< 1: some AUV had an observation of each target
+  double time_to_detect = 0.0;  ///< until then, mean over targets; the episode length if never [s]
+  double time_to_gather = 0.0;  ///< until all AUVs were in the band at once; the same if never [s]
+  /// Mean of 1 - |mean of e^{2 i theta}| over the AUVs' bearings from a target: 0 where all stand
+  /// on one line through it, whose ranges tell one axis only.
+  double info_spread = 0.0;
+  /// Share of targets and decisions with two AUVs in the band, or one that is alone, and the best
+  /// estimate of those tasked with the target off by less than 20 m in the plane.
+  double followed = 0.0;
+  double worst_followed = 0.0;  ///< the same of the target that was followed least
+  /// Displacement of the targets over 600 s as a share of their way; 0 in shorter episodes.
+  double target_net_speed = 0.0;
+
+  std::vector<std::pair<std::string, double>> Items() const;
+};
+
 /// Metrics of one episode in open water, beside the others; of the whole episode.
 struct FieldMetrics {
   double estimate_rmse = 0.0;    ///< of the position in the world, depth included [m]
@@ -16,6 +34,7 @@ struct FieldMetrics {
   double estimate_known = 0.0;   ///< share of AUV decisions with an estimate
   double information_age = 0.0;  ///< mean age of the newest observation in the estimates [s]
   EstimateMetrics estimates;
+  SearchMetrics search;
   double band_share = 0.0;        ///< share of AUV decisions inside [d_l, d_u]
   double worst_band_share = 0.0;  ///< of the AUV that was inside least
   double time_lost = 0.0;         ///< mean over AUVs [s]

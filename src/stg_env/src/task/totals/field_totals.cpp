@@ -39,6 +39,7 @@ template <class T>
 FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
     : scenario_(scenario),
       estimates_(scenario),
+      search_(scenario),
       spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)),
       band_(spell_) {}
 
@@ -56,12 +57,14 @@ void FieldTotals<T>::Start(const Mask<T>& lanes) {
   for (T& spell : spell_) restart(&spell, 0.0);
   for (T& band : band_) restart(&band, 0.0);
   estimates_.Start(lanes);
+  search_.Start(lanes);
 }
 
 template <class T>
 void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
                          const Mask<T>& tail) {
   estimates_.Add(swarm, tracking, tail);
+  search_.Add(swarm, tracking);
   const T zero(0.0), one(1.0);
   const config::Interval& band = scenario_.reward.band_m;
   Sums& s = sums_;
@@ -121,6 +124,7 @@ FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   m.estimate_known = at(s.known) / all;
   m.information_age = at(s.age) / known;
   m.estimates = estimates_.Metrics(lane, steps);
+  m.search = search_.Metrics(lane, steps);
   m.band_share = at(s.band) / all;
   m.worst_band_share = at(band_.front()) / steps;
   for (const T& band : band_) m.worst_band_share = std::min(m.worst_band_share, at(band) / steps);

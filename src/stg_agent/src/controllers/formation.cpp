@@ -1,0 +1,166 @@
+#include "stg_agent/controllers/formation.hpp"
+
+#include <array>
+
+namespace stg::agent {
+namespace {
+
+using config::kNone;
+using config::NonNegative;
+
+constexpr double kFullTurn = 2.0 * kPi;
+/// Others that are told apart; of a larger team the first ones in the maker's order.
+constexpr int kMost = 32;
+
+template <class T>
+Level<T> Limited(const Level<T>& v, double lo, double hi) {
+  const T speed = Max(Norm(v), T(1e-6));
+  return v * (Clip(speed, T(lo), T(hi)) / speed);
+}
+
+}  // namespace
+
+template <class T>
+T Formation::Slot(const ControllerInput<T>& in, const Level<T>& v_T) const {
+  const T zero(0.0), one(1.0);
+  const Knowledge<T>& k = in.knowledge;
+  const Vec3<T> p_WT = k.p_WB + k.r_BT_W;
+  const bool course = options.slots == Slots::kCourse;
+  const T reference = course ? Atan2(v_T.y, v_T.x) : zero;
+  const auto from_astern = [&](const T& bearing) {
+    const T a = bearing - reference + T(kPi);
+    return a - T(kFullTurn) * Floor(a * T(1.0 / kFullTurn));
+  };
+  // The own bearing first, then those of the others in the ring.
+  std::array<T, kMost + 1> bearing, present;
+  bearing[0] = from_astern(Atan2(-k.r_BT_W.y, -k.r_BT_W.x));
+  present[0] = one;
+  int count = 1;
+  for (int j = 0; j < in.neighbour_count && count <= kMost; ++j) {
+    const Vec3<T> r = in.neighbours[j].p_WN - p_WT;
+    const auto u = static_cast<std::size_t>(count++);
+    bearing[u] = from_astern(Atan2(r.y, r.x));
+    const T range = options.team_range_m * options.team_range_m;
+    const auto near = (r.x * r.x + r.y * r.y < T(range)) && (in.neighbours[j].known > T(0.5));
+    present[u] = Select(near, one, zero);
+  }
+  const auto n = static_cast<std::size_t>(count);
+  T places = zero;
+  for (std::size_t j = 0; j < n; ++j) places += present[j];
+  const T step = T(kFullTurn) / places;
+  T own_rank = zero, sines = zero, cosines = zero;
+  for (std::size_t j = 0; j < n; ++j) {
+    T rank = zero;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto before = (bearing[i] < bearing[j]) ||
+                          ((bearing[i] == bearing[j]) && (i < j ? one > zero : one < zero));
+      rank += Select(before, present[i], zero);
+    }
+    if (j == 0) own_rank = rank;
+    T s, c;
+    SinCos(bearing[j] - rank * step, &s, &c);
+    sines += present[j] * s;
+    cosines += present[j] * c;
+  }
+  const T first = course ? step * T(0.5) : Atan2(sines, cosines);
+  return reference - T(kPi) + first + own_rank * step;
+}
+
+template <class T>
+Level<T> Formation::Keep(const ControllerInput<T>& in, const Level<T>& v_T, const T& R) const {
+  const Knowledge<T>& k = in.knowledge;
+  const T one(1.0);
+  const Level<T> own{k.v_WB.x, k.v_WB.y};
+  const Level<T> r = Level<T>{k.r_BT_W.x, k.r_BT_W.y} +
+                     (v_T - own) * T(options.lead_s + 0.5 * in.model.run.decision_dt_s());
+  const T rho = Max(Norm(r), T(1e-3));
+  const Level<T> outward = r * (-one / rho);
+  const Level<T> around{-outward.y, outward.x};
+  const T off = Slot(in, v_T) - Atan2(outward.y, outward.x);
+  const T turn = off - T(kFullTurn) * Floor((off + T(kPi)) * T(1.0 / kFullTurn));
+  const Level<T> way = outward * (R - rho) + around * (turn * Min(rho, R * T(1.5)));
+  const T length = Max(Norm(way), T(1e-3));
+  const Level<T> direction = way * (one / length);
+  T u = length * T(options.gain_ps);
+  u = Min(u, SpeedAlong(v_T, direction, T(options.fast_mps), u));
+  return Limited(v_T + direction * u, options.slow_mps, options.fast_mps);
+}
+
+template <class T>
+void Formation::Act(const ControllerInput<T>& in, T* action) const {
+  const AgentModel& s = in.model;
+  const Knowledge<T>& k = in.knowledge;
+  const T zero(0.0), one(1.0);
+  EncircleOptions circle;
+  circle.clearance_m = options.clearance_m;
+  circle.doubt_mps = options.doubt_mps;
+  const Encircle ring{circle};
+  const Level<T> v_T = [&] {
+    const Level<T> v{k.v_WT.x, k.v_WT.y};
+    return v * (Min(Norm(v), T(s.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
+  }();
+  const T z = ring.Height(in, zero);
+  const T R = ring.Radius(in, z - (k.p_WB.z + k.r_BT_W.z)) * T(options.radius);
+  Level<T> v = Keep(in, v_T, R);
+  const Level<T> own{k.v_WB.x, k.v_WB.y};
+  for (int j = 0; j < in.neighbour_count; ++j) {
+    const NeighbourSight<T>& n = in.neighbours[j];
+    const auto beside = Abs(n.p_WN.z - k.p_WB.z) < T(circle.layer_m);
+    v = v + ring.Miss(own, {n.p_WN.x - k.p_WB.x, n.p_WN.y - k.p_WB.y}, {n.v_W.x, n.v_W.y},
+                      T(options.clearance_m) + n.age_s * T(options.doubt_mps),
+                      Select(beside, one, zero));
+  }
+  const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
+    const auto beside = (k.p_WB.z > T(lo - circle.layer_m)) && (k.p_WB.z < T(hi + circle.layer_m));
+    v = v + ring.Miss(own, {T(x) - k.p_WB.x, T(y) - k.p_WB.y}, Level<T>{},
+                      T(radius_m + circle.clearance_m), Select(beside, one, zero));
+  };
+  for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
+  for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
+  v = Limited(v, options.slow_mps, options.fast_mps);
+  const T climb =
+      Clip((z - k.p_WB.z) * T(circle.depth_gain_ps), T(-circle.climb_mps), T(circle.climb_mps));
+  const auto& vmax = s.vehicle.max_velocity_mps;
+  const T velocity[3] = {Clip(v.x * T(1.0 / vmax[0]), T(-1.0), T(1.0)),
+                         Clip(v.y * T(1.0 / vmax[1]), T(-1.0), T(1.0)),
+                         Clip(climb * T(1.0 / vmax[2]), T(-1.0), T(1.0))};
+  AskForVelocity(in, velocity, action);
+
+  // Slower than the vehicles fly: no place to keep.
+  const auto slow = Norm(v_T) < T(options.weave_below_mps);
+  if (!Any(slow)) return;
+  T circling[dynamics::kMaxActionSize] = {};
+  Encircle{EncircleOptions{}}.Act(in, circling);
+  for (int a = 0; a < s.control.action_size(); ++a)
+    action[a] = Select(slow, circling[a], action[a]);
+}
+
+void Describe(FormationOptions* o, config::Table* t) {
+  t->Add("slots", config::Enum(&o->slots, {"free", "course"}), kNone, "-",
+         "bearings of the ring: those nearest to the AUVs, or symmetric to the target's course");
+  t->Add("radius", &o->radius, config::Within(0.1, 10.0), "-", "of the ring, as a share of d*");
+  t->Add("gain", &o->gain_ps, NonNegative(100), "1/s",
+         "speed towards the own place per missing length");
+  t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "speed over ground, at least");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
+  t->Add("weave-below", &o->weave_below_mps, NonNegative(100), "m/s",
+         "a target slower than this is circled");
+  t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
+         "others farther from the target have no place in the ring");
+  t->Add("lead", &o->lead_s, NonNegative(1e3), "s",
+         "the vehicle is taken to be where it will be then");
+  t->Add("clearance", &o->clearance_m, NonNegative(1e4), "m",
+         "others are to be missed by this, in the plane");
+  t->Add("doubt", &o->doubt_mps, NonNegative(100), "m/s",
+         "and by this times the age of what they said");
+}
+
+std::unique_ptr<Controller> MakeFormation(const FormationOptions& options) {
+  return std::make_unique<ControllerOf<Formation>>(Formation{options});
+}
+
+std::unique_ptr<Controller> MakeContain(const ContainOptions& options) {
+  return MakeFormation(options);
+}
+
+}  // namespace stg::agent

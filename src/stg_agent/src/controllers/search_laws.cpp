@@ -1,0 +1,194 @@
+#include "stg_agent/controllers/search_laws.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "auv_common/error.hpp"
+
+namespace stg::agent {
+namespace {
+
+using config::NonNegative;
+
+constexpr int kCourses = 64;
+
+Encircle CircleOf(const FoundOptions& found) {
+  EncircleOptions o;
+  o.fast_mps = found.fast_mps;
+  return {o};
+}
+
+Formation FormOf(const FoundOptions& found) {
+  FormationOptions o;
+  o.fast_mps = found.fast_mps;
+  return {o};
+}
+
+void DescribeFound(FoundOptions* o, config::Table* t) {
+  t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
+         "without an observation for so long, the search begins again");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
+  t->Add(
+      "form", &o->form, config::kFraction, "-",
+      "a target that is found is circled (0, encircle), or a place is kept at it (1, formation)");
+}
+
+/// The course on which most is swept (Koopman 1956; Stone 1975).
+class MapLaw final : public SearchLaw {
+ public:
+  explicit MapLaw(const SearchMapOptions& options) : SearchLaw(options), o_(options) {}
+
+ private:
+  /// A course on which somebody flies for a time.
+  struct Track {
+    Level<double> start, direction;
+    double length_m = 0.0;
+  };
+
+  static bool Covers(const Track& track, double half_m, double x, double y) {
+    const Level<double> r{x - track.start.x, y - track.start.y};
+    const double along = Dot(r, track.direction);
+    return along > -half_m && along < track.length_m + half_m &&
+           std::abs(Cross(track.direction, r)) < half_m;
+  }
+
+  Level<double> Goal(const AgentView& agent, SearchMemory* search) const override {
+    SearchPlan& plan = search->plan;
+    if (!plan.made || Seconds(search->now() - plan.time) >= o_.replan_s) {
+      plan.course = Choose(agent, *search);
+      plan.time = search->now();
+      plan.made = true;
+    }
+    constexpr double kFar_m = 1e4;
+    return {kFar_m * std::cos(plan.course), kFar_m * std::sin(plan.course)};
+  }
+
+  /// What those senior, who have a lower number, will have swept is left to them.
+  std::vector<Track> SeniorTracks(const AgentView& agent) const {
+    std::vector<Track> tracks;
+    for (const int id : agent.neighbours().known()) {
+      if (id > agent.id()) break;
+      const NeighbourSight<double> n = agent.sight(id);
+      const Level<double> v{n.v_W.x, n.v_W.y};
+      const double speed = std::max(Norm(v), 1e-3);
+      tracks.push_back({{n.p_WN.x, n.p_WN.y}, v * (1.0 / speed), speed * o_.senior_s});
+    }
+    return tracks;
+  }
+
+  double Choose(const AgentView& agent, const SearchMemory& search) const {
+    const SearchMap& map = search.map();
+    const Vec3<double>& p_WB = agent.knowledge().p_WB;
+    const double half_m = o_.swath * agent.model().sensing.range_m;
+    const double length_m = o_.horizon_s * o_.fast_mps;
+    const std::vector<Track> seniors = SeniorTracks(agent);
+    std::array<double, kCourses> worth{}, cosine{}, sine{};
+    const auto courses = static_cast<std::size_t>(o_.courses);
+    for (std::size_t k = 0; k < courses; ++k) {
+      // Counted from the old course, so that it is one of them.
+      const double course = search.plan.course + 2.0 * kPi * static_cast<double>(k) / o_.courses;
+      cosine[k] = std::cos(course);
+      sine[k] = std::sin(course);
+    }
+    for (int r = 0; r < SearchMap::kSide; ++r) {
+      for (int c = 0; c < SearchMap::kSide; ++c) {
+        double mass = map.mass(r, c);
+        if (mass < 1e-7) continue;
+        for (const Track& track : seniors) {
+          if (Covers(track, half_m, map.x(c), map.y(r))) mass = 0.0;
+        }
+        if (mass == 0.0) continue;
+        const double x = map.x(c) - p_WB.x, y = map.y(r) - p_WB.y;
+        const double d = std::sqrt(x * x + y * y) + 1e-3;
+        const double pull = o_.pull * std::exp(-d / o_.pull_m);
+        // What is swept sooner is worth more.
+        const double swept = 1.0 - 0.5 * std::min(1.0, d / length_m);
+        for (std::size_t k = 0; k < courses; ++k) {
+          const double along = x * cosine[k] + y * sine[k];
+          const double across = std::abs(x * sine[k] - y * cosine[k]);
+          if (along > 0.0) {
+            const double cos2 = along * along / (d * d);
+            worth[k] += mass * pull * cos2 * cos2;
+          }
+          if (across < half_m && along > -half_m && along < length_m) worth[k] += mass * swept;
+        }
+      }
+    }
+    if (search.plan.made) worth[0] *= o_.keep;
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < courses; ++k) {
+      if (worth[k] > worth[best]) best = k;
+    }
+    return std::atan2(sine[best], cosine[best]);
+  }
+
+  SearchMapOptions o_;
+};
+
+}  // namespace
+
+SearchLaw::SearchLaw(const FoundOptions& found)
+    : found_(found), circle_(CircleOf(found)), form_(FormOf(found)) {}
+
+template <class T>
+void SearchLaw::Follow(const ControllerInput<T>& in, T* action) const {
+  if (found_.form > 0.5) {
+    form_.Act(in, action);
+  } else {
+    circle_.Act(in, action);
+  }
+}
+
+void SearchLaw::Act(const ControllerInput<double>& in, double* action) const { Follow(in, action); }
+void SearchLaw::Act(const ControllerInput<Pack>& in, Pack* action) const { Follow(in, action); }
+
+void SearchLaw::Act(const AgentView& agent, float* action) const {
+  SearchMemory* search = agent.search();
+  if (search == nullptr) {
+    throw UserError("a controller that searches needs the agents' map: set track.search_cell_m");
+  }
+  NeighbourSight<double> nearest[kNearestKnown];
+  const int count = agent.Nearest(kNearestKnown, nearest);
+  Knowledge<double> k = agent.knowledge();
+  const TargetBelief belief = agent.belief();
+  const bool found = belief.started && belief.observed &&
+                     Seconds(search->now() - belief.information) <= found_.give_up_s;
+  double a[dynamics::kMaxActionSize] = {};
+  if (found) {
+    search->plan.made = false;
+    Follow(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, a);
+  } else {
+    // A far circle around the goal is the way to it, clear of the others and of the chart.
+    const Level<double> goal = Goal(agent, search);
+    k.r_BT_W.x = goal.x;
+    k.r_BT_W.y = goal.y;
+    k.v_WT = {};
+    circle_.Act(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, a);
+  }
+  for (int i = 0; i < agent.model().control.action_size(); ++i)
+    action[i] = static_cast<float>(a[i]);
+}
+
+void Describe(SearchMapOptions* o, config::Table* t) {
+  DescribeFound(o, t);
+  t->Add("horizon", &o->horizon_s, NonNegative(1e5), "s", "the mass swept in this time counts");
+  t->Add("swath", &o->swath, NonNegative(10), "-",
+         "half width of the sweep, as a share of the detection range");
+  t->Add("pull", &o->pull, NonNegative(100), "-", "weight of the mass in a direction");
+  t->Add("pull-range", &o->pull_m, config::Positive(1e5), "m", "how far that reaches");
+  t->Add("replan", &o->replan_s, NonNegative(1e5), "s", "between two choices of a course");
+  t->Add("keep", &o->keep, NonNegative(100), "-", "the old course is worth this times as much");
+  t->Add("senior", &o->senior_s, NonNegative(1e5), "s",
+         "AUVs of a lower number are taken to fly on for so long");
+  t->Add("courses", &o->courses, config::Within(4, kCourses), "-", "courses to choose from");
+}
+
+std::unique_ptr<Controller> MakeSearchMap(const SearchMapOptions& options) {
+  return std::make_unique<MapLaw>(options);
+}
+
+std::unique_ptr<Controller> MakeGreedySearch(const GreedySearchOptions& options) {
+  return std::make_unique<MapLaw>(options);
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+
+#include "stg_env/task/field_totals.hpp"
+
+namespace stg::task {
+namespace {
+
+constexpr double kWindow_s = 600.0;
+constexpr double kGood_m = 20.0;  // an estimate is off by less
+
+template <class T>
+T Level(const Vec3<T>& r) {
+  return Sqrt(r.x * r.x + r.y * r.y);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> SearchMetrics::Items() const {
+  return {{"found", found},
+          {"time_to_detect", time_to_detect},
+          {"time_to_gather", time_to_gather},
+          {"info_spread", info_spread},
+          {"followed", followed},
+          {"worst_followed", worst_followed},
+          {"target_net_speed", target_net_speed}};
+}
+
+template <class T>
+SearchTotals<T>::SearchTotals(const JudgeConfig& scenario)
+    : scenario_(scenario),
+      window_(std::max(1.0, std::round(kWindow_s / scenario.run.decision_dt_s()))),
+      targets_(static_cast<std::size_t>(scenario.world.target.count)) {}
+
+template <class T>
+void SearchTotals<T>::Start(const Mask<T>& lanes) {
+  const auto restart = [&](T* value, double first) { *value = Select(lanes, T(first), *value); };
+  restart(&decisions_, 0.0);
+  restart(&gathered_, -1.0);
+  restart(&info_spread_, 0.0);
+  for (OfTarget& t : targets_) {
+    restart(&t.detected, -1.0);
+    for (T* sum : {&t.followed, &t.way, &t.net, &t.window_way}) restart(sum, 0.0);
+  }
+}
+
+template <class T>
+T SearchTotals<T>::InBand(const Tracking<T>& k) const {
+  const config::Interval& band = scenario_.reward.band_m;
+  return Select((k.distance <= T(band.hi)) && (k.distance >= T(band.lo)), T(1.0), T(0.0));
+}
+
+template <class T>
+void SearchTotals<T>::Follow(const Vec3<T>& p_WT, OfTarget* t) const {
+  const auto first = decisions_ < T(1.5);  // the way from the start is not known
+  t->window_way = Select(first, T(0.0), t->window_way + Level(p_WT - t->p_WT));
+  t->p_window = Select<T>(first, p_WT, t->p_window);
+  t->p_WT = p_WT;
+  const T windows = decisions_ - T(1.0);
+  const auto over =
+      (windows > T(0.5)) && (windows - Floor(windows / T(window_)) * T(window_) < T(0.5));
+  t->way += Select(over, t->window_way, T(0.0));
+  t->net += Select(over, Level(p_WT - t->p_window), T(0.0));
+  t->window_way = Select(over, T(0.0), t->window_way);
+  t->p_window = Select<T>(over, p_WT, t->p_window);
+}
+
+template <class T>
+void SearchTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking) {
+  const T zero(0.0), one(1.0);
+  decisions_ += one;
+  T outside = zero;
+  for (const Tracking<T>& k : tracking) outside += one - InBand(k);
+  gathered_ = Select((gathered_ < zero) && (outside < T(0.5)), decisions_, gathered_);
+  const T elapsed_s = decisions_ * T(scenario_.run.decision_dt_s());
+  for (std::size_t t = 0; t < targets_.size(); ++t) {
+    OfTarget& target = targets_[t];
+    T c2 = zero, s2 = zero, near = zero, best = T(1e9), seen = zero;
+    double team = 0.0;
+    for (std::size_t i = t; i < tracking.size(); i += targets_.size()) {
+      const FieldState<T>& f = (*swarm.field)[i];
+      const Vec3<T>& r = tracking[i].r_BT_W;
+      const T square = Max(r.x * r.x + r.y * r.y, T(1e-6));
+      c2 += (r.x * r.x - r.y * r.y) / square;
+      s2 += T(2.0) * r.x * r.y / square;
+      near += InBand(tracking[i]);
+      best = Min(best, Select(f.known > T(0.5), Level(f.r_BT_W - r), T(1e9)));
+      // The cue is of the start; an observation is younger than the episode.
+      const auto observed = (f.known > T(0.5)) && (f.age_s < elapsed_s - T(1e-3));
+      seen = Select(observed, one, seen);
+      team += 1.0;
+    }
+    target.detected =
+        Select((target.detected < zero) && (seen > T(0.5)), decisions_, target.detected);
+    const auto followed = (near > T(std::min(2.0, team) - 0.5)) && (best < T(kGood_m));
+    target.followed += Select(followed, one, zero);
+    info_spread_ += (one - Sqrt(c2 * c2 + s2 * s2) / T(std::max(1.0, team))) /
+                    T(static_cast<double>(targets_.size()));
+    Follow(swarm.targets[t].p_WT, &target);
+  }
+}
+
+template <class T>
+SearchMetrics SearchTotals<T>::Metrics(int lane, double steps) const {
+  const double dt_s = scenario_.run.decision_dt_s(), length_s = steps * dt_s;
+  const double count = static_cast<double>(targets_.size());
+  SearchMetrics m;
+  m.found = m.worst_followed = 1.0;
+  double way = 0.0, net = 0.0;
+  for (const OfTarget& t : targets_) {
+    const double detected = Lane(t.detected, lane), followed = Lane(t.followed, lane) / steps;
+    m.found = std::min(m.found, detected < 0.0 ? 0.0 : 1.0);
+    m.time_to_detect += (detected < 0.0 ? length_s : detected * dt_s) / count;
+    m.followed += followed / count;
+    m.worst_followed = std::min(m.worst_followed, followed);
+    way += Lane(t.way, lane);
+    net += Lane(t.net, lane);
+  }
+  const double gathered = Lane(gathered_, lane);
+  m.time_to_gather = gathered < 0.0 ? length_s : gathered * dt_s;
+  m.info_spread = Lane(info_spread_, lane) / steps;
+  m.target_net_speed = way > 0.0 ? net / way : 0.0;
+  return m;
+}
+
+template class SearchTotals<double>;
+template class SearchTotals<Pack>;
+
+}  // namespace stg::task
