@@ -148,6 +148,7 @@ ModemFile LoadModemFile(const std::string& path) {
   YamlTree rest = Without(root, "vehicles");
   TakeText(path, "", "listen", &rest, &file.listen);
   loader.ApplyPart(rest, "", path);
+  loader.RefuseUnread();
   if (const auto violation = config::FindBadValue(t)) loader.Refuse(*violation);
   if (const auto violation = FindConflict(file.network.channel, file.network.run)) {
     loader.Refuse(*violation);

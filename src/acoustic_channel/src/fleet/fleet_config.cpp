@@ -1,7 +1,6 @@
 #include "acoustic_channel/fleet/fleet_config.hpp"
 
 #include "auv_common/config/loader.hpp"
-#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
 
 namespace stg::acoustics {
@@ -13,14 +12,10 @@ struct PartialNetwork {
 };
 
 void Describe(PartialNetwork* c, config::Table* t) {
-  config::Table whole;
-  Describe(&c->network, &whole);
-  t->Section("");
-  for (const config::Field& f : whole.fields()) {
-    t->AddOptional(f.path, f.value, f.fallback.value_or(config::FormatValue(f.value)), f.limits,
-                   f.unit, f.meaning);
-  }
-  for (const auto& [from, to] : whole.moved()) t->Moved(from, to);
+  // Keys of a thing, which is always chosen, need not be stated.
+  const auto fleet = [] { return std::vector<std::string>{"fleet"}; };
+  t->Thing({"network", fleet(), "channel", fleet}, "", &c->network,
+           [](NetworkConfig* network, config::Table* table) { Describe(network, table); });
 }
 
 std::optional<config::Violation> FindConflict(const PartialNetwork& c) {

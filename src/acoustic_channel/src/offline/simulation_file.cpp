@@ -71,6 +71,7 @@ class Reader {
     }
     loader_.emplace(table_, config::Scope::kWhole);
     loader_->ApplyPart(rest, prefix_, file_);
+    loader_->RefuseUnread();
     return *loader_;
   }
 

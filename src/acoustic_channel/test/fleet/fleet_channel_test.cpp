@@ -288,6 +288,9 @@ TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
             std::string::npos);
   EXPECT_NE(error("chanel: {model: range}").find("channel.model"), std::string::npos);
   EXPECT_NE(error("channel: {model: telepathy}").find("telepathy"), std::string::npos);
+  EXPECT_NE(error("channel: {model: range, extended: {loss_probability: 1.0}}")
+                .find("belongs to the propagation model 'extended'; this configuration chose"),
+            std::string::npos);
   EXPECT_NE(error("channel: {model: range}\nsensing: {range_m: 1.0}").find("sensing"),
             std::string::npos);
 }

@@ -167,6 +167,8 @@ TEST_F(Simulate, BadFilesAreRefusedWithFileLineAndKey) {
       {"duration_s: 20.000000", "duration_s: -1", ":1: duration_s: -1.0 is out of range"},
       {"seed: 1", "seed: one", ":2: seed: expected an integer"},
       {"access: aloha", "access: alhoa", ":5: channel.access: expected one of"},
+      {"access: aloha", "access: aloha\n  slots: {length_s: 2.0}",
+       ":6: channel.slots.length_s: belongs to the medium access 'tdma' or 'slotted_aloha'; this"},
       {"profile: evologics_s2c", "profil: x", "channel.physical.modem.profil: unknown key"},
       {"shadowing_db: 0.0", "shadowing_db: .nan", "channel.physical.propagation.shadowing_db: "},
       {"id: 1,", "id: 0,", "nodes[1].id: 0 is also the id of nodes[0]"},

@@ -30,6 +30,10 @@ void Describe(SeaConfig* c, config::Table* t) {
   t->AddOptional("cylinders", config::RowsRef{&c->cylinders, 5}, "[]", Within(-1e5, 1e5),
                  "m, world ENU",
                  "upright obstacles in open water: [x, y, z of the foot, radius, height] each");
+  t->Own("sea", {"world", {"open water"}, "sea.open", [c] {
+                   return std::vector<std::string>{c->open ? "open water" : "walls"};
+                 }});
+  t->AlsoReadIf("sea.open", [] { return true; });
 }
 
 std::optional<config::Violation> FindConflict(const SeaConfig& c) {

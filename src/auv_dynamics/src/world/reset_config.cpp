@@ -18,10 +18,18 @@ void Describe(ResetConfig* c, config::Table* t) {
       "reset.start_half_extent_m. The last two need sea.open");
   t->Add("curriculum", &c->curriculum, config::kNone, "-",
          "training draws the stage from the number of resets: easy, medium, then hard");
-  t->Add("curriculum_easy_resets", &c->curriculum_easy_resets, config::NonNegative(1e9), "resets",
-         "curriculum: resets up to this number are easy");
-  t->Add("curriculum_medium_resets", &c->curriculum_medium_resets, config::NonNegative(1e9),
-         "resets", "curriculum: resets up to this number are medium, later ones hard");
+  const auto training = [c] {
+    return std::vector<std::string>{c->curriculum ? "curriculum" : "one stage"};
+  };
+  t->Thing({"training", {"curriculum"}, "reset.curriculum", training}, "reset", c,
+           [](ResetConfig* o, config::Table* table) {
+             table->Add("curriculum_easy_resets", &o->curriculum_easy_resets,
+                        config::NonNegative(1e9), "resets",
+                        "curriculum: resets up to this number are easy");
+             table->Add("curriculum_medium_resets", &o->curriculum_medium_resets,
+                        config::NonNegative(1e9), "resets",
+                        "curriculum: resets up to this number are medium, later ones hard");
+           });
   t->Add("min_separation_m", &c->min_separation_m, config::NonNegative(1e4), "m",
          "AUVs start at least this far from each other");
   t->Add("start_half_extent_m", &c->start_half_extent_m, config::Positive(1e5), "m, world ENU",

@@ -31,8 +31,8 @@ double Value(const task::EpisodeMetrics& m, const std::string& name) {
 
 TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
   for (const char* mode : {"mode=truth", "mode=acoustic"}) {
-    const Scenario s =
-        Short(Shipped("medium", "nominal", {mode, "sensing.position.noise_std_m=0.002"}), 60);
+    Scenario s = Short(Shipped("medium", "nominal", {mode}), 60);
+    s.world.sensing.noise_std_m = 0.002;
     const Controller c = MakeController("pursuit_separated", s.model());
     const auto one = Fly(s, c, 11, 3000);
     ASSERT_EQ(one.size(), 11u);

@@ -173,10 +173,8 @@ TEST(VectorEnv, StaggeredFirstEpisodesEndAtTimesSpreadOverAnEpisode) {
 TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
   for (const char* name : {"medium", "medium_release"}) {
     for (const char* mode : {"mode=truth", "mode=acoustic"}) {
-      const Scenario s =
-          Short(Shipped(name, "nominal",
-                        {mode, "sensing.position.noise_std_m=0.004", "disturbance.force_std_n=1"}),
-                40);
+      Scenario s = Short(Shipped(name, "nominal", {mode, "disturbance.force_std_n=1"}), 40);
+      s.world.sensing.noise_std_m = 0.004;
       VectorEnvOptions o;
       o.seed = 70;
       TestEnv calm(s, o), mixed(s, o);

@@ -191,7 +191,7 @@ TEST_F(ScenarioInput, AMovedKeyNamesItsNewPlace) {
 
 /// Every key of every thing that a scenario did not choose, of four scenarios with other choices.
 TEST_F(ScenarioInput, AKeyOfAThingThatWasNotChosenIsRefusedWithTheChoice) {
-  for (const char* name : {"medium", "field", "physical", "utracking"}) {
+  for (const char* name : {"medium", "field", "physical", "utracking", "medium_release"}) {
     const Scenario scenario = LoadNamedScenario(STG_SCENARIO_FOLDER, name);
     Scenario copy = scenario;
     int refused = 0;
@@ -209,6 +209,29 @@ TEST_F(ScenarioInput, AKeyOfAThingThatWasNotChosenIsRefusedWithTheChoice) {
     }
     EXPECT_GT(refused, 40) << name;
   }
+}
+
+TEST_F(ScenarioInput, WhatNeitherTheModeNorTheWorldNorTheTrainingReadsIsRefused) {
+  const auto load = [](const std::vector<std::string>& keys) {
+    LoadNamedScenario(STG_SCENARIO_FOLDER, "medium", "nominal", keys);
+  };
+  const auto expect_refused = [&](const std::vector<std::string>& keys, const std::string& why) {
+    const std::string message = ErrorOf([&] { load(keys); });
+    EXPECT_NE(message.find("belongs to the " + why), std::string::npos) << message;
+  };
+  for (const char* key : {"track.gate_sigma=3", "sensing.detection_probability=0.5",
+                          "channel.extended.loss_probability=1"}) {
+    load({key});
+    expect_refused({"mode=truth", key},
+                   "information mode 'acoustic'; this configuration chose 'truth' (mode)");
+  }
+  load({"mode=truth", "sensing.range_m=0.3", "channel.range_m=0.3"});
+  expect_refused({"sea.bottom_m=90"},
+                 "world 'open water'; this configuration chose 'walls' (sea.open)");
+  load({"sea.open=false"});
+  expect_refused({"reset.curriculum_easy_resets=10"},
+                 "training 'curriculum'; this configuration chose 'one stage' (reset.curriculum)");
+  load({"reset.curriculum=true", "reset.curriculum_easy_resets=10"});
 }
 
 TEST_F(ScenarioInput, KeysOfABaseArePassedOverWhereAnotherThingIsChosenOnTopOfIt) {
