@@ -7,6 +7,8 @@ missing. Links that lead nowhere end the build. Exit status: 0 done, 1 mkdocs re
 
 import argparse
 import ast
+import html
+import json
 import os
 import pathlib
 import re
@@ -31,7 +33,7 @@ theme:
     - {media: "(prefers-color-scheme: dark)", scheme: slate, primary: blue grey, toggle: {icon: material/weather-sunny, name: light}}
 plugins: [search]
 markdown_extensions: [tables, admonition, toc: {permalink: true}, pymdownx.superfences]
-extra: {generator: false}
+extra: {generator: false, version: {provider: mike}}
 """
 PROGRAMS = {
     "marl_trainer": ["train", "evaluate", "bench_env", "check_trace"],
@@ -166,10 +168,35 @@ def write_headers(site):
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
 
 
+def search_from_disk(site):
+    """Lets the search work in pages that are opened from disk, where a browser reads no other file but
+    a script: the index and the searching program become one, which such a page loads first."""
+    index = (site / "search/search_index.json").read_text().replace("</", "<\\/")
+    (worker,) = (site / "assets/javascripts/workers").glob("search.*.js")
+    program = f'new Blob([{json.dumps(worker.read_text())}], {{type: "text/javascript"}})'
+    text = f"var __search = {{index: Promise.resolve({index}), worker: URL.createObjectURL({program})}};\n"
+    (site / "search/from_disk.js").write_text(text)
+    for page in site.rglob("*.html"):
+        up = "../" * (len(page.relative_to(site).parts) - 1)
+        load = f"""<script>if (location.protocol === "file:") document.write('<script src="{up}search/from_disk.js"><\\/script>')</script>"""
+        page.write_text(re.sub(r'(<script src="[^"]*assets/javascripts/bundle)', lambda m, s=load: s + m.group(1), page.read_text()))
+
+
 def version():
     """The newest version that the changelog names."""
     found = re.search(r"^## \[([^\]]+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
     return found.group(1) if found else "unknown"
+
+
+def list_versions(folder):
+    """Writes what the pages' menu of versions reads, and a first page that leads to the newest."""
+    found = [one.name for one in folder.iterdir() if (one / "index.html").is_file()]
+    numbers = lambda name: [int(part) for part in re.findall(r"\d+", name)] or [1 << 30]  # what is not released yet is newest
+    found.sort(key=numbers, reverse=True)
+    entries = [{"version": name, "title": name, "aliases": []} for name in found]
+    (folder / "versions.json").write_text(json.dumps(entries))
+    newest = html.escape(found[0], quote=True)
+    (folder / "index.html").write_text(f'<!doctype html><meta http-equiv="refresh" content="0; url={newest}/index.html">\n')
 
 
 def build(site, headers):
@@ -187,6 +214,7 @@ def build(site, headers):
                               env={**os.environ, "PYTHONWARNINGS": "ignore"})  # fmt: skip
         if done.returncode != 0:
             return 1
+    search_from_disk(site)
     if headers:
         write_headers(site)
     print(f"docs: {site}/index.html")
@@ -198,12 +226,16 @@ def main():
     parser = argparse.ArgumentParser(prog="docs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=SITE, help="folder of the site (default: build/site)")
     parser.add_argument("--no-headers", action="store_true", help="without the C++ headers")
+    parser.add_argument("--versions", action="store_true", help="into a folder of the version below --out, beside other versions")
     parser.add_argument("--serve", action="store_true", help="serve it on http://127.0.0.1:8301 then")
     options = parser.parse_args()
     if not shutil.which(MKDOCS):
         print("docs: no mkdocs: install Debian's mkdocs-material", file=sys.stderr)
         return 2
-    status = build(options.out.resolve(), not options.no_headers)
+    site = options.out.resolve() / version() if options.versions else options.out.resolve()
+    status = build(site, not options.no_headers)
+    if status == 0 and options.versions:
+        list_versions(site.parent)
     if status == 0 and options.serve:
         print("docs: http://127.0.0.1:8301 (Ctrl-C ends it)", flush=True)
         serve = [sys.executable, "-m", "http.server", "8301", "--bind", "127.0.0.1", "-d", options.out]

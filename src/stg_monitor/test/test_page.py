@@ -1,88 +1,16 @@
 """The page in a real browser: what it shows, that it asks nobody, and that no text becomes code."""
 
-import contextlib
-import json
 import os
-import pathlib
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402  (found by the line above, and finds the others)
-from stg_view.browser import missing, show, started  # noqa: E402
-from stg_view.page import report_page  # noqa: E402
-
-LACK = missing()
-LARGEST_MB = 10.0
+import view_fixtures  # noqa: E402  (found by the line above)
+from page_case import PageCase  # noqa: E402
 
 
-def complaints(driver):
-    """What the browser complains about; its remarks on drawing and on its own pages are none."""
-    said = [e["message"] for e in driver.get_log("browser")]
-    return [text for text in said if "GL Driver Message" not in text and not text.startswith("chrome://")]
-
-
-def asked(driver):
-    """Addresses that the page asked for, itself aside."""
-    found = []
-    for entry in driver.get_log("performance"):
-        message = json.loads(entry["message"])["message"]
-        if message["method"] == "Network.requestWillBeSent":
-            url = message["params"]["request"]["url"]
-            if not url.startswith(("data:", "blob:", "about:", "chrome://")):
-                found.append(url)
-    return found
-
-
-@unittest.skipIf(LACK, f"the page is not opened: {LACK}")
-class PageTest(unittest.TestCase):
-    """Every test opens a page from disk and looks at it."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.stack = contextlib.ExitStack()
-        cls.driver = cls.stack.enter_context(started(log_requests=True))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.stack.close()
-
-    @contextlib.contextmanager
-    def page(self, recording, width=1280, height=720, title="a run", place=""):
-        """The page of a recording, open; afterwards there was no complaint and no other request."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "run.html"
-            file.write_text(report_page(recording.encoded(), title), encoding="utf-8")
-            self.assertLess(file.stat().st_size, LARGEST_MB * 1e6)
-            show(self.driver, file.as_uri() + place, width, height)
-            yield self.driver
-            self.assertEqual([], complaints(self.driver))
-            others = [url for url in asked(self.driver) if not url.startswith(file.as_uri())]
-            self.assertEqual([], others)
-
-    def run_js(self, driver, text):
-        """What an expression of the page is."""
-        return driver.execute_script(f"return {text}")
-
-    def tour(self, driver):
-        """Looks at everything that can be looked at."""
-        for tab in ("plots", "network", "table", "story"):
-            driver.execute_script(f"STG.app.show('{tab}'); STG.app.draw(performance.now())")
-        for mode in ("target", "auv", "region", "above", "swarm"):
-            driver.execute_script(f"STG.app.camera('{mode}'); STG.app.draw(performance.now())")
-        driver.execute_script("STG.app.seek(STG.app.recording.end); STG.app.draw(performance.now())")
-
-    def drawn(self, driver):
-        """How many different colours the scene has in a coarse raster."""
-        return self.run_js(driver, """(() => {
-            STG.app.draw(performance.now());
-            const c = document.createElement("canvas"); c.width = c.height = 64;
-            const x = c.getContext("2d");
-            x.drawImage(document.getElementById("scene"), 0, 0, 64, 64);
-            const d = x.getImageData(0, 0, 64, 64).data, s = new Set();
-            for (let k = 0; k < d.length; k += 4) s.add(d[k] * 65536 + d[k + 1] * 256 + d[k + 2]);
-            return s.size; })()""")
+class PageTest(PageCase):
+    """What a page shows and does."""
 
     def test_four_in_a_box(self):
         recording = view_fixtures.made_up(4, 1.0, lost_at=(40, 2))
@@ -156,25 +84,7 @@ class PageTest(unittest.TestCase):
             self.assertEqual(0, self.run_js(driver, "document.querySelectorAll('img').length"))
             self.assertNotEqual("owned", driver.title)
 
-    def test_memory_of_a_long_run_is_bounded(self):
-        with self.page(view_fixtures.made_up(20, 100.0, steps=50)) as driver:
-            # An hour at 10 Hz: steps and packets as the live node sends them.
-            rows, most = self.run_js(driver, """(() => {
-                const r = STG.app.recording; let most = 0;
-                const names = Object.keys(r.steps.columns);
-                for (let k = 0; k < 36000; k += 100) {
-                  r.on_steps({rows: 100}, names.map((name) => { const c = r.steps.columns[name];
-                    const data = new c.data.constructor(100 * c.width);
-                    if (name === "t") data.forEach((_, j) => { data[j] = 50 + 0.1 * (k + j); });
-                    return {name, type: {Float64Array: "f8", Float32Array: "f4", Uint8Array: "u1"}[data.constructor.name], width: c.width, data}; }));
-                  let bytes = 0;
-                  for (const c of Object.values(r.steps.columns)) bytes += c.data.byteLength;
-                  most = Math.max(most, bytes);
-                }
-                return [r.steps.count, most]; })()""")  # fmt: skip
-            self.assertGreater(rows, 1000)
-            self.assertLess(most, 50e6)
 
-
+del PageCase  # is no test of its own
 if __name__ == "__main__":
     unittest.main()

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -11,6 +12,7 @@
 #include "acoustic_channel/log/packet_log.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
+#include "auv_dynamics/terrain/seascape.hpp"
 #include "stg_agent/graph/task_view.hpp"
 #include "stg_env/record/message.hpp"
 #include "stg_env/record/scene.hpp"
@@ -20,6 +22,7 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRowsOfMessage = 512;
+constexpr double kTouching_m = 1e-3;  // of bottom and obstacles, which hold an AUV at their surface
 
 /// Packets of one episode: rows of the message `packets`, one for each packet and receiver.
 class PacketRows : public acoustics::PacketObserver {
@@ -91,7 +94,9 @@ class PacketRows : public acoustics::PacketObserver {
 /// Rows of the message `steps`.
 class StepRows {
  public:
-  explicit StepRows(const Scenario& scenario) : s_(scenario) {}
+  explicit StepRows(const Scenario& scenario) : s_(scenario) {
+    if (s_.world.sea.open) sea_.emplace(s_.world.sea, s_.world.workspace.half_extent_m);
+  }
 
   int rows() const { return static_cast<int>(c_.t.size()); }
 
@@ -113,6 +118,9 @@ class StepRows {
       dynamics::Detection detection;
       const bool detected = acoustic && env.Sense(e, i, s_.world.target.of(i), &detection);
       c_.detected.push_back(detected ? 1 : 0);
+      const bool ranged = detected && detection.kind == dynamics::MeasurementKind::kRange;
+      c_.range.push_back(ranged ? static_cast<float>(detection.range_m) : kUnknown);
+      c_.aground.push_back(Touches(v.p_WB));
       if (acoustic) {
         AddBelief(env, e, i, now);
       } else {
@@ -138,6 +146,8 @@ class StepRows {
     m.Add("phase", n, c_.phase);
     m.Add("distance", n, c_.distance);
     m.Add("detected", n, c_.detected);
+    m.Add("range", n, c_.range);
+    m.Add("aground", n, c_.aground);
     m.Add("estimate", 3 * n, c_.estimate);
     m.Add("covariance", 6 * n, c_.covariance);
     m.Add("age", n, c_.age);
@@ -152,13 +162,20 @@ class StepRows {
  private:
   struct Columns {
     std::vector<double> t;
-    std::vector<float> reward, position, heading, pitch, distance, estimate, covariance, age,
-        neighbour_age, energy, terms, target;
-    std::vector<std::uint8_t> phase, detected;
+    std::vector<float> reward, position, heading, pitch, distance, range, estimate, covariance,
+        age, neighbour_age, energy, terms, target;
+    std::vector<std::uint8_t> phase, detected, aground;
   };
 
   static void Put(std::vector<float>* to, const Vec3<double>& v) {
     for (const double x : {v.x, v.y, v.z}) to->push_back(static_cast<float>(x));
+  }
+
+  /// 0: in free water; 1: on the bottom; 2: at an obstacle.
+  std::uint8_t Touches(const Vec3<double>& p_W) const {
+    if (!sea_) return 0;
+    if (sea_->Altitude(p_W) < kTouching_m) return 1;
+    return sea_->Clearance(p_W) < kTouching_m ? 2 : 0;
   }
 
   void AddBelief(const VectorEnv& env, int e, int i, TimeNs now) {
@@ -194,6 +211,7 @@ class StepRows {
       "track", "observation", "coordination", "communication", "semantic", "separation", "cost"};
 
   const Scenario& s_;
+  std::optional<dynamics::Seascape> sea_;
   Columns c_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -166,6 +167,25 @@ TEST_F(RecorderTest, TruthModeAndOpenWaterAreRecordedToo) {
     EXPECT_EQ(all.front().header["meta"]["agents"], s.run.agents);
     EXPECT_EQ(all.front().header["meta"].contains("bottom"), s.world.sea.open);
   }
+}
+
+TEST_F(RecorderTest, RangesAreNearTheDistanceWhereOneIsMeasured) {
+  int ranges = 0;
+  const Scenario s = LoadNamedScenario(STG_SCENARIO_FOLDER, "field", "nominal",
+                                       {"time.episode_steps=60", "time.tail_steps=20"});
+  for (const Read& read : Record(s, 1, 1)) {
+    if (read.header["kind"] != "steps") continue;
+    for (std::size_t k = 0; k < 60 * 4; ++k) {
+      EXPECT_EQ(read.At<std::uint8_t>("aground", k), 0) << k;  // the bottom is far below
+      const float range = read.At<float>("range", k);
+      EXPECT_EQ(std::isfinite(range), read.At<std::uint8_t>("detected", k) == 1) << k;
+      if (!std::isfinite(range)) continue;
+      ++ranges;
+      const float distance = read.At<float>("distance", k);
+      EXPECT_NEAR(range, distance, 6.0F * (1.0F + 0.01F * distance)) << k;
+    }
+  }
+  EXPECT_GT(ranges, 10);
 }
 
 TEST_F(RecorderTest, FolderThatCannotBeMadeIsTheUsersError) {

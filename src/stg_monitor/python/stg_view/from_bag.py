@@ -37,6 +37,7 @@ class Collector:
         self.episode = None
         self.tasks, self.detections, self.reports, self.energy = {}, {}, {}, []
         self.ages = {}
+        self.counts = ([], [])
         self.state = None
         self.scenario = ""
 
@@ -83,6 +84,7 @@ class Collector:
         if m.episode != self.episode:
             self.episode = m.episode
             self.tasks, self.detections, self.reports = {}, {}, {}
+            self.counts = ([], [])
             seed = int(m.seed)
             self.recording.add("episode", episode=int(m.episode), seed=seed, start=m.header.stamp.to_sec())
 
@@ -100,6 +102,7 @@ class Collector:
             self.add_vehicle(row, t, i, pose, targets)
         row["target"] = [x for p in targets for x in p]
         row["neighbour_age"] = [self.ages.get(i, NAN) for i in range(n)]
+        row["aground"] = self.touches(m, n)
         if len(m.fresh) == n:
             row["fresh"] = [int(x) for x in m.fresh]
         if len(self.energy) == n and any(self.energy):
@@ -112,6 +115,17 @@ class Collector:
                 row["terms"] = [values[i] for i in range(n) for values in terms]
                 self.recording.terms = [name.replace("r_", "") for name in TERMS]
         self.recording.steps.add(**row)
+
+    def touches(self, m, n):
+        """Who came to the bottom (1) or to an obstacle (2) in this step; older bags do not tell."""
+        counts = [list(getattr(m, name, ())) for name in ("groundings", "collisions")]
+        before, self.counts = self.counts, counts
+        found = [0] * n
+        for kind, (now, was) in enumerate(zip(counts, before), start=1):
+            for i in range(min(n, len(now), len(was))):
+                if now[i] > was[i]:
+                    found[i] = kind
+        return found
 
     def add_vehicle(self, row, t, i, pose, targets):
         """Adds one AUV to a row."""

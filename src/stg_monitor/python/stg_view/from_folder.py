@@ -11,6 +11,7 @@ from stg_common.yaml_files import read_yaml
 from stg_view.recording import FATES, MAGIC, Recording, RecordingError, messages
 
 NAN = math.nan
+GONE = (NAN, NAN, NAN)
 OPTIONAL = "sequence transmit_s transmit_end_s begin_s arrival_s distance_m sinr_db error_probability"
 LOG = {"source": str, "destination": str, "bytes": number, "offered_s": number, "fate": str}
 MOST_NODES, MOST_POSITIONS = 512, 2000
@@ -121,16 +122,22 @@ def add_ways(recording, simulation, folder):
         recording.notes.append(f"Not in the scene, as the file of the way is not in the folder: {names}.")
     if len(unknown) == len(nodes):
         return
-    moves = any(len(way or ()) > 1 for way in ways)
+    moves = any(len(way or ()) > 1 for way in ways) or any("joins_s" in n or "leaves_s" in n for n in nodes)
     count = min(MOST_POSITIONS, 1 + int(duration)) if moves else 2
     extent = 1.0
     for k in range(count):
         t = duration * k / (count - 1)
-        points = [x for way in ways for x in at_time(way, t)]
+        points = [x for node, way in zip(nodes, ways) for x in (at_time(way, t) if is_there(node, t) else GONE)]
         extent = max([extent, *(abs(x) for x in points if x == x)])
         recording.steps.add(t=t, position=points)
     recording.meta["half_extent_m"] = 1.05 * extent
     recording.meta["open"] = True
+
+
+def is_there(node, t):
+    """Whether a node has joined and not left."""
+    joins, leaves = (node.get(key) for key in ("joins_s", "leaves_s"))
+    return not (isinstance(joins, (int, float)) and t < joins) and not (isinstance(leaves, (int, float)) and t >= leaves)
 
 
 def way_of(node, folder):
@@ -152,7 +159,7 @@ def way_of(node, folder):
 def at_time(way, t):
     """The point of a way at a time: straight lines between its points, at rest before and after."""
     if way is None:
-        return (NAN, NAN, NAN)
+        return GONE
     if t <= way[0][0]:
         return way[0][1:]
     for before, after in zip(way, way[1:]):

@@ -41,7 +41,8 @@ def write_video(page, out, seconds, size, theme="dark", camera="swarm", tab="sto
             film.stdin.close()
         except BrokenPipeError:
             pass
-        said = film.stderr.read().decode("utf-8", "replace").strip()
+        with film.stderr:
+            said = film.stderr.read().decode("utf-8", "replace").strip()
         if film.wait() != 0:
             raise BrowserError(f"{out}: ffmpeg cannot write it: {said.splitlines()[-1] if said else 'no reason'}")
 

@@ -1,5 +1,5 @@
 /* The page itself: it loads a recording or follows a live one, keeps the time, and has its parts draw.
- * Files: recording.js, story.js, scene.js, sound.js, plots.js, network.js, table.js, overlay.js, then this. */
+ * Files: recording.js, story.js, shapes.js, camera.js, scene.js, sound.js, plots.js, network.js, table.js, overlay.js, then this. */
 (function (STG) {
   "use strict";
 

@@ -87,6 +87,13 @@
     };
   }
 
+  /** The range of an axis. Ticks of a line that is all but level would be closer than numbers can tell. */
+  function rangeOf(u, low, high) {
+    if (low === null) return [0, 1];
+    const least = 1e-3 * Math.max(Math.abs(low), Math.abs(high)), lack = Math.max(0, least - (high - low)) / 2;
+    return uPlot.rangeNum(low - lack, high + lack, 0.1, true);
+  }
+
   class Plots {
     constructor(app, element) {
       this.app = app;
@@ -140,7 +147,7 @@
       });
       const options = {
         width, height: HEIGHT, padding: [6, 8, 0, 0], legend: { show: false },
-        scales: { x: { time: false }, y: plot.log ? { distr: 3 } : {} },
+        scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: rangeOf } },
         cursor: { sync: plot.free ? undefined : { key: "stg" }, drag: { x: true, y: false }, points: { show: false } },
         axes: [{ ...axis, size: 26, values: plot.free ? undefined : (u, ticks) => ticks.map((x) => STG.number(x - r.start)) },
           { ...axis, size: 56, values: (u, ticks) => ticks.map((x) => (x === null ? "" : x === 0 ? "0" : STG.number(x))) }],

@@ -38,7 +38,7 @@
 
     append(rows, columns) {
       const enough = this.count + rows;
-      if (enough > this.room) this.room = Math.max(1024, enough, 2 * this.room);
+      if (enough > this.room) this.room = Math.max(1024, enough, Math.ceil(1.25 * this.room));
       for (const { name, type, width, data } of columns) {
         let c = this.columns[name];
         if (c === undefined) {

@@ -1,5 +1,6 @@
 /* The scene in three dimensions: water, bottom, obstacles, AUVs, targets, beliefs and tracks, drawn for
- * one time of a recording. World axes are ENU, z up, metres. Packets are drawn by sound.js.
+ * one time of a recording. World axes are ENU, z up, metres. Shapes are made by shapes.js, the camera is
+ * moved by camera.js, packets are drawn by sound.js.
  *
  * Everything that has no size of its own on the screen (hulls, marks) is drawn as large as the camera's
  * distance asks for, so that boxes of 2 m and seas of 4 km look alike.
@@ -7,16 +8,8 @@
 (function (STG) {
   "use strict";
 
-  const HULL_PIXELS = 15, MARK_PIXELS = 5, CIRCLE = 72, TRAIL = 400, TRAIL_SHARE = 0.06, TRAIL_STEPS = 60;
-  const DEPTHS = [[0.06, 0.1, 0.32], [0.1, 0.27, 0.55], [0.15, 0.5, 0.66], [0.38, 0.72, 0.64], [0.82, 0.85, 0.6]];
-  const LAND = [0.45, 0.36, 0.22];
-
-  /** Colour of a depth as a share from the deepest (0) to the shallowest (1). */
-  STG.depthColour = (share) => {
-    const x = Math.min(Math.max(share, 0), 1) * (DEPTHS.length - 1), k = Math.min(Math.floor(x), DEPTHS.length - 2);
-    return DEPTHS[k].map((c, a) => c + (x - k) * (DEPTHS[k + 1][a] - c));
-  };
-
+  const { CIRCLE, line, setPoints, circle } = STG.shapes;
+  const HULL_PIXELS = 15, MARK_PIXELS = 5, TRAIL = 400, TRAIL_SHARE = 0.06, TRAIL_STEPS = 60;
   /** Whether the processor draws: smooth edges would then cost half of the frames. */
   function drawnBySoftware() {
     const gl = document.createElement("canvas").getContext("webgl");
@@ -25,53 +18,13 @@
     return /swiftshader|llvmpipe|software/i.test(name);
   }
 
-  function line(points, colour, opacity = 1, dashed = 0) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * points), 3));
-    const options = { color: colour, transparent: opacity < 1, opacity, depthWrite: false };
-    const material = dashed > 0
-      ? new THREE.LineDashedMaterial({ ...options, dashSize: dashed, gapSize: dashed })
-      : new THREE.LineBasicMaterial(options);
-    const made = new THREE.Line(geometry, material);
-    made.frustumCulled = false;
-    return made;
-  }
-  function setPoints(object, points) {
-    const attribute = object.geometry.attributes.position;
-    attribute.array.set(points);
-    attribute.needsUpdate = true;
-    object.geometry.setDrawRange(0, points.length / 3);
-  }
-  function circle(x, y, z, a, b = a, angle = 0) {
-    const points = [], c = Math.cos(angle), s = Math.sin(angle);
-    for (let k = 0; k <= CIRCLE; ++k) {
-      const u = a * Math.cos(2 * Math.PI * k / CIRCLE), v = b * Math.sin(2 * Math.PI * k / CIRCLE);
-      points.push(x + c * u - s * v, y + s * u + c * v, z);
-    }
-    return points;
-  }
-
-  /** A slim body with fins, bow along +x, one unit long. */
-  function hullGeometry() {
-    const profile = [[0, -0.5], [0.045, -0.47], [0.085, -0.36], [0.1, -0.2], [0.1, 0.22], [0.09, 0.34], [0.06, 0.45], [0, 0.5]];
-    const body = new THREE.LatheGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 14);
-    body.rotateZ(-Math.PI / 2);
-    return body;
-  }
-
-  class Scene {
+  class Scene extends STG.View {
     constructor(app, canvas) {
-      this.app = app;
+      super(app, canvas);
       this.canvas = canvas;
       this.soft = drawnBySoftware();
       this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.soft });
       this.scene = new THREE.Scene();
-      this.camera = new THREE.PerspectiveCamera(42, 1, 0.01, 1e5);
-      this.camera.up.set(0, 0, 1);
-      this.controls = new THREE.OrbitControls(this.camera, canvas);
-      this.controls.enableKeys = false;
-      this.controls.addEventListener("start", () => { this.held = true; });
-      this.controls.addEventListener("change", () => app.redraw());
       this.still = new THREE.Group();
       this.moving = new THREE.Group();
       this.scene.add(this.still, this.moving);
@@ -81,7 +34,6 @@
       this.scene.add(sun);
       this.vehicles = [];
       this.targets = [];
-      this.mode = "swarm";
       new ResizeObserver(() => app.redraw()).observe(canvas.parentElement);
     }
 
@@ -97,13 +49,17 @@
       }
       this.half = this.extent();
       this.renderer.setClearColor(colours.water);
-      if (r.meta.bottom) this.addBottom(r.meta.bottom);
-      for (const o of r.meta.obstacles || []) this.addObstacle(o);
-      if (r.meta.half_extent_m) this.addFrame(r.meta.half_extent_m, r.meta.open);
-      const hull = hullGeometry();
+      if (r.meta.bottom) {
+        const { group, depths } = STG.shapes.bottomOf(r.meta.bottom);
+        this.depths = depths;
+        this.still.add(group);
+      }
+      for (const o of r.meta.obstacles || []) this.still.add(STG.shapes.obstacleOf(o));
+      if (r.meta.half_extent_m) this.still.add(STG.shapes.frameOf(r.meta.half_extent_m, r.meta.open, colours.soft));
+      const hull = STG.shapes.hullGeometry();
       this.vehicles = [...Array(r.agents)].map((_, i) => this.makeVehicle(hull, i));
       this.targets = [...Array(r.targets)].map(() => this.makeTarget());
-      this.sound = new STG.Sound(this.app, this.moving, { line, setPoints, circle });
+      this.sound = new STG.Sound(this.app, this.moving, STG.shapes);
       this.built = `${r.agents}/${r.targets}/${colours.name}/${r.meta.bottom ? 1 : 0}`;
       this.far = 40 * this.half;
     }
@@ -121,69 +77,6 @@
         }
       }
       return most;
-    }
-
-    addBottom(bottom) {
-      const n = bottom.nodes, half = bottom.half_extent_m, heights = bottom.heights_m;
-      let low = Infinity, high = -Infinity;
-      for (const z of heights) { low = Math.min(low, z); high = Math.max(high, Math.min(z, 0)); }
-      const geometry = new THREE.PlaneBufferGeometry(2 * half, 2 * half, n - 1, n - 1);
-      const position = geometry.attributes.position, tint = new Float32Array(3 * n * n);
-      for (let j = 0; j < n; ++j) {
-        for (let i = 0; i < n; ++i) {
-          const k = j * n + i, z = heights[(n - 1 - j) * n + i];  // the plane begins in the north
-          position.setZ(k, z);
-          const share = high - low < 1 ? 0.35 : (z - low) / (high - low);
-          tint.set(z > 0 ? LAND : STG.depthColour(share), 3 * k);
-        }
-      }
-      geometry.setAttribute("color", new THREE.BufferAttribute(tint, 3));
-      geometry.computeVertexNormals();
-      this.still.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
-        { vertexColors: THREE.VertexColors, transparent: true, opacity: 0.92, side: THREE.DoubleSide,
-          polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 })));
-      this.depths = [low, high];
-      const every = Math.max(1, Math.round((n - 1) / 8));
-      const points = [];
-      const at = (i, j) => [-half + 2 * half * i / (n - 1), -half + 2 * half * j / (n - 1),
-        heights[j * n + i] + 0.002 * half];
-      for (let a = 0; a < n; a += every) {
-        for (let b = 0; b + 1 < n; ++b) points.push(...at(a, b), ...at(a, b + 1), ...at(b, a), ...at(b + 1, a));
-      }
-      const grid = new THREE.LineSegments(new THREE.BufferGeometry(),
-        new THREE.LineBasicMaterial({ color: 0xffffff, transparent: true, opacity: 0.13 }));
-      grid.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
-      this.still.add(grid);
-    }
-
-    addObstacle(o) {
-      const geometry = o.kind === "sphere" ? new THREE.SphereBufferGeometry(o.radius_m, 24, 16)
-        : new THREE.CylinderBufferGeometry(o.radius_m, o.radius_m, o.height_m, 24).rotateX(Math.PI / 2)
-          .translate(0, 0, o.height_m / 2);
-      const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
-        { color: 0xa9744f, transparent: true, opacity: 0.85 }));
-      mesh.position.set(...o.p_W_m);
-      this.still.add(mesh);
-    }
-
-    addFrame(half, open) {
-      const colour = this.app.colours.soft;
-      if (open) {
-        const frame = line(5, colour, 0.5);
-        setPoints(frame, [-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0, -half, -half, 0]);
-        this.still.add(frame);
-        return;
-      }
-      const box = new THREE.LineSegments(
-        new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(2 * half, 2 * half, 2 * half)),
-        new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.5 }));
-      this.still.add(box);
-      const grid = new THREE.GridHelper(2 * half, 10, colour, colour);
-      grid.rotation.x = Math.PI / 2;
-      grid.position.z = -half;
-      grid.material.transparent = true;
-      grid.material.opacity = 0.16;
-      this.still.add(grid);
     }
 
     makeVehicle(hull, i) {
@@ -222,12 +115,6 @@
     point(row, name, i) {
       const at = (a) => this.app.recording.steps.at(name, row, 3 * i + a);
       return [at(0), at(1), at(2)];
-    }
-
-    /** Metres of one pixel at a point. */
-    metresPerPixel(point) {
-      const distance = this.camera.position.distanceTo(point);
-      return 2 * distance * Math.tan(this.camera.fov * Math.PI / 360) / Math.max(1, this.height);
     }
 
     resize() {
@@ -352,77 +239,6 @@
       });
     }
 
-    /** What the camera looks at, and how far it is to be: null where that is not known. */
-    subject(row) {
-      const { recording: r, selected } = this.app;
-      const around = (points, least) => {
-        const box = new THREE.Box3().setFromPoints(points.filter((p) => Number.isFinite(p[0])).map((p) => new THREE.Vector3(...p)));
-        if (box.isEmpty()) return null;
-        const centre = box.getCenter(new THREE.Vector3());
-        return { centre, radius: Math.max(least, box.getSize(new THREE.Vector3()).length() / 2) };
-      };
-      const band = Math.max((r.meta.band_m || [0, 0])[1], 0.02 * this.half);
-      if (this.mode === "target" && r.targets > 0) return around([this.point(row, "target", r.targetOf(Math.max(selected, 0)))], 1.6 * band);
-      if (this.mode === "auv") return around([this.point(row, "position", Math.max(selected, 0))], 1.6 * band);
-      if (this.mode === "swarm") {
-        const points = [...Array(r.agents)].map((_, i) => this.point(row, "position", i));
-        for (let k = 0; k < r.targets; ++k) points.push(this.point(row, "target", k));
-        return around(points, 0.06 * this.half);
-      }
-      const low = this.depths ? Math.max(this.depths[0], -this.half) / 2 : 0;
-      return { centre: new THREE.Vector3(0, 0, low), radius: 1.25 * this.half };
-    }
-
-    setMode(mode) {
-      if (mode === "above") this.above = true; else { this.mode = mode; this.above = false; }
-      this.held = false;
-      this.placed = false;
-      this.app.redraw();
-    }
-
-    /** Moves the camera with its subject; the distance is the user's once the camera was moved by hand. */
-    follow(row) {
-      const subject = this.subject(row);
-      if (subject === null) return;
-      if (!this.placed) {
-        const away = 1.18 * subject.radius / Math.sin(this.camera.fov * Math.PI / 360) / Math.min(1, this.camera.aspect);
-        const direction = this.above ? new THREE.Vector3(0, -0.02, 1) : new THREE.Vector3(-0.35, -0.85, 0.62);
-        this.controls.target.copy(subject.centre);
-        this.camera.position.copy(subject.centre).addScaledVector(direction.normalize(), away);
-        this.away = away;
-        this.radius = subject.radius;
-        this.placed = true;
-      } else {
-        const step = subject.centre.clone().sub(this.controls.target);
-        this.controls.target.add(step);
-        this.camera.position.add(step);
-        if (!this.held && this.mode === "swarm" && (subject.radius > 1.1 * this.radius || subject.radius < 0.75 * this.radius)) {
-          const arm = this.camera.position.clone().sub(this.controls.target).multiplyScalar(1 + 0.12 * (subject.radius / this.radius - 1));
-          this.camera.position.copy(this.controls.target).add(arm);
-          this.radius *= 1 + 0.12 * (subject.radius / this.radius - 1);
-        }
-      }
-      this.camera.lookAt(this.controls.target);
-      this.camera.updateMatrixWorld();
-    }
-
-    /** Place of a world's point in the canvas [px], or null behind the camera. */
-    project(p) {
-      const v = new THREE.Vector3(...p).project(this.camera);
-      if (v.z > 1 || v.z < -1) return null;
-      return [(v.x + 1) / 2 * this.width, (1 - v.y) / 2 * this.height];
-    }
-
-    /** The AUV under a point of the canvas, or -1. */
-    pick(x, y) {
-      let best = -1, nearest = 26;
-      this.vehicles.forEach((one, i) => {
-        const at = one.group.visible ? this.project(one.group.position.toArray()) : null;
-        const d = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity;
-        if (d < nearest) { nearest = d; best = i; }
-      });
-      return best;
-    }
   }
 
   STG.Scene = Scene;

@@ -3,7 +3,7 @@
 (function (STG) {
   "use strict";
 
-  const LOST = 3;
+  const LOST = 3, OPEN = 20000;  // transmissions that more rows may still belong to
   const BEFORE_LOSS_S = 5;  // in which missing packets are told, at least; or so many decisions:
   const BEFORE_LOSS_STEPS = 50;
 
@@ -39,6 +39,8 @@
             bytes: at("bytes", row),
           };
           this.byKey.set(key, one);
+          // The fates of a packet come one after the other, so that old ones need not be found again.
+          if (this.byKey.size > OPEN) this.byKey.delete(this.byKey.keys().next().value);
           sorted = sorted && (this.list.length === 0 || this.list[this.list.length - 1].begin <= begin);
           this.list.push(one);
         }
@@ -95,6 +97,8 @@
       this.packetRows = 0;
       this.phase = [];
       this.seen = [];
+      this.aground = [];
+      this.there = [];
       this.touching = new Set();
       this.episode = null;
     }
@@ -124,6 +128,8 @@
       this.episode = episode;
       this.phase = [];
       this.seen = [];
+      this.aground = [];
+      this.there = [];
       this.found = false;
       this.touching.clear();
       const seed = episode && episode.seed !== undefined ? `, seed ${episode.seed}` : "";
@@ -132,6 +138,12 @@
 
     readVehicle(row, t, i) {
       const r = this.recording, steps = r.steps;
+      this.readPresence(row, t, i);
+      const touches = steps.has("aground") ? steps.at("aground", row, i) : 0;
+      if (touches > 0 && touches < 3 && this.aground[i] !== touches) {
+        this.add(t, "grounding", i, `${r.name(i)} runs ${touches === 1 ? "aground" : "into an obstacle"}`);
+      }
+      this.aground[i] = touches;
       if (steps.has("detected") && steps.at("detected", row, i) === 1 && !this.seen[i]) {
         this.seen[i] = true;
         const first = this.found ? "" : ", the first of all";
@@ -150,6 +162,15 @@
         this.lateAt = t;
         this.add(t, "late", i, `${r.name(i)} decides too late; the last command is held`);
       }
+    }
+
+    /** Who has no place in the water has left, or has not joined yet. */
+    readPresence(row, t, i) {
+      const r = this.recording, there = Number.isFinite(r.steps.at("position", row, 3 * i));
+      if (this.there[i] !== undefined && this.there[i] !== there) {
+        this.add(t, there ? "join" : "leave", i, `${r.name(i)} ${there ? "joins" : "leaves"}`);
+      }
+      this.there[i] = there;
     }
 
     readContacts(row, t) {

@@ -7,6 +7,7 @@
   const KINDS = {
     lost: ["✕", "Losses", "lost"], found: ["✓", "Found again", "stable"], detection: ["◎", "Detections", "search"],
     contact: ["●", "Contacts", "approach"], collision: ["≋", "Packet collisions", "approach"],
+    grounding: ["▽", "Groundings", "lost"], join: ["+", "Joins", "stable"], leave: ["−", "Leaves", "lost"],
     late: ["!", "Late decisions", "approach"], episode: ["▸", "Episodes", "soft"],
   };
   STG.KINDS = KINDS;

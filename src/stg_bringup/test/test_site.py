@@ -1,0 +1,71 @@
+"""The documentation site is built without a warning, has what is made from the code, and is searched from
+disk."""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "src/stg_monitor/python"))
+from stg_view.browser import missing, started  # noqa: E402  (found by the line above)
+
+SEARCH = """const box = document.querySelector("[data-md-component=search-query]");
+box.focus(); box.value = arguments[0];
+for (const kind of ["input", "keyup"]) box.dispatchEvent(new Event(kind, {bubbles: true}));"""
+FOUND = "return [...document.querySelectorAll('.md-search-result__item a')].map(a => a.href)"
+
+
+@unittest.skipUnless(shutil.which("mkdocs"), "the site is not built: install mkdocs-material")
+class Site(unittest.TestCase):
+    """One site for all tests, without the C++ headers, which doxygen takes a minute for."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.out = pathlib.Path(folder.name) / "site"
+        cls.done = subprocess.run([str(ROOT / "stg"), "docs", "--no-headers", "--versions", "--out", str(cls.out)],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+
+    def setUp(self):
+        self.assertEqual(self.done.returncode, 0, self.done.stdout[-4000:])
+        self.assertNotIn("WARNING", self.done.stdout)
+        (self.version,) = (entry["version"] for entry in json.loads((self.out / "versions.json").read_text()))
+        self.site = self.out / self.version
+
+    def test_every_page_is_there(self):
+        for page in (ROOT / "docs").rglob("*.md"):
+            inside = page.relative_to(ROOT / "docs").with_suffix(".html")
+            inside = inside.with_name("index.html") if page.name == "README.md" else inside
+            self.assertTrue((self.site / inside).is_file(), inside)
+        self.assertIn(self.version, (self.out / "index.html").read_text())
+
+    def test_references_are_made_from_the_code(self):
+        for page, words in (("topics", ("/swarm_state", "PacketEvents")), ("python", ("parallel_env", "load_policy")),
+                            ("commands", ("rosrun marl_trainer evaluate", "--record", "--versions"))):
+            text = (self.site / f"reference/{page}.html").read_text()
+            for word in words[: 2 if page == "commands" else None]:
+                self.assertIn(word, text, page)
+        self.assertIn("channel.physical.modem.profile", (self.site / "scenarios.html").read_text())
+
+    def test_nothing_is_asked_of_another_host(self):
+        for page in self.site.rglob("*.html"):
+            self.assertNotRegex(page.read_text(), r'<(?:script|img|iframe)[^>]*src="(?:https?:)?//|<link[^>]*rel="stylesheet"[^>]*href="https?:')
+
+    @unittest.skipIf(missing(), f"the search is not tried: {missing()}")
+    def test_search_works_from_disk(self):
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        with started() as driver:
+            driver.get((self.site / "tutorials/first_hour.html").as_uri())
+            driver.execute_script(SEARCH, "combined_stress")
+            found = WebDriverWait(driver, 60.0, 0.2).until(lambda d: d.execute_script(FOUND))
+            self.assertTrue(all(url.startswith(self.site.as_uri()) for url in found), found)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,116 @@
+/* What the scene is made of: lines and circles, hulls, the bottom of the sea coloured by its depth,
+ * obstacles, and the frame of the region. World axes are ENU, z up, metres. */
+(function (STG) {
+  "use strict";
+
+  const CIRCLE = 72;
+  const DEPTHS = [[0.06, 0.1, 0.32], [0.1, 0.27, 0.55], [0.15, 0.5, 0.66], [0.38, 0.72, 0.64], [0.82, 0.85, 0.6]];
+  const LAND = [0.45, 0.36, 0.22];
+
+  /** Colour of a depth as a share from the deepest (0) to the shallowest (1). */
+  STG.depthColour = (share) => {
+    const x = Math.min(Math.max(share, 0), 1) * (DEPTHS.length - 1), k = Math.min(Math.floor(x), DEPTHS.length - 2);
+    return DEPTHS[k].map((c, a) => c + (x - k) * (DEPTHS[k + 1][a] - c));
+  };
+
+  function line(points, colour, opacity = 1, dashed = 0) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * points), 3));
+    const options = { color: colour, transparent: opacity < 1, opacity, depthWrite: false };
+    const material = dashed > 0
+      ? new THREE.LineDashedMaterial({ ...options, dashSize: dashed, gapSize: dashed })
+      : new THREE.LineBasicMaterial(options);
+    const made = new THREE.Line(geometry, material);
+    made.frustumCulled = false;
+    return made;
+  }
+  function setPoints(object, points) {
+    const attribute = object.geometry.attributes.position;
+    attribute.array.set(points);
+    attribute.needsUpdate = true;
+    object.geometry.setDrawRange(0, points.length / 3);
+  }
+  function circle(x, y, z, a, b = a, angle = 0) {
+    const points = [], c = Math.cos(angle), s = Math.sin(angle);
+    for (let k = 0; k <= CIRCLE; ++k) {
+      const u = a * Math.cos(2 * Math.PI * k / CIRCLE), v = b * Math.sin(2 * Math.PI * k / CIRCLE);
+      points.push(x + c * u - s * v, y + s * u + c * v, z);
+    }
+    return points;
+  }
+
+  /** A slim body with fins, bow along +x, one unit long. */
+  function hullGeometry() {
+    const profile = [[0, -0.5], [0.045, -0.47], [0.085, -0.36], [0.1, -0.2], [0.1, 0.22], [0.09, 0.34], [0.06, 0.45], [0, 0.5]];
+    const body = new THREE.LatheGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 14);
+    body.rotateZ(-Math.PI / 2);
+    return body;
+  }
+
+  /** The bottom and its grid as a group; its lowest and highest water depth are [low, high]. */
+  function bottomOf(bottom) {
+    const group = new THREE.Group();
+    const n = bottom.nodes, half = bottom.half_extent_m, heights = bottom.heights_m;
+    let low = Infinity, high = -Infinity;
+    for (const z of heights) { low = Math.min(low, z); high = Math.max(high, Math.min(z, 0)); }
+    const geometry = new THREE.PlaneBufferGeometry(2 * half, 2 * half, n - 1, n - 1);
+    const position = geometry.attributes.position, tint = new Float32Array(3 * n * n);
+    for (let j = 0; j < n; ++j) {
+      for (let i = 0; i < n; ++i) {
+        const k = j * n + i, z = heights[(n - 1 - j) * n + i];  // the plane begins in the north
+        position.setZ(k, z);
+        const share = high - low < 1 ? 0.35 : (z - low) / (high - low);
+        tint.set(z > 0 ? LAND : STG.depthColour(share), 3 * k);
+      }
+    }
+    geometry.setAttribute("color", new THREE.BufferAttribute(tint, 3));
+    geometry.computeVertexNormals();
+    group.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
+      { vertexColors: THREE.VertexColors, transparent: true, opacity: 0.92, side: THREE.DoubleSide,
+        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 })));
+    const every = Math.max(1, Math.round((n - 1) / 8));
+    const points = [];
+    const at = (i, j) => [-half + 2 * half * i / (n - 1), -half + 2 * half * j / (n - 1),
+      heights[j * n + i] + 0.002 * half];
+    for (let a = 0; a < n; a += every) {
+      for (let b = 0; b + 1 < n; ++b) points.push(...at(a, b), ...at(a, b + 1), ...at(b, a), ...at(b + 1, a));
+    }
+    const grid = new THREE.LineSegments(new THREE.BufferGeometry(),
+      new THREE.LineBasicMaterial({ color: 0xffffff, transparent: true, opacity: 0.13 }));
+    grid.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
+    group.add(grid);
+    return { group, depths: [low, high] };
+  }
+
+  function obstacleOf(o) {
+    const geometry = o.kind === "sphere" ? new THREE.SphereBufferGeometry(o.radius_m, 24, 16)
+      : new THREE.CylinderBufferGeometry(o.radius_m, o.radius_m, o.height_m, 24).rotateX(Math.PI / 2)
+        .translate(0, 0, o.height_m / 2);
+    const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
+      { color: 0xa9744f, transparent: true, opacity: 0.85 }));
+    mesh.position.set(...o.p_W_m);
+    return mesh;
+  }
+
+  /** The edge of the region: a square on the surface of open water, else a box. */
+  function frameOf(half, open, colour) {
+    if (open) {
+      const frame = line(5, colour, 0.5);
+      setPoints(frame, [-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0, -half, -half, 0]);
+      return frame;
+    }
+    const box = new THREE.LineSegments(
+      new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(2 * half, 2 * half, 2 * half)),
+      new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.5 }));
+    const group = new THREE.Group();
+    const grid = new THREE.GridHelper(2 * half, 10, colour, colour);
+    grid.rotation.x = Math.PI / 2;
+    grid.position.z = -half;
+    grid.material.transparent = true;
+    grid.material.opacity = 0.16;
+    group.add(box, grid);
+    return group;
+  }
+
+  STG.shapes = { CIRCLE, line, setPoints, circle, hullGeometry, bottomOf, obstacleOf, frameOf };
+})(window.STG = window.STG || {});

@@ -1,0 +1,85 @@
+"""What the tests of the page share: a browser, a page that is open in it, and what it complained about."""
+
+import contextlib
+import json
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+import view_fixtures  # noqa: E402,F401  (finds the others)
+from stg_view.browser import missing, show, started  # noqa: E402
+from stg_view.page import report_page  # noqa: E402
+
+LACK = missing()
+LARGEST_MB = 10.0
+
+
+def complaints(driver):
+    """What the browser complains about; its remarks on drawing and on its own pages are none."""
+    said = [e["message"] for e in driver.get_log("browser")]
+    return [text for text in said if "GL Driver Message" not in text and not text.startswith("chrome://")]
+
+
+def asked(driver):
+    """Addresses that the page asked for, itself aside."""
+    found = []
+    for entry in driver.get_log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            url = message["params"]["request"]["url"]
+            if not url.startswith(("data:", "blob:", "about:", "chrome://")):
+                found.append(url)
+    return found
+
+
+@unittest.skipIf(LACK, f"the page is not opened: {LACK}")
+class PageCase(unittest.TestCase):
+    """Every test opens a page from disk and looks at it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.stack = contextlib.ExitStack()
+        cls.driver = cls.stack.enter_context(started(log_requests=True))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.stack.close()
+
+    @contextlib.contextmanager
+    def page(self, recording, width=1280, height=720, title="a run", place=""):
+        """The page of a recording, open; afterwards there was no complaint and no other request."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "run.html"
+            file.write_text(report_page(recording.encoded(), title), encoding="utf-8")
+            self.assertLess(file.stat().st_size, LARGEST_MB * 1e6)
+            show(self.driver, file.as_uri() + place, width, height)
+            yield self.driver
+            self.assertEqual([], complaints(self.driver))
+            others = [url for url in asked(self.driver) if not url.startswith(file.as_uri())]
+            self.assertEqual([], others)
+
+    def run_js(self, driver, text):
+        """What an expression of the page is."""
+        return driver.execute_script(f"return {text}")
+
+    def tour(self, driver):
+        """Looks at everything that can be looked at."""
+        for tab in ("plots", "network", "table", "story"):
+            driver.execute_script(f"STG.app.show('{tab}'); STG.app.draw(performance.now())")
+        for mode in ("target", "auv", "region", "above", "swarm"):
+            driver.execute_script(f"STG.app.camera('{mode}'); STG.app.draw(performance.now())")
+        driver.execute_script("STG.app.seek(STG.app.recording.end); STG.app.draw(performance.now())")
+
+    def drawn(self, driver):
+        """How many different colours the scene has in a coarse raster."""
+        return self.run_js(driver, """(() => {
+            STG.app.draw(performance.now());
+            const c = document.createElement("canvas"); c.width = c.height = 64;
+            const x = c.getContext("2d");
+            x.drawImage(document.getElementById("scene"), 0, 0, 64, 64);
+            const d = x.getImageData(0, 0, 64, 64).data, s = new Set();
+            for (let k = 0; k < d.length; k += 4) s.add(d[k] * 65536 + d[k + 1] * 256 + d[k + 2]);
+            return s.size; })()""")

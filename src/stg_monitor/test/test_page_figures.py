@@ -1,0 +1,108 @@
+"""The page at all sizes: swarms of 1 to 50, regions of 2 m to 4 km, an hour of data; and its video.
+
+Times (opening, frames, lag) are measured by scripts/bench_view.py, as they depend on the machine.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+import view_fixtures  # noqa: E402  (found by the line above)
+from page_case import PageCase  # noqa: E402
+from stg_view.page import report_page  # noqa: E402
+from stg_view.video import write_video  # noqa: E402
+
+HOUR_MB = 50.0
+# An hour of a live run: 36,000 steps and 432,000 packets and receivers, as four AUVs at 10 Hz make them.
+FEED_AN_HOUR = """
+const app = STG.app, r = app.recording, types = {Float64Array: "f8", Float32Array: "f4", Int32Array: "i4", Uint8Array: "u1"};
+const copy = (table, rows, times, at) => Object.keys(table.columns).map((name) => {
+  const c = table.columns[name], data = new c.data.constructor(rows * c.width);
+  data.set(c.data.subarray(0, Math.min(data.length, c.data.length)));
+  if (times.includes(name)) for (let k = 0; k < rows; ++k) data[k] = at(k);
+  if (name === "sequence") for (let k = 0; k < rows; ++k) data[k] = 1000 + Math.floor(at(k) * 40 / 3);
+  return {name, type: types[data.constructor.name], width: c.width, data};
+});
+for (let k = arguments[0]; k < arguments[1]; k += 100) {
+  r.on_steps({rows: 100}, copy(r.steps, 100, ["t"], (j) => 100 + 0.1 * (k + j)));
+  r.on_packets({rows: 1200}, copy(r.packets, 1200, ["offered", "transmit", "transmit_end", "arrival"],
+    (j) => 100 + 0.1 * k + 0.025 * Math.floor(j / 3)));
+  ++r.version;
+}
+app.t = r.end;
+app.took();
+app.draw(performance.now());
+return [r.steps.count, r.packets.count, app.transmissions.list.length, app.story.events.length];"""
+
+
+class FiguresTest(PageCase):
+    """Sizes of swarms, regions and memory."""
+
+    def test_swarms_of_1_to_50_in_2_metres_and_in_4_kilometres(self):
+        for agents in (1, 4, 20, 50):
+            for half in (1.0, 2000.0):
+                recording = view_fixtures.made_up(agents, half, steps=20, every=3, bottom=half > 10.0)
+                with self.subTest(agents=agents, half=half), self.page(recording) as driver:
+                    driver.execute_script("STG.app.draw(performance.now())")
+                    inside = self.run_js(driver, """STG.app.scene.vehicles.filter((one) => {
+                        const at = STG.app.scene.project(one.group.position.toArray()), s = STG.app.scene;
+                        return at && at[0] > 0 && at[0] < s.width && at[1] > 0 && at[1] < s.height; }).length""")
+                    self.assertEqual(agents, inside)
+                    self.assertGreater(self.drawn(driver), 8)
+
+    def test_what_runs_aground_joins_and_leaves_is_an_event(self):
+        recording = view_fixtures.made_up(4, 100.0, bottom=True, steps=40)
+        for k, row in enumerate(recording.steps.rows):
+            row["aground"] = [1 if i == 1 and k in (10, 11, 20) else 2 if i == 2 and k == 15 else 0 for i in range(4)]
+            if k < 5:
+                row["position"][9:12] = [float("nan")] * 3
+            if k >= 30:
+                row["position"][0:3] = [float("nan")] * 3
+        with self.page(recording) as driver:
+            self.tour(driver)
+            found = self.run_js(driver, "STG.app.story.events.map((e) => [e.t, e.kind, e.title])")
+            wanted = [[5, "join", "auv_3 joins"], [10, "grounding", "auv_1 runs aground"],
+                      [15, "grounding", "auv_2 runs into an obstacle"], [20, "grounding", "auv_1 runs aground"],
+                      [30, "leave", "auv_0 leaves"]]  # fmt: skip
+            self.assertEqual(wanted, [one for one in found if one[1] in ("join", "leave", "grounding")])
+
+    def used_mb(self, driver):
+        """Memory of the page's objects and arrays after the garbage is gone [MB]."""
+        driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
+        usage = driver.execute_cdp_cmd("Runtime.getHeapUsage", {})
+        return (usage["usedSize"] + usage.get("backingStorageSize", 0.0)) / 1e6
+
+    def test_an_hour_of_data_takes_less_than_50_MB(self):
+        recording = view_fixtures.made_up(4, 1.0, steps=100, every=1)
+        with self.page(recording) as driver:
+            self.tour(driver)
+            before = self.used_mb(driver)
+            for begin in range(0, 36000, 3000):
+                fed = driver.execute_script(FEED_AN_HOUR, begin, begin + 3000)
+            steps, packets, transmissions, events = fed
+            grown = self.used_mb(driver) - before
+            print(f"an hour takes {grown:.1f} MB: {steps} steps, {packets} packets, {transmissions} transmissions, {events} events")
+            self.assertGreater(steps, 10000)
+            self.assertGreater(packets, 60000)
+            self.assertLess(grown, HOUR_MB)
+
+    @unittest.skipUnless(shutil.which("ffprobe"), "the video is not made: install ffmpeg")
+    def test_video_has_its_frames(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page, film = pathlib.Path(folder) / "run.html", pathlib.Path(folder) / "run.mp4"
+            page.write_text(report_page(view_fixtures.made_up(4).encoded(), "film"))
+            write_video(page, str(film), 0.5, "480x320")
+            told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
+                                   "stream=width,height,nb_read_frames", "-of", "csv=p=0", film],
+                                  capture_output=True, text=True, check=True)  # fmt: skip
+            self.assertEqual("480,320,10", told.stdout.strip())
+
+
+del PageCase  # is no test of its own
+if __name__ == "__main__":
+    unittest.main()
