@@ -31,6 +31,8 @@ PICTURES = {
     "view_field20": ("field20", "t=200&theme=dark&tab=network&auv=-1", 1280, 720, ""),
     "view_loss": ("loss", "theme=light", 1280, 720, "[...document.querySelectorAll('.event')]"
                   ".filter(b => b.textContent.includes('loses'))[1].click()"),  # fmt: skip
+    "view_loss_network": ("loss", "theme=light", 1280, 720, "[...document.querySelectorAll('.event')]"
+                          ".filter(b => b.textContent.includes('loses'))[1].click(); STG.app.show('network')"),  # fmt: skip
     "view_medium": ("medium", "t=3.2&theme=light&tab=plots", 1280, 720, ""),
     "view_phone": ("field20", "t=300&theme=dark&tab=plots&auv=3", 390, 780, ""),
 }

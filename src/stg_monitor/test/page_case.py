@@ -8,9 +8,8 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402,F401  (finds the others)
-from stg_view.browser import missing, show, started  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "../python"))
+from stg_view.browser import missing, show, started  # noqa: E402  (found by the line above)
 from stg_view.page import report_page  # noqa: E402
 
 LACK = missing()

@@ -29,10 +29,12 @@ def write_bag(path):
     with rosbag.Bag(str(path), "w", compression="lz4", chunk_threshold=8192) as bag:
         scenario = std_msgs.msg.String(view_fixtures.HOSTILE)
         bag.write("/scenario", scenario, genpy.Time(1))
+        bag.write(f"/{view_fixtures.HOSTILE}", scenario, genpy.Time(1))
         for k in range(STEPS):
             t = genpy.Time.from_sec(1.0 + 0.1 * k)
             state = auv_msgs.msg.SwarmState(episode=0, step=k, seed=5)
-            state.header.stamp = t
+            state.header.stamp, state.header.frame_id = t, view_fixtures.HOSTILE
+            state.groundings, state.collisions = [0, int(k >= 20), 0], [0, 0, int(k >= 30)]
             state.target_positions = [Point(0.5, 0.0, -1.0)]
             for i in range(AGENTS):
                 pose = Pose()
@@ -85,11 +87,31 @@ class BagPageTest(unittest.TestCase):
         steps = found["steps"][0][1]
         self.assertEqual((STEPS, 3 * AGENTS), steps["position"].shape)
         self.assertEqual([2] * 20 + [3] * 20, steps["phase"][:, 1].tolist())
+        aground = [[0, int(k == 20), 2 * int(k == 30)] for k in range(STEPS)]
+        self.assertEqual(aground, steps["aground"].tolist())
         fates = found["packets"][0][1]["fate"].ravel().tolist()
         # A packet that never left is lost for every receiver.
         self.assertEqual(STEPS * (AGENTS - 1), fates.count(7))
         self.assertEqual(STEPS * (AGENTS - 1), fates.count(0) + fates.count(2))
         self.assertEqual(1, len(found["summary"]))
+
+    def test_hostile_text_of_a_bag_is_text_in_the_page(self):
+        self.assertEqual(0, self.report())
+        text = self.page.read_text()
+        self.assertEqual(text.count("<img"), 0)
+        self.assertNotIn("owned", text.partition("<script")[0])
+
+    def test_an_auv_of_no_number_is_one_line(self):
+        with rosbag.Bag(str(self.bag), "a") as bag:
+            bag.write(f"/auv_{view_fixtures.HOSTILE[9:30]}/task_state", auv_msgs.msg.TaskState(), genpy.Time(9))
+        with self.assertRaises(BagError) as refused:
+            self.report()
+        self.assertNotIn("\n", str(refused.exception))
+
+    def report(self):
+        """The exit status of the program for the bag."""
+        with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
+            return report.main([str(self.bag), "--out", str(self.page)])
 
     def test_fifty_cuts_give_a_page_or_a_line(self):
         whole, rng, pages = self.bag.read_bytes(), random.Random(3), 0

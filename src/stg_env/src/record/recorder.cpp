@@ -162,8 +162,8 @@ class StepRows {
  private:
   struct Columns {
     std::vector<double> t;
-    std::vector<float> reward, position, heading, pitch, distance, range, estimate, covariance,
-        age, neighbour_age, energy, terms, target;
+    std::vector<float> reward, position, heading, pitch, distance, range, estimate, covariance, age,
+        neighbour_age, energy, terms, target;
     std::vector<std::uint8_t> phase, detected, aground;
   };
 
