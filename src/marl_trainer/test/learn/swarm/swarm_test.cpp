@@ -65,10 +65,17 @@ class SwarmTraining : public ::testing::Test {
 };
 
 TEST_F(SwarmTraining, DoesNotDependOnTheNumberOfWorkers) {
-  EXPECT_TRUE(Train("one", 1, false));
-  EXPECT_TRUE(Train("three", 3, false));
-  EXPECT_EQ(Last("one").parameters().numbers, Last("three").parameters().numbers);
-  EXPECT_EQ(Last("one").metadata().training_step, config_.steps);
+  for (const agent::EntityAction action :
+       {agent::EntityAction::kGuidance, agent::EntityAction::kCourse3}) {
+    config_.action = action;
+    const std::string name = agent::EntityActionName(action);
+    EXPECT_TRUE(Train(name + "_one", 1, false));
+    EXPECT_TRUE(Train(name + "_three", 3, false));
+    const agent::EntityPolicy policy = Last(name + "_one");
+    EXPECT_EQ(policy.parameters().numbers, Last(name + "_three").parameters().numbers);
+    EXPECT_EQ(policy.metadata().training_step, config_.steps);
+    EXPECT_EQ(policy.metadata().action_interface, name);
+  }
 }
 
 TEST_F(SwarmTraining, ResumedEqualsUninterruptedBitForBit) {
