@@ -22,6 +22,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--out", options.out, "folder for checkpoint, policies and logs")->required();
   app.add_flag("--resume", options.resume, "go on from the folder's checkpoint");
+  app.add_option("--start-from", options.start_from,
+                 "folder of another training whose networks and moments this one begins with");
+  app.add_option("--episode-steps", config.episode_steps, "decisions of a training episode")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   app.add_option("--workers", options.workers, "threads; results do not depend on them")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();

@@ -6,8 +6,9 @@
 namespace stg::agent {
 namespace {
 
-// Beyond kWideFrom the radius grows faster, up to kRadius_m + kWide_m: circles to search on.
-constexpr double kRadius_m = 60.0, kWide_m = 540.0, kWideFrom = 0.6;
+// A radius beyond the law's grows by the deviation of the estimate, too: a lost target is searched
+// for on circles as wide as the doubt.
+constexpr double kRadius_m = 60.0, kDoubts = 3.0, kWidest_m = 800.0;
 constexpr double kSpeed_mps = 0.8, kPhase_rad = kPi / 3.0, kDepth_m = 15.0;
 constexpr double kTurn_rad = kPi / 3.0;
 constexpr float kClockwiseFrom = -0.8F;
@@ -19,6 +20,13 @@ void Steer(const AgentView& agent, const Guidance<double>& guidance, double* act
   const Encircle law{};
   law.Act(ControllerInput<double>{agent.model(), agent.id(), agent.knowledge(), nearest, count},
           guidance, action);
+}
+
+/// Deviation of the target's position along the long axis of its horizontal ellipse [m].
+double LevelDeviation(const AgentView& agent) {
+  const Covariance3 P = agent.belief().P_WT;
+  const double mean = 0.5 * (P.xx + P.yy), half = 0.5 * (P.xx - P.yy);
+  return std::sqrt(std::max(mean + std::hypot(half, P.xy), 0.0));
 }
 
 /// What a command of `course3` asks for: a change of the present course, a speed over ground and a
@@ -38,11 +46,11 @@ Vec3<double> VelocityOf(const AgentView& agent, const float* command) {
 
 }  // namespace
 
-Guidance<double> GuidanceOf(const float* command) {
+Guidance<double> GuidanceOf(const float* command, double doubt_m) {
   Guidance<double> g;
-  const double wide =
-      std::max(0.0, static_cast<double>(command[0]) - kWideFrom) / (1.0 - kWideFrom);
-  g.radius_m = kRadius_m * static_cast<double>(command[0]) + kWide_m * wide * wide;
+  const auto wider = static_cast<double>(command[0]);
+  g.radius_m = kRadius_m * wider;
+  if (wider > 0.0) g.radius_m += wider * std::min(kDoubts * doubt_m, kWidest_m);
   g.speed_mps = kSpeed_mps * static_cast<double>(command[1]);
   g.phase_rad = kPhase_rad * static_cast<double>(command[2]);
   g.sense = command[3] <= kClockwiseFrom ? -1.0 : 1.0;
@@ -72,7 +80,7 @@ void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
   const EntityMemory& memory = agent.memory();
   double wanted[dynamics::kMaxActionSize];
   if (action == EntityAction::kGuidance) {
-    Steer(agent, GuidanceOf(memory.command.data()), wanted);
+    Steer(agent, GuidanceOf(memory.command.data(), LevelDeviation(agent)), wanted);
   } else {
     const auto& most = model.vehicle.max_velocity_mps;
     const Vec3<double>& v = memory.velocity_W;

@@ -59,6 +59,9 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
     LoadAll();
   } else {
     WriteDurably(ConfigText(), options.out + "/config.json", "the configuration");
+    if (!options.start_from.empty()) {
+      learner_.Load(ReadArchive(options.start_from + "/checkpoint.ckpt").Part("learner"));
+    }
   }
 }
 
@@ -77,6 +80,7 @@ std::string SwarmTrainer::ConfigText() const {
                                 {"steps", config_.steps},
                                 {"envs", config_.envs},
                                 {"horizon", config_.horizon},
+                                {"episode_steps", config_.episode_steps},
                                 {"gamma", config_.gamma},
                                 {"learning_rate", config_.learning_rate},
                                 {"waters", waters}}

@@ -9,10 +9,11 @@ namespace stg::agent {
 /// 5 s.
 inline constexpr double kCommandPeriod_s = 5.0;
 
-/// What a `guidance` command says to the law: 60 m of radius, growing from 0.6 on to 600 m at 1, so
-/// that a lost target is searched for on wide circles; +-0.8 m/s, +-60 deg of phase, clockwise from
-/// -0.8 down, +-15 m of depth.
-Guidance<double> GuidanceOf(const float* command);
+/// What a `guidance` command says to the law: +-60 m of radius, outwards with three deviations of
+/// the estimate more (800 m at most), so that a lost target is searched for on circles as wide as
+/// the doubt; +-0.8 m/s, +-60 deg of phase, clockwise from -0.8 down, +-15 m of depth.
+/// @param doubt_m deviation of the target's estimate along the long axis of its ellipse
+Guidance<double> GuidanceOf(const float* command, double doubt_m);
 
 /// Whether the AUV needs a new command at this decision.
 bool CommandDue(const EntityMemory& memory);

@@ -23,6 +23,7 @@ class SwarmTrainer {
   struct Options {
     std::string out;
     bool resume = false;
+    std::string start_from;  ///< folder of another training whose networks this one begins with
     int workers = 1;
     std::ostream* log = nullptr;
     const std::atomic<int>* stop = nullptr;
