@@ -53,8 +53,8 @@ def interval(differences, resamples=4000):
 
 def table(arguments, tasks, pilots, episodes):
     """Markdown rows and CSV rows of tasks [(heading, scenario, condition, overrides)]."""
-    lines = ["| waters | who | " + " | ".join(head for _, head, _ in COLUMNS) + " | in band, policy − it |",
-             "|---|---|" + "---:|" * (len(COLUMNS) + 1)]
+    lines = ["| waters | who | episodes | " + " | ".join(head for _, head, _ in COLUMNS) + " | in band, policy − it |",
+             "|---|---|" + "---:|" * (len(COLUMNS) + 2)]
     records = []
     for heading, scenario, condition, overrides in tasks:
         flown = {}
@@ -68,10 +68,11 @@ def table(arguments, tasks, pilots, episodes):
             if who == pilots[0][0]:
                 paired, record = "", [0.0, 0.0, 0.0]
             else:
-                record = interval(ours - numbers["band_share"])
+                count = min(len(ours), len(numbers["band_share"]))
+                record = interval(ours[:count] - numbers["band_share"][:count])
                 paired = f"{record[0]:+.3f} [{record[1]:+.3f}, {record[2]:+.3f}]"
-            lines.append(f"| {heading} | {who} | " + " | ".join(cells) + f" | {paired} |")
-            records.append([heading, who, len(ours), *(numbers[key].mean() for key, _, _ in COLUMNS), *record])
+            lines.append(f"| {heading} | {who} | {len(numbers['band_share'])} | " + " | ".join(cells) + f" | {paired} |")
+            records.append([heading, who, len(numbers["band_share"]), *(numbers[key].mean() for key, _, _ in COLUMNS), *record])
     return lines, records
 
 
@@ -126,7 +127,7 @@ def main():
     page += ["## Four AUVs under stress", *stress, "", "## Other sizes, same file", *swarms, "",
              "## Every packet lost", *silence, ""]
     for folder in arguments.training:
-        page += ["## The training", *curve(folder), ""]
+        page += [f"## {pathlib.Path(folder).name.replace('_', ' ').capitalize()}", *curve(folder), ""]
     (arguments.out / "field_policy.md").write_text("\n".join(page).rstrip() + "\n", encoding="utf-8")
     with open(arguments.out / "field_policy" / "cells.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
