@@ -15,7 +15,7 @@ SearchMap::SearchMap(const AgentModel& s)
     : cell_m_(s.track.search_cell_m),
       range_m_(s.sensing.range_m),
       probability_(s.sensing.detection_probability),
-      at_range_(s.sensing.sensor == "position" ? 1.0 : s.sensing.relative().probability_at_range),
+      at_range_(s.sensing.relative().probability_at_range),
       workspace_m_(s.workspace.half_extent_m) {
   const double speed = s.track.velocity_std_mps > 0.0 ? s.track.velocity_std_mps
                                                       : s.target.max_speed_mps * std::sqrt(0.5);
