@@ -40,7 +40,7 @@ void Describe(ResetConfig* c, config::Table* t) {
     t->Add("target_radius_m", &c->stages[i].target_radius_m, config::NonNegative(1e5), "m",
            "[low, high] distance of a target from the origin of the world");
     t->Add("auv_distance_m", &c->stages[i].auv_distance_m, config::NonNegative(1e5), "m",
-           "[low, high] distance of an AUV from its target; see reset.deploy");
+           "[low, high] distance of an AUV from its target");
     t->Add("target_speed_mps", &c->stages[i].target_speed_mps, config::NonNegative(10), "m/s",
            "[low, high] speed of a target, in a uniformly drawn direction");
   }
