@@ -45,7 +45,7 @@ repeat_as() {
   for package in "$index"/*.deb; do
     rm -rf "$folder"
     dpkg-deb -R "$package" "$folder"
-    sed -i "s/$(<"$root/VERSION")/$1/" "$folder/DEBIAN/control"
+    sed -i -e "s/^Version: .*/Version: $1/" -e "s/(= $(<"$root/VERSION"))/(= $1)/g" "$folder/DEBIAN/control"
     dpkg-deb -Zgzip -z1 --root-owner-group -b "$folder" "$work/next" >/dev/null
   done
   (cd "$work/next" && apt-ftparchive packages . >Packages)
@@ -114,7 +114,7 @@ index=$work/next
 # Of Debian itself nothing new is wanted, and no network is there.
 timed "apt-get upgrade to $next" inside "apt-get -o Dir::Etc::SourceList=/dev/null update && apt-get -y upgrade"
 inside "dpkg-query -W -f '\${Package} \${Version}\n'" | grep -E '^(stg-|python3-stg)' >"$work/versions"
-[[ "$(grep -c "$next\$" "$work/versions")" == "$(wc -l <"$work/versions")" ]]
+[[ "$(grep -c "$next\$" "$work/versions")" == "$(wc -l <"$work/versions")" ]] || { cat "$work/versions" "$work/log"; exit 1; }
 timed "an episode after the upgrade" inside roslaunch stg_bringup medium.launch episodes:=1 real_time_factor:=0
 timed "apt-get purge" inside "apt-get purge -y --autoremove '^stg-' python3-stg"
 files >"$work/after"
