@@ -47,21 +47,13 @@ class Flights:
                 key = member(file, flight, "key", str)
                 self.known[key] = member(file, flight, "found", dict)
 
-    @staticmethod
-    def asked(policy, scenario, condition, episodes, seed, overrides, privileged):
-        """What a flight is known by."""
-        private = ["--privileged"] if privileged else []
-        return [policy, scenario, condition, episodes, seed, *overrides, *private]
-
-    def key_of(self, *flight):
-        """Its short form."""
-        return hashlib.sha256(json.dumps(self.asked(*flight)).encode()).hexdigest()[:16]
-
     def fly(self, policy, scenario, condition, episodes, seed, overrides=(), privileged=False):
         """Returns the metrics of `evaluate`: means, and standard deviations as <name>_std.
         privileged: a built-in controller reads true states."""
-        asked = self.asked(policy, scenario, condition, episodes, seed, overrides, privileged)
-        key = self.key_of(policy, scenario, condition, episodes, seed, overrides, privileged)
+        asked = [policy, scenario, condition, episodes, seed, *overrides]
+        if privileged:
+            asked.append("--privileged")
+        key = hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:16]
         if key not in self.known:
             command = self.program + [
                 "--policy", policy, "--scenario", scenario, "--condition", condition,
