@@ -3,7 +3,8 @@
 
 Parts: page (a report: size, seconds to open, frames a second while it plays, memory), live (twenty AUVs
 at 10 Hz: lag and frames a second), lockstep (what a run in lockstep loses to the view). The last two
-need a sourced workspace. Figures depend on what else the machine does: `load` is told with them.
+need a sourced workspace. Figures depend on what else the machine does: `load` is told
+with them, and the work (seconds of processor time of all processes of the browser), which depends less on it.
 """
 
 import argparse
@@ -34,20 +35,37 @@ def frames_per_s(driver, seconds):
     return driver.execute_async_script(FRAMES, seconds)
 
 
+def work_of(pid):
+    """Seconds that a process and those below it have worked."""
+    parents, work = {}, {}
+    for entry in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = entry.read_text().rpartition(")")[2].split()
+        except OSError:  # it has ended
+            continue
+        one = int(entry.parent.name)
+        parents[one], work[one] = int(fields[1]), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    below = {pid}
+    while more := {one for one, parent in parents.items() if parent in below} - below:
+        below |= more
+    return sum(work.get(one, 0.0) for one in below)
+
+
 def measure_page(page, seconds):
     """Figures of a report."""
     with started() as driver:
-        begin = time.monotonic()
+        begin, before = time.monotonic(), work_of(driver.service.process.pid)
         show(driver, page.resolve().as_uri())
-        opening = time.monotonic() - begin
+        opening, opened = time.monotonic() - begin, work_of(driver.service.process.pid)
         driver.execute_script("STG.app.play(true)")
         frames = frames_per_s(driver, seconds)
+        work = (work_of(driver.service.process.pid) - opened) / max(1.0, frames * seconds)
         driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
         used = driver.execute_cdp_cmd("Runtime.getHeapUsage", {})
         steps, agents = driver.execute_script("return [STG.app.recording.steps.count, STG.app.recording.agents]")
     memory = (used["usedSize"] + used.get("backingStorageSize", 0.0)) / 1e6
     return {"agents": agents, "decisions": steps, "megabytes": page.stat().st_size / 1e6, "opens_in_s": opening,
-            "frames_per_s": frames, "memory_mb": memory}  # fmt: skip
+            "opening_work_s": opened - before, "frames_per_s": frames, "work_of_a_frame_s": work, "memory_mb": memory}  # fmt: skip
 
 
 def publish(seconds):
