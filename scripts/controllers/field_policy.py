@@ -107,11 +107,12 @@ def main():
     parser.add_argument("--training", nargs="*", default=[], help="folders of the trainings to show curves of")
     parser.add_argument("--notes", type=pathlib.Path, help="Markdown that the page begins with")
     parser.add_argument("--pursuit", action="store_true", help="pursuit_separated, too")
+    parser.add_argument("--conditions", nargs="*", default=list(CONDITIONS))
     parser.add_argument("--sizes", nargs="*", type=int, default=list(SIZES))
     arguments = parser.parse_args()
     policy, law = ("policy", arguments.policy, []), ("`encircle`", "encircle", [])
     pilots = [policy, law] + ([("`pursuit_separated`", PURSUIT, [])] if arguments.pursuit else [])
-    stress, records = table(arguments, [(c, "field", c, []) for c in CONDITIONS], pilots, arguments.episodes)
+    stress, records = table(arguments, [(c, "field", c, []) for c in arguments.conditions], pilots, arguments.episodes)
     swarms, more = table(arguments, [(f"{n} AUVs", "field", "nominal", [f"agents={n}"]) for n in arguments.sizes],
                          [policy, law], arguments.swarm_episodes)
     silence, last = table(arguments, [(f"{c}, silent", "field", c, SILENCE) for c in ("nominal", "combined_stress")],
