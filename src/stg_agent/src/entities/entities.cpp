@@ -86,7 +86,7 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   row.Put(std::log(1.0 + in.neighbour_count) / 3.0);
   row.Put(std::log(1.0 + (in.belief.started ? 1 : 0)) / 2.0);
   const double slot = m.channel.slots.length_s, frame = slot * m.run.agents;
-  const bool turns = m.channel.access == "tdma" && frame > 0.0;
+  const bool turns = frame > 0.0;  // as if slots went in turn, whatever the access
   const double since = turns ? std::fmod(now - slot * in.id + frame * 4096.0, frame) : 0.0;
   row.Put(turns ? AgeScale(since) : 0.0F).Put(turns ? 1.0 - since / frame : 0.0);
   int silent = 0;
