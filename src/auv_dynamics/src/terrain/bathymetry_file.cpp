@@ -231,6 +231,7 @@ Bathymetry Bathymetry::Load(const std::string& file, const GeoRegion& region) {
 
 void Bathymetry::Save(const std::string& path, const std::string& note) const {
   const NetcdfLibrary& netcdf = NetcdfLibrary::Get();
+  const auto lock = NetcdfLibrary::Lock();
   DurableFile durable(path, "the terrain");
   int file = -1, dimensions[2] = {}, lat = -1, lon = -1, elevation = -1;
   const auto check = [&](int status) {

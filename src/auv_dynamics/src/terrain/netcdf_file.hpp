@@ -40,6 +40,7 @@ class NetcdfFile {
  private:
   void Check(int status, const char* doing) const;
 
+  const std::unique_lock<std::mutex> lock_ = NetcdfLibrary::Lock();
   const NetcdfLibrary& netcdf_;
   std::string path_;
   int id_ = -1;

@@ -22,6 +22,11 @@ const NetcdfLibrary& NetcdfLibrary::Get() {
   return library;
 }
 
+std::unique_lock<std::mutex> NetcdfLibrary::Lock() {
+  static std::mutex mutex;
+  return std::unique_lock(mutex);
+}
+
 NetcdfLibrary::NetcdfLibrary() {
   void* library = dlopen(STG_NETCDF, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {

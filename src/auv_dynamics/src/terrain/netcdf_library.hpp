@@ -2,6 +2,8 @@
 
 #include <netcdf.h>
 
+#include <mutex>
+
 namespace stg::dynamics {
 
 /// The functions of libnetcdf, which is opened when the first terrain is. With what it is linked to
@@ -11,6 +13,8 @@ class NetcdfLibrary {
  public:
   /// Throws UserError where the library is not installed.
   static const NetcdfLibrary& Get();
+  /// libnetcdf serves one thread at a time, whatever the files: hold this while one is open.
+  [[nodiscard]] static std::unique_lock<std::mutex> Lock();
 
   decltype(&::nc_strerror) strerror = nullptr;
   decltype(&::nc_open) open = nullptr;

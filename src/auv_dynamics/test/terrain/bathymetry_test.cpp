@@ -4,11 +4,13 @@
 #include <netcdf.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <thread>
 
 #include "auv_common/error.hpp"
 
@@ -300,6 +302,24 @@ TEST(ShippedBathymetry, CoversTheBoxOfThePapersFigure6) {
   }
   EXPECT_LT(grid.highest(), -100.0);
   EXPECT_NEAR(grid.lowest(), -5288.0, 0.5);
+}
+
+TEST(ShippedBathymetry, ManyThreadsReadItAtOnce) {
+  std::vector<std::thread> threads;
+  std::atomic<int> refused = 0;
+  for (int k = 0; k < 8; ++k) {
+    threads.emplace_back([&refused] {
+      for (int i = 0; i < 10; ++i) {
+        try {
+          Bathymetry::Load(STG_SHIPPED_TERRAIN "/fig6.nc");
+        } catch (const UserError&) {
+          ++refused;
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(refused, 0);
 }
 
 TEST_F(GridFile, AHugeGridIsRefusedAtOnceAndCroppedWithoutReadingIt) {
