@@ -130,16 +130,17 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   u = Max(u, SpeedAlong(v_T, direction, T(slow), u));
   const Level<T> wanted = Within(v_T + direction * u, slow, fast);
 
-  Level<T> v = wanted + aside;
-  // What its chart shows.
+  Level<T> v = Within(wanted + aside, slow, fast);
+  // What its chart shows, last: others give way, too, obstacles do not.
+  const T turn_m = Norm(v) * T(1.0 / s.control.autopilot.max_turn_rate_radps + o.lead_s);
   const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
     const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));
     const Level<T> there{T(x) - k.p_WB.x, T(y) - k.p_WB.y};
-    v = v + Miss(own, there, Level<T>{}, T(radius_m + o.clearance_m), Select(beside, one, zero));
+    const Level<T> off = TurnedOff(v, own, there, T(radius_m + o.keep_off_m), turn_m);
+    v = {Select(beside, off.x, v.x), Select(beside, off.y, v.y)};
   };
   for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
   for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
-  v = Within(v, slow, fast);
   const T climb = Clip((z - k.p_WB.z) * T(o.depth_gain_ps), T(-o.climb_mps), T(o.climb_mps));
   return {v.x, v.y, climb};
 }
@@ -194,6 +195,8 @@ void Describe(EncircleOptions* o, config::Table* t) {
          "closer to the circle than this share of d*, the AUV is on it");
   t->Add("mate-on-circle", &o->mate_on_circle, NonNegative(10), "-",
          "the same of other AUVs, where there is one circle");
+  t->Add("keep-off", &o->keep_off_m, NonNegative(1e4), "m",
+         "distance that is kept from obstacles, in the plane");
   t->Add("hurry-from", &o->hurry_from, NonNegative(10), "-",
          "farther outside than this share of d*, the AUV begins to hurry");
 }

@@ -128,6 +128,45 @@ TEST(Encircle, PassesOthersAtLikeDepthAndObstaclesAside) {
   EXPECT_NEAR(Velocity(s, k, o).y, alone, 1e-12) << "it ends 57 m below";
 }
 
+TEST(Encircle, NeverComesIntoADiscFromWhichItCanTurnAway) {
+  // A point that turns at 5 deg/s towards the velocity that is wanted: into the disc, whatever way.
+  const double rate = 0.0873, speed = 2.0, dt = 0.1, radius = 70.0;
+  for (std::uint32_t n = 0; n < 300; ++n) {
+    Random random(5, Stream::kReset, n, 0, 0);
+    double x = -250.0, y = random.Uniform(-120.0, 120.0), heading = random.Uniform(-1.0, 1.0);
+    double least = 1e9, aim = 0.0;
+    for (int k = 0; k < 6000; ++k) {
+      if (k % 400 == 0) aim = random.Uniform(-kPi, kPi);
+      const bool through = n % 2 == 0;  // at the centre for ever, or anywhere for a while
+      const Level<double> there{-x, -y};
+      const Level<double> wanted =
+          through ? there * (speed / Norm(there))
+                  : Level<double>{speed * std::cos(aim), speed * std::sin(aim)};
+      const Level<double> own{speed * std::cos(heading), speed * std::sin(heading)};
+      const Level<double> v = TurnedOff(wanted, own, there, radius, speed / rate);
+      const double error = std::remainder(std::atan2(v.y, v.x) - heading, 2.0 * kPi);
+      heading += std::clamp(error, -rate * dt, rate * dt);
+      x += speed * std::cos(heading) * dt;
+      y += speed * std::sin(heading) * dt;
+      least = std::min(least, std::hypot(x, y));
+    }
+    ASSERT_GT(least, radius - 2.0) << "way " << n;
+  }
+}
+
+TEST(Encircle, LeavesAVelocityThatLeadsPast) {
+  const Level<double> past{0.0, 2.0}, away{-1.0, 0.5};
+  for (const Level<double>& v : {past, away}) {
+    const Level<double> same = TurnedOff(v, v, {100.0, 0.0}, 70.0, 23.0);
+    EXPECT_EQ(same.x, v.x);
+    EXPECT_EQ(same.y, v.y);
+  }
+  // At the distance of two turning radii even the way to the centre is free.
+  const Level<double> in{2.0, 0.0};
+  EXPECT_EQ(TurnedOff(in, in, {70.0 + 46.1, 0.0}, 70.0, 23.0).x, 2.0);
+  EXPECT_LT(TurnedOff(in, in, {70.0, 0.0}, 70.0, 23.0).x, 1e-9);
+}
+
 TEST(Encircle, SpreadsOverTheDepthsOfTheScenario) {
   const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
   EXPECT_GT(Velocity(Sea(), k, {}, {}, 0).z, 0.2);   // to 20 m

@@ -32,6 +32,7 @@ struct EncircleOptions {
   double dodge = 1.5;              ///< speed aside of an AUV in the way, as a share of the own
   double on_circle = 0.5;          ///< closer to the circle than this share of d*: it is on it
   double mate_on_circle = 0.6;     ///< the same of others, where there is one circle
+  double keep_off_m = 20.0;        ///< of obstacles, in the plane
   double hurry_from = 0.3;         ///< farther outside than this share of d* it begins to hurry
 };
 
@@ -108,6 +109,33 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
   const T b = Dot(v_T, direction);
   const T square = b * b + speed * speed - Dot(v_T, v_T);
   return Select(square > T(0.0), Sqrt(Max(square, T(0.0))) - b, otherwise);
+}
+
+/// A velocity that does not lead into a disc. A vehicle with the turning radius R_t that points at
+/// it by the angle a off the tangent comes nearer by 2 R_t (1 - cos a) while it turns away at half
+/// of its rate; the other half is for the curve of the edge. So at the distance g from the edge
+/// cos a = 1 - g / (2 R_t) is the steepest way in. Inside, the way leads out. Whoever wants to pass
+/// on the other side first turns its back to the disc: the shorter turn leads into it.
+/// @param v wanted, own what the vehicle does now [m/s]
+/// @param there centre of the disc from the vehicle, `radius` of the disc, `turn_m` R_t [m]
+template <class T>
+Level<T> TurnedOff(const Level<T>& v, const Level<T>& own, const Level<T>& there, const T& radius,
+                   const T& turn_m) {
+  const T zero(0.0), one(1.0);
+  const T range = Max(Norm(there), T(1e-3)), speed = Norm(v);
+  const Level<T> at = there * (one / range);
+  const T room = Clip((range - radius) / (T(2.0) * turn_m), -one, one);
+  const T rest = one - Max(room, zero);
+  const T steepest = Select(room < zero, room, Sqrt(Max(one - rest * rest, zero)));
+  const T side = Select(Cross(at, own) < zero, -one, one);
+  const Level<T> past{-at.y * side, at.x * side};
+  const Level<T> turned =
+      (at * steepest + past * Sqrt(Max(one - steepest * steepest, zero))) * speed;
+  const auto leads_in = Dot(v, at) > steepest * speed;
+  const auto outward = Dot(own, at) < T(-0.7) * Norm(own);
+  const auto crosses = (Dot(v, past) < zero) && (room < one) && !outward;
+  return {Select(crosses, -at.x * speed, Select(leads_in, turned.x, v.x)),
+          Select(crosses, -at.y * speed, Select(leads_in, turned.y, v.y))};
 }
 
 /// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
