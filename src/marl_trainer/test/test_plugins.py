@@ -129,6 +129,9 @@ class Plugins(unittest.TestCase):
         self.assertEqual(scenario["target.zigzag.leg_s"], 7.0)
         again = stg.Scenario.from_yaml(scenario.to_yaml())
         self.assertEqual(again.hash, scenario.hash)
+        text = scenario.to_yaml().replace(library("zigzag"), library("lottery"))
+        with self.assertRaisesRegex(stg.UserError, "text:1: plugins: .*liblottery.so: is not loaded"):
+            stg.Scenario.from_yaml(text)  # of a bag, perhaps
         stg.load_plugin(library("unicycle"))
         unicycle = {"vehicle.model": "unicycle", "vehicle.unicycle.lag_s": 2.0}
         self.assertIn("lag_s: 2", stg.load_scenario("medium", overrides=unicycle).to_yaml())

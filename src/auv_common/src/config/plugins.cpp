@@ -3,8 +3,10 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <sstream>
 
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
@@ -117,6 +119,23 @@ void LoadPluginsIn(const YamlTree& map, const std::string& file) {
   if (const YamlTree::Entry* entry = ListIn(map)) {
     LoadList(entry->value, fs::path(file).parent_path(),
              file + ":" + std::to_string(entry->line) + ": plugins: ");
+  }
+}
+
+void RequirePluginsOf(const YamlTree& map, const std::string& origin) {
+  const YamlTree::Entry* entry = ListIn(map);
+  if (entry == nullptr) return;
+  if (const char* trusted = std::getenv("STG_PLUGINS")) {
+    std::istringstream names(trusted);
+    for (std::string name; std::getline(names, name, ':');) LoadPlugin(name, "STG_PLUGINS: ");
+  }
+  const std::vector<std::string> loaded = LoadedPlugins();
+  for (const YamlTree& item : entry->value.items) {
+    if (std::count(loaded.begin(), loaded.end(), item.scalar) > 0) continue;
+    throw UserError(
+        origin + ":" + std::to_string(entry->line) + ": plugins: " + item.scalar +
+        ": is not loaded; a text does not load libraries: if you trust this one, name it "
+        "in STG_PLUGINS, by --plugin or by stg.load_plugin");
   }
 }
 

@@ -4,7 +4,6 @@
 #include <netcdf.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -306,20 +305,14 @@ TEST(ShippedBathymetry, CoversTheBoxOfThePapersFigure6) {
 
 TEST(ShippedBathymetry, ManyThreadsReadItAtOnce) {
   std::vector<std::thread> threads;
-  std::atomic<int> refused = 0;
   for (int k = 0; k < 8; ++k) {
-    threads.emplace_back([&refused] {
+    threads.emplace_back([] {
       for (int i = 0; i < 10; ++i) {
-        try {
-          Bathymetry::Load(STG_SHIPPED_TERRAIN "/fig6.nc");
-        } catch (const UserError&) {
-          ++refused;
-        }
+        EXPECT_NO_THROW(Bathymetry::Load(STG_SHIPPED_TERRAIN "/fig6.nc"));
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(refused, 0);
 }
 
 TEST_F(GridFile, AHugeGridIsRefusedAtOnceAndCroppedWithoutReadingIt) {

@@ -110,11 +110,12 @@ Config Load(const Source& source, Scope scope = Scope::kWhole) {
 enum class Unread { kRefuse, kPassOver };
 
 /// The same from the text of a whole file. ResolvedText merges what bases state for things of their
-/// own choice, so that its text needs kPassOver.
+/// own choice, so that its text needs kPassOver. The libraries that it lists must be loaded
+/// already.
 template <class Config>
 Config LoadText(const std::string& text, const std::string& origin,
                 Unread unread = Unread::kRefuse) {
-  LoadPluginsIn(ParseYaml(text, origin), origin);
+  RequirePluginsOf(ParseYaml(text, origin), origin);
   Config config;
   Table table;
   Describe(&config, &table);

@@ -23,6 +23,10 @@ std::vector<std::string> LoadedPlugins();
 /// the file; a name without a slash is a file there, or else what the system's loader finds.
 void LoadPluginsIn(const YamlTree& map, const std::string& file);
 
+/// Throws UserError unless all that the key `plugins` of a map lists is loaded already. For texts
+/// that come from elsewhere, such as in a bag: they must not choose what code runs.
+void RequirePluginsOf(const YamlTree& map, const std::string& origin);
+
 /// The line that makes a saved configuration load the same libraries; empty where there are none.
 std::string PluginLine();
 
