@@ -95,7 +95,8 @@ Level<double> SquareWaypoint(const Level<double>& datum, double spacing_m, int i
   Level<double> p = datum;
   for (int k = 0; k < leg; ++k) {
     const double course = turn + 0.5 * kPi * (k % 4);
-    const double length = spacing_m * (k / 2 + 1);
+    const int longer = k / 2;
+    const double length = spacing_m * (1 + longer);
     p = p + Level<double>{length * std::cos(course), length * std::sin(course)};
   }
   return p;

@@ -1,6 +1,7 @@
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -67,7 +68,7 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
 
 std::int64_t SwarmTrainer::StepsOfCollection() const {
   const double decisions = agent::kCommandPeriod_s / mixture_.front().scenario.run.decision_dt_s();
-  return static_cast<std::int64_t>(config_.horizon * decisions + 0.5) * config_.envs;
+  return std::llround(config_.horizon * decisions) * config_.envs;
 }
 
 std::string SwarmTrainer::ConfigText() const {
