@@ -59,7 +59,8 @@ void Table::Thing(Owner owner, const std::string& section, const std::function<v
 void Table::Own(const std::string& section, const Owner& owner) {
   const auto shared = std::make_shared<const Owner>(owner);
   for (Field& field : fields_) {
-    if (field.path.rfind(section + ".", 0) == 0) field.owners.push_back(shared);
+    const bool inside = field.path == section || field.path.rfind(section + ".", 0) == 0;
+    if (inside) field.owners.push_back(shared);
   }
 }
 

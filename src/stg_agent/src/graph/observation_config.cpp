@@ -8,6 +8,10 @@ void Describe(ObservationConfig* c, config::Table* t) {
   t->Add("semantic", &c->semantic, config::kNone, "-",
          "include the 9 semantic numbers of Eqs. 15-16");
   t->Add("graph", &c->graph, config::kNone, "-", "include the 6 task-graph numbers of Eq. 18");
+  t->AddOptional("links", &c->links, "true", config::kNone, "-",
+                 "the link numbers of Eq. 18; false: they read 0, as an ablation wants it");
+  t->AddOptional("roles", &c->roles, "true", config::kNone, "-",
+                 "advantage and role of Eqs. 18-19; false: they read 0, as an ablation wants it");
   t->Add("order", config::Enum(&c->order, {"nearest", "index"}), config::kNone, "-",
          "which three neighbours are shown: the nearest, or the first by index");
   t->Add(
@@ -36,6 +40,11 @@ void Describe(ObservationConfig* c, config::Table* t) {
          "a link quality above this makes an effective neighbour");
   t->Add("role_confidence", &c->role_confidence, config::kFraction, "-",
          "confidence from which an AUV with an advantage takes the tracking role");
+  const config::Owner graph{"task graph", {"true"}, "observation.graph", [c] {
+                              return std::vector<std::string>{c->graph ? "true" : "false"};
+                            }};
+  t->Own("observation.links", graph);
+  t->Own("observation.roles", graph);
   t->Moved("observation.link_radius_m", "channel.range_m");
 }
 

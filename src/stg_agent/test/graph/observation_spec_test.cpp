@@ -37,6 +37,8 @@ TEST(ObservationSpec, NameTellsWhatAPolicyFileMustMatch) {
   c.order = NeighbourOrder::kIndex;
   EXPECT_EQ(ObservationSpec(c).name(), "stg-1:raw+tracking+graph:index");
   EXPECT_NE(ObservationSpec(c), ObservationSpec(ObservationConfig()));
+  c.links = c.roles = false;
+  EXPECT_EQ(ObservationSpec(c).name(), "stg-1:raw+tracking+graph-links-roles:index");
 }
 
 /// Numbers that stand in one block, as the observation of this knowledge shows them.
@@ -122,6 +124,24 @@ TEST(ObservationSpec, TheDocumentationsTableIsThisOne) {
     table += std::string(" | ") + kBlocks[b].content + " |\n";
   }
   EXPECT_NE(page.find(table + "\n"), std::string::npos) << "it should read\n" << table;
+}
+
+/// Eqs. 18-19 by hand, whole and with what an ablation leaves out.
+TEST(ObservationSpec, AnAblatedLinkOrRoleReadsZero) {
+  AgentModel model;
+  Knowledge<double> k;
+  k.effective_fraction = 1.0;
+  k.mean_quality = 0.5;
+  k.best_quality = 0.75;
+  k.confidence = 1.0;
+  k.error = 0.0;
+  k.mean_neighbour_error = model.observation.error_scale_m / 4.0;
+  using Numbers = std::vector<double>;
+  EXPECT_EQ(Shown(model, k, Block::kGraph), (Numbers{1.0, 0.5, 0.75, 0.25, 0.25, 1.0}));
+  model.observation.links = false;
+  EXPECT_EQ(Shown(model, k, Block::kGraph), (Numbers{0.0, 0.0, 0.0, 0.25, 0.25, 1.0}));
+  model.observation.roles = false;
+  EXPECT_EQ(Shown(model, k, Block::kGraph), (Numbers{0.0, 0.0, 0.0, 0.25, 0.0, 0.0}));
 }
 
 }  // namespace

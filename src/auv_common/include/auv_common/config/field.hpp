@@ -147,7 +147,7 @@ class Table {
         std::move(owner), section, [&](Table* t) { describe(options, t); },
         [&](Table* t) { describe(&defaults, t); });
   }
-  /// Says that all keys of a section, at every depth, belong to this owner as well.
+  /// Says that a key, or all keys of a section at every depth, belong to this owner as well.
   void Own(const std::string& section, const Owner& owner);
   /// A key of a thing that is read where this holds, too, whatever was chosen.
   void AlsoReadIf(const std::string& path, std::function<bool()> holds);

@@ -83,7 +83,8 @@ inline void TrackingVector(const ObservationConfig& c, const Knowledge<T>& k,
 }
 
 /// Graph summary of Eq. 18 as the policy sees it: effective-neighbour fraction,
-/// mean and best link quality, mean neighbour error, advantage (Eq. 19), role.
+/// mean and best link quality, mean neighbour error, advantage (Eq. 19), role. What an ablation
+/// leaves out reads 0.
 template <class T>
 inline void GraphSummary(const ObservationConfig& c, const Knowledge<T>& k,
                          T (*graph)[kGraphNumbers]) {
@@ -92,12 +93,12 @@ inline void GraphSummary(const ObservationConfig& c, const Knowledge<T>& k,
   const T neighbour_error = Clip(k.mean_neighbour_error * scale, zero, one);
   const T advantage = neighbour_error - Clip(k.error * scale, zero, one);  // in [-1, 1]
   const T confident = Select(k.confidence >= T(c.role_confidence), one, zero);
-  (*graph)[kGraphEffective] = k.effective_fraction;
-  (*graph)[kGraphMeanQuality] = k.mean_quality;
-  (*graph)[kGraphBestQuality] = k.best_quality;
+  (*graph)[kGraphEffective] = c.links ? k.effective_fraction : zero;
+  (*graph)[kGraphMeanQuality] = c.links ? k.mean_quality : zero;
+  (*graph)[kGraphBestQuality] = c.links ? k.best_quality : zero;
   (*graph)[kGraphNeighbourError] = neighbour_error;
-  (*graph)[kGraphAdvantage] = advantage;
-  (*graph)[kGraphRole] = Select(advantage > zero, confident, zero);
+  (*graph)[kGraphAdvantage] = c.roles ? advantage : zero;
+  (*graph)[kGraphRole] = c.roles ? Select(advantage > zero, confident, zero) : zero;
 }
 
 /// The phase and the quality that the one-hot vectors of one AUV show.

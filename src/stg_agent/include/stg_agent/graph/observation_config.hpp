@@ -12,6 +12,8 @@ struct ObservationConfig {
   bool tracking = true;  ///< Eq. 14, 8 numbers
   bool semantic = true;  ///< Eqs. 15-16, 9 numbers
   bool graph = true;     ///< Eq. 18, 6 numbers
+  bool links = true;     ///< false: the 3 link numbers of Eq. 18 read 0, an ablation
+  bool roles = true;     ///< false: advantage and role of Eqs. 18-19 read 0, an ablation
   NeighbourOrder order = NeighbourOrder::kNearest;
   /// Truth mode only. As the release: the progress shown is always 0 (d(t-1) is
   /// overwritten first), so is the first P of an episode; mean_k(e) counts the

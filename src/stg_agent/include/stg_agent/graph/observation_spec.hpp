@@ -93,7 +93,12 @@ inline constexpr int kBlockCount = static_cast<int>(sizeof(kBlocks) / sizeof(kBl
 class ObservationSpec {
  public:
   constexpr explicit ObservationSpec(const ObservationConfig& c)
-      : tracking_(c.tracking), semantic_(c.semantic), graph_(c.graph), order_(c.order) {}
+      : tracking_(c.tracking),
+        semantic_(c.semantic),
+        graph_(c.graph),
+        links_(c.links),
+        roles_(c.roles),
+        order_(c.order) {}
 
   /// Numbers of a block; 0 when the scenario leaves it out.
   constexpr int size(Block block) const {
@@ -131,7 +136,7 @@ class ObservationSpec {
     }
   }
 
-  bool tracking_, semantic_, graph_;
+  bool tracking_, semantic_, graph_, links_, roles_;
   NeighbourOrder order_;
 };
 
