@@ -16,8 +16,7 @@ from tidy import check_tidy
 from tools import check_catkin, check_format, check_python, check_shell
 from versions import check_versions
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "src" / "auv_common" / "scripts"))
-from stg_common.program import run_program  # noqa: E402  (found by the line above)
+from stg_common.program import run_program
 
 SHOWN = 200  # findings of one checker
 

@@ -12,7 +12,8 @@ _SKIPPED = {"build", "devel", "install", "results", "runs", "out", "logs", "__py
 def _walk():
     """Yields the files below ROOT as relative paths, where there is no git to ask."""
     for folder, folders, names in os.walk(ROOT):
-        folders[:] = [f for f in folders if f not in _SKIPPED and not f.startswith(".")]
+        skipped = _SKIPPED if folder == str(ROOT) else {"__pycache__"}
+        folders[:] = [f for f in folders if f not in skipped and not f.startswith(".")]
         for name in names:
             yield os.path.relpath(os.path.join(folder, name), ROOT)
 

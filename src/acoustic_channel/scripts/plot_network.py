@@ -10,20 +10,13 @@ Exit status: 0 done, 2 wrong usage or a file that cannot be read.
 
 import argparse
 import os
-import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy as np  # noqa: E402
-
-HERE = os.path.dirname(os.path.realpath(__file__))
-# Where auv_common has stg_common: in the sources, and installed.
-sys.path += [os.path.join(HERE, up) for up in ("../../auv_common/scripts", "../auv_common")]
-from stg_common.csv_files import number, table_rows  # noqa: E402  (found by the line above)
-from stg_common.files import Damaged, FileError, expect, member, read_json  # noqa: E402
-from stg_common.program import run_program  # noqa: E402
+from stg_common.csv_files import number, table_rows
+from stg_common.files import Damaged, FileError, expect, member, read_json
+from stg_common.program import run_program
 
 NUMBERS = "offered_s generation_s transmit_s transmit_end_s begin_s arrival_s distance_m".split()
 NAMES = "source destination sequence fate".split()
@@ -31,6 +24,7 @@ GOOD, PARTLY, BAD, GREY = "#2fb457", "#f5a11a", "#e23636", "#9aa3ad"
 MAX_LINKS = 40
 # What a row must tell of a packet that left, of one that found a receiver, and of one that arrived.
 OF_SENT, OF_RECEIVER, OF_DELIVERED = ("transmit_end_s",), ("distance_m",), ("generation_s", "arrival_s")
+plt.switch_backend("Agg")  # draws to files
 plt.rcParams["text.parse_math"] = False  # names of nodes are shown as they are
 
 

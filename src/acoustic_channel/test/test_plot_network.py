@@ -3,15 +3,14 @@
 
 import os
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import numpy as np
+from stg_common.loading import load_program
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts/plot_network.py")
-sys.path.insert(0, os.path.dirname(SCRIPT))
-import plot_network  # noqa: E402  (the path comes first)
+plot_network = load_program(SCRIPT)
 
 HEADER = (
     "source,destination,addressed,kind,sequence,bytes,offered_s,generation_s,transmit_s,"

@@ -3,15 +3,13 @@
 import os
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import stub_programs
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
-from stg_study.collect import read_rows  # noqa: E402
+from stg_study.collect import read_rows
 
 REPRODUCE = os.path.join(PACKAGE, "scripts", "reproduce")
 

@@ -3,15 +3,13 @@
 import json
 import os
 import subprocess
-import sys
 import tempfile
 import unittest
 
 HERE = os.path.dirname(os.path.realpath(__file__))
-sys.path.insert(0, HERE)
-BENCH = os.path.join(HERE, "..", "..", "..", "scripts", "bench.sh")
+BENCH = os.path.join(HERE, "..", "..", "..", "scripts", "bench", "bench.py")
 
-import stub_programs  # noqa: E402
+import stub_programs
 
 
 class Bench(unittest.TestCase):

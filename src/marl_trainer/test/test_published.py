@@ -1,14 +1,11 @@
 """What the reproduce command publishes: rows that are kept, and episodes that it refuses."""
 
-import os
 import shutil
-import sys
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
-from study_case import StudyCase  # noqa: E402
-from stg_study.study import load_study  # noqa: E402  (study_case makes it known)
+from study_case import StudyCase
+from stg_study.study import load_study
 
 
 class Published(StudyCase):

@@ -5,14 +5,12 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
-import stub_programs  # noqa: E402
-from study_case import StudyCase  # noqa: E402
+import stub_programs
+from study_case import StudyCase
 
 MISSING = shutil.which("mpirun") is None or importlib.util.find_spec("mpi4py") is None
 

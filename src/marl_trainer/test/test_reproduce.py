@@ -9,20 +9,18 @@ import shlex
 import shutil
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
-import hangups  # noqa: E402
-import stub_programs  # noqa: E402
-from study_case import STUDY, StudyCase  # noqa: E402
-from stg_study.files import locked  # noqa: E402  (study_case makes it known)
-from stg_study.jobs import plan  # noqa: E402
-from stg_study.study import load_study  # noqa: E402
-from stg_study.data import Results  # noqa: E402  (found by study_case)
-from stg_common.files import FileError  # noqa: E402
+import hangups
+import stub_programs
+from study_case import STUDY, StudyCase
+from stg_study.files import locked
+from stg_study.jobs import plan
+from stg_study.study import load_study
+from stg_study.data import Results
+from stg_common.files import FileError
 
 
 class Reproduce(StudyCase):

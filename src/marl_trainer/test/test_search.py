@@ -6,7 +6,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 from unittest import mock
@@ -14,11 +13,9 @@ from unittest import mock
 import yaml
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
-import stub_programs  # noqa: E402
-from stg_study import search, study  # noqa: E402
+import stub_programs
+from stg_study import search, study
 
 SEARCH = """
 scenario: medium_release

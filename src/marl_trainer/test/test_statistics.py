@@ -1,15 +1,13 @@
 """Tests of the statistics of studies, against closed forms."""
 
 import os
-import sys
 import unittest
 
 import numpy as np
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 
-from stg_study import statistics  # noqa: E402
+from stg_study import statistics
 
 
 class Statistics(unittest.TestCase):

@@ -1,7 +1,6 @@
 """Tests of a study's parts: time left, table cells, the paper's figures, the reader of studies."""
 
 import os
-import sys
 import tempfile
 import unittest
 
@@ -9,12 +8,11 @@ import numpy as np
 import yaml
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 
-from stg_study import figure_style, jobs, runner, study  # noqa: E402
-from stg_study import tables, tables_cost  # noqa: E402
-from stg_study.data import Paper  # noqa: E402
-from stg_study.figures_curves import comparable  # noqa: E402
+from stg_study import figure_style, jobs, runner, study
+from stg_study import tables, tables_cost
+from stg_study.data import Paper
+from stg_study.figures_curves import comparable
 
 
 class Job:

@@ -8,16 +8,14 @@ import pathlib
 import re
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
 import roslib.packages
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
-import hangups  # noqa: E402
+import hangups
 
 SMALL = ["--scenario", "medium_release", "--envs", "4", "--horizon", "25", "--minibatch", "100",
          "--actor-hidden", "8", "--critic-hidden", "8", "--workers", "1"]

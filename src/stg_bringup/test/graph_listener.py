@@ -1,9 +1,7 @@
 """What the tests of the running graph share: waiting, and the newest message of each topic."""
 
 import os
-import pathlib
 import signal
-import sys
 
 import rosgraph
 import rosnode
@@ -11,9 +9,8 @@ import rospy
 from auv_msgs.msg import EpisodeSummary
 from diagnostic_msgs.msg import DiagnosticArray
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "auv_common/test"))
 
-from waiting import wait_for  # noqa: E402  (of all packages' tests)
+from stg_common.waiting import wait_for
 
 
 class Latest:

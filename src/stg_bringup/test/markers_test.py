@@ -2,8 +2,6 @@
 """Publishes a run of known content and checks what the marker node makes of it."""
 
 import math
-import pathlib
-import sys
 import threading
 import unittest
 
@@ -14,10 +12,9 @@ import rostest
 import std_msgs.msg
 import visualization_msgs.msg
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import synthetic_bag  # noqa: E402  (lies beside this file)
-from graph_listener import Diagnostics, wait_for  # noqa: E402
+import synthetic_bag
+from graph_listener import Diagnostics, wait_for
 
 Marker = visualization_msgs.msg.Marker
 TASK = auv_msgs.msg.TaskState

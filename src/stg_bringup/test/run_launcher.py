@@ -10,7 +10,7 @@ import xmlrpc.client
 
 import rosgraph
 
-LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "launch.py"
+LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "run" / "launch.py"
 
 
 def free_port():

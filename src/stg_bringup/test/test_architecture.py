@@ -2,14 +2,13 @@
 
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "scripts" / "lint"))
+from stg_common.loading import load_program
 
-import house  # noqa: E402 pylint: disable=wrong-import-position,import-error
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+house = load_program(ROOT / "scripts" / "lint" / "house.py")
 
 TOPICS = "auv_dynamics/src/nodes/include/auv_dynamics/nodes/topics.hpp"
 REGISTRY = """
@@ -266,7 +265,7 @@ class Picture(unittest.TestCase):
 
     def check(self, *arguments):
         """Compares the picture with the code; returns the exit status."""
-        program = ROOT / "scripts" / "draw_architecture.py"
+        program = ROOT / "scripts" / "lint" / "draw_architecture.py"
         done = subprocess.run(
             ["/usr/bin/python3", str(program), "--check", *map(str, arguments)],
             stdout=subprocess.DEVNULL,
@@ -275,7 +274,7 @@ class Picture(unittest.TestCase):
         return done.returncode
 
     def test_it_is_that_of_the_code(self):
-        self.assertEqual(self.check(), 0, "run scripts/draw_architecture.py")
+        self.assertEqual(self.check(), 0, "run scripts/lint/draw_architecture.py")
 
     def test_it_is_not_that_of_another_code(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -6,19 +6,17 @@ import io
 import pathlib
 import random
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import rosbag
+import synthetic_bag
+from stg_common.loading import load_program
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = HERE.parents[1] / "stg_monitor" / "scripts"
-sys.path[:0] = [str(HERE), str(SCRIPTS), str(HERE.parent / "scripts")]
-
-import bag_report  # noqa: E402  (lies in the scripts folder)
-import make_meshes  # noqa: E402
-import synthetic_bag  # noqa: E402  (lies beside this file)
+bag_report = load_program(SCRIPTS / "bag_report.py")
+make_meshes = load_program(HERE.parent / "scripts" / "make_meshes.py")
 
 
 def run_report(*arguments):

@@ -2,8 +2,9 @@
 
 import pathlib
 import re
-import sys
 import unittest
+
+from stg_common.loading import load_program
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SOURCES = ROOT / "src"
@@ -19,9 +20,7 @@ PACKAGES = (
     "stg_monitor",
     "stg_python",
 )
-sys.path.insert(0, str(ROOT / "scripts" / "lint"))
-
-import tree  # noqa: E402 pylint: disable=wrong-import-position,import-error
+tree = load_program(ROOT / "scripts" / "lint" / "tree.py")
 
 
 def named_sources():

@@ -94,7 +94,7 @@ class Setup(unittest.TestCase):
         with tempfile.NamedTemporaryFile("w", suffix="os-release") as file:
             file.write(release)
             file.flush()
-            done = subprocess.run([str(ROOT / "scripts" / "setup.sh")], stdout=subprocess.PIPE,
+            done = subprocess.run([str(ROOT / "scripts" / "run" / "setup.sh")], stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT, universal_newlines=True, check=False,
                                   env=dict(os.environ, STG_OS_RELEASE=file.name, **environment))
         return done.returncode, done.stdout

@@ -122,7 +122,7 @@ class Graph(unittest.TestCase):
         self.assertLessEqual({f"/target_{k}/odom" for k in range(16)}, set(recorder.args.split()))
 
 
-SCENARIO_AGENTS = ROOT / "scripts" / "scenario_agents.py"
+SCENARIO_AGENTS = ROOT / "scripts" / "run" / "scenario_agents.py"
 
 
 class ScenarioAgents(unittest.TestCase):

@@ -4,16 +4,14 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
 import rosgraph
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from run_launcher import free_port, launch, stop  # noqa: E402  (found by the line above)
+from run_launcher import free_port, launch, stop
 
 SHORT = ("episodes:=1", "real_time_factor:=0", "deadline:=20", "seed:=3", "policy:=pursuit_separated",
          "table:=false", "overrides:=[time.episode_steps=60, time.tail_steps=20]")

@@ -4,7 +4,6 @@ import os
 import pathlib
 import socket
 import struct
-import sys
 import tempfile
 import time
 import unittest
@@ -12,9 +11,8 @@ import xmlrpc.client
 
 import rosgraph
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from run_launcher import launch, process_of, stop  # noqa: E402  (found by the line above)
+from run_launcher import launch, process_of, stop
 
 LISTENS = "0A"
 ANOTHER = "127.0.0.2"  # of this machine, as one of an Ethernet would be

@@ -7,7 +7,6 @@ import os
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
@@ -15,10 +14,9 @@ import unittest
 import rosbag
 import rosgraph
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from graph_listener import wait_for  # noqa: E402  (these lie beside this file)
-from run_launcher import free_port, launch, process_of, processes_with, stop  # noqa: E402
+from graph_listener import wait_for
+from run_launcher import free_port, launch, process_of, processes_with, stop
 
 STEPS = 60
 AGENTS = 4

@@ -2,15 +2,13 @@
 
 import pathlib
 import shutil
-import sys
 import tempfile
 import unittest
 
 import rospkg
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from run_launcher import launch, stop  # noqa: E402  (found by the line above)
+from run_launcher import launch, stop
 
 BRINGUP = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
 

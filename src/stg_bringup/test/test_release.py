@@ -12,12 +12,11 @@ import unittest
 import zipfile
 
 import stg
+from stg_common.loading import load_program
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PACKAGE = ROOT / "scripts" / "package"
-sys.path.insert(0, str(ROOT / "scripts" / "lint"))
-
-import versions  # noqa: E402 pylint: disable=wrong-import-position,import-error
+versions = load_program(ROOT / "scripts" / "lint" / "versions.py")
 
 FLY = """
 import pathlib, stg

@@ -6,7 +6,6 @@ import pathlib
 import signal
 import socket
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -15,12 +14,11 @@ import unittest
 import unittest.mock
 
 import rosbag
+from run_launcher import LAUNCH, launch, process_of, processes_with, stop
+from stg_common.loading import load_program
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[2] / "scripts")]
-
-import run_checks  # noqa: E402  (lies in the scripts folder)
-from run_launcher import LAUNCH, launch, process_of, processes_with, stop  # noqa: E402
+run_checks = load_program(HERE.parents[2] / "scripts" / "run" / "run_checks.py")
 
 QUICK = ("episodes:=2", "real_time_factor:=0", "deadline:=20", "policy:=pursuit_separated",
          "table:=false", "overrides:=[time.episode_steps=40, time.tail_steps=10]")

@@ -4,20 +4,18 @@ import contextlib
 import io
 import pathlib
 import signal
-import sys
 import tempfile
 import time
 import types
 import unittest
 
 import rosgraph
+from run_launcher import LAUNCH, free_port, launch, process_of, processes_with, stop
+from stg_common.loading import load_program
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[2] / "scripts")]
-
-import run_arguments  # noqa: E402  (lies in the scripts folder)
-import run_checks  # noqa: E402
-from run_launcher import LAUNCH, free_port, launch, process_of, processes_with, stop  # noqa: E402
+run_checks = load_program(HERE.parents[2] / "scripts" / "run" / "run_checks.py")
+run_arguments = load_program(HERE.parents[2] / "scripts" / "run" / "run_arguments.py")
 
 PACKAGES = HERE.parents[1]
 ENDLESS = ("policy:=idle", "table:=false")

@@ -5,13 +5,11 @@ import json
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "src/stg_monitor/python"))
-from stg_view.browser import missing, started  # noqa: E402  (found by the line above)
+from stg_view.browser import missing, started
 
 SEARCH = """const box = document.querySelector("[data-md-component=search-query]");
 box.focus(); box.value = arguments[0];

@@ -1,22 +1,12 @@
-"""The judge of long runs (scripts/soak) tells what grows, and nothing else."""
+"""The judge of long runs (scripts/bench/soak) tells what grows, and nothing else."""
 
-import importlib.machinery
-import importlib.util
 import pathlib
 import unittest
 
+from stg_common.loading import load_program
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-
-
-def load_soak():
-    """Returns the script as a module."""
-    loader = importlib.machinery.SourceFileLoader("soak", str(ROOT / "scripts" / "soak"))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("soak", loader))
-    loader.exec_module(module)
-    return module
-
-
-SOAK = load_soak()
+SOAK = load_program(ROOT / "scripts" / "bench" / "soak")
 
 
 def rows(memory=lambda t: 50000, files=lambda t: 20, threads=lambda t: 5, until=100):

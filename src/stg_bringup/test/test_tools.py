@@ -8,6 +8,8 @@ import sys
 import tempfile
 import unittest
 
+import stg_common
+
 # In place of roslaunch: what the world says at the end, and in the first run in real time the process
 # of an agent, for which what is in place of sleep waits.
 ROSLAUNCH = """#!/bin/bash
@@ -23,12 +25,13 @@ until [[ -e "$TMPDIR/agent" ]]; do /bin/sleep 0.1; done
 exec /bin/sleep 0.5
 """
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
+PYTHON = str(pathlib.Path(stg_common.__file__).resolve().parents[1])
 
 
 def run(folder, name, *arguments):
-    """Returns the finished program of scripts/, run in a folder; only fig6 finds the workspace."""
-    environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C"}
-    if name == "fig6":
+    """Returns the finished program of scripts/, run in a folder; only fig6 finds all of the workspace."""
+    environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C", "PYTHONPATH": PYTHON}
+    if name.endswith("fig6"):
         environment = dict(os.environ)
     program = [str(SCRIPTS / name)] if os.access(SCRIPTS / name, os.X_OK) else [
         sys.executable, str(SCRIPTS / name)]  # fmt: skip
@@ -53,28 +56,28 @@ class Tools(unittest.TestCase):
             self.assertEqual(os.listdir(self.folder), [])
 
     def test_arguments_that_cannot_work_are_refused_before_anything_is_run(self):
-        self.check_refused("no 'foo' is shipped.*medium", "soak", "--scenario", "foo")
+        self.check_refused("no 'foo' is shipped.*medium", "bench/soak", "--scenario", "foo")
         for hours in ("nan", "-1", "0"):
-            self.check_refused("--hours.*positive", "soak", "--hours", hours)
-        self.check_refused("--every.*positive", "soak", "--every", "-1")
-        self.check_refused("none/x.csv: No such", "soak", "--out", "none/x.csv")
-        self.check_refused("--steps.*1 or more", "bench.py", "--steps", "0")
-        self.check_refused("nothing to do", "bench.py", "--only", "ros", "--no-ros")
-        self.check_refused("--out: /proc cannot be written", "bench.py", "--out", "/proc")
-        self.check_refused("required.*--build", "fuzz.py", "packet", "1")
-        self.check_refused("no packages", "draw_architecture.py", "--source", ".")
-        self.check_refused("none.svg: No such", "draw_architecture.py", "--check", "--out", "none")
-        self.check_refused("--at: 'x' is no number", "screenshot.sh", "--at", "x", "o.png")
-        self.check_refused("no folder for none/o.png", "screenshot.sh", "none/o.png")
-        self.check_refused("none: there is no medium.onnx", "shipped_tables.py", "out", "none")
-        self.check_refused("medium_SEED: 0 finished", "shipped_seeds.py", "out", "none")
-        self.check_refused("--trials.*1 or more", "controllers/tune.py", "a", "b", "--trials", "0")
+            self.check_refused("--hours.*positive", "bench/soak", "--hours", hours)
+        self.check_refused("--every.*positive", "bench/soak", "--every", "-1")
+        self.check_refused("none/x.csv: No such", "bench/soak", "--out", "none/x.csv")
+        self.check_refused("--steps.*1 or more", "bench/bench.py", "--steps", "0")
+        self.check_refused("nothing to do", "bench/bench.py", "--only", "ros", "--no-ros")
+        self.check_refused("--out: /proc cannot be written", "bench/bench.py", "--out", "/proc")
+        self.check_refused("required.*--build", "test/fuzz.py", "packet", "1")
+        self.check_refused("no packages", "lint/draw_architecture.py", "--source", ".")
+        self.check_refused("none.svg: No such", "lint/draw_architecture.py", "--check", "--out", "none")
+        self.check_refused("--at: 'x' is no number", "docs/screenshot.sh", "--at", "x", "o.png")
+        self.check_refused("no folder for none/o.png", "docs/screenshot.sh", "none/o.png")
+        self.check_refused("none: there is no medium.onnx", "results/shipped_tables.py", "out", "none")
+        self.check_refused("medium_SEED: 0 finished", "results/shipped_seeds.py", "out", "none")
+        self.check_refused("--trials.*1 or more", "results/controllers/tune.py", "a", "b", "--trials", "0")
 
     def test_figure_of_the_field_refuses_what_it_cannot_draw(self):
-        self.check_refused("^fig6: scenario 'medium' has no open water", "fig6", "--cases", "medium")
-        self.check_refused("--seed must not be negative", "fig6", "--seed", "-1")
-        self.check_refused("no folder none", "fig6", "--out", "none/fig6")
-        self.check_refused("at most 8", "fig6", "--cases", *["fig6_4"] * 9)
+        self.check_refused("^fig6: scenario 'medium' has no open water", "results/fig6", "--cases", "medium")
+        self.check_refused("--seed must not be negative", "results/fig6", "--seed", "-1")
+        self.check_refused("no folder none", "results/fig6", "--out", "none/fig6")
+        self.check_refused("at most 8", "results/fig6", "--cases", *["fig6_4"] * 9)
 
     @unittest.skipUnless(os.path.exists("/usr/share/i18n/locales/de_DE"), "no sources of locales")
     def test_benchmark_of_the_graph_prints_json_where_numbers_have_commas(self):
@@ -86,7 +89,7 @@ class Tools(unittest.TestCase):
             program.chmod(0o755)
         environment = dict(os.environ, PATH=f"{self.folder}:/usr/bin:/bin", LOCPATH=self.folder,
                            LC_ALL="de_DE.UTF-8", TMPDIR=self.folder)  # fmt: skip
-        done = subprocess.run([str(SCRIPTS / "bench_ros.sh")], env=environment, check=False,
+        done = subprocess.run([str(SCRIPTS / "bench/bench_ros.sh")], env=environment, check=False,
                               stdout=subprocess.PIPE, universal_newlines=True)  # fmt: skip
         self.assertEqual(done.returncode, 0)
         figures = json.loads(done.stdout)
@@ -95,7 +98,7 @@ class Tools(unittest.TestCase):
         self.assertGreater(figures["largest_agent_memory_mib"], 0.0)
 
     def test_help_is_no_argument(self):
-        for name in ("shipped_tables.py", "shipped_seeds.py", "train_shipped.sh", "soak"):
+        for name in ("results/shipped_tables.py", "results/shipped_seeds.py", "results/train_shipped.sh", "bench/soak"):
             done = run(self.folder, name, "--help")
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
             self.assertRegex(done.stdout, "(?i)usage: ")

@@ -1,4 +1,4 @@
-"""scripts/controllers/tune.py: finds what it searches, keeps every trial, chooses by no other seed."""
+"""scripts/results/controllers/tune.py: finds what it searches, keeps every trial, chooses by no other seed."""
 
 import csv
 import os
@@ -10,7 +10,7 @@ import unittest
 
 import yaml
 
-FOLDER = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "controllers"
+FOLDER = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "results" / "controllers"
 # In place of `evaluate`: the return has its peak at gain 2, and a contact costs more than it gives.
 EVALUATE = f"""#!{sys.executable}
 import json, math, sys

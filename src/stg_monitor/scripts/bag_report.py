@@ -20,14 +20,11 @@ import re
 import sys
 from collections import defaultdict
 
-# rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-
-from bag_reading import BagError, messages, open_bag  # noqa: E402  (found by the line above)
-from scenario_reading import sections_of  # noqa: E402
-from stg_common.files import FileError  # noqa: E402  (found by scenario_reading)
-from stg_common.program import run_program  # noqa: E402
-from stg_common.yaml_files import parse_yaml  # noqa: E402
+from stg_common.files import FileError
+from stg_common.program import run_program
+from stg_common.yaml_files import parse_yaml
+from stg_view.bag_reading import BagError, messages, open_bag
+from stg_view.scenario_reading import sections_of
 
 PHASES = ("search", "approach", "stable", "lost")
 QUALITIES = ("high", "medium", "low", "unavailable")
@@ -260,7 +257,7 @@ def write_report(run, folder, episodes):
     os.makedirs(folder, exist_ok=True)
     write_tables(run, folder)
     if episodes:
-        from bag_figure import draw_episode  # matplotlib takes a second to load
+        from stg_view.bag_figure import draw_episode  # matplotlib takes a second to load
 
         for episode in episodes:
             draw_episode(run, episode, os.path.join(folder, f"report_episode_{episode}"))

@@ -13,16 +13,11 @@ import os
 import pathlib
 import sys
 
-HERE = os.path.dirname(os.path.realpath(__file__))
-# Where stg_view and stg_common are in the sources; installed, Python finds them by itself.
-sys.path[:0] = [HERE]
-sys.path += [os.path.join(HERE, up) for up in ("../python", "../../auv_common/scripts", "../auv_common")]
-
-from stg_common.files import FileError  # noqa: E402  (found by the lines above)
-from stg_common.program import run_program  # noqa: E402
-from stg_view.browser import BrowserError  # noqa: E402
-from stg_view.from_folder import read_folder  # noqa: E402
-from stg_view.page import PageError, report_page, write_page  # noqa: E402
+from stg_common.files import FileError
+from stg_common.program import run_program
+from stg_view.browser import BrowserError
+from stg_view.from_folder import read_folder
+from stg_view.page import PageError, report_page, write_page
 
 
 def parse_arguments(arguments):
@@ -80,7 +75,7 @@ def main(arguments=None):
 def refusals():
     """What a run that cannot be read throws; bags need ROS."""
     try:
-        from bag_reading import BagError
+        from stg_view.bag_reading import BagError
     except ImportError:
         return (PageError, BrowserError)
     return (PageError, BrowserError, BagError)

@@ -6,31 +6,23 @@ says how large the region is and how far AUVs stay from their target, and the ca
 follow. Everything else is the view as shipped.
 """
 
+import stg_common.quiet_start  # first: until here Ctrl-C is blocked, see view.launch
+import argparse
 import os
+import pathlib
 import signal
+import subprocess
+import tempfile
+import threading
 
-if __name__ == "__main__":  # Ctrl-C is blocked until here, see view.launch
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+import rospkg
+import rospy
+import std_msgs.msg
+import yaml
 
-import argparse  # noqa: E402
-import pathlib  # noqa: E402
-import subprocess  # noqa: E402
-import sys  # noqa: E402
-import tempfile  # noqa: E402
-import threading  # noqa: E402
-
-import rospkg  # noqa: E402
-import rospy  # noqa: E402
-import std_msgs.msg  # noqa: E402
-import yaml  # noqa: E402
-
-HERE = os.path.dirname(os.path.realpath(__file__))
-# rosrun starts this file through a relay elsewhere; the others lie beside the file itself.
-sys.path.insert(0, HERE)
-from scenario_reading import sections_of  # noqa: E402  (found by the line above)
-from stg_common.program import run_program  # noqa: E402  (found by scenario_reading)
-from stg_common.yaml_files import parse_yaml, read_yaml  # noqa: E402
+import stg_common.program
+from stg_common.yaml_files import parse_yaml, read_yaml
+from stg_view.scenario_reading import sections_of
 
 ON_LOOPBACK = "libauv_common_nodes.so"  # lets rviz's XML-RPC listen where ROS_IP says
 WAIT_S = 15.0  # of wall time for a scenario to appear
@@ -110,4 +102,4 @@ def main():
 
 
 if __name__ == "__main__":
-    run_program("view", main, rospkg.ResourceNotFound)
+    stg_common.program.run_program("view", main, rospkg.ResourceNotFound)

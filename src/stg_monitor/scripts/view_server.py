@@ -6,31 +6,20 @@ packets; the rest is asked for and decoded only while somebody does. A browser t
 sent all that was kept first. ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 """
 
-import os
-import signal
+import stg_common.quiet_start  # first: until here Ctrl-C is blocked, see graph.launch
+import asyncio
+import re
+import threading
+import time
 
-if __name__ == "__main__":  # Ctrl-C is blocked until here, see graph.launch
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
-
-import asyncio  # noqa: E402
-import re  # noqa: E402
-import sys  # noqa: E402
-import threading  # noqa: E402
-import time  # noqa: E402
-
-HERE = os.path.dirname(os.path.realpath(__file__))
-sys.path[:0] = [HERE]
-sys.path += [os.path.join(HERE, up) for up in ("../python", "../../auv_common/scripts", "../auv_common")]
-
-import auv_msgs.msg  # noqa: E402
-import rospy  # noqa: E402
-import std_msgs.msg  # noqa: E402
-from aiohttp import WSMsgType, web  # noqa: E402
-from stg_common.program import run_program  # noqa: E402
-from stg_view.from_bag import Collector, scene_of  # noqa: E402
-from stg_view.page import PageError, live_page  # noqa: E402
-from stg_view.recording import Recording, encode  # noqa: E402
+import auv_msgs.msg
+import rospy
+import std_msgs.msg
+from aiohttp import WSMsgType, web
+import stg_common.program
+from stg_view.from_bag import Collector, scene_of
+from stg_view.page import PageError, live_page
+from stg_view.recording import Recording, encode
 
 MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser is sent
 HOST = "127.0.0.1"
@@ -288,4 +277,4 @@ def main():
 
 
 if __name__ == "__main__":
-    run_program("view_server", main, PageError)
+    stg_common.program.run_program("view_server", main, PageError)

@@ -2,15 +2,12 @@
 
 import contextlib
 import json
-import os
 import pathlib
-import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "../python"))
-from stg_view.browser import missing, show, started  # noqa: E402  (found by the line above)
-from stg_view.page import report_page  # noqa: E402
+from stg_view.browser import missing, show, started
+from stg_view.page import report_page
 
 LACK = missing()
 LARGEST_MB = 10.0

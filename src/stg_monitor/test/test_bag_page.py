@@ -2,25 +2,23 @@
 
 import contextlib
 import io
-import os
 import pathlib
 import random
-import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402  (found by the line above, and finds the others)
-import auv_msgs.msg  # noqa: E402
-import genpy  # noqa: E402
-import rosbag  # noqa: E402
-import std_msgs.msg  # noqa: E402
-import report  # noqa: E402  (the program, in scripts/)
-from bag_reading import BagError  # noqa: E402
-from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench  # noqa: E402
-from stg_common.files import FileError  # noqa: E402
-from stg_view.recording import messages  # noqa: E402
+import view_fixtures
+import auv_msgs.msg
+import genpy
+import rosbag
+import std_msgs.msg
+from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
+from stg_common.files import FileError
+from stg_common.loading import load_program
+from stg_view.bag_reading import BagError
+from stg_view.recording import messages
 
+report = load_program(pathlib.Path(__file__).resolve().parents[1] / "scripts" / "report.py")
 AGENTS, STEPS = 3, 40
 
 

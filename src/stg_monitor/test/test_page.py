@@ -1,12 +1,9 @@
 """The page in a real browser: what it shows, that it asks nobody, and that no text becomes code."""
 
-import os
-import sys
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402  (found by the line above)
-from page_case import PageCase  # noqa: E402
+import view_fixtures
+from page_case import PageCase
 
 
 class PageTest(PageCase):

@@ -1,21 +1,18 @@
 """The page at all sizes: swarms of 1 to 50, regions of 2 m to 4 km, an hour of data; and its video.
 
-Times (opening, frames, lag) are measured by scripts/bench_view.py, as they depend on the machine.
+Times (opening, frames, lag) are measured by scripts/bench/bench_view.py, as they depend on the machine.
 """
 
-import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402  (found by the line above)
-from page_case import PageCase  # noqa: E402
-from stg_view.page import report_page  # noqa: E402
-from stg_view.video import write_video  # noqa: E402
+import view_fixtures
+from page_case import PageCase
+from stg_view.page import report_page
+from stg_view.video import write_video
 
 HOUR_MB = 50.0
 # An hour of a live run: 36,000 steps and 432,000 packets and receivers, as four AUVs at 10 Hz make them.

@@ -1,19 +1,16 @@
 """Recordings: what is written is read again, damage is told in words, folders and bags are taken."""
 
 import math
-import os
 import pathlib
 import random
 import subprocess
-import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import view_fixtures  # noqa: E402  (found by the line above, and finds the others)
-from stg_common.files import Damaged, FileError  # noqa: E402
-from stg_view.from_folder import read_folder  # noqa: E402
-from stg_view.recording import Packets, RecordingError, Recording, encode, messages  # noqa: E402
+import view_fixtures
+from stg_common.files import Damaged, FileError
+from stg_view.from_folder import read_folder
+from stg_view.recording import Packets, RecordingError, Recording, encode, messages
 
 REPORT = pathlib.Path(__file__).resolve().parents[1] / "scripts" / "report.py"
 LOG = """source,destination,addressed,kind,sequence,bytes,offered_s,generation_s,transmit_s,\

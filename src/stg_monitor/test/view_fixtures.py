@@ -1,14 +1,8 @@
 """Runs that the tests of the view make up: circles around a target, packets in turns."""
 
 import math
-import os
-import sys
 
-HERE = os.path.dirname(os.path.realpath(__file__))
-for up in ("../python", "../scripts", "../../auv_common/scripts"):
-    sys.path.insert(0, os.path.join(HERE, up))
-
-from stg_view.recording import Recording  # noqa: E402  (found by the lines above)
+from stg_view.recording import Recording
 
 HOSTILE = "</script><img src=x onerror=\"document.title='owned'\"><b>&amp;\u202e'\"` ${1}"
 LOSS, COLLISION = 2, 3

@@ -2,8 +2,6 @@
 """A browser that comes late is sent the tracks from the start, then what comes; no other site is."""
 
 import asyncio
-import os
-import sys
 import time
 import unittest
 
@@ -13,10 +11,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose
 
-HERE = os.path.dirname(os.path.realpath(__file__))
-for up in ("../python", "../scripts", "../../auv_common/scripts"):
-    sys.path.insert(0, os.path.join(HERE, up))
-from stg_view.recording import MAGIC, messages  # noqa: E402
+from stg_view.recording import MAGIC, messages
 
 URL, BEFORE, AFTER = "http://127.0.0.1:8317", 20, 10
 DEADLINE_S = 30.0

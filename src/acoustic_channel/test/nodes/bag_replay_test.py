@@ -9,7 +9,6 @@ import random
 import resource
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -20,9 +19,8 @@ import rostest
 from auv_msgs.msg import AcousticPacket
 from nav_msgs.msg import Odometry
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from fleet_world import Diagnostics, wait_for  # noqa: E402  (lies beside this file)
+from fleet_world import Diagnostics, wait_for
 
 NAMES = ("alpha", "beta", "gamma")
 START_S, DURATION_S = 1000.0, 30.0

@@ -1,17 +1,14 @@
 #!/usr/bin/python3
 """The example of the docs: two scripted vehicles chat on the clock of the wall."""
 
-import pathlib
-import sys
 import unittest
 
 import rospy
 import rostest
 from auv_msgs.msg import AcousticReception, TransmitStatus
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from fleet_world import wait_for  # noqa: E402  (lies beside this file)
+from fleet_world import wait_for
 
 
 class Chat(unittest.TestCase):

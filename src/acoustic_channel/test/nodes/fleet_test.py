@@ -2,8 +2,6 @@
 """The channel by itself: three vehicles of no project, with modems that disturb each other."""
 
 import math
-import pathlib
-import sys
 import unittest
 
 import rospy
@@ -11,9 +9,8 @@ import rostest
 from auv_msgs.msg import LinkState, LinkStates, PacketEvent, PacketEvents, TransmitStatus
 from auv_msgs.srv import Ping
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from fleet_world import Diagnostics, Vehicle, World, wait_for  # noqa: E402  (lies beside this file)
+from fleet_world import Diagnostics, Vehicle, World, wait_for
 
 SOUND_SPEED = 1500.0
 

@@ -1,7 +1,5 @@
 """What the tests of the channel by itself share: a clock, vehicles on it, and waiting."""
 
-import pathlib
-import sys
 import threading
 import time
 
@@ -11,9 +9,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "auv_common/test"))
 
-from waiting import wait_for  # noqa: E402  (of all packages' tests)
+from stg_common.waiting import wait_for
 
 
 class Diagnostics:

@@ -180,8 +180,8 @@ OF_AUV = ("task_state", "target_detection")
 
 def read_bag(path, salvage, title):
     """The bytes of the recording of a bag; BagError for what is damaged, LookupError for no run."""
-    # Beside scripts, which the tool puts on the path; ROS is needed for this one only.
-    from bag_reading import BagError, messages, open_bag
+    # ROS is needed for this one only.
+    from stg_view.bag_reading import BagError, messages, open_bag
 
     recording = Recording(title=title)
     collector, topic = Collector(recording), ""

@@ -1,0 +1,172 @@
+#!/usr/bin/python3
+"""Measures the page of the view in Debian's Chromium, and what it costs a run; prints one JSON object.
+
+Parts: page (a report: size, seconds to open, frames a second while it plays, memory), live (twenty AUVs
+at 10 Hz: lag and frames a second), lockstep (what a run in lockstep loses to the view). The last two
+need a sourced workspace. Figures depend on what else the machine does: `load` is told
+with them, and the work (seconds of processor time of all processes of the browser), which depends less on it.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+from stg_view.browser import show, started
+
+PORT, AGENTS, RATE_HZ = 8318, 20, 10.0
+FRAMES = """const done = arguments[1], seconds = arguments[0], times = [];
+const next = (now) => { times.push(now);
+  if (now - times[0] < 1000 * seconds) requestAnimationFrame(next); else done((times.length - 1) * 1000 / (now - times[0])); };
+requestAnimationFrame(next);"""
+
+
+def frames_per_s(driver, seconds):
+    """How often the page draws."""
+    driver.set_script_timeout(seconds + 30.0)
+    return driver.execute_async_script(FRAMES, seconds)
+
+
+def work_of(pid):
+    """Seconds that a process and those below it have worked."""
+    parents, work = {}, {}
+    for entry in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = entry.read_text().rpartition(")")[2].split()
+        except OSError:  # it has ended
+            continue
+        one = int(entry.parent.name)
+        parents[one], work[one] = int(fields[1]), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    below = {pid}
+    while more := {one for one, parent in parents.items() if parent in below} - below:
+        below |= more
+    return sum(work.get(one, 0.0) for one in below)
+
+
+def measure_page(page, seconds):
+    """Figures of a report."""
+    with started() as driver:
+        begin, before = time.monotonic(), work_of(driver.service.process.pid)
+        show(driver, page.resolve().as_uri())
+        opening, opened = time.monotonic() - begin, work_of(driver.service.process.pid)
+        driver.execute_script("STG.app.play(true)")
+        frames = frames_per_s(driver, seconds)
+        work = (work_of(driver.service.process.pid) - opened) / max(1.0, frames * seconds)
+        driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
+        used = driver.execute_cdp_cmd("Runtime.getHeapUsage", {})
+        steps, agents = driver.execute_script("return [STG.app.recording.steps.count, STG.app.recording.agents]")
+    memory = (used["usedSize"] + used.get("backingStorageSize", 0.0)) / 1e6
+    return {"agents": agents, "decisions": steps, "megabytes": page.stat().st_size / 1e6, "opens_in_s": opening,
+            "opening_work_s": opened - before, "frames_per_s": frames, "work_of_a_frame_s": work, "memory_mb": memory}  # fmt: skip
+
+
+def publish(seconds):
+    """Plays a swarm that circles, as /swarm_state, in a process of its own."""
+    import math
+
+    import auv_msgs.msg
+    import rospy
+    from geometry_msgs.msg import Point, Pose
+
+    rospy.init_node("bench_view_swarm")
+    states = rospy.Publisher("/swarm_state", auv_msgs.msg.SwarmState, queue_size=10)
+    for k in range(int(seconds * RATE_HZ)):
+        state = auv_msgs.msg.SwarmState(step=k, target_positions=[Point()], fresh=[True] * AGENTS)
+        state.header.stamp = rospy.Time.from_sec(1.0 + k / RATE_HZ)
+        for i in range(AGENTS):
+            angle, pose = 0.01 * k + 2 * math.pi * i / AGENTS, Pose()
+            pose.position.x, pose.position.y, pose.orientation.w = 90 * math.cos(angle), 90 * math.sin(angle), 1.0
+            state.poses.append(pose)
+        states.publish(state)
+        time.sleep(1.0 / RATE_HZ)
+
+
+def measure_live(seconds):
+    """Lag and frames of a live page."""
+    server = [sys.executable, ROOT / "src/stg_monitor/scripts/view_server.py", f"_port:={PORT}", f"_rate_hz:={RATE_HZ}"]
+    ends = []
+    try:
+        ends.append(subprocess.Popen(["roscore"], stdout=subprocess.DEVNULL))
+        time.sleep(5.0)
+        ends.append(subprocess.Popen(server, stdout=subprocess.DEVNULL))
+        ends.append(subprocess.Popen([sys.executable, __file__, "--publish", str(3 * seconds + 60)]))
+        time.sleep(5.0)
+        with started() as driver:
+            show(driver, f"http://127.0.0.1:{PORT}")
+            frames, lags = frames_per_s(driver, seconds), []
+            for _ in range(int(4 * seconds)):
+                time.sleep(0.25)
+                lags.append(driver.execute_script("return STG.app.lag"))
+    finally:
+        for one in reversed(ends):
+            one.terminate()
+            one.wait()
+    lags = sorted(lag for lag in lags if lag is not None)
+    return {"agents": AGENTS, "frames_per_s": frames, "lag_s": statistics.median(lags), "lag_s_95": lags[int(0.95 * len(lags))]}
+
+
+def run_lockstep(*arguments):
+    """Seconds of wall and of all processes' work that a run in lockstep takes."""
+    begin, before = time.monotonic(), os.times()
+    command = [ROOT / "stg", "run", "medium", "episodes:=3", "real_time_factor:=0", "table:=false", *arguments]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    after = os.times()
+    work = after.children_user + after.children_system - before.children_user - before.children_system
+    return time.monotonic() - begin, work
+
+
+def measure_lockstep(repeats):
+    """Runs with and without the view, in turns."""
+    plain, viewed = [], []
+    for _ in range(repeats):
+        plain.append(run_lockstep())
+        viewed.append(run_lockstep("view:=web", f"port:={PORT}"))
+    best = lambda runs, k: min(run[k] for run in runs)
+    return {"wall_s": best(plain, 0), "wall_with_view_s": best(viewed, 0), "work_s": best(plain, 1), "work_with_view_s": best(viewed, 1)}
+
+
+def main():
+    """Measures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", help="page, live, lockstep (default: page)")
+    parser.add_argument("--page", type=pathlib.Path, help="a report (default: one of field20 is flown and made)")
+    parser.add_argument("--seconds", type=float, default=10.0, help="of each measurement (default: 10)")
+    parser.add_argument("--repeats", type=int, default=3, help="runs of lockstep each (default: 3)")
+    parser.add_argument("--publish", type=float, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.publish:
+        publish(options.publish)
+        return
+    found = {"load": os.getloadavg()[0], "cores": os.cpu_count()}
+    for part in options.parts or ["page"]:
+        if part == "live":
+            found[part] = measure_live(options.seconds)
+        elif part == "lockstep":
+            found[part] = measure_lockstep(options.repeats)
+        elif part == "page":
+            with tempfile.TemporaryDirectory() as folder:
+                page = options.page or fly(pathlib.Path(folder))
+                found[part] = measure_page(page, options.seconds)
+        else:
+            parser.error(f"no part '{part}'; there are page, live and lockstep")
+    print(json.dumps(found))
+
+
+def fly(folder):
+    """Makes the report of one episode of field20; returns its path."""
+    run, page = folder / "run", folder / "run.html"
+    evaluate = [ROOT / "devel/lib/marl_trainer/evaluate", "--policy", "encircle", "--scenario", "field20"]
+    subprocess.run([*evaluate, "--episodes", "1", "--record", run], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([ROOT / "src/stg_monitor/scripts/report.py", run, "--out", page], check=True, stdout=subprocess.DEVNULL)
+    return page
+
+
+if __name__ == "__main__":
+    main()

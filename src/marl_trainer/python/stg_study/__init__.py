@@ -1,0 +1,1 @@
+"""A study: many trainings and evaluations, and the tables and figures made of them."""
