@@ -25,6 +25,7 @@ KNOWN = {
     "curriculum": "#882255",
     "separated": "#CC79A7",
     "silent": "#56B4E9",
+    "no_links_roles": "#332288",
     # Algorithms: the paper's baselines, and on equal terms, where mappo is what stg is.
     "mappo": "#0072B2",
     "ippo": "#332288",
