@@ -10,7 +10,10 @@ set -euo pipefail
 scenario=$1 out=$2
 shift 2
 
-teacher=$(<"$(dirname "$(readlink -f "$0")")/shipped_teacher.txt")
+# The law that is imitated stands in the study that flies it.
+studies=$(cd "$(dirname "$(readlink -f "$0")")/../../src/marl_trainer/studies" && pwd)
+teacher=$(sed -n "s/^  teacher's law: \"\(.*\)\"$/\1/p" "$studies/flights/shipped.yaml")
+[[ -n "$teacher" ]]
 # Poor links need the most practice.
 poor=degraded_communication,combined_stress
 conditions=nominal,$poor,fast_target,$poor,far_initialization,$poor,limited_sensing,$poor

@@ -69,9 +69,6 @@ class Tools(unittest.TestCase):
         self.check_refused("none.svg: No such", "lint/draw_architecture.py", "--check", "--out", "none")
         self.check_refused("--at: 'x' is no number", "docs/screenshot.sh", "--at", "x", "o.png")
         self.check_refused("no folder for none/o.png", "docs/screenshot.sh", "none/o.png")
-        self.check_refused("none: there is no medium.onnx", "results/shipped_tables.py", "out", "none")
-        self.check_refused("medium_SEED: 0 finished", "results/shipped_seeds.py", "out", "none")
-        self.check_refused("--trials.*1 or more", "results/controllers/tune.py", "a", "b", "--trials", "0")
 
     def test_figure_of_the_field_refuses_what_it_cannot_draw(self):
         self.check_refused("^fig6: scenario 'medium' has no open water", "results/fig6", "--cases", "medium")
@@ -98,7 +95,7 @@ class Tools(unittest.TestCase):
         self.assertGreater(figures["largest_agent_memory_mib"], 0.0)
 
     def test_help_is_no_argument(self):
-        for name in ("results/shipped_tables.py", "results/shipped_seeds.py", "results/train_shipped.sh", "bench/soak"):
+        for name in ("results/train_shipped.sh", "bench/soak"):
             done = run(self.folder, name, "--help")
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
             self.assertRegex(done.stdout, "(?i)usage: ")

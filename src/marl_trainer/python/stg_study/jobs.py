@@ -167,40 +167,27 @@ class Training:
             return 0.0
 
 
-class Evaluation:
-    """One policy or controller on one condition and one block of evaluation seeds."""
+class Flight:
+    """Episodes of `evaluate`: one policy or controller on one condition, from one seed on.
+
+    base: the path of the files that it leaves, without their endings. is_file: the policy is a file,
+    whose content the result depends on. block: the block of seeds that the episodes must be of.
+    """
 
     kind = "evaluation"
+    training = None
 
-    def __init__(self, study, scenario, condition, entry, seed, work, bin_dir, training=None):
-        self.name = f"evaluate {scenario.name} {condition} {entry.name} seed {seed}"
-        self.scenario, self.condition = scenario.name, condition
-        self.method, self.seed = entry.name, seed
-        self.training = training
-        base = os.path.join(
-            work, "evaluations", scenario.name, condition, f"{entry.name}_seed{seed}"
-        )
+    def __init__(self, name, policy, arguments, episodes, base, bin_dir, is_file=False, block=REPORTING):
+        self.name, self.policy, self.arguments, self.episodes = name, policy, arguments, episodes
         self.csv, self.json, self.log = base + ".csv", base + ".json", base + ".log"
-        self.episodes = study.episodes
-        self.policy = training.policy if training else entry.policy
-        self.arguments = [
-            *("--scenario", scenario.name, "--condition", condition),
-            *("--episodes", str(study.episodes)),
-            *("--seed", str(study.evaluation_seed_of(seed))),
-        ]
-        if training is None:
-            self.arguments += entry.arguments
-        else:
-            if entry.variant != "stg":
-                self.arguments += ["--variant", entry.variant]
-            self.arguments += _overrides(entry.set + entry.evaluate_set)
         self._program = os.path.join(bin_dir, "evaluate")
+        self._is_file, self._block = is_file, block
 
     def _identity(self):
         """What the result depends on: the options and the policy's content."""
         return {
             "arguments": self.arguments,
-            "policy": policy_hash(self.policy) if self.training else self.policy,
+            "policy": policy_hash(self.policy) if self._is_file else self.policy,
         }
 
     def conflict(self):
@@ -229,14 +216,17 @@ class Evaluation:
         """What the complete result says of its metrics."""
         return member(self.json, read_json(self.json), "summary", dict)
 
+    def episode_values(self, metric):
+        """The metric of every episode of the complete result, in order."""
+        return [row[metric] for row in table_rows(self.csv, {metric: number})]
+
     def finish(self, output):
         """Keeps the result: `output` ends with the JSON object of the evaluate command."""
         summary = json.loads(output.strip().splitlines()[-1])
         block = summary.get("seed_block")
-        if block != REPORTING:
+        if block != self._block:
             raise FileError(
-                self.name,
-                f"its episodes are of the {block} block, and tables are of the {REPORTING} block",
+                self.name, f"its episodes are of the {block} block, and must be of the {self._block} block"
             )
         os.replace(self.csv + ".part", self.csv)
         result = {"identity": self._identity(), "summary": summary}
@@ -245,6 +235,32 @@ class Evaluation:
     def fraction_done(self):
         """Evaluations are short."""
         return 0.0
+
+
+class Evaluation(Flight):
+    """A method or controller of a study on one condition and one block of evaluation seeds."""
+
+    def __init__(self, study, scenario, condition, entry, seed, work, bin_dir, training=None):
+        base = os.path.join(
+            work, "evaluations", scenario.name, condition, f"{entry.name}_seed{seed}"
+        )
+        arguments = [
+            *("--scenario", scenario.name, "--condition", condition),
+            *("--episodes", str(study.episodes)),
+            *("--seed", str(study.evaluation_seed_of(seed))),
+        ]
+        if training is None:
+            arguments += entry.arguments
+        else:
+            if entry.variant != "stg":
+                arguments += ["--variant", entry.variant]
+            arguments += _overrides(entry.set + entry.evaluate_set)
+        name = f"evaluate {scenario.name} {condition} {entry.name} seed {seed}"
+        policy = training.policy if training else entry.policy
+        super().__init__(name, policy, arguments, study.episodes, base, bin_dir, is_file=bool(training))
+        self.scenario, self.condition = scenario.name, condition
+        self.method, self.seed = entry.name, seed
+        self.training = training
 
 
 def plan(study, work, bin_dir):

@@ -5,6 +5,7 @@ import os
 from stg_study import figure_style, figures_bars, figures_curves, figures_scores, tables, tables_cost
 from stg_study.data import Paper, Results
 from stg_study.files import write_atomically
+from stg_study.statistics import FINAL_SHARE, RESAMPLES
 
 # The paper's tables: main, final stage, per seed, stress.
 PAPER_TABLES = {"medium": ("1", "S3", "S4", "S7"), "hard": ("2", "S5", "S6", "S8")}
@@ -22,7 +23,7 @@ CONVENTIONS = """\
   the paper does; the two differ by the number of AUVs, {agents}.
 - Tail: the last 100 decisions. Tables S3-S6: tracking error and lost rate are of the whole episode;
   Tables 1, 2, S7, S8: of the tail.
-- Final stage: the last 20 % of the validations of a training, which fly the deterministic policy
+- Final stage: the last {final} % of the validations of a training, which fly the deterministic policy
   on held-out episodes. Best checkpoint: the validation with the highest training's return; the
   evaluations reload it.
 - Evaluation: {episodes} episodes from seed {first} + {stride} x training seed, of the reporting
@@ -31,7 +32,7 @@ CONVENTIONS = """\
   blocks of episodes); over episodes of all seeds in Tables S7, S8 and the comparison.
 - Interquartile means are over runs: each training scores the mean of its episodes on each condition,
   and the middle half of these scores is averaged. 95 % bootstrap intervals draw the trainings again
-  2000 times. With three seeds the intervals are rough.
+  {resamples} times. With {seeds} seeds the intervals are rough.
 - Probability of improvement: Agarwal et al. 2021; a half for what is equal.
 - Colliding pairs: pairs of AUVs in contact per decision, over the whole episode and over the tail.
   The paper tells neither. In band: share of the tail with d between d_l and d_u.
@@ -164,6 +165,9 @@ def write_report(study, folder):
             episodes=study.episodes,
             first=study.evaluation_seed,
             stride=study.evaluation_seed_stride,
+            final=round(100 * FINAL_SHARE),
+            resamples=RESAMPLES,
+            seeds={2: "two", 3: "three", 5: "five"}.get(len(study.seeds), len(study.seeds)),
         )
     )
     write_atomically(os.path.join(folder, "report.md"), "\n".join(overview))

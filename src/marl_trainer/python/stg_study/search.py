@@ -16,6 +16,7 @@ from stg_study.jobs import Training
 from stg_study.collect import csv_text
 from stg_study.statistics import final_stage, mean_std
 from stg_study.study import Method, ScenarioEntry, Study, StudyError, build, is_name, is_option
+from stg_study.study import shipped_studies
 
 LOG_DIGITS = 2  # significant digits of a value drawn from an interval, where they lie in it
 
@@ -35,6 +36,18 @@ class Search:
     train: Dict[str, object] = dataclasses.field(default_factory=dict)  # options of every trial
     fixed: dict = dataclasses.field(default_factory=dict)  # options of all of an algorithm's trials
     spaces: dict = dataclasses.field(default_factory=dict)  # anchors for `algorithms`, not read
+
+
+def find_search(name_or_path):
+    """Path of a search given as a file or by the name of a shipped one."""
+    if os.path.exists(name_or_path) and not os.path.isdir(name_or_path):
+        return name_or_path
+    folder = os.path.join(shipped_studies(), "search")
+    path = os.path.join(folder, name_or_path + ".yaml")
+    if os.path.isfile(path):
+        return path
+    names = sorted(f[:-5] for f in os.listdir(folder) if f.endswith(".yaml"))
+    raise StudyError(f"--search: no file or search '{name_or_path}'; there are " + ", ".join(names))
 
 
 def load_search(path):

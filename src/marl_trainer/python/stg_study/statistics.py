@@ -4,6 +4,7 @@ import numpy as np
 
 TRIM = 0.25  # share cut off at each end by the interquartile mean
 RESAMPLES = 2000
+FINAL_SHARE = 0.2  # of the validations of a training
 
 
 def mean_std(values):
@@ -43,6 +44,20 @@ def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
     return float(interquartile_mean(runs.ravel())), float(low), float(high)
 
 
+def paired_interval(ours, theirs, resamples=2 * RESAMPLES, confidence=0.95, seed=0):
+    """Mean of ours - theirs over episodes that both flew, and its bootstrap interval over episodes.
+
+    Where one has more episodes, its first ones are compared. Returns (mean, lower end, upper end).
+    """
+    count = min(len(ours), len(theirs))
+    difference = np.asarray(ours[:count], dtype=float) - np.asarray(theirs[:count], dtype=float)
+    random = np.random.default_rng(seed)
+    means = difference[random.integers(count, size=(resamples, count))].mean(axis=1)
+    tail = 100.0 * (1.0 - confidence) / 2.0
+    low, high = np.percentile(means, [tail, 100.0 - tail])
+    return float(difference.mean()), float(low), float(high)
+
+
 def probability_of_improvement(ours, theirs, resamples=RESAMPLES, confidence=0.95, seed=0):
     """How likely a training of ours scores more than one of theirs, and its bootstrap interval.
 
@@ -72,7 +87,7 @@ def performance_profile(scores, thresholds):
     return (scores[None, :] > np.asarray(thresholds, dtype=float)[:, None]).mean(axis=1)
 
 
-def final_stage(points, share=0.2):
+def final_stage(points, share=FINAL_SHARE):
     """The last `share` of a list of evaluation points, at least one of them."""
     if not points:
         raise ValueError("a curve needs at least one point")

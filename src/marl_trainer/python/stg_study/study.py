@@ -118,8 +118,10 @@ def _check_type(where, value, expected):
         good = isinstance(value, int) and not isinstance(value, bool)
     elif expected == Optional[str]:
         good = value is None or isinstance(value, str)
-    elif expected is str:
-        good = isinstance(value, str)
+    elif expected in (str, bool):
+        good = isinstance(value, expected)
+    elif expected is float:
+        good = isinstance(value, (int, float)) and not isinstance(value, bool)
     elif expected == List[int]:
         good = isinstance(value, list) and all(
             isinstance(v, int) and not isinstance(v, bool) for v in value
@@ -220,9 +222,10 @@ def find_study(name_or_path):
     """Path of a study given as a file or by the name of a shipped one."""
     if os.path.exists(name_or_path) and not os.path.isdir(name_or_path):
         return name_or_path
-    folder = shipped_studies()
-    path = os.path.join(folder, name_or_path + ".yaml")
-    if os.path.isfile(path):
-        return path
-    names = sorted(f[:-5] for f in os.listdir(folder) if f.endswith(".yaml"))
+    names = []
+    for folder in (shipped_studies(), os.path.join(shipped_studies(), "flights")):
+        path = os.path.join(folder, name_or_path + ".yaml")
+        if os.path.isfile(path):
+            return path
+        names += sorted(f[:-5] for f in os.listdir(folder) if f.endswith(".yaml"))
     raise StudyError(f"--study: no file or study '{name_or_path}'; there are " + ", ".join(names))

@@ -1,27 +1,25 @@
-#!/usr/bin/python3
-"""Searches for the constants of a controller as policies are trained: on validation seeds only, with
+"""A search for the constants of a controller, as policies are trained: on seeds for choosing only, with
 a budget that is stated.
 
-Usage: tune.py SEARCH.yaml TRIALS.csv [--trials N] [--evaluate FILE] [--workers N], in a built and
-sourced workspace. SEARCH.yaml, such as those beside this file, says what is searched (its keys are
-explained in pursuit_separated.yaml). TRIALS.csv gets a row for each trial, in the order they were
-flown. What was flown is kept beside it in TRIALS.jsonl: started again, a search goes on.
-
-Search: the constants of `start`, then random within `space` (uniform; where a range spans a decade
-or more, of the logarithm), then near the best so far. The same file draws the same constants.
+The search flies the constants of `start`, then random ones within `space` (uniform; where a range spans
+a decade or more, of the logarithm), then constants near the best so far. The same file draws the same
+constants.
 """
 
-import argparse
-import csv
+import hashlib
+import io
 import math
 import os
 import random
-import sys
 
-import flights
 from stg_common.files import Damaged
-from stg_common.program import run_program
-from stg_common.yaml_files import read_yaml
+from stg_study.collect import csv_text
+from stg_study.files import write_atomically
+from stg_study.jobs import Flight
+from stg_study.runner import Runner
+from stg_study.study import StudyError
+
+CHOOSING = "choosing"  # the block of seeds that choices are made on
 
 
 def is_count(value):
@@ -80,11 +78,8 @@ KEYS = {  # what each must be: as a test, and in words
 }
 
 
-def read(file):
-    """Returns the search of a file; throws FileError where it is none."""
-    search = read_yaml(file)
-    if not isinstance(search, dict):
-        raise Damaged(file, "is no mapping")
+def checked(search, file):
+    """Returns the search that a file holds; throws Damaged where it is none."""
     wrong = set(KEYS).symmetric_difference(search)
     if wrong:
         raise Damaged(file, f"missing or unknown: {', '.join(sorted(map(str, wrong)))}")
@@ -128,24 +123,42 @@ def text_of(controller, values):
     return controller + (":" + constants if constants else "")
 
 
-def fly(search, known, values):
+class Interrupted(Exception):
+    """The search was asked to stop; the same command goes on from there."""
+
+
+def _jobs(search, policy, work, bin_dir):
+    """The flights of one trial: a cell for each scenario and condition."""
+    jobs = []
+    for scenario in search["scenarios"]:
+        for condition in search["conditions"]:
+            arguments = ["--scenario", scenario, "--condition", condition]
+            arguments += ["--episodes", str(search["episodes"]), "--seed", str(search["seed"])]
+            key = hashlib.sha256(" ".join([policy, *arguments]).encode()).hexdigest()[:16]
+            base = os.path.join(work, "flights", key)
+            name = f"{policy} on {scenario} {condition}"
+            jobs.append(Flight(name, policy, arguments, search["episodes"], base, bin_dir, block=CHOOSING))
+    return jobs
+
+
+def _fly(search, values, work, bin_dir, parallel):
     """Returns (score, means over all cells of what is scored)."""
-    found = [
-        known.fly(text_of(search["controller"], values), scenario, condition, search["episodes"],
-                  search["seed"])
-        for scenario in search["scenarios"] for condition in search["conditions"]
-    ]
-    blocks = {str(cell.get("seed_block")) for cell in found}
-    if blocks != {"choosing"}:
-        sys.exit(f"tune: nothing may be chosen by seeds of the {', '.join(sorted(blocks))} block")
+    jobs = _jobs(search, text_of(search["controller"], values), work, bin_dir)
+    if not all(job.complete() for job in jobs):
+        runner = Runner([], jobs, parallel, io.StringIO())
+        if not runner.run():
+            raise Interrupted
+        if runner.failed:
+            raise StudyError(runner.failed[0])
+    found = [job.summary() for job in jobs]
     unknown = [name for name in search["score"] if not all(is_number(cell.get(name)) for cell in found)]
     if unknown:
-        sys.exit(f"tune: score: evaluate tells of no {', '.join(unknown)}")
+        raise StudyError(f"score: evaluate tells of no {', '.join(unknown)}")
     means = {name: sum(cell[name] for cell in found) / len(found) for name in search["score"]}
     return sum(weight * means[name] for name, weight in search["score"].items()), means
 
 
-def trials_of(search, known):
+def _trials(search, work, bin_dir, parallel):
     """Flies the search; yields (trial, score, means, constants) of each trial."""
     rng = random.Random(search["draws"])
     best = None
@@ -159,38 +172,21 @@ def trials_of(search, known):
             values = draw(search["space"], None, 0.0, rng)
         else:
             values = draw(search["space"], best[1], first * (last / first) ** progress, rng)
-        score, means = fly(search, known, values)
+        score, means = _fly(search, values, work, bin_dir, parallel)
         if best is None or score > best[0]:
             best = (score, values)
-            print(f"trial {trial}: {score:.4f} {text_of(search['controller'], values)}")
+            print(f"trial {trial}: {score:.4f} {text_of(search['controller'], values)}", flush=True)
         yield trial, score, means, values
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("search")
-    parser.add_argument("out")
-    parser.add_argument("--trials", type=flights.count, help="instead of the file's")
-    parser.add_argument("--evaluate", default="evaluate", help="program, where not rosrun's")
-    parser.add_argument("--workers", type=flights.count, default=1)
-    arguments = parser.parse_args()
-    search = read(arguments.search)
-    search["trials"] = arguments.trials or search["trials"]
-    known = flights.Flights(
-        os.path.splitext(arguments.out)[0] + ".jsonl", arguments.evaluate, arguments.workers
-    )
-    names = list(search["space"])
-    with open(arguments.out, "w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(["trial", "score", *search["score"], *names])
-        for trial, score, means, values in trials_of(search, known):
-            # Empty: the controller's own constant.
-            table.writerow([trial, f"{score:.4f}", *(f"{mean:.6g}" for mean in means.values()),
-                            *(values.get(name, "") for name in names)])  # fmt: skip
-            file.flush()
+def run_search(search, out, work, bin_dir, parallel):
+    """Flies the search and writes OUT/trials.csv, a row for each trial in the order they were flown."""
+    names, rows = list(search["space"]), []
+    for trial, score, means, values in _trials(search, work, bin_dir, parallel):
+        # An empty cell is the controller's own constant.
+        rows.append([trial, f"{score:.4f}", *(f"{mean:.6g}" for mean in means.values()),
+                     *(values.get(name, "") for name in names)])  # fmt: skip
+        header = ["trial", "score", *search["score"], *names]
+        write_atomically(os.path.join(out, "trials.csv"), csv_text(header, rows))
     cells = len(search["scenarios"]) * len(search["conditions"])
     print(f"{search['trials']} trials, {search['trials'] * cells * search['episodes']} episodes")
-
-
-if __name__ == "__main__":
-    run_program("tune", main, flights.FlightError, status=1)

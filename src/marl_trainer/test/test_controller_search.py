@@ -1,4 +1,4 @@
-"""scripts/results/controllers/tune.py: finds what it searches, keeps every trial, chooses by no other seed."""
+"""The search for a controller's constants finds them, keeps every trial, and chooses by no other seed."""
 
 import csv
 import os
@@ -10,11 +10,12 @@ import unittest
 
 import yaml
 
-FOLDER = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "results" / "controllers"
+PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 # In place of `evaluate`: the return has its peak at gain 2, and a contact costs more than it gives.
 EVALUATE = f"""#!{sys.executable}
 import json, math, sys
 given = dict(zip(sys.argv[1::2], sys.argv[2::2]))
+open(given["--csv"], "w").write("episode\\n" + "0\\n" * int(given["--episodes"]))
 constants = dict(c.split("=") for c in given["--policy"].partition(":")[2].split(",") if c)
 gain, cap = float(constants.get("gain", 0.1)), float(constants.get("cap", 1.0))
 print(json.dumps({{"return": 100 - math.log(gain / 2) ** 2 + cap, "contact": cap,
@@ -33,9 +34,9 @@ class Tune(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name)
-        evaluate = self.folder / "evaluate"
-        evaluate.write_text(EVALUATE)
-        evaluate.chmod(0o755)
+        for name in ("train", "evaluate"):
+            (self.folder / name).write_text(EVALUATE)
+            (self.folder / name).chmod(0o755)
 
     def run_tune(self, **changes):
         """Returns the finished program."""
@@ -49,13 +50,13 @@ class Tune(unittest.TestCase):
     def run_file(self):
         """Returns the finished program, run with the search that is there."""
         return subprocess.run(
-            [sys.executable, str(FOLDER / "tune.py"), str(self.folder / "search.yaml"),
-             str(self.folder / "out.csv"), "--evaluate", str(self.folder / "evaluate")],
+            [sys.executable, str(PACKAGE / "scripts" / "tune"), "--search", str(self.folder / "search.yaml"),
+             "--out", str(self.folder / "out"), "--bin", str(self.folder)],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
 
     def trials(self):
         """Returns the rows of the table."""
-        with open(self.folder / "out.csv", encoding="utf-8", newline="") as file:
+        with open(self.folder / "out" / "trials.csv", encoding="utf-8", newline="") as file:
             return list(csv.DictReader(file))
 
     def test_finds_the_best_constants_and_keeps_every_trial(self):
@@ -80,17 +81,17 @@ class Tune(unittest.TestCase):
 
     def test_seeds_for_reporting_are_refused(self):
         run = self.run_tune(seed=5000000)
-        self.assertEqual(run.returncode, 1)
-        self.assertIn("seeds of the reporting block", run.stderr)
+        self.assertEqual(run.returncode, 2)
+        self.assertRegex(run.stderr, "^tune: .*of the reporting block, and must be of the choosing block")
 
     def test_unknown_keys_are_refused(self):
         run = self.run_tune(trails=3)
-        self.assertEqual(run.returncode, 1)
+        self.assertEqual(run.returncode, 2)
         self.assertIn("missing or unknown: trails", run.stderr)
 
     def test_damaged_files_are_refused_in_one_line(self):
         def refused(what, run):
-            self.assertEqual(run.returncode, 1, what)
+            self.assertEqual(run.returncode, 2, what)
             self.assertRegex(run.stderr, rf"^tune: [^\n]*{what}[^\n]*\n$")
 
         for changes in ({"space": {"gain": 3}}, {"space": {"gain": [2.0, "x"]}}, {"start": 3},
@@ -104,33 +105,23 @@ class Tune(unittest.TestCase):
         file = self.folder / "search.yaml"
         for text, what in (
             (yaml.safe_dump(SEARCH) + "trials: 5\n", r"search.yaml:\d+: trials: duplicate key"),
-            ("3", "search.yaml: is no mapping"), ("\n" + "[" * 9999, "search.yaml:2: "),
+            ("\n" + "[" * 9999, "search.yaml:2: "),
         ):  # fmt: skip
             file.write_text(text)
             refused(what, self.run_file())
         file.unlink()
         os.mkfifo(file)
         refused("search.yaml: is no regular file", self.run_file())
-        self.run_tune(trials=2)
-        with open(self.folder / "out.jsonl", "a", encoding="utf-8") as flown:
-            flown.write('{"key": "cut o')
-        refused("out.jsonl:3: is not JSON", self.run_tune(trials=2))
 
     def test_a_flight_that_fails_is_told_in_one_line(self):
         (self.folder / "evaluate").write_text("#!/bin/sh\necho why >&2\nexit 3\n")
         run = self.run_tune()
-        self.assertEqual((run.returncode, run.stderr), (1, "tune: evaluate: exit status 3: why\n"))
-
-    def test_tables_of_the_field_name_a_scenario_that_has_no_such_metrics(self):
-        run = subprocess.run(
-            [sys.executable, str(FOLDER / "field_tables.py"), str(self.folder / "out"), "--scenarios",
-             "box", "--evaluate", str(self.folder / "evaluate")],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
-        self.assertEqual(run.returncode, 1)
-        self.assertEqual(run.stderr, "field_tables: box: is no scenario of open water\n")
+        self.assertEqual(run.returncode, 2)
+        self.assertRegex(run.stderr, r"^tune: pursuit on medium nominal: exit status 3 \(log: [^\n]*\)\n$")
 
     def test_shipped_searches_name_choosing_seeds_and_constants_of_their_space(self):
-        files = sorted(FOLDER.glob("*.yaml"))
+        files = sorted((PACKAGE / "studies" / "search").glob("*.yaml"))
+        files = [file for file in files if "controller" in yaml.safe_load(file.read_text())]
         self.assertGreaterEqual(len(files), 4)
         for file in files:
             search = yaml.safe_load(file.read_text())

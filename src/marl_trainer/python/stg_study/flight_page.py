@@ -1,0 +1,212 @@
+"""The table and the page of a study of flights: NAME.csv from its jobs, NAME.md from NAME.csv."""
+
+import math
+import os
+
+from stg_common.csv_files import count, number, optional, table_rows
+from stg_common.files import Damaged
+from stg_study.collect import write_rows
+from stg_study.files import write_atomically
+from stg_study.flight_study import flown
+from stg_study.statistics import paired_interval
+from stg_study.tables import NOTHING, cell, markdown
+
+PLACE = ("section", "scenario", "condition", "variant")
+KEY = (*PLACE, "pilot", "knows", "seeds", "episodes")
+PAIRED = ("difference", "difference_low", "difference_high")
+LEAST_GAP = 0.02  # of what truth is worth, below which no share of it is told
+TITLES = {"scenario": "Scenario", "condition": "Condition", "variant": "Variant", "pilot": "Flown by",
+          "knows": "Knows", "seeds": "Seeds", "episodes": "Episodes"}  # fmt: skip
+READING = """\
+Every row flies the same episodes from seed {seed} on, of the reporting block: no training and no choice has seen them.
+Numbers are means over episodes; `{name}.csv` has the standard deviations, too. Made by
+`rosrun marl_trainer reproduce --study {name}`; what is flown stands in [{name}.yaml]({name}.yaml)."""
+READING_SEEDS = " A row with seeds of training has the mean and the standard deviation over them."
+READING_PAIRED = (" The last column is {pilot} less the row in `{metric}`, paired by episode, with its 95 % bootstrap"
+                  " interval over episodes.")  # fmt: skip
+READING_GAP = (" Gap closed: 0 is the best law on its own estimates, 1 the same law on true states; a dash where the"
+               " two differ by less than 0.02.")  # fmt: skip
+
+
+def rows_of(study, cells):
+    """One dictionary for each cell; those that are not complete are left out."""
+    rows, episodes = [], {}
+    for one in cells:
+        if not all(job.complete() for job in one.jobs):
+            continue
+        row = {"section": one.section, "scenario": one.scenario, "condition": one.condition,
+               "variant": one.variant, "pilot": one.pilot, "knows": one.knows,
+               "seeds": len(one.jobs), "episodes": one.jobs[0].episodes}  # fmt: skip
+        for column in study.columns:
+            value = None if column.metric == "gap_closed" else flown(one, column.metric)
+            row[column.metric], row[column.metric + "_std"] = value or (None, None)
+        if study.compare:
+            episodes[len(rows)] = one.jobs[0].episode_values(study.compare_metric)
+        rows.append(row)
+    _compare(study, rows, episodes)
+    if study.gap_closed:
+        _close_gaps(rows)
+    return rows
+
+
+def place_of(row):
+    """What rows that fly the same episodes have in common."""
+    return tuple(row[name] for name in PLACE)
+
+
+def _compare(study, rows, episodes):
+    """Sets the paired differences of the rows from the pilot that they are compared with."""
+    ours = {}  # the pilot's row by place, and by place and what it knows
+    for k, row in enumerate(rows):
+        if row["pilot"] == study.compare:
+            ours.setdefault(place_of(row), k)
+            ours[place_of(row), row["knows"]] = k
+    for k, values in episodes.items():
+        place = place_of(rows[k])
+        first = ours.get((place, rows[k]["knows"]), ours.get(place))
+        if first is not None and first != k:
+            rows[k].update(zip(PAIRED, paired_interval(episodes[first], values)))
+
+
+def _close_gaps(rows):
+    """Sets gap_closed: how far a row's share in the band is from that of the best law on own estimates
+    towards that of the same law on true states."""
+    for place in {place_of(row) for row in rows}:
+        here = [row for row in rows if place_of(row) == place]
+        own = {row["pilot"]: row["band_share"] for row in here if row["knows"] == "own"}
+        truth = {row["pilot"]: row["band_share"] for row in here if row["knows"] == "true states"}
+        best = max(own, key=own.get, default=None)
+        gap = truth.get(best, -math.inf) - own.get(best, 0.0)
+        for row in here:
+            closed = (row["band_share"] - own[best]) / gap if gap >= LEAST_GAP else None
+            row["gap_closed"], row["gap_closed_std"] = closed, None
+
+
+def header_of(study):
+    """The columns of NAME.csv."""
+    metrics = [name for column in study.columns for name in (column.metric, column.metric + "_std")]
+    return [*KEY, *metrics, *(PAIRED if study.compare else ())]
+
+
+def write_table(study, rows, folder):
+    """Writes NAME.csv."""
+    header = header_of(study)
+    lines = [["" if row.get(name) is None else row[name] for name in header] for row in rows]
+    write_rows(os.path.join(folder, study.name + ".csv"), header, lines)
+
+
+def write_seeds(study, cells, folder):
+    """Writes NAME_by_seed.csv, where a pilot has several seeds of training."""
+    names = [column.metric for column in study.columns if column.metric != "gap_closed"]
+    rows = [
+        [one.section, one.scenario, one.condition, one.variant, one.pilot, seed,
+         *(job.summary().get(name, "") for name in names)]
+        for one in cells if len(one.jobs) > 1
+        for seed, job in zip(study.pilots[one.pilot].seeds, one.jobs) if job.complete()
+    ]  # fmt: skip
+    if rows:
+        path = os.path.join(folder, study.name + "_by_seed.csv")
+        write_rows(path, [*PLACE, "pilot", "seed", *names], rows)
+
+
+def read_table(study, folder):
+    """The rows of NAME.csv."""
+    header = header_of(study)
+    kinds = {name: optional(number) for name in header}
+    kinds.update(dict.fromkeys((*PLACE, "pilot", "knows"), str), seeds=count, episodes=count)
+    return list(table_rows(os.path.join(folder, study.name + ".csv"), kinds))
+
+
+def _value(column, row):
+    """A cell of the page."""
+    value = row[column.metric]
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    std = row[column.metric + "_std"] if column.std or row["seeds"] > 1 else None
+    return cell((value, std), column.digits, column.scale)
+
+
+def _pilot(study, name):
+    """How a page writes a pilot: as code where it is what --policy takes."""
+    return name if name in study.pilots else f"`{name}`"
+
+
+def section_table(study, rows):
+    """The Markdown table of a section's rows. A column that says the same in every row is left out."""
+    shown = [name for name in KEY[1:] if name == "pilot" or len({row[name] for row in rows}) > 1]
+    header = [TITLES[name] for name in shown] + [column.title for column in study.columns]
+    header += [f"{study.compare} − it"] if study.compare else []
+    lines = []
+    for row in rows:
+        cells = [_pilot(study, row[name]) if name == "pilot" else row[name] for name in shown]
+        cells += [_value(column, row) for column in study.columns]
+        if study.compare and row["difference"] is None:
+            cells.append("")
+        elif study.compare:
+            cells.append("{:+.3f} [{:+.3f}, {:+.3f}]".format(*(row[name] for name in PAIRED)))
+        lines.append(cells)
+    return markdown(header, lines)
+
+
+def beside_table(study, rows):
+    """The first pilot of `beside` and the best of the others by the first column, place by place."""
+    ours, *others = study.beside
+    columns = [column for column in study.columns if column.beside]
+    header = ["Scenario", "Condition", "Beside"] + [column.title for column in columns]
+    lines = []
+    for place in dict.fromkeys(place_of(row) for row in rows):
+        here = {row["pilot"]: row for row in rows if place_of(row) == place and row["knows"] == "own"}
+        best = max((here[name] for name in others), key=lambda row: row[study.columns[0].metric])
+        pairs = [" / ".join(cell((row[c.metric], None), c.digits, c.scale) for row in (here[ours], best))
+                 for c in columns]  # fmt: skip
+        lines.append([place[1], place[2], _pilot(study, best["pilot"]), *pairs])
+    return markdown(header, lines)
+
+
+def training_table(path):
+    """Every task's share in the band at each validation of a training, and how the last one compares
+    with the best."""
+    kinds = {"steps": count, "seconds": number, "task": str, "band_share": number}
+    steps = {}  # {steps: {task: row}}
+    for row in table_rows(path, kinds):
+        steps.setdefault(row["steps"], {})[row["task"]] = row
+    tasks = list(next(iter(steps.values()), {}))
+    lines, means = [], []
+    for step, rows in steps.items():
+        if set(rows) != set(tasks):
+            raise Damaged(path, f"other tasks at {step} steps")
+        shares = [rows[task]["band_share"] for task in tasks]
+        means.append(sum(shares) / len(shares))
+        seconds = f"{rows[tasks[0]]['seconds']:.0f}"
+        lines.append([f"{step:,}", seconds, *(f"{s:.3f}" for s in shares), f"{means[-1]:.3f}"])
+    if not means:
+        raise Damaged(path, "tells of no validation")
+    table = markdown(["Decisions of a swarm", "Seconds", *tasks, "Mean"], lines)
+    share, last, best = means[-1] / max(means), means[-1], max(means)
+    return table + f"\nThe last is {share:.3f} of the best ({last:.3f} of {best:.3f}).\n"
+
+
+def write_page(study, folder):
+    """Writes NAME.md from NAME.csv."""
+    rows = read_table(study, folder)
+    reading = READING.format(seed=f"{study.seed:,}", name=study.name)
+    reading += READING_SEEDS if any(row["seeds"] > 1 for row in rows) else ""
+    reading += READING_GAP if study.gap_closed else ""
+    if study.compare:
+        reading += READING_PAIRED.format(pilot=study.compare, metric=study.compare_metric)
+    page = [f"# {study.title}\n", reading + "\n", study.notes.strip() + "\n"] if study.notes else [
+        f"# {study.title}\n", reading + "\n"]  # fmt: skip
+    if study.beside:
+        page += [f"## {study.beside[0]} beside the best of the others\n", beside_table(study, rows)]
+    for section in study.sections:
+        here = [row for row in rows if row["section"] == section.title]
+        if here:
+            episodes = {row["episodes"] for row in here}
+            page.append(f"## {section.title}\n")
+            if len(episodes) == 1:
+                page.append(f"{episodes.pop()} episodes a row.\n")
+            page.append(section_table(study, here))
+    for training in study.trainings:
+        path = os.path.join(folder, training, "validation.csv")
+        page += [f"## {training.replace('_', ' ').capitalize()}\n", training_table(path)]
+    write_atomically(os.path.join(folder, study.name + ".md"), "\n".join(page))

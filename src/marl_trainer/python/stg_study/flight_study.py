@@ -1,0 +1,211 @@
+"""A study of flights: controllers and finished policies side by side, without a training.
+
+Its file has `kind: flights`. A section is a table: scenarios x conditions x variants, each flown by the
+section's pilots, and by each of them with what it knows. All fly the same episodes.
+"""
+
+import dataclasses
+import itertools
+import os
+from typing import List
+
+import yaml
+
+from stg_common.files import FileError
+from stg_study.files import write_atomically
+from stg_study.jobs import Flight
+from stg_study.study import StudyError, build, is_name
+
+SHIPPED_POLICIES = ("../../../stg_bringup/policies", "../../../../share/stg_bringup/policies")
+
+
+@dataclasses.dataclass
+class Knowledge:
+    """What a pilot decides on: overrides of the scenario, or true states for a built-in controller."""
+
+    set: List[str] = dataclasses.field(default_factory=list)
+    privileged: bool = False
+
+
+@dataclasses.dataclass
+class Pilot:
+    """What flies: a controller with its constants, or a policy file.
+
+    In a file's name {shipped} is the folder of the policies that ship, {policies} that of --policies,
+    {scenario} the scenario and {seed} each of `seeds`, which are trainings: the row then has mean and
+    standard deviation over them.
+    """
+
+    policy: str
+    seeds: List[int] = dataclasses.field(default_factory=list)
+
+    def is_file(self):
+        """Whether it is a policy file."""
+        return self.policy.endswith(".onnx")
+
+
+@dataclasses.dataclass
+class Section:
+    """One table. `pilots` has for each what it knows; `variants` for each its overrides."""
+
+    title: str
+    conditions: List[str]
+    pilots: dict
+    scenarios: List[str]
+    variants: dict = dataclasses.field(default_factory=lambda: {"": []})
+    episodes: int = 0  # 0: the study's
+
+
+@dataclasses.dataclass
+class Column:
+    """A metric of `evaluate`, its heading, its digits, and the factor that its unit has in the page."""
+
+    metric: str
+    title: str
+    digits: int = 2
+    scale: float = 1.0
+    std: bool = False  # whether the page has the standard deviation, too
+    beside: bool = False  # whether it stands in the table of one pilot beside the best of others
+
+
+@dataclasses.dataclass
+class FlightStudy:
+    """What is flown, and how it is shown."""
+
+    kind: str
+    name: str
+    title: str
+    episodes: int
+    columns: List[object]
+    sections: List[object]
+    pilots: dict = dataclasses.field(default_factory=dict)
+    knows: dict = dataclasses.field(default_factory=lambda: {"own": {}})
+    seed: int = 5000000  # of the first episode, in the reporting block
+    notes: str = ""
+    # The pilot that the others are compared with by this metric, episode by episode.
+    compare: str = ""
+    compare_metric: str = "band_share"
+    # Whether a column says how much of the gap to true states a row closes.
+    gap_closed: bool = False
+    # Folders, beside the table, of trainings whose validation.csv the page shows.
+    trainings: List[str] = dataclasses.field(default_factory=list)
+    # A second table: the first pilot beside the best of the others.
+    beside: List[str] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass
+class Cell:
+    """One row of a table: what is flown, and the jobs that fly it, one for each seed of training."""
+
+    section: str
+    scenario: str
+    condition: str
+    variant: str
+    pilot: str
+    knows: str
+    jobs: List[Flight]
+
+    def key(self):
+        """What the rows that fly the same episodes have in common."""
+        return (self.section, self.scenario, self.condition, self.variant)
+
+
+def is_flight_study(data):
+    """Whether a file's content says that it is a study of flights."""
+    return isinstance(data, dict) and data.get("kind") == "flights"
+
+
+def flight_study_from(data, where):
+    """Makes a FlightStudy of a mapping; StudyError where it cannot be one."""
+    study = build(FlightStudy, where, data)
+    study.columns = [build(Column, f"{where}: columns[{i}]", c) for i, c in enumerate(study.columns)]
+    study.sections = [build(Section, f"{where}: sections[{i}]", s) for i, s in enumerate(study.sections)]
+    study.knows = {k: build(Knowledge, f"{where}: knows.{k}", v) for k, v in study.knows.items()}
+    study.pilots = {
+        name: build(Pilot, f"{where}: pilots.{name}", {"policy": what} if isinstance(what, str) else what)
+        for name, what in study.pilots.items()
+    }
+    if not is_name(study.name):
+        raise StudyError(f"{where}: name: must consist of letters, digits, '_' and '-'")
+    if study.episodes < 1 or study.seed < 0:
+        raise StudyError(f"{where}: episodes must be positive, seed not negative")
+    for section in study.sections:
+        for pilot, kinds in section.pilots.items():
+            if not isinstance(kinds, list) or not kinds or any(k not in study.knows for k in kinds):
+                known = ", ".join(study.knows)
+                raise StudyError(f"{where}: sections.{section.title}.{pilot}: must be some of {known}")
+        if not all(isinstance(v, list) for v in section.variants.values()):
+            raise StudyError(f"{where}: sections.{section.title}.variants: must be lists of overrides")
+    return study
+
+
+def save_flight_study(study, path):
+    """Writes the study, which the reader reads back."""
+    write_atomically(path, yaml.safe_dump(dataclasses.asdict(study), sort_keys=False, width=96))
+
+
+def shipped_policies():
+    """The folder of the policies that ship."""
+    here = os.path.dirname(os.path.realpath(__file__))
+    for relative in SHIPPED_POLICIES:
+        folder = os.path.normpath(os.path.join(here, relative))
+        if os.path.isdir(folder):
+            return folder
+    raise StudyError("the folder of shipped policies is missing")
+
+
+def _policy(pilot, scenario, seed, policies):
+    """The argument of `evaluate --policy`."""
+    if not pilot.is_file():
+        return pilot.policy
+    if policies is None and "{policies}" in pilot.policy:
+        raise StudyError(f"'{pilot.policy}' needs --policies FOLDER")
+    try:
+        path = pilot.policy.format(
+            shipped=shipped_policies(), policies=policies, scenario=scenario, seed=seed
+        )
+    except (KeyError, ValueError, IndexError):
+        raise StudyError(f"'{pilot.policy}': what stands in braces is not known") from None
+    if not os.path.exists(path):
+        raise FileError(path, "there is no such policy")
+    return path
+
+
+def plan_flights(study, work, bin_dir, policies=None):
+    """Returns the cells of all tables, in their order. policies: the folder that --policies names."""
+    cells = []
+    for number, section in enumerate(study.sections):
+        places = itertools.product(section.scenarios, section.conditions, section.variants.items())
+        for scenario, condition, (variant, overrides) in places:
+            for name, kinds in section.pilots.items():
+                pilot = study.pilots.get(name) or Pilot(name)
+                for knows in kinds:
+                    words = (f"{number}", scenario, condition, variant, name, knows)
+                    slug = "_".join("".join(c if c.isalnum() else "-" for c in w) for w in words)
+                    jobs = []
+                    for seed in pilot.seeds or [None]:
+                        episodes = section.episodes or study.episodes
+                        arguments = ["--scenario", scenario, "--condition", condition]
+                        arguments += ["--episodes", str(episodes), "--seed", str(study.seed)]
+                        for override in [*overrides, *study.knows[knows].set]:
+                            arguments += ["--set", override]
+                        arguments += ["--privileged"] if study.knows[knows].privileged else []
+                        base = os.path.join(work, "flights", slug + ("" if seed is None else f"_{seed}"))
+                        policy = _policy(pilot, scenario, seed, policies)
+                        label = " ".join(filter(None, ("fly", *words[1:])))
+                        jobs.append(Flight(label, policy, arguments, episodes, base, bin_dir, pilot.is_file()))
+                    cells.append(Cell(section.title, scenario, condition, variant, name, knows, jobs))
+    return cells
+
+
+def flown(cell, metric):
+    """(mean, std) of a metric over episodes, or over the seeds' means; None where it has no value."""
+    if any(job.summary().get(metric) is None for job in cell.jobs):
+        return None
+    means = [job.summary()[metric] for job in cell.jobs]
+    if len(means) == 1:
+        std = cell.jobs[0].summary().get(metric + "_std")
+        return float(means[0]), None if std is None else float(std)
+    mean = sum(means) / len(means)
+    return mean, (sum((m - mean) ** 2 for m in means) / (len(means) - 1)) ** 0.5
+
