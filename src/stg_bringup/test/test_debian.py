@@ -36,6 +36,22 @@ class Control(unittest.TestCase):
         self.assertGreater(len(needed), 20)
         self.assertEqual(needed - installed, set())
 
+    def test_no_package_links_another_ones_target_by_name(self):
+        # debhelper builds each ROS package by itself: there, targets of others are files, which
+        # catkin_LIBRARIES names.
+        texts = {
+            path.parent.name: re.sub(r"#.*", "", path.read_text(encoding="utf-8")).replace(
+                "${PROJECT_NAME}", path.parent.name
+            )
+            for path in (ROOT / "src").glob("*/CMakeLists.txt")
+        }
+        made = {name: set(re.findall(r"add_library\((\w+)", text)) for name, text in texts.items()}
+        calls = re.compile(r"(?:target_link_libraries|stg_\w+)\(([^()]*)\)")
+        for package, text in texts.items():
+            linked = set(" ".join(calls.findall(text)).split())
+            others = set().union(*(made[name] for name in made if name != package)) - set(made)
+            self.assertEqual(linked & others, set(), package)
+
     def test_every_ros_package_is_in_one(self):
         listed = "\n".join(path.read_text() for path in DEBIAN.glob("*.install")).split()
         for manifest in ROOT.glob("src/*/package.xml"):
