@@ -36,6 +36,15 @@ class Control(unittest.TestCase):
         self.assertGreater(len(needed), 20)
         self.assertEqual(needed - installed, set())
 
+    def test_every_library_of_a_node_is_in_one(self):
+        listed = "\n".join(path.read_text() for path in DEBIAN.glob("*.install"))
+        for path in (ROOT / "src").glob("*/CMakeLists.txt"):
+            text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
+            text = text.replace("${PROJECT_NAME}", path.parent.name)
+            installed = set(" ".join(re.findall(r"install\(TARGETS([^()]*?)\b[A-Z]+ DESTINATION", text)).split())
+            for library in installed & set(re.findall(r"add_library\((\w+)", text)):
+                self.assertRegex(listed, rf"lib(\*|{library})\.so\.\*", path)
+
     def test_no_package_links_another_ones_target_by_name(self):
         # debhelper builds each ROS package by itself: there, targets of others are files, which
         # catkin_LIBRARIES names.
