@@ -42,7 +42,7 @@ class Control(unittest.TestCase):
             text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
             text = text.replace("${PROJECT_NAME}", path.parent.name)
             installed = set(" ".join(re.findall(r"install\(TARGETS([^()]*?)\b[A-Z]+ DESTINATION", text)).split())
-            for library in installed & set(re.findall(r"add_library\((\w+)", text)):
+            for library in installed & set(re.findall(r"add_library\((\w+)(?!\s+MODULE)\b", text)):
                 self.assertRegex(listed, rf"lib(\*|{library})\.so\.\*", path)
 
     def test_no_package_links_another_ones_target_by_name(self):
