@@ -32,7 +32,7 @@ if ! (cd "$copy" && env -u OMP_NUM_THREADS STG_CMAKE_OPTIONS="${options[*]}" \
   exit 1
 fi
 rm -f "$out"/*
-mv "$above"/*.deb "$above"/stg-swarm_"$version"* "$out/"
+find "$above" -maxdepth 1 -type f \( -name '*.deb' -o -name "stg-swarm_$version*" \) -exec mv -t "$out" {} +
 (cd "$out" && apt-ftparchive packages . >Packages && gzip -kn9 Packages &&
   apt-ftparchive -o APT::FTPArchive::Release::Suite=stg release . >Release)
 echo "package: $out; to install from it:"
