@@ -51,18 +51,29 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   TakeText(file, prefix + ".", "pty", &map, &place.pty);
   TakeText(file, prefix + ".", "serial", &map, &place.serial);
   TakeText(file, prefix + ".", "firmware", &map, &place.firmware);
+  if (const YamlTree::Entry* protocol = FindEntry(map, "protocol")) {
+    place.protocol = protocol->value.scalar;
+  }
+  const bool s2c = place.protocol == "s2c";
+  for (const char* key : {"interpreter", "defer", "rssi_offset_db"}) {
+    const YamlTree::Entry* entry = FindEntry(map, key);
+    if (s2c || entry == nullptr) continue;
+    Fail(file, entry->line, prefix + "." + key, "is a key of the protocol s2c");
+  }
   config::Table t;
   t.Section(prefix);
   t.Add("protocol", config::Name(&place.protocol, ModemProtocols()), config::kNone, "-", "");
   t.Add("tcp", &place.tcp, config::Within(0, 65535), "-", "");
   t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
   t.Add("interpreter", config::Name(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
-  t.Add("address", &place.address, config::Within(1, 254), "-", "");
-  t.Add("broadcast", &place.broadcast, config::Within(0, 255), "-", "");
+  t.Add("address", &place.address, config::Within(1, s2c ? 254 : 127), "-", "");
+  t.Add("broadcast", &place.broadcast, config::Within(-1, s2c ? 255 : 127), "-", "");
   t.Add("defer", &place.defer, config::kNone, "-", "");
   t.Add("rssi_offset_db", &place.rssi_offset_db, config::Within(-1e3, 1e3), "dB", "");
   config::Loader loader(t, config::Scope::kWhole);
   loader.ApplyPart(map, prefix + ".", file);
+  if (place.broadcast < 0) place.broadcast = s2c ? 255 : 0;
+  if (place.firmware.empty()) place.firmware = s2c ? "1.9" : "2.0.35490";
   const int ports = (place.tcp >= 0) + !place.pty.empty() + !place.serial.empty();
   if (ports != 1) Fail(file, map.line, prefix, "needs one of tcp, pty and serial");
   return place;
@@ -115,11 +126,12 @@ void RefuseTwins(const std::string& file, const YamlTree& list,
 
 }  // namespace
 
-std::vector<std::string> ModemProtocols() { return {"s2c"}; }
+std::vector<std::string> ModemProtocols() { return {"s2c", "micromodem"}; }
 
 std::string WhyNot(const std::string& protocol, const std::string& profile) {
   const std::string waveform = ModemProfiles().Make(profile)->waveform;
   if (protocol == "s2c" && waveform == "evologics_s2c") return "";
+  if (protocol == "micromodem" && waveform.rfind("micromodem_", 0) == 0) return "";
   return "a modem with the protocol " + protocol + " cannot have the profile " + profile;
 }
 

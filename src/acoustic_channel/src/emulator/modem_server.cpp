@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "acoustic_channel/micromodem/micromodem.hpp"
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "auv_common/error.hpp"
 
@@ -24,6 +25,13 @@ std::unique_ptr<BytePort> OpenPort(const ModemPlace& place, const std::string& l
 }  // namespace
 
 std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundings* world) {
+  if (place.protocol == "micromodem") {
+    micromodem::ModemOptions options;
+    options.address = place.address;
+    options.broadcast = place.broadcast;
+    options.firmware = place.firmware;
+    return std::make_unique<micromodem::Micromodem>(options, world);
+  }
   s2c::ModemOptions options;
   options.net = place.interpreter == "net";
   options.address = place.address;

@@ -63,6 +63,9 @@ class ModemWater::Surroundings : public ModemSurroundings {
   }
   int AddressOf(int node) const override { return water_->AddressOf(node); }
   const ModemProfile& profile() const override { return water_->network_.profile(node_); }
+  void SetWaveforms(std::vector<std::string> waveforms) override {
+    water_->network_.SetWaveforms(node_, std::move(waveforms));
+  }
   double ClockS(TimeNs t) const override { return water_->network_.ClockS(node_, t); }
   TimeNs utc_start() const override { return water_->utc_start_; }
   double SoundSpeed() const override { return water_->network_.SoundSpeed(node_); }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acoustic_channel/emulator/modem_water.hpp"
+#include "acoustic_channel/micromodem/micromodem.hpp"
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "network/network_fixture.hpp"
 
@@ -61,6 +62,28 @@ struct ModemBench {
     }
     return Begin();
   }
+  /// All nodes get a Micromodem with addresses from 1; the modems have booted at 2.5 s.
+  ModemWater& StartMicromodems(const std::string& firmware = "2.0.35490") {
+    config.modem.profile = "micromodem_psk_r1";
+    Make();
+    for (int i = 0; i < run.agents; ++i) {
+      water->Attach(i, i + 1, [&](ModemSurroundings* world) {
+        micromodem::ModemOptions options;
+        options.address = i + 1;
+        options.firmware = firmware;
+        auto modem = std::make_unique<micromodem::Micromodem>(options, world);
+        micromodems.push_back(modem.get());
+        return modem;
+      });
+    }
+    water->SetUtcStart(kUtcStart);
+    Begin();
+    water->Advance(Ns(2.5));
+    hosts.all.clear();
+    hosts.said.clear();
+    return *water;
+  }
+  static constexpr TimeNs kUtcStart = 1'700'000'000 * kSecond;  ///< 2023-11-14, 22:13:20
   void Make() {
     water = std::make_unique<ModemWater>(config, run, std::move(stated_), &hosts);
     hosts.water = water.get();
@@ -105,6 +128,7 @@ struct ModemBench {
   Hosts hosts;
   std::unique_ptr<ModemWater> water;
   std::vector<s2c::S2cModem*> modems;
+  std::vector<micromodem::Micromodem*> micromodems;
   Log log;
 
  private:

@@ -16,12 +16,12 @@ struct ModemPlace {
   std::string pty;                 ///< symbolic link to make to a pseudo terminal
   std::string serial;              ///< device
   int baud = 19200;                ///< of `serial`
-  std::string interpreter = "at";  ///< of s2c: at or net
   int address = 0;                 ///< 0: the id and one
-  int broadcast = 255;
-  bool defer = true;
+  int broadcast = -1;              ///< -1: 255 of s2c, 0 of micromodem
+  std::string firmware;            ///< empty: 1.9 of s2c, 2.0.35490 of micromodem
+  std::string interpreter = "at";  ///< of s2c: at or net
+  bool defer = true;               ///< of s2c, as the next one
   double rssi_offset_db = -190.0;
-  std::string firmware = "1.9";
 };
 
 /// A vehicle in the water of emulated modems.

@@ -49,6 +49,8 @@ class ModemSurroundings {
   virtual int AddressOf(int node) const = 0;
 
   virtual const ModemProfile& profile() const = 0;
+  /// Waveforms that the modem decodes besides that of its profile.
+  virtual void SetWaveforms(std::vector<std::string> waveforms) = 0;
   /// What the modem's own clock shows [s].
   virtual double ClockS(TimeNs t) const = 0;
   /// Coordinated universal time at network time 0 [ns since 1970].

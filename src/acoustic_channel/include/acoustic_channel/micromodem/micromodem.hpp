@@ -1,0 +1,137 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acoustic_channel/engine/modem_engine.hpp"
+#include "acoustic_channel/micromodem/header.hpp"
+#include "acoustic_channel/micromodem/modes.hpp"
+#include "acoustic_channel/micromodem/sentence.hpp"
+
+namespace stg::acoustics::micromodem {
+
+inline constexpr TimeNs kSecondNs = 1'000'000'000;
+/// A packet that has not left by then never will; the longest takes some seconds.
+inline constexpr TimeNs kSendingTimeout = 30 * kSecondNs;
+
+/// What is chosen of an emulated Micromodem.
+struct ModemOptions {
+  int address = 1;                     ///< SRC at power on, 1 to 127
+  int broadcast = 0;                   ///< the address of all
+  std::string firmware = "2.0.35490";  ///< 2 and above: a Micromodem-2, which knows more commands
+};
+
+/// An emulated WHOI Micromodem: cycles at the rates 0 to 6 with polls, acknowledgements and data
+/// requests, mini-packets, pings, flexible data packets, settings and clock. LBL, sleeping and
+/// hardware lines are not emulated. A packet is lost whole: all frames of it have a bad CRC then.
+class Micromodem : public ModemEngine {
+ public:
+  /// @param world must live as long as this object
+  Micromodem(const ModemOptions& options, ModemSurroundings* world);
+
+  void Start(TimeNs t) override;
+  void Connect(TimeNs t) override;
+  void Disconnect(TimeNs t) override;
+  void Read(TimeNs t, ByteView bytes) override;
+  void Handle(const ModemEvent& event) override;
+  void Tick(TimeNs t) override;
+  TimeNs next() const override;
+
+  /// For tests: what it is at work on.
+  enum class State {
+    kBoot,         ///< until the first CAREV
+    kIdle,         ///< also while it waits for an answer that may never come
+    kCycleTx,      ///< the start of a cycle leaves
+    kDataRequest,  ///< the host is asked for frames
+    kDataTx,       ///< they leave
+    kHeardCycle,   ///< another modem's frames must follow
+    kPacketTx,     ///< a ping, mini-packet or flexible data packet leaves
+  };
+  State state() const { return state_; }
+
+ private:
+  /// The frames that the host is asked for.
+  struct Cycle {
+    Header header;
+    int wanted = 0;
+    std::vector<std::string> frames;
+  };
+  /// What the modem sends by itself when its turnaround is over.
+  struct Answer {
+    TimeNs due = 0;
+    Header header;
+  };
+  struct Ping {
+    bool open = false;
+    int destination = 0;
+    TimeNs sent = 0, airtime = 0;
+  };
+
+  // micromodem.cpp: lines in, lines out, time
+  void Say(const std::vector<std::string>& fields);
+  void Error(TimeNs t, const std::string& module, int number, const std::string& text);
+  void Enter(State state, TimeNs until);
+  void Reboot(TimeNs t);
+  TimeNs Utc(TimeNs t) const;
+  int setting(const std::string& key) const;
+  bool second_generation() const;
+
+  // commands.cpp
+  void Obey(const Sentence& sentence, TimeNs t);
+  bool ObeySending(const std::vector<std::string>& fields, TimeNs t);
+  bool ObeySetting(const std::vector<std::string>& fields, TimeNs t);
+  bool ObeyClock(const std::vector<std::string>& fields, TimeNs t);
+  void SetDefaults();
+  bool CommandCycle(const std::vector<std::string>& fields, TimeNs t);
+  bool CommandFrame(const std::vector<std::string>& fields, bool text, TimeNs t);
+  bool CommandPing(const std::vector<std::string>& fields, TimeNs t);
+  bool CommandMini(const std::vector<std::string>& fields, TimeNs t);
+  bool CommandFlexible(const std::vector<std::string>& fields, TimeNs t);
+
+  // sending.cpp
+  void AskForFrame(TimeNs t);
+  void SendFrames(TimeNs t);
+  void Transmit(const Header& header, const std::string& payload, std::size_t air_bytes);
+  void OnSent(const PacketInfo& packet, TimeNs t);
+  void OnSendEnd(const PacketInfo& packet, TimeNs t);
+
+  // receptions.cpp
+  void OnReceptionEnd(const ModemEvent& event);
+  Header HeaderOf(const ModemEvent& event) const;
+  void TakeCycle(const Header& header, TimeNs t);
+  void TakeFrames(const Header& header, const ModemEvent& event);
+  void TakeReply(const Header& header, const ModemEvent& event);
+  void TakeAck(const Header& header);
+  void TellLoss(const Header& header, const ModemEvent& event);
+  bool forMe(const Header& header) const;
+
+  // statistics.cpp
+  void TellReception(const Header& header, const ModemEvent& event);
+  void TellTransmission(const Header& header, const PacketInfo& packet, int mode, TimeNs t);
+
+  ModemOptions options_;
+  ModemSurroundings* world_;
+  Modes modes_;
+  SentenceReader reader_;
+  bool connected_ = false;
+  std::map<std::string, std::string> settings_;
+  TimeNs clock_offset_ = 0;  ///< of the modem's UTC, as the host set it
+  bool clock_set_ = false;
+  State state_ = State::kBoot;
+  TimeNs deadline_ = 0;  ///< of the state; kNever: it has none
+  TimeNs revision_ = 0;  ///< when the next CAREV is due
+  Cycle cycle_;
+  Ping ping_;
+  std::deque<Answer> answers_;
+  std::uint32_t tag_ = 0;
+  int flexible_id_ = 0;
+};
+
+/// HHMMSS, HHMMSS.ffff and others of UTC [ns since 1970]; `format` as strftime takes it, `decimals`
+/// of a second behind it.
+std::string FormatUtc(TimeNs utc, const char* format, int decimals = 0);
+
+}  // namespace stg::acoustics::micromodem

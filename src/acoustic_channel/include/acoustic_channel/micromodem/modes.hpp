@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+
+#include "acoustic_channel/modem/modem_profile.hpp"
+
+namespace stg::acoustics::micromodem {
+
+inline constexpr int kRates = 7;  ///< 0 to 6
+
+/// What a Micromodem can send, all at the centre frequency of its own profile.
+class Modes {
+ public:
+  explicit Modes(const ModemProfile& own);
+
+  const ModemProfile& rate(int rate) const { return rates_[static_cast<std::size_t>(rate)]; }
+  const ModemProfile& mini() const { return mini_; }
+
+ private:
+  std::array<ModemProfile, kRates> rates_;
+  ModemProfile mini_;
+};
+
+/// The rate that a profile is; -1: it is no Micromodem's.
+int RateOf(const ModemProfile& profile);
+
+}  // namespace stg::acoustics::micromodem

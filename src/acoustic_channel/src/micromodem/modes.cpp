@@ -1,0 +1,29 @@
+#include "acoustic_channel/micromodem/modes.hpp"
+
+#include <string>
+
+namespace stg::acoustics::micromodem {
+
+Modes::Modes(const ModemProfile& own) {
+  const auto at_own_frequency = [&](const std::string& name) {
+    ModemProfile mode = *ModemProfiles().Make(name);
+    mode.centre_khz = own.centre_khz;
+    mode.source_level_db = own.source_level_db;
+    return mode;
+  };
+  for (int rate = 0; rate < kRates; ++rate) {
+    const std::string family = rate == 0 ? "micromodem_fsk_r" : "micromodem_psk_r";
+    rates_[static_cast<std::size_t>(rate)] = at_own_frequency(family + std::to_string(rate));
+  }
+  mini_ = at_own_frequency("micromodem_mini");
+}
+
+int RateOf(const ModemProfile& profile) {
+  const std::string& name = profile.name;
+  if (name.rfind("micromodem_", 0) != 0 || name.size() < 2) return -1;
+  const char digit = name.back();
+  const bool rated = name[name.size() - 2] == 'r' && digit >= '0' && digit < '0' + kRates;
+  return rated ? digit - '0' : -1;
+}
+
+}  // namespace stg::acoustics::micromodem
