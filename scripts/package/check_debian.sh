@@ -108,6 +108,16 @@ timed "training" inside "rosrun marl_trainer train --scenario medium_separated -
 timed "the acoustic network alone" inside \
   "rosrun acoustic_channel simulate /usr/share/acoustic_channel/networks/survey.yaml --out /root/network"
 
+# A library of the user's own, compiled with the packages' headers for the programs of this processor.
+compiler="apt-get install -y --no-install-recommends -o Acquire::Retries=3 stg-dev g++ pkg-config"
+march=
+! grep -qw avx2 /proc/cpuinfo || march=-march=x86-64-v3
+WITH_NET=1 timed "a compiler (downloads)" inside "$compiler --download-only"
+timed "apt-get install stg-dev and a compiler" inside "$compiler"
+timed "a plugin, compiled and flown" inside "g++ -std=c++17 -O2 -ffp-contract=off $march -fPIC -shared -o liborbit.so \
+  /usr/share/stg_bringup/examples/controller/orbit.cpp \$(pkg-config --cflags --libs stg_env) && \
+  rosrun marl_trainer evaluate --plugin ./liborbit.so --policy orbit --scenario medium --episodes 1"
+
 next=$(<"$root/VERSION")+next
 repeat_as "$next"
 index=$work/next
@@ -116,7 +126,7 @@ timed "apt-get upgrade to $next" inside "apt-get -o Dir::Etc::SourceList=/dev/nu
 inside "dpkg-query -W -f '\${Package} \${Version}\n'" | grep -E '^(stg-|python3-stg)' >"$work/versions"
 [[ "$(grep -c "$next\$" "$work/versions")" == "$(wc -l <"$work/versions")" ]] || { cat "$work/versions" "$work/log"; exit 1; }
 timed "an episode after the upgrade" inside roslaunch stg_bringup medium.launch episodes:=1 real_time_factor:=0
-timed "apt-get purge" inside "apt-get purge -y --autoremove '^stg-' python3-stg"
+timed "apt-get purge" inside "apt-get purge -y --autoremove '^stg-' python3-stg g++ pkg-config"
 files >"$work/after"
 left=$(comm -13 "$work/before" "$work/after" | grep -E 'stg|auv_|acoustic_|marl_' || true)
 [[ -z "$left" ]] || { say "left behind: $left"; exit 1; }
