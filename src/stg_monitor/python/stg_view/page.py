@@ -17,7 +17,7 @@ WEB = pathlib.Path(__file__).resolve().parent / "web"
 # Where three.js is: beside the page, or where Debian's libjs-three has it.
 THREE = (WEB / "vendor" / "three", pathlib.Path("/usr/share/javascript/three"))
 THREE_FILES = ("build/three.min.js", "examples/js/controls/OrbitControls.js")
-SCRIPTS = ("recording", "story", "shapes", "camera", "scene", "sound", "plots", "network", "table", "overlay", "app")
+SCRIPTS = ("recording", "story", "shapes", "lines", "camera", "scene", "sound", "plots", "network", "table", "overlay", "app")
 
 
 class PageError(Exception):

@@ -1,10 +1,12 @@
 /* The page itself: it loads a recording or follows a live one, keeps the time, and has its parts draw.
- * Files: recording.js, story.js, shapes.js, camera.js, scene.js, sound.js, plots.js, network.js, table.js, overlay.js, then this. */
+ * Files: recording.js, story.js, shapes.js, lines.js, camera.js, scene.js, sound.js, plots.js, network.js, table.js, overlay.js, then this. */
 (function (STG) {
   "use strict";
 
   const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 500];
   const by = (id) => document.getElementById(id);
+  /** Changes a text only where it is another one: the browser lays the page out anew otherwise. */
+  const put = (element, text) => { if (element.textContent !== text) element.textContent = text; };
 
   class App {
     constructor() {
@@ -233,8 +235,8 @@
       if (this.frames.length > 120) this.frames.shift();
       if (this.scene) { this.scene.draw(this.t); this.overlay.draw(); }
       this.track.draw();
-      by("now").textContent = STG.clock(this.t - this.recording.start);
-      by("end").textContent = ` / ${STG.clock(this.recording.end - this.recording.start)}`;
+      put(by("now"), STG.clock(this.t - this.recording.start));
+      put(by("end"), ` / ${STG.clock(this.recording.end - this.recording.start)}`);
       const slow = now - (this.slowAt || 0) > 120 || !this.playing && !this.following;
       if (slow) { this.slowAt = now; this.drawPanel(now); } else this.panelWaits = true;
     }

@@ -14,13 +14,14 @@
     for (const key of ["ground", "paper", "ink", "soft", "line", "accent", "water", "search", "approach", "stable", "lost", "target"]) c[key] = of(key);
     c.phases = [c.search, c.approach, c.stable, c.lost];
     c.rgb = [...c.phases, c.soft].map((text) => new THREE.Color(text).toArray());
-    c.waterRgb = new THREE.Color(c.water).toArray();
     c.heard = c.stable;
     c.sound = name === "dark" ? "#8fd3ff" : "#0b6fa8";
     c.bandFill = name === "dark" ? "rgba(31,166,122,.18)" : "rgba(0,128,94,.13)";
     c.fates = name === "dark"
       ? ["#1fa67a", "#8494a5", "#f0502a", "#ffc845", "#e48fc2", "#56b4e9", "#f0e442", "#b8c4d0", "#c39bff", "#9c7a5b", "#d0d6dc"]
       : ["#00805e", "#7b8794", "#a81b0c", "#d99000", "#b0478a", "#0072b2", "#8d8400", "#4a5663", "#6b46b0", "#7a5a3c", "#a6b0ba"];
+    c.rgbOf = {};
+    for (const key of ["soft", "search", "approach", "stable", "lost", "target", "sound", "heard"]) c.rgbOf[key] = new THREE.Color(c[key]).toArray();
     c.lines = name === "dark"
       ? ["#56b4e9", "#ffc845", "#1fa67a", "#e48fc2", "#f0502a", "#c39bff", "#f0e442", "#9fb0c0"]
       : ["#0072b2", "#d99000", "#00805e", "#b0478a", "#a81b0c", "#6b46b0", "#8d8400", "#4a5663"];
@@ -98,6 +99,9 @@
       const { scene, colours } = this.app, canvas = by("compass"), ctx = canvas.getContext("2d");
       const v = scene.controls.target.clone().sub(scene.camera.position);
       const angle = Math.atan2(v.x, v.y);  // of the view, from north, clockwise
+      const key = `${angle.toFixed(3)}/${colours.name}`;
+      if (this.compassKey === key) return;
+      this.compassKey = key;
       ctx.setTransform(2, 0, 0, 2, 52, 52);
       ctx.clearRect(-26, -26, 52, 52);
       ctx.beginPath();
@@ -126,8 +130,12 @@
       const { scene } = this.app, metres = scene.metresPerPixel(scene.controls.target), wanted = 110 * metres;
       const power = Math.pow(10, Math.floor(Math.log10(wanted)));
       const length = [5, 2, 1].map((k) => k * power).find((x) => x <= wanted) || power;
-      by("scale-line").style.width = `${Math.round(length / metres)}px`;
-      by("scale-text").textContent = length >= 1000 ? `${length / 1000} km` : length >= 1 ? `${length} m` : length >= 0.01 ? `${Math.round(length * 100)} cm` : `${Math.round(length * 1000)} mm`;
+      const key = `${length}/${Math.round(length / metres)}`;
+      if (this.scaleKey !== key) {
+        this.scaleKey = key;
+        by("scale-line").style.width = `${Math.round(length / metres)}px`;
+        by("scale-text").textContent = length >= 1000 ? `${length / 1000} km` : length >= 1 ? `${length} m` : length >= 0.01 ? `${Math.round(length * 100)} cm` : `${Math.round(length * 1000)} mm`;
+      }
       by("depths").hidden = !scene.depths;
       if (!scene.depths || this.depthsDrawn === scene.depths) return;
       this.depthsDrawn = scene.depths;
@@ -180,12 +188,14 @@
       const width = this.canvas.clientWidth, height = 34;
       if (width === 0) return;
       const key = `${width}/${r.version}/${colours.name}/${[...events.hidden]}`;
+      const x = Math.round(Math.min(width - 2, Math.max(0, r.end > r.start ? width * (t - r.start) / (r.end - r.start) - 1 : 0)));
+      if (this.key === key && this.x === x) return;
+      this.x = x;
       if (this.key !== key) { this.key = key; this.back = this.background(width, height); }
       const ctx = STG.sharp(this.canvas, width, height);
       ctx.drawImage(this.back, 0, 0, width, height);
-      const x = r.end > r.start ? width * (t - r.start) / (r.end - r.start) : 0;
       ctx.fillStyle = colours.ink;
-      ctx.fillRect(Math.min(width - 2, Math.max(0, x - 1)), 0, 2, height);
+      ctx.fillRect(x, 0, 2, height);
     }
 
     background(width, height) {

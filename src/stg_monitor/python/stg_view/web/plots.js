@@ -154,12 +154,16 @@
         series: [{}, ...series],
         hooks: {
           drawClear: [(u) => this.background(u, plot)],
-          draw: [(u) => this.playhead(u, plot)],
+          setScale: [(u) => this.playhead(u)],
           setCursor: [(u) => this.read(u, plot)],
         },
       };
       const data = [plot.t, ...plot.lines.map((l) => (plot.log ? l.values.map((v) => (v > 0 ? Math.max(v, LEAST_LOG) : null)) : l.values))];
       const chart = new uPlot(options, data, box);
+      if (!plot.free) {
+        chart.head = chart.over.appendChild(document.createElement("div"));
+        chart.head.className = "playhead";
+      }
       chart.over.addEventListener("click", () => {
         if (!plot.free && chart.cursor.left >= 0) this.app.seek(chart.posToVal(chart.cursor.left, "x"));
       });
@@ -179,12 +183,12 @@
       }
     }
 
-    playhead(u, plot) {
-      if (plot.free) return;
-      const x = u.valToPos(this.app.t, "x", true), { left, top, width, height } = u.bbox;
-      if (x < left || x > left + width) return;
-      u.ctx.fillStyle = this.app.colours.accent;
-      u.ctx.fillRect(x - 1, top, 2, height);
+    /** The line of the time that is shown lies over the chart, which need not be drawn anew for it. */
+    playhead(u) {
+      if (!u.head) return;
+      const x = u.valToPos(this.app.t, "x");
+      u.head.hidden = !(x >= 0 && x <= u.over.clientWidth);
+      if (!u.head.hidden) u.head.style.transform = `translateX(${x.toFixed(1)}px)`;
     }
 
     /** Shows the values at the cursor, or at the time that is shown. */
@@ -193,8 +197,7 @@
       let at = u.cursor.idx;
       if (at === null || at === undefined) {
         if (plot.free) { u.readout.textContent = plot.lines.map((l) => l.label).slice(0, 6).join(", "); return; }
-        at = 0;
-        while (at + 1 < plot.t.length && plot.t[at + 1] <= this.app.t) ++at;
+        at = Math.max(0, STG.lastUpTo(plot.t, plot.t.length, this.app.t));
       }
       const values = plot.lines.map((l) => [l, l.values[at]]).filter(([, v]) => v !== null && v !== undefined);
       const { selected } = this.app;
@@ -207,7 +210,7 @@
     /** Moves the line of the time that is shown. */
     now() {
       this.charts.forEach((c) => {
-        c.redraw(false, false);
+        this.playhead(c);
         this.read(c, c.plotOf);
       });
     }

@@ -20,6 +20,16 @@
     "burst of noise", "discarded in the queue", "not acquired", "shadow", "left the network"];
   STG.PHASES = ["search", "approach", "stable", "lost"];
 
+  /** Index of the last of the first `count` ascending numbers that is <= value, or -1. */
+  STG.lastUpTo = (numbers, count, value) => {
+    let low = 0, high = count;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (numbers[middle] <= value) low = middle + 1; else high = middle;
+    }
+    return low - 1;
+  };
+
   /** A table of typed columns that grows by rows. */
   class Table {
     constructor() {
@@ -29,6 +39,8 @@
     }
 
     has(name) { return name in this.columns; }
+    /** {data, width} of a column; undefined where there is none. */
+    column(name) { return this.columns[name]; }
     width(name) { return this.columns[name].width; }
     /** The number in row `row`, place `k` of a column; NaN where there is no such column. */
     at(name, row, k = 0) {
@@ -80,15 +92,7 @@
     }
 
     /** The last row whose ascending column is <= value, or -1. */
-    find(name, value) {
-      const data = this.columns[name] ? this.columns[name].data : [];
-      let low = 0, high = this.count;
-      while (low < high) {
-        const middle = (low + high) >> 1;
-        if (data[middle] <= value) low = middle + 1; else high = middle;
-      }
-      return low - 1;
-    }
+    find(name, value) { return this.columns[name] ? STG.lastUpTo(this.columns[name].data, this.count, value) : -1; }
   }
 
   /** Everything that a page shows. */

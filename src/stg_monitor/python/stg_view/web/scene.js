@@ -1,6 +1,6 @@
 /* The scene in three dimensions: water, bottom, obstacles, AUVs, targets, beliefs and tracks, drawn for
  * one time of a recording. World axes are ENU, z up, metres. Shapes are made by shapes.js, the camera is
- * moved by camera.js, packets are drawn by sound.js.
+ * moved by camera.js, packets are drawn by sound.js, lines that move by lines.js.
  *
  * Everything that has no size of its own on the screen (hulls, marks) is drawn as large as the camera's
  * distance asks for, so that boxes of 2 m and seas of 4 km look alike.
@@ -8,7 +8,6 @@
 (function (STG) {
   "use strict";
 
-  const { CIRCLE, line, setPoints, circle } = STG.shapes;
   const HULL_PIXELS = 15, MARK_PIXELS = 5, TRAIL = 400, TRAIL_SHARE = 0.06, TRAIL_STEPS = 60;
   /** Whether the processor draws: smooth edges would then cost half of the frames. */
   function drawnBySoftware() {
@@ -56,10 +55,11 @@
       }
       for (const o of r.meta.obstacles || []) this.still.add(STG.shapes.obstacleOf(o));
       if (r.meta.half_extent_m) this.still.add(STG.shapes.frameOf(r.meta.half_extent_m, r.meta.open, colours.soft));
-      const hull = STG.shapes.hullGeometry();
-      this.vehicles = [...Array(r.agents)].map((_, i) => this.makeVehicle(hull, i));
+      const hull = STG.shapes.hullGeometry(), mark = new THREE.OctahedronBufferGeometry(0.5);
+      this.vehicles = [...Array(r.agents)].map((_, i) => this.makeVehicle(hull, mark, i));
       this.targets = [...Array(r.targets)].map(() => this.makeTarget());
-      this.sound = new STG.Sound(this.app, this.moving, STG.shapes);
+      this.lines = new STG.Lines(this.moving);
+      this.sound = new STG.Sound(this.app, this.lines);
       this.built = `${r.agents}/${r.targets}/${colours.name}/${r.meta.bottom ? 1 : 0}`;
       this.far = 40 * this.half;
     }
@@ -79,37 +79,23 @@
       return most;
     }
 
-    makeVehicle(hull, i) {
+    makeVehicle(hull, octahedron, i) {
       const group = new THREE.Group();
       const material = new THREE.MeshLambertMaterial({ color: 0x888888, emissive: 0x222222 });
       const body = new THREE.Mesh(hull, material);
       body.userData.auv = i;
-      const fins = new THREE.Mesh(new THREE.BoxBufferGeometry(0.1, 0.34, 0.015), material);
-      const rudder = new THREE.Mesh(new THREE.BoxBufferGeometry(0.1, 0.015, 0.34), material);
-      fins.position.x = rudder.position.x = -0.38;
-      group.add(body, fins, rudder);
-      const track = line(TRAIL, 0xffffff);
-      track.material.vertexColors = THREE.VertexColors;
-      track.material.transparent = true;
-      track.material.opacity = 0.9;
-      track.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * TRAIL), 3));
-      const ellipse = line(CIRCLE + 1, 0xffffff, 0.55);
-      const mark = new THREE.Mesh(new THREE.OctahedronBufferGeometry(0.5), new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.9 }));
-      const range = line(CIRCLE + 1, this.app.colours.approach, 0.55);
-      const stem = line(2, this.app.colours.soft, 0.35);
-      this.moving.add(group, track, ellipse, mark, range, stem);
-      return { group, material, track, ellipse, mark, range, stem, body };
+      group.add(body);
+      const mark = new THREE.Mesh(octahedron, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.9 }));
+      this.moving.add(group, mark);
+      return { group, material, mark, body };
     }
 
     makeTarget() {
       const colours = this.app.colours;
-      const mesh = new THREE.Mesh(new THREE.SphereBufferGeometry(0.5, 24, 16),
+      const mesh = new THREE.Mesh(new THREE.SphereBufferGeometry(0.5, 16, 10),
         new THREE.MeshLambertMaterial({ color: colours.target, emissive: colours.target, emissiveIntensity: 0.35 }));
-      const track = line(TRAIL, colours.target, 0.8);
-      const rings = [line(CIRCLE + 1, colours.stable, 0.75), line(CIRCLE + 1, colours.stable, 0.75),
-        line(CIRCLE + 1, colours.search, 0.4)];
-      this.moving.add(mesh, track, ...rings);
-      return { mesh, track, rings };
+      this.moving.add(mesh);
+      return { mesh };
     }
 
     point(row, name, i) {
@@ -135,9 +121,11 @@
       const row = r.row(t);
       if (row >= 0) {
         this.follow(row);
+        this.lines.begin();
         this.targets.forEach((one, k) => this.drawTarget(one, row, k));
         this.vehicles.forEach((one, i) => this.drawVehicle(one, row, i));
         this.sound.draw(t, row);
+        this.lines.end();
       }
       this.camera.near = this.camera.position.distanceTo(this.controls.target) / 200;
       this.camera.far = this.far;
@@ -163,82 +151,84 @@
       const { recording: r, colours, selected } = this.app;
       const p = this.point(row, "position", i);
       const shown = Number.isFinite(p[0]);
-      one.group.visible = one.track.visible = shown;
-      one.ellipse.visible = one.mark.visible = one.range.visible = one.stem.visible = false;
+      one.group.visible = shown;
+      one.mark.visible = false;
       if (!shown) return;
-      const phase = r.steps.at("phase", row, i);
-      const colour = colours.phases[phase] || colours.soft;
-      one.material.color.set(colour);
-      one.material.emissive.set(colour).multiplyScalar(selected === i ? 0.4 : 0.12);
+      const phase = r.steps.at("phase", row, i), rgb = colours.rgb[phase] || colours.rgb[4];
+      one.material.color.setRGB(...rgb);
+      one.material.emissive.setRGB(...rgb).multiplyScalar(selected === i ? 0.4 : 0.12);
       one.group.position.set(...p);
       const size = this.metresPerPixel(one.group.position) * HULL_PIXELS * (selected === i ? 1.9 : 1.5);
       one.group.scale.setScalar(Math.max(size, 2 * (r.meta.radius_m || 0)));
       one.group.rotation.set(0, -(r.steps.at("pitch", row, i) || 0), r.steps.at("heading", row, i) || 0, "ZYX");
-      this.drawTrack(one, row, i);
-      one.stem.visible = r.meta.open === true && selected === i;
-      if (one.stem.visible) setPoints(one.stem, [...p, p[0], p[1], 0]);
+      this.drawTrack(row, i);
+      if (r.meta.open === true && selected === i) {
+        this.lines.ink(colours.rgbOf.soft, 0.35);
+        this.lines.segment(...p, p[0], p[1], 0);
+      }
       const estimate = this.point(row, "estimate", i);
-      if (Number.isFinite(estimate[0])) this.drawBelief(one, row, i, estimate, colour);
+      if (Number.isFinite(estimate[0])) this.drawBelief(one, row, i, estimate, rgb);
       const range = r.steps.at("range", row, i);
-      one.range.visible = range > 0;
-      if (range > 0) setPoints(one.range, circle(...p, range));
+      if (range > 0) {
+        this.lines.ink(colours.rgbOf.approach, 0.55);
+        this.lines.circle(...p, range);
+      }
     }
 
-    drawTrack(one, row, i) {
-      const { recording: r, colours, selected } = this.app;
-      const [first, stride] = this.trail(row);
-      const points = [], tint = one.track.geometry.attributes.color, water = colours.waterRgb;
-      let k = 0;
-      const put = (at) => {
-        points.push(...this.point(at, "position", i));
-        const c = colours.rgb[r.steps.at("phase", at, i)] || colours.rgb[4];
+    /** The way of an AUV in the colours of its phases; what is old fades. */
+    drawTrack(row, i) {
+      const { recording: r, colours, selected } = this.app, { lines } = this;
+      const [first, stride] = this.trail(row), phases = r.steps.column("phase"), opacity = selected >= 0 && selected !== i ? 0.25 : 0.85;
+      this.way("position", i, first, row, stride, (at) => {
         const young = 0.15 + 0.85 * (at - first + 1) / (row - first + 1);
-        tint.setXYZ(k++, ...c.map((x, a) => young * x + (1 - young) * water[a]));
-      };
-      for (let at = first; at < row && k < TRAIL - 1; at += stride) put(at);
-      put(row);
-      tint.needsUpdate = true;
-      setPoints(one.track, points);
-      one.track.material.opacity = selected >= 0 && selected !== i ? 0.25 : 0.85;
+        lines.ink(colours.rgb[phases ? phases.data[at * phases.width + i] : 4] || colours.rgb[4], young * opacity);
+      });
+    }
+
+    /** Puts the way of a point through the rows first, first + stride, ... row; ink(row) chooses the colour. */
+    way(name, i, first, row, stride, ink) {
+      const { data, width } = this.app.recording.steps.column(name);
+      let from = first * width + 3 * i;
+      for (let at = first; at < row;) {
+        at = Math.min(row, at + stride);
+        const to = at * width + 3 * i;
+        if (data[from] === data[from] && data[to] === data[to]) {  // NaN: it was not there
+          ink(at);
+          this.lines.segment(data[from], data[from + 1], data[from + 2], data[to], data[to + 1], data[to + 2]);
+        }
+        from = to;
+      }
     }
 
     /** Where the AUV believes the target to be, and the ellipse of one deviation seen from above. */
-    drawBelief(one, row, i, p, colour) {
+    drawBelief(one, row, i, p, rgb) {
       const { recording: r, selected } = this.app;
       if (selected >= 0 && selected !== i) return;
       one.mark.visible = true;
-      one.mark.material.color.set(colour);
+      one.mark.material.color.setRGB(...rgb);
       one.mark.position.set(...p);
       one.mark.scale.setScalar(this.metresPerPixel(one.mark.position) * MARK_PIXELS * 2);
       const c = (a) => r.steps.at("covariance", row, 6 * i + a);
       const [xx, xy, yy] = [c(0), c(1), c(3)];
       if (!(xx > 0 && yy > 0)) return;
       const middle = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
-      one.ellipse.visible = true;
-      one.ellipse.material.color.set(colour);
-      setPoints(one.ellipse, circle(...p, Math.sqrt(middle + spread), Math.sqrt(Math.max(0, middle - spread)),
-        0.5 * Math.atan2(2 * xy, xx - yy)));
+      this.lines.ink(rgb, 0.55);
+      this.lines.circle(...p, Math.sqrt(middle + spread), Math.sqrt(Math.max(0, middle - spread)), 0.5 * Math.atan2(2 * xy, xx - yy));
     }
 
     drawTarget(one, row, k) {
-      const r = this.app.recording, p = this.point(row, "target", k);
-      const shown = Number.isFinite(p[0]);
-      one.mesh.visible = one.track.visible = shown;
-      one.rings.forEach((ring) => { ring.visible = shown; });
-      if (!shown) return;
+      const { recording: r, colours } = this.app, p = this.point(row, "target", k), { lines } = this;
+      one.mesh.visible = Number.isFinite(p[0]);
+      if (!one.mesh.visible) return;
       one.mesh.position.set(...p);
       one.mesh.scale.setScalar(this.metresPerPixel(one.mesh.position) * 13);
-      const [first, stride] = this.trail(row), points = [];
-      for (let at = first; at < row && points.length < 3 * (TRAIL - 1); at += stride) points.push(...this.point(at, "target", k));
-      points.push(...p);
-      setPoints(one.track, points);
-      const band = r.meta.band_m || [0, 0];
-      [band[0], band[1], r.meta.sensing_range_m || 0].forEach((radius, which) => {
-        one.rings[which].visible = radius > 0 && radius < 4 * this.half;
-        if (one.rings[which].visible) setPoints(one.rings[which], circle(...p, radius));
-      });
+      const [first, stride] = this.trail(row), band = r.meta.band_m || [0, 0];
+      this.way("target", k, first, row, stride, () => lines.ink(colours.rgbOf.target, 0.8));
+      for (const [radius, name, opacity] of [[band[0], "stable", 0.75], [band[1], "stable", 0.75], [r.meta.sensing_range_m || 0, "search", 0.4]]) {
+        lines.ink(colours.rgbOf[name], opacity);
+        if (radius > 0 && radius < 4 * this.half) lines.circle(...p, radius);
+      }
     }
-
   }
 
   STG.Scene = Scene;

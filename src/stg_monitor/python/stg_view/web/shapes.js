@@ -1,9 +1,8 @@
-/* What the scene is made of: lines and circles, hulls, the bottom of the sea coloured by its depth,
+/* What the scene is made of: hulls, the bottom of the sea coloured by its depth,
  * obstacles, and the frame of the region. World axes are ENU, z up, metres. */
 (function (STG) {
   "use strict";
 
-  const CIRCLE = 72;
   const DEPTHS = [[0.06, 0.1, 0.32], [0.1, 0.27, 0.55], [0.15, 0.5, 0.66], [0.38, 0.72, 0.64], [0.82, 0.85, 0.6]];
   const LAND = [0.45, 0.36, 0.22];
 
@@ -13,38 +12,20 @@
     return DEPTHS[k].map((c, a) => c + (x - k) * (DEPTHS[k + 1][a] - c));
   };
 
-  function line(points, colour, opacity = 1, dashed = 0) {
+  /** A line through points that stand still, [x, y, z, x, ...]. */
+  function lineOf(points, colour, opacity) {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * points), 3));
-    const options = { color: colour, transparent: opacity < 1, opacity, depthWrite: false };
-    const material = dashed > 0
-      ? new THREE.LineDashedMaterial({ ...options, dashSize: dashed, gapSize: dashed })
-      : new THREE.LineBasicMaterial(options);
-    const made = new THREE.Line(geometry, material);
-    made.frustumCulled = false;
-    return made;
-  }
-  function setPoints(object, points) {
-    const attribute = object.geometry.attributes.position;
-    attribute.array.set(points);
-    attribute.needsUpdate = true;
-    object.geometry.setDrawRange(0, points.length / 3);
-  }
-  function circle(x, y, z, a, b = a, angle = 0) {
-    const points = [], c = Math.cos(angle), s = Math.sin(angle);
-    for (let k = 0; k <= CIRCLE; ++k) {
-      const u = a * Math.cos(2 * Math.PI * k / CIRCLE), v = b * Math.sin(2 * Math.PI * k / CIRCLE);
-      points.push(x + c * u - s * v, y + s * u + c * v, z);
-    }
-    return points;
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
+    return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity, depthWrite: false }));
   }
 
   /** A slim body with fins, bow along +x, one unit long. */
   function hullGeometry() {
     const profile = [[0, -0.5], [0.045, -0.47], [0.085, -0.36], [0.1, -0.2], [0.1, 0.22], [0.09, 0.34], [0.06, 0.45], [0, 0.5]];
-    const body = new THREE.LatheGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 14);
+    const body = new THREE.LatheGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 12);
     body.rotateZ(-Math.PI / 2);
-    return body;
+    for (const fin of [new THREE.BoxGeometry(0.1, 0.34, 0.015), new THREE.BoxGeometry(0.1, 0.015, 0.34)]) body.merge(fin.translate(-0.38, 0, 0));
+    return new THREE.BufferGeometry().fromGeometry(body);
   }
 
   /** The bottom and its grid as a group; its lowest and highest water depth are [low, high]. */
@@ -95,9 +76,7 @@
   /** The edge of the region: a square on the surface of open water, else a box. */
   function frameOf(half, open, colour) {
     if (open) {
-      const frame = line(5, colour, 0.5);
-      setPoints(frame, [-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0, -half, -half, 0]);
-      return frame;
+      return lineOf([-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0, -half, -half, 0], colour, 0.5);
     }
     const box = new THREE.LineSegments(
       new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(2 * half, 2 * half, 2 * half)),
@@ -112,5 +91,5 @@
     return group;
   }
 
-  STG.shapes = { CIRCLE, line, setPoints, circle, hullGeometry, bottomOf, obstacleOf, frameOf };
+  STG.shapes = { hullGeometry, bottomOf, obstacleOf, frameOf };
 })(window.STG = window.STG || {});

@@ -4,33 +4,18 @@
 (function (STG) {
   "use strict";
 
-  const RINGS = 40, LINES = 600, LABELS = 10, SEEN_S = 0.45;  // of wall time that a packet is seen at least
+  const RINGS = 40, LABELS = 10, SEEN_S = 0.45;  // of wall time that a packet is seen at least
 
   class Sound {
-    constructor(app, group, { line, setPoints, circle }) {
+    constructor(app, lines) {
       this.app = app;
-      this.setPoints = setPoints;
-      this.circle = circle;
-      this.rings = [...Array(RINGS)].map(() => line(73, app.colours.sound, 0.7));
-      this.heard = this.segments(app.colours.heard, 0.55);
-      this.missed = this.segments(app.colours.lost, 0.6);
-      this.links = this.segments(app.colours.soft, 0.13);
-      group.add(...this.rings, this.heard, this.missed, this.links);
+      this.lines = lines;
       this.labels = [];
     }
 
-    segments(colour, opacity) {
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * LINES), 3));
-      const made = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(
-        { color: colour, transparent: true, opacity, depthWrite: false }));
-      made.frustumCulled = false;
-      return made;
-    }
-
     draw(t, row) {
-      const { recording: r, transmissions, speed, playing, scene, selected } = this.app;
-      const heard = [], missed = [], labels = [];
+      const { recording: r, transmissions, speed, playing, scene, selected, colours } = this.app, { lines } = this;
+      const labels = [];
       // Fast runs show a packet for longer than it takes, but not several rounds of them at once.
       const every = (r.end - r.start) / Math.max(1, transmissions.list.length);
       const least = Math.max(r.meta.decision_s || 0.1, Math.min(playing ? SEEN_S * speed : 0, 1.5 * every));
@@ -51,54 +36,39 @@
           reach = Math.max(reach, away);
           if (selected >= 0 && receiver !== selected && one.source !== selected) continue;
           if (fate === 0) {
-            if (heard.length < 6 * LINES) heard.push(...p, ...q);
+            lines.ink(colours.rgbOf.heard, 0.55);
+            lines.segment(...p, ...q);
           } else {
-            this.broken(missed, p, q);
+            lines.ink(colours.rgbOf.lost, 0.6);
+            lines.broken(p, q);
             labels.push({ p: [0, 1, 2].map((a) => p[a] + 0.62 * (q[a] - p[a])), text: STG.FATES[fate] });
           }
         }
-        if (ring < RINGS) {
-          const shape = this.rings[ring++];
-          shape.visible = true;
-          shape.material.opacity = 0.75 * (1 - share) + 0.1;
-          this.setPoints(shape, this.circle(...p, Math.max(1e-6, share * reach)));
+        if (ring++ < RINGS) {
+          lines.ink(colours.rgbOf.sound, 0.75 * (1 - share) + 0.1);
+          lines.circle(...p, Math.max(1e-6, share * reach));
         }
       }
-      for (; ring < RINGS; ++ring) this.rings[ring].visible = false;
-      this.put(this.heard, heard);
-      this.put(this.missed, missed);
-      this.put(this.links, this.recentLinks(t, row));
+      this.drawRecentLinks(t, row);
       const stride = Math.max(1, Math.ceil(labels.length / LABELS));
       this.labels = labels.filter((_, k) => k % stride === 0);
     }
 
-    /** Seven dashes and a gap at each. */
-    broken(to, p, q) {
-      for (let k = 0; k < 7 && to.length < 6 * LINES; ++k) {
-        for (const u of [k / 7, (k + 0.5) / 7]) to.push(...[0, 1, 2].map((a) => p[a] + u * (q[a] - p[a])));
-      }
-    }
-
     /** Who has heard whom a short while ago. */
-    recentLinks(t, row) {
-      const { recording: r, transmissions, scene } = this.app;
-      const points = [], window = Math.max(2, 20 * (r.meta.decision_s || 0.1)), seen = new Set();
+    drawRecentLinks(t, row) {
+      const { recording: r, transmissions, scene, colours } = this.app;
+      const window = Math.max(2, 20 * (r.meta.decision_s || 0.1)), seen = new Set();
       const list = transmissions.between(t - window, t);
-      for (let k = list.length - 1; k >= 0 && points.length < 6 * LINES; --k) {
+      this.lines.ink(colours.rgbOf.soft, 0.13);
+      for (let k = list.length - 1; k >= 0; --k) {
         for (const packet of list[k].rows) {
           if (r.packets.at("fate", packet) !== 0 || r.packets.at("arrival", packet) > t) continue;
           const a = list[k].source, b = r.packets.at("receiver", packet), key = a < b ? a * 4096 + b : b * 4096 + a;
           if (seen.has(key)) continue;
           seen.add(key);
-          points.push(...scene.point(row, "position", a), ...scene.point(row, "position", b));
+          this.lines.segment(...scene.point(row, "position", a), ...scene.point(row, "position", b));
         }
       }
-      return points;
-    }
-
-    put(object, points) {
-      const room = object.geometry.attributes.position.array.length;
-      this.setPoints(object, points.length > room ? points.slice(0, room) : points);
     }
   }
 
