@@ -14,7 +14,7 @@
 /// Trains one policy for swarms of any size in open water.
 int main(int argc, char** argv) {
   CLI::App app("Trains one policy for swarms of any size in open water and writes it as ONNX.");
-  std::string scenario = "field", action = "guidance";
+  std::string scenario = "field", action = "law5";
   stg::learn::SwarmConfig config;
   stg::learn::SwarmTrainer::Options options;
   options.workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app.add_option("--action", action,
-                 "guidance: the policy guides the law encircle; course3: it steers by itself")
+                 "law5: the policy guides the law that the situation asks for; guidance: always "
+                 "encircle; course3: it steers by itself")
       ->capture_default_str();
   app.add_option("--seed", config.seed, "of networks, episodes and exploration")
       ->check(stg::learn::SeedCheck())

@@ -67,7 +67,8 @@ T Formation::Slot(const ControllerInput<T>& in, const Level<T>& v_T) const {
 }
 
 template <class T>
-Level<T> Formation::Keep(const ControllerInput<T>& in, const Level<T>& v_T, const T& R) const {
+Level<T> Formation::Keep(const ControllerInput<T>& in, const Level<T>& v_T, const T& R,
+                         const Guidance<T>& guidance) const {
   const Knowledge<T>& k = in.knowledge;
   const T one(1.0);
   const Level<T> own{k.v_WB.x, k.v_WB.y};
@@ -76,18 +77,19 @@ Level<T> Formation::Keep(const ControllerInput<T>& in, const Level<T>& v_T, cons
   const T rho = Max(Norm(r), T(1e-3));
   const Level<T> outward = r * (-one / rho);
   const Level<T> around{-outward.y, outward.x};
-  const T off = Slot(in, v_T) - Atan2(outward.y, outward.x);
+  const T off = Slot(in, v_T) + guidance.phase_rad - Atan2(outward.y, outward.x);
   const T turn = off - T(kFullTurn) * Floor((off + T(kPi)) * T(1.0 / kFullTurn));
   const Level<T> way = outward * (R - rho) + around * (turn * Min(rho, R * T(1.5)));
   const T length = Max(Norm(way), T(1e-3));
   const Level<T> direction = way * (one / length);
   T u = length * T(options.gain_ps);
   u = Min(u, SpeedAlong(v_T, direction, T(options.fast_mps), u));
-  return Limited(v_T + direction * u, options.slow_mps, options.fast_mps);
+  return Limited(v_T + direction * u + around * guidance.speed_mps, options.slow_mps,
+                 options.fast_mps);
 }
 
 template <class T>
-void Formation::Act(const ControllerInput<T>& in, T* action) const {
+void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T* action) const {
   const AgentModel& s = in.model;
   const Knowledge<T>& k = in.knowledge;
   const T zero(0.0), one(1.0);
@@ -99,9 +101,10 @@ void Formation::Act(const ControllerInput<T>& in, T* action) const {
     const Level<T> v{k.v_WT.x, k.v_WT.y};
     return v * (Min(Norm(v), T(s.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
   }();
-  const T z = ring.Height(in, zero);
-  const T R = ring.Radius(in, z - (k.p_WB.z + k.r_BT_W.z)) * T(options.radius);
-  Level<T> v = Keep(in, v_T, R);
+  const T z = ring.Height(in, guidance.depth_m);
+  const T own_ring = ring.Radius(in, z - (k.p_WB.z + k.r_BT_W.z)) * T(options.radius);
+  const T R = Max(own_ring + guidance.radius_m, T(0.25) * own_ring);
+  Level<T> v = Keep(in, v_T, R, guidance);
   const Level<T> own{k.v_WB.x, k.v_WB.y};
   for (int j = 0; j < in.neighbour_count; ++j) {
     const NeighbourSight<T>& n = in.neighbours[j];
@@ -130,7 +133,7 @@ void Formation::Act(const ControllerInput<T>& in, T* action) const {
   const auto slow = Norm(v_T) < T(options.weave_below_mps);
   if (!Any(slow)) return;
   T circling[dynamics::kMaxActionSize] = {};
-  Encircle{EncircleOptions{}}.Act(in, circling);
+  Encircle{EncircleOptions{}}.Act(in, guidance, circling);
   for (int a = 0; a < s.control.action_size(); ++a)
     action[a] = Select(slow, circling[a], action[a]);
 }
@@ -154,6 +157,11 @@ void Describe(FormationOptions* o, config::Table* t) {
   t->Add("doubt", &o->doubt_mps, NonNegative(100), "m/s",
          "and by this times the age of what they said");
 }
+
+template void Formation::Act(const ControllerInput<double>& in, const Guidance<double>& guidance,
+                             double* action) const;
+template void Formation::Act(const ControllerInput<Pack>& in, const Guidance<Pack>& guidance,
+                             Pack* action) const;
 
 std::unique_ptr<Controller> MakeFormation(const FormationOptions& options) {
   return std::make_unique<ControllerOf<Formation>>(Formation{options});

@@ -131,18 +131,28 @@ SearchLaw::SearchLaw(const FoundOptions& found)
     : found_(found), circle_(CircleOf(found)), form_(FormOf(found)) {}
 
 template <class T>
-void SearchLaw::Follow(const ControllerInput<T>& in, T* action) const {
+void SearchLaw::Follow(const ControllerInput<T>& in, const Guidance<T>& guidance, T* action) const {
   if (found_.form > 0.5) {
-    form_.Act(in, action);
+    form_.Act(in, guidance, action);
   } else {
-    circle_.Act(in, action);
+    circle_.Act(in, guidance, action);
   }
 }
 
-void SearchLaw::Act(const ControllerInput<double>& in, double* action) const { Follow(in, action); }
-void SearchLaw::Act(const ControllerInput<Pack>& in, Pack* action) const { Follow(in, action); }
+void SearchLaw::Act(const ControllerInput<double>& in, double* action) const {
+  Follow(in, {}, action);
+}
+void SearchLaw::Act(const ControllerInput<Pack>& in, Pack* action) const { Follow(in, {}, action); }
 
 void SearchLaw::Act(const AgentView& agent, float* action) const {
+  double a[dynamics::kMaxActionSize] = {};
+  Act(agent, {}, a);
+  for (int i = 0; i < agent.model().control.action_size(); ++i)
+    action[i] = static_cast<float>(a[i]);
+}
+
+void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance,
+                    double* action) const {
   SearchMemory* search = agent.search();
   if (search == nullptr) {
     throw UserError("a controller that searches needs the agents' map: set track.search_cell_m");
@@ -153,20 +163,21 @@ void SearchLaw::Act(const AgentView& agent, float* action) const {
   const TargetBelief belief = agent.belief();
   const bool found = belief.started && belief.observed &&
                      Seconds(search->now() - belief.information) <= found_.give_up_s;
-  double a[dynamics::kMaxActionSize] = {};
   if (found) {
     search->plan.made = false;
-    Follow(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, a);
+    Follow(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, guidance, action);
   } else {
     // A far circle around the goal is the way to it, clear of the others and of the chart.
     const Level<double> goal = Goal(agent, search);
-    k.r_BT_W.x = goal.x;
-    k.r_BT_W.y = goal.y;
+    const double c = std::cos(guidance.phase_rad), s = std::sin(guidance.phase_rad);
+    k.r_BT_W.x = c * goal.x - s * goal.y;
+    k.r_BT_W.y = s * goal.x + c * goal.y;
     k.v_WT = {};
-    circle_.Act(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, a);
+    Guidance<double> way;
+    way.speed_mps = guidance.speed_mps;
+    way.depth_m = guidance.depth_m;
+    circle_.Act(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, way, action);
   }
-  for (int i = 0; i < agent.model().control.action_size(); ++i)
-    action[i] = static_cast<float>(a[i]);
 }
 
 void Describe(SearchMapOptions* o, config::Table* t) {
@@ -183,7 +194,7 @@ void Describe(SearchMapOptions* o, config::Table* t) {
   t->Add("courses", &o->courses, config::Within(4, kCourses), "-", "courses to choose from");
 }
 
-std::unique_ptr<Controller> MakeSearchMap(const SearchMapOptions& options) {
+std::unique_ptr<SearchLaw> MakeSearchMap(const SearchMapOptions& options) {
   return std::make_unique<MapLaw>(options);
 }
 

@@ -264,7 +264,11 @@ float DeviationScale(double s) { return static_cast<float>(std::log(1.0 + s / 5.
 void BuildEntities(const EntityInput& in, Entities* out) {
   const Frame K = FrameOf(in.knowledge);
   PutSelf(in, K, out->self);
-  std::fill(out->search, out->search + kSearchNumbers, 0.0F);
+  if (in.search != nullptr) {
+    BuildSearchRow(*in.search, in.knowledge.p_WB, K.c, K.s, in.model.sensing.range_m, out->search);
+  } else {
+    std::fill(out->search, out->search + kSearchNumbers, 0.0F);
+  }
   out->targets = in.belief.started ? 1 : 0;
   if (out->targets > 0) PutTarget(in, K, out->target[0]);
   out->neighbours = std::min(in.neighbour_count, kNeighbourRows);
@@ -283,6 +287,7 @@ void BuildEntities(const AgentView& agent, Entities* out) {
                  agent.knowledge(), agent.memory(), agent.belief()};
   in.velocity_std_mps = std::sqrt(std::max(estimate.vv, 0.0));
   in.information_age_s = std::max(0.0, Seconds(in.memory.now - in.belief.information));
+  if (agent.search() != nullptr) in.search = &agent.search()->map();
   EntityNeighbour nearest[kNeighbourRows];
   for (const int id : agent.neighbours().known()) {
     const NeighbourSight<double> sight = agent.sight(id);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stg_agent/controllers/search_laws.hpp"
+
 namespace stg::agent {
 namespace {
 
@@ -20,6 +22,32 @@ void Steer(const AgentView& agent, const Guidance<double>& guidance, double* act
   const Encircle law{};
   law.Act(ControllerInput<double>{agent.model(), agent.id(), agent.knowledge(), nearest, count},
           guidance, action);
+}
+
+SearchMapOptions SearchForm(double form) {
+  SearchMapOptions o;
+  o.form = form;
+  return o;
+}
+
+/// The law that `law5` guides: where there is a search map `search_map`, else what it does once it
+/// has found the target. A target that may be faster than AUVs cruise outruns a circle, so a place
+/// is kept at it.
+void SteerLaw(const AgentView& agent, const Guidance<double>& guidance, double* action) {
+  static const std::unique_ptr<SearchLaw> circling = MakeSearchMap(SearchForm(0.0));
+  static const std::unique_ptr<SearchLaw> keeping = MakeSearchMap(SearchForm(1.0));
+  const bool fast = agent.model().target.max_speed_mps > EncircleOptions{}.cruise_mps;
+  if (agent.search() != nullptr) {
+    (fast ? keeping : circling)->Act(agent, guidance, action);
+  } else if (fast) {
+    NeighbourSight<double> nearest[Controller::kNearestKnown];
+    const int count = agent.Nearest(Controller::kNearestKnown, nearest);
+    Formation{}.Act(
+        ControllerInput<double>{agent.model(), agent.id(), agent.knowledge(), nearest, count},
+        guidance, action);
+  } else {
+    Steer(agent, guidance, action);
+  }
 }
 
 /// Deviation of the target's position along the long axis of its horizontal ellipse [m].
@@ -79,8 +107,9 @@ void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
   const AgentModel& model = agent.model();
   const EntityMemory& memory = agent.memory();
   double wanted[dynamics::kMaxActionSize];
-  if (action == EntityAction::kGuidance) {
-    Steer(agent, GuidanceOf(memory.command.data(), LevelDeviation(agent)), wanted);
+  if (action != EntityAction::kCourse3) {
+    const Guidance<double> guidance = GuidanceOf(memory.command.data(), LevelDeviation(agent));
+    (action == EntityAction::kLaw5 ? SteerLaw : Steer)(agent, guidance, wanted);
   } else {
     const auto& most = model.vehicle.max_velocity_mps;
     const Vec3<double>& v = memory.velocity_W;

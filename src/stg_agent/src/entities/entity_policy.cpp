@@ -8,14 +8,23 @@
 namespace stg::agent {
 
 std::string EntityActionName(EntityAction action) {
-  return action == EntityAction::kGuidance ? "guidance" : "course3";
+  switch (action) {
+    case EntityAction::kGuidance:
+      return "guidance";
+    case EntityAction::kLaw5:
+      return "law5";
+    case EntityAction::kCourse3:
+      break;
+  }
+  return "course3";
 }
 
 EntityAction EntityActionNamed(const std::string& name) {
-  for (const EntityAction action : {EntityAction::kGuidance, EntityAction::kCourse3}) {
+  for (const EntityAction action :
+       {EntityAction::kGuidance, EntityAction::kLaw5, EntityAction::kCourse3}) {
     if (name == EntityActionName(action)) return action;
   }
-  throw UserError("action '" + name + "': neither guidance nor course3");
+  throw UserError("action '" + name + "': none of guidance, law5, course3");
 }
 
 PoolSpec EntityActorSpec(int outputs) {

@@ -106,6 +106,47 @@ TEST(Entities, ScalesReadAsStated) {
   EXPECT_NEAR(DeviationScale(1000.0), 1.0, 0.005);
 }
 
+/// The search row of an AUV at (200, 100) m on a course of 90 deg, whose target has a datum of the
+/// given deviation `ahead` and `port` of it.
+std::vector<float> SearchRow(double ahead, double port, double std_m) {
+  AgentModel m = FieldModel();
+  m.workspace.half_extent_m = 6000.0;
+  m.track.search_cell_m = 100.0;
+  SearchMap map(m);
+  map.Start({0, {200.0 - port, 100.0 + ahead, -40.0}, std_m});
+  std::vector<float> row(kSearchNumbers);
+  BuildSearchRow(map, {200.0, 100.0, -30.0}, 0.0, 1.0, 600.0, row.data());
+  return row;
+}
+
+TEST(SearchRow, TellsInWhichSectorAndRingTheMassIs) {
+  const struct {
+    double ahead, port;
+    std::size_t sector, ring;
+  } cases[] = {{650.0, 0.0, 0, 1},  {0.0, 250.0, 2, 0},     {-250.0, 0.0, 4, 0},
+               {0.0, -650.0, 6, 1}, {1000.0, 1000.0, 1, 2}, {-1000.0, -1000.0, 5, 2}};
+  for (const auto& c : cases) {
+    const std::vector<float> row = SearchRow(c.ahead, c.port, 50.0);
+    const std::size_t at = c.ring * 8 + c.sector;
+    EXPECT_GT(row[at], 0.95F) << at;
+    float all = 0.0F;
+    for (std::size_t k = 0; k < 24; ++k) all += row[k] * row[k];
+    EXPECT_NEAR(all, 1.0F, 1e-4F);
+    const double d = std::hypot(c.ahead, c.port);
+    EXPECT_NEAR(row[24], d <= 450.0 ? 1.0 : row[24], 1e-3);
+    EXPECT_NEAR(row[26], c.ahead / d, 0.3);
+    EXPECT_NEAR(row[27], c.port / d, 0.3);
+  }
+}
+
+TEST(SearchRow, EntropyIsOneOfAnEvenMapAndThatOfAGaussianElse) {
+  EXPECT_NEAR(SearchRow(0.0, 0.0, 1e5)[25], 1.0, 1e-3);
+  // ln(2 pi e s^2) of a Gaussian in the plane, in cells of 100 m.
+  const double s = 3.0;
+  EXPECT_NEAR(SearchRow(0.0, 0.0, 300.0)[25],
+              std::log(2.0 * kPi * std::exp(1.0) * s * s) / std::log(1024.0), 2e-3);
+}
+
 TEST(Entities, OpposedObserversAreOneAxisAndSpreadOnesAreNone) {
   EntityExample x = MakeExample(1, 2);
   x.knowledge.r_BT_W = {100.0, 0.0, 0.0};

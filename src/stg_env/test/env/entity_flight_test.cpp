@@ -34,24 +34,64 @@ std::vector<double> Decided(const Controller& c, TestEnv* env) {
   return a;
 }
 
+/// Flies two copies of the same waters, because a law that searches writes its plan into the agent.
+void ExpectZerosAre(agent::EntityAction action, const std::string& law, const Scenario& s) {
+  Controller guided;
+  guided.entities = PolicyOf(action, 0.0);
+  const Controller alone = MakeController(law, s.model());
+  TestEnv env(s), other(s);
+  env.Reset();
+  other.Reset();
+  for (int k = 0; k < 110; ++k) {
+    const std::vector<double> ours = Decided(guided, &env), theirs = Decided(alone, &other);
+    ASSERT_EQ(std::memcmp(ours.data(), theirs.data(), ours.size() * sizeof(double)), 0)
+        << law << " " << k;
+    env.VectorEnv::Step(ours.data(), env.memory.arrays());
+    other.VectorEnv::Step(theirs.data(), other.memory.arrays());
+  }
+}
+
 TEST(EntityFlight, CommandsOfZeroAreEncircleBitForBit) {
-  const Scenario s = Short(Shipped("field", "combined_stress"), 120);
-  Controller guided, law;
-  guided.entities = PolicyOf(agent::EntityAction::kGuidance, 0.0);
-  law = MakeController("encircle", s.model());
+  ExpectZerosAre(agent::EntityAction::kGuidance, "encircle",
+                 Short(Shipped("field", "combined_stress"), 120));
+}
+
+TEST(EntityFlight, CommandsOfZeroAreTheLawOfTheSituationBitForBit) {
+  const struct {
+    const char *law, *scenario, *condition;
+  } cases[] = {{"encircle", "field", "nominal"},
+               {"formation", "field", "fast_target"},
+               {"search_map:form=1", "field", "combined_stress"},
+               {"search_map", "search", "nominal"}};
+  for (const auto& c : cases) {
+    ExpectZerosAre(agent::EntityAction::kLaw5, c.law, Short(Shipped(c.scenario, c.condition), 120));
+  }
+}
+
+TEST(EntityFlight, WhileItSearchesACommandTurnsTheCourse) {
+  const Scenario s = Short(Shipped("search"), 60);
   TestEnv env(s);
   env.Reset();
-  for (int k = 0; k < 110; ++k) {
-    const std::vector<double> ours = Decided(guided, &env), theirs = Decided(law, &env);
-    ASSERT_EQ(std::memcmp(ours.data(), theirs.data(), ours.size() * sizeof(double)), 0) << k;
-    env.VectorEnv::Step(ours.data(), env.memory.arrays());
+  const Controller law = MakeController("search_map", s.model());
+  for (int k = 0; k < 30; ++k) {
+    env.VectorEnv::Step(Decided(law, &env).data(), env.memory.arrays());
   }
+  const auto course_of = [&env](float phase) {
+    const float command[agent::kCommandNumbers] = {0.0F, 0.0F, phase, 0.0F, 0.0F};
+    float action[3];
+    agent::TakeCommand(env.agent(0, 0), agent::EntityAction::kLaw5, command);
+    agent::FollowCommand(env.agent(0, 0), agent::EntityAction::kLaw5, action);
+    return std::atan2(static_cast<double>(action[1]), static_cast<double>(action[0]));
+  };
+  // 0.5 stands for 30 deg; what keeps AUVs apart may turn it a little more or less.
+  EXPECT_NEAR(std::remainder(course_of(0.5F) - course_of(0.0F), 2.0 * kPi), kPi / 6.0, 0.05);
 }
 
 TEST(EntityFlight, EveryNumberOfACommandChangesTheFlight) {
   const Scenario s = Short(Shipped("field"), 60);
   for (const agent::EntityAction action :
-       {agent::EntityAction::kGuidance, agent::EntityAction::kCourse3}) {
+       {agent::EntityAction::kGuidance, agent::EntityAction::kLaw5,
+        agent::EntityAction::kCourse3}) {
     TestEnv env(s);
     env.Reset();
     // On the circle, where all of them matter.

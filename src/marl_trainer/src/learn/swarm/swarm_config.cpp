@@ -3,14 +3,34 @@
 namespace stg::learn {
 namespace {
 
-/// Conditions of the mixture, by how often they come.
-constexpr const char* kConditions[] = {
-    "nominal",        "combined_stress",       "fast_target",     "combined_stress",
-    "nominal",        "limited_sensing",       "combined_stress", "far_initialization",
-    "strong_current", "degraded_communication"};
-constexpr int kConditionCount = static_cast<int>(sizeof(kConditions) / sizeof(kConditions[0]));
-constexpr int kSizes[] = {4, 3, 6, 4, 8, 5, 4, 7};
-constexpr int kSizeCount = static_cast<int>(sizeof(kSizes) / sizeof(kSizes[0]));
+struct Waters {
+  const char* scenario;  ///< null: the one that is trained for
+  const char* condition;
+  int agents;
+  int targets = 1;
+  int longer = 1;  ///< episodes by this: a search takes long before anything pays
+};
+
+/// The kinds of waters of the mixture, in the order in which they come.
+constexpr Waters kWaters[] = {
+    {nullptr, "combined_stress", 4},
+    {"search", "nominal", 4, 1, 2},
+    {"hunt", "nominal", 4},
+    {nullptr, "nominal", 8},
+    {nullptr, "fast_target", 6},
+    {nullptr, "strong_current", 3},
+    {nullptr, "sparse", 4},
+    {nullptr, "nominal", 4},
+    {nullptr, "combined_stress", 6},
+    {"search", "nominal", 6, 1, 2},
+    {nullptr, "nominal", 6, 2},
+    {nullptr, "limited_sensing", 5},
+    {"hunt", "nominal", 8},
+    {nullptr, "degraded_communication", 7},
+    {nullptr, "far_initialization", 1},
+    {nullptr, "combined_stress", 2},
+};
+constexpr int kWatersCount = static_cast<int>(sizeof(kWaters) / sizeof(kWaters[0]));
 
 }  // namespace
 
@@ -18,11 +38,12 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
                                     const SwarmConfig& config, int count) {
   std::vector<SwarmTask> mixture;
   for (int k = 0; k < count; ++k) {
-    const char* condition = kConditions[k % kConditionCount];
-    const int agents = kSizes[k % kSizeCount];
-    const std::string steps = std::to_string(config.episode_steps);
+    const Waters& waters = kWaters[k % kWatersCount];
+    const std::string steps = std::to_string(config.episode_steps * waters.longer);
+    const std::string name = waters.scenario != nullptr ? waters.scenario : scenario;
     const std::vector<std::string> overrides = {
-        "agents=" + std::to_string(agents),
+        "agents=" + std::to_string(waters.agents),
+        "target.count=" + std::to_string(waters.targets),
         "time.episode_steps=" + steps,
         "time.tail_steps=" + steps,
         // What is near the band pays; the way to it is in the shaping.
@@ -40,16 +61,19 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
         "reward.terms.spread.weight=0.5",
         "reward.total_limit=10.0",
     };
-    mixture.push_back({std::string(condition) + "/" + std::to_string(agents),
-                       LoadNamedScenario(folder, scenario, condition, overrides)});
+    mixture.push_back({name + "/" + waters.condition + "/" + std::to_string(waters.agents),
+                       LoadNamedScenario(folder, name, waters.condition, overrides)});
   }
   return mixture;
 }
 
 std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::string& scenario) {
   std::vector<SwarmTask> tasks;
-  for (const char* condition : {"nominal", "combined_stress", "fast_target"}) {
+  for (const char* condition : {"nominal", "combined_stress", "fast_target", "strong_current"}) {
     tasks.push_back({condition, LoadNamedScenario(folder, scenario, condition)});
+  }
+  for (const char* name : {"hunt", "search"}) {
+    tasks.push_back({name, LoadNamedScenario(folder, name, "nominal")});
   }
   return tasks;
 }

@@ -42,7 +42,12 @@ struct Formation {
   FormationOptions options;
 
   template <class T>
-  void Act(const ControllerInput<T>& in, T* action) const;
+  void Act(const ControllerInput<T>& in, T* action) const {
+    Act(in, Guidance<T>(), action);
+  }
+  /// The same law, guided: the speed is one along the ring, the phase turns the own place.
+  template <class T>
+  void Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T* action) const;
 
  private:
   /// Bearing of the own place from the target [rad], and the number of places.
@@ -50,7 +55,8 @@ struct Formation {
   T Slot(const ControllerInput<T>& in, const Level<T>& v_T) const;
   /// Desired velocity over ground in the plane, by the place alone [m/s].
   template <class T>
-  Level<T> Keep(const ControllerInput<T>& in, const Level<T>& v_T, const T& radius) const;
+  Level<T> Keep(const ControllerInput<T>& in, const Level<T>& v_T, const T& radius,
+                const Guidance<T>& guidance) const;
 };
 
 std::unique_ptr<Controller> MakeFormation(const FormationOptions& options);

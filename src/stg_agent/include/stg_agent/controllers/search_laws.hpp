@@ -61,6 +61,8 @@ class SearchLaw : public Controller {
   void Act(const ControllerInput<Pack>& input, Pack* action) const override;
   /// Throws UserError for an agent without a search map.
   void Act(const AgentView& agent, float* action) const override;
+  /// The same law, guided, not rounded: while it searches the phase turns its course.
+  void Act(const AgentView& agent, const Guidance<double>& guidance, double* action) const;
 
  protected:
   /// Where to go now, relative to the own position [m].
@@ -68,7 +70,7 @@ class SearchLaw : public Controller {
 
  private:
   template <class T>
-  void Follow(const ControllerInput<T>& input, T* action) const;
+  void Follow(const ControllerInput<T>& input, const Guidance<T>& guidance, T* action) const;
 
   FoundOptions found_;
   Encircle circle_;
@@ -84,7 +86,7 @@ Level<double> SquareWaypoint(const Level<double>& datum, double spacing_m, int i
 Level<double> SweepWaypoint(const Level<double>& datum, double half_m, double spacing_m, int id,
                             int agents, int leg, bool turned);
 
-std::unique_ptr<Controller> MakeSearchMap(const SearchMapOptions& options);
+std::unique_ptr<SearchLaw> MakeSearchMap(const SearchMapOptions& options);
 std::unique_ptr<Controller> MakeGreedySearch(const GreedySearchOptions& options);
 std::unique_ptr<Controller> MakeParallelSweep(const ParallelSweepOptions& options);
 std::unique_ptr<Controller> MakeExpandingSquare(const ExpandingSquareOptions& options);

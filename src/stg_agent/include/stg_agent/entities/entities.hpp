@@ -3,6 +3,7 @@
 #include "stg_agent/agent/agent_view.hpp"
 #include "stg_agent/agent/entity_memory.hpp"
 #include "stg_agent/entities/layout.hpp"
+#include "stg_agent/search/search_map.hpp"
 
 namespace stg::agent {
 
@@ -35,6 +36,7 @@ struct EntityInput {
   double information_age_s = 0.0;               ///< of the newest observation in it
   const EntityNeighbour* neighbours = nullptr;  ///< [neighbour_count], nearest first
   int neighbour_count = 0;
+  const SearchMap* search = nullptr;  ///< null: it keeps no map
 };
 
 /// Writes the rows; allocates nothing. Their order is that of the input for neighbours, and by
@@ -42,11 +44,20 @@ struct EntityInput {
 ///
 /// Always zero today, because nothing in the agent tells them: of a target the second mixture
 /// component and the last innovation, of a neighbour the share of its packets missed and their
-/// SINR, of an edge the share of the information, of self the site's noise, and all of search.
+/// SINR, of an edge the share of the information, and of self the site's noise.
 void BuildEntities(const EntityInput& input, Entities* out);
 
 /// The same of an agent after Observe, with its nearest neighbours.
 void BuildEntities(const AgentView& agent, Entities* out);
+
+/// The row about the search: square roots of the map's mass in eight sectors of the frame K, the
+/// first one straight ahead, then to port, of three rings (0 to 400, 900, 2000 m); the mass within
+/// the sensor's reach; entropy over that of an even map; cos, sin of the bearing of the cell with
+/// the largest mass.
+/// @param cos_course, sin_course the x axis of K in the world
+/// @param out [kSearchNumbers]
+void BuildSearchRow(const SearchMap& map, const Vec3<double>& p_WB, double cos_course,
+                    double sin_course, double sensor_m, float* out);
 
 /// The scales of lengths, times and deviations (docs/packages/stg_agent.md).
 float FarScale(double distance_m);                       ///< L

@@ -12,12 +12,13 @@ namespace stg::agent {
 /// What the numbers of a command mean (docs/packages/stg_agent.md), named in the policy file.
 enum class EntityAction {
   kGuidance,  ///< five: how the law `encircle` is to circle. All zero: as it does by itself
+  kLaw5,      ///< five: the same of the law that the situation asks for
   kCourse3    ///< three: change of course, speed and climb; no law
 };
 inline constexpr int CommandSize(EntityAction action) {
-  return action == EntityAction::kGuidance ? 5 : 3;
+  return action == EntityAction::kCourse3 ? 3 : 5;
 }
-/// "guidance" or "course3".
+/// "guidance", "law5" or "course3".
 std::string EntityActionName(EntityAction action);
 /// Throws UserError for another name.
 EntityAction EntityActionNamed(const std::string& name);

@@ -14,7 +14,7 @@ namespace stg::learn {
 struct SwarmConfig {
   std::uint64_t seed = 0;
   std::int64_t steps = 6'000'000;  ///< decisions of a swarm, 1 s each in the field
-  agent::EntityAction action = agent::EntityAction::kGuidance;
+  agent::EntityAction action = agent::EntityAction::kLaw5;
 
   int envs = 128;
   int horizon = 40;         ///< policy steps of one collection
@@ -44,8 +44,8 @@ struct SwarmTask {
   Scenario scenario;
 };
 
-/// The mixture of the field for `count` shards: sizes of 3 to 8 AUVs, conditions, and the reward of
-/// training in place of the scenario's.
+/// The mixture of the field for `count` shards: sizes of 1 to 8 AUVs, one or two targets, stresses,
+/// search and hunt, and the reward of training in place of the scenario's.
 /// @param folder of the shipped scenarios
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count);
