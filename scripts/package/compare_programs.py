@@ -19,9 +19,9 @@ import tempfile
 
 def jobs(policy):
     """Returns {name: (program, arguments)}; FOLDER in them is a new folder for what is written."""
-    evaluate = ["--policy", policy, "--episodes", "200", "--seed", "3000"]
-    field = ["--policy", "encircle", "--scenario", "field", "--episodes", "4", "--seed", "3000", "--workers", "1"]
-    train = ["--scenario", "medium_separated", "--steps", "60000", "--workers", "1", "--seed", "1", "--out", "FOLDER"]
+    evaluate = ["--policy", policy, "--episodes", "1000", "--seed", "3000"]
+    field = ["--policy", "encircle", "--scenario", "field", "--episodes", "40", "--seed", "3000", "--workers", "1"]
+    train = ["--scenario", "medium_separated", "--steps", "300000", "--workers", "1", "--seed", "1", "--out", "FOLDER"]
     return {
         "evaluate medium": ("marl_trainer/evaluate", [*evaluate, "--scenario", "medium", "--workers", "1"]),
         "evaluate hard": ("marl_trainer/evaluate", [*evaluate, "--scenario", "hard", "--workers", "1"]),
