@@ -28,8 +28,13 @@ std::vector<int> IndicesOf(int agents) {
 }  // namespace
 
 ChannelNode::ChannelNode(acoustics::LineOfSight line_of_sight)
+    : ChannelNode([&line_of_sight](const acoustics::NetworkConfig& scenario) {
+        return acoustics::MakeChannel(scenario.channel, scenario.run, std::move(line_of_sight));
+      }) {}
+
+ChannelNode::ChannelNode(const MakeChannel& make)
     : scenario_(LoadScenarioParameters<acoustics::NetworkConfig>()),
-      channel_(acoustics::MakeChannel(scenario_.channel, scenario_.run, std::move(line_of_sight))),
+      channel_(make(scenario_)),
       period_(scenario_.run.decision_period()),
       timeout_s_(NumberParameter("timeout", 0.2, 0.001, 3600.0)),
       display_period_s_(1.0 / NumberParameter("display_rate", 20.0, 0.01, 1e6)),

@@ -20,6 +20,7 @@
 #include "acoustic_channel/channel_config.hpp"
 #include "acoustic_channel/fleet/fleet_channel.hpp"
 #include "acoustic_channel/nodes/packet_reports.hpp"
+#include "acoustic_channel/nodes/topics.hpp"
 #include "auv_common/nodes/health.hpp"
 #include "packet_files.hpp"
 #include "ping_desk.hpp"
@@ -131,7 +132,7 @@ class FleetNode : private acoustics::FleetListener {
   ros::WallTime links_sent_;
   auv_msgs::AcousticReception reception_message_;
   auv_msgs::LinkStates links_message_;
-  PingDesk pings_;
+  PingDesk pings_{topics::kPing};
   Health health_;
 };
 

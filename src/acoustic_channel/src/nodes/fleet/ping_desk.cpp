@@ -6,13 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "acoustic_channel/nodes/topics.hpp"
-
 namespace stg::nodes {
 
-PingDesk::PingDesk() : spinner_(kCallers, &queue_) {
+PingDesk::PingDesk(const std::string& service) : spinner_(kCallers, &queue_) {
   node_.setCallbackQueue(&queue_);
-  server_ = node_.advertiseService(topics::kPing, &PingDesk::OnCall, this);
+  server_ = node_.advertiseService(service, &PingDesk::OnCall, this);
   spinner_.start();
 }
 

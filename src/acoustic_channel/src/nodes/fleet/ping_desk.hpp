@@ -25,7 +25,8 @@ class PingDesk {
     double timeout_s;                   ///< of simulated time
   };
 
-  PingDesk();
+  /// @param service its name
+  explicit PingDesk(const std::string& service);
   /// Callers that still wait are told so.
   ~PingDesk();
 

@@ -6,6 +6,7 @@
 #include <auv_msgs/SwarmState.h>
 #include <ros/node_handle.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ class ChannelNode {
   /// Throws UserError.
   /// @param line_of_sight of who knows what stands in the water; empty: all lines are free
   explicit ChannelNode(acoustics::LineOfSight line_of_sight = {});
+  /// With a channel that somebody else makes from the run's scenario. Throws UserError.
+  using MakeChannel =
+      std::function<std::unique_ptr<acoustics::Channel>(const acoustics::NetworkConfig&)>;
+  explicit ChannelNode(const MakeChannel& make);
   void Spin();
 
  private:

@@ -7,6 +7,7 @@ namespace stg::topics {
 inline constexpr char kAcousticTx[] = "acoustic/tx";
 inline constexpr char kAcousticRx[] = "acoustic/rx";
 inline constexpr char kAcousticStatus[] = "acoustic/status";
+inline constexpr char kAcousticPing[] = "acoustic/ping";
 
 inline constexpr char kLinks[] = "/acoustic_channel/links";
 inline constexpr char kPackets[] = "/acoustic_channel/packets";

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acoustic_channel/modem/packet.hpp"
+
+/// The host's side of a modem: puts packets onto it and takes receptions off it.
+namespace stg::acoustics {
+
+/// A packet for a modem to send.
+struct DriverPacket {
+  std::uint32_t tag = 0;
+  int destination = 0;  ///< address; kToAll: all
+  std::string payload;
+};
+
+/// What a modem has received.
+struct DriverReception {
+  int source = 0;       ///< address
+  int destination = 0;  ///< address, or kToAll
+  std::string payload;
+  TimeNs arrival = 0;              ///< when its last bytes came over the port
+  double airtime_s = 0.0;          ///< 0: the modem does not say
+  double received_level_db = 0.0;  ///< re 1 uPa; this and the next two 0: the modem does not say
+  double noise_level_db = 0.0, sinr_db = 0.0;
+  double doppler_mps = 0.0;  ///< positive closing
+};
+
+/// Whom a driver talks to.
+class DriverWorld {
+ public:
+  virtual ~DriverWorld() = default;
+  /// Bytes for the modem.
+  virtual void Write(const std::string& bytes) = 0;
+  /// The modem does not answer: the connection is to be closed and opened again.
+  virtual void HangUp() = 0;
+
+  virtual void OnReception(const DriverReception& reception) = 0;
+  virtual void OnQueued(std::uint32_t /*tag*/) {}
+  virtual void OnSent(std::uint32_t /*tag*/, TimeNs /*t*/) {}
+  /// Has left; `airtime_s` as the modem tells it.
+  virtual void OnSendEnd(std::uint32_t /*tag*/, double /*airtime_s*/) {}
+  /// Replaced by a newer one before the modem took it, or lost with the connection.
+  virtual void OnDropped(std::uint32_t /*tag*/) {}
+  virtual void OnRefused(std::uint32_t /*tag*/, const std::string& /*why*/) {}
+  /// A ping has ended; `one_way_s` < 0: without answer.
+  virtual void OnRange(int /*address*/, double /*one_way_s*/) {}
+};
+
+/// Protocol engines on the host's side: bytes and time in, bytes out, without ports and clocks of
+/// their own. One command is under way at a time, and one packet; of those that wait the newest
+/// stays. A modem that does not answer is asked three times, then the connection is made anew, and
+/// everything that was set is set again. Times never go back.
+class ModemDriver {
+ public:
+  /// @param world must live as long as this object
+  explicit ModemDriver(DriverWorld* world) : world_(world) {}
+  virtual ~ModemDriver() = default;
+  ModemDriver(const ModemDriver&) = delete;
+  ModemDriver& operator=(const ModemDriver&) = delete;
+
+  void Connect(TimeNs t);
+  void Disconnect(TimeNs t);
+  virtual void Read(TimeNs t, ByteView bytes) = 0;
+  void Send(const DriverPacket& packet, TimeNs t);
+  /// Asks how far away a modem is; OnRange tells.
+  void Ping(int address, TimeNs t);
+  void Tick(TimeNs t);
+  TimeNs next() const;
+
+  /// The modem is set up and answers.
+  bool ready() const { return ready_; }
+  /// What it says that it is; empty: it has not said.
+  const std::string& firmware() const { return firmware_; }
+  struct Counts {
+    std::uint64_t sent = 0, received = 0, lost = 0, dropped = 0, refused = 0, connections = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+ protected:
+  virtual void Reset() = 0;  ///< forgets what was read and what was under way
+  virtual std::vector<std::string> Settings() const = 0;  ///< commands after a connection is made
+  virtual std::string CommandFor(const DriverPacket& packet) const = 0;
+  virtual std::string PingFor(int address) const = 0;
+
+  // For what is read.
+  void Ask(const std::string& command, TimeNs t);
+  /// The command under way, without its end of line; empty: none.
+  const std::string& asked() const { return asked_; }
+  /// It is answered: the next one may go.
+  void Answered(TimeNs t);
+  /// The packet under way was taken by the modem; is leaving; has left; was refused; is to be
+  /// offered again later.
+  void Taken(TimeNs t);
+  void Leaving(TimeNs t);
+  void Left(double airtime_s, TimeNs t);
+  void Refuse(const std::string& why, TimeNs t);
+  void TryAgain(TimeNs t);
+  void Receive(const DriverReception& reception);
+  void EndPing(double one_way_s, TimeNs t);
+  bool sending() const { return under_way_.has_value(); }
+
+  DriverWorld* world_;
+  std::string firmware_;
+  Counts counts_;
+  int ping_ = 0;  ///< the address that was asked; 0: none
+
+ private:
+  void Go(TimeNs t);
+  void AskNext(TimeNs t);
+
+  bool connected_ = false, ready_ = false;
+  std::deque<std::string> commands_;
+  std::string asked_;
+  int times_asked_ = 0;
+  TimeNs answer_due_ = 0;
+  std::optional<DriverPacket> waiting_, under_way_;
+  bool taken_ = false;
+  TimeNs again_ = 0;    ///< not before: the modem was busy
+  TimeNs give_up_ = 0;  ///< of the packet under way, or the ping
+};
+
+/// What is chosen of a driver.
+struct DriverOptions {
+  int address = 1;                 ///< the modem gets this one
+  int broadcast = -1;              ///< address of all; -1: 255 of s2c, 0 of micromodem
+  double rssi_offset_db = -190.0;  ///< of s2c: from a level re 1 uPa to dB re 1 V
+};
+
+/// @param protocol s2c or micromodem; another one throws UserError
+std::unique_ptr<ModemDriver> MakeModemDriver(const std::string& protocol,
+                                             const DriverOptions& options, DriverWorld* world);
+
+}  // namespace stg::acoustics

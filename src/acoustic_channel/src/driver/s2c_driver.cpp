@@ -1,0 +1,98 @@
+#include "acoustic_channel/driver/s2c_driver.hpp"
+
+#include <cstdlib>
+
+namespace stg::acoustics::s2c {
+namespace {
+
+/// What a ping carries; it is for nobody.
+constexpr char kPingPayload[] = "?";
+
+double NumberOf(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
+int WholeOf(const std::string& text) { return static_cast<int>(NumberOf(text)); }
+
+bool Begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
+
+}  // namespace
+
+std::vector<std::string> S2cDriver::Settings() const {
+  return {"AT?MODE", "ATI0", "AT@ZX1", "AT!AL" + std::to_string(options_.address)};
+}
+
+std::string S2cDriver::CommandFor(const DriverPacket& packet) const {
+  const int address = packet.destination == kToAll ? options_.broadcast : packet.destination;
+  return "AT*SENDIM," + std::to_string(packet.payload.size()) + "," + std::to_string(address) +
+         ",noack," + packet.payload;
+}
+
+std::string S2cDriver::PingFor(int address) const {
+  return "AT*SENDIM,1," + std::to_string(address) + ",ack," + kPingPayload;
+}
+
+void S2cDriver::Read(TimeNs t, ByteView bytes) {
+  reader_.Feed(bytes);
+  while (const auto line = reader_.Next()) {
+    if (line->notification()) {
+      TakeNotification(*line, t);
+    } else {
+      TakeAnswer(*line, t);
+    }
+  }
+}
+
+void S2cDriver::TakeAnswer(const ModemLine& line, TimeNs t) {
+  const std::string& text = line.name();
+  const bool busy = Begins(text, "BUSY"), error = Begins(text, "ERROR");
+  if (Begins(asked(), "AT*SENDIM")) {
+    if (ping_ != 0) {
+      if (busy || error) EndPing(-1.0, t);
+    } else if (busy) {
+      TryAgain(t);
+    } else if (error) {
+      Refuse(text, t);
+    } else {
+      Taken(t);
+    }
+  } else if (asked() == "AT?T") {
+    EndPing(1e-6 * NumberOf(text), t);
+  } else if (asked() == "ATI0") {
+    firmware_ = text;
+  }
+  Answered(t);
+}
+
+void S2cDriver::TakeNotification(const ModemLine& line, TimeNs t) {
+  const std::string& name = line.name();
+  const bool own = line.fields.size() > 2 && line.fields[2] == "im" && ping_ == 0;
+  if (name == "SENDSTART" && own) {
+    Leaving(t);
+  } else if (name == "SENDEND" && own && line.fields.size() > 4) {
+    Left(1e-6 * NumberOf(line.fields[4]), t);
+  } else if (name == "RECVIM" && line.fields.size() == 9) {
+    TakeMessage(line, t);
+  } else if (name == "RECVFAILED") {
+    ++counts_.lost;
+  } else if (name == "DELIVEREDIM" && ping_ != 0) {
+    Ask("AT?T", t);
+  } else if (name == "FAILEDIM" && ping_ != 0) {
+    EndPing(-1.0, t);
+  }
+}
+
+void S2cDriver::TakeMessage(const ModemLine& line, TimeNs t) {
+  const std::vector<std::string>& f = line.fields;
+  const bool ping = f[4] == "ack" && line.payload == kPingPayload;
+  if (ping) return;
+  DriverReception r;
+  r.source = WholeOf(f[2]);
+  const int destination = WholeOf(f[3]);
+  r.destination = destination == options_.broadcast ? kToAll : destination;
+  r.payload = line.payload;
+  r.arrival = t;
+  r.airtime_s = 1e-6 * NumberOf(f[5]);
+  r.received_level_db = NumberOf(f[6]) - options_.rssi_offset_db;
+  r.doppler_mps = NumberOf(f[8]);
+  Receive(r);
+}
+
+}  // namespace stg::acoustics::s2c
