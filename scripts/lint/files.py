@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -18,8 +19,10 @@ def _walk():
             yield os.path.relpath(os.path.join(folder, name), ROOT)
 
 
-def all_files():
-    """Returns the sorted paths of the files that belong to the repository, relative to ROOT."""
+def _known_to_git():
+    """Returns the files as relative paths; none where there is no git, or no repository."""
+    if shutil.which("git") is None:
+        return []
     done = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         stdout=subprocess.PIPE,
@@ -27,7 +30,12 @@ def all_files():
         universal_newlines=True,
         check=False,
     )
-    names = done.stdout.split("\0") if done.returncode == 0 else _walk()
+    return done.stdout.split("\0") if done.returncode == 0 else []
+
+
+def all_files():
+    """Returns the sorted paths of the files that belong to the repository, relative to ROOT."""
+    names = _known_to_git() or _walk()
     paths = (pathlib.Path(name) for name in names if name)
     return sorted(p for p in paths if (ROOT / p).is_file() and not (ROOT / p).is_symlink())
 
