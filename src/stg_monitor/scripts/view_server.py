@@ -2,8 +2,9 @@
 """Serves the live view of a run to browsers on the loopback.
 
 It only listens. While nobody looks it keeps positions, at most rate_hz a second of wall time, and
-packets; the rest is asked for and decoded only while somebody does. A browser that comes late is
-sent all that was kept first. ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
+packets; the rest is asked for and decoded only while somebody does. A run in lockstep speaks much
+more often than that: the server sleeps between two looks at what came, and of all but the packets
+decodes the newest alone. A browser that comes late is sent all that was kept first. ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 """
 
 import stg_common.quiet_start  # first: until here Ctrl-C is blocked, see graph.launch
@@ -19,9 +20,13 @@ from aiohttp import WSMsgType, web
 import stg_common.program
 from stg_view.from_bag import Collector, scene_of
 from stg_view.page import PageError, live_page
+from stg_view.raw_packets import packets_message
 from stg_view.recording import Recording, encode
 
+NAP_S = 0.04  # between two looks at what came
+EARLY = 0.8  # share of the pause after which a state is taken: what comes at the rate itself is not to be missed
 MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser is sent
+AT_ONCE = 1 << 22  # bytes that are taken from a connection at once
 HOST = "127.0.0.1"
 # Only this machine's own pages may ask: another site in the same browser has its own origin and host.
 OWN = re.compile(r"(127\.0\.0\.1|localhost|\[::1\])(:\d+)?$")
@@ -55,9 +60,10 @@ class Kept:
 class Ears:
     """Listens to the run, and makes messages for the page of what it hears."""
 
-    def __init__(self, rate_hz, send):
+    def __init__(self, rate_hz, send, later):
         self.pause_s = 1.0 / rate_hz
-        self.send = send
+        self.nap_s = min(NAP_S, 0.4 * self.pause_s)
+        self.send, self.later = send, later
         self.kept = Kept()
         self.lock = threading.Lock()
         self.recording = Recording()
@@ -66,15 +72,26 @@ class Ears:
         self.raw = None
         self.known = {}
         self.more = []
+        self.newest, self.shown = {}, 0.0
+        self.packets, self.basket, self.awake = [], threading.Lock(), 0.0
         self.wanted = False
         self.asking = threading.Lock()
-        queue = {"queue_size": 200, "tcp_nodelay": True}
+        # A name that is subscribed to as AnyMsg is decoded when it is wanted, not when it comes.
         self.always = [
-            rospy.Subscriber("/swarm_state", rospy.AnyMsg, self.hear_state, **queue),
-            rospy.Subscriber("/acoustic_channel/packets", auv_msgs.msg.PacketEvents, self.hear_packets, **queue),
-            rospy.Subscriber("/episode_summary", auv_msgs.msg.EpisodeSummary, self.hear_summary, **queue),
-            rospy.Subscriber("/scenario", std_msgs.msg.String, self.hear_scenario, **queue),
+            self.newest_of("/swarm_state", self.hear_state),
+            rospy.Subscriber("/acoustic_channel/packets", rospy.AnyMsg, self.hear_packets, buff_size=AT_ONCE, tcp_nodelay=True),
+            rospy.Subscriber("/episode_summary", auv_msgs.msg.EpisodeSummary, self.hear_summary, queue_size=200),
+            rospy.Subscriber("/scenario", std_msgs.msg.String, self.hear_scenario, queue_size=200),
         ]
+
+    def newest_of(self, topic, take):
+        """Subscribes to the newest message that came while the subscriber slept, undecoded."""
+
+        def hear(raw):
+            take(raw)
+            time.sleep(self.nap_s)
+
+        return rospy.Subscriber(topic, rospy.AnyMsg, hear, queue_size=1, buff_size=AT_ONCE, tcp_nodelay=True)
 
     def tell(self, kind, data):
         """Keeps a message and sends it to who looks."""
@@ -84,7 +101,7 @@ class Ears:
     def hear_state(self, raw):
         """Decodes one state now and then, by the wall clock: lockstep has many more."""
         now = time.monotonic()
-        if now - self.before < self.pause_s:
+        if now - self.before < EARLY * self.pause_s:
             self.raw = raw  # the last of a run is not to be missed
             return
         self.before = now
@@ -94,7 +111,12 @@ class Ears:
     def take_state(self, raw):
         """Makes a step of a state as it came."""
         message = auv_msgs.msg.SwarmState().deserialize(raw._buff)
+        t = message.header.stamp.to_sec()
         with self.lock:
+            self.take_newest()
+            # Detections since the step that was shown before count for this one.
+            self.collector.seen_s = max(1e-6, t - self.shown)
+            self.shown = t
             episode = self.collector.episode
             self.collector.take("/swarm_state", message)
             self.collector.finish()
@@ -112,17 +134,36 @@ class Ears:
         if self.wanted and not self.more:  # who looked before the run was there
             self.watch(True)
 
-    def hear_packets(self, message):
-        """Every packet is told."""
+    def take_newest(self):
+        """Decodes what the AUVs said last, where it was not decoded before."""
+        newest, self.newest = self.newest, {}
+        for topic, (kind, raw) in newest.items():
+            self.collector.take(topic, kind().deserialize(raw._buff))
+
+    def hear_packets(self, raw):
+        """Every packet is told, many at once."""
+        with self.basket:
+            self.packets.append(raw._buff)
+            first = len(self.packets) == 1
+        if first:
+            self.later(0.5 * self.pause_s, self.tell_packets)
+        now = time.monotonic()
+        if now - self.awake > self.nap_s:
+            time.sleep(self.nap_s)
+            self.awake = time.monotonic()
+
+    def tell_packets(self):
+        """Tells of the packets that came since the last time."""
         with self.lock:
-            self.collector.take("/acoustic_channel/packets", message)
-            packets = self.recording.packets.encoded()
-            self.recording.packets = type(self.recording.packets)()
-            if packets:
-                self.tell("packets", packets)
+            with self.basket:
+                raws, self.packets = self.packets, []
+            message = packets_message(raws, self.known.get("agents", 0))
+            if message:
+                self.tell("packets", message)
 
     def hear_summary(self, message):
-        """Metrics of a finished episode; and its last state."""
+        """Metrics of a finished episode; and its last state and packets."""
+        self.tell_packets()
         if self.raw is not None:
             raw, self.raw = self.raw, None
             self.take_state(raw)
@@ -151,17 +192,17 @@ class Ears:
                     one.unregister()
                 self.more = []
                 with self.lock:
+                    self.newest = {}
                     self.collector.tasks, self.collector.detections = {}, {}
 
     def ask(self):
         """Subscribes to what is heard only while somebody looks."""
 
         def ear(topic, kind):
-            def hear(message):
-                with self.lock:
-                    self.collector.take(topic, message)
+            def take(raw):
+                self.newest[topic] = (kind, raw)
 
-            self.more.append(rospy.Subscriber(topic, kind, hear, queue_size=1, tcp_nodelay=True))
+            self.more.append(self.newest_of(topic, take))
 
         for i in range(self.known["agents"]):
             ear(f"/auv_{i}/task_state", auv_msgs.msg.TaskState)
@@ -178,7 +219,7 @@ class Server:
         self.sockets = {}
         self.page = live_page("live run").encode()
         self.port = port
-        self.ears = Ears(rate_hz, self.send)
+        self.ears = Ears(rate_hz, self.send, self.later)
         self.failure = None
         self.ready = threading.Event()
         threading.Thread(target=self.serve, daemon=True).start()
@@ -225,6 +266,10 @@ class Server:
             if not self.sockets:
                 self.loop.run_in_executor(None, self.ears.watch, False)
         return socket
+
+    def later(self, seconds, action):
+        """Has the loop do something; from any thread."""
+        self.loop.call_soon_threadsafe(self.loop.call_later, seconds, action)
 
     def send(self, data):
         """Sends a message to all who look; from any thread."""

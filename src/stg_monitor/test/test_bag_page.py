@@ -10,13 +10,16 @@ import unittest
 import view_fixtures
 import auv_msgs.msg
 import genpy
+import numpy as np
 import rosbag
 import std_msgs.msg
 from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
 from stg_common.files import FileError
 from stg_common.loading import load_program
 from stg_view.bag_reading import BagError
-from stg_view.recording import messages
+from stg_view.from_bag import Collector
+from stg_view.raw_packets import packets_message
+from stg_view.recording import MAGIC, Recording, messages
 
 report = load_program(pathlib.Path(__file__).resolve().parents[1] / "scripts" / "report.py")
 AGENTS, STEPS = 3, 40
@@ -92,6 +95,22 @@ class BagPageTest(unittest.TestCase):
         self.assertEqual(STEPS * (AGENTS - 1), fates.count(7))
         self.assertEqual(STEPS * (AGENTS - 1), fates.count(0) + fates.count(2))
         self.assertEqual(1, len(found["summary"]))
+
+    def test_raw_packets_are_those_of_the_messages(self):
+        raws, collector = [], Collector(Recording(agents=AGENTS))
+        for k in range(STEPS):
+            message, buffer = packets_of(k, genpy.Time.from_sec(1.0 + 0.1 * k)), io.BytesIO()
+            message.header.frame_id = "world"
+            message.events[0].airtime, message.events[1].sinr_db = 0.25, -3.5
+            collector.take("/acoustic_channel/packets", message)
+            message.serialize(buffer)
+            raws.append(buffer.getvalue())
+        wanted = collector.recording.packets.encoded()
+        self.assertEqual(STEPS * 2 * (AGENTS - 1), len(next(messages(MAGIC + wanted))[1]["fate"]))
+        found = dict(next(messages(MAGIC + packets_message(raws, AGENTS)))[1])
+        for name, column in next(messages(MAGIC + wanted))[1].items():
+            np.testing.assert_allclose(found[name], column, rtol=0, atol=1e-6, err_msg=name)
+        self.assertEqual(b"", packets_message([], AGENTS))
 
     def test_hostile_text_of_a_bag_is_text_in_the_page(self):
         self.assertEqual(0, self.report())

@@ -3,17 +3,22 @@
 Times (opening, frames, lag) are measured by scripts/bench/bench_view.py, as they depend on the machine.
 """
 
+import contextlib
+import io
 import pathlib
 import shutil
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 import view_fixtures
 from page_case import PageCase
-from stg_view.page import report_page
+from stg_common.loading import load_program
+from stg_view.browser import BrowserError
 from stg_view.video import write_video
 
+report = load_program(pathlib.Path(__file__).resolve().parents[1] / "scripts" / "report.py")
 HOUR_MB = 50.0
 # An hour of a live run: 36,000 steps and 432,000 packets and receivers, as four AUVs at 10 Hz make them.
 FEED_AN_HOUR = """
@@ -68,6 +73,21 @@ class FiguresTest(PageCase):
                       [30, "leave", "auv_0 leaves"]]  # fmt: skip
             self.assertEqual(wanted, [one for one in found if one[1] in ("join", "leave", "grounding")])
 
+    def test_a_choice_of_a_target_is_an_event_and_its_line_leads_there(self):
+        recording = view_fixtures.made_up(3, 100.0, steps=20)
+        recording.meta["targets"] = 2
+        for k, row in enumerate(recording.steps.rows):
+            row["target"] = [*row["target"], 90.0, 0.0, -30.0]
+            row["followed"] = [0, 1, 0 if k < 12 else 1]
+        with self.page(recording) as driver:
+            self.tour(driver)
+            found = self.run_js(driver, "STG.app.story.events.filter((e) => e.kind === 'choice').map((e) => [e.t, e.title])")
+            self.assertEqual([[12, "auv_2 turns from target 0 to target 1"]], found)
+            self.assertEqual([0, 1], self.run_js(driver, "[11, 12].map((row) => STG.app.recording.targetOf(2, row))"))
+            driver.execute_script("STG.app.show('table'); STG.app.seek(15); STG.app.draw(performance.now())")
+            rows = self.run_js(driver, "[...document.querySelectorAll('#table tr.pick')].map((r) => r.children[2].textContent)")
+            self.assertEqual(["0", "1", "1"], rows)
+
     def used_mb(self, driver):
         """Memory of the page's objects and arrays after the garbage is gone [MB]."""
         driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
@@ -89,15 +109,25 @@ class FiguresTest(PageCase):
             self.assertLess(grown, HOUR_MB)
 
     @unittest.skipUnless(shutil.which("ffprobe"), "the video is not made: install ffmpeg")
-    def test_video_has_its_frames(self):
+    def test_a_report_films_its_page(self):
         with tempfile.TemporaryDirectory() as folder:
-            page, film = pathlib.Path(folder) / "run.html", pathlib.Path(folder) / "run.mp4"
-            page.write_text(report_page(view_fixtures.made_up(4).encoded(), "film"))
-            write_video(page, str(film), 0.5, "480x320")
+            run, film = pathlib.Path(folder) / "run.stgv", pathlib.Path(folder) / "run.mp4"
+            run.write_bytes(view_fixtures.made_up(4).encoded())
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(0, report.main([str(run), "--video", str(film), "--video-seconds", "0.5", "--video-size", "480x320"]))
+            self.assertTrue(film.with_name("run.stgv.html").is_file())
             told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
                                    "stream=width,height,nb_read_frames", "-of", "csv=p=0", film],
                                   capture_output=True, text=True, check=True)  # fmt: skip
             self.assertEqual("480,320,10", told.stdout.strip())
+
+    def test_a_video_that_cannot_be_is_one_sentence(self):
+        with unittest.mock.patch("shutil.which", return_value=None), self.assertRaisesRegex(BrowserError, "install ffmpeg"):
+            write_video("run.html", "run.mp4", 1.0, "480x320")
+        if shutil.which("ffmpeg"):
+            for arguments in (("run.avi", 1.0, "480x320"), ("run.mp4", 1.0, "large"), ("run.mp4", 0.0, "480x320")):
+                with self.assertRaises(BrowserError):
+                    write_video("run.html", *arguments)
 
 
 del PageCase  # is no test of its own

@@ -40,6 +40,7 @@ class Collector:
         self.counts = ([], [])
         self.state = None
         self.scenario = ""
+        self.seen_s = 1e-6  # how far from a step's time a detection may be to be of that step
 
     def take(self, topic, m):
         """Takes one message; of topics that are not shown: nothing."""
@@ -101,6 +102,8 @@ class Collector:
         for i, pose in enumerate(m.poses):
             self.add_vehicle(row, t, i, pose, targets)
         row["target"] = [x for p in targets for x in p]
+        if len(targets) > 1:
+            row["followed"] = [self.followed(i, len(targets)) for i in range(n)]
         row["neighbour_age"] = [self.ages.get(i, NAN) for i in range(n)]
         row["aground"] = self.touches(m, n)
         if len(m.fresh) == n:
@@ -115,6 +118,11 @@ class Collector:
                 row["terms"] = [values[i] for i in range(n) for values in terms]
                 self.recording.terms = [name.replace("r_", "") for name in TERMS]
         self.recording.steps.add(**row)
+
+    def followed(self, i, targets):
+        """The target that AUV i follows, as it says; older bags do not tell."""
+        chosen = getattr(self.tasks.get(i), "target", i % targets)
+        return chosen if chosen < targets else i % targets
 
     def touches(self, m, n):
         """Who came to the bottom (1) or to an obstacle (2) in this step; older bags do not tell."""
@@ -134,7 +142,7 @@ class Collector:
         row["heading"].append(math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))
         # Up is positive here, and negative about the body's y axis.
         row["pitch"].append(-math.asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x)))))
-        target = targets[i % len(targets)] if targets else (NAN,) * 3
+        target = targets[self.followed(i, len(targets))] if targets else (NAN,) * 3
         row["distance"].append(math.dist(target, (p.x, p.y, p.z)))
         task, detection = self.tasks.get(i), self.detections.get(i)
         known = task is not None and task.target_known
@@ -143,7 +151,7 @@ class Collector:
         row["estimate"] += [place.x, place.y, place.z] if known else [NAN] * 3
         row["covariance"] += list(task.target_covariance) if known else [NAN] * 6
         row["age"].append(task.target_age if known else NAN)
-        seen = detection is not None and abs(detection.header.stamp.to_sec() - t) < 1e-6
+        seen = detection is not None and abs(detection.header.stamp.to_sec() - t) < self.seen_s
         row["detected"].append(int(seen))
         row["range"].append(detection.range if seen and detection.kind == 1 else NAN)
 

@@ -104,7 +104,7 @@ class Steps:
     """Rows of the message `steps`, collected one after the other and thinned to fit a page."""
 
     WIDTHS = {"t": ("f8", 0), "reward": ("f4", 0)}
-    KINDS = {"phase": "u1", "detected": "u1", "fresh": "u1", "aground": "u1"}
+    KINDS = {"phase": "u1", "detected": "u1", "fresh": "u1", "aground": "u1", "followed": "u1"}
 
     def __init__(self):
         self.rows = []

@@ -32,7 +32,7 @@
         return { centre, radius: Math.max(least, box.getSize(new THREE.Vector3()).length() / 2) };
       };
       const band = Math.max((r.meta.band_m || [0, 0])[1], 0.02 * this.half);
-      if (this.mode === "target" && r.targets > 0) return around([this.point(row, "target", r.targetOf(Math.max(selected, 0)))], 1.6 * band);
+      if (this.mode === "target" && r.targets > 0) return around([this.point(row, "target", r.targetOf(Math.max(selected, 0), row))], 1.6 * band);
       if (this.mode === "auv") return around([this.point(row, "position", Math.max(selected, 0))], 1.6 * band);
       if (this.mode === "swarm") {
         const points = [...Array(r.agents)].map((_, i) => this.point(row, "position", i));

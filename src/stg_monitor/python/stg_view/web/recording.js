@@ -230,11 +230,15 @@
       for (const e of this.episodes) if (e.start <= t + 1e-9) found = e;
       return found;
     }
-    targetOf(i) { return this.targets > 0 ? i % this.targets : -1; }
+    /** The target that AUV i follows in a row, which it may choose itself; -1: there are none. */
+    targetOf(i, row) {
+      const chosen = this.steps.at("followed", row, i);
+      return chosen < this.targets ? chosen : this.targets > 0 ? i % this.targets : -1;
+    }
 
     /** [error, NEES] of AUV i's estimate of its target in a row; NaN where it has none. */
     estimateError(row, i) {
-      const k = this.targetOf(i);
+      const k = this.targetOf(i, row);
       if (k < 0 || !this.steps.has("estimate")) return [NaN, NaN];
       const e = [0, 1, 2].map((a) => this.steps.at("estimate", row, 3 * i + a) -
         this.steps.at("target", row, 3 * k + a));

@@ -166,6 +166,11 @@
         this.lines.ink(colours.rgbOf.soft, 0.35);
         this.lines.segment(...p, p[0], p[1], 0);
       }
+      const q = r.targets > 1 ? this.point(row, "target", r.targetOf(i, row)) : [NaN];
+      if (Number.isFinite(q[0])) {
+        this.lines.ink(colours.rgbOf.target, selected >= 0 && selected !== i ? 0.12 : 0.45);
+        this.lines.broken(p, q, 24);
+      }
       const estimate = this.point(row, "estimate", i);
       if (Number.isFinite(estimate[0])) this.drawBelief(one, row, i, estimate, rgb);
       const range = r.steps.at("range", row, i);

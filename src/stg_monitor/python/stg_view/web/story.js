@@ -99,6 +99,7 @@
       this.seen = [];
       this.aground = [];
       this.there = [];
+      this.chosen = [];
       this.touching = new Set();
       this.episode = null;
     }
@@ -130,6 +131,7 @@
       this.seen = [];
       this.aground = [];
       this.there = [];
+      this.chosen = [];
       this.found = false;
       this.touching.clear();
       const seed = episode && episode.seed !== undefined ? `, seed ${episode.seed}` : "";
@@ -144,6 +146,11 @@
         this.add(t, "grounding", i, `${r.name(i)} runs ${touches === 1 ? "aground" : "into an obstacle"}`);
       }
       this.aground[i] = touches;
+      const chosen = steps.at("followed", row, i);
+      if (chosen < r.targets && this.chosen[i] !== undefined && this.chosen[i] !== chosen) {
+        this.add(t, "choice", i, `${r.name(i)} turns from target ${this.chosen[i]} to target ${chosen}`);
+      }
+      if (chosen < r.targets) this.chosen[i] = chosen;
       if (steps.has("detected") && steps.at("detected", row, i) === 1 && !this.seen[i]) {
         this.seen[i] = true;
         const first = this.found ? "" : ", the first of all";

@@ -9,6 +9,7 @@
     contact: ["●", "Contacts", "approach"], collision: ["≋", "Packet collisions", "approach"],
     grounding: ["▽", "Groundings", "lost"], join: ["+", "Joins", "stable"], leave: ["−", "Leaves", "lost"],
     late: ["!", "Late decisions", "approach"], episode: ["▸", "Episodes", "soft"],
+    choice: ["→", "Choices of a target", "target"],
   };
   STG.KINDS = KINDS;
 
@@ -17,7 +18,7 @@
     constructor(app, root) {
       this.app = app;
       this.root = root;
-      this.hidden = new Set(["collision"]);
+      this.hidden = new Set(["collision", "choice"]);
       root.append(this.cards = element("div", "cards"), this.filters = element("div", "filters"), this.list = element("div"));
     }
 
@@ -109,6 +110,7 @@
       const columns = [["AUV", (i) => r.name(i)]];
       const add = (title, has, value) => { if (has) columns.push([title, value]); };
       add("phase", steps.has("phase") && r.targets > 0, (i) => STG.PHASES[steps.at("phase", row, i)] || "–");
+      add("target", r.targets > 1, (i) => String(r.targetOf(i, Math.max(row, 0))));
       add("distance", r.targets > 0, (i) => STG.number(steps.at("distance", row, i), "m"));
       add("estimate off", steps.has("estimate"), (i) => STG.number(r.estimateError(row, i)[0], "m"));
       add("stated", steps.has("covariance"), (i) => STG.number(r.estimateStd(row, i), "m"));
