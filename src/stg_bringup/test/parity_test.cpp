@@ -121,7 +121,7 @@ bool AtWall(const Vec3<double>& p, double half_extent_m) {
 TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
   const Scenario s = LoadScenarioParameters<Scenario>(config::Scope::kWhole);
   const auto seed = static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2147483647));
-  const env::Controller controller = env::MakeController(TextParameter("policy", ""), s.model());
+  const agent::Decider controller = agent::MakeDecider(TextParameter("policy", ""), s.model());
   const int silent = IntegerParameter("silent", -1, -1, s.run.agents - 1);
   const Flight flight = Listen(s, silent);
   ASSERT_GE(flight.summaries.size(), static_cast<std::size_t>(kEpisodes));

@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
     const stg::Scenario given =
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
-    stg::env::Controller controller = stg::env::MakeController(constants.AddTo(policy), s.model());
+    stg::agent::Decider controller = stg::agent::MakeDecider(constants.AddTo(policy), s.model());
     controller.privileged = privileged;
     CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));

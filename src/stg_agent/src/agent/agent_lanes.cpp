@@ -111,7 +111,8 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   mind_.SetNavigation(nav);
   mind_.SetTracking(model(), target);
   neighbours_.Predict(nav.p_WB, *links_);
-  mind_.SetNeighbours(model(), SeeNeighbours(model(), id(), neighbours_.sights(), target.p_WT));
+  mind_.SetNeighbours(
+      model(), SeeNeighbours<T>(model(), id(), neighbours_.sights(), target.p_WT, mind_.knowledge));
 }
 
 template <class T>

@@ -30,8 +30,7 @@ AgentNode::AgentNode()
       body_frame_(frames::Body(id_)),
       agent_(model_, id_),
       turns_(model_.channel, model_.run),
-      decider_(std::make_unique<const Decider>(TextParameter("policy", agent::DefaultController()),
-                                               model_, id_)),
+      decider_(DeciderFor(TextParameter("policy", agent::DefaultController()), model_, id_)),
       period_(model_.run.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
@@ -53,8 +52,8 @@ AgentNode::AgentNode()
       node.subscribe(own(topics::kAcousticRx), kQueue, &AgentNode::OnReception, this, NoDelay()));
   load_policy_ =
       ros::NodeHandle("~").advertiseService(topics::kLoadPolicy, &AgentNode::OnLoadPolicy, this);
-  const std::string file = decider_->file();
-  ROS_INFO("agent %d: flies '%s'%s%s", id_, decider_->id().c_str(), file.empty() ? "" : " of ",
+  const std::string file = decider_.FileOf(id_);
+  ROS_INFO("agent %d: flies '%s'%s%s", id_, decider_.IdOf(id_).c_str(), file.empty() ? "" : " of ",
            file.c_str());
 }
 
@@ -168,15 +167,15 @@ void AgentNode::OnReception(const auv_msgs::AcousticReception::ConstPtr& message
 bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
                              auv_msgs::LoadPolicy::Response& response) {
   try {
-    decider_ = std::make_unique<const Decider>(request.path, model_, id_);
+    decider_ = DeciderFor(request.path, model_, id_);
     response.success = true;
-    ROS_INFO("agent %d: policy is now '%s'", id_, decider_->id().c_str());
+    ROS_INFO("agent %d: policy is now '%s'", id_, decider_.IdOf(id_).c_str());
   } catch (const std::exception& error) {
     response.success = false;
     response.message = error.what();
     ROS_ERROR("agent %d: keeps its policy: %s", id_, error.what());
   }
-  response.policy_id = decider_->id();
+  response.policy_id = decider_.IdOf(id_);
   return true;
 }
 
@@ -224,9 +223,13 @@ void AgentNode::Decide() {
   nav.position_std_m = frame_->position_std;
   nav.heading_std_rad = frame_->heading_std;
   agent_.Observe(nav, observation_.data());
-  decider_->Mean(agent_, observation_.data(), action_);
-  log_probability_ = explore_ ? decider_->Explore(frame_->seed, frame_->step, id_, action_) : 0.0F;
-  policy_id_ = decider_->id();
+  if (decider_.observes()) {
+    decider_.Act(id_, observation_.data(), action_);
+  } else {
+    decider_.Act(agent_.view(), action_);
+  }
+  log_probability_ = explore_ ? decider_.Explore(frame_->seed, frame_->step, id_, action_) : 0.0F;
+  policy_id_ = decider_.IdOf(id_);
   output_ = agent_.Act(action_);
   decided_ = std::move(frame_);
   frame_.reset();
@@ -301,7 +304,7 @@ bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
 void AgentNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
   const double rate = static_cast<double>(decisions_.TakeRecent()) / health_.period_s();
-  status.add("policy", decider_->id());
+  status.add("policy", decider_.IdOf(id_));
   status.add("decisions", decisions_.total());
   status.add("decisions per second", rate);
   status.add("steps skipped", skipped_steps_);

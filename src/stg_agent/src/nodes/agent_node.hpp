@@ -71,7 +71,7 @@ class AgentNode {
   std::string body_frame_;
   agent::Agent agent_;
   acoustics::Turns turns_;  ///< when the modem lets packets go
-  std::unique_ptr<const Decider> decider_;
+  agent::Decider decider_;
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_, report_delay_s_;
   bool explore_;

@@ -10,9 +10,6 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/numbers/random.hpp"
-#include "stg_agent/entities/entity_pilot.hpp"
-#include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::nodes {
 
@@ -64,44 +61,16 @@ std::string WhereItFits(const agent::Policy& policy) {
 
 }  // namespace
 
-Decider::Decider(const std::string& wanted, const agent::AgentModel& model, int agent) {
-  const std::string name = Resolve(wanted, model, agent);
-  builtin_ = agent::MakeController(name);
-  if (builtin_) {
-    id_ = name;
-    return;
+agent::Decider DeciderFor(const std::string& name, const agent::AgentModel& model, int id) {
+  agent::Decider decider = agent::ReadDecider(Resolve(name, model, id), id, id + 1);
+  for (const auto& policy : decider.policies) {
+    try {
+      policy->RequireFits(model);
+    } catch (const UserError& error) {
+      throw UserError(error.what() + WhereItFits(*policy));
+    }
   }
-  agent::RequirePolicyFileName(name);
-  file_ = agent::PolicyFileOf(name, agent);
-  if (agent::EntityPolicy::IsOne(file_)) {
-    entities_ = std::make_unique<const agent::EntityPolicy>(agent::EntityPolicy::LoadOnnx(file_));
-    id_ = entities_->metadata().id;
-    return;
-  }
-  policy_ = std::make_unique<const agent::Policy>(agent::Policy::LoadOnnx(file_));
-  try {
-    policy_->RequireFits(model);
-  } catch (const UserError& error) {
-    throw UserError(error.what() + WhereItFits(*policy_));
-  }
-  id_ = policy_->metadata().id;
-}
-
-void Decider::Mean(const agent::Agent& agent, const float* observation, float* action) const {
-  if (policy_) {
-    policy_->Mean(observation, action);
-  } else if (entities_) {
-    agent::Fly(*entities_, agent.view(), action);
-  } else {
-    builtin_->Act(agent.view(), action);
-  }
-}
-
-float Decider::Explore(std::uint64_t seed, std::uint32_t step, int agent, float* action) const {
-  if (!policy_) return 0.0F;
-  const Eigen::VectorXf& log_std = policy_->parameters().log_std;
-  Random random(seed, Stream::kPolicy, 0, step, static_cast<std::uint32_t>(agent));
-  return agent::SampleGaussian(log_std.data(), static_cast<int>(log_std.size()), &random, action);
+  return decider;
 }
 
 }  // namespace stg::nodes

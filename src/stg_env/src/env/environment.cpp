@@ -132,23 +132,10 @@ void Environment::LookAround() {
 }
 
 agent::Knowledge<Pack> Environment::Truth(int i) const {
-  const dynamics::VehicleState<Pack>& v = world_.vehicle(i);
-  const task::Tracking<Pack>& t = task_.tracking(i);
   agent::Knowledge<Pack> k;
-  k.p_WB = v.p_WB;
-  k.v_WB = v.v_WB;
-  k.v_WB_B = v.v_WB_B;
-  k.w_WB_B = v.w_WB_B;
-  k.R_WB = v.R_WB;
-  k.trig = v.trig;
-  k.r_BT_W = t.r_BT_W;
+  k.SetNavigation(world_.vehicle(i));
+  static_cast<agent::Tracking<Pack>&>(k) = task_.tracking(i);
   k.v_WT = world_.target(scenario_.world.target.of(i)).v_WT;
-  k.distance = t.distance;
-  k.previous_distance = t.previous_distance;
-  k.error = t.error;
-  k.closing = t.closing;
-  k.confidence = t.confidence;
-  k.lost = t.lost;
   return k;
 }
 

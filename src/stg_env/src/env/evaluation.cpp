@@ -46,7 +46,8 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
   return metrics;
 }
 
-std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario,
+                                           const agent::Decider& controller,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress) {
   const ActFactory make_act = [&controller](const VectorEnv&, int) -> ActFunction {

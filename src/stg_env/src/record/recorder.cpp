@@ -218,7 +218,8 @@ class StepRows {
 /// The episodes of one recording.
 class Recorder {
  public:
-  Recorder(const Scenario& s, const Controller& controller, std::ostream* out, std::ostream* csv)
+  Recorder(const Scenario& s, const agent::Decider& controller, std::ostream* out,
+           std::ostream* csv)
       : s_(s), controller_(controller), out_(out), csv_(csv) {}
 
   void Meta() {
@@ -277,7 +278,7 @@ class Recorder {
 
  private:
   const Scenario& s_;
-  const Controller& controller_;
+  const agent::Decider& controller_;
   std::ostream *out_, *csv_;
   TimeNs offset_ = 0;
 };
@@ -291,7 +292,7 @@ void Finish(std::ofstream* out, DurableFile* file) {
 
 }  // namespace
 
-void RecordEpisodes(const Scenario& scenario, const Controller& controller, std::uint64_t seed,
+void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, std::uint64_t seed,
                     int flown, int recorded, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

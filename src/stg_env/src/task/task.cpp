@@ -70,13 +70,10 @@ void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
     const dynamics::TargetState<T>& t =
         swarm.targets[static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)))];
     Tracking<T>& k = tracking_[i];
-    k.r_BT_W = t.p_WT - v.p_WB;
-    const T d = Norm(k.r_BT_W);
-    k.previous_distance =
-        starting != nullptr ? Select(*starting, d, k.previous_distance) : k.distance;
-    k.distance = d;
-    k.error = Abs(d - T(scenario_.agent.task.desired_distance_m));
-    k.closing = agent::ClosingSpeed(k.r_BT_W, d, v.v_WB, t.v_WT);
+    const T before = k.distance;
+    k.Measure(t.p_WT - v.p_WB, v.v_WB - t.v_WT, scenario_.agent.task.desired_distance_m);
+    const T d = k.distance;
+    k.previous_distance = starting != nullptr ? Select(*starting, d, k.previous_distance) : before;
     k.confidence = agent::Confidence(d, scenario_.world.sensing.range_m);
     k.lost = Select(d > T(scenario_.agent.task.lost_distance_m), one, zero);
     if (swarm.field != nullptr) {

@@ -5,7 +5,7 @@
 #include "auv_common/error.hpp"
 #include "env/env_fixture.hpp"
 #include "stg_agent/entities/entity_pilot.hpp"
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 #include "stg_env/env/evaluation.hpp"
 
 /// Policies over entities, flown.
@@ -28,7 +28,7 @@ std::shared_ptr<const agent::EntityPolicy> PolicyOf(agent::EntityAction action, 
   return std::make_shared<agent::EntityPolicy>(p);
 }
 
-std::vector<double> Decided(const Controller& c, TestEnv* env) {
+std::vector<double> Decided(const agent::Decider& c, TestEnv* env) {
   std::vector<double> a(static_cast<std::size_t>(env->envs() * env->agents() * env->action_size()));
   Decide(c, *env, env->memory.observations.data(), a.data());
   return a;
@@ -36,9 +36,9 @@ std::vector<double> Decided(const Controller& c, TestEnv* env) {
 
 /// Flies two copies of the same waters, because a law that searches writes its plan into the agent.
 void ExpectZerosAre(agent::EntityAction action, const std::string& law, const Scenario& s) {
-  Controller guided;
+  agent::Decider guided;
   guided.entities = PolicyOf(action, 0.0);
-  const Controller alone = MakeController(law, s.model());
+  const agent::Decider alone = agent::MakeDecider(law, s.model());
   TestEnv env(s), other(s);
   env.Reset();
   other.Reset();
@@ -72,7 +72,7 @@ TEST(EntityFlight, WhileItSearchesACommandTurnsTheCourse) {
   const Scenario s = Short(Shipped("search"), 60);
   TestEnv env(s);
   env.Reset();
-  const Controller law = MakeController("search_map", s.model());
+  const agent::Decider law = agent::MakeDecider("search_map", s.model());
   for (int k = 0; k < 30; ++k) {
     env.VectorEnv::Step(Decided(law, &env).data(), env.memory.arrays());
   }
@@ -95,7 +95,7 @@ TEST(EntityFlight, EveryNumberOfACommandChangesTheFlight) {
     TestEnv env(s);
     env.Reset();
     // On the circle, where all of them matter.
-    Controller law = MakeController("encircle", s.model());
+    agent::Decider law = agent::MakeDecider("encircle", s.model());
     for (int k = 0; k < 50; ++k) {
       env.VectorEnv::Step(Decided(law, &env).data(), env.memory.arrays());
     }
@@ -119,7 +119,7 @@ TEST(EntityFlight, EveryNumberOfACommandChangesTheFlight) {
 
 TEST(EntityFlight, ACommandLastsFiveSecondsAndAnEpisodeStartsWithANewOne) {
   const Scenario s = Short(Shipped("field"), 20);
-  Controller c;
+  agent::Decider c;
   c.entities = PolicyOf(agent::EntityAction::kGuidance, 0.2);
   TestEnv env(s);
   env.Reset();
@@ -132,7 +132,7 @@ TEST(EntityFlight, ACommandLastsFiveSecondsAndAnEpisodeStartsWithANewOne) {
 }
 
 TEST(EntityFlight, OneFileFliesSwarmsOfOneToTwentyAndIsTheSameOnAnyBlock) {
-  Controller c;
+  agent::Decider c;
   c.entities = PolicyOf(agent::EntityAction::kGuidance, 0.2);
   for (const int agents : {1, 2, 8, 20}) {
     const Scenario s = Short(Shipped("field", "nominal", {"agents=" + std::to_string(agents)}), 30);
@@ -148,7 +148,7 @@ TEST(EntityFlight, OneFileFliesSwarmsOfOneToTwentyAndIsTheSameOnAnyBlock) {
 
 TEST(EntityFlight, NeedsWhatAnAuvFindsOutByItself) {
   const Scenario s = Short(Shipped("medium", "nominal", {"mode=truth"}), 20);
-  Controller c;
+  agent::Decider c;
   c.entities = PolicyOf(agent::EntityAction::kGuidance, 0.0);
   TestEnv env(s);
   env.Reset();

@@ -6,7 +6,7 @@
 
 #include "auv_common/error.hpp"
 #include "env/env_fixture.hpp"
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 
 namespace stg::env {
 namespace {
@@ -29,7 +29,7 @@ TEST(SteeredEnv, PursuersReachTheirTargetAndKeepGoing) {
                            "current.layer_east_mps=[0,0,0,0]", "current.tide_mps=[0,0]"}),
                 Few(8, 3));
     env.Reset();
-    const Controller pursuit = MakeController("pursuit_separated", env.scenario(0).model());
+    const agent::Decider pursuit = agent::MakeDecider("pursuit_separated", env.scenario(0).model());
     std::vector<double> actions(
         static_cast<std::size_t>(env.envs() * env.agents() * env.action_size()));
     double first = 0.0, last = 0.0;

@@ -15,7 +15,7 @@ namespace stg::env {
 namespace {
 
 /// `episodes` episodes from `seed` on `workers` threads.
-std::vector<task::EpisodeMetrics> Fly(const Scenario& s, const Controller& c, int episodes,
+std::vector<task::EpisodeMetrics> Fly(const Scenario& s, const agent::Decider& c, int episodes,
                                       std::uint64_t seed, int workers = 1) {
   WorkerPool pool(workers);
   return Evaluate(s, c, {episodes, seed, kMixBlock}, &pool);
@@ -33,7 +33,7 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
   for (const char* mode : {"mode=truth", "mode=acoustic"}) {
     Scenario s = Short(Shipped("medium", "nominal", {mode}), 60);
     s.world.sensing.noise_std_m = 0.002;
-    const Controller c = MakeController("pursuit_separated", s.model());
+    const agent::Decider c = agent::MakeDecider("pursuit_separated", s.model());
     const auto one = Fly(s, c, 11, 3000);
     ASSERT_EQ(one.size(), 11u);
     for (const int workers : {2, 5}) {
@@ -49,7 +49,7 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfWorkers) {
 
 TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
   const Scenario s = Short(Shipped("medium_release"), 40);
-  const Controller c = MakeController("pursuit", s.model());
+  const agent::Decider c = agent::MakeDecider("pursuit", s.model());
   const auto many = Fly(s, c, 9, 3000);
   EXPECT_EQ(many[7].Items(), Fly(s, c, 1, 3007)[0].Items());
   EXPECT_EQ(many[2].Items(), Fly(s, c, 3, 3000)[2].Items());
@@ -58,17 +58,17 @@ TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
 TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
   const Scenario s = Short(Shipped("medium_release"), 5);
   int last = 0;
-  Evaluate(s, MakeController("idle", s.model()), {6, 1, kMixBlock}, nullptr, [&](int done) {
+  Evaluate(s, agent::MakeDecider("idle", s.model()), {6, 1, kMixBlock}, nullptr, [&](int done) {
     EXPECT_GT(done, last);
     last = done;
   });
   EXPECT_EQ(last, 6);
 }
 
-TEST(MakeController, AnUnknownNameOrMissingFileIsAUserError) {
+TEST(MakeDecider, AnUnknownNameOrMissingFileIsAUserError) {
   const Scenario s;
-  EXPECT_THROW(MakeController("pursiut", s.model()), UserError);
-  EXPECT_THROW(MakeController("/nonexistent/policy.onnx", s.model()), UserError);
+  EXPECT_THROW(agent::MakeDecider("pursiut", s.model()), UserError);
+  EXPECT_THROW(agent::MakeDecider("/nonexistent/policy.onnx", s.model()), UserError);
 }
 
 /// A policy that always does tanh(bias).
@@ -85,7 +85,7 @@ agent::Policy ConstantPolicy(const Scenario& s, float bias) {
   return agent::Policy(std::move(p));
 }
 
-TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
+TEST(MakeDecider, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   const Scenario s = Shipped("medium_release");
   std::string folder = (std::filesystem::temp_directory_path() / "own_XXXXXX").string();
   ASSERT_NE(mkdtemp(folder.data()), nullptr);
@@ -100,7 +100,7 @@ TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   env.RestartAt(0, memory.arrays());
   std::vector<double> actions(
       static_cast<std::size_t>(3 * s.run.agents * s.world.control.action_size()));
-  const Controller own = MakeController(folder + "/p.onnx", s.model());
+  const agent::Decider own = agent::MakeDecider(folder + "/p.onnx", s.model());
   EXPECT_EQ(own.policies.size(), static_cast<std::size_t>(s.run.agents));
   Decide(own, env, memory.observations.data(), actions.data());
   for (std::size_t i = 0; i < actions.size(); ++i) {
@@ -108,10 +108,10 @@ TEST(MakeController, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
     EXPECT_NEAR(actions[i], std::tanh(0.1 * (row % s.run.agents)), 1e-6);
   }
   std::filesystem::remove(file(2));
-  EXPECT_THROW(MakeController(folder + "/p.onnx", s.model()), UserError);
+  EXPECT_THROW(agent::MakeDecider(folder + "/p.onnx", s.model()), UserError);
   // One for all goes first.
   ConstantPolicy(s, 1.0F).SaveOnnx(folder + "/p.onnx");
-  EXPECT_EQ(MakeController(folder + "/p.onnx", s.model()).policies.size(), 1U);
+  EXPECT_EQ(agent::MakeDecider(folder + "/p.onnx", s.model()).policies.size(), 1U);
   std::filesystem::remove_all(folder);
 }
 
@@ -137,8 +137,8 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
   for (const Reference& row : kTable) {
     const Scenario s = Shipped(row.scenario, row.condition);
     for (const bool tuned : {false, true}) {
-      const Controller c =
-          MakeController(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s.model());
+      const agent::Decider c =
+          agent::MakeDecider(tuned ? "pursuit" : "pursuit:gain=2,standoff=0.0125,cap=1", s.model());
       const task::MetricSummary m = task::Summarise(Fly(s, c, kEpisodes, 3000));
       // Four standard errors of the difference of two means, and the table's rounding.
       const auto expect = [&](const std::string& name, double expected, double rounding) {
@@ -158,7 +158,7 @@ TEST(Pursuit, AgreesWithTheReleasesSimulatorInEveryCondition) {
 
 TEST(PursuitSeparated, HoldsTheBandWithoutContactOnTrueStates) {
   const Scenario s = Shipped("medium_release");
-  const auto separated = Fly(s, MakeController("pursuit_separated", s.model()), 28, 3000);
+  const auto separated = Fly(s, agent::MakeDecider("pursuit_separated", s.model()), 28, 3000);
   const task::MetricSummary m = task::Summarise(separated);
   const auto mean = [&](const std::string& name) {
     double sum = 0.0;
@@ -178,8 +178,8 @@ TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
   const Scenario acoustic = Short(Shipped("medium", "nominal", blind), 150);
   Scenario truth = acoustic;
   truth.mode = InformationMode::kTruth;
-  const auto a = Fly(acoustic, MakeController("pursuit", acoustic.model()), 16, 1);
-  const auto t = Fly(truth, MakeController("pursuit", truth.model()), 16, 1);
+  const auto a = Fly(acoustic, agent::MakeDecider("pursuit", acoustic.model()), 16, 1);
+  const auto t = Fly(truth, agent::MakeDecider("pursuit", truth.model()), 16, 1);
   double error_a = 0.0, error_t = 0.0;
   for (size_t e = 0; e < a.size(); ++e) {
     error_a += a[e].tracking_error / 16.0;
@@ -193,7 +193,7 @@ TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
   for (const char* name : {"medium", "hard"}) {
     const Scenario s = Shipped(name);
     const task::MetricSummary m =
-        task::Summarise(Fly(s, MakeController("pursuit", s.model()), 12, 3000));
+        task::Summarise(Fly(s, agent::MakeDecider("pursuit", s.model()), 12, 3000));
     const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
                                        m.names.begin());
     EXPECT_NEAR(m.mean[k], 0.0125, 0.0005) << name;  // its standoff, and the error of the track
@@ -210,7 +210,7 @@ TEST(Shipped, PoliciesDoWhatTheyAreShippedFor) {
     const Scenario s = Shipped(row.name);
     const std::string file = config::ScenarioFolder() + "/../policies/" + row.name + ".onnx";
     // A test that could refuse a policy chooses, so the reporting block is not for it.
-    const auto episodes = Fly(s, MakeController(file, s.model()), 28, 3000);
+    const auto episodes = Fly(s, agent::MakeDecider(file, s.model()), 28, 3000);
     ASSERT_EQ(SeedBlockOf(3000, 28), "choosing");
     const task::MetricSummary m = task::Summarise(episodes);
     EXPECT_GT(m.Mean("return"), row.least_return);
@@ -234,7 +234,7 @@ TEST(SeedBlocks, AreDisjointAndKnown) {
 
 TEST(Idle, DoesNotMove) {
   const Scenario s = Short(Shipped("medium"), 50);
-  for (const auto& e : Fly(s, MakeController("idle", s.model()), 4, 3000)) {
+  for (const auto& e : Fly(s, agent::MakeDecider("idle", s.model()), 4, 3000)) {
     EXPECT_EQ(e.action_norm, 0.0);
     EXPECT_EQ(e.control_cost, 0.0);
     EXPECT_NEAR(e.time_to_band, 5.0, 1e-9);
@@ -249,7 +249,7 @@ TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
     VectorEnv env(s, VectorEnvOptions());
     EnvMemory memory = env.MakeMemory();
     env.Reset(memory.arrays());
-    Controller controller = MakeController("pursuit_separated", s.model());
+    agent::Decider controller = agent::MakeDecider("pursuit_separated", s.model());
     controller.privileged = privileged;
     std::vector<double> a(static_cast<size_t>(env.envs() * env.agents() * env.action_size()));
     Decide(controller, env, memory.observations.data(), a.data());

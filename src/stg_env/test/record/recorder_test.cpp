@@ -84,7 +84,7 @@ class RecorderTest : public testing::Test {
                              {"time.episode_steps=60", "time.tail_steps=20"});
   }
   std::vector<Read> Record(const Scenario& s, int flown, int recorded) {
-    RecordEpisodes(s, MakeController("pursuit", s.model()), 3000, flown, recorded, folder_);
+    RecordEpisodes(s, agent::MakeDecider("pursuit", s.model()), 3000, flown, recorded, folder_);
     return ReadAll(FileText(folder_ + "/recording.stgv"));
   }
 
@@ -95,7 +95,7 @@ TEST_F(RecorderTest, FliesWhatTheEvaluationFlies) {
   const Scenario s = Short("medium");
   EvaluationOptions options;
   options.episodes = 6;
-  const auto metrics = Evaluate(s, MakeController("pursuit", s.model()), options, nullptr);
+  const auto metrics = Evaluate(s, agent::MakeDecider("pursuit", s.model()), options, nullptr);
   std::size_t episode = 0;
   for (const Read& read : Record(s, 6, 6)) {
     if (read.header["kind"] != "summary") continue;
@@ -190,8 +190,9 @@ TEST_F(RecorderTest, RangesAreNearTheDistanceWhereOneIsMeasured) {
 
 TEST_F(RecorderTest, FolderThatCannotBeMadeIsTheUsersError) {
   const Scenario s = Short("medium");
-  EXPECT_THROW(RecordEpisodes(s, MakeController("pursuit", s.model()), 0, 1, 1, "/dev/null/folder"),
-               UserError);
+  EXPECT_THROW(
+      RecordEpisodes(s, agent::MakeDecider("pursuit", s.model()), 0, 1, 1, "/dev/null/folder"),
+      UserError);
 }
 
 }  // namespace

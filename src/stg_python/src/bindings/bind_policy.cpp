@@ -117,7 +117,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
   task::MetricSummary summary;
   {
     const WithoutGil release;
-    env::Controller controller = env::MakeController(policy, scenario.model());
+    agent::Decider controller = agent::MakeDecider(policy, scenario.model());
     controller.privileged = privileged;
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;

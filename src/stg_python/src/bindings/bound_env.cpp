@@ -165,10 +165,10 @@ int BoundEnv::StepAgents(const py::dict& actions) {
   return StepChecked(actions_.data());
 }
 
-const env::Controller& BoundEnv::ControllerOf(const std::string& name, bool privileged) {
+const agent::Decider& BoundEnv::ControllerOf(const std::string& name, bool privileged) {
   if (controller_.name != name) {
     const Fleet& fleet = *fleet_;
-    controller_ = env::MakeController(name, fleet.parts().front().envs->scenario().model());
+    controller_ = agent::MakeDecider(name, fleet.parts().front().envs->scenario().model());
   }
   controller_.privileged = privileged;
   return controller_;
@@ -177,7 +177,7 @@ const env::Controller& BoundEnv::ControllerOf(const std::string& name, bool priv
 py::array_t<float> BoundEnv::Decide(const std::string& name, bool privileged) {
   const Use use(this);
   RequireBound();
-  const env::Controller& controller = ControllerOf(name, privileged);
+  const agent::Decider& controller = ControllerOf(name, privileged);
   py::array_t<float> actions(Shape{envs_, agents_, action_size_});
   float* to = actions.mutable_data();
   const WithoutGil release;

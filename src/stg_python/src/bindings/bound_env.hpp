@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 #include "stg_python/env/fleet.hpp"
 
 namespace stg::python {
@@ -70,7 +70,7 @@ class BoundEnv {
   void RequireEnv(int env) const;
   template <class Number>
   int StepChecked(const Number* actions);
-  const env::Controller& ControllerOf(const std::string& name, bool privileged);
+  const agent::Decider& ControllerOf(const std::string& name, bool privileged);
   void RequireBound() const;
 
   std::unique_ptr<Fleet> fleet_;
@@ -79,7 +79,7 @@ class BoundEnv {
   env::EnvArrays out_;
   std::vector<py::str> names_;  ///< of the AUVs
   std::vector<float> actions_;  ///< [agents, action_size], of StepAgents
-  env::Controller controller_;
+  agent::Decider controller_;
   mutable std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
   int process_;
 };

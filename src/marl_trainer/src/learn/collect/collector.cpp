@@ -5,7 +5,7 @@
 
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/clock.hpp"
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 #include "stg_env/env/vector_env.hpp"
 
 namespace stg::learn {
@@ -42,7 +42,7 @@ class Collector::Unit {
     actions_.resize(rows * static_cast<std::size_t>(env_.action_size()));
     log_prob_.resize(rows);
     if (imitation != nullptr && !imitation->controller.empty()) {
-      teacher_ = env::MakeController(imitation->controller, mix.front().model());
+      teacher_ = agent::MakeDecider(imitation->controller, mix.front().model());
       teacher_->privileged = imitation->privileged;
       teacher_actions_.resize(actions_.size());
       taught_.resize(actions_.size());
@@ -86,7 +86,7 @@ class Collector::Unit {
   env::VectorEnv env_;
   env::EnvMemory now_, next_;
   std::vector<float> actions_, log_prob_, taught_, past_;
-  std::optional<env::Controller> teacher_;
+  std::optional<agent::Decider> teacher_;
   std::vector<double> teacher_actions_;
   CollectionReport report_;  // its reward is the sum
 };

@@ -52,27 +52,17 @@ class Mind {
   }
 
   /// The same from the true state, exact.
-  void SetNavigation(const dynamics::VehicleState<T>& state) {
-    Knowledge<T>& k = knowledge;
-    k.p_WB = state.p_WB;
-    k.v_WB_B = state.v_WB_B;
-    k.w_WB_B = state.w_WB_B;
-    k.R_WB = state.R_WB;
-    k.trig = state.trig;
-    k.v_WB = state.v_WB;
-  }
+  void SetNavigation(const dynamics::VehicleState<T>& state) { knowledge.SetNavigation(state); }
 
   /// Starts a decision; after SetNavigation.
   void SetTracking(const AgentModel& s, const TargetView<T>& target) {
     const T zero(0.0), one(1.0), half(0.5);
     Knowledge<T>& k = knowledge;
-    k.r_BT_W = target.p_WT - k.p_WB;
+    const T before = k.distance;
     k.v_WT = target.v_WT;
-    const T distance = Norm(k.r_BT_W);
-    k.previous_distance = Select(decisions_ == zero, distance, k.distance);
-    k.distance = distance;
-    k.closing = ClosingSpeed(k.r_BT_W, distance, k.v_WB, k.v_WT);
-    k.error = Abs(distance - T(s.task.desired_distance_m));
+    k.Measure(target.p_WT - k.p_WB, k.v_WB - k.v_WT, s.task.desired_distance_m);
+    const T distance = k.distance;
+    k.previous_distance = Select(decisions_ == zero, distance, before);
     k.mean_error = errors_.Add(k.error);
     const Mask<T> lost = (target.started < half) ||
                          (Sqrt(target.variance) > T(s.track.lost_std_m)) ||
@@ -87,20 +77,8 @@ class Mind {
     decisions_ += one;
   }
 
-  /// After SetTracking. The slots of `view.nearest` are as they are to be shown.
-  void SetNeighbours(const AgentModel& s, const NeighbourView<T>& view) {
-    const T zero(0.0), one(1.0);
-    const Knowledge<T>& k = knowledge;
-    NeighbourSummary<T> n;
-    std::copy(view.nearest.offset, view.nearest.offset + kNeighbourSlots, n.offset);
-    n.effective = view.effective;
-    n.quality = view.quality;
-    n.best = view.best;
-    n.mean_error = Select(view.count > zero, view.error / Max(view.count, one), k.error);
-    n.closest = Select(Dot(k.r_BT_W, k.r_BT_W) <= view.closest_sq, one, zero);
-    SetNeighbours(s, n);
-  }
-  void SetNeighbours(const AgentModel& s, const NeighbourSummary<T>& n) {
+  /// After SetTracking.
+  void SetNeighbours(const AgentModel& s, const NeighbourView<T>& n) {
     const T others(1.0 / std::max(1.0, static_cast<double>(s.run.agents - 1)));
     Knowledge<T>& k = knowledge;
     static_assert(kNeighbourSlots == 3,

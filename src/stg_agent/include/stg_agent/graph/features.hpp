@@ -14,13 +14,6 @@ inline T Confidence(const T& distance, double sensing_range) {
   return Clip(T(1.0) - distance * T(1.0 / sensing_range), T(0.0), T(1.0));
 }
 
-/// (v - v_T) along the line of sight: positive when approaching [m/s].
-template <class T>
-inline T ClosingSpeed(const Vec3<T>& r_BT_W, const T& distance, const Vec3<T>& v_WB,
-                      const Vec3<T>& v_WT) {
-  return Dot(v_WB - v_WT, r_BT_W) / Max(distance, T(1e-9));
-}
-
 /// d(t-1) - d(t) and closing speed, normalised to [-1, 1]: P and C of Eq. 30.
 template <class T>
 inline T Progress(const ObservationConfig& c, const T& previous, const T& distance) {

@@ -27,34 +27,10 @@ struct NearestSlots {
   }
 };
 
-/// Lets the neighbours into an agent's knowledge, in the order of their indices.
+/// What of an AUV's neighbours its knowledge takes, whether an agent put it together from what it
+/// has heard (SeeNeighbours) or the truth mode from true states.
 template <class T>
 struct NeighbourView {
-  NearestSlots<T> nearest;
-  T count = T(0.0), effective = T(0.0), quality = T(0.0), best = T(0.0), error = T(0.0);
-  T closest_sq = T(1e300);  ///< to the target [m^2]
-
-  /// @param known where false the other parameters mean nothing
-  /// @param p_WN position of the neighbour, p_WT of the target as this agent believes [m]
-  /// @param tracking_error as the neighbour reports it [m]
-  void Add(const ObservationConfig& c, const Mask<T>& known, const Vec3<T>& p_WN,
-           const Vec3<T>& p_WT, const T& link_quality, const T& tracking_error) {
-    const T zero(0.0), one(1.0);
-    const T q = Select(known, link_quality, zero);
-    count += Select(known, one, zero);
-    effective += Select(known && (q > T(c.link_available)), one, zero);
-    quality += q;
-    best = Max(best, q);
-    error += Select(known, tracking_error, zero);
-    const Vec3<T> r = p_WT - p_WN;
-    closest_sq = Min(closest_sq, Select(known, Dot(r, r), T(1e300)));
-  }
-};
-
-/// What of an AUV's neighbours its knowledge takes, whoever put it together: an agent from what it
-/// has heard (NeighbourView), or somebody who sees them all.
-template <class T>
-struct NeighbourSummary {
   Vec3<T> offset[kNeighbourSlots];  ///< as they are to be shown; zero where there is none
   T effective = T(0.0);             ///< number of effective neighbours
   T quality = T(0.0);               ///< sum of the link qualities
@@ -63,14 +39,19 @@ struct NeighbourSummary {
   T closest = T(0.0);               ///< 1: none of them is closer to the target, else 0
 };
 
-/// All neighbours that AUV `self` knows of, seen by one whose target is at p_WT [m].
+/// All neighbours that AUV `self` knows of, seen by one whose target is at p_WT [m], in the order
+/// of their indices.
 /// @param sights [agents]
+/// @param own how the AUV itself stands to its target; its error counts where no other is known
 template <class T>
 NeighbourView<T> SeeNeighbours(const AgentModel& s, int self,
-                               const std::vector<NeighbourSight<T>>& sights, const Vec3<T>& p_WT) {
-  const T half(0.5), nowhere(1e9);
-  const bool nearest = s.observation.order == NeighbourOrder::kNearest;
+                               const std::vector<NeighbourSight<T>>& sights, const Vec3<T>& p_WT,
+                               const Tracking<T>& own) {
+  const T half(0.5), nowhere(1e9), zero(0.0), one(1.0), farthest(1e300);
+  const bool by_distance = s.observation.order == NeighbourOrder::kNearest;
   NeighbourView<T> view;
+  NearestSlots<T> nearest;
+  T count = zero, error = zero, closest_sq = farthest;  // the latter to the target [m^2]
   int slot = 0;
   for (int j = 0; j < static_cast<int>(sights.size()); ++j) {
     if (j == self) continue;
@@ -80,13 +61,23 @@ NeighbourView<T> SeeNeighbours(const AgentModel& s, int self,
       continue;
     }
     const Mask<T> known = n.known > half;
-    view.Add(s.observation, known, n.p_WN, p_WT, n.link_quality, n.tracking_error);
-    if (nearest) {
-      view.nearest.Offer(n.r_BN_W, Select(known, n.distance_m, nowhere));
+    const T q = Select(known, n.link_quality, zero);
+    count += Select(known, one, zero);
+    view.effective += Select(known && (q > T(s.observation.link_available)), one, zero);
+    view.quality += q;
+    view.best = Max(view.best, q);
+    error += Select(known, n.tracking_error, zero);
+    const Vec3<T> r_NT_W = p_WT - n.p_WN;
+    closest_sq = Min(closest_sq, Select(known, Dot(r_NT_W, r_NT_W), farthest));
+    if (by_distance) {
+      nearest.Offer(n.r_BN_W, Select(known, n.distance_m, nowhere));
     } else if (slot < kNeighbourSlots) {
-      view.nearest.offset[slot++] = Select<T>(known, n.r_BN_W, Vec3<T>());
+      nearest.offset[slot++] = Select<T>(known, n.r_BN_W, Vec3<T>());
     }
   }
+  for (int k = 0; k < kNeighbourSlots; ++k) view.offset[k] = nearest.offset[k];
+  view.mean_error = Select(count > zero, error / Max(count, one), own.error);
+  view.closest = Select(Dot(own.r_BT_W, own.r_BT_W) <= closest_sq, one, zero);
   return view;
 }
 

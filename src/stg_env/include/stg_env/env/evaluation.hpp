@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "auv_common/parallel/worker_pool.hpp"
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 
 namespace stg::env {
 
@@ -31,7 +31,8 @@ struct EvaluationOptions {
 std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFactory& make_act,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress = {});
-std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const Controller& controller,
+std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario,
+                                           const agent::Decider& controller,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress = {});
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace stg::env {
@@ -16,7 +16,7 @@ namespace stg::env {
 /// @param seed of episode 0
 /// @param flown how many episodes the evaluation has
 /// @param recorded how many of them are recorded, the first ones
-void RecordEpisodes(const Scenario& scenario, const Controller& controller, std::uint64_t seed,
+void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, std::uint64_t seed,
                     int flown, int recorded, const std::string& folder);
 
 }  // namespace stg::env

@@ -5,6 +5,7 @@
 
 #include "auv_dynamics/world/separations.hpp"
 #include "auv_dynamics/world/world.hpp"
+#include "stg_agent/graph/tracking.hpp"
 
 namespace stg::task {
 
@@ -54,17 +55,8 @@ struct SwarmState {
   const std::vector<FieldState<T>>* field = nullptr;
 };
 
-/// How one AUV stands to its target, truly.
-template <class T>
-struct Tracking {
-  Vec3<T> r_BT_W;                ///< target minus own position [m]
-  T distance = T(0.0);           ///< d of Eq. 1 [m]
-  T previous_distance = T(0.0);  ///< d of the previous decision; d itself when an episode starts
-  T error = T(0.0);              ///< e = |d - d*| [m]
-  T closing = T(0.0);            ///< closing speed [m/s], positive when approaching
-  T confidence = T(0.0);         ///< c of Eq. 13
-  /// 1: farther than task.lost_distance_m, or OffInOwnFrame (estimate_totals.hpp); else 0.
-  T lost = T(0.0);
-};
+/// How one AUV stands to its target, truly. `lost`: farther than task.lost_distance_m, or
+/// OffInOwnFrame (estimate_totals.hpp).
+using agent::Tracking;
 
 }  // namespace stg::task

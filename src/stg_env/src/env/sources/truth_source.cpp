@@ -56,7 +56,7 @@ void TruthSource::Think(const dynamics::World& world) {
   MeasureLinks(world);
   for (int i = 0; i < model_.run.agents; ++i) {
     agent::Mind<Pack>& mind = minds_[static_cast<std::size_t>(i)];
-    agent::NeighbourSummary<Pack>& s = links_[static_cast<std::size_t>(i)];
+    agent::NeighbourView<Pack>& s = links_[static_cast<std::size_t>(i)];
     const agent::Knowledge<Pack>& k = mind.knowledge;
     s.mean_error = model_.run.agents > 1
                        ? (total_error - k.error) * Pack(1.0 / (model_.run.agents - 1))
@@ -69,14 +69,14 @@ void TruthSource::Think(const dynamics::World& world) {
 
 void TruthSource::MeasureLinks(const dynamics::World& world) {
   const Pack zero(0.0), one(1.0), available(model_.observation.link_available);
-  for (agent::NeighbourSummary<Pack>& s : links_) s.quality = s.best = s.effective = zero;
+  for (agent::NeighbourView<Pack>& s : links_) s.quality = s.best = s.effective = zero;
   // Each pair once; every AUV adds up its neighbours in the order of their numbers.
   for (int i = 0; i < model_.run.agents; ++i) {
     for (int j = i + 1; j < model_.run.agents; ++j) {
       const Pack q = acoustics::RangeQuality(world.distance(i, j), model_.channel.range_m);
       const Pack counts = Select(q > available, one, zero);
       for (const int end : {i, j}) {
-        agent::NeighbourSummary<Pack>& s = links_[static_cast<std::size_t>(end)];
+        agent::NeighbourView<Pack>& s = links_[static_cast<std::size_t>(end)];
         s.quality += q;
         s.best = Max(s.best, q);
         s.effective += counts;

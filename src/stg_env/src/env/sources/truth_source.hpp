@@ -31,10 +31,10 @@ class TruthSource : public InformationSource {
   void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
 
   agent::AgentModel model_;
-  bool exact_angles_;                                 // the integrator keeps roll, pitch and yaw
-  std::vector<agent::Mind<Pack>> minds_;              // [agent]
-  std::vector<agent::Mind<Pack>> before_;             // as minds_ before the present Observe
-  std::vector<agent::NeighbourSummary<Pack>> links_;  // [agent], of the present Think
+  bool exact_angles_;                              // the integrator keeps roll, pitch and yaw
+  std::vector<agent::Mind<Pack>> minds_;           // [agent]
+  std::vector<agent::Mind<Pack>> before_;          // as minds_ before the present Observe
+  std::vector<agent::NeighbourView<Pack>> links_;  // [agent], of the present Think
 };
 
 }  // namespace stg::env

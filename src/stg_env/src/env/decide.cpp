@@ -1,11 +1,10 @@
-#include "stg_env/env/controller.hpp"
+#include "stg_env/env/decide.hpp"
 
 #include "acoustic_channel/models/range.hpp"
 #include "auv_common/error.hpp"
 #include "environment.hpp"
 #include "sources/acoustic_source.hpp"
 #include "stg_agent/agent/agent_view.hpp"
-#include "stg_agent/entities/entity_pilot.hpp"
 
 namespace stg::env {
 namespace {
@@ -39,7 +38,7 @@ void DecideTruly(const agent::Controller& c, const VectorEnv::Slice& slice, doub
   }
 }
 
-void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float* observations,
+void DecideSlice(const agent::Decider& c, const VectorEnv::Slice& slice, const float* observations,
                  double* actions) {
   const Scenario& s = slice.lanes->scenario();
   const int n = s.run.agents, size = s.world.control.action_size();
@@ -55,14 +54,10 @@ void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float
   }
   float a[dynamics::kMaxActionSize];
   for (int row = 0; row < slice.count * n; ++row) {
-    if (!c.policies.empty()) {
-      const std::size_t own = c.policies.size() == 1 ? 0 : static_cast<std::size_t>(row % n);
-      c.policies[own]->Mean(
-          observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
-    } else if (c.entities != nullptr) {
-      agent::Fly(*c.entities, slice.lanes->acoustic().agent(row % n).view(row / n), a);
+    if (c.observes()) {
+      c.Act(row % n, observations + static_cast<std::ptrdiff_t>(slice.first * n + row) * width, a);
     } else {
-      c.builtin->Act(slice.lanes->acoustic().agent(row % n).view(row / n), a);
+      c.Act(slice.lanes->acoustic().agent(row % n).view(row / n), a);
     }
     double* out = actions + (slice.first * n + row) * size;
     for (int k = 0; k < size; ++k) out[k] = static_cast<double>(a[k]);
@@ -71,29 +66,8 @@ void DecideSlice(const Controller& c, const VectorEnv::Slice& slice, const float
 
 }  // namespace
 
-Controller MakeController(const std::string& name, const agent::AgentModel& model) {
-  Controller c;
-  c.name = name;
-  c.builtin = agent::MakeController(name);
-  if (c.builtin) return c;
-  agent::RequirePolicyFileName(name);
-  if (agent::EntityPolicy::IsOne(name)) {
-    c.entities = std::make_shared<agent::EntityPolicy>(agent::EntityPolicy::LoadOnnx(name));
-    return c;
-  }
-  std::string last;
-  for (int i = 0; i < model.run.agents; ++i) {
-    const std::string file = agent::PolicyFileOf(name, i);
-    if (file == last) break;
-    auto policy = std::make_shared<agent::Policy>(agent::Policy::LoadOnnx(file));
-    policy->RequireFits(model);
-    c.policies.push_back(policy);
-    last = file;
-  }
-  return c;
-}
-
-void Decide(const Controller& c, const VectorEnv& env, const float* observations, double* actions) {
+void Decide(const agent::Decider& c, const VectorEnv& env, const float* observations,
+            double* actions) {
   for (const VectorEnv::Slice& slice : env.slices()) DecideSlice(c, slice, observations, actions);
 }
 
