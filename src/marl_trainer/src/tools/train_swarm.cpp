@@ -49,7 +49,8 @@ int main(int argc, char** argv) {
   app.add_option("--learning-rate", config.learning_rate, "at first")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--log-std", config.log_std, "log of the first deviation of exploration")
+  app.add_option("--log-std", config.log_std,
+                 "log of the first deviation of exploration, also after --start-from")
       ->check(CLI::Range(-3.0, -0.5))
       ->capture_default_str();
   app.add_option("--segment", config.segment, "collections between two checkpoints")

@@ -273,6 +273,10 @@ void SwarmLearner::Save(Archive* archive) const {
   archive->Put("returns", std::vector<double>{mean_, square_, seen_, std_});
 }
 
+void SwarmLearner::SetDeviation(double log_std) {
+  std::fill(actor_numbers_.end() - size_, actor_numbers_.end(), static_cast<float>(log_std));
+}
+
 void SwarmLearner::Load(const Archive& archive) {
   const std::vector<float>& actor = archive.Floats("actor", actor_numbers_.size());
   const std::vector<float>& critic = archive.Floats("critic", critic_numbers_.size());

@@ -62,6 +62,7 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
     WriteDurably(ConfigText(), options.out + "/config.json", "the configuration");
     if (!options.start_from.empty()) {
       learner_.Load(ReadArchive(options.start_from + "/checkpoint.ckpt").Part("learner"));
+      learner_.SetDeviation(config.log_std);
     }
   }
 }

@@ -31,6 +31,8 @@ class SwarmLearner {
   void Save(Archive* archive) const;
   /// Throws UserError for an archive of other sizes.
   void Load(const Archive& archive);
+  /// Explores with this deviation from now on.
+  void SetDeviation(double log_std);
 
  private:
   static constexpr int kSlices = 8;
