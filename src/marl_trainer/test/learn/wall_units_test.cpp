@@ -31,7 +31,8 @@ class WallUnits : public ::testing::Test {
     untouched_.resize(actor_.parameters());
     InitialiseOrthogonally(actor_.spec(), 3, 0, untouched_.data());
     placed_ = untouched_;
-    PlaceWallUnits(actor_, kMargin, 2.0, normaliser_, placed_.data());
+    PlaceWallUnits(actor_, {agent::kOwnPositionIndex, agent::kTargetOffsetIndex}, kMargin, 2.0,
+                   normaliser_, placed_.data());
   }
 
   Mlp Actor() const {

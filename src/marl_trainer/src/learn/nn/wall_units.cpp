@@ -6,12 +6,10 @@
 #include <numeric>
 #include <vector>
 
-#include "stg_agent/graph/observation.hpp"
-
 namespace stg::learn {
 
-void PlaceWallUnits(const Mlp& actor, double margin_m, double half_extent_m,
-                    const Normaliser& observations, float* parameters) {
+void PlaceWallUnits(const Mlp& actor, const WallInputs& where, double margin_m,
+                    double half_extent_m, const Normaliser& observations, float* parameters) {
   assert(actor.layers() >= 2 && actor.spec().layer_outputs(0) >= kWallUnits);
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int inputs = actor.spec().layer_inputs(0), units = actor.spec().layer_outputs(0);
@@ -34,7 +32,7 @@ void PlaceWallUnits(const Mlp& actor, double margin_m, double half_extent_m,
         // relu(1 - room / margin) of the room between target and wall, 1 - wall (own + offset).
         in.row(*unit).setZero();
         double constant = 1.0 - 1.0 / margin;
-        for (const int i : {agent::kOwnPositionIndex + axis, agent::kTargetOffsetIndex + axis}) {
+        for (const int i : {where.own_position + axis, where.target_offset + axis}) {
           const auto n = static_cast<std::size_t>(i);
           in(*unit, i) =
               static_cast<float>(wall / margin * static_cast<double>(observations.std[n]));

@@ -5,6 +5,7 @@
 
 #include "marl_trainer/learn/nn/wall_units.hpp"
 #include "marl_trainer/learn/train_config.hpp"
+#include "stg_agent/graph/observation.hpp"
 
 namespace stg::learn {
 
@@ -67,8 +68,9 @@ void Mappo::StartFrom(const Archive& archive) {
   std::copy_n(actor.begin(), networks_.actor.log_std_offset(), actor_.numbers.begin());
   critic_.numbers = critic;
   if (wall_units_ > 0.0) {
-    PlaceWallUnits(networks_.actor.mean(), wall_units_, problem_.workspace_half_extent_m,
-                   scales().observations, actor_.numbers.data());
+    PlaceWallUnits(networks_.actor.mean(), {agent::kOwnPositionIndex, agent::kTargetOffsetIndex},
+                   wall_units_, problem_.workspace_half_extent_m, scales().observations,
+                   actor_.numbers.data());
   }
 }
 
