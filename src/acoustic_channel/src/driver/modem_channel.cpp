@@ -1,6 +1,7 @@
 #include "acoustic_channel/driver/modem_channel.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "acoustic_channel/models/propagation_model.hpp"
@@ -20,6 +21,7 @@ ModemChannel::ModemChannel(const ChannelConfig& config, const RunConfig& run,
       max_payload_(PropagationModels()
                        .Make(config.model, config.models, config)
                        ->max_payload(config, run.agents)),
+      freshness_s_(config.modem.freshness_s),
       addresses_(modems.addresses),
       table_(run.agents),
       sequences_(static_cast<std::size_t>(run.agents)),
@@ -134,6 +136,7 @@ void ModemChannel::Deliver(int receiver, TimeNs /*until*/, std::vector<Reception
     r.noise_level_db = heard.noise_level_db;
     r.sinr_db = heard.sinr_db;
     r.doppler_mps = heard.doppler_mps;
+    r.link_quality = std::exp(-Seconds(r.arrival - r.generation) / freshness_s_);
     table_.Deliver(source, receiver, r.generation, r.transmit, r.arrival);
   }
   for (const Incoming& in : given_[node]) {
@@ -145,7 +148,9 @@ void ModemChannel::Deliver(int receiver, TimeNs /*until*/, std::vector<Reception
 
 LinkStatistics ModemChannel::Link(int source, int destination, TimeNs now) const {
   if (source == destination) return {};
-  return table_.At(source, destination, now);
+  LinkStatistics s = table_.At(source, destination, now);
+  if (s.delivered > 0) s.quality = std::exp(-s.age_s / freshness_s_);
+  return s;
 }
 
 ModemChannel::Health ModemChannel::health(int node) const {

@@ -79,6 +79,21 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   return place;
 }
 
+GatewayPlace ReadGateway(const std::string& file, YamlTree map, const std::string& prefix) {
+  GatewayPlace place;
+  if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
+  TakeText(file, prefix + ".", "port", &map, &place.port);
+  if (place.port.empty()) Fail(file, map.line, prefix + ".port", "missing key");
+  config::Table t;
+  t.Section(prefix);
+  t.Add("protocol", config::Name(&place.protocol, ModemProtocols()), config::kNone, "-", "");
+  t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
+  t.Add("address", &place.address, config::Within(1, 127), "-", "");
+  config::Loader loader(t, config::Scope::kWhole);
+  loader.ApplyPart(map, prefix + ".", file);
+  return place;
+}
+
 ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index) {
   const std::string prefix = "vehicles[" + std::to_string(index) + "]";
   if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
@@ -90,7 +105,7 @@ ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index
   t.Add("id", &v.id, config::Within(0, 254), "-", "");
   t.Add("position_m", config::Numbers(&v.position_m), config::Within(-1e7, 1e7), "m", "");
   config::Loader loader(t, config::Scope::kWhole);
-  YamlTree rest = Without(map, "modem");
+  YamlTree rest = Without(Without(map, "modem"), "gateway");
   TakeText(file, prefix + ".", "odom", &rest, &v.odom);
   loader.ApplyPart(rest, prefix + ".", file);
   if (v.name.empty()) Fail(file, map.line, prefix + ".name", "missing key");
@@ -100,6 +115,11 @@ ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index
   if (const YamlTree::Entry* modem = FindEntry(map, "modem")) {
     v.modem = ReadPlace(file, modem->value, prefix + ".modem");
     if (v.modem->address == 0) v.modem->address = v.id + 1;
+  }
+  if (const YamlTree::Entry* gateway = FindEntry(map, "gateway")) {
+    if (v.modem) Fail(file, gateway->line, prefix + ".gateway", "not beside modem");
+    v.gateway = ReadGateway(file, gateway->value, prefix + ".gateway");
+    if (v.gateway->address == 0) v.gateway->address = v.id + 1;
   }
   return v;
 }
@@ -116,6 +136,7 @@ void RefuseTwins(const std::string& file, const YamlTree& list,
     const ModemVehicle& v = vehicles[i];
     once("name " + v.name, i);
     once("id " + std::to_string(v.id), i);
+    if (v.gateway) once("modem at " + v.gateway->port, i);
     if (!v.modem) continue;
     if (v.modem->tcp > 0) once("TCP port " + std::to_string(v.modem->tcp), i);
     if (!v.modem->pty.empty()) once("terminal " + v.modem->pty, i);

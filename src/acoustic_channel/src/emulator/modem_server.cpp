@@ -53,6 +53,7 @@ ModemServer::ModemServer(const ModemFile& file, const std::string& command_log)
     const ModemVehicle& v = file.vehicles[i];
     const int node = static_cast<int>(i);
     places_[i].name = v.name;
+    if (v.gateway) OpenGateway(node, *v.gateway);
     if (!v.modem) continue;
     places_[i].port = OpenPort(*v.modem, file.listen);
     places_[i].listener = ListenerOf(node);
@@ -95,9 +96,48 @@ PortListener ModemServer::ListenerOf(int node) {
   return listener;
 }
 
+void ModemServer::OpenGateway(int node, const GatewayPlace& gateway) {
+  DriverOptions options;
+  options.address = gateway.address;
+  Place& place = places_[static_cast<std::size_t>(node)];
+  place.gateway =
+      std::make_unique<ModemPort>(gateway.protocol, options, gateway.port, gateway.baud);
+  ports_.push_back(place.gateway->stream());
+}
+
+void ModemServer::PassOn(int node) {
+  ModemPort& modem = *places_[static_cast<std::size_t>(node)].gateway;
+  modem.Work();
+  heard_.clear();
+  water_.network().Take(node, water_.now(), &heard_);
+  for (const Reception& r : heard_) {
+    const auto* bytes = reinterpret_cast<const char*>(r.payload.data);
+    modem.driver().Send({r.sequence, kToAll, std::string(bytes, bytes + r.payload.size)},
+                        SteadyNow());
+  }
+  for (const DriverReception& r : modem.TakeReceptions()) {
+    if (r.payload.empty() || r.payload.size() > water_.network().max_payload()) continue;
+    const TimeNs t = std::max(Now(), water_.now());
+    Transmission packet;
+    packet.source = node;
+    packet.stamp = packet.generation = t;
+    packet.payload = {reinterpret_cast<const std::uint8_t*>(r.payload.data()), r.payload.size()};
+    water_.Offer(packet, t);
+  }
+  modem.TakeEvents();
+  modem.TakeRanges();
+}
+
 void ModemServer::Serve(TimeNs until) {
-  WaitForPorts(ports_, start_ + std::min(until, water_.next()));
+  TimeNs wake = start_ + std::min(until, water_.next());
+  for (const Place& place : places_) {
+    if (place.gateway) wake = std::min(wake, place.gateway->next());
+  }
+  WaitForPorts(ports_, wake);
   water_.Advance(std::max(Now(), water_.now()));
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (places_[i].gateway) PassOn(static_cast<int>(i));
+  }
   for (const Place& place : places_) {
     if (place.port) place.port->Serve(SteadyNow(), place.listener);
   }

@@ -27,7 +27,8 @@ struct ModemChannelConfig {
 /// Modems with ports of their own as the channel of a swarm, in real time: a packet offered at a
 /// step goes to its modem when the medium access of the section says so, and what modems receive is
 /// given out in the next step. Where packets come from, how strong they are and when they came is
-/// what modems tell; the true distance and quality of links are nobody's knowledge and stay 0.
+/// what modems tell. Nobody knows the distance of a link, which stays 0, or how many packets are
+/// lost: its quality is its freshness.
 class ModemChannel : public Channel {
  public:
   /// Opens the ports and starts the thread that serves them. Throws UserError.
@@ -72,6 +73,7 @@ class ModemChannel : public Channel {
 
   Turns turns_;
   std::size_t max_payload_;
+  double freshness_s_;
   std::vector<int> addresses_;
   std::vector<std::unique_ptr<ModemPort>> ports_;  ///< of the thread
   LinkTable table_;

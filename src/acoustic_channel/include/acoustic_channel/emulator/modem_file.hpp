@@ -24,6 +24,15 @@ struct ModemPlace {
   double rssi_offset_db = -190.0;
 };
 
+/// A modem that exists, as a node of the simulated water: what the node hears it sends, what it
+/// hears the node sends.
+struct GatewayPlace {
+  std::string protocol = "s2c";  ///< of ModemProtocols()
+  std::string port;              ///< tcp://HOST:PORT or a serial device
+  int baud = 19200;
+  int address = 0;  ///< of the modem; 0: the id and one
+};
+
 /// A vehicle in the water of emulated modems.
 struct ModemVehicle {
   std::string name;
@@ -31,7 +40,8 @@ struct ModemVehicle {
   std::string odom;                    ///< topic of its odometry
   bool moored = false;                 ///< it stays at position_m and has no odometry
   std::array<double, 3> position_m{};  ///< ENU, z up
-  std::optional<ModemPlace> modem;     ///< none: it has ROS topics
+  std::optional<ModemPlace> modem;
+  std::optional<GatewayPlace> gateway;  ///< neither this nor a modem: it has ROS topics
 };
 
 /// Emulated modems, their vehicles and their water.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "acoustic_channel/driver/modem_port.hpp"
 #include "acoustic_channel/emulator/modem_file.hpp"
 #include "acoustic_channel/emulator/modem_water.hpp"
 #include "acoustic_channel/ports/byte_port.hpp"
@@ -31,6 +32,10 @@ class ModemServer : private ModemHosts {
   const BytePort* port(int node) const {
     return places_[static_cast<std::size_t>(node)].port.get();
   }
+  /// Of a node that is a modem's gateway; null: it is none.
+  const ModemPort* gateway(int node) const {
+    return places_[static_cast<std::size_t>(node)].gateway.get();
+  }
   std::uint64_t bytes_read() const { return bytes_read_; }
   /// What is to be told to the user: a port has a client, two modems have one address.
   std::function<void(const std::string&)> say = [](const std::string&) {};
@@ -40,11 +45,15 @@ class ModemServer : private ModemHosts {
     std::unique_ptr<BytePort> port;
     PortListener listener;
     std::string name;
+    std::unique_ptr<ModemPort> gateway;
   };
   void Write(int node, const std::string& bytes) override;
   void HangUp(int node) override;
   void OnSharedAddress(int node, int address) override;
   PortListener ListenerOf(int node);
+  void OpenGateway(int node, const GatewayPlace& gateway);
+  /// Both ways.
+  void PassOn(int node);
   void Log(int node, const char* what, const char* bytes, std::size_t size);
 
   TimeNs start_ = SteadyNow();
@@ -53,6 +62,7 @@ class ModemServer : private ModemHosts {
   std::vector<BytePort*> ports_;
   std::ofstream log_;
   std::uint64_t bytes_read_ = 0;
+  std::vector<Reception> heard_;
 };
 
 /// The engine that a place asks for.

@@ -77,7 +77,7 @@ void ModemsNode::Connect() {
       m.odometry = node.subscribe<nav_msgs::Odometry>(v.odom, kQueue, on_odometry,
                                                       ros::VoidConstPtr(), NoDelay());
     }
-    if (v.modem) continue;
+    if (v.modem || v.gateway) continue;
     const std::string below = "/" + v.name + "/";
     m.reception = node.advertise<auv_msgs::AcousticReception>(below + topics::kAcousticRx, kQueue);
     const boost::function<void(const auv_msgs::AcousticPacket::ConstPtr&)> on_packet =
@@ -150,7 +150,7 @@ void ModemsNode::Tell() {
 
 void ModemsNode::PublishReceptions() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    if (file_.vehicles[i].modem) continue;
+    if (file_.vehicles[i].modem || file_.vehicles[i].gateway) continue;
     received_.clear();
     acoustics::Network& network = server_.water().network();
     network.Take(static_cast<int>(i), network.now(), &received_);
@@ -195,6 +195,9 @@ void ModemsNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
     if (port != nullptr) {
       text += ", " + port->name() + (port->connected() ? ", a host" : ", no host");
       if (port->dropped() > 0) text += ", dropped " + std::to_string(port->dropped());
+    }
+    if (const acoustics::ModemPort* modem = server_.gateway(static_cast<int>(i))) {
+      text += ", " + modem->name() + (modem->driver().ready() ? ", answers" : ", does not answer");
     }
     status.add(file_.vehicles[i].name, text);
   }

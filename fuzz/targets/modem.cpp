@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <memory>
+
+#include "acoustic_channel/driver/modem_driver.hpp"
+#include "acoustic_channel/emulator/modem_water.hpp"
+#include "acoustic_channel/micromodem/micromodem.hpp"
+#include "acoustic_channel/s2c/s2c_modem.hpp"
+#include "target.hpp"
+
+/// What hosts say to emulated modems, and what modems say to drivers.
+namespace stg::fuzz {
+namespace {
+
+using acoustics::ModemEngine;
+using acoustics::ModemSurroundings;
+using acoustics::ModemWater;
+
+constexpr TimeNs kStart = 3'000'000'000;
+constexpr std::size_t kMostSaid = 64 << 20;
+
+/// Whether a modem said anything but errors.
+struct Listeners : acoustics::ModemHosts {
+  void Write(int /*node*/, const std::string& bytes) override {
+    said += bytes.size();
+    Require(said < kMostSaid, "a modem that does not stop talking");
+    sound = sound || bytes.find("ERR") == std::string::npos;
+  }
+  void HangUp(int /*node*/) override {}
+  std::size_t said = 0;
+  bool sound = false;
+};
+
+/// Two modems 1500 m apart; the bytes go to the first, a line every 50 ms and at most seven bytes
+/// at once, so that splits are tried as well. What they set free comes to an end.
+bool Talk(const std::string& bytes, const char* profile, const ModemWater::MakeEngine& first,
+          const ModemWater::MakeEngine& second) {
+  RunConfig run;
+  run.agents = 2;
+  acoustics::ChannelConfig config;
+  config.model = "physical";
+  config.access = "aloha";
+  config.modem.queue = acoustics::QueuePolicy::kFifo;
+  config.modem.profile = profile;
+  Listeners hosts;
+  ModemWater water(config, run, &hosts);
+  water.Attach(0, 1, first);
+  water.Attach(1, 2, second);
+  water.Reset(1, 0);
+  water.Move(0, 0, {{0.0, 0.0, -20.0}, {0.0, 0.0, 0.0}});
+  water.Move(1, 0, {{1500.0, 0.0, -20.0}, {0.0, 0.0, 0.0}});
+  for (const int node : {0, 1}) water.Connect(node, 0);
+  TimeNs t = kStart;
+  water.Advance(t);
+  hosts.sound = false;
+  std::size_t size = 1;
+  for (std::size_t at = 0; at < bytes.size(); at += size) {
+    size = std::min<std::size_t>(1 + at % 7, bytes.size() - at);
+    water.Read(0, t, {reinterpret_cast<const std::uint8_t*>(bytes.data()) + at, size});
+    if (bytes.substr(at, size).find('\n') != std::string::npos) t += 50'000'000;
+  }
+  const bool sound = hosts.sound;
+  water.Advance(t + 100'000'000'000);
+  return sound;
+}
+
+struct NoWorld : acoustics::DriverWorld {
+  void Write(const std::string& bytes) override { said += bytes.size(); }
+  void HangUp() override {}
+  void OnReception(const acoustics::DriverReception& reception) override {
+    heard = true;
+    Require(reception.payload.size() <= 2048, "a payload that no modem sends");
+  }
+  std::size_t said = 0;
+  bool heard = false;
+};
+
+}  // namespace
+
+bool RunS2cModem(const std::string& bytes) {
+  const auto make = [](bool net, int address) {
+    return [net, address](ModemSurroundings* world) -> std::unique_ptr<ModemEngine> {
+      acoustics::s2c::ModemOptions options;
+      options.net = net;
+      options.address = address;
+      return std::make_unique<acoustics::s2c::S2cModem>(options, world);
+    };
+  };
+  const bool at = Talk(bytes, "evologics_s2c", make(false, 1), make(true, 2));
+  const bool net = Talk(bytes, "evologics_s2c", make(true, 1), make(true, 2));
+  return at || net;
+}
+
+bool RunMicromodem(const std::string& bytes) {
+  const auto make = [](int address) {
+    return [address](ModemSurroundings* world) -> std::unique_ptr<ModemEngine> {
+      acoustics::micromodem::ModemOptions options;
+      options.address = address;
+      return std::make_unique<acoustics::micromodem::Micromodem>(options, world);
+    };
+  };
+  return Talk(bytes, "micromodem_psk_r1", make(1), make(2));
+}
+
+bool RunModemAnswers(const std::string& bytes) {
+  bool heard = false;
+  for (const char* protocol : {"s2c", "micromodem"}) {
+    NoWorld world;
+    const auto driver = acoustics::MakeModemDriver(protocol, {}, &world);
+    TimeNs t = kStart;
+    driver->Connect(t);
+    std::size_t size = 1;
+    for (std::size_t at = 0; at < bytes.size(); at += size) {
+      size = std::min<std::size_t>(1 + at % 7, bytes.size() - at);
+      driver->Read(t, {reinterpret_cast<const std::uint8_t*>(bytes.data()) + at, size});
+      if (at % 32 == 0) driver->Send({1, acoustics::kToAll, "hello"}, t);
+      if (at % 96 == 0) driver->Ping(2, t);
+      t += 20'000'000;
+      driver->Tick(t);
+    }
+    heard = heard || world.heard;
+  }
+  return heard;
+}
+
+}  // namespace stg::fuzz
