@@ -39,9 +39,8 @@ struct Decider {
   const Policy& PolicyOf(int id) const;
 };
 
-/// The Decider of a built-in controller (see MakeController), or of the path of an ONNX file, or
-/// of one for each AUV (see PolicyFileOf). Reads what AUVs first .. end - 1 need, or, when end is
-/// first + 1, only the file of that AUV. Throws UserError.
+/// The Decider of a built-in controller (see MakeController), of an ONNX file, or of one file for
+/// each AUV (see PolicyFileOf). Reads only the files of AUVs first .. end - 1. Throws UserError.
 Decider ReadDecider(const std::string& name_or_file, int first, int end);
 
 /// The same for a whole swarm, whose policies must fit the model. Throws UserError.
