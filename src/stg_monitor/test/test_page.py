@@ -1,9 +1,15 @@
 """The page in a real browser: what it shows, that it asks nobody, and that no text becomes code."""
 
+import pathlib
+import tempfile
 import unittest
 
 import view_fixtures
-from page_case import PageCase
+from page_case import PageCase, complaints
+from stg_common.loading import load_program
+from stg_view.page import report_page
+
+MODULE = pathlib.Path(__file__).resolve().parents[2] / "stg_python/python/stg/page.py"
 
 
 class PageTest(PageCase):
@@ -47,6 +53,18 @@ class PageTest(PageCase):
             driver.execute_script(press % "d")
             self.assertEqual(1, len({"light", "dark"} - {self.run_js(driver, "document.documentElement.dataset.theme")}))
 
+    def test_between_two_decisions_it_is_on_its_way(self):
+        recording = view_fixtures.made_up(4, 100.0)
+        recording.add("episode", episode=1, seed=8, start=30.0)
+        with self.page(recording) as driver:
+            where = ("(() => { STG.app.seek(%s); STG.app.draw(performance.now()); "
+                     "return STG.app.scene.vehicles[1].group.position.toArray(); })()")  # fmt: skip
+            before, between, after = (self.run_js(driver, where % t) for t in (10, 10.25, 11))
+            for a, x, b in zip(before, between, after):
+                self.assertAlmostEqual(0.75 * a + 0.25 * b, x, places=5)
+            # From the end of an episode to the start of the next nobody flies.
+            self.assertEqual(*(self.run_js(driver, where % t) for t in (29, 29.5)))
+
     def test_one_without_packets(self):
         with self.page(view_fixtures.made_up(1, 1.0, every=0)) as driver:
             self.tour(driver)
@@ -69,6 +87,24 @@ class PageTest(PageCase):
         with self.page(view_fixtures.made_up(4)) as driver:
             self.assertEqual(1280, self.run_js(driver, "document.documentElement.scrollWidth"))
             self.assertLessEqual(self.run_js(driver, "document.documentElement.scrollHeight"), 720)
+
+    def test_a_notebook_shows_it_in_a_frame(self):
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        inline = load_program(MODULE).Page(report_page(view_fixtures.made_up(4).encoded(), "a run"))._repr_html_()
+        with tempfile.TemporaryDirectory() as folder:
+            notebook = pathlib.Path(folder) / "notebook.html"
+            notebook.write_text(f"<!doctype html><title>mine</title><body>{inline}", encoding="utf-8")
+            self.driver.get(notebook.as_uri())
+            self.driver.switch_to.frame(0)
+            try:
+                WebDriverWait(self.driver, 40.0, 0.1).until(
+                    lambda d: d.execute_script("return document.documentElement.dataset.ready === 'yes'"))
+                self.assertEqual(60, self.run_js(self.driver, "STG.app.recording.steps.count"))
+                self.tour(self.driver)
+            finally:
+                self.driver.switch_to.default_content()
+            self.assertEqual([], complaints(self.driver))
 
     def test_hostile_text_is_shown_as_text(self):
         hostile = view_fixtures.HOSTILE

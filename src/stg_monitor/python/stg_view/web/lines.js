@@ -1,49 +1,84 @@
 /* All lines that move, in one drawing: where the processor draws, each object costs more than its lines do.
- * They are put anew for each drawing, into arrays that are made once. World axes are ENU, z up, metres. */
+ * Each line is a slim rectangle whose width is given in pixels and whose edges are soft. Its four corners have
+ * data of their own: instances would take the processor six times as long. Lines are put anew for each
+ * drawing, into arrays that are made once. World axes are ENU, z up, metres. */
 (function (STG) {
   "use strict";
 
   const MOST = 24000;  // segments; what is more is left out
-  const CIRCLE = 72;
+  const CIRCLE = 72, THIN = 1.2;
   const COS = Float64Array.from({ length: CIRCLE + 1 }, (_, k) => Math.cos(2 * Math.PI * k / CIRCLE));
   const SIN = Float64Array.from({ length: CIRCLE + 1 }, (_, k) => Math.sin(2 * Math.PI * k / CIRCLE));
-  const VERTEX = `attribute vec4 tint; varying vec4 seen;
-    void main() { seen = tint; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`;
-  const FRAGMENT = "varying vec4 seen; void main() { gl_FragColor = seen; }";
+  // A corner is (end, side). What lies behind the near plane is cut off before the division by w.
+  const VERTEX = `attribute vec3 head; attribute vec4 tail; attribute vec4 tint;
+    uniform vec2 screen; varying vec4 seen; varying float across; varying float reach;
+    void main() {
+      vec4 a = projectionMatrix * modelViewMatrix * vec4(tail.xyz, 1.0), b = projectionMatrix * modelViewMatrix * vec4(head, 1.0);
+      float da = a.z + a.w, db = b.z + b.w;
+      if (da < 0.0 && db > 0.0) a = mix(a, b, da / (da - db));
+      if (db < 0.0 && da > 0.0) b = mix(b, a, db / (db - da));
+      vec2 way = (b.xy / b.w - a.xy / a.w) * screen;
+      float far = length(way);
+      vec2 along = far > 1e-6 ? way / far : vec2(1.0, 0.0);
+      reach = 0.5 * tail.w + 0.5;
+      across = position.y * (reach + 0.5);
+      seen = tint;
+      gl_Position = position.x > 0.5 ? b : a;
+      gl_Position.xy += vec2(-along.y, along.x) * across / screen * gl_Position.w;
+    }`;
+  const FRAGMENT = `varying vec4 seen; varying float across; varying float reach;
+    void main() { gl_FragColor = vec4(seen.rgb, seen.a * clamp(reach - abs(across), 0.0, 1.0)); }`;
 
   class Lines {
     constructor(group) {
-      const geometry = new THREE.BufferGeometry();
-      this.place = new THREE.BufferAttribute(new Float32Array(6 * MOST), 3).setUsage(THREE.DynamicDrawUsage);
-      this.tint = new THREE.BufferAttribute(new Float32Array(8 * MOST), 4).setUsage(THREE.DynamicDrawUsage);
-      geometry.setAttribute("position", this.place);
-      geometry.setAttribute("tint", this.tint);
-      this.object = new THREE.LineSegments(geometry, new THREE.ShaderMaterial(
-        { vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, depthWrite: false }));
+      const geometry = new THREE.BufferGeometry(), corners = new Int8Array(12 * MOST), index = new Uint32Array(6 * MOST);
+      for (let k = 0; k < MOST; ++k) {
+        corners.set([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 12 * k);
+        index.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * k + corner), 6 * k);
+      }
+      geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
+      geometry.setIndex(new THREE.BufferAttribute(index, 1));
+      const add = (name, array, size) => {
+        const attribute = new THREE.BufferAttribute(array, size, array instanceof Uint8Array).setUsage(THREE.DynamicDrawUsage);
+        geometry.setAttribute(name, attribute);
+        return attribute;
+      };
+      this.tail = add("tail", new Float32Array(16 * MOST), 4);  // and its width
+      this.head = add("head", new Float32Array(12 * MOST), 3);
+      this.tint = add("tint", new Uint8Array(16 * MOST), 4);
+      this.screen = new THREE.Vector2(1, 1);
+      this.object = new THREE.Mesh(geometry, new THREE.ShaderMaterial(
+        { vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { screen: { value: this.screen } },
+          transparent: true, depthWrite: false, side: THREE.DoubleSide }));
       this.object.frustumCulled = false;
       this.object.renderOrder = 1;
       group.add(this.object);
-      this.pen = [0, 0, 0, 1];
+      this.pen = new Uint8Array(16);
+      this.width = THIN;
       this.count = 0;
     }
 
-    begin() { this.count = 0; }
+    /** Begins a drawing on a canvas of so many pixels. */
+    begin(width, height) {
+      this.count = 0;
+      this.screen.set(width / 2, height / 2);
+    }
 
-    /** Sets the colour [red, green, blue] and the opacity of what comes. */
-    ink(rgb, opacity = 1) {
-      [this.pen[0], this.pen[1], this.pen[2]] = rgb;
-      this.pen[3] = opacity;
+    /** Sets the colour [red, green, blue], the opacity and the width [pixels] of what comes. */
+    ink(rgb, opacity = 1, width = THIN) {
+      for (let k = 0; k < 16; ++k) this.pen[k] = 255 * (k % 4 < 3 ? rgb[k % 4] : opacity) + 0.5;
+      this.width = width;
     }
 
     /** A line from p to q, in the colour that was set. */
     segment(px, py, pz, qx, qy, qz) {
       if (this.count >= MOST) return;
-      const a = this.place.array, c = this.tint.array, pen = this.pen;
-      let k = 6 * this.count, m = 8 * this.count++;
-      a[k++] = px; a[k++] = py; a[k++] = pz;
-      a[k++] = qx; a[k++] = qy; a[k++] = qz;
-      for (let end = 0; end < 2; ++end) {
-        c[m++] = pen[0]; c[m++] = pen[1]; c[m++] = pen[2]; c[m++] = pen[3];
+      const a = this.tail.array, b = this.head.array;
+      let k = 16 * this.count, m = 12 * this.count;
+      this.tint.array.set(this.pen, 16 * this.count++);
+      for (let corner = 0; corner < 4; ++corner) {
+        a[k++] = px; a[k++] = py; a[k++] = pz; a[k++] = this.width;
+        b[m++] = qx; b[m++] = qy; b[m++] = qz;
       }
     }
 
@@ -69,11 +104,12 @@
 
     /** Hands what was put to the drawing; only that is sent to the card. */
     end() {
-      for (const [attribute, size] of [[this.place, 6], [this.tint, 8]]) {
-        attribute.updateRange.count = size * Math.max(1, this.count);
+      for (const attribute of [this.tail, this.head, this.tint]) {
+        attribute.updateRange.count = 4 * attribute.itemSize * Math.max(1, this.count);
         attribute.needsUpdate = true;
       }
-      this.object.geometry.setDrawRange(0, 2 * this.count);
+      this.object.geometry.setDrawRange(0, 6 * this.count);
+      this.object.visible = this.count > 0;
     }
   }
 

@@ -48,8 +48,9 @@
       }
       this.half = this.extent();
       this.renderer.setClearColor(colours.water);
+      this.scene.fog = new THREE.Fog(colours.water);  // the far bottom goes over into the water
       if (r.meta.bottom) {
-        const { group, depths } = STG.shapes.bottomOf(r.meta.bottom);
+        const { group, depths } = STG.shapes.bottomOf(r.meta.bottom, colours.name);
         this.depths = depths;
         this.still.add(group);
       }
@@ -98,9 +99,29 @@
       return { mesh };
     }
 
+    /** A place in a row; in the row that is shown, as far on the way to the next one as time is. */
     point(row, name, i) {
-      const at = (a) => this.app.recording.steps.at(name, row, 3 * i + a);
-      return [at(0), at(1), at(2)];
+      const { steps } = this.app.recording;
+      return [0, 1, 2].map((a) => {
+        const x = steps.at(name, row, 3 * i + a);
+        if (row !== this.row || this.share === 0) return x;
+        const next = steps.at(name, row + 1, 3 * i + a);
+        return Number.isFinite(next) ? x + this.share * (next - x) : x;
+      });
+    }
+
+    /** An angle, as point(). */
+    angle(row, name, i) {
+      const { steps } = this.app.recording, x = steps.at(name, row, i) || 0;
+      if (this.share === 0) return x;
+      const turn = (steps.at(name, row + 1, i) || 0) - x;
+      return x + this.share * Math.atan2(Math.sin(turn), Math.cos(turn));
+    }
+
+    /** How far time is from a row to the next one of the same episode, 0 to 1. */
+    shareOf(t, row) {
+      const r = this.app.recording, [a, b] = [row, row + 1].map((at) => r.steps.at("t", at));
+      return row + 1 < r.steps.count && t > a && r.episodeAt(a) === r.episodeAt(b) ? Math.min(1, (t - a) / (b - a)) : 0;
     }
 
     resize() {
@@ -120,14 +141,19 @@
       this.resize();
       const row = r.row(t);
       if (row >= 0) {
+        this.row = row;
+        this.share = this.shareOf(t, row);
         this.follow(row);
-        this.lines.begin();
+        this.lines.begin(this.width, this.height);
         this.targets.forEach((one, k) => this.drawTarget(one, row, k));
         this.vehicles.forEach((one, i) => this.drawVehicle(one, row, i));
         this.sound.draw(t, row);
         this.lines.end();
       }
-      this.camera.near = this.camera.position.distanceTo(this.controls.target) / 200;
+      const away = this.camera.position.distanceTo(this.controls.target);
+      this.scene.fog.near = 1.2 * away;
+      this.scene.fog.far = 1.2 * away + 2.5 * this.half;
+      this.camera.near = away / 200;
       this.camera.far = this.far;
       this.camera.updateProjectionMatrix();
       this.renderer.render(this.scene, this.camera);
@@ -160,7 +186,7 @@
       one.group.position.set(...p);
       const size = this.metresPerPixel(one.group.position) * HULL_PIXELS * (selected === i ? 1.9 : 1.5);
       one.group.scale.setScalar(Math.max(size, 2 * (r.meta.radius_m || 0)));
-      one.group.rotation.set(0, -(r.steps.at("pitch", row, i) || 0), r.steps.at("heading", row, i) || 0, "ZYX");
+      one.group.rotation.set(0, -this.angle(row, "pitch", i), this.angle(row, "heading", i), "ZYX");
       this.drawTrack(row, i);
       if (r.meta.open === true && selected === i) {
         this.lines.ink(colours.rgbOf.soft, 0.35);
@@ -183,10 +209,10 @@
     /** The way of an AUV in the colours of its phases; what is old fades. */
     drawTrack(row, i) {
       const { recording: r, colours, selected } = this.app, { lines } = this;
-      const [first, stride] = this.trail(row), phases = r.steps.column("phase"), opacity = selected >= 0 && selected !== i ? 0.25 : 0.85;
+      const [first, stride] = this.trail(row), phases = r.steps.column("phase"), chosen = selected === i, opacity = selected >= 0 && !chosen ? 0.25 : 0.9;
       this.way("position", i, first, row, stride, (at) => {
         const young = 0.15 + 0.85 * (at - first + 1) / (row - first + 1);
-        lines.ink(colours.rgb[phases ? phases.data[at * phases.width + i] : 4] || colours.rgb[4], young * opacity);
+        lines.ink(colours.rgb[phases ? phases.data[at * phases.width + i] : 4] || colours.rgb[4], young * opacity, chosen ? 2.6 : 1.8);
       });
     }
 
@@ -203,6 +229,8 @@
         }
         from = to;
       }
+      const p = this.point(row, name, i);
+      if (this.share > 0 && Number.isFinite(p[0] + data[from])) this.lines.segment(data[from], data[from + 1], data[from + 2], ...p);
     }
 
     /** Where the AUV believes the target to be, and the ellipse of one deviation seen from above. */
@@ -217,7 +245,7 @@
       const [xx, xy, yy] = [c(0), c(1), c(3)];
       if (!(xx > 0 && yy > 0)) return;
       const middle = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
-      this.lines.ink(rgb, 0.55);
+      this.lines.ink(rgb, 0.7, 1.5);
       this.lines.circle(...p, Math.sqrt(middle + spread), Math.sqrt(Math.max(0, middle - spread)), 0.5 * Math.atan2(2 * xy, xx - yy));
     }
 
@@ -228,9 +256,9 @@
       one.mesh.position.set(...p);
       one.mesh.scale.setScalar(this.metresPerPixel(one.mesh.position) * 13);
       const [first, stride] = this.trail(row), band = r.meta.band_m || [0, 0];
-      this.way("target", k, first, row, stride, () => lines.ink(colours.rgbOf.target, 0.8));
+      this.way("target", k, first, row, stride, () => lines.ink(colours.rgbOf.target, 0.9, 1.8));
       for (const [radius, name, opacity] of [[band[0], "stable", 0.75], [band[1], "stable", 0.75], [r.meta.sensing_range_m || 0, "search", 0.4]]) {
-        lines.ink(colours.rgbOf[name], opacity);
+        lines.ink(colours.rgbOf[name], opacity, name === "stable" ? 1.8 : 1.2);
         if (radius > 0 && radius < 4 * this.half) lines.circle(...p, radius);
       }
     }

@@ -3,13 +3,18 @@
 (function (STG) {
   "use strict";
 
-  const DEPTHS = [[0.06, 0.1, 0.32], [0.1, 0.27, 0.55], [0.15, 0.5, 0.66], [0.38, 0.72, 0.64], [0.82, 0.85, 0.6]];
+  // From the deepest to the shallowest; pale on a light page, so that dark lines stand out.
+  const DEPTHS = {
+    dark: [[0.06, 0.1, 0.32], [0.1, 0.27, 0.55], [0.15, 0.5, 0.66], [0.38, 0.72, 0.64], [0.82, 0.85, 0.6]],
+    light: [[0.4, 0.57, 0.76], [0.5, 0.69, 0.84], [0.62, 0.8, 0.87], [0.76, 0.89, 0.86], [0.94, 0.93, 0.8]],
+  };
   const LAND = [0.45, 0.36, 0.22];
+  const OBSTACLE = "#a9744f";
 
-  /** Colour of a depth as a share from the deepest (0) to the shallowest (1). */
-  STG.depthColour = (share) => {
-    const x = Math.min(Math.max(share, 0), 1) * (DEPTHS.length - 1), k = Math.min(Math.floor(x), DEPTHS.length - 2);
-    return DEPTHS[k].map((c, a) => c + (x - k) * (DEPTHS[k + 1][a] - c));
+  /** Colour of a depth in a theme, as a share from the deepest (0) to the shallowest (1). */
+  STG.depthColour = (share, theme) => {
+    const ramp = DEPTHS[theme], x = Math.min(Math.max(share, 0), 1) * (ramp.length - 1), k = Math.min(Math.floor(x), ramp.length - 2);
+    return ramp[k].map((c, a) => c + (x - k) * (ramp[k + 1][a] - c));
   };
 
   /** A line through points that stand still, [x, y, z, x, ...]. */
@@ -29,7 +34,7 @@
   }
 
   /** The bottom and its grid as a group; its lowest and highest water depth are [low, high]. */
-  function bottomOf(bottom) {
+  function bottomOf(bottom, theme) {
     const group = new THREE.Group();
     const n = bottom.nodes, half = bottom.half_extent_m, heights = bottom.heights_m;
     let low = Infinity, high = -Infinity;
@@ -41,7 +46,7 @@
         const k = j * n + i, z = heights[(n - 1 - j) * n + i];  // the plane begins in the north
         position.setZ(k, z);
         const share = high - low < 1 ? 0.35 : (z - low) / (high - low);
-        tint.set(z > 0 ? LAND : STG.depthColour(share), 3 * k);
+        tint.set(z > 0 ? LAND : STG.depthColour(share, theme), 3 * k);
       }
     }
     geometry.setAttribute("color", new THREE.BufferAttribute(tint, 3));
@@ -68,7 +73,7 @@
       : new THREE.CylinderBufferGeometry(o.radius_m, o.radius_m, o.height_m, 24).rotateX(Math.PI / 2)
         .translate(0, 0, o.height_m / 2);
     const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
-      { color: 0xa9744f, transparent: true, opacity: 0.85 }));
+      { color: OBSTACLE, transparent: true, opacity: 0.85 }));
     mesh.position.set(...o.p_W_m);
     return mesh;
   }
@@ -91,5 +96,5 @@
     return group;
   }
 
-  STG.shapes = { hullGeometry, bottomOf, obstacleOf, frameOf };
+  STG.shapes = { OBSTACLE, hullGeometry, bottomOf, obstacleOf, frameOf };
 })(window.STG = window.STG || {});

@@ -36,16 +36,16 @@
           reach = Math.max(reach, away);
           if (selected >= 0 && receiver !== selected && one.source !== selected) continue;
           if (fate === 0) {
-            lines.ink(colours.rgbOf.heard, 0.55);
+            lines.ink(colours.rgbOf.heard, 0.6, 1.4);
             lines.segment(...p, ...q);
           } else {
-            lines.ink(colours.rgbOf.lost, 0.6);
+            lines.ink(colours.rgbOf.lost, 0.75, 1.6);
             lines.broken(p, q);
             labels.push({ p: [0, 1, 2].map((a) => p[a] + 0.62 * (q[a] - p[a])), text: STG.FATES[fate] });
           }
         }
         if (ring++ < RINGS) {
-          lines.ink(colours.rgbOf.sound, 0.75 * (1 - share) + 0.1);
+          lines.ink(colours.rgbOf.sound, 0.75 * (1 - share) + 0.1, 1.6);
           lines.circle(...p, Math.max(1e-6, share * reach));
         }
       }
