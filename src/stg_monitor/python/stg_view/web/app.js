@@ -97,7 +97,7 @@
       if (wanted.has("theme")) this.setTheme(wanted.get("theme"));
       if (wanted.has("auv")) this.select(Number(wanted.get("auv")));
       if (wanted.has("tab") && by(wanted.get("tab"))) this.show(wanted.get("tab"));
-      if (wanted.has("camera") && this.scene) this.scene.setMode(wanted.get("camera"));
+      if (wanted.has("camera") && this.scene) this.camera(wanted.get("camera"));
       if (wanted.has("t")) this.seek(this.recording.start + Number(wanted.get("t")));
     }
 
@@ -106,7 +106,8 @@
       const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/stream`);
       socket.binaryType = "arraybuffer";
       by("live").hidden = false;
-      this.following = true;
+      this.follow(true);
+      by("live").onclick = () => this.follow(true);
       socket.onmessage = (event) => {
         const message = event.data;
         for (let at = 0; at + 8 <= message.byteLength;) {
@@ -118,8 +119,8 @@
         this.fresh = true;
       };
       socket.onclose = () => {
-        by("live").textContent = "ended";
         this.closed = true;
+        this.follow(false);
         setTimeout(() => this.reconnect(), 2000);
       };
     }
@@ -146,8 +147,17 @@
 
     // ---- Time
 
+    /** Whether the newest is shown, always, of a live run. */
+    follow(on) {
+      this.following = on && !this.closed;
+      if (this.following) this.t = this.recording.end;
+      put(by("live"), this.closed ? "ended" : on ? "live" : "go live");
+      by("live").classList.toggle("behind", !this.following);
+      this.redraw();
+    }
+
     seek(t) {
-      this.following = false;
+      if (this.following) this.follow(false);
       this.t = Math.min(Math.max(t, this.recording.start), this.recording.end);
       this.redraw();
       this.moved = true;
@@ -223,7 +233,7 @@
       }
       if (this.playing) {
         this.t += elapsed * this.speed;
-        if (this.t >= r.end) { this.t = r.end; this.play(false); if (by("socket")) this.following = true; }
+        if (this.t >= r.end) { this.t = r.end; this.play(false); if (by("socket")) this.follow(true); }
         this.dirty = this.moved = true;
       }
       if (this.dirty) this.draw(now);
@@ -284,7 +294,7 @@
       const keys = {
         " ": () => this.play(), n: () => this.jump(1), p: () => this.jump(-1),
         ArrowRight: () => this.step(e.shiftKey ? 10 : 1), ArrowLeft: () => this.step(e.shiftKey ? -10 : -1),
-        Home: () => this.seek(this.recording.start), End: () => this.seek(this.recording.end),
+        Home: () => this.seek(this.recording.start), End: () => { this.seek(this.recording.end); if (by("socket")) this.follow(true); },
         "+": () => this.faster(1), "=": () => this.faster(1), "-": () => this.faster(-1),
         d: () => by("theme").click(), "?": () => this.overlay.showKeys(), Escape: () => this.select(-1),
         "]": () => this.select((this.selected + 1) % Math.max(1, this.recording.agents)),

@@ -28,6 +28,18 @@
     return c;
   };
 
+  const LETTER = 6.6, LABEL_HEIGHT = 17;  // of a label [pixels], so that none need be measured
+
+  /** Where a label stands beside its point: where no other does. A reason of a loss that finds no place is left out. */
+  function placeOf([x, y], { text, loss, chosen }, taken) {
+    const width = LETTER * text.length + 8, middle = y - LABEL_HEIGHT / 2;
+    const places = [[x + 9, middle], [x - 9 - width, middle], [x - width / 2, y - 12 - LABEL_HEIGHT], [x - width / 2, y + 12]];
+    const free = ([left, top]) => taken.every((b) => left > b[0] + b[2] || left + width < b[0] || Math.abs(top - b[1]) > LABEL_HEIGHT);
+    const place = (chosen ? null : places.find(free)) || (loss ? null : places[0]);
+    if (place) taken.push([...place, width]);
+    return place;
+  }
+
   class Overlay {
     constructor(app) { this.app = app; this.names = []; }
 
@@ -56,8 +68,9 @@
         STG.PHASES.forEach((name, k) => add(colours.phases[k], name));
         add(colours.target, "target");
         add(colours.stable, "tracking band", "ring");
-        add(colours.search, "sensing range", "ring");
+        if (r.meta.sensing_range_m > 0) add(colours.search, "sensing range", "ring");
       }
+      if ((r.meta.obstacles || []).length > 0) add(STG.shapes.OBSTACLE, "obstacle");
       if (r.packets.count > 0) {
         add(colours.heard, "packet heard", "bar");
         add(colours.lost, "packet lost", "bar");
@@ -75,22 +88,25 @@
       const few = r.agents <= 24;
       for (let i = 0; i < r.agents; ++i) {
         if (!scene.vehicles[i] || !scene.vehicles[i].group.visible || !(few || i === selected)) continue;
-        wanted.push({ p: scene.vehicles[i].group.position.toArray(), text: few && r.agents > 8 && i !== selected ? r.name(i).replace(/^auv_/, "") : r.name(i), chosen: i === selected, lift: 12 });
+        wanted.push({ p: scene.vehicles[i].group.position.toArray(), text: few && r.agents > 8 && i !== selected ? r.name(i).replace(/^auv_/, "") : r.name(i), chosen: i === selected });
       }
       scene.targets.forEach((one, k) => {
-        if (one.mesh.visible) wanted.push({ p: one.mesh.position.toArray(), text: r.targets > 1 ? `target ${k}` : "target", lift: -22 });
+        if (one.mesh.visible) wanted.push({ p: one.mesh.position.toArray(), text: r.targets > 1 ? `target ${k}` : "target", target: true });
       });
-      if (scene.sound) for (const { p, text } of scene.sound.labels) wanted.push({ p, text: `✕ ${text}`, loss: true, lift: -6 });
+      if (scene.sound) for (const { p, text } of scene.sound.labels) wanted.push({ p, text: `✕ ${text}`, loss: true });
+      const taken = [];
       let used = 0;
       for (const one of wanted) {
         const at = scene.project(one.p);
         if (!at || at[0] < 0 || at[0] > scene.width) continue;
+        const place = placeOf(at, one, taken);
+        if (!place) continue;
         const label = this.names[used] || (this.names[used] = root.appendChild(element("span")));
         ++used;
         label.hidden = false;
         if (label.textContent !== one.text) label.textContent = one.text;
-        label.className = one.chosen ? "chosen" : one.loss ? "loss" : "";
-        label.style.transform = `translate(${Math.round(at[0] + 9)}px, ${Math.round(at[1] - one.lift)}px)`;
+        label.className = one.chosen ? "chosen" : one.loss ? "loss" : one.target ? "target" : "";
+        label.style.transform = `translate(${Math.round(place[0])}px, ${Math.round(place[1])}px)`;
       }
       for (; used < this.names.length; ++used) this.names[used].hidden = true;
     }
@@ -141,7 +157,7 @@
       this.depthsDrawn = scene.depths;
       const canvas = by("depth-scale"), ctx = canvas.getContext("2d");
       for (let x = 0; x < canvas.width; ++x) {
-        ctx.fillStyle = `rgb(${STG.depthColour(1 - x / canvas.width).map((c) => Math.round(255 * c)).join(",")})`;
+        ctx.fillStyle = `rgb(${STG.depthColour(1 - x / canvas.width, this.app.colours.name).map((c) => Math.round(255 * c)).join(",")})`;
         ctx.fillRect(x, 0, 1, canvas.height);
       }
       const flat = scene.depths[1] - scene.depths[0] < 1;

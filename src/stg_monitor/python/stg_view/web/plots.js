@@ -3,7 +3,7 @@
 (function (STG) {
   "use strict";
 
-  const MOST_POINTS = 1500, HEIGHT = 150, LEAST_LOG = 0.01;
+  const MOST_POINTS = 1500, HEIGHT = 150, LEAST_LOG = 0.01, MANY = 9;
 
   /** Rows of the steps that are plotted: all, or evenly spread ones. */
   function plottedRows(recording) {
@@ -107,6 +107,7 @@
       this.element.textContent = "";
       this.charts = [];
       const plots = plotsOf(this.app);
+      if (plots.some((plot) => plot.lines.some((l) => l.auv !== undefined))) this.element.append(this.who());
       const width = Math.max(240, this.element.clientWidth - 24);
       for (const plot of plots) {
         const box = document.createElement("div");
@@ -115,6 +116,7 @@
         const value = document.createElement("span");
         heading.append(plot.title + (plot.unit ? ` [${plot.unit}]` : ""), value);
         box.append(heading);
+        if (plot.own) box.append(this.keysOf(plot));
         this.element.append(box);
         const chart = this.chart(plot, width, box);
         chart.plotOf = plot;
@@ -131,9 +133,34 @@
       this.now();
     }
 
+    /** Whose line has which colour; where they are too many for that, all are grey but the chosen one's. */
+    who() {
+      const { recording: r, colours, selected } = this.app, line = STG.element("div", "who");
+      for (let i = 0; i < r.agents; ++i) {
+        const button = STG.element("button", i === selected ? "on" : ""), mark = STG.element("i");
+        mark.style.background = r.agents > MANY && i !== selected ? colours.soft : colours.lines[i % colours.lines.length];
+        button.append(mark, r.agents > MANY ? r.name(i).replace(/^auv_/, "") : r.name(i));
+        button.onclick = () => this.app.select(i === this.app.selected ? -1 : i);
+        line.append(button);
+      }
+      return line;
+    }
+
+    /** What the lines of a plot are that has no lines of AUVs. */
+    keysOf(plot) {
+      const { colours } = this.app, line = STG.element("div", "keys-of");
+      plot.lines.forEach((l, k) => {
+        const key = STG.element("span", "keyed"), mark = STG.element("i");
+        mark.style.background = l.colour || colours.lines[k % colours.lines.length];
+        key.append(mark, l.key = document.createTextNode(l.label));
+        line.append(key);
+      });
+      return line;
+    }
+
     chart(plot, width, box) {
       const { colours, selected, recording: r } = this.app;
-      const many = plot.lines.length > 9 && !plot.own;
+      const many = r.agents > MANY && !plot.own;
       const axis = { stroke: colours.soft, grid: { stroke: colours.line, width: 1 }, ticks: { stroke: colours.line, width: 1, size: 4 }, font: "11px system-ui, sans-serif" };
       const series = plot.lines.map((l, k) => {
         const chosen = l.auv === selected || l.auv === undefined;
@@ -196,15 +223,21 @@
       if (!u.readout) return;
       let at = u.cursor.idx;
       if (at === null || at === undefined) {
-        if (plot.free) { u.readout.textContent = plot.lines.map((l) => l.label).slice(0, 6).join(", "); return; }
-        at = Math.max(0, STG.lastUpTo(plot.t, plot.t.length, this.app.t));
+        at = plot.free ? -1 : Math.max(0, STG.lastUpTo(plot.t, plot.t.length, this.app.t));
+      }
+      if (plot.own) {
+        for (const l of plot.lines) {
+          const v = l.values[at], text = v === null || v === undefined ? l.label : `${l.label} ${STG.number(v)}`;
+          if (l.key.data !== text) l.key.data = text;
+        }
+        return;
       }
       const values = plot.lines.map((l) => [l, l.values[at]]).filter(([, v]) => v !== null && v !== undefined);
       const { selected } = this.app;
       const shown = values.filter(([l]) => selected < 0 || l.auv === selected || l.auv === undefined);
-      u.readout.textContent = shown.length > 5 && !plot.own
+      u.readout.textContent = shown.length > 2
         ? `${STG.number(Math.min(...shown.map(([, v]) => v)))} … ${STG.number(Math.max(...shown.map(([, v]) => v)))}`
-        : shown.filter(([, v]) => !plot.steps || v > 0).slice(0, 5).map(([l, v]) => `${l.label} ${STG.number(v)}`).join("   ");
+        : shown.map(([l, v]) => `${l.label} ${STG.number(v)}`).join("   ");
     }
 
     /** Moves the line of the time that is shown. */
