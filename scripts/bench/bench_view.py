@@ -3,7 +3,7 @@
 
 Parts: page (a report: size, seconds to open, frames a second while it plays, memory), live (twenty AUVs
 at 10 Hz: lag and frames a second), lockstep (what a run in lockstep loses to the view). The last two
-need a sourced workspace. Figures depend on what else the machine does: `load` is told
+need a sourced workspace. Figures depend on what else the machine does: `load` is given
 with them, and the work (seconds of processor time of all processes of the browser), which depends less on it.
 """
 

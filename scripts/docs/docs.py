@@ -163,7 +163,7 @@ def write_headers(site):
         print("docs: without doxygen the C++ headers are left out", file=sys.stderr)
         return
     inputs = " ".join(str(p) for p in sorted((ROOT / "src").glob("*/include")))
-    # It remarks on words of comments that look like its commands, and cannot be told not to.
+    # It remarks on words of comments that look like its commands, and has no option against it.
     subprocess.run(["doxygen", "-"], input=DOXYFILE.format(input=inputs, out=site), text=True, check=True,
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
 

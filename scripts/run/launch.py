@@ -4,7 +4,7 @@
 Takes roslaunch's arguments and does what it does, with these differences. What can be known not to
 work is refused before anything starts, in one line (run_arguments.py, run_checks.py). A node that
 exits with status 2 refuses its configuration (stg::RunNode): the run ends at once, where respawning
-would repeat it for ever. So it does, without a word, when nobody reads its output any more. The exit
+would repeat it for ever. So it does, without a word, when its output has no reader any more. The exit
 status is 1 after that, when a required node, the recorder or the master died, or when a file that
 was asked for was not written; it is 130 after a Ctrl-C that came before everything was started. And
 nothing is left running when the start ends early, where roslaunch gives up before its monitor has
@@ -51,7 +51,7 @@ class Watch(roslaunch.pmon.ProcessListener):
         self.required = {"master"}
         self.recorders = set()
         self.failure = ""
-        self.over = False  # a node refused its configuration, or nobody reads on
+        self.over = False  # a node refused its configuration, or its output has no reader
         self.unread = False
         self.started = False
         self.interrupted = False  # by Ctrl-C, before all was started

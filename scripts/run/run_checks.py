@@ -19,7 +19,7 @@ WHOLE = (-(2**31), 2**31 - 1)  # numbers that a parameter of ROS can be
 
 
 class Refusal(Exception):
-    """Why a run cannot start, or what is missing at its end, told in words for the user."""
+    """Why a run cannot start, or what is missing at its end, in words for the user."""
 
 
 class _Transport(xmlrpc.client.Transport):
@@ -39,7 +39,7 @@ def _call(uri, name, *arguments):
 
 
 def master_is_online(uri):
-    """True when a ROS master listens at `uri`, False when nobody does; refuses anybody else."""
+    """True when a ROS master listens at `uri`, False when no program does; refuses another program."""
     address = urllib.parse.urlparse(uri)
     try:
         if not address.hostname or not address.port:
@@ -79,7 +79,7 @@ def check_names_are_free(uri, names):
 
 
 class Turn:
-    """The right to start on a master: who starts at the same moment waits until it is given up.
+    """The right to start on a master: a run that starts at the same moment waits until it is given up.
 
     Two that start their masters on one port, or their nodes of one name, would end each other.
     """

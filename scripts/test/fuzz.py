@@ -3,7 +3,7 @@
 
 Each target starts from its inputs in fuzz/corpus and fuzz/regressions and from what earlier runs
 have found new code with, which stays in the build folder. An input that breaks something is kept in
-FOLDER/findings, and told with the command that repeats it. The last line counts; the exit status is
+FOLDER/findings, and is printed with the command that repeats it. The last line counts; the exit status is
 0 only if nothing was found.
 """
 

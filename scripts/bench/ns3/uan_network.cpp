@@ -1,4 +1,4 @@
-// A network of ns-3's UAN module that is told every packet: the other side of compare.py, which
+// A network of ns-3's UAN module that is given every packet: the other side of compare.py, which
 // builds it.
 //
 //   uan_network NODES PACKETS DURATION_S RATE_BPS KHZ BAND_HZ LEVEL_DB ACQUISITION_DB THRESHOLD_DB

@@ -153,7 +153,7 @@ def draw_ages(axes, log):
 
 
 def draw_slots(axes, log, sent, window):
-    """Who sent when, coloured by what became of it."""
+    """Which node sent when, coloured by what became of it."""
     start, end = window
     axes.set_title("use of the water (window)")
     axes.set_xlabel("time [s]")

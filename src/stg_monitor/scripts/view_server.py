@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Serves the live view of a run to browsers on the loopback.
 
-It only listens. While nobody looks it keeps positions, at most rate_hz a second of wall time, and
-packets; the rest is asked for and decoded only while somebody does. A run in lockstep speaks much
+It only listens. Without a browser it keeps positions, at most rate_hz a second of wall time, and
+packets; the rest is asked for and decoded only while there is one. A run in lockstep speaks much
 more often than that: the server sleeps between two looks at what came, and of all but the packets
 decodes the newest alone. A browser that comes late is sent all that was kept first. ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 """
@@ -94,7 +94,7 @@ class Ears:
         return rospy.Subscriber(topic, rospy.AnyMsg, hear, queue_size=1, buff_size=AT_ONCE, tcp_nodelay=True)
 
     def tell(self, kind, data):
-        """Keeps a message and sends it to who looks."""
+        """Keeps a message and sends it to the browsers."""
         self.kept.add(kind, data)
         self.send(data)
 
@@ -131,7 +131,7 @@ class Ears:
                     self.tell("episode", part)
             self.kept.add("steps", steps)
             self.send(encode("meta", meta={"sent_s": time.time()}) + steps)
-        if self.wanted and not self.more:  # who looked before the run was there
+        if self.wanted and not self.more:  # a browser that came before the run
             self.watch(True)
 
     def take_newest(self):
@@ -141,7 +141,7 @@ class Ears:
             self.collector.take(topic, kind().deserialize(raw._buff))
 
     def hear_packets(self, raw):
-        """Every packet is told, many at once."""
+        """Sends every packet on, many at once."""
         with self.basket:
             self.packets.append(raw._buff)
             first = len(self.packets) == 1
@@ -272,7 +272,7 @@ class Server:
         self.loop.call_soon_threadsafe(self.loop.call_later, seconds, action)
 
     def send(self, data):
-        """Sends a message to all who look; from any thread."""
+        """Sends a message to all browsers; from any thread."""
         if self.sockets:
             self.loop.call_soon_threadsafe(self.put, data)
 

@@ -14,7 +14,7 @@ from stg_study.tables import NOTHING, cell, markdown
 PLACE = ("section", "scenario", "condition", "variant")
 KEY = (*PLACE, "pilot", "knows", "seeds", "episodes")
 PAIRED = ("difference", "difference_low", "difference_high")
-LEAST_GAP = 0.02  # of what truth is worth, below which no share of it is told
+LEAST_GAP = 0.02  # of what truth is worth, below which no share of it is given
 TITLES = {"scenario": "Scenario", "condition": "Condition", "variant": "Variant", "pilot": "Flown by",
           "knows": "Knows", "seeds": "Seeds", "episodes": "Episodes"}  # fmt: skip
 READING = """\

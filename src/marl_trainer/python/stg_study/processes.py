@@ -5,7 +5,7 @@ import signal
 import subprocess
 import time
 
-from stg_common.files import FileError, told
+from stg_common.files import FileError, reason_of
 
 # What tells a process that mpirun or srun started it; our jobs are started by us.
 LAUNCHERS = ("OMPI_", "PMIX_", "PMI_")
@@ -32,7 +32,7 @@ class Running:
 
 class JobProcess(Running):
     """A job whose process runs. It leads its own session, so that Ctrl-C reaches only us, and is
-    interrupted when we die, so that nobody goes on writing where the job is done again."""
+    interrupted when we die, so that no process goes on writing where the job is done again."""
 
     def __init__(self, job):
         super().__init__(job)
@@ -51,7 +51,7 @@ class JobProcess(Running):
                     start_new_session=True,
                 )
         except OSError as error:
-            self._outcome = f"it cannot be started: {told(error)}"
+            self._outcome = f"it cannot be started: {reason_of(error)}"
 
     def outcome(self):
         """None while it runs; then what went wrong, nothing where it left all it should."""
@@ -67,7 +67,7 @@ class JobProcess(Running):
                 self.job.finish(log.read())
             return "" if self.job.complete() else "its output is incomplete"
         except (FileError, OSError, ValueError, IndexError) as error:
-            return f"its output cannot be taken over: {told(error)}"
+            return f"its output cannot be taken over: {reason_of(error)}"
 
     def signal(self, number):
         """Tells the process and its children, if it still runs."""

@@ -1,6 +1,6 @@
 """Jobs spread over the MPI processes of one mpirun: rank 0 plans and reports, all carry out jobs.
 
-All see the same folders, as on a cluster. Whoever carries out a job writes all of its files; rank 0
+All see the same folders, as on a cluster. The rank that carries out a job writes all of its files; rank 0
 hears how it went.
 """
 
@@ -19,7 +19,7 @@ _crew = Alone()
 
 
 def crew():
-    """Who carries out the jobs of this command."""
+    """The crew that carries out the jobs of this command."""
     return _crew
 
 
@@ -35,7 +35,7 @@ def started_by_mpi():
 
 
 def led(main, argv):
-    """main(argv) in rank 0 or in the only process; the other ranks do as they are told."""
+    """main(argv) in rank 0 or in the only process; the other ranks do what rank 0 asks."""
     global _crew
     if not started_by_mpi():
         return main(argv)

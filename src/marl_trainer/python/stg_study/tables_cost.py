@@ -1,4 +1,4 @@
-"""Tables of what makes a comparison fair: options, networks, cost, and who is how likely better."""
+"""Tables of what makes a comparison fair: options, networks, cost, and which is how likely better."""
 
 import re
 

@@ -1,6 +1,6 @@
 """Files that users give: read whole, or refused in one line, FILE:LINE: what.
 
-Whoever opens such a file any other way waits for a FIFO that nobody writes, or reads a device until
+A program that opens such a file in another way waits for a FIFO without a writer, or reads a device until
 the memory is full.
 """
 
@@ -21,7 +21,7 @@ def one_line(text):
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in str(text))
 
 
-def told(error):
+def reason_of(error):
     """An error in words: which file, and what is wrong with it."""
     filename = getattr(error, "filename", None)
     reason = getattr(error, "strerror", None) or error

@@ -1,12 +1,12 @@
 """How a program of this repository ends: in one line where a file is at fault, silently where
-nobody reads on or Ctrl-C was pressed."""
+the output has no reader any more or Ctrl-C was pressed."""
 
 import io
 import os
 import signal
 import sys
 
-from stg_common.files import FileError, one_line, told
+from stg_common.files import FileError, one_line, reason_of
 
 # The exit statuses that a shell gives programs which these signals ended.
 NOBODY_READS = 128 + signal.SIGPIPE
@@ -61,7 +61,7 @@ def run_program(name, main, *refusals, status=2, system_status=None):
     except (FileError, *refusals) as error:
         code = _refuse(name, error, status)
     except OSError as error:
-        code = _refuse(name, told(error), status if system_status is None else system_status)
+        code = _refuse(name, reason_of(error), status if system_status is None else system_status)
     sys.exit(code)
 
 

@@ -1,4 +1,4 @@
-"""Reading of bags that may be damaged: whatever is wrong with one is a BagError, told in words."""
+"""Reading of bags that may be damaged: whatever is wrong with one is a BagError, which says it in words."""
 
 import contextlib
 import io
@@ -11,7 +11,7 @@ import rosbag
 
 
 class BagError(Exception):
-    """A bag that cannot be read, told in words for the user."""
+    """A bag that cannot be read, in words for the user."""
 
 
 def open_bag(path, salvage):

@@ -17,7 +17,7 @@ LOAD_S = 40.0
 
 
 class BrowserError(Exception):
-    """Why there is no browser, or no page in it, told in words."""
+    """Why there is no browser, or no page in it, in words."""
 
 
 def missing():

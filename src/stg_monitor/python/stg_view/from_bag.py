@@ -125,7 +125,7 @@ class Collector:
         return chosen if chosen < targets else i % targets
 
     def touches(self, m, n):
-        """Who came to the bottom (1) or to an obstacle (2) in this step; older bags do not tell."""
+        """Which AUVs came to the bottom (1) or to an obstacle (2) in this step; older bags do not tell."""
         counts = [list(getattr(m, name, ())) for name in ("groundings", "collisions")]
         before, self.counts = self.counts, counts
         found = [0] * n
@@ -156,7 +156,7 @@ class Collector:
         row["range"].append(detection.range if seen and detection.kind == 1 else NAN)
 
     def take_packet(self, e):
-        """Adds one packet and receiver whose fate is told."""
+        """Adds one packet and receiver whose fate is known."""
         if e.kind not in (DELIVERED, DROPPED):
             return
         fate = 0 if e.kind == DELIVERED else min(int(e.reason), len(FATES) - 1)

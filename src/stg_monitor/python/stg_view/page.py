@@ -21,7 +21,7 @@ SCRIPTS = ("recording", "story", "shapes", "lines", "camera", "scene", "sound", 
 
 
 class PageError(Exception):
-    """A page that cannot be made, told in words."""
+    """A page that cannot be made, in words."""
 
 
 def _read(path):

@@ -25,7 +25,7 @@ MOST_STEP_NUMBERS, MOST_PACKETS = 3_000_000, 200_000
 
 
 class RecordingError(Exception):
-    """A recording that cannot be read, told in words."""
+    """A recording that cannot be read, in words."""
 
 
 def _padded(data, blank):

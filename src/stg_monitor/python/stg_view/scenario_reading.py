@@ -1,4 +1,4 @@
-"""Scenarios as files and bags have them, for those who show a run; used by view.py and bag_report.py."""
+"""Scenarios as files and bags have them, for programs that show a run; used by view.py and bag_report.py."""
 
 import math
 

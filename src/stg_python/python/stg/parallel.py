@@ -36,7 +36,7 @@ except ImportError:
 
 
 class ParallelEnv(_Base):
-    """One swarm: AUV i is the agent "auv_<i>". Nobody leaves before all do.
+    """One swarm: AUV i is the agent "auv_<i>". No agent leaves before all do.
 
     observations  [K] float32 each, of the decision to come
     actions       [A] float32 or float64 each, clipped to [-1, 1]

@@ -19,7 +19,7 @@ def raw_env(**options):
 
 
 def env(**options):
-    """Returns the swarm as an AECEnv whose misuse is told; options are those of stg.parallel_env."""
+    """Returns the swarm as an AECEnv that reports misuse; options are those of stg.parallel_env."""
     from pettingzoo.utils import wrappers  # pylint: disable=import-outside-toplevel
 
     return wrappers.OrderEnforcingWrapper(raw_env(**options))

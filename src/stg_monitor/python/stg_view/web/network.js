@@ -1,4 +1,4 @@
-/* The network: who hears whom as a matrix, who spoke when as a time line, and what became of one
+/* The network: which node hears which as a matrix, which spoke when as a time line, and what became of one
  * transmission. It needs packets only, no vehicles. */
 (function (STG) {
   "use strict";
@@ -33,11 +33,11 @@
       this.tip.hidden = true;
       root.append(
         this.cards = element("div", "cards"),
-        element("h2", "", "Who spoke when, and who heard it"),
+        element("h2", "", "Which node spoke when, and which heard it"),
         this.lineHint = element("p", "hint"),
         this.line = element("canvas", "wide"),
         this.detail = element("div"),
-        element("h2", "", "Who hears whom"),
+        element("h2", "", "Which node hears which"),
         element("p", "hint", "Rows speak, columns hear; a full cell is a link on which every packet arrives."),
         this.matrix = element("canvas", "wide"),
         element("h2", "", "Fates of all packets"),

@@ -54,7 +54,7 @@
       this.labels = labels.filter((_, k) => k % stride === 0);
     }
 
-    /** Who has heard whom a short while ago. */
+    /** Which node has heard which a short while ago. */
     drawRecentLinks(t, row) {
       const { recording: r, transmissions, scene, colours } = this.app;
       const window = Math.max(2, 20 * (r.meta.decision_s || 0.1)), seen = new Set();

@@ -4,7 +4,7 @@
   "use strict";
 
   const LOST = 3, OPEN = 20000;  // transmissions that more rows may still belong to
-  const BEFORE_LOSS_S = 5;  // in which missing packets are told, at least; or so many decisions:
+  const BEFORE_LOSS_S = 5;  // in which missing packets are listed, at least; or so many decisions:
   const BEFORE_LOSS_STEPS = 50;
 
   /** The packets of a recording, by transmission, in the order in which they left. */
@@ -171,7 +171,7 @@
       }
     }
 
-    /** Who has no place in the water has left, or has not joined yet. */
+    /** A node without a place in the water has left, or has not joined yet. */
     readPresence(row, t, i) {
       const r = this.recording, there = Number.isFinite(r.steps.at("position", row, 3 * i));
       if (this.there[i] !== undefined && this.there[i] !== there) {
