@@ -15,6 +15,7 @@ import house
 from tidy import check_tidy
 from tools import check_catkin, check_format, check_python, check_shell
 from versions import check_versions
+from words import check_words
 
 from stg_common.program import run_program
 
@@ -60,6 +61,7 @@ def main(argv):
         "namespaces": house.check_namespaces,
         "registries": house.check_registries,
         "versions": check_versions,
+        "words": check_words,
         "tidy": lambda: check_tidy(options.build),
     }
     options = parse(argv, list(checkers))

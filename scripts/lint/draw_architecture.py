@@ -25,7 +25,7 @@ COLOURS = ("#4d6680", "#1b7f79", "#2a6fb0", "#b3641c", "#7a4fa3", "#b03a5b", "#6
 
 
 class House:
-    """What the code says: packages, their folders and who includes whom."""
+    """What the code says: packages, their folders and what includes what."""
 
     def __init__(self, source):
         self.folders = collections.defaultdict(collections.Counter)  # package: {folder: files}

@@ -1,4 +1,4 @@
-"""The rules of the house that no other program knows: who may include whom, sizes and names.
+"""The rules of the house that no other program knows: what may include what, sizes and names.
 
 Each rule takes the folder of the packages and returns (what was looked at, list of findings).
 """

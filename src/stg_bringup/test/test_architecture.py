@@ -9,6 +9,7 @@ from stg_common.loading import load_program
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 house = load_program(ROOT / "scripts" / "lint" / "house.py")
+words = load_program(ROOT / "scripts" / "lint" / "words.py")
 
 TOPICS = "auv_dynamics/src/nodes/include/auv_dynamics/nodes/topics.hpp"
 REGISTRY = """
@@ -284,6 +285,32 @@ class Picture(unittest.TestCase):
                 file.write_text('#include "lower/a/b.hpp"\n')
                 pathlib.Path(folder, package, "package.xml").write_text("<package/>")
             self.assertEqual(self.check("--source", folder), 1)
+
+
+class Words(unittest.TestCase):
+    """Comments and texts call a program "it"."""
+
+    def found(self, name, text):
+        """The lines with findings in a file of this name."""
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, name).write_text(text, encoding="utf-8")
+            _, findings = words.check_words(pathlib.Path(folder), [pathlib.Path(name)])
+        return [int(finding.split(":")[1]) for finding in findings]
+
+    def test_the_repository_keeps_it(self):
+        self.assertEqual(words.check_words()[1], [])
+
+    def test_comments_and_texts_are_read_but_names_are_not(self):
+        self.assertEqual(self.found("a.cpp", "int told = 0;  // x\n// Nobody listens.\n"), [2])
+        self.assertEqual(self.found("a.hpp", '#include "who.hpp"\nFail("nobody asked");\n'), [2])
+        self.assertEqual(self.found("a.py", 'def told():\n    """Told of it."""\n'), [2])
+        self.assertEqual(self.found("a.md", "`told`\n```\nwho\n```\nThe node who waits.\n"), [5])
+        self.assertEqual(self.found("a.msg", "uint8 x  # whoever sent it\n"), [1])
+
+    def test_people_are_who(self):
+        text = "People who train, and the user who reads. The packet who waits.\n"
+        self.assertEqual(self.found("a.md", text), [1])
+        self.assertEqual(self.found("a.md", text.split(". ")[0]), [])
 
 
 if __name__ == "__main__":
