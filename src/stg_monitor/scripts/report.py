@@ -62,7 +62,7 @@ def main(arguments=None):
         print(f"report: {error.args[0]}", file=sys.stderr)
         return 1
     out = options.out or f"{options.run.rstrip('/')}.html"
-    write_page(report_page(recording, title), out)
+    write_page(report_page(recording, title, is_chosen=options.title is not None), out)
     print(f"report: {out}, {os.path.getsize(out) / 1e6:.1f} MB")
     if options.video:
         from stg_view.video import write_video

@@ -7,6 +7,7 @@ import unittest
 import view_fixtures
 from page_case import PageCase, complaints
 from stg_common.loading import load_program
+from stg_view.browser import show
 from stg_view.page import report_page
 
 MODULE = pathlib.Path(__file__).resolve().parents[2] / "stg_python/python/stg/page.py"
@@ -87,6 +88,14 @@ class PageTest(PageCase):
         with self.page(view_fixtures.made_up(4)) as driver:
             self.assertEqual(1280, self.run_js(driver, "document.documentElement.scrollWidth"))
             self.assertLessEqual(self.run_js(driver, "document.documentElement.scrollHeight"), 720)
+
+    def test_a_chosen_title_stands_before_that_of_the_recording(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for is_chosen, wanted in ((False, "made up"), (True, "mine")):
+                file = pathlib.Path(folder) / f"{wanted}.html"
+                file.write_text(report_page(view_fixtures.made_up(2).encoded(), "mine", is_chosen), encoding="utf-8")
+                show(self.driver, file.as_uri())
+                self.assertEqual([wanted] * 2, [self.run_js(self.driver, "document.getElementById('title').textContent"), self.driver.title])
 
     def test_a_notebook_shows_it_in_a_frame(self):
         from selenium.webdriver.support.ui import WebDriverWait

@@ -70,11 +70,12 @@ def _page(title, data, connect):
         text = text[at + len(mark) :]
 
 
-def report_page(recording, title):
-    """HTML of a report. recording: its bytes; title: plain text."""
+def report_page(recording, title, is_chosen=False):
+    """HTML of a report. recording: its bytes; title: plain text, which gives way to that of the recording
+    unless it was chosen."""
     packed = base64.b64encode(gzip.compress(recording, 9, mtime=0)).decode()
     data = f'<script type="application/octet-stream" id="recording">{packed}</script>'
-    return _page(title, data, "'none'")
+    return _page(title, data + '<meta id="titled">' * is_chosen, "'none'")
 
 
 def live_page(title):

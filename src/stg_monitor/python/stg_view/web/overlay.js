@@ -46,9 +46,9 @@
     /** Texts that change with what is known of the run. */
     update() {
       const { recording: r, scene } = this.app, m = r.meta;
-      by("subtitle").textContent = [m.scenario, m.condition && m.condition !== "nominal" ? m.condition : "", m.policy,
+      by("subtitle").textContent = [m.scenario, m.condition && m.condition !== "nominal" ? m.condition : "", m.policy && String(m.policy).split("/").pop(),
         r.agents > 0 ? `${r.agents} ${r.targets > 0 ? "AUVs" : "nodes"}` : "", m.channel && `channel ${m.channel}`].filter(Boolean).join(" · ");
-      if (m.title) { by("title").textContent = m.title; document.title = m.title; }
+      if (m.title && !by("titled")) { by("title").textContent = m.title; document.title = m.title; }
       document.querySelectorAll("#cameras button").forEach((b) => {
         b.classList.toggle("on", Boolean(scene) && (scene.above ? b.dataset.camera === "above" : b.dataset.camera === scene.mode));
       });
@@ -70,6 +70,7 @@
         add(colours.stable, "tracking band", "ring");
         if (r.meta.sensing_range_m > 0) add(colours.search, "sensing range", "ring");
       }
+      if (r.steps.has("range")) add(colours.approach, "range just measured", "ring");
       if ((r.meta.obstacles || []).length > 0) add(STG.shapes.OBSTACLE, "obstacle");
       if (r.packets.count > 0) {
         add(colours.heard, "packet heard", "bar");

@@ -201,7 +201,8 @@
       if (Number.isFinite(estimate[0])) this.drawBelief(one, row, i, estimate, rgb);
       const range = r.steps.at("range", row, i);
       if (range > 0) {
-        this.lines.ink(colours.rgbOf.approach, 0.55);
+        // Of many AUVs, the circles are a veil; that of the chosen one stands out.
+        this.lines.ink(colours.rgbOf.approach, selected === i ? 0.7 : Math.min(0.55, 2 / r.agents));
         this.lines.circle(...p, range);
       }
     }
