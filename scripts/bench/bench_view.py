@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import statistics
 import subprocess
 import sys
@@ -132,8 +133,14 @@ def look(stop):
     asyncio.run(read())
 
 
+def work_of_ended():
+    """Seconds that all processes below this one have worked which have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def run_lockstep(kind):
-    """Decisions a second of a run in lockstep, as the world tells at its end."""
+    """Decisions a second of a run in lockstep, as the world tells at its end, and its work."""
     import multiprocessing
 
     stop = multiprocessing.Event()
@@ -143,25 +150,30 @@ def run_lockstep(kind):
         command += ["view:=web", f"port:={PORT}"]
     if kind == "watched":
         eye.start()
+    work = -work_of_ended()
     try:
         done = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        work += work_of_ended()  # the eye works on, and is none of the run
     finally:
         stop.set()
         if kind == "watched":
             eye.join()
     steps, seconds = re.search(r"world: (\d+) steps in ([\d.]+) s", done.stdout).groups()
-    return int(steps) / float(seconds)
+    return int(steps) / float(seconds), work
 
 
 def measure_lockstep(repeats):
     """Runs without the view, with it, and with somebody who looks, in turns."""
-    found = {kind: [] for kind in ("plain", "viewed", "watched")}
+    rates, works = ({kind: [] for kind in ("plain", "viewed", "watched")} for _ in range(2))
     for _ in range(repeats):
-        for kind, rates in found.items():
-            rates.append(run_lockstep(kind))
-    best = {kind: max(rates) for kind, rates in found.items()}
-    return {"steps_per_s": found, "slower_with_view": 1 - best["viewed"] / best["plain"],
-            "slower_when_looked_at": 1 - best["watched"] / best["plain"]}  # fmt: skip
+        for kind, found in rates.items():
+            rate, work = run_lockstep(kind)
+            found.append(rate)
+            works[kind].append(work)
+    best, least = {kind: max(found) for kind, found in rates.items()}, {kind: min(found) for kind, found in works.items()}
+    return {"steps_per_s": rates, "work_s": works, "slower_with_view": 1 - best["viewed"] / best["plain"],
+            "slower_when_looked_at": 1 - best["watched"] / best["plain"], "more_work_with_view": least["viewed"] / least["plain"] - 1,
+            "more_work_when_looked_at": least["watched"] / least["plain"] - 1}  # fmt: skip
 
 
 def main():
