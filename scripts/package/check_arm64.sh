@@ -10,6 +10,8 @@ if [[ -z "$folder" ]]; then
   folder=$(mktemp -d)
   trap 'rm -rf --one-file-system "$folder"' EXIT
 fi
+mkdir -p "$folder"
+folder=$(cd "$folder" && pwd)
 tests=("${@:2}")
 new=$folder/system
 export LC_ALL=C.UTF-8
@@ -31,6 +33,7 @@ set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_CXX_FLAGS_INIT -Wno-psabi)
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static)
 CMAKE
   touch "$folder/complete"
