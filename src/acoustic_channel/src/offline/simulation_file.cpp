@@ -127,6 +127,7 @@ SimulatedNode ReadNode(const std::string& file, const YamlTree& map, std::size_t
     const std::string path = (folder / track->value.scalar).string();
     try {
       node.track = Track::Load(path);
+      node.track_file = track->value.scalar;
     } catch (const UserError& e) {
       reader.Fail("track", e.what());
     }

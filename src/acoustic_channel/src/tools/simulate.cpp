@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -67,6 +68,19 @@ void Remove(const std::string& folder, const std::string& name) {
   std::error_code error;
   std::filesystem::remove(std::filesystem::path(folder) / name, error);
   if (error) throw stg::UserError(folder + "/" + name + ": cannot be removed");
+}
+
+/// Texts of the tracks by their names. A track of another folder is not among them: the copy of the
+/// simulation names it as the file does.
+std::map<std::string, std::string> ReadTracks(const SimulationFile& file, const std::string& path) {
+  std::map<std::string, std::string> texts;
+  const auto folder = std::filesystem::path(path).parent_path();
+  for (const auto& node : file.nodes) {
+    const std::filesystem::path name = node.track_file;
+    if (name.empty() || name != name.filename() || name == "packets.csv") continue;
+    texts[name] = stg::config::ReadBoundedFile((folder / name).string());
+  }
+  return texts;
 }
 
 nlohmann::json ToJson(const SimulationSummary& s, const SimulationFile& file, bool whole) {
@@ -144,6 +158,7 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
   MakeFolder(folder);
   const stg::FolderLock lock(folder);
   const std::string input = stg::config::ReadBoundedFile(path);
+  const auto tracks = ReadTracks(file, path);
 
   std::optional<PacketFile> packets;
   if (log_packets) packets.emplace(folder, names);
@@ -172,6 +187,9 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
     Remove(folder, "packets.csv");
   }
   stg::WriteDurably(input, folder + "/simulation.yaml", "the copy of the simulation");
+  for (const auto& [name, text] : tracks) {
+    stg::WriteDurably(text, folder + "/" + name, "the copy of a track");
+  }
   stg::WriteDurably(json.dump(1) + "\n", folder + "/summary.json", "the summary");
   if (!quiet) {
     std::printf("%s: %zu nodes, %.1f s of %s with %s in %.2f s%s\n", path.c_str(), names.size(),

@@ -280,6 +280,17 @@ TEST_F(Simulate, CommandLine) {
   EXPECT_EQ(Read(folder_ + "/a/b/simulation.yaml"), Read(good));
 }
 
+TEST_F(Simulate, TheFolderHoldsAllThatTheSimulationNeeds) {
+  std::ofstream(folder_ + "/way.csv") << "t,x,y,z\n0,50,0,-10\n9,90,0,-10\n";
+  const std::string file = Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) +
+                                 "  - {id: 1, track: way.csv}\ntraffic:\n" + At(0, "1.0"));
+  const std::string first = folder_ + "/first", second = folder_ + "/second";
+  ASSERT_EQ(Command("'" + file + "' --out '" + first + "'").code, 0);
+  EXPECT_EQ(Read(first + "/way.csv"), Read(folder_ + "/way.csv"));
+  ASSERT_EQ(Command("'" + first + "/simulation.yaml' --out '" + second + "'").code, 0);
+  EXPECT_EQ(Read(first + "/packets.csv"), Read(second + "/packets.csv"));
+}
+
 TEST_F(Simulate, ASummaryAloneStandsBesideNoPacketsOfAnEarlierSimulation) {
   const std::string file =
       Write(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 90, 0) + "traffic:\n" + At(0, "1.0"));

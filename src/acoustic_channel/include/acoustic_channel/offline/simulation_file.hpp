@@ -15,6 +15,7 @@ namespace stg::acoustics {
 struct SimulatedNode {
   int id = 0;
   Track track = Track::Line({}, {});
+  std::string track_file;  ///< as the file names it; empty: there is none
   double joins_s = 0.0;
   double leaves_s = 0.0;  ///< 0: it stays
 };
