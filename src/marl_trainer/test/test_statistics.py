@@ -56,6 +56,20 @@ class Statistics(unittest.TestCase):
         with self.assertRaises(ValueError):
             statistics.iqm_interval([np.zeros((3, 5)), np.zeros((2, 5))])
 
+    def test_a_hierarchical_interval_knows_that_trainings_and_episodes_differ(self):
+        law = [np.arange(50.0)]
+        same = np.arange(50.0) + 2.0
+        # Paired with equal trainings nothing is left to chance.
+        self.assertEqual(statistics.hierarchical_interval([same] * 3, law), (2.0, 2.0, 2.0))
+        # Trainings 1 and 3 above the law, however many episodes there are: all of one or of the other.
+        mean, low, high = statistics.hierarchical_interval([law[0] + 1.0, law[0] + 3.0], law)
+        self.assertEqual((mean, low, high), (2.0, 1.0, 3.0))
+        # One training: as the bootstrap over episodes alone, here of a fair coin.
+        coin = [np.tile([0.0, 1.0], 200)]
+        mean, low, high = statistics.hierarchical_interval(coin, [np.zeros(400)])
+        self.assertEqual(mean, 0.5)
+        self.assertAlmostEqual((high - low) / (2.0 * 1.96 * 0.5 / 20.0), 1.0, delta=0.1)
+
     def test_probability_of_improvement_counts_pairs_of_trainings(self):
         # Of four pairs three are won and one is equal.
         self.assertEqual(statistics.probability_of_improvement([[1, 2]], [[0, 1]])[0], 0.875)

@@ -8,7 +8,7 @@ from stg_common.files import Damaged
 from stg_study.collect import write_rows
 from stg_study.files import write_atomically
 from stg_study.flight_study import flown
-from stg_study.statistics import paired_interval
+from stg_study.statistics import hierarchical_interval, paired_interval
 from stg_study.tables import NOTHING, cell, markdown
 
 PLACE = ("section", "scenario", "condition", "variant")
@@ -24,6 +24,7 @@ Numbers are means over episodes; `{name}.csv` has the standard deviations, too. 
 READING_SEEDS = " A row with seeds of training has the mean and the standard deviation over them."
 READING_PAIRED = (" The last column is {pilot} less the row in `{metric}`, paired by episode, with its 95 % bootstrap"
                   " interval over episodes.")  # fmt: skip
+READING_HIERARCHY = " Where there are several trainings, it is drawn over trainings and then over their episodes."
 READING_GAP = (" Gap closed: 0 is the best law on its own estimates, 1 the same law on true states; a dash where the"
                " two differ by less than 0.02.")  # fmt: skip
 
@@ -41,7 +42,7 @@ def rows_of(study, cells):
             value = None if column.metric == "gap_closed" else flown(one, column.metric)
             row[column.metric], row[column.metric + "_std"] = value or (None, None)
         if study.compare:
-            episodes[len(rows)] = one.jobs[0].episode_values(study.compare_metric)
+            episodes[len(rows)] = [job.episode_values(study.compare_metric) for job in one.jobs]
         rows.append(row)
     _compare(study, rows, episodes)
     if study.gap_closed:
@@ -65,7 +66,9 @@ def _compare(study, rows, episodes):
         place = place_of(rows[k])
         first = ours.get((place, rows[k]["knows"]), ours.get(place))
         if first is not None and first != k:
-            rows[k].update(zip(PAIRED, paired_interval(episodes[first], values)))
+            several = max(len(values), len(episodes[first])) > 1
+            rows[k].update(zip(PAIRED, hierarchical_interval(episodes[first], values) if several else
+                               paired_interval(episodes[first][0], values[0])))  # fmt: skip
 
 
 def _close_gaps(rows):
@@ -194,6 +197,7 @@ def write_page(study, folder):
     reading += READING_GAP if study.gap_closed else ""
     if study.compare:
         reading += READING_PAIRED.format(pilot=study.compare, metric=study.compare_metric)
+        reading += READING_HIERARCHY if any(row["seeds"] > 1 for row in rows) else ""
     page = [f"# {study.title}\n", reading + "\n", study.notes.strip() + "\n"] if study.notes else [
         f"# {study.title}\n", reading + "\n"]  # fmt: skip
     if study.beside:

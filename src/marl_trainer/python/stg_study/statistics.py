@@ -58,6 +58,28 @@ def paired_interval(ours, theirs, resamples=2 * RESAMPLES, confidence=0.95, seed
     return float(difference.mean()), float(low), float(high)
 
 
+def hierarchical_interval(ours, theirs, resamples=RESAMPLES, confidence=0.95, seed=0):
+    """Mean of ours - theirs and its interval by a bootstrap over trainings and then over episodes.
+
+    ours and theirs are [trainings, episodes]; a controller counts as one training. All flew the same
+    episodes, and a resample draws the same ones of both sides. Where one has more episodes, its first
+    ones are compared. Returns (mean, lower end, upper end).
+    """
+    count = min(len(values) for values in (*ours, *theirs))
+    ours, theirs = (np.array([v[:count] for v in side], dtype=float) for side in (ours, theirs))
+    random = np.random.default_rng(seed)
+    draws = max(len(ours), len(theirs))
+    means = []
+    for _ in range(resamples):
+        episodes = random.integers(count, size=(draws, count))
+        first = random.integers(len(ours), size=(draws, 1))
+        second = random.integers(len(theirs), size=(draws, 1))
+        means.append((ours[first, episodes] - theirs[second, episodes]).mean())
+    tail = 100.0 * (1.0 - confidence) / 2.0
+    low, high = np.percentile(means, [tail, 100.0 - tail])
+    return float(ours.mean() - theirs.mean()), float(low), float(high)
+
+
 def probability_of_improvement(ours, theirs, resamples=RESAMPLES, confidence=0.95, seed=0):
     """How likely a training of ours scores more than one of theirs, and its bootstrap interval.
 
