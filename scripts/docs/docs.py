@@ -6,7 +6,6 @@ missing. Links that lead nowhere end the build. Exit status: 0 done, 1 mkdocs re
 """
 
 import argparse
-import ast
 import html
 import json
 import os
@@ -17,9 +16,13 @@ import subprocess
 import sys
 import tempfile
 
+from navigation import navigation
+from references import write_commands, write_python, write_topics
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SITE = ROOT / "build" / "site"
 MKDOCS = "mkdocs"
+PICTURES = (".png", ".svg", ".jpg", ".mp4")
 CONFIG = """\
 site_name: STG Swarm
 docs_dir: pages
@@ -27,19 +30,28 @@ use_directory_urls: false
 theme:
   name: material
   font: false
-  features: [navigation.tabs, navigation.top, search.highlight, search.suggest]
+  icon: {logo: material/submarine}
+  features: [navigation.tabs, navigation.top, navigation.indexes, search.highlight, search.suggest, content.code.copy]
   palette:
-    - {media: "(prefers-color-scheme: light)", scheme: default, primary: blue grey, toggle: {icon: material/weather-night, name: dark}}
-    - {media: "(prefers-color-scheme: dark)", scheme: slate, primary: blue grey, toggle: {icon: material/weather-sunny, name: light}}
+    - {media: "(prefers-color-scheme: light)", scheme: default, primary: custom, accent: custom, toggle: {icon: material/weather-night, name: dark}}
+    - {media: "(prefers-color-scheme: dark)", scheme: slate, primary: custom, accent: custom, toggle: {icon: material/weather-sunny, name: light}}
+extra_css: [site.css]
 plugins: [search]
 markdown_extensions: [tables, admonition, toc: {permalink: true}, pymdownx.superfences]
-extra: {generator: false, version: {provider: mike}}
 """
-PROGRAMS = {
-    "marl_trainer": ["train", "evaluate", "bench_env", "check_trace"],
-    "acoustic_channel": ["simulate"],
-    "auv_dynamics": ["check_vehicle"],
+EXTRA = {False: "extra: {generator: false}\n", True: "extra: {generator: false, version: {provider: mike}}\n"}
+# The menu asks for a file; in a page from disk a script has brought what stands in it.
+VERSIONS_FROM_DISK = """if (window.__versions) {
+  const asked = window.fetch;
+  window.fetch = (url, ...more) => String(url.url || url).endsWith("/versions.json")
+    ? Promise.resolve(new Response(JSON.stringify(window.__versions))) : asked(url, ...more);
 }
+"""
+CPP = """# C++ headers
+
+Of all classes and functions that another package may use, made by doxygen from `include/` of each package:
+<a href="../cpp/index.html">all headers</a>, <a href="../cpp/annotated.html">classes</a>, <a href="../cpp/namespaces.html">namespaces</a>.
+"""
 DOXYFILE = """
 PROJECT_NAME = "STG Swarm"
 INPUT = {input}
@@ -68,7 +80,7 @@ def rebased(text, folder):
             return match.group(0)
         path = target.partition("#")[0]
         place = (ROOT / "docs" / folder / path).resolve()
-        if (ROOT / "docs") in place.parents and place.suffix in (".md", ".png", ".svg", ".jpg"):
+        if (ROOT / "docs") in place.parents and place.suffix in (".md", *PICTURES):
             return match.group(0)
         if place == ROOT / "README.md":
             return match.group(0).replace(target, "../" * len(folder.parts) + "index.md")
@@ -88,73 +100,11 @@ def copy_pages(to):
         target.parent.mkdir(parents=True, exist_ok=True)
         if file.suffix == ".md":
             target.write_text(rebased(file.read_text(), inside.parent))
-        elif file.suffix in (".png", ".svg", ".jpg"):
+        elif file.suffix in PICTURES:
             shutil.copyfile(file, target)
     readme = re.sub(r"\]\((?!docs/|https?:|mailto:|#)", "](../", (ROOT / "README.md").read_text())
     readme = readme.replace("](docs/", "](")
     (to / "index.md").write_text(rebased(readme, pathlib.Path(".")))
-
-
-def write_topics(to):
-    """All messages, as their files describe them, and all names of topics."""
-    lines = ["# Topics, messages and services", "", "Made from the headers `topics.hpp` and the message files.", ""]
-    lines += ["## Names", "", "| name | package |", "|---|---|"]
-    for header in sorted((ROOT / "src").rglob("topics.hpp")):
-        package = header.relative_to(ROOT / "src").parts[0]
-        lines += [f"| `{name}` | {package} |" for name in re.findall(r'char k\w+\[\] = "([^"]+)"', header.read_text())]
-    lines += ["", "## Messages and services"]
-    for file in sorted([*(ROOT / "src/auv_msgs").rglob("*.msg"), *(ROOT / "src/auv_msgs").rglob("*.srv")]):
-        lines += ["", f"### {file.stem}", "", "```", file.read_text().rstrip(), "```"]
-    (to / "topics.md").write_text("\n".join(lines) + "\n")
-
-
-def write_commands(to):
-    """What every program says of itself; those that are not built are named."""
-    lines = ["# Command lines", "", "## ./stg", "", "```", output([ROOT / "stg", "help"]), "```"]
-    for package, names in PROGRAMS.items():
-        for name in names:
-            program = ROOT / "devel/lib" / package / name
-            said = output([program, "--help"]) if program.exists() else "(not built)"
-            lines += ["", f"## rosrun {package} {name}", "", "```", said, "```"]
-    (to / "commands.md").write_text("\n".join(lines) + "\n")
-
-
-def output(command):
-    """What a command prints."""
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, timeout=60)
-    return done.stdout.rstrip()
-
-
-def write_python(to):
-    """Signatures and docstrings of the module stg."""
-    lines = ["# The Python module stg", "", "Made from its sources; [Learning in Python](../python.md) shows its use."]
-    for file in sorted((ROOT / "src/stg_python/python/stg").glob("*.py*")):
-        if file.suffix not in (".py", ".pyi"):
-            continue
-        module = ast.parse(file.read_text())
-        parts = [part for node in module.body for part in described(node)]
-        if parts:
-            lines += ["", f"## stg.{file.stem}" if file.stem != "__init__" else "## stg", "", ast.get_docstring(module) or ""]
-            lines += parts
-    (to / "python.md").write_text("\n".join(lines) + "\n")
-
-
-def described(node, depth=3, of=""):
-    """Markdown of a public function or class."""
-    kinds = (ast.FunctionDef, ast.ClassDef)
-    if not isinstance(node, kinds) or (node.name.startswith("_") and node.name != "__init__"):
-        return []
-    text = ast.get_docstring(node)
-    if isinstance(node, ast.ClassDef):
-        inner = [part for one in node.body for part in described(one, depth + 1, node.name)]
-        return ["", f"{'#' * depth} {node.name}", "", *fenced(text), *inner]
-    arguments = ast.unparse(node.args)
-    return ["", f"{'#' * depth} {of + '.' if of else ''}{node.name}", "", f"`{node.name}({arguments})`", "", *fenced(text)]
-
-
-def fenced(text):
-    """A docstring with its own lines."""
-    return ["```text", text, "```"] if text else []
 
 
 def write_headers(site):
@@ -168,17 +118,19 @@ def write_headers(site):
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
 
 
-def search_from_disk(site):
-    """Lets the search work in pages that are opened from disk, where a browser reads no other file but
-    a script: the index and the searching program become one, which such a page loads first."""
+def search_from_disk(site, several):
+    """Lets search and the menu of versions work in pages that are opened from disk, where a browser reads no
+    other file but a script: the index and the searching program become one, which such a page loads first."""
     index = (site / "search/search_index.json").read_text().replace("</", "<\\/")
     (worker,) = (site / "assets/javascripts/workers").glob("search.*.js")
     program = f'new Blob([{json.dumps(worker.read_text())}], {{type: "text/javascript"}})'
     text = f"var __search = {{index: Promise.resolve({index}), worker: URL.createObjectURL({program})}};\n"
-    (site / "search/from_disk.js").write_text(text)
+    (site / "search/from_disk.js").write_text(text + VERSIONS_FROM_DISK)
     for page in site.rglob("*.html"):
         up = "../" * (len(page.relative_to(site).parts) - 1)
-        load = f"""<script>if (location.protocol === "file:") document.write('<script src="{up}search/from_disk.js"><\\/script>')</script>"""
+        scripts = [f"{up}../versions.js"] * several + [f"{up}search/from_disk.js"]
+        loads = "".join(f'<script src="{one}"><\\/script>' for one in scripts)
+        load = f"""<script>if (location.protocol === "file:") document.write('{loads}')</script>"""
         page.write_text(re.sub(r'(<script src="[^"]*assets/javascripts/bundle)', lambda m, s=load: s + m.group(1), page.read_text()))
 
 
@@ -195,11 +147,12 @@ def list_versions(folder):
     found.sort(key=numbers, reverse=True)
     entries = [{"version": name, "title": name, "aliases": []} for name in found]
     (folder / "versions.json").write_text(json.dumps(entries))
+    (folder / "versions.js").write_text(f"window.__versions = {json.dumps(entries)};\n")
     newest = html.escape(found[0], quote=True)
     (folder / "index.html").write_text(f'<!doctype html><meta http-equiv="refresh" content="0; url={newest}/index.html">\n')
 
 
-def build(site, headers):
+def build(site, headers, several):
     """Builds the site; returns the exit status."""
     with tempfile.TemporaryDirectory() as folder:
         pages = pathlib.Path(folder) / "pages"
@@ -208,13 +161,16 @@ def build(site, headers):
         (pages / "reference").mkdir()
         for write in (write_topics, write_commands, write_python):
             write(pages / "reference")
+        if headers and shutil.which("doxygen"):
+            (pages / "reference/cpp.md").write_text(CPP)
+        shutil.copyfile(pathlib.Path(__file__).with_name("site.css"), pages / "site.css")
         config = pathlib.Path(folder) / "mkdocs.yml"
-        config.write_text(CONFIG.replace("STG Swarm", f"STG Swarm, {version()}"))
+        config.write_text(CONFIG.replace("STG Swarm", f"STG Swarm, {version()}") + EXTRA[several] + f"nav: {navigation(pages)}\n")
         done = subprocess.run([MKDOCS, "build", "--strict", "-f", config, "-d", site], check=False,
                               env={**os.environ, "PYTHONWARNINGS": "ignore"})  # fmt: skip
         if done.returncode != 0:
             return 1
-    search_from_disk(site)
+    search_from_disk(site, several)
     if headers:
         write_headers(site)
     print(f"docs: {site}/index.html")
@@ -233,7 +189,7 @@ def main():
         print("docs: no mkdocs: install Debian's mkdocs-material", file=sys.stderr)
         return 2
     site = options.out.resolve() / version() if options.versions else options.out.resolve()
-    status = build(site, not options.no_headers)
+    status = build(site, not options.no_headers, options.versions)
     if status == 0 and options.versions:
         list_versions(site.parent)
     if status == 0 and options.serve:

@@ -1,76 +1,139 @@
 #!/usr/bin/python3
-"""Makes the pictures of the view that the documents show, and those of the site's gallery.
+"""Makes the gallery: pictures and short videos of the view, and the page docs/gallery.md that shows them.
 
-Flies the runs, makes their reports and opens them in Chromium; needs ./stg build, no display and no
-ROS. Give a folder (default: docs/images); --video makes short videos beside them.
+Flies the runs, makes their reports and opens them in Chromium; needs ./stg build, ffmpeg, no display
+and no ROS. Names choose pictures and videos (default: all).
 """
 
 import argparse
 import base64
 import pathlib
+import shlex
 import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-from stg_view.browser import opened_page
+from stg_view.browser import show, started
 from stg_view.video import write_video
 
-EVALUATE = ROOT / "devel/lib/marl_trainer/evaluate"
-REPORT = ROOT / "src/stg_monitor/scripts/report.py"
+DOCS = ROOT / "docs"
+IMAGES = DOCS / "images"
+# run: title of its page, command; OUT is the folder that is recorded
+EVALUATE = "rosrun marl_trainer evaluate --episodes 1 --record OUT"
 RUNS = {
-    "field20": ["--policy", "encircle", "--scenario", "field20"],
-    "loss": ["--policy", "encircle", "--scenario", "field", "--condition", "combined_stress"],
-    "medium": ["--policy", "pursuit_separated", "--scenario", "medium"],
+    "field20": ("Twenty over a ridge", f"{EVALUATE} --scenario field20 --policy encircle"),
+    "loss": ("A loss under stress", f"{EVALUATE} --scenario field --condition combined_stress --policy encircle"),
+    "search": ("Four look for a target", f"{EVALUATE} --scenario search --policy search_map"),
+    "hunt": ("A target that flees", f"{EVALUATE} --scenario hunt --policy src/stg_bringup/policies/field.onnx"),
+    "many": ("Eight on three targets", f"{EVALUATE} --scenario many8 --policy encircle"),
+    "medium": ("The paper's box", f"{EVALUATE} --scenario medium --policy pursuit_separated"),
+    "network": ("A network alone", "rosrun acoustic_channel simulate src/acoustic_channel/networks/survey.yaml --out OUT"),
+    "training": ("A training", "rosrun marl_trainer train --scenario medium_separated --steps 200000 --out OUT"),
 }
-TITLES = {"field20": "Twenty over a ridge", "loss": "A loss under stress", "medium": "The paper's box"}
-# name: run, place in the page, width, height, what is clicked first
+LOSS = "[...document.querySelectorAll('.event')].filter(b => b.textContent.includes('loses'))[1].click();"
+# name: run, place in the page, width, height, script that runs first, title, what one sees
 PICTURES = {
-    "view_field20": ("field20", "t=200&theme=dark&tab=network&auv=-1", 1280, 720, ""),
-    "view_loss": ("loss", "theme=light", 1280, 720, "[...document.querySelectorAll('.event')]"
-                  ".filter(b => b.textContent.includes('loses'))[1].click()"),  # fmt: skip
-    "view_loss_network": ("loss", "theme=light", 1280, 720, "[...document.querySelectorAll('.event')]"
-                          ".filter(b => b.textContent.includes('loses'))[1].click(); STG.app.show('network')"),  # fmt: skip
-    "view_medium": ("medium", "t=3.2&theme=light&tab=plots", 1280, 720, ""),
-    "view_phone": ("field20", "t=300&theme=dark&tab=plots&auv=3", 390, 780, ""),
+    "view_field20": ("field20", "t=200&theme=dark&tab=network", 1280, 720, "", "Twenty over a ridge",
+        "Twenty torpedoes over the bathymetry of the paper's Fig. 6. Colours are phases: those that look for the target (blue), close in (yellow) and hold it "
+        "(green). On the right who spoke when: time slots, one after the other."),
+    "view_search": ("search", "t=700&theme=dark&tab=story&camera=above", 1280, 720, "", "A search",
+        "Four AUVs that were launched in one place sweep the water around an old datum. The large circle is what they believe of the target, red that they "
+        "have lost it, or never had it."),
+    "view_hunt": ("hunt", "t=1500&theme=light&tab=plots&camera=target", 1280, 720, "", "A target that flees",
+        "A target nearly as fast as its hunters; the policy over entities keeps a ring around it. The chips above the plots choose an AUV."),
+    "view_many": ("many", "t=400&theme=light&tab=table&camera=region", 1280, 720, "", "Several targets",
+        "Eight AUVs and three targets. A broken line leads from each AUV to the target that it follows, which stands in the table, too."),
+    "view_medium": ("medium", "t=3.2&theme=light&tab=plots", 1280, 720, "", "The paper's box",
+        "Four AUVs in 2 m of water close in to 15 mm. The time's line runs through all plots."),
+    "view_loss": ("loss", "theme=light", 1280, 720, LOSS, "A loss, and why",
+        "An event tells its reasons. [The tutorial](tutorials/lost_target.md) reads them within a minute."),
+    "view_loss_network": ("loss", "theme=light", 1280, 720, LOSS + "STG.app.show('network')", "The network at the same moment",
+        "Bars are transmissions, filled as far as receivers heard them; marks are receivers that missed one, in the colour of the reason."),
+    "view_network": ("network", "theme=dark&tab=network", 1280, 720, "", "A network alone",
+        "A folder of `simulate`: a buoy, moored nodes and vehicles that share the water, without any AUV of ours."),
+    "view_training": ("training", "theme=light", 1280, 720, "", "A training", "The curves of a training's folder."),
+    "view_phone": ("field20", "t=300&theme=dark&tab=plots&auv=3", 390, 780, "", "On a telephone", "The same page, 390 pixels wide."),
+}  # fmt: skip
+# name: run, seconds, theme, camera, tab, part of the run as two shares, title, what one sees
+FILMS = {
+    "film_medium": ("medium", 6.0, "light", "swarm", "plots", (0.0, 0.24), "The paper's box", "The first twelve seconds, at twice their speed."),
 }
+FRAMES_PER_S = 15
+INTRO = """\
+# Gallery
+The page of the view, as `./stg report` makes it of a recorded run and `./stg run ... view:=web` shows it live. [The view](view.md) says how to
+read it. `scripts/docs/gallery.py` flies these runs and makes all pictures, videos and this page anew.
+"""
 
 
-def make_pages(folder):
-    """Returns {run: its page}."""
-    pages = {}
-    for name, arguments in RUNS.items():
-        run = folder / name
-        subprocess.run([EVALUATE, *arguments, "--episodes", "1", "--record", run], check=True, stdout=subprocess.DEVNULL)
-        pages[name] = folder / f"{name}.html"
-        subprocess.run([REPORT, run, "--out", pages[name], "--title", TITLES[name]], check=True)
-    return pages
+def told(run):
+    """The commands of a run as a block."""
+    return f"```\n{RUNS[run][1].replace('OUT', f'runs/{run}')}\n./stg report runs/{run}\n```\n"
 
 
-def take_picture(page, place, width, height, click, out):
-    """Writes one picture of a page."""
-    with opened_page(f"{page.as_uri()}#{place}", width, height) as driver:
-        if click:
-            driver.execute_script(click)
-        driver.execute_async_script("const done = arguments[0]; STG.app.redraw(); setTimeout(done, 1200)")
-        shot = driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "jpeg", "quality": 80})
-        out.write_bytes(base64.b64decode(shot["data"]))
+def page_text():
+    """The page in Markdown: each run once, with its videos and pictures."""
+    parts, shown = [INTRO], set()
+    films = {run: (name, title, text) for name, (run, *_, title, text) in FILMS.items()}
+    for name, (run, *_, title, text) in PICTURES.items():
+        parts.append(f"## {title}\n{text}\n\n![{title}](images/{name}.jpg)\n")
+        if run in shown:
+            continue
+        shown.add(run)
+        if run in films:
+            film, film_title, film_text = films[run]
+            parts.append(f'<video controls muted loop playsinline width="100%" src="images/{film}.mp4"></video>\n\n'
+                         f"[{film_title}](images/{film}.mp4): {film_text[0].lower()}{film_text[1:]}\n")  # fmt: skip
+        parts.append(told(run))
+    return "\n".join(parts)
+
+
+def fly(run, folder):
+    """Returns the page of a run."""
+    title, command = RUNS[run]
+    page, out = folder / f"{run}.html", folder / run
+    if page.is_file():
+        return page
+    _, package, program, *words = shlex.split(command)
+    words = [str(out) if word == "OUT" else word for word in words]
+    subprocess.run([ROOT / "devel/lib" / package / program, *words], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([ROOT / "src/stg_monitor/scripts/report.py", out, "--out", page, "--title", title], check=True)
+    return page
+
+
+def take_pictures(names, folder):
+    """Writes pictures, all by one browser."""
+    pages = {name: fly(PICTURES[name][0], folder) for name in names}
+    with started() as driver:
+        for name, page in pages.items():
+            _, place, width, height, script, *_ = PICTURES[name]
+            show(driver, f"{page.as_uri()}#{place}", width, height)
+            if script:
+                driver.execute_script(script)
+            driver.execute_async_script("const done = arguments[0]; STG.app.redraw(); setTimeout(done, 1200)")
+            shot = driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "jpeg", "quality": 80})
+            (IMAGES / f"{name}.jpg").write_bytes(base64.b64decode(shot["data"]))
 
 
 def main():
-    """Makes the pictures."""
+    """Makes what was asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", nargs="?", default=ROOT / "docs/images", type=pathlib.Path)
-    parser.add_argument("--video", action="store_true", help="short videos, too")
+    parser.add_argument("names", nargs="*", help="pictures and videos, as they are called in docs/images; page: the page alone")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder that keeps runs and pages for the next call")
     options = parser.parse_args()
-    options.folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        pages = make_pages(pathlib.Path(folder))
-        for name, (run, place, width, height, click) in PICTURES.items():
-            take_picture(pages[run], place, width, height, click, options.folder / f"{name}.jpg")
-        if options.video:
-            for run, page in pages.items():
-                write_video(page, str(options.folder / f"{run}.mp4"), 10.0, "1280x720")
+    wanted = set(options.names or [*PICTURES, *FILMS, "page"])
+    if unknown := wanted - {*PICTURES, *FILMS, "page"}:
+        parser.error(f"no {', '.join(sorted(unknown))}; there are {', '.join([*PICTURES, *FILMS, 'page'])}")
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = options.keep or pathlib.Path(temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        if chosen := [name for name in PICTURES if name in wanted]:
+            take_pictures(chosen, folder)
+        for name, (run, seconds, theme, camera, tab, span, *_) in FILMS.items():
+            if name in wanted:
+                write_video(fly(run, folder), str(IMAGES / f"{name}.mp4"), seconds, "1280x720", theme, camera, tab, span, FRAMES_PER_S)
+    (DOCS / "gallery.md").write_text(page_text())
 
 
 if __name__ == "__main__":

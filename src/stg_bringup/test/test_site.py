@@ -9,8 +9,10 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+from stg_common.loading import load_program
 from stg_view.browser import missing, started
 
+VERSION = "const menu = document.querySelector('.md-version__current'); return menu && menu.textContent"
 SEARCH = """const box = document.querySelector("[data-md-component=search-query]");
 box.focus(); box.value = arguments[0];
 for (const kind of ["input", "keyup"]) box.dispatchEvent(new Event(kind, {bubbles: true}));"""
@@ -42,6 +44,18 @@ class Site(unittest.TestCase):
             self.assertTrue((self.site / inside).is_file(), inside)
         self.assertIn(self.version, (self.out / "index.html").read_text())
 
+    def test_every_page_has_a_tab_of_its_own(self):
+        home = (self.site / "index.html").read_text()
+        for tab in ("Start", "Fly", "Network", "Models", "Learn", "Results", "Extend", "Reference"):
+            self.assertRegex(home, rf"md-tabs__link[^>]*>\s*{tab}\s*<")
+        self.assertNotRegex(home, r"md-tabs__link[^>]*>\s*More\s*<")  # name the page in scripts/docs/navigation.py
+
+    def test_the_gallery_is_what_its_script_says(self):
+        gallery = load_program(ROOT / "scripts/docs/gallery.py")
+        self.assertEqual(gallery.page_text(), (ROOT / "docs/gallery.md").read_text())
+        for name in [f"{one}.jpg" for one in gallery.PICTURES] + [f"{one}.mp4" for one in gallery.FILMS]:
+            self.assertGreater((self.site / "images" / name).stat().st_size, 10000, name)
+
     def test_references_are_made_from_the_code(self):
         for page, words in (("topics", ("/swarm_state", "PacketEvents")), ("python", ("parallel_env", "load_policy")),
                             ("commands", ("rosrun marl_trainer evaluate", "--record", "--versions"))):
@@ -60,9 +74,12 @@ class Site(unittest.TestCase):
 
         with started() as driver:
             driver.get((self.site / "tutorials/first_hour.html").as_uri())
+            shown = WebDriverWait(driver, 60.0, 0.2).until(lambda d: d.execute_script(VERSION))
+            self.assertEqual(self.version, shown.strip())
             driver.execute_script(SEARCH, "combined_stress")
             found = WebDriverWait(driver, 60.0, 0.2).until(lambda d: d.execute_script(FOUND))
             self.assertTrue(all(url.startswith(self.site.as_uri()) for url in found), found)
+            self.assertEqual([], [entry["message"] for entry in driver.get_log("browser")])
 
 
 if __name__ == "__main__":
