@@ -57,7 +57,7 @@ PICTURES = {
 }  # fmt: skip
 # name: run, seconds, theme, camera, tab, part of the run as two shares, title, what one sees
 FILMS = {
-    "film_medium": ("medium", 6.0, "light", "swarm", "plots", (0.0, 0.24), "The paper's box", "The first twelve seconds, at twice their speed."),
+    "film_medium": ("medium", 2.54, "light", "swarm", "plots", (0.0, 0.1), "The paper's box", "The first five seconds, at twice their speed."),
 }
 FRAMES_PER_S = 15
 INTRO = """\
