@@ -19,6 +19,7 @@ struct Target {
 
 bool RunBathymetry(const std::string& bytes);
 bool RunCheckpoint(const std::string& bytes);
+bool RunJanusModem(const std::string& bytes);
 bool RunMicromodem(const std::string& bytes);
 bool RunModemAnswers(const std::string& bytes);
 bool RunMotions(const std::string& bytes);
@@ -31,12 +32,19 @@ bool RunScenario(const std::string& bytes);
 bool RunTrack(const std::string& bytes);
 
 inline constexpr Target kTargets[] = {
-    {"bathymetry", RunBathymetry}, {"checkpoint", RunCheckpoint},
-    {"micromodem", RunMicromodem}, {"modem_answers", RunModemAnswers},
-    {"motions", RunMotions},       {"network", RunNetwork},
-    {"packet", RunPacket},         {"policy", RunPolicy},
-    {"recording", RunRecording},   {"s2c_modem", RunS2cModem},
-    {"scenario", RunScenario},     {"track", RunTrack},
+    {"bathymetry", RunBathymetry},
+    {"checkpoint", RunCheckpoint},
+    {"janus_modem", RunJanusModem},
+    {"micromodem", RunMicromodem},
+    {"modem_answers", RunModemAnswers},
+    {"motions", RunMotions},
+    {"network", RunNetwork},
+    {"packet", RunPacket},
+    {"policy", RunPolicy},
+    {"recording", RunRecording},
+    {"s2c_modem", RunS2cModem},
+    {"scenario", RunScenario},
+    {"track", RunTrack},
 };
 
 /// Hands `load` the path of a file in memory that holds the bytes, for loaders that take a path.

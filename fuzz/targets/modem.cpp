@@ -3,6 +3,7 @@
 
 #include "acoustic_channel/driver/modem_driver.hpp"
 #include "acoustic_channel/emulator/modem_water.hpp"
+#include "acoustic_channel/janus/janus_modem.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "target.hpp"
@@ -23,7 +24,8 @@ struct Listeners : acoustics::ModemHosts {
   void Write(int /*node*/, const std::string& bytes) override {
     said += bytes.size();
     Require(said < kMostSaid, "a modem that does not stop talking");
-    sound = sound || bytes.find("ERR") == std::string::npos;
+    const bool error = bytes.find("ERR") != std::string::npos || bytes.rfind("error ", 0) == 0;
+    sound = sound || !error;
   }
   void HangUp(int /*node*/) override {}
   std::size_t said = 0;
@@ -88,6 +90,17 @@ bool RunS2cModem(const std::string& bytes) {
   const bool at = Talk(bytes, "evologics_s2c", make(false, 1), make(true, 2));
   const bool net = Talk(bytes, "evologics_s2c", make(true, 1), make(true, 2));
   return at || net;
+}
+
+bool RunJanusModem(const std::string& bytes) {
+  const auto make = [](int station) {
+    return [station](ModemSurroundings* world) -> std::unique_ptr<ModemEngine> {
+      acoustics::janus::ModemOptions options;
+      options.station = station;
+      return std::make_unique<acoustics::janus::JanusModem>(options, world);
+    };
+  };
+  return Talk(bytes, "janus", make(1), make(2));
 }
 
 bool RunMicromodem(const std::string& bytes) {

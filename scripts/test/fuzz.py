@@ -19,7 +19,8 @@ from stg_common.program import run_program
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TARGETS = sorted(path.name for path in (ROOT / "fuzz" / "corpus").iterdir())
 SECONDS = 60
-LONGEST_INPUT = {"packet": 64, "s2c_modem": 1024, "micromodem": 1024, "modem_answers": 1024,
+LONGEST_INPUT = {"packet": 64, "s2c_modem": 1024, "janus_modem": 1024,
+                 "micromodem": 1024, "modem_answers": 1024,
                  "recording": 1024, "track": 1024, "motions": 4096,
                  "checkpoint": 65536, "policy": 65536, "bathymetry": 16384}  # fmt: skip
 LONGEST_OTHER = 16384

@@ -173,6 +173,8 @@ void ModemDriver::Tick(TimeNs t) {
   Go(t);
 }
 
+std::vector<std::string> DriverProtocols() { return {"s2c", "micromodem"}; }
+
 std::unique_ptr<ModemDriver> MakeModemDriver(const std::string& protocol,
                                              const DriverOptions& options, DriverWorld* world) {
   DriverOptions chosen = options;

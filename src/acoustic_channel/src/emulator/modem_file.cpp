@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "acoustic_channel/driver/modem_driver.hpp"
 #include "acoustic_channel/modem/modem_profile.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
@@ -54,11 +55,17 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   if (const YamlTree::Entry* protocol = FindEntry(map, "protocol")) {
     place.protocol = protocol->value.scalar;
   }
-  const bool s2c = place.protocol == "s2c";
-  for (const char* key : {"interpreter", "defer", "rssi_offset_db"}) {
+  const bool s2c = place.protocol == "s2c", janus = place.protocol == "janus";
+  const auto refuse = [&](const char* key, const char* why) {
     const YamlTree::Entry* entry = FindEntry(map, key);
-    if (s2c || entry == nullptr) continue;
-    Fail(file, entry->line, prefix + "." + key, "is a key of the protocol s2c");
+    if (entry != nullptr) Fail(file, entry->line, prefix + "." + key, why);
+  };
+  for (const char* key : {"interpreter", "defer", "rssi_offset_db"}) {
+    if (!s2c) refuse(key, "is a key of the protocol s2c");
+  }
+  if (janus) refuse("broadcast", "is a key of the protocols s2c and micromodem");
+  if (janus && !place.firmware.empty()) {
+    Fail(file, map.line, prefix + ".firmware", "is a key of the protocols s2c and micromodem");
   }
   config::Table t;
   t.Section(prefix);
@@ -66,7 +73,7 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   t.Add("tcp", &place.tcp, config::Within(0, 65535), "-", "");
   t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
   t.Add("interpreter", config::Name(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
-  t.Add("address", &place.address, config::Within(1, s2c ? 254 : 127), "-", "");
+  t.Add("address", &place.address, config::Within(1, s2c || janus ? 254 : 127), "-", "");
   t.Add("broadcast", &place.broadcast, config::Within(-1, s2c ? 255 : 127), "-", "");
   t.Add("defer", &place.defer, config::kNone, "-", "");
   t.Add("rssi_offset_db", &place.rssi_offset_db, config::Within(-1e3, 1e3), "dB", "");
@@ -86,7 +93,7 @@ GatewayPlace ReadGateway(const std::string& file, YamlTree map, const std::strin
   if (place.port.empty()) Fail(file, map.line, prefix + ".port", "missing key");
   config::Table t;
   t.Section(prefix);
-  t.Add("protocol", config::Name(&place.protocol, ModemProtocols()), config::kNone, "-", "");
+  t.Add("protocol", config::Name(&place.protocol, DriverProtocols()), config::kNone, "-", "");
   t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
   t.Add("address", &place.address, config::Within(1, 127), "-", "");
   config::Loader loader(t, config::Scope::kWhole);
@@ -147,11 +154,12 @@ void RefuseTwins(const std::string& file, const YamlTree& list,
 
 }  // namespace
 
-std::vector<std::string> ModemProtocols() { return {"s2c", "micromodem"}; }
+std::vector<std::string> ModemProtocols() { return {"s2c", "micromodem", "janus"}; }
 
 std::string WhyNot(const std::string& protocol, const std::string& profile) {
   const std::string waveform = ModemProfiles().Make(profile)->waveform;
   if (protocol == "s2c" && waveform == "evologics_s2c") return "";
+  if (protocol == "janus" && waveform == "janus") return "";
   if (protocol == "micromodem" && waveform.rfind("micromodem_", 0) == 0) return "";
   return "a modem with the protocol " + protocol + " cannot have the profile " + profile;
 }

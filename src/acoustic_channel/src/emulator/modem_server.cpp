@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "acoustic_channel/janus/janus_modem.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "auv_common/error.hpp"
@@ -31,6 +32,11 @@ std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundin
     options.broadcast = place.broadcast;
     options.firmware = place.firmware;
     return std::make_unique<micromodem::Micromodem>(options, world);
+  }
+  if (place.protocol == "janus") {
+    janus::ModemOptions options;
+    options.station = place.address;
+    return std::make_unique<janus::JanusModem>(options, world);
   }
   s2c::ModemOptions options;
   options.net = place.interpreter == "net";

@@ -1,18 +1,7 @@
 #include "acoustic_channel/micromodem/sentence.hpp"
 
-#include <charconv>
-
 namespace stg::acoustics::micromodem {
 namespace {
-
-constexpr char kDigits[] = "0123456789ABCDEF";
-
-int DigitOf(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return -1;
-}
 
 unsigned ChecksumOf(const std::string& body) {
   unsigned sum = 0;
@@ -29,12 +18,10 @@ Sentence Parse(const std::string& line) {
   std::string body = line.substr(dollar + 1);
   const std::size_t star = body.find('*');
   if (star != std::string::npos) {
-    const bool whole = body.size() == star + 3;
-    const int high = whole ? DigitOf(body[star + 1]) : -1;
-    const int low = whole ? DigitOf(body[star + 2]) : -1;
+    const auto given = FromHex(body.substr(star + 1));
     body.resize(star);
-    const bool sound = high >= 0 && low >= 0;
-    if (!sound || ChecksumOf(body) != static_cast<unsigned>(high * 16 + low)) {
+    if (!given || given->size() != 1 ||
+        ChecksumOf(body) != static_cast<unsigned char>(given->front())) {
       return Broken("bad checksum");
     }
   }
@@ -51,8 +38,8 @@ Sentence Parse(const std::string& line) {
 }  // namespace
 
 std::string Seal(const std::string& body) {
-  const unsigned sum = ChecksumOf(body);
-  return "$" + body + "*" + kDigits[sum >> 4] + kDigits[sum & 0xf] + "\r\n";
+  const std::string sum(1, static_cast<char>(ChecksumOf(body)));
+  return "$" + body + "*" + ToHex(sum) + "\r\n";
 }
 
 std::string Join(const std::vector<std::string>& fields) {
@@ -92,35 +79,6 @@ std::optional<Sentence> SentenceReader::Next() {
     buffer_.erase(0, end + 1);
     if (!line.empty()) return Parse(line);
   }
-}
-
-std::string ToHex(const std::string& bytes) {
-  std::string digits;
-  for (const char c : bytes) {
-    const auto byte = static_cast<unsigned char>(c);
-    digits += kDigits[byte >> 4];
-    digits += kDigits[byte & 0xf];
-  }
-  return digits;
-}
-
-std::optional<std::string> FromHex(const std::string& digits) {
-  if (digits.size() % 2 != 0) return {};
-  std::string bytes;
-  for (std::size_t k = 0; k < digits.size(); k += 2) {
-    const int high = DigitOf(digits[k]), low = DigitOf(digits[k + 1]);
-    if (high < 0 || low < 0) return {};
-    bytes += static_cast<char>(high * 16 + low);
-  }
-  return bytes;
-}
-
-std::optional<int> NumberIn(const std::string& text, int lowest, int highest) {
-  int value = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = end.ec == std::errc() && end.ptr == text.data() + text.size();
-  if (!whole || value < lowest || value > highest) return {};
-  return value;
 }
 
 }  // namespace stg::acoustics::micromodem

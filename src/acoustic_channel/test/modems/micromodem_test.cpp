@@ -48,10 +48,10 @@ TEST(Sentence, ALineWithoutEndIsDroppedAndTheNextOneRead) {
 }
 
 TEST(Sentence, HexadecimalDigitsComeInPairs) {
-  EXPECT_EQ(micromodem::ToHex(std::string("\x00\xff", 2)), "00FF");
-  EXPECT_EQ(micromodem::FromHex("00fF"), std::string("\x00\xff", 2));
-  EXPECT_FALSE(micromodem::FromHex("0"));
-  EXPECT_FALSE(micromodem::FromHex("0g"));
+  EXPECT_EQ(ToHex(std::string("\x00\xff", 2)), "00FF");
+  EXPECT_EQ(FromHex("00fF"), std::string("\x00\xff", 2));
+  EXPECT_FALSE(FromHex("0"));
+  EXPECT_FALSE(FromHex("0g"));
 }
 
 TEST(Micromodem, ItTellsItsRevisionWhenItHasBooted) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acoustic_channel/emulator/modem_water.hpp"
+#include "acoustic_channel/janus/janus_modem.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "network/network_fixture.hpp"
@@ -83,15 +84,30 @@ struct ModemBench {
     hosts.said.clear();
     return *water;
   }
+  /// All nodes get a JANUS modem with stations from 1.
+  ModemWater& StartJanus() {
+    config.modem.profile = "janus";
+    Make();
+    for (int i = 0; i < run.agents; ++i) {
+      water->Attach(i, i + 1, [&](ModemSurroundings* world) {
+        janus::ModemOptions options;
+        options.station = i + 1;
+        return std::make_unique<janus::JanusModem>(options, world);
+      });
+    }
+    return Begin();
+  }
   static constexpr TimeNs kUtcStart = 1'700'000'000 * kSecond;  ///< 2023-11-14, 22:13:20
   void Make() {
     water = std::make_unique<ModemWater>(config, run, std::move(stated_), &hosts);
     hosts.water = water.get();
   }
-  ModemWater& Begin() {
+  /// @param hosts_count of the first nodes; -1: of all
+  ModemWater& Begin(int hosts_count = -1) {
     water->Observe(&log);
     water->Reset(1, 0);
-    for (int i = 0; i < run.agents; ++i) water->Connect(i, 0);
+    const int count = hosts_count < 0 ? run.agents : hosts_count;
+    for (int i = 0; i < count; ++i) water->Connect(i, 0);
     return *water;
   }
   static s2c::ModemOptions NetOptions() {

@@ -132,7 +132,8 @@ struct DriverOptions {
   double rssi_offset_db = -190.0;  ///< of s2c: from a level re 1 uPa to dB re 1 V
 };
 
-/// @param protocol s2c or micromodem; another one throws UserError
+std::vector<std::string> DriverProtocols();
+/// @param protocol of DriverProtocols(); another one throws UserError
 std::unique_ptr<ModemDriver> MakeModemDriver(const std::string& protocol,
                                              const DriverOptions& options, DriverWorld* world);
 

@@ -27,7 +27,7 @@ struct ModemPlace {
 /// A modem that exists, as a node of the simulated water: what the node hears it sends, what it
 /// hears the node sends.
 struct GatewayPlace {
-  std::string protocol = "s2c";  ///< of ModemProtocols()
+  std::string protocol = "s2c";  ///< of DriverProtocols()
   std::string port;              ///< tcp://HOST:PORT or a serial device
   int baud = 19200;
   int address = 0;  ///< of the modem; 0: the id and one

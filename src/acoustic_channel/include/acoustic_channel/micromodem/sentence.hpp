@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "acoustic_channel/engine/text.hpp"
 #include "acoustic_channel/modem/packet.hpp"
 
 /// The protocol that WHOI Micromodems speak with their hosts: sentences in the manner of NMEA 0183.
@@ -37,12 +38,5 @@ class SentenceReader {
   std::string buffer_;
   bool skipping_ = false;  ///< the rest of a line that was too long
 };
-
-/// Upper case.
-std::string ToHex(const std::string& bytes);
-/// Nothing: an odd number of digits, or something else than a digit.
-std::optional<std::string> FromHex(const std::string& digits);
-/// A whole number of the range, all of `text`.
-std::optional<int> NumberIn(const std::string& text, int lowest, int highest);
 
 }  // namespace stg::acoustics::micromodem

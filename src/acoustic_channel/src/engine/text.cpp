@@ -1,0 +1,48 @@
+#include "acoustic_channel/engine/text.hpp"
+
+#include <charconv>
+
+namespace stg::acoustics {
+namespace {
+
+constexpr char kDigits[] = "0123456789ABCDEF";
+
+int DigitOf(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return -1;
+}
+
+}  // namespace
+
+std::string ToHex(const std::string& bytes) {
+  std::string digits;
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    digits += kDigits[byte >> 4];
+    digits += kDigits[byte & 0xf];
+  }
+  return digits;
+}
+
+std::optional<std::string> FromHex(const std::string& digits) {
+  if (digits.size() % 2 != 0) return {};
+  std::string bytes;
+  for (std::size_t k = 0; k < digits.size(); k += 2) {
+    const int high = DigitOf(digits[k]), low = DigitOf(digits[k + 1]);
+    if (high < 0 || low < 0) return {};
+    bytes += static_cast<char>(high * 16 + low);
+  }
+  return bytes;
+}
+
+std::optional<int> NumberIn(const std::string& text, int lowest, int highest) {
+  int value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = end.ec == std::errc() && end.ptr == text.data() + text.size();
+  if (!whole || value < lowest || value > highest) return {};
+  return value;
+}
+
+}  // namespace stg::acoustics
