@@ -11,11 +11,12 @@ namespace {
 
 /// Fields before the payload, with the name; 0: it has none.
 std::size_t FieldsBeforePayload(const std::string& name) {
-  if (name == "RECVIM" || name == "RECVIMS") return 9;
+  if (name == "RECVIM" || name == "RECVIMS" || name == "RECV") return 9;
   return name == "RECVPBM" ? 8 : 0;
 }
 
-constexpr std::array<std::string_view, 16> kNotifications = {
+constexpr std::array<std::string_view, 22> kNotifications = {
+    "RECV",       "DELIVERED", "FAILED",      "RADDR",      "BITRATE",     "SRCLEVEL",
     "RECVIM",     "RECVIMS",   "RECVPBM",     "RECVSTART",  "RECVEND",     "RECVFAILED",
     "SENDSTART",  "SENDEND",   "FAILEDIM",    "CANCELEDIM", "DELIVEREDIM", "CANCELEDIMS",
     "EXPIREDIMS", "FAILEDIMS", "CANCELEDPBM", "DROPCNT"};

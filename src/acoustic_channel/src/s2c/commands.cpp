@@ -13,6 +13,9 @@ std::string Fixed(double value, int decimals) {
   return text;
 }
 
+/// Of instant messages: 11 ms a byte.
+constexpr long kImBitrate = 727;
+
 bool Letter(char c) { return c >= 'A' && c <= 'Z'; }
 
 }  // namespace
@@ -95,7 +98,10 @@ void S2cModem::Query(const std::string& name, const std::string& command, TimeNs
   if (name == "I") return Answer(command, std::to_string(measured_.integrity));
   if (name == "V") return Answer(command, Fixed(measured_.velocity_mps, 4));
   if (name == "T") return Answer(command, std::to_string(measured_.propagation_us));
-  if (name == "BL" || name == "BR") return Answer(command, "727");
+  if (name == "BL" || name == "BR") {
+    const bool online = connection_.state() == Connection::State::kOnline;
+    return Answer(command, std::to_string(online ? std::lround(kBurstBitrate) : kImBitrate));
+  }
   if (name == "BV") return Answer(command, "11.9");
   if (name == "PC") {
     return AnswerLines(command, "Sent: " + std::to_string(sent_count_) +
@@ -109,6 +115,16 @@ void S2cModem::Query(const std::string& name, const std::string& command, TimeNs
 std::string S2cModem::Status() const {
   if (state_ == State::kNoise) return "INITIATION NOISE";
   if (state_ == State::kDeaf) return "INITIATION DEAF";
+  switch (connection_.state()) {
+    case Connection::State::kEstablish:
+      return "INITIATION ESTABLISH";
+    case Connection::State::kOnline:
+      return "ONLINE LOCAL";
+    case Connection::State::kBackoff:
+      return "BACKOFF";
+    case Connection::State::kOffline:
+      break;
+  }
   return "INITIATION LISTEN";
 }
 
@@ -123,14 +139,15 @@ void S2cModem::Control(const std::string& text, TimeNs t) {
   const auto accept = [&] { Answer(text, "OK"); };
   if (text == "Z0") {
     Reboot(t);
-  } else if (text == "Z1" || text == "Z4" || text == "H0" || text == "H1" || text == "H") {
-    accept();
+  } else if (ControlConnection(text, t)) {
+    LaunchBurst(t);
   } else if (text == "Z3") {
     accept();
     DropMessages(true);
   } else if (text == "A") {
     state_ = State::kListen;
     Answer(text, "INITIATION LISTEN");
+    LaunchBurst(t);
   } else if (text == "N") {
     state_ = State::kNoise;
     Answer(text, "INITIATION NOISE");
@@ -149,8 +166,8 @@ void S2cModem::Control(const std::string& text, TimeNs t) {
     Answer(text, "phy:" + options_.firmware + " mac:" + options_.firmware + " emulated");
   } else if (text == "I7") {
     Answer(text, "EM" + std::to_string(options_.address));
-  } else if (text == "P" || (!text.empty() && text[0] == 'D')) {
-    Answer(text.substr(0, 1), "ERROR NOT ACCEPTED");
+  } else if (text == "P") {
+    Answer(text, "ERROR NOT ACCEPTED");
   } else {
     Answer("", "ERROR UNKNOWN COMMAND");
   }

@@ -50,13 +50,15 @@ void S2cModem::Send(const Item& item, TimeNs t) {
   if (!destination) return Answer(name, "ERROR WRONG FORMAT");
   if (*destination > 255) return Answer(name, "ERROR WRONG DESTINATION ADDRESS");
   header.destination = static_cast<int>(*destination);
-  if (name == "*SEND") return Answer(name, "ERROR NOT ACCEPTED");
-  if (item.payload.empty() || item.payload.size() > kLongestIm) {
+  const bool burst = name == "*SEND";
+  if (item.payload.empty() || (!burst && item.payload.size() > kLongestIm)) {
     return Answer(name, "ERROR OUT OF RANGE");
   }
   if (state_ != State::kListen) return Answer(name, "ERROR NOT ACCEPTED");
   std::string answer;
-  if (name == "*SENDPBM") {
+  if (burst) {
+    answer = SendBurst(header, item.payload, t);
+  } else if (name == "*SENDPBM") {
     answer = SendPbm(header, item.payload);
   } else if (name == "*SENDIMS") {
     answer = SendIms(header, item.payload, fields[2], t);
@@ -65,6 +67,7 @@ void S2cModem::Send(const Item& item, TimeNs t) {
   }
   Answer(name, answer);
   if (answer != "OK") return;
+  if (burst) return LaunchBurst(t);
   if (message_ && message_->timed && message_->start < t) {
     GiveUp("EXPIRED");
     return;
@@ -86,6 +89,9 @@ std::string S2cModem::SendIm(Header header, const std::string& payload, const st
     return "ERROR WRONG DESTINATION ADDRESS";
   }
   if (message_) return kBusy;
+  if (connection_.state() == Connection::State::kBackoff && header.flag != Flag::kForce) {
+    return "BUSY BACKOFF STATE";
+  }
   message_ = Message();
   message_->header = header;
   message_->payload = payload;
@@ -141,7 +147,7 @@ void S2cModem::LaunchAck(TimeNs t) {
   ack.tag = ++tag_;
   std::string payload(1, '\0');
   const auto waiting = piggyback_.find(ack.header.destination);
-  if (waiting != piggyback_.end()) {
+  if (ack.header.type == MessageType::kAck && waiting != piggyback_.end()) {
     payload = waiting->second;
     ack.header.piggyback = true;
     piggyback_.erase(waiting);

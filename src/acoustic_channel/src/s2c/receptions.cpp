@@ -13,6 +13,25 @@ constexpr int kBest = 999;
 
 std::uint32_t Microseconds(TimeNs t) { return static_cast<std::uint32_t>((t + 500) / 1000); }
 
+const char* TypeName(const Header& h) {
+  switch (h.type) {
+    case MessageType::kPlain:
+    case MessageType::kIm:
+      return "im";
+    case MessageType::kIms:
+      return "ims";
+    case MessageType::kAck:
+      return h.piggyback ? "pbm" : "ack";
+    case MessageType::kConnect:
+    case MessageType::kAccept:
+    case MessageType::kBurst:
+    case MessageType::kBurstAck:
+    case MessageType::kClose:
+      break;
+  }
+  return "burst";
+}
+
 std::string Join(std::initializer_list<std::string> fields) {
   std::string text;
   for (const std::string& field : fields) text += (text.empty() ? "" : ",") + field;
@@ -35,6 +54,10 @@ void S2cModem::Handle(const ModemEvent& event) {
           message_->step == Message::Step::kOffered) {
         message_.reset();
       }
+      if (event.packet.tag == burst_tag_) {
+        burst_tag_ = 0;
+        connection_.OnDiscarded(event.t);
+      }
       break;
     case ModemEvent::Kind::kAcquired:
       receiving_ = true;
@@ -44,6 +67,7 @@ void S2cModem::Handle(const ModemEvent& event) {
       receiving_ = false;
       if (state_ != State::kDeaf) OnReceptionEnd(event);
       Launch(event.t);
+      LaunchBurst(event.t);
       break;
   }
 }
@@ -58,10 +82,7 @@ void S2cModem::OnSent(const PacketInfo& packet, TimeNs t) {
   }
   if (settings_.at("ZX") == 0) return;
   const Header h = Unpack(packet.header);
-  const char* type = h.type == MessageType::kIms   ? "ims"
-                     : h.type == MessageType::kAck ? h.piggyback ? "pbm" : "ack"
-                                                   : "im";
-  Notify(Join({"SENDSTART", std::to_string(h.destination), type,
+  Notify(Join({"SENDSTART", std::to_string(h.destination), TypeName(h),
                std::to_string(Microseconds(packet.transmit_end - packet.transmit)), "0"}));
 }
 
@@ -69,10 +90,7 @@ void S2cModem::OnSendEnd(const PacketInfo& packet, TimeNs t) {
   sending_ = false;
   const Header h = Unpack(packet.header);
   if (settings_.at("ZX") != 0) {
-    const char* type = h.type == MessageType::kIms   ? "ims"
-                       : h.type == MessageType::kAck ? h.piggyback ? "pbm" : "ack"
-                                                     : "im";
-    Notify(Join({"SENDEND", std::to_string(h.destination), type,
+    Notify(Join({"SENDEND", std::to_string(h.destination), TypeName(h),
                  std::to_string(ClockUs(packet.transmit)),
                  std::to_string(Microseconds(packet.transmit_end - packet.transmit))}));
   }
@@ -85,8 +103,13 @@ void S2cModem::OnSendEnd(const PacketInfo& packet, TimeNs t) {
       message_.reset();
     }
   }
+  if (packet.tag == burst_tag_) {
+    burst_tag_ = 0;
+    connection_.OnSendEnd(packet.transmit, t);
+  }
   LaunchAck(t);
   Launch(t);
+  LaunchBurst(t);
 }
 
 Header S2cModem::HeaderOf(const PacketInfo& packet) const {
@@ -137,10 +160,13 @@ void S2cModem::OnReceptionEnd(const ModemEvent& event) {
                  std::to_string(measured_.duration_us), std::to_string(measured_.rssi),
                  std::to_string(measured_.integrity)}));
   }
-  if (kind != PacketKind::kData && kind != PacketKind::kAck) return;
+  if (kind == PacketKind::kPing || kind == PacketKind::kReply) return;
   const Header header = HeaderOf(event.packet);
+  const bool mine = header.destination == settings_.at("AL");
   if (header.type == MessageType::kAck) {
-    if (header.destination == settings_.at("AL")) TakeAck(header, event);
+    if (mine) TakeAck(header, event);
+  } else if (header.type > MessageType::kAck) {
+    if (mine && state_ == State::kListen) TakeConnectionPacket(header, event);
   } else {
     TakeMessage(header, event);
   }

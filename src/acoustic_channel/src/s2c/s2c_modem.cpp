@@ -28,7 +28,10 @@ std::string NameOf(const std::string& text) {
 }  // namespace
 
 S2cModem::S2cModem(const ModemOptions& options, ModemSurroundings* world)
-    : options_(options), world_(world) {
+    : options_(options),
+      world_(world),
+      connection_([this](const std::string& text) { Notify(text); }),
+      burst_mode_(BurstMode(world->profile())) {
   settings_.Set("AL", std::to_string(options.address));
   settings_.Store();
 }
@@ -42,6 +45,9 @@ void S2cModem::Start(TimeNs t) {
   state_ = State::kListen;
   DropMessages(false);
   acks_.clear();
+  if (burst_tag_ != 0) world_->TakeBack(burst_tag_);
+  burst_tag_ = 0;
+  connection_.Reset();
   delivery_ = "EMPTY";
   measured_ = {};
 }
@@ -78,7 +84,7 @@ void S2cModem::Work(TimeNs t) {
 }
 
 void S2cModem::Obey(const Item& item, TimeNs t) {
-  if (item.kind == Item::Kind::kData) return;  // no acoustic connection: nobody to give it to
+  if (item.kind == Item::Kind::kData) return TakeRaw(item.payload, t);
   const std::string name = NameOf(item.text);
   // The interpreter of plain lines knows no escapes.
   if (item.kind == Item::Kind::kBroken ||
@@ -136,7 +142,7 @@ TimeNs S2cModem::next() const {
       first = std::min(first, message_->start);
     }
   }
-  return first;
+  return std::min(first, connection_.next());
 }
 
 void S2cModem::Tick(TimeNs t) {
@@ -157,6 +163,8 @@ void S2cModem::Tick(TimeNs t) {
     acks_.pop_front();
   }
   LaunchAck(t);
+  connection_.Tick(t);
+  LaunchBurst(t);
   if (!message_) return;
   Message& m = *message_;
   if (m.step == Message::Step::kAwaitingAck && t >= m.deadline) {
@@ -169,6 +177,7 @@ void S2cModem::Tick(TimeNs t) {
     }
   }
   Launch(t);
+  LaunchBurst(t);
 }
 
 }  // namespace stg::acoustics::s2c

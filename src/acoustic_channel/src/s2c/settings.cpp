@@ -43,6 +43,11 @@ constexpr std::array<Known, 26> kKnown{{
     {"PS", 16384, 0, 1048576, "Pool Size"},
 }};
 
+/// AT@ZX and its like last until the power goes: they are never stored, and never marked.
+bool OfSession(const std::string& name) {
+  return name == "ZX" || name == "ZF" || name == "ZU" || name == "ZA";
+}
+
 }  // namespace
 
 double SourceLevelDb(int level) {
@@ -76,7 +81,9 @@ int Settings::at(const std::string& name) const {
 }
 
 void Settings::Store() {
-  for (auto& [name, v] : values_) v.stored = v.now;
+  for (auto& [name, v] : values_) {
+    if (!OfSession(name)) v.stored = v.now;
+  }
 }
 void Settings::Restore() {
   for (auto& [name, v] : values_) v.now = v.stored;
@@ -87,7 +94,7 @@ void Settings::RestoreFactory() {
 
 bool Settings::changed(const std::string& name) const {
   const auto found = values_.find(name);
-  return found != values_.end() && found->second.now != found->second.stored;
+  return found != values_.end() && !OfSession(name) && found->second.now != found->second.stored;
 }
 
 std::string Settings::List() const {

@@ -94,7 +94,7 @@ TEST_F(Messages, WhatIsLostAfterAcquisitionFailsAudibly) {
   bench.medium->SetLevel(0, 1, -7.5);
   bench.Ask(0, 1.0, Im(std::string(64, 'x'), 2, "noack"));
   bench.water->Advance(Ns(5.0));
-  EXPECT_EQ(bench.hosts.all[1].substr(7), "RECVSTART\r\nRECVFAILED,0.0000,-198,99\r\n");
+  EXPECT_EQ(bench.hosts.all[1].substr(4), "RECVSTART\r\nRECVFAILED,0.0000,-198,99\r\n");
 }
 
 TEST_F(Messages, AMessageWaitsForTheEndOfAReception) {

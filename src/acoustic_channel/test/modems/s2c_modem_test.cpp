@@ -71,7 +71,7 @@ TEST(S2cModem, WrongCommandsHaveTheirErrors) {
   expect("AT*SENDIM,5,1,ack,hello", "WRONG DESTINATION ADDRESS");
   expect("AT*SENDIM,5,255,ack,hello", "WRONG DESTINATION ADDRESS");
   expect("AT*SENDIM,p300,5,2,ack,hello", "PROTOCOL ID");
-  expect("AT*SEND,5,2,hello", "NOT ACCEPTED");
+  expect("AT*SEND,5,255,hello", "WRONG DESTINATION ADDRESS");
   expect("ATP", "NOT ACCEPTED");
   EXPECT_TRUE(bench.log.queued.empty());
 }

@@ -12,7 +12,7 @@ namespace stg::acoustics::s2c {
 /// What a modem with a NET interpreter says: an answer, or a notification.
 struct ModemLine {
   std::vector<std::string> fields;  ///< split at commas, without the payload
-  std::string payload;              ///< of RECVIM, RECVIMS, RECVPBM
+  std::string payload;              ///< of RECV, RECVIM, RECVIMS, RECVPBM
 
   const std::string& name() const { return fields[0]; }
   /// It is no answer to a command.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "acoustic_channel/engine/modem_engine.hpp"
+#include "acoustic_channel/s2c/connection.hpp"
 #include "acoustic_channel/s2c/header.hpp"
 #include "acoustic_channel/s2c/reader.hpp"
 #include "acoustic_channel/s2c/settings.hpp"
@@ -22,9 +23,12 @@ struct ModemOptions {
   std::string firmware = "1.9";
 };
 
+/// The mode of bursts of a modem with a profile.
+ModemProfile BurstMode(const ModemProfile& own);
+
 /// An emulated EvoLogics S2C modem: interpreters AT and NET, instant messages with and without
-/// acknowledgement, synchronous and piggyback messages, settings and queries. Bursts are refused
-/// (ERROR NOT ACCEPTED). Times in notifications are those of the first sound, by the modem's clock.
+/// acknowledgement, synchronous and piggyback messages, bursts over a connection, settings and
+/// queries. Times in notifications are those of the first sound, by the modem's clock.
 class S2cModem : public ModemEngine {
  public:
   /// @param world must live as long as this object
@@ -101,6 +105,15 @@ class S2cModem : public ModemEngine {
   void GiveUp(const std::string& word);
   void DropMessages(bool tell);
 
+  // bursts.cpp
+  std::string SendBurst(const Header& header, const std::string& payload, TimeNs t);
+  bool ControlConnection(const std::string& text, TimeNs t);
+  void TakeRaw(const std::string& bytes, TimeNs t);
+  void HeedSettings();
+  void LaunchBurst(TimeNs t);
+  void TakeConnectionPacket(const Header& header, const ModemEvent& event);
+  void TellBurst(const Header& header, const ModemEvent& event);
+
   // receptions.cpp
   void OnSent(const PacketInfo& packet, TimeNs t);
   void OnSendEnd(const PacketInfo& packet, TimeNs t);
@@ -124,6 +137,9 @@ class S2cModem : public ModemEngine {
   std::string delivery_ = "EMPTY";        ///< AT?DI, of the last one
   std::map<int, std::string> piggyback_;  ///< by destination
   std::deque<Ack> acks_;
+  Connection connection_;
+  ModemProfile burst_mode_;
+  std::uint32_t burst_tag_ = 0;  ///< of the connection's packet that the water has; 0: none
   std::uint32_t tag_ = 0;
   bool sending_ = false, receiving_ = false;
   Measured measured_;
