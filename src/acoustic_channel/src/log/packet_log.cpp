@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "acoustic_channel/link/link_statistics.hpp"
+#include "acoustic_channel/modem/modem_profile.hpp"
 
 namespace stg::acoustics {
 namespace {
@@ -30,7 +31,7 @@ PacketLog::PacketLog(std::ostream* out, int nodes, std::vector<std::string> name
     : out_(out), nodes_(nodes), names_(std::move(names)), offset_(offset) {
   *out_ << "source,destination,addressed,kind,sequence,bytes,offered_s,generation_s,transmit_s,"
            "transmit_end_s,begin_s,arrival_s,distance_m,travel_time_s,received_level_db,"
-           "noise_level_db,sinr_db,error_probability,fate\n";
+           "noise_level_db,sinr_db,error_probability,fate,mode\n";
 }
 
 void PacketLog::OnDiscarded(const PacketInfo& packet, DropReason reason, TimeNs /*t*/) {
@@ -90,6 +91,8 @@ void PacketLog::Row(const PacketInfo& packet, const PacketFate* fate, int receiv
   }
   Comma();
   row_ += reason == DropReason::kNone ? "delivered" : ToString(reason);
+  Comma();
+  if (packet.mode != nullptr) row_ += packet.mode->name;
   row_ += '\n';
   out_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   ++rows_;

@@ -15,7 +15,10 @@ Modes::Modes(const ModemProfile& own) {
     const std::string family = rate == 0 ? "micromodem_fsk_r" : "micromodem_psk_r";
     rates_[static_cast<std::size_t>(rate)] = at_own_frequency(family + std::to_string(rate));
   }
-  mini_ = at_own_frequency("micromodem_mini");
+  mini_ = mini_psk_ = at_own_frequency("micromodem_mini");
+  // Nothing is published of mini-packets in PSK: they take as long and are lost as often.
+  mini_psk_.waveform = "micromodem_psk";
+  mini_psk_.name += "_psk";
 }
 
 int RateOf(const ModemProfile& profile) {

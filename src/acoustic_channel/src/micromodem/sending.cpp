@@ -24,6 +24,11 @@ PacketKind KindOf(PacketType type) {
   return PacketKind::kControl;
 }
 
+/// Mini-packets carry 13 bits, and are counted as two bytes.
+bool Mini(const Header& header) {
+  return header.type != PacketType::kData && header.type != PacketType::kFlexible;
+}
+
 bool Automatic(PacketType type) { return type == PacketType::kReply || type == PacketType::kAck; }
 
 }  // namespace
@@ -63,13 +68,13 @@ void Micromodem::SendFrames(TimeNs t) {
 }
 
 void Micromodem::Transmit(const Header& header, const std::string& payload, std::size_t air_bytes) {
-  const bool data = header.type == PacketType::kData || header.type == PacketType::kFlexible;
+  const bool data = !Mini(header);
   Transmission packet;
   packet.kind = KindOf(header.type);
   packet.destination =
       header.destination == options_.broadcast ? kToAll : world_->NodeOf(header.destination);
   packet.tag = ++tag_;
-  packet.mode = data ? &modes_.rate(header.rate) : &modes_.mini();
+  packet.mode = data ? &modes_.rate(header.rate) : &modes_.mini(setting("MOD") == 1);
   packet.air_bytes = air_bytes;
   packet.header = Pack(header);
   packet.payload = {reinterpret_cast<const std::uint8_t*>(payload.data()), payload.size()};
@@ -78,8 +83,7 @@ void Micromodem::Transmit(const Header& header, const std::string& payload, std:
 
 void Micromodem::OnSent(const PacketInfo& packet, TimeNs t) {
   const Header header = Unpack(packet.header);
-  const bool mini = packet.mode == &modes_.mini();
-  Say({"CATXP", std::to_string(mini ? 2 : packet.bytes)});
+  Say({"CATXP", std::to_string(Mini(header) ? 2 : packet.bytes)});
   if (header.type == PacketType::kPing) {
     ping_.sent = t;
     ping_.airtime = packet.transmit_end - packet.transmit;
@@ -88,8 +92,7 @@ void Micromodem::OnSent(const PacketInfo& packet, TimeNs t) {
 
 void Micromodem::OnSendEnd(const PacketInfo& packet, TimeNs t) {
   const Header header = Unpack(packet.header);
-  const bool mini = packet.mode == &modes_.mini();
-  Say({"CATXF", std::to_string(mini ? 2 : packet.bytes)});
+  Say({"CATXF", std::to_string(Mini(header) ? 2 : packet.bytes)});
   if (Automatic(header.type)) return;
   if (header.type != PacketType::kPing) TellTransmission(header, packet, 0, t);
   if (header.type == PacketType::kCycle && state_ == State::kCycleTx) {

@@ -8,7 +8,7 @@ namespace stg::acoustics::micromodem {
 namespace {
 
 /// As the modem numbers kinds of packets.
-int NumberOf(PacketType type, int rate) {
+int NumberOf(PacketType type, int rate, const PacketInfo& packet) {
   switch (type) {
     case PacketType::kPlain:
     case PacketType::kData:
@@ -22,7 +22,7 @@ int NumberOf(PacketType type, int rate) {
     case PacketType::kAck:
       break;
   }
-  return 2;
+  return packet.mode != nullptr && packet.mode->waveform == "micromodem_psk" ? 4 : 2;
 }
 
 std::string Whole(double value) { return std::to_string(std::lround(value)); }
@@ -61,7 +61,7 @@ void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
       std::to_string(header.source),
       std::to_string(header.destination),
       "0",
-      std::to_string(NumberOf(header.type, header.rate)),
+      std::to_string(NumberOf(header.type, header.rate, event.packet)),
       std::to_string(frames),
       std::to_string(lost ? frames : 0),
       Whole(fate.received_level_db),
@@ -103,7 +103,7 @@ void Micromodem::TellTransmission(const Header& header, const PacketInfo& packet
       header.acks != 0 ? "1" : "0",
       std::to_string(frames),
       std::to_string(mode == 0 ? frames : 0),
-      std::to_string(NumberOf(header.type, header.rate)),
+      std::to_string(NumberOf(header.type, header.rate, packet)),
       std::to_string(packet.bytes),
   };
   fields.insert(fields.end(), std::begin(rest), std::end(rest));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acoustic_channel/log/packet_log.hpp"
+#include "acoustic_channel/modem/modem_profile.hpp"
 #include "acoustic_channel/offline/track.hpp"
 #include "auv_common/error.hpp"
 
@@ -142,6 +143,8 @@ TEST(PacketLog, WritesARowForEveryReceiverWithExactTimes) {
   packet.bytes = 32;
   packet.offered = packet.generation = -kSecond / 2;
   log.OnDiscarded(packet, DropReason::kQueue, 0);
+  const auto mode = ModemProfiles().Make("janus");
+  packet.mode = mode.get();
   packet.sequence = 3;
   packet.transmit = 5;
   packet.transmit_end = kSecond + 5;
@@ -164,7 +167,7 @@ TEST(PacketLog, WritesARowForEveryReceiverWithExactTimes) {
   std::getline(in, row);
   const auto columns = std::count(row.begin(), row.end(), ',');
   std::getline(in, row);
-  EXPECT_EQ(row, "7,4,all,data,,32,99.500000000,99.500000000,,,,,,,,,,,queue");
+  EXPECT_EQ(row, "7,4,all,data,,32,99.500000000,99.500000000,,,,,,,,,,,queue,");
   EXPECT_EQ(std::count(row.begin(), row.end(), ','), columns);
   std::getline(in, row);
   EXPECT_EQ(row.substr(0, 4), "7,9,");
@@ -172,9 +175,9 @@ TEST(PacketLog, WritesARowForEveryReceiverWithExactTimes) {
   EXPECT_EQ(row,
             "7,9,all,data,3,32,99.500000000,99.500000000,100.000000005,101.000000005,"
             "102.000000005,103.000000005,3000.000,2.000000000,120.250,80.000,40.250,0.125000,"
-            "delivered");
+            "delivered,janus");
   std::getline(in, row);
-  EXPECT_EQ(row.substr(row.rfind(',')), ",half_duplex");
+  EXPECT_EQ(row.substr(row.rfind(",half")), ",half_duplex,janus");
   EXPECT_EQ(std::count(row.begin(), row.end(), ','), columns);
   EXPECT_EQ(log.rows(), 4u);
 }

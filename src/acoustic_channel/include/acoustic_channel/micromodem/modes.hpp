@@ -14,11 +14,12 @@ class Modes {
   explicit Modes(const ModemProfile& own);
 
   const ModemProfile& rate(int rate) const { return rates_[static_cast<std::size_t>(rate)]; }
-  const ModemProfile& mini() const { return mini_; }
+  /// A mini-packet, in FSK or PSK.
+  const ModemProfile& mini(bool psk = false) const { return psk ? mini_psk_ : mini_; }
 
  private:
   std::array<ModemProfile, kRates> rates_;
-  ModemProfile mini_;
+  ModemProfile mini_, mini_psk_;
 };
 
 /// The rate that a profile is; -1: it is no Micromodem's.
