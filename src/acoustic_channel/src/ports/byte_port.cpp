@@ -19,6 +19,12 @@ constexpr std::size_t kMostWaiting = 256 * 1024;
 constexpr TimeNs kMostPatience = 10'000'000'000;
 constexpr std::size_t kReadAtOnce = 16 * 1024;
 
+/// A socket whose other end has gone is an error here, and no signal.
+ssize_t WriteTo(int stream, const std::string& bytes) {
+  const ssize_t size = send(stream, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  return size < 0 && errno == ENOTSOCK ? write(stream, bytes.data(), bytes.size()) : size;
+}
+
 bool Again() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
@@ -102,7 +108,7 @@ void BytePort::ReadSome(const PortListener& listener) {
 
 void BytePort::WriteSome(TimeNs now, const PortListener& listener) {
   while (!out_.empty()) {
-    const ssize_t size = write(stream_, out_.data(), out_.size());
+    const ssize_t size = WriteTo(stream_, out_);
     if (size > 0) {
       out_.erase(0, static_cast<std::size_t>(size));
       stalled_ = -1;

@@ -16,12 +16,15 @@
 namespace stg::acoustics {
 namespace {
 
-std::string FileWith(const std::string& alpha, const std::string& beta) {
+std::string FileWith(const std::string& alpha, const std::string& beta,
+                     const std::string& gamma = "") {
   const std::string path = testing::TempDir() + "/modems_" + std::to_string(getpid()) + ".yaml";
   std::ofstream(path)
       << "vehicles:\n"
          "  - {name: alpha, position_m: [0.0, 0.0, -20.0], modem: {"
       << alpha << "}}\n  - {name: beta, position_m: [150.0, 0.0, -20.0], modem: {" << beta
+      << (gamma.empty() ? "" : "}}\n  - {name: gamma, position_m: [0.0, 150.0, -20.0], modem: {")
+      << gamma
       << "}}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n    modem:\n"
          "      profile: evologics_s2c\n      queue: fifo\n";
   return path;
@@ -105,6 +108,103 @@ TEST(ModemPorts, AFloodDisturbsNobodyElse) {
   }
   quiet.Say("AT?AL\n");
   EXPECT_TRUE(quiet.Hears(&server, "2\r\n"));
+}
+
+/// One client misbehaves at the first modem; the hosts of the two others talk to each other.
+struct Disturbance : testing::Test {
+  Disturbance()
+      : server(LoadModemFile(FileWith(kNet, kNet, kNet)), ""),
+        alpha(std::make_unique<Client>(*server.port(0))),
+        beta(*server.port(1)),
+        gamma(*server.port(2)) {}
+  /// Meanwhile both others are answered, and a message passes.
+  void OthersTalk() {
+    beta.heard.clear();
+    gamma.heard.clear();
+    const std::uint64_t dropped = server.port(1)->dropped() + server.port(2)->dropped();
+    beta.Say("AT*SENDIM,5,3,ack,hello\n");
+    EXPECT_TRUE(gamma.Hears(&server, "RECVIM,5,2,3,ack,"));
+    EXPECT_TRUE(beta.Hears(&server, "DELIVEREDIM,3\r\n"));
+    EXPECT_EQ(server.port(1)->dropped() + server.port(2)->dropped(), dropped);
+  }
+  /// The first port answers whoever comes next.
+  void TheNextIsServed() {
+    alpha.reset();
+    for (int k = 0; k < 5000 && server.port(0)->connected(); ++k) {
+      server.Serve(server.Now() + 1'000'000);
+    }
+    Client next(*server.port(0));
+    next.Say("AT?AL\n");
+    EXPECT_TRUE(next.Hears(&server, "1\r\n"));
+  }
+  ModemServer server;
+  std::unique_ptr<Client> alpha;
+  Client beta, gamma;
+};
+
+TEST_F(Disturbance, AFloodOfCommands) {
+  std::string flood;
+  for (int k = 0; k < 4000; ++k) flood += "AT?CLOCK\nAT&V\n+++AT";
+  for (int k = 0; k < 20; ++k) {
+    (void)!send(alpha->stream, flood.data(), flood.size(), MSG_NOSIGNAL);
+    server.Serve(server.Now());
+  }
+  OthersTalk();
+  TheNextIsServed();
+}
+
+TEST_F(Disturbance, AClientThatNeverReads) {
+  const std::string ask = "AT&V\nAT&V\nAT&V\nAT&V\n";
+  for (int k = 0; k < 20'000 && server.port(0)->dropped() == 0; ++k) {
+    (void)!send(alpha->stream, ask.data(), ask.size(), MSG_NOSIGNAL);
+    server.Serve(server.Now());
+  }
+  EXPECT_GT(server.port(0)->dropped(), 0u);
+  OthersTalk();
+  TheNextIsServed();
+}
+
+TEST_F(Disturbance, AClientThatClosesItsHalf) {
+  alpha->Say("AT*SENDIM,5,2,ack,hel");
+  shutdown(alpha->stream, SHUT_WR);
+  OthersTalk();
+  TheNextIsServed();
+}
+
+TEST_F(Disturbance, AClientThatVanishesWithMuchToRead) {
+  const std::string ask = "AT&V\nAT&V\nAT&V\nAT&V\n";
+  for (int k = 0; k < 200; ++k) {
+    (void)!send(alpha->stream, ask.data(), ask.size(), MSG_NOSIGNAL);
+    server.Serve(server.Now());
+  }
+  // The connection is reset instead of closed.
+  const linger at_once{1, 0};
+  setsockopt(alpha->stream, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+  alpha.reset();
+  OthersTalk();
+  TheNextIsServed();
+}
+
+TEST(ModemPorts, ASerialDeviceIsOneMorePort) {
+  const int host = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  ASSERT_TRUE(host >= 0 && grantpt(host) == 0 && unlockpt(host) == 0);
+  const std::string device = ptsname(host);
+  ModemServer server(
+      LoadModemFile(FileWith("interpreter: net, baud: 9600, serial: " + device, kNet)), "");
+  for (int k = 0; k < 5; ++k) server.Serve(server.Now() + 1'000'000);
+  Client beta(*server.port(1));
+  const std::string message = "AT*SENDIM,5,2,noack,hello\r";
+  ASSERT_EQ(write(host, message.data(), message.size()), static_cast<ssize_t>(message.size()));
+  EXPECT_TRUE(beta.Hears(&server, "RECVIM,5,1,2,noack,"));
+  std::array<char, 256> buffer;
+  const ssize_t size = read(host, buffer.data(), buffer.size());
+  EXPECT_EQ(std::string(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))),
+            "OK\r\n");
+  close(host);
+  // The device has gone: the server goes on, and looks for it again.
+  beta.heard.clear();
+  beta.Say("AT?AL\n");
+  EXPECT_TRUE(beta.Hears(&server, "2\r\n"));
 }
 
 TEST(ModemPorts, ATerminalIsOneMorePort) {
