@@ -28,7 +28,7 @@ SCRIPT = (
     (0, 2.6, "+++AT?T"),
     (1, 3.0, "+++AT*SEND,12,1,a burst back"),
 )
-SECONDS = 7.5
+SECONDS = 6.6
 COLOURS = ("#1f6f8b", "#a8482c")
 
 
@@ -79,7 +79,7 @@ def sounds(said):
 
 def draw(said, out):
     """The picture: hosts outside, modems inside, sound between them, time downwards."""
-    figure, axes = plt.subplots(figsize=(11.0, 9.0))
+    figure, axes = plt.subplots(figsize=(13.0, 8.0))
     for host, begin, end, first, last in sounds(said):
         there = 1 - host
         axes.fill([host, there, there, host], [begin, first, last, end], COLOURS[host], alpha=0.25)
@@ -98,19 +98,18 @@ def draw(said, out):
             family="monospace",
             fontsize=8,
             color="black" if way == ">" else COLOURS[host],
-            arrowprops={"arrowstyle": "-", "color": "0.7", "linewidth": 0.6},
         )
     for host, name in enumerate(("modem 1", "modem 2")):
         axes.plot([host, host], [-0.2, SECONDS], color=COLOURS[host], linewidth=2)
         axes.text(host, -0.35, name, ha="center", fontsize=11)
         axes.text(host + (1.2 if host else -1.2), -0.35, f"host {host + 1}", ha="center", fontsize=11)
-    axes.set(xlim=(-2.1, 3.1), ylim=(SECONDS, -0.6), ylabel="time [s]", xticks=[])
+    axes.set(xlim=(-2.9, 3.9), ylim=(SECONDS, -0.6), ylabel="time [s]", xticks=[])
     for side in ("top", "right", "bottom"):
         axes.spines[side].set_visible(False)
     figure.savefig(out, dpi=110, bbox_inches="tight")
 
 
-def main(argv=None):
+def main(argv):
     """Talks and draws."""
     args = parse(argv)
     draw(talk(args.ports), args.out)
@@ -118,4 +117,4 @@ def main(argv=None):
 
 
 if __name__ == "__main__":
-    sys.exit(run_program(main))
+    run_program("modem_session", lambda: main(sys.argv[1:]))
