@@ -36,7 +36,7 @@ LOSS = "[...document.querySelectorAll('.event')].filter(b => b.textContent.inclu
 PICTURES = {
     "view_field20": ("field20", "t=200&theme=dark&tab=network", 1280, 720, "", "Twenty over a ridge",
         "Twenty torpedoes over the bathymetry of the paper's Fig. 6. Colours are phases: those that look for the target (blue), close in (yellow) and hold it "
-        "(green). On the right who spoke when: time slots, one after the other."),
+        "(green). On the right: when each AUV spoke, in time slots, one after the other."),
     "view_search": ("search", "t=700&theme=dark&tab=story&camera=above", 1280, 720, "", "A search",
         "Four AUVs that were launched in one place sweep the water around an old datum. The large circle is what they believe of the target, red that they "
         "have lost it, or never had it."),

@@ -2,8 +2,8 @@
 
 import json
 
-# tab: pages and folders of docs/ in their order; of a folder README.md comes first. Pages that nobody
-# names here come last, below More.
+# tab: pages and folders of docs/ in their order; of a folder README.md comes first. Pages without a
+# place here come last, below More.
 TABS = {
     "Start": ["install.md", "tutorials", "gallery.md", "view.md", "platforms.md", "security.md"],
     "Fly": ["scenarios.md", "field.md", "waters.md", "recording.md", "soak.md", "faults.md", "fly_your_own_vehicle.md"],
