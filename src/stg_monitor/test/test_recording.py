@@ -114,9 +114,9 @@ class FoldersTest(unittest.TestCase):
         self.assertAlmostEqual(9.0, float(steps["position"][-1, 7]), places=4)
 
     def test_training_has_curves(self):
-        (self.path / "progress.csv").write_text("steps,reward,validation_return\n100,1.0,\n200,2.0,5\n300,3.0,\n")
+        (self.path / "progress.csv").write_text("steps,wall_seconds,reward,validation_return\n100,1,1.0,\n200,2,2.0,5\n300,3,3.0,\n")
         curves = [h["title"] for h, _ in messages(read_folder(self.path)) if h["kind"] == "curves"]
-        self.assertEqual(["reward", "validation return"], curves)
+        self.assertEqual(["validation return", "reward", "wall seconds"], curves)  # what it is for first
 
     def test_what_is_no_run_is_refused_in_words(self):
         with self.assertRaisesRegex(FileError, "nothing to report"):

@@ -185,12 +185,19 @@ def read_training(folder):
     across = next((n for n in ("steps", "step", "env_steps", "update") if n in columns), None)
     if across is None or len(rows) < 2:
         raise Damaged(path, "has no curves: fewer than two rows, or no column steps")
-    for name, values in columns.items():
+    for name, values in sorted(columns.items(), key=lambda column: rank_of(column[0])):  # else as in the file
         if name != across:
             recording.add(
                 "curves", [(across, "f8", columns[across]), (name, "f8", values)], title=name.replace("_", " "), x=across
             )  # fmt: skip
     return recording
+
+
+def rank_of(name):
+    """Place of a curve among the others: what a training is for comes first, what it took comes last."""
+    if name.endswith("seconds") or name in ("collection", "episodes", "learning_rate"):
+        return 4
+    return ("return" not in name) * (1 if name.startswith("validation") else 2 if name.startswith(("train", "reward")) else 3)
 
 
 def _number_or_nan(text):

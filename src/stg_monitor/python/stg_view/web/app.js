@@ -46,6 +46,8 @@
         if (this.hasScene) this.makeScene();
         this.listen();
         this.took();
+        // A training has no time and nobody in the water.
+        by("transport").hidden = by("tabs").hidden = !this.hasScene && r.agents === 0 && r.curves.length > 0;
         this.show(r.agents === 0 && r.curves.length > 0 ? "plots" : this.hasScene ? "story" : "network");
         this.speed = this.pace();
         this.fillSpeeds();

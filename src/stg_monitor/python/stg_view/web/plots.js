@@ -3,7 +3,7 @@
 (function (STG) {
   "use strict";
 
-  const MOST_POINTS = 1500, HEIGHT = 150, LEAST_LOG = 0.01, MANY = 9;
+  const MOST_POINTS = 1500, HEIGHT = 150, LEAST_LOG = 0.01, MANY = 9, LEAST_WIDTH = 400, GAP = 20;
 
   /** Rows of the steps that are plotted: all, or evenly spread ones. */
   function plottedRows(recording) {
@@ -108,7 +108,9 @@
       this.charts = [];
       const plots = plotsOf(this.app);
       if (plots.some((plot) => plot.lines.some((l) => l.auv !== undefined))) this.element.append(this.who());
-      const width = Math.max(240, this.element.clientWidth - 24);
+      // A page without a scene has room for plots beside each other.
+      const all = this.element.clientWidth - 24, beside = this.app.hasScene ? 1 : Math.max(1, Math.floor(all / LEAST_WIDTH));
+      const width = Math.max(240, (all - GAP * (beside - 1)) / beside);
       for (const plot of plots) {
         const box = document.createElement("div");
         box.className = "plot";
@@ -116,7 +118,7 @@
         const value = document.createElement("span");
         heading.append(plot.title + (plot.unit ? ` [${plot.unit}]` : ""), value);
         box.append(heading);
-        if (plot.own) box.append(this.keysOf(plot));
+        if (plot.own && plot.lines.length > 1) box.append(this.keysOf(plot));
         this.element.append(box);
         const chart = this.chart(plot, width, box);
         chart.plotOf = plot;
@@ -167,7 +169,7 @@
         const base = l.colour || (many && !(chosen && l.auv !== undefined) ? colours.soft : colours.lines[(l.auv === undefined ? k : l.auv) % colours.lines.length]);
         return {
           label: l.label, stroke: base, width: chosen && selected >= 0 && l.auv !== undefined ? 2.2 : 1.2,
-          alpha: selected >= 0 && !chosen ? 0.28 : many ? 0.55 : 1, points: { show: false }, spanGaps: false,
+          alpha: selected >= 0 && !chosen ? 0.28 : many ? 0.55 : 1, points: { show: false }, spanGaps: Boolean(plot.free),
           dash: l.dashed ? [4, 3] : k >= 8 && plot.own ? [6, 3] : undefined,
           paths: plot.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
         };
@@ -225,7 +227,7 @@
       if (at === null || at === undefined) {
         at = plot.free ? -1 : Math.max(0, STG.lastUpTo(plot.t, plot.t.length, this.app.t));
       }
-      if (plot.own) {
+      if (plot.own && plot.lines.length > 1) {
         for (const l of plot.lines) {
           const v = l.values[at], text = v === null || v === undefined ? l.label : `${l.label} ${STG.number(v)}`;
           if (l.key.data !== text) l.key.data = text;
@@ -235,6 +237,7 @@
       const values = plot.lines.map((l) => [l, l.values[at]]).filter(([, v]) => v !== null && v !== undefined);
       const { selected } = this.app;
       const shown = values.filter(([l]) => selected < 0 || l.auv === selected || l.auv === undefined);
+      if (plot.own) { u.readout.textContent = values.map(([, v]) => STG.number(v)).join(""); return; }
       u.readout.textContent = shown.length > 2
         ? `${STG.number(Math.min(...shown.map(([, v]) => v)))} … ${STG.number(Math.max(...shown.map(([, v]) => v)))}`
         : shown.map(([l, v]) => `${l.label} ${STG.number(v)}`).join("   ");
