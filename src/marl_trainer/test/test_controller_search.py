@@ -79,6 +79,30 @@ class Tune(unittest.TestCase):
         self.assertEqual(self.run_tune(trials=5).returncode, 0)
         self.assertEqual(self.trials(), first)
 
+    def test_the_best_fly_again_on_other_episodes(self):
+        # From the second seed on every episode returns by another peak: gain 4.
+        other = EVALUATE.replace("gain / 2", "gain / (2 if given['--seed'] == '7' else 4)")
+        (self.folder / "evaluate").write_text(other)
+        run = self.run_tune(finals={"trials": 5, "episodes": 6, "seed": 90}, set=["time.episode_steps=9"])
+        self.assertEqual(run.returncode, 0, run.stderr)
+        trials = {row["trial"]: row for row in self.trials()}
+        with open(self.folder / "out" / "finals.csv", encoding="utf-8", newline="") as file:
+            finals = list(csv.DictReader(file))
+        best = sorted(trials.values(), key=lambda row: -float(row["score"]))[:5]
+        self.assertEqual({row["trial"] for row in finals}, {row["trial"] for row in best} | {"0"})
+        self.assertEqual([float(row["score"]) for row in finals],
+                         sorted((float(row["score"]) for row in finals), reverse=True))  # fmt: skip
+        chosen = finals[0]
+        self.assertIn(f"chosen: trial {chosen['trial']}: {chosen['score']} pursuit:", run.stdout)
+        self.assertEqual(chosen["gain"], max((row["gain"] for row in finals if row["gain"]), key=float))
+        self.assertIn(f"40 trials, {40 * 3 + len(finals) * 6} episodes", run.stdout)
+
+    def test_overrides_reach_evaluate(self):
+        (self.folder / "evaluate").write_text(
+            EVALUATE.replace('"contact": cap', '"contact": sys.argv.count("time.dt_s=0.5")'))
+        self.run_tune(trials=1, random_trials=0, set=["time.dt_s=0.5"])
+        self.assertEqual(self.trials()[0]["contact"], "1")
+
     def test_seeds_for_reporting_are_refused(self):
         run = self.run_tune(seed=5000000)
         self.assertEqual(run.returncode, 2)
@@ -96,7 +120,7 @@ class Tune(unittest.TestCase):
 
         for changes in ({"space": {"gain": 3}}, {"space": {"gain": [2.0, "x"]}}, {"start": 3},
                         {"start": [{"gain": "x"}]}, {"scenarios": []}, {"trials": "4"},
-                        {"seed": True}, {"score": []}, {"step": [0.1]}, {"controller": 3}):  # fmt: skip
+                        {"seed": True}, {"score": []}, {"step": [0.1]}, {"controller": 3}, {"set": "x"}, {"finals": {"trials": 1}}):  # fmt: skip
             refused(f"search.yaml: {list(changes)[0]}: is not", self.run_tune(**changes))
         for start, what in (({"gain": 0}, "gain: 0 is not positive"), ({"gian": 1}, "gian is not in")):
             refused(f"search.yaml: start: {what}", self.run_tune(start=[start]))
@@ -125,8 +149,10 @@ class Tune(unittest.TestCase):
         self.assertGreaterEqual(len(files), 4)
         for file in files:
             search = yaml.safe_load(file.read_text())
-            self.assertEqual(set(search), set(SEARCH), file)
+            self.assertEqual(set(search) - {"set", "finals"}, set(SEARCH), file)
             self.assertLess(search["seed"] + search["episodes"], 1000000, file)
+            finals = search.get("finals", search)
+            self.assertLess(finals["seed"] + finals["episodes"], 1000000, file)
             for values in search["start"]:
                 self.assertLessEqual(set(values), set(search["space"]), file)
 

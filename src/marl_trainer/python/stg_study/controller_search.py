@@ -3,7 +3,8 @@ a budget that is stated.
 
 The search flies the constants of `start`, then random ones within `space` (uniform; where a range spans
 a decade or more, of the logarithm), then constants near the best so far. The same file draws the same
-constants.
+constants. A few episodes choose by luck as well: with `finals`, the best of the trials fly again, more
+episodes from another seed of the block for choosing, and what is best there is chosen.
 """
 
 import hashlib
@@ -78,11 +79,33 @@ KEYS = {  # what each must be: as a test, and in words
 }
 
 
+def are_overrides(value):
+    """Whether a value is a list of texts."""
+    return isinstance(value, list) and all(isinstance(v, str) for v in value)
+
+
+def are_finals(value):
+    """Whether a value says how the best trials fly again."""
+    return (isinstance(value, dict) and set(value) == {"trials", "episodes", "seed"}
+            and all(is_count(v) for v in value.values()) and value["trials"] > 0
+            and value["episodes"] > 0)  # fmt: skip
+
+
+MAY = {  # keys that a file may leave out, and what they are then
+    "set": (are_overrides, "a list of KEY=VALUE", []),  # of the scenarios
+    "finals": (are_finals, "trials, episodes, seed", None),
+}
+
+
 def checked(search, file):
     """Returns the search that a file holds; throws Damaged where it is none."""
-    wrong = set(KEYS).symmetric_difference(search)
+    wrong = set(KEYS).symmetric_difference(search) - set(MAY)
     if wrong:
         raise Damaged(file, f"missing or unknown: {', '.join(sorted(map(str, wrong)))}")
+    for key, (good, what, otherwise) in MAY.items():
+        if key in search and not good(search[key]):
+            raise Damaged(file, f"{key}: is not {what}")
+        search.setdefault(key, otherwise)
     for key, (good, what) in KEYS.items():
         if not good(search[key]):
             raise Damaged(file, f"{key}: is not {what}")
@@ -130,10 +153,11 @@ class Interrupted(Exception):
 def _jobs(search, policy, work, bin_dir):
     """The flights of one trial: a cell for each scenario and condition."""
     jobs = []
+    overrides = [word for one in search["set"] for word in ("--set", one)]
     for scenario in search["scenarios"]:
         for condition in search["conditions"]:
             arguments = ["--scenario", scenario, "--condition", condition]
-            arguments += ["--episodes", str(search["episodes"]), "--seed", str(search["seed"])]
+            arguments += ["--episodes", str(search["episodes"]), "--seed", str(search["seed"]), *overrides]
             key = hashlib.sha256(" ".join([policy, *arguments]).encode()).hexdigest()[:16]
             base = os.path.join(work, "flights", key)
             name = f"{policy} on {scenario} {condition}"
@@ -179,14 +203,44 @@ def _trials(search, work, bin_dir, parallel):
         yield trial, score, means, values
 
 
+def _row(search, trial, score, means, values):
+    """A line of the tables; an empty cell is the controller's own constant."""
+    return [trial, f"{score:.4f}", *(f"{mean:.6g}" for mean in means.values()),
+            *(values.get(name, "") for name in search["space"])]  # fmt: skip
+
+
+def _write(search, out, name, rows):
+    """Writes OUT/NAME, a table of trials."""
+    header = ["trial", "score", *search["score"], *search["space"]]
+    write_atomically(os.path.join(out, name), csv_text(header, rows))
+
+
+def _finals(search, trials, out, work, bin_dir, parallel):
+    """Flies the best trials again, and the first one; writes OUT/finals.csv, the best of them first."""
+    again = dict(search, episodes=search["finals"]["episodes"], seed=search["finals"]["seed"])
+    order = sorted(trials, key=lambda one: -one[1])[: search["finals"]["trials"]]
+    if trials[0] not in order:
+        order.append(trials[0])
+    flown = []
+    for trial, _, _, values in order:
+        score, means = _fly(again, values, work, bin_dir, parallel)
+        flown.append((trial, score, means, values))
+        ranked = sorted(flown, key=lambda one: -one[1])
+        _write(search, out, "finals.csv", [_row(search, *one) for one in ranked])
+    best = max(flown, key=lambda one: one[1])
+    print(f"chosen: trial {best[0]}: {best[1]:.4f} {text_of(search['controller'], best[3])}", flush=True)
+    return len(flown) * again["episodes"]
+
+
 def run_search(search, out, work, bin_dir, parallel):
-    """Flies the search and writes OUT/trials.csv, a row for each trial in the order they were flown."""
-    names, rows = list(search["space"]), []
-    for trial, score, means, values in _trials(search, work, bin_dir, parallel):
-        # An empty cell is the controller's own constant.
-        rows.append([trial, f"{score:.4f}", *(f"{mean:.6g}" for mean in means.values()),
-                     *(values.get(name, "") for name in names)])  # fmt: skip
-        header = ["trial", "score", *search["score"], *names]
-        write_atomically(os.path.join(out, "trials.csv"), csv_text(header, rows))
+    """Flies the search and writes OUT/trials.csv, a row for each trial in the order they were flown, and
+    OUT/finals.csv."""
+    trials = []
+    for one in _trials(search, work, bin_dir, parallel):
+        trials.append(one)
+        _write(search, out, "trials.csv", [_row(search, *each) for each in trials])
     cells = len(search["scenarios"]) * len(search["conditions"])
-    print(f"{search['trials']} trials, {search['trials'] * cells * search['episodes']} episodes")
+    episodes = search["trials"] * search["episodes"]
+    if search["finals"]:
+        episodes += _finals(search, trials, out, work, bin_dir, parallel)
+    print(f"{search['trials']} trials, {episodes * cells} episodes")
