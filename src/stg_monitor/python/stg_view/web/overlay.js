@@ -70,7 +70,11 @@
         add(colours.stable, "tracking band", "ring");
         if (r.meta.sensing_range_m > 0) add(colours.search, "sensing range", "ring");
       }
-      if (r.steps.has("range")) add(colours.approach, "range just measured", "ring");
+      // Every recording has the column; where no sensor measures ranges it holds none.
+      const ranges = r.steps.column("range");
+      if (ranges && ranges.data.subarray(0, Math.min(20000, r.steps.count * ranges.width)).some((x) => x > 0)) {
+        add(colours.approach, "range just measured", "ring");
+      }
       if ((r.meta.obstacles || []).length > 0) add(STG.shapes.OBSTACLE, "obstacle");
       if (r.packets.count > 0) {
         add(colours.heard, "packet heard", "bar");
