@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <set>
+#include <vector>
 
 #include "algorithms/game.hpp"
+#include "marl_trainer/learn/algorithms/madqn/madqn.hpp"
 
 /// Games with known optima: what an algorithm must be able to learn.
 namespace stg::learn {
@@ -118,6 +122,31 @@ TEST(Quadratic, TheBestBinsAreChosen) {
     const float best = std::abs(x) < 0.66 ? 0.0F : x > 0 ? 0.375F : -0.375F;
     for (const float a : training.Act(x)) EXPECT_EQ(a, best) << x;
   }
+}
+
+TEST(Codebook, ForcesAndMomentsShareTheirLevels) {
+  Problem forces;
+  forces.action_size = 6;
+  QOptions options;
+  options.heads = "book";
+  const Codebook book(forces, options);
+  ASSERT_EQ(book.heads, 1);
+  ASSERT_EQ(book.count, 125);
+  ASSERT_EQ(book.width, 6);
+  std::set<std::vector<float>> codes;
+  for (int k = 0; k < book.count; ++k) {
+    const float* code = book.choices.data() + static_cast<std::ptrdiff_t>(k) * book.width;
+    for (int d = 0; d < 3; ++d) EXPECT_EQ(code[d], code[d + 3]) << k;
+    EXPECT_EQ(book.Nearest(0, code), k);
+    codes.insert({code, code + 3});
+  }
+  EXPECT_EQ(codes.size(), 125U);  // all of them, and each once
+  // Of three velocities it is every combination.
+  Problem velocities;
+  velocities.action_size = 3;
+  QOptions joint;
+  joint.heads = "joint";
+  EXPECT_EQ(Codebook(velocities, options).choices, Codebook(velocities, joint).choices);
 }
 
 TEST(OwnReward, IsWhatTheAgentsLearnFromWhereTheyAreTold) {

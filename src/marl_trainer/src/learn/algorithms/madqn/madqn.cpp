@@ -46,11 +46,16 @@ Codebook::Codebook(const Problem& problem, const QOptions& options) {
     return;
   }
   width = problem.action_size;
-  for (int d = 0; d < width; ++d) count *= options.bins;
+  const int free = options.heads == "book" ? std::min(width, kBookDimensions) : width;
+  for (int d = 0; d < free; ++d) count *= options.bins;
+  std::vector<float> code(static_cast<std::size_t>(free));
   for (int k = 0; k < count; ++k) {
-    for (int d = 0, rest = k; d < width; ++d, rest /= options.bins) {
-      choices.push_back(bins[static_cast<std::size_t>(rest % options.bins)]);
+    int rest = k;
+    for (float& level : code) {
+      level = bins[static_cast<std::size_t>(rest % options.bins)];
+      rest /= options.bins;
     }
+    for (int d = 0; d < width; ++d) choices.push_back(code[static_cast<std::size_t>(d % free)]);
   }
 }
 

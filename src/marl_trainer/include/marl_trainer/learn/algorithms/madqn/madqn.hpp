@@ -9,6 +9,9 @@
 
 namespace stg::learn {
 
+/// Dimensions of an action that a row of the book is free in; the others repeat them.
+constexpr int kBookDimensions = 3;
+
 /// The actions that a Q-network chooses among: `heads` choices, each of a row of `choices`.
 struct Codebook {
   Codebook(const Problem& problem, const QOptions& options);
@@ -22,8 +25,8 @@ struct Codebook {
 
 /// MADQN: independent double Q-learning on each AUV's own observation (Tampuu et al. 2017, van
 /// Hasselt et al. 2016) from the team's reward, with a network that all AUVs share. One head per
-/// action dimension (Tavakoli et al. 2018), or one for all combinations; dueling (Wang et al.
-/// 2016): outputs V, then the advantages [heads, count], and q = V + A - mean A.
+/// action dimension (Tavakoli et al. 2018), or one for all combinations or a book of them; dueling
+/// (Wang et al. 2016): outputs V, then the advantages [heads, count], and q = V + A - mean A.
 class Madqn : public ReplayLearner {
  public:
   Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
