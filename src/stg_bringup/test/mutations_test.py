@@ -6,6 +6,7 @@ import json
 import pathlib
 import random
 import re
+import struct
 import unittest
 
 import rosgraph
@@ -18,6 +19,7 @@ from mutations import mutated, stamped
 from std_msgs.msg import Header
 
 MUTATIONS = 60  # of each topic
+FLOOD = 300_000  # messages
 FAR_FUTURE = (2.0**31 + 2.0, 2.0**32 - 0.05)  # [s]
 NOT_OURS = ("/rosout", "/mutations_test", "/recorder")
 
@@ -186,6 +188,25 @@ class Mutations(unittest.TestCase):
         self.check_all_is_well()
         for line in summaries.read_bytes().splitlines():
             self.assertIn("episode", json.loads(line.decode()))
+
+    def test_8_a_flood_takes_no_memory(self):
+        # Sent in pieces of a thousand messages, as fast as sockets take them.
+        tap = next(tap for tap in self.taps if tap.topic == "/auv_0/task_state")
+        buffer = io.BytesIO()
+        tap.message().serialize(buffer)
+        piece = (struct.pack("<I", len(buffer.getvalue())) + buffer.getvalue()) * 1000
+        before = self.resident_kb("/metrics")
+        for _ in range(FLOOD // 1000):
+            for connection in tap.publisher.impl.connections:
+                connection.write_data(piece)
+        grown = self.resident_kb("/metrics") - before
+        self.check_all_is_well()
+        self.assertLess(grown, 70 * 1024, "the metrics keep what they cannot handle yet")
+
+    def resident_kb(self, node):
+        """Returns the resident memory of a node."""
+        status = pathlib.Path(f"/proc/{self.pids[node]}/status").read_text(encoding="utf-8")
+        return int(re.search(r"VmRSS:\s*(\d+)", status).group(1))
 
     def refusals(self):
         """Returns how many messages each node says it has refused."""

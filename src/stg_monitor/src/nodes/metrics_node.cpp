@@ -18,8 +18,9 @@
 namespace stg::nodes {
 namespace {
 
-/// Without limit: in lockstep nobody waits for this node, and a lost message spoils an episode.
-constexpr std::uint32_t kUnlimited = 0;
+/// Messages of a topic that wait: in lockstep nobody waits for this node, and a lost message spoils
+/// an episode. So many are of ten seconds of the fastest run; a flood of messages takes no more.
+constexpr std::uint32_t kQueue = 50000;
 /// Memory for a run whose frames never get complete.
 constexpr std::size_t kMaxFrames = 5000;
 /// Steps by which an agent's messages may come before the world's: what sockets and queues hold.
@@ -75,7 +76,7 @@ void MetricsNode::Subscribe() {
           }
         };
     subscribers_.push_back(
-        node.subscribe<Message>(topic, kUnlimited, callback, ros::VoidConstPtr(), NoDelay()));
+        node.subscribe<Message>(topic, kQueue, callback, ros::VoidConstPtr(), NoDelay()));
   };
   into_frames(
       topics::kSwarmState, [](SwarmFrame & f) -> auto& { return f.truth; },
