@@ -178,7 +178,7 @@ class Markers(unittest.TestCase):
         wait_for(lambda: self.diagnostics.value("markers", "refused odom: not finite"), 10.0,
                  "refused odometry in the diagnostics")
         wait_for(lambda: self.diagnostics.value("markers", "AUVs seen") == synthetic_bag.AGENTS,
-                 10.0, "all AUVs in the diagnostics")
+                 40.0, "all AUVs in the diagnostics")
 
     def test_no_marker_is_one_that_rviz_complains_about(self):
         self.publish_until(lambda: self.shown("close", "hull"), "a hull")
