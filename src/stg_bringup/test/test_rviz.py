@@ -134,19 +134,41 @@ class RvizFiles(unittest.TestCase):
             return current["Distance"] * math.tan(0.5 * current["Field of View"])
 
         field = {"workspace": {"half_extent_m": 2000.0}, "vehicle": {"radius_m": 2.5},
-                 "reward": {"band_m": [60.0, 120.0]}, "sea": {"open": True}}  # fmt: skip
+                 "reward": {"band_m": [60.0, 120.0]}, "sea": {"open": True},
+                 "reset": {"deploy": "area"}}  # fmt: skip
         box = {"workspace": {"half_extent_m": 1.0}, "vehicle": {"radius_m": 0.011},
                "reward": {"band_m": [0.010, 0.015]}}  # fmt: skip
         for scenario in (box, field):
             extent = scenario["workspace"]["half_extent_m"]
             self.assertLess(extent, shown_m("overview", scenario))
             self.assertLess(shown_m("overview", scenario), 2.0 * extent)
+        # Where AUVs start around one target, the overview shows them and not the whole sea.
+        near = dict(field, reset={"deploy": "around", "stage": "medium",
+                                  "stages": {"medium": {"auv_distance_m": [200.0, 500.0]}}})  # fmt: skip
+        self.assertEqual(camera("overview", near)["Target Frame"], "target_0")
+        self.assertLess(620.0, shown_m("overview", near))
+        self.assertLess(shown_m("overview", near), 2.0 * 620.0)
+        two = dict(near, target={"count": 2})
+        self.assertEqual(shown_m("overview", two), shown_m("overview", field))
         band = field["reward"]["band_m"][1]
         self.assertLess(1.3 * band, shown_m("follow", field))
         self.assertLess(shown_m("follow", field), 3.0 * band)
         shipped = rviz_files()["follow.rviz"]["Visualization Manager"]["Views"]["Current"]
         self.assertEqual(camera("follow", box)["Distance"], shipped["Distance"])
         self.assertEqual(camera("follow", {})["Distance"], shipped["Distance"])
+
+    def test_white_captions_can_be_read_over_every_depth(self):
+        source = (MARKERS / "parts" / "terrain_markers.cpp").read_text().partition("kStops[] = {")[2]
+        stops = re.findall(r"{([\d., ]+)}", source.partition("}};")[0] + "}")
+        self.assertEqual(len(stops), 5)
+        white, before = 1.0 + 0.05, 0.0
+        for stop in stops:
+            linear = [(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4)
+                      for c in map(float, stop.split(",")[1:])]  # fmt: skip
+            luminance = sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear))
+            self.assertGreater(white / (luminance + 0.05), 3.0, stop)  # of WCAG, for large letters
+            self.assertGreater(luminance, before, "shallower is lighter")
+            before = luminance
 
     def test_a_scenario_that_is_none_is_refused_in_one_line(self):
         with tempfile.TemporaryDirectory() as name:

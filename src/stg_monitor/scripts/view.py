@@ -27,20 +27,44 @@ from stg_view.scenario_reading import sections_of
 ON_LOOPBACK = "libauv_common_nodes.so"  # lets rviz's XML-RPC listen where ROS_IP says
 WAIT_S = 15.0  # of wall time for a scenario to appear
 HALF_EXTENT_M, RADIUS_M = 1.0, 0.011  # of the scenario that the views are written for
+TARGET_FRAME = "target_0"
 BANDS_AWAY = 26.0  # factor of the close-up's camera for each metre of the tracking band
+
+
+def number(section, key, fallback):
+    """Returns a key of a section, if it is a positive number."""
+    value = section.get(key)
+    return float(value) if isinstance(value, (int, float)) and value > 0 else fallback
+
+
+def half_extent(scenario):
+    """Returns half the size of the workspace."""
+    return number(scenario["workspace"], "half_extent_m", HALF_EXTENT_M)
+
+
+def shown_half_extent(scenario):
+    """Returns half the size of what the overview shows at first, as the markers have it
+    (ShownHalfExtent): in open water a target and the AUVs where they start, else all of it."""
+    everything = half_extent(scenario)
+    reset = scenario["reset"]
+    if not scenario["sea"].get("open") or scenario["target"].get("count", 1) != 1:
+        return everything
+    stages = reset.get("stages")
+    stage = stages.get(reset.get("stage")) if isinstance(stages, dict) else None
+    distance = stage.get("auv_distance_m") if isinstance(stage, dict) else None
+    if reset.get("deploy") == "area" or not isinstance(distance, list) or len(distance) != 2:
+        return everything
+    farthest = number({"farthest": distance[1]}, "farthest", everything)
+    band = scenario["reward"].get("band_m") or [0.0, 0.0]
+    return min(everything, farthest + float(band[1]))
 
 
 def camera_scale(view, scenario):
     """Returns how many times farther away than in the shipped view the camera has to be."""
-
-    def number(section, key, fallback):
-        value = scenario[section].get(key)
-        return float(value) if isinstance(value, (int, float)) and value > 0 else fallback
-
     if view == "overview":
-        return number("workspace", "half_extent_m", HALF_EXTENT_M) / HALF_EXTENT_M
+        return shown_half_extent(scenario) / HALF_EXTENT_M
     # In the box the close-up shows hulls, in open water the band around the target.
-    hulls = number("vehicle", "radius_m", RADIUS_M) / RADIUS_M
+    hulls = number(scenario["vehicle"], "radius_m", RADIUS_M) / RADIUS_M
     band = scenario["reward"].get("band_m")
     if not scenario["sea"].get("open") or not band:
         return hulls
@@ -88,6 +112,9 @@ def main():
     package = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
     config = yaml.safe_load((package / "rviz" / f"{arguments.view}.rviz").read_text())
     fit(config, camera_scale(arguments.view, scenario))
+    if arguments.view == "overview" and shown_half_extent(scenario) < half_extent(scenario):
+        # What the overview shows then moves with the target.
+        config["Visualization Manager"]["Views"]["Current"]["Target Frame"] = TARGET_FRAME
     if arguments.write:
         pathlib.Path(arguments.write).write_text(yaml.safe_dump(config))
         return 0
@@ -96,8 +123,8 @@ def main():
         view.write_text(yaml.safe_dump(config))
         viewer = subprocess.Popen(["rviz", "-d", str(view), *names],
                                   env=dict(os.environ, LD_PRELOAD=ON_LOOPBACK))
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: viewer.terminate())
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(sent, lambda *_: viewer.terminate())
         return viewer.wait()
 
 

@@ -5,6 +5,9 @@ import math
 from stg_common.files import Damaged
 
 
+SECTIONS = ("workspace", "vehicle", "reward", "sea", "reset", "target")
+
+
 def is_number(value):
     """Whether a value is a finite number."""
     return type(value) in (int, float) and abs(value) < math.inf
@@ -15,7 +18,7 @@ def sections_of(scenario, name):
     Damaged, with the `name` of its source, where it is none."""
     if not isinstance(scenario, dict):
         raise Damaged(name, "is no scenario")
-    sections = {key: scenario.get(key) or {} for key in ("workspace", "vehicle", "reward", "sea")}
+    sections = {key: scenario.get(key) or {} for key in SECTIONS}
     for key, section in sections.items():
         if not isinstance(section, dict):
             raise Damaged(name, f"{key}: is no section")

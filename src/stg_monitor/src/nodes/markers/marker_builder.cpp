@@ -38,8 +38,8 @@ class Builder : private MarkerList {
     if (!view_.scene.sea.open) Walls(h);
     // From each AUV and target a thread to the floor, or to the sea's surface: depth is hard to see
     // otherwise.
-    Marker threads =
-        Lines("workspace", 2, Marker::LINE_LIST, 0.002 * h, Color(0.7, 0.75, 0.8, 0.25));
+    Marker threads = Lines("workspace", 2, Marker::LINE_LIST,
+                           0.002 * view_.scene.shown_half_extent_m, Color(0.7, 0.75, 0.8, 0.25));
     const auto thread = [&](const Point& p) {
       threads.points.push_back(p);
       threads.points.push_back(At(p.x, p.y, view_.scene.sea.open ? 0.0 : -h));
@@ -227,8 +227,7 @@ class Builder : private MarkerList {
                   "distance %.*f m  link quality %.2f  age %.2f s  packets lost %.0f %%",
                   Digits() + 1, distance / std::max(vehicles, 1), quality / links, age / links,
                   100.0 * static_cast<double>(dropped) / packets);
-    const double h = view_.scene.half_extent_m;
-    Point top = At(0, 0, 1.25 * h);
+    Point top = Sum(Centre(), At(0, 0, 1.25 * view_.scene.shown_half_extent_m));
     double height = 1.4 * text_;
     if (!style_.whole_workspace) {
       if (view_.targets.empty() || !view_.targets[0].seen) return;
@@ -244,13 +243,25 @@ class Builder : private MarkerList {
     if (style_.whole_workspace) Legend();
   }
 
+  /// Of what the overview shows.
+  Point Centre() const {
+    const bool all = view_.scene.shown_half_extent_m >= view_.scene.half_extent_m;
+    if (all || view_.targets.empty() || !view_.targets[0].seen) return At(0, 0, 0);
+    return view_.targets[0].position;
+  }
+
   void Legend() {
-    const double h = view_.scene.half_extent_m;
+    const double h = view_.scene.shown_half_extent_m;
+    const auto line = [&](int k) {
+      return Sum(Centre(), At(1.12 * h, -1.12 * h, 0.9 * h - 2.0 * text_ * k));
+    };
     for (int k = 0; k < 4; ++k) {
       const auto phase = static_cast<ShownPhase>(k);
-      Text("legend", k, At(1.12 * h, -1.12 * h, 0.9 * h - 2.0 * text_ * k), 1.3 * text_,
-           PhaseName(phase), PhaseColor(phase));
+      Text("legend", k, line(k), 1.3 * text_, PhaseName(phase), PhaseColor(phase));
     }
+    // Of a few AUVs each label says it in words.
+    if (static_cast<int>(view_.vehicles.size()) <= kManyVehicles) return;
+    Text("legend", 4, line(4), 1.3 * text_, "* leads", Color(1, 1, 1, 0.95));
   }
 
   const SwarmView& view_;

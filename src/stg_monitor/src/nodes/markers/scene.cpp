@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace stg::nodes {
@@ -16,6 +17,20 @@ void ReadRows(const YAML::Node& list, std::size_t size, std::vector<std::vector<
     for (const double x : numbers) finite = finite && std::isfinite(x);
     if (finite) rows->push_back(std::move(numbers));
   }
+}
+
+/// Half the size of what the overview shows at first: in open water a target and the AUVs where
+/// they start, else all of it. view.py has the camera that fits.
+double ShownHalfExtent(const YAML::Node& root, const SceneConfig& scene) {
+  const YAML::Node reset = root["reset"];
+  const bool anywhere = !reset || reset["deploy"].as<std::string>("around") == "area";
+  const int targets = root["target"] ? root["target"]["count"].as<int>(1) : 1;
+  if (!scene.sea.open || anywhere || targets != 1 || !reset["stages"]) return scene.half_extent_m;
+  const YAML::Node stage = reset["stages"][reset["stage"].as<std::string>("")];
+  if (!stage || !stage["auv_distance_m"]) return scene.half_extent_m;
+  const double farthest = stage["auv_distance_m"][1].as<double>(0.0);
+  if (!(farthest > 0.0)) return scene.half_extent_m;
+  return std::min(scene.half_extent_m, farthest + scene.band_hi_m);
 }
 
 }  // namespace
@@ -49,6 +64,7 @@ SceneConfig ReadScene(const std::string& yaml) {
     ReadRows(sea["spheres"], 4, &scene.sea.spheres);
     ReadRows(sea["cylinders"], 5, &scene.sea.cylinders);
   }
+  scene.shown_half_extent_m = ShownHalfExtent(root, scene);
   return scene;
 }
 

@@ -18,16 +18,17 @@ constexpr int kScaleSteps = 6;        // colours named in the scale
 constexpr double kLeastSpan_m = 1.0;  // less is a flat bottom, which has one colour
 constexpr double kFlatShare = 0.35;
 
-/// From the deepest point (0) through blues and greens to the shallowest (1); land is brown.
+/// From the deepest point (0) through blues and greens to the shallowest (1); land is brown. All
+/// are dark enough for white captions in front of them.
 std_msgs::ColorRGBA DepthColor(double share, bool land) {
   struct Stop {
     double at, r, g, b;
   };
   static constexpr Stop kStops[] = {{0.00, 0.06, 0.09, 0.30},
                                     {0.30, 0.09, 0.25, 0.55},
-                                    {0.60, 0.12, 0.50, 0.66},
-                                    {0.85, 0.35, 0.72, 0.62},
-                                    {1.00, 0.80, 0.83, 0.58}};
+                                    {0.60, 0.10, 0.42, 0.58},
+                                    {0.85, 0.22, 0.52, 0.46},
+                                    {1.00, 0.50, 0.52, 0.30}};
   if (land) return Color(0.45, 0.36, 0.22);
   const double s = std::clamp(share, 0.0, 1.0);
   std::size_t k = 1;

@@ -23,12 +23,12 @@ struct MarkerStyle {
 /// in a view of a whole field, or of a band around a target.
 inline double UnitOf(const SwarmView& view, const MarkerStyle& style) {
   const double unit = view.scene.radius_m * style.vehicle_scale;
-  return std::max(
-      unit, style.whole_workspace ? 0.03 * view.scene.half_extent_m : 0.06 * view.scene.band_hi_m);
+  return std::max(unit, style.whole_workspace ? 0.03 * view.scene.shown_half_extent_m
+                                              : 0.06 * view.scene.band_hi_m);
 }
 /// Height of letters [m].
 inline double LettersOf(const SwarmView& view, const MarkerStyle& style) {
-  return style.whole_workspace ? 0.05 * view.scene.half_extent_m
+  return style.whole_workspace ? 0.05 * view.scene.shown_half_extent_m
                                : std::max(0.36 * UnitOf(view, style), 0.08 * view.scene.band_hi_m);
 }
 /// Simulated time that trails reach back: longer where decisions are.

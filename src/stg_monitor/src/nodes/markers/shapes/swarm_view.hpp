@@ -22,6 +22,7 @@ namespace stg::nodes {
 struct SceneConfig {
   std::string name;
   double half_extent_m = 1.0;
+  double shown_half_extent_m = 1.0;  ///< of what the overview shows at first, around target 0
   double sensing_range_m = 0.45;
   double band_lo_m = 0.010, band_hi_m = 0.015;
   double radius_m = 0.011;
