@@ -1,0 +1,162 @@
+#include "modem_fixture.hpp"
+
+/// What third-party clients wrote to emulated modems, byte for byte and in their rhythm, and what
+/// they must hear. Recorded with modems.launch command_log:=FILE; docs/modems.md names the
+/// versions.
+namespace stg::acoustics {
+namespace {
+
+/// A client's words: seconds, host, bytes.
+struct Spoken {
+  double t_s;
+  int host;
+  std::string bytes;
+};
+
+void Replay(ModemBench* bench, const std::vector<Spoken>& words) {
+  for (const Spoken& word : words) bench->Say(word.host, word.t_s, word.bytes);
+  bench->water->Advance(Ns(words.back().t_s + 30.0));
+}
+
+/// Whether text has the parts, in this order.
+void ExpectInOrder(const std::string& text, const std::vector<std::string>& parts) {
+  std::size_t at = 0;
+  for (const std::string& part : parts) {
+    const std::size_t found = text.find(part, at);
+    ASSERT_NE(found, std::string::npos) << part << " after " << at << " of\n" << text;
+    at = found + part.size();
+  }
+}
+
+TEST(Transcripts, SignetsBurstTransmitterAndReceiver) {
+  ModemBench bench(2);
+  bench.StartS2c();
+  Replay(&bench, {{1.0, 1, "ATZ4\n"},
+                  {4.2, 0, "ATZ4\n"},
+                  {4.7, 0, "AT*SENDIM,18,2,noack,CIAO CIAO0        \n"},
+                  {7.7, 0, "AT*SENDIM,18,2,noack,CIAO CIAO1        \n"},
+                  {10.7, 0, "AT*SENDIM,18,2,ack,CIAO CIAO2        \n"},
+                  {23.7, 0, "AT?T\n"}});
+  EXPECT_EQ(bench.hosts.all[0], "OK\r\nOK\r\nOK\r\nOK\r\nDELIVEREDIM,2\r\n1000000\r\n");
+  ExpectInOrder(bench.hosts.all[1],
+                {"OK\r\n", "RECVIM,18,1,2,noack,349500,", ",0.0000,CIAO CIAO0        \r\n",
+                 "CIAO CIAO1        \r\n", "RECVIM,18,1,2,ack,", "CIAO CIAO2        \r\n"});
+}
+
+TEST(Transcripts, Evins) {
+  ModemBench bench(2);
+  bench.StartS2c(s2c::ModemOptions());  // AT interpreters
+  std::vector<Spoken> words;
+  double t_s = 10.188;
+  for (const char* word : {"?MODE", "?AL", "?AM", "?PID", "@ZF1", "@ZX1", "@ZU1", "@ZA1"}) {
+    for (const int host : {0, 1}) {
+      words.push_back({t_s, host, "+++AT" + std::string(word) + "\n"});
+    }
+    t_s += 0.008;
+  }
+  words.insert(words.end(), {{17.734, 0, "+++AT?S\n"},
+                             {19.739, 0, "+++AT*SENDIM,p0,6,2,noack,to two\n"},
+                             {22.741, 0, "+++AT*SENDIM,p0,5,2,ack,hello\n"},
+                             {28.764, 0, "+++AT?T\n"},
+                             {30.760, 0, "+++AT*SENDIM,p0,6,255,noack,to all\n"},
+                             {33.771, 0, "+++AT!L9\n"},
+                             {35.786, 0, "+++AT*SENDIM,p0,6,77,ack,nobody\n"},
+                             {49.786, 0, "+++AT*SEND,p0,15,2,a burst of data\n"},
+                             {63.789, 0, "+++AT*SENDPBM,p0,5,2,rides\n"},
+                             {65.795, 0, "+++AT*SENDIMS,p0,3,2,,now\n"},
+                             {69.803, 0, "+++ATZ3\n"}});
+  Replay(&bench, words);
+  // Its parser wants OK to all settings of the start-up, and four fields of RECVEND.
+  ExpectInOrder(bench.hosts.all[0], {"+++AT?MODE:2:AT\r\n",
+                                     "+++AT?AL:1:1\r\n",
+                                     "+++AT?AM:3:254\r\n",
+                                     "+++AT?PID:1:0\r\n",
+                                     "+++AT@ZF:2:OK\r\n",
+                                     "+++AT@ZX:2:OK\r\n",
+                                     "+++AT@ZU:2:OK\r\n",
+                                     "+++AT@ZA:2:OK\r\n",
+                                     "+++AT?S:17:INITIATION LISTEN",
+                                     "+++AT*SENDIM:2:OK\r\n",
+                                     ":SENDSTART,2,im,217500,0\r\n",
+                                     ":SENDEND,2,im,19739000,217500\r\n",
+                                     ":RECVSTART\r\n",
+                                     ":RECVEND,24967500,162500,-130,508\r\n",
+                                     "+++AT:13:DELIVEREDIM,2\r\n",
+                                     "+++AT?T:7:1000000\r\n",
+                                     "SENDSTART,255,im,",
+                                     "+++AT!L:18:ERROR OUT OF RANGE\r\n",
+                                     "+++AT:11:FAILEDIM,77\r\n",
+                                     "+++AT*SEND:2:OK\r\n",
+                                     "+++AT:7:RADDR,2\r\n",
+                                     "+++AT:18:BITRATE,local,6900\r\n",
+                                     "+++AT:13:DELIVERED,1,2\r\n",
+                                     "+++AT*SENDPBM:2:OK\r\n",
+                                     "+++AT*SENDIMS:2:OK\r\n",
+                                     "SENDEND,2,ims,65795000,",
+                                     "+++ATZ3:2:OK\r\n",
+                                     "+++AT:13:CANCELEDPBM,2\r\n"});
+  ExpectInOrder(bench.hosts.all[1],
+                {"RECVIM,p0,6,1,2,noack,217500,-130,508,0.0000,to two\r\n",
+                 "RECVIM,p0,5,1,2,ack,206500,-130,508,0.0000,hello\r\n", "RECVIM,p0,6,1,255,noack,",
+                 "RADDR,1\r\n", "RECV,p0,15,1,2,6900,-130,508,1000000,0.0000,a burst of data\r\n",
+                 "RECVIMS,p0,3,1,2,66795000,184500,-130,508,0.0000,now\r\n"});
+}
+
+TEST(Transcripts, Pyacomms) {
+  ModemBench bench(2);
+  bench.StartMicromodems();
+  Replay(&bench, {{5.0, 0, "$CCCFG,SRC,3*33\r\n"},  // its modems had the addresses 3 and 4
+                  {5.0, 1, "$CCCFG,SRC,4*34\r\n"},
+                  {6.0, 0, "$CCCFQ,SRC*3A\r\n"},
+                  {7.1, 1, "$CCCFQ,SRC*3A\r\n"},
+                  {8.1, 0, "$CCCFG,DTO,8*25\r\n"},
+                  {8.3, 0, "$CCCFQ,DTO*27\r\n"},
+                  {8.5, 0, "$CCMPC,3,4*59\r\n"},
+                  {13.0, 0, "$CCCYC,0,3,4,1,0,3*5C\r\n"},
+                  {13.1, 0, "$CCTXD,3,4,0,000001006b072b33*7D\r\n"},
+                  {13.2, 0, "$CCTXD,3,4,0,000001006b072b33*7D\r\n"},
+                  {13.3, 0, "$CCTXD,3,4,0,000001006b072b33*7D\r\n"},
+                  {20.0, 0, "$CCCYC,0,3,4,1,0,1*5E\r\n"},
+                  {20.1, 0, "$CCTXD,3,4,1,68656c6c6f2066726f6d20707961636f6d6d73*7B\r\n"},
+                  {30.0, 0, "$CCCYC,0,3,4,0,0,1*5F\r\n"},
+                  {31.5, 0, "$CCTXD,3,4,0,66736b206672616d65*7E\r\n"},
+                  {40.0, 0, "$CCXYZ,1*00\r\n"}});
+  ExpectInOrder(bench.hosts.all[0], {"$CACFG,SRC,3*31\r\n",
+                                     "$CACFG,DTO,8*27\r\n",
+                                     "$CACFG,DTO,8*27\r\n",
+                                     "$CAMPC,3,4*5B\r\n",
+                                     "$CATXP,2*40\r\n",
+                                     "$CATXF,2*56\r\n",
+                                     "$CARXP,0*44\r\n",
+                                     "$CAMPR,4,3,1.0000*",
+                                     "$CACST,6,0,",
+                                     "$CACYC,0,3,4,1,0,3*5E\r\n",
+                                     "$CADRQ,",
+                                     "$CATXD,3,4,0,8*45\r\n",
+                                     "$CADRQ,",
+                                     "$CATXD,3,4,0,8*45\r\n",
+                                     "$CADRQ,",
+                                     "$CATXD,3,4,0,8*45\r\n",
+                                     "$CATXP,24*74\r\n",
+                                     "$CATXF,24*62\r\n",
+                                     "$CAXST,6,",
+                                     "$CATXD,3,4,1,19*74\r\n",
+                                     "$CAACK,4,3,1,1*4C\r\n",
+                                     "$CACST,6,0,",
+                                     "$CACYC,0,3,4,0,0,1*5D\r\n",
+                                     "$CATXP,2*40\r\n",
+                                     "$CATXF,2*56\r\n",
+                                     "$CADRQ,",
+                                     "$CATXD,3,4,0,9*44\r\n",
+                                     "$CATXF,9*5D\r\n",
+                                     "$CAERR,",
+                                     ",NMEA,1,bad checksum*"});
+  ExpectInOrder(bench.hosts.all[1],
+                {"$CACFG,SRC,4*36\r\n", "$CARXP,0*44\r\n", "$CAMPA,3,4*59\r\n", "$CACST,6,0,",
+                 "$CARXD,3,4,0,1,000001006B072B33*64\r\n", "$CARXD,3,4,0,3,", "$CACST,6,0,",
+                 "$CARXD,3,4,1,1,68656C6C6F2066726F6D20707961636F6D6D73*62\r\n", "$CACST,6,0,",
+                 "$CATXP,2*40\r\n", "$CARXD,3,4,0,1,66736B206672616D65*67\r\n"});
+}
+
+}  // namespace
+}  // namespace stg::acoustics
