@@ -1,5 +1,6 @@
 #include "stg_agent/controllers/search_laws.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -11,6 +12,8 @@ namespace {
 using config::NonNegative;
 
 constexpr int kCourses = 64;
+/// In place of a plan's leg: the course is one to a target that was found.
+constexpr int kCloseIn = -1;
 
 Encircle CircleOf(const FoundOptions& found) {
   EncircleOptions o;
@@ -21,16 +24,8 @@ Encircle CircleOf(const FoundOptions& found) {
 Formation FormOf(const FoundOptions& found) {
   FormationOptions o;
   o.fast_mps = found.fast_mps;
+  o.team_range_m = found.team_range_m;
   return {o};
-}
-
-void DescribeFound(FoundOptions* o, config::Table* t) {
-  t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
-         "without an observation for so long, the search begins again");
-  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
-  t->Add(
-      "form", &o->form, config::kFraction, "-",
-      "a target that is found is circled (0, encircle), or a place is kept at it (1, formation)");
 }
 
 /// The course on which most is swept (Koopman 1956; Stone 1975).
@@ -127,6 +122,21 @@ class MapLaw final : public SearchLaw {
 
 }  // namespace
 
+void DescribeFound(FoundOptions* o, config::Table* t) {
+  t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
+         "without an observation for so long, the search begins again");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
+  t->Add(
+      "form", &o->form, config::kFraction, "-",
+      "a target that is found is circled (0, encircle), or a place is kept at it (1, formation)");
+  t->Add("certain", &o->certain_m, NonNegative(1e5), "m",
+         "a target whose estimate is less certain is closed in on by the map; 0: never");
+  t->Add("close-reach", &o->close_reach_m, config::Positive(1e5), "m",
+         "how far the map's mass counts then");
+  t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
+         "form=1: others farther from the target have no place in the ring");
+}
+
 SearchLaw::SearchLaw(const FoundOptions& found)
     : found_(found), circle_(CircleOf(found)), form_(FormOf(found)) {}
 
@@ -163,12 +173,17 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance,
   const TargetBelief belief = agent.belief();
   const bool found = belief.started && belief.observed &&
                      Seconds(search->now() - belief.information) <= found_.give_up_s;
-  if (found) {
+  if (found && Certain(belief)) {
     search->plan.made = false;
     Follow(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, guidance, action);
   } else {
+    // A plan of one kind says nothing to the other.
+    SearchPlan& plan = search->plan;
+    const bool closes_in = plan.leg == kCloseIn;
+    if (closes_in != found) plan.made = false;
+    plan.leg = found ? kCloseIn : closes_in ? 0 : plan.leg;
     // A far circle around the goal is the way to it, clear of the others and of the chart.
-    const Level<double> goal = Goal(agent, search);
+    const Level<double> goal = found ? WayToMass(agent, search) : Goal(agent, search);
     const double c = std::cos(guidance.phase_rad), s = std::sin(guidance.phase_rad);
     k.r_BT_W.x = c * goal.x - s * goal.y;
     k.r_BT_W.y = s * goal.x + c * goal.y;
@@ -178,6 +193,53 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance,
     way.depth_m = guidance.depth_m;
     circle_.Act(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, way, action);
   }
+}
+
+bool SearchLaw::Certain(const TargetBelief& belief) const {
+  const double square = belief.P_WT.xx + belief.P_WT.yy;
+  return found_.certain_m <= 0.0 || square <= found_.certain_m * found_.certain_m;
+}
+
+double CourseToMass(const SearchMap& map, const Vec3<double>& p_WB, double reach_m, double course,
+                    double keep) {
+  constexpr std::size_t kWays = 32;
+  constexpr double kLeastMass = 1e-4;
+  std::array<double, kWays> worth{}, cosine{}, sine{};
+  const auto way = [&](std::size_t k) {
+    return course + 2.0 * kPi * static_cast<double>(k) / kWays;
+  };
+  for (std::size_t k = 0; k < kWays; ++k) {
+    cosine[k] = std::cos(way(k));
+    sine[k] = std::sin(way(k));
+  }
+  for (int r = 0; r < SearchMap::kSide; ++r) {
+    for (int c = 0; c < SearchMap::kSide; ++c) {
+      const double mass = map.mass(r, c);
+      if (mass < kLeastMass) continue;
+      const double x = map.x(c) - p_WB.x, y = map.y(r) - p_WB.y;
+      const double d = std::sqrt(x * x + y * y) + 1e-3;
+      const double pull = mass * std::exp(-d / reach_m);
+      for (std::size_t k = 0; k < kWays; ++k) {
+        const double along = (x * cosine[k] + y * sine[k]) / d;
+        if (along > 0.0) worth[k] += pull * along * along * along * along;
+      }
+    }
+  }
+  worth[0] *= keep;
+  const auto best = std::max_element(worth.begin(), worth.end()) - worth.begin();
+  return std::remainder(way(static_cast<std::size_t>(best)), 2.0 * kPi);
+}
+
+Level<double> SearchLaw::WayToMass(const AgentView& agent, SearchMemory* search) const {
+  constexpr double kReplan_s = 5.0, kKeep = 1.1, kFar_m = 1e4;
+  SearchPlan& plan = search->plan;
+  if (!plan.made || Seconds(search->now() - plan.time) >= kReplan_s) {
+    plan.course = CourseToMass(search->map(), agent.knowledge().p_WB, found_.close_reach_m,
+                               plan.course, plan.made ? kKeep : 1.0);
+    plan.time = search->now();
+    plan.made = true;
+  }
+  return {kFar_m * std::cos(plan.course), kFar_m * std::sin(plan.course)};
 }
 
 void Describe(SearchMapOptions* o, config::Table* t) {

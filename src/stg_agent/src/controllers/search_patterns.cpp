@@ -7,15 +7,8 @@
 namespace stg::agent {
 namespace {
 
-using config::NonNegative;
-
 void DescribePattern(PatternOptions* o, config::Table* t) {
-  t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
-         "without an observation for so long, the search begins again");
-  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
-  t->Add(
-      "form", &o->form, config::kFraction, "-",
-      "a target that is found is circled (0, encircle), or a place is kept at it (1, formation)");
+  DescribeFound(o, t);
   t->Add("spacing", &o->spacing, config::Positive(10), "-",
          "between two tracks, as a share of the detection range");
   t->Add("reached", &o->reached_m, config::Positive(1e4), "m",

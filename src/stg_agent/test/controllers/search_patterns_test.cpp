@@ -48,5 +48,29 @@ TEST(ParallelSweep, CoversTheBoxWithinHalfASpacing) {
   EXPECT_GT(worst, 0.3 * spacing);
 }
 
+TEST(CourseToMass, PointsAtThePartOfARingThatNobodyHasLookedAt) {
+  AgentModel m;
+  m.workspace.half_extent_m = 4000.0;
+  m.sensing.range_m = 400.0;
+  m.sensing.detection_probability = 0.9;
+  m.track.search_cell_m = 100.0;
+  SearchMap map(m);
+  map.Start({0, {0.0, 0.0, -40.0}, 600.0});
+  // It has come from the west, looking in vain, and then has one range of 350 m.
+  for (double x = -800.0; x < -99.0; x += 50.0) map.LookInVain({x, 0.0, -40.0});
+  dynamics::Detection d;
+  d.kind = dynamics::MeasurementKind::kRange;
+  d.p_WO = {0.0, 0.0, -40.0};
+  d.range_m = 350.0;
+  d.range_std_m = 5.0;
+  map.Find(d);
+  const Vec3<double> p_WB{0.0, 0.0, -40.0};
+  for (const double old : {0.0, 2.0, -3.0}) {
+    EXPECT_NEAR(CourseToMass(map, p_WB, 500.0, old, 1.0), 0.0, 0.5 * kPi / 8.0) << old;
+  }
+  // A course that is nearly as good is kept.
+  EXPECT_EQ(CourseToMass(map, p_WB, 500.0, 0.3, 1.2), 0.3);
+}
+
 }  // namespace
 }  // namespace stg::agent

@@ -15,7 +15,14 @@ struct FoundOptions {
   double give_up_s = 120.0;  ///< without an observation for so long the search begins again
   double fast_mps = 2.3;     ///< over ground, at most
   double form = 0.0;  ///< 0: circles the target as `encircle`; 1: keeps a place as `formation`
+  /// An estimate that is off by more than this, as it states, is one of several: the AUV flies to
+  /// where the map says that the target is, instead of around the middle of them. 0: never.
+  double certain_m = 0.0;
+  double close_reach_m = 500.0;  ///< how far the mass counts then
+  double team_range_m = 600.0;   ///< form=1: others farther from the target have no place
 };
+
+void DescribeFound(FoundOptions* o, config::Table* t);
 
 /// Constants of the search by the map.
 struct SearchMapOptions : FoundOptions {
@@ -71,11 +78,21 @@ class SearchLaw : public Controller {
  private:
   template <class T>
   void Follow(const ControllerInput<T>& input, const Guidance<T>& guidance, T* action) const;
+  /// Whether the AUV knows one place of its target.
+  bool Certain(const TargetBelief& belief) const;
+  /// The course to most of the mass that is near, relative to the own position.
+  Level<double> WayToMass(const AgentView& agent, SearchMemory* search) const;
 
   FoundOptions found_;
   Encircle circle_;
   Formation form_;
 };
+
+/// The course, of 32 from `course` on, on which most of a map's mass lies nearby [rad]: a cell
+/// counts by the fourth power of the cosine of its angle off the course and fades with `reach_m`.
+/// @param keep the course that it counts from is worth this times as much
+double CourseToMass(const SearchMap& map, const Vec3<double>& p_WB, double reach_m, double course,
+                    double keep);
 
 /// Of an AUV the `leg`-th waypoint of its pattern, world axes [m].
 /// @param id, agents which of how many @param spacing_m between two tracks

@@ -12,7 +12,7 @@ struct SearchPlan {
   bool made = false;    ///< false: the next two mean nothing
   TimeNs time = 0;      ///< when it was made
   double course = 0.0;  ///< [rad], from east anticlockwise
-  int leg = 0;          ///< of a pattern of legs
+  int leg = 0;          ///< of a pattern of legs; -1: it closes in
   bool turned = false;  ///< the pattern starts at its other end
 };
 
