@@ -67,6 +67,24 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
 }
 
 template <class T>
+Level<T> Encircle::ClearOfChart(const ControllerInput<T>& in, Level<T> v) const {
+  const AgentModel& s = in.model;
+  const Knowledge<T>& k = in.knowledge;
+  const EncircleOptions& o = options;
+  const Level<T> own{k.v_WB.x, k.v_WB.y};
+  const T turn_m = Norm(v) * T(1.0 / s.control.autopilot.max_turn_rate_radps + o.lead_s);
+  const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
+    const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));
+    const Level<T> there{T(x) - k.p_WB.x, T(y) - k.p_WB.y};
+    const Level<T> off = TurnedOff(v, own, there, T(radius_m + o.keep_off_m), turn_m);
+    v = {Select(beside, off.x, v.x), Select(beside, off.y, v.y)};
+  };
+  for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
+  for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
+  return v;
+}
+
+template <class T>
 Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guidance) const {
   const AgentModel& s = in.model;
   const EncircleOptions& o = options;
@@ -131,16 +149,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const Level<T> wanted = Within(v_T + direction * u, slow, fast);
 
   Level<T> v = Within(wanted + aside, slow, fast);
-  // What its chart shows, last: others give way, too, obstacles do not.
-  const T turn_m = Norm(v) * T(1.0 / s.control.autopilot.max_turn_rate_radps + o.lead_s);
-  const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
-    const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));
-    const Level<T> there{T(x) - k.p_WB.x, T(y) - k.p_WB.y};
-    const Level<T> off = TurnedOff(v, own, there, T(radius_m + o.keep_off_m), turn_m);
-    v = {Select(beside, off.x, v.x), Select(beside, off.y, v.y)};
-  };
-  for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
-  for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
+  v = ClearOfChart(in, v);
   const T climb = Clip((z - k.p_WB.z) * T(o.depth_gain_ps), T(-o.climb_mps), T(o.climb_mps));
   return {v.x, v.y, climb};
 }
@@ -150,6 +159,8 @@ template Vec3<double> Encircle::Velocity(const ControllerInput<double>& in,
 template Vec3<Pack> Encircle::Velocity(const ControllerInput<Pack>& in,
                                        const Guidance<Pack>& guidance) const;
 
+template Level<double> Encircle::ClearOfChart(const ControllerInput<double>&, Level<double>) const;
+template Level<Pack> Encircle::ClearOfChart(const ControllerInput<Pack>&, Level<Pack>) const;
 template double Encircle::Height(const ControllerInput<double>&, const double&) const;
 template Pack Encircle::Height(const ControllerInput<Pack>&, const Pack&) const;
 template double Encircle::Radius(const ControllerInput<double>&, const double&) const;

@@ -113,14 +113,7 @@ void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T
                       T(options.clearance_m) + n.age_s * T(options.doubt_mps),
                       Select(beside, one, zero));
   }
-  const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
-    const auto beside = (k.p_WB.z > T(lo - circle.layer_m)) && (k.p_WB.z < T(hi + circle.layer_m));
-    v = v + ring.Miss(own, {T(x) - k.p_WB.x, T(y) - k.p_WB.y}, Level<T>{},
-                      T(radius_m + circle.clearance_m), Select(beside, one, zero));
-  };
-  for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
-  for (const auto& b : s.sea.cylinders) pass(b[0], b[1], b[2], b[2] + b[4], b[3]);
-  v = Limited(v, options.slow_mps, options.fast_mps);
+  v = ring.ClearOfChart(in, Limited(v, options.slow_mps, options.fast_mps));
   const T climb =
       Clip((z - k.p_WB.z) * T(circle.depth_gain_ps), T(-circle.climb_mps), T(circle.climb_mps));
   const auto& vmax = s.vehicle.max_velocity_mps;

@@ -114,6 +114,24 @@ TEST(Formation, AHeapBecomesARingWithoutAnybodyPassingAnother) {
   }
 }
 
+TEST(Formation, KeepsOffTheChartAsEncircleDoes) {
+  AgentModel s = Sea();
+  s.control.autopilot.max_turn_rate_radps = 0.1;
+  FormationOptions o;
+  o.weave_below_mps = 0.0;
+  // Straight ahead on the way to its place stands something upright, whose edge is 1 m beyond what
+  // is kept clear.
+  const Places p = Ring({180.0, 0.0, 90.0, 270.0}, 400.0);
+  const Level<double> free = Velocity(s, o, p, {0.5, 0.0}, 0);
+  EXPECT_GT(free.x, 2.0);
+  s.sea.cylinders = {{-400.0 + 51.0, 0.0, -60.0, 30.0, 60.0}};
+  const Level<double> off = Velocity(s, o, p, {0.5, 0.0}, 0);
+  EXPECT_LT(off.x, 0.6) << "it does not fly in any more";
+  EXPECT_NEAR(Norm(off), Norm(free), 1e-9) << "it turns, and does not stop";
+  s.sea.cylinders[0][2] = -200.0;  // far below
+  EXPECT_EQ(Velocity(s, o, p, {0.5, 0.0}, 0).x, free.x);
+}
+
 TEST(Formation, ASlowTargetIsCircled) {
   const AgentModel s = Sea();
   const Places p = Ring({0.0, 90.0, 180.0, 270.0}, 90.0);

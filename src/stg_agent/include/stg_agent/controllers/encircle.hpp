@@ -181,6 +181,10 @@ struct Encircle {
   template <class T>
   Level<T> Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
                 const T& matters) const;
+  /// A velocity in the plane that does not lead into what the chart shows: others give way, too,
+  /// obstacles do not, so this comes last.
+  template <class T>
+  Level<T> ClearOfChart(const ControllerInput<T>& in, Level<T> v) const;
 
  private:
   /// Desired velocity over ground, world axes [m/s].
