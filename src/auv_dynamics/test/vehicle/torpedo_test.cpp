@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "auv_dynamics/check/recorded_motion.hpp"
+#include "auv_dynamics/vehicle/shaft_power.hpp"
 #include "physics.hpp"
 
 // Published values are those of T. I. Fossen's REMUS 100 model (remus100.py at c717e07), run
@@ -79,6 +80,29 @@ TEST(Torpedo, PropellerPullsAndDrivesAsPublished) {
   // Astern the coefficients at advance number 0 hold.
   model.Propeller(-1525.0, 0.944 * 2.5536, &thrust, &torque);
   EXPECT_NEAR(thrust, -0.9 * 116.26, 5e-3);
+}
+
+TEST(Torpedo, ShaftPowerIsThatOfTheTorqueAtTheAdvanceNumber) {
+  const TorpedoConfig c;
+  const TorpedoModel model{c};
+  // P = 2 pi n rho n^2 D^5 K_Q(J), by hand at 1000 rpm: at rest, and at the speed of that shaft.
+  const double n = 1000.0 / 60.0, D = c.propeller_diameter_m;
+  const auto power = [&](double speed) {
+    const double J = c.propeller_inflow * speed / (n * D);
+    const double K_Q = 0.07 + (0.0312 - 0.07) / 0.6632 * J;
+    return 2.0 * kPi * n * 1026.0 * n * n * std::pow(D, 5) * K_Q;
+  };
+  EXPECT_NEAR(ShaftPower(c, 1000.0, 0.0), power(0.0), 1e-9);
+  EXPECT_NEAR(ShaftPower(c, 1000.0, 1.6741), power(1.6741), 1e-9);
+  // It is the torque on the hull over its share, times the rate.
+  double thrust = 0.0, torque = 0.0;
+  model.Propeller(1000.0, 0.944 * 1.6741, &thrust, &torque);
+  EXPECT_NEAR(ShaftPower(c, 1000.0, 1.6741), 2.0 * kPi * n * torque / c.torque_share, 1e-9);
+  // Thrust times speed is less than what goes into the shaft, and a stopped shaft takes nothing.
+  EXPECT_LT(thrust * 1.6741, ShaftPower(c, 1000.0, 1.6741));
+  EXPECT_EQ(ShaftPower(c, 0.0, 2.0), 0.0);
+  EXPECT_EQ(ShaftPower(c, 50.0, 2.5), 0.0) << "the water turns the propeller";
+  EXPECT_GT(ShaftPower(c, -1000.0, 1.0), 0.0);
 }
 
 TEST(Torpedo, TurnsAtThePublishedRateAndRadius) {

@@ -23,7 +23,8 @@ std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
                                                     {"collisions", collisions},
                                                     {"packets", packets},
                                                     {"packet_loss", packet_loss},
-                                                    {"modem_energy", modem_energy}};
+                                                    {"modem_energy", modem_energy},
+                                                    {"propulsion_energy", propulsion_energy}};
   for (const auto& item : estimates.Items()) items.push_back(item);
   for (const auto& item : search.Items()) items.push_back(item);
   return items;

@@ -69,7 +69,7 @@ class FieldTotals {
     T square = T(0.0), nees = T(0.0), judged = T(0.0), known = T(0.0), age = T(0.0), band = T(0.0),
       lost = T(0.0), losses = T(0.0), recovered = T(0.0), recovered_steps = T(0.0), spread = T(0.0),
       near_pairs = T(0.0), groundings = T(0.0), collisions = T(0.0), received = T(0.0),
-      missed = T(0.0), modem_energy = T(0.0);
+      missed = T(0.0), modem_energy = T(0.0), propulsion = T(0.0);
     T min_altitude = T(1e9), min_clearance = T(1e9);
   };
 
@@ -77,8 +77,9 @@ class FieldTotals {
   Sums sums_;
   EstimateTotals<T> estimates_;
   SearchTotals<T> search_;
-  std::vector<T> spell_;  // [agents] decisions of the spell of loss that runs
-  std::vector<T> band_;   // [agents] decisions in the band
+  std::vector<T> spell_;          // [agents] decisions of the spell of loss that runs
+  std::vector<T> band_;           // [agents] decisions in the band
+  std::vector<bool> is_torpedo_;  // [agents]
 };
 
 extern template class SearchTotals<double>;

@@ -50,6 +50,9 @@ struct FieldMetrics {
   double packets = 0.0;        ///< received, per AUV
   double packet_loss = 0.0;    ///< share of those sent to each that was lost
   double modem_energy = 0.0;   ///< per AUV [J]
+  /// Of the shaft of a torpedo, mechanical, per AUV [J]: by the shaft speed that is asked for and
+  /// the speed over ground, as the judge knows no current. 0 of vehicles without a propeller.
+  double propulsion_energy = 0.0;
 
   std::vector<std::pair<std::string, double>> Items() const;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "auv_dynamics/vehicle/shaft_power.hpp"
+
 namespace stg::task {
 
 template <class T>
@@ -41,7 +43,12 @@ FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
       estimates_(scenario),
       search_(scenario),
       spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)),
-      band_(spell_) {}
+      band_(spell_),
+      is_torpedo_(spell_.size()) {
+  for (std::size_t i = 0; i < is_torpedo_.size(); ++i) {
+    is_torpedo_[i] = scenario.world.vehicle.model_of(static_cast<int>(i)) == "torpedo";
+  }
+}
 
 template <class T>
 void FieldTotals<T>::Start(const Mask<T>& lanes) {
@@ -49,7 +56,7 @@ void FieldTotals<T>::Start(const Mask<T>& lanes) {
   Sums& s = sums_;
   for (T* sum : {&s.square, &s.nees, &s.judged, &s.known, &s.age, &s.band, &s.lost, &s.losses,
                  &s.recovered, &s.recovered_steps, &s.spread, &s.near_pairs, &s.groundings,
-                 &s.collisions, &s.received, &s.missed, &s.modem_energy}) {
+                 &s.collisions, &s.received, &s.missed, &s.modem_energy, &s.propulsion}) {
     restart(sum, 0.0);
   }
   restart(&s.min_altitude, 1e9);
@@ -99,6 +106,11 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
     s.received += f.received;
     s.missed += f.missed;
     s.modem_energy += f.modem_energy_j;
+    if (is_torpedo_[i]) {
+      const dynamics::TorpedoConfig& torpedo = scenario_.world.vehicle.torpedo;
+      const T rpm = swarm.tau[i][0] * T(torpedo.max_propeller_rpm);
+      s.propulsion += dynamics::ShaftPower(torpedo, rpm, Norm(swarm.vehicles[i].v_WB));
+    }
   }
   for (int k = 0; k < scenario_.world.target.count; ++k) {
     s.spread += Spread(swarm, k) * T(1.0 / scenario_.world.target.count);
@@ -140,6 +152,7 @@ FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   m.packets = at(s.received) / agents;
   m.packet_loss = at(s.missed) / std::max(1.0, at(s.received) + at(s.missed));
   m.modem_energy = at(s.modem_energy) / agents;
+  m.propulsion_energy = at(s.propulsion) * dt_s / agents;
   return m;
 }
 

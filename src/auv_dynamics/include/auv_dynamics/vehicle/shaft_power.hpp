@@ -1,0 +1,24 @@
+#pragma once
+
+#include "auv_common/numbers/attitude.hpp"
+#include "auv_dynamics/vehicle/torpedo_config.hpp"
+
+namespace stg::dynamics {
+
+/// Mechanical power of a torpedo's shaft, P = 2 pi n Q with Q = rho n^2 D^5 K_Q(J) [W]. K_Q is that
+/// of TorpedoModel: linear in the advance number J = inflow speed / (n D) ahead, and that of J = 0
+/// astern. Where the water turns the propeller it is 0: nothing is won back.
+/// @param rpm   shaft speed, positive ahead [rpm]
+/// @param speed through the water [m/s]
+template <class T>
+T ShaftPower(const TorpedoConfig& c, const T& rpm, const T& speed) {
+  const double D = c.propeller_diameter_m, per_turn = 1.0 / 60.0;
+  const double scale = 2.0 * kPi * c.water_density_kgpm3 * D * D * D * D * D * per_turn * per_turn;
+  const double slope = (c.torque_coefficient[1] - c.torque_coefficient[0]) / c.propeller_advance;
+  const T turns = Abs(rpm);
+  const T inflow = Select(rpm > T(0.0), speed * T(c.propeller_inflow / D), T(0.0));
+  const T torque = T(c.torque_coefficient[0] * per_turn) * turns + T(slope) * inflow;
+  return Max(T(0.0), T(scale) * turns * turns * torque);
+}
+
+}  // namespace stg::dynamics
