@@ -161,8 +161,8 @@ void Environment::WriteObservations(int lanes, float* rows) const {
 }
 
 void Environment::WriteStates(int lanes, float* rows) const {
-  const auto stride = static_cast<std::size_t>(
-      task::CriticStateSize(scenario_.run.agents, scenario_.world.target.count));
+  const auto stride =
+      static_cast<std::size_t>(task::CriticStateSize(scenario_.run, scenario_.world));
   task_.WriteCriticState(Swarm(), [&](const Pack* numbers, int count) {
     Scatter(numbers, count, lanes, rows, stride);
     rows += count;

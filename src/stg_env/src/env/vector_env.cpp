@@ -22,8 +22,10 @@ void RequireOneLayout(const std::vector<Scenario>& mix) {
   for (const Scenario& b : mix) {
     if (b.run.agents != a.run.agents || b.world.target.count != a.world.target.count ||
         b.world.control.action_size() != a.world.control.action_size() ||
-        b.agent.observation_size() != a.agent.observation_size()) {
-      throw UserError("scenarios of a mix must agree in agents, targets, actions and observation");
+        b.agent.observation_size() != a.agent.observation_size() ||
+        b.world.sea.open != a.world.sea.open) {
+      throw UserError(
+          "scenarios of a mix must agree in agents, targets, actions, observation and sea.open");
     }
   }
 }
@@ -37,7 +39,7 @@ VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& o
     : mix_(mix), options_(options) {
   RequireOneLayout(mix_);
   observation_size_ = mix_.front().agent.observation_size();
-  state_size_ = task::CriticStateSize(agents(), mix_.front().world.target.count);
+  state_size_ = task::CriticStateSize(mix_.front().run, mix_.front().world);
   if (options_.total_envs == 0) options_.total_envs = options_.envs;
   if (options_.envs < 1 || options_.first_env < 0 || options_.total_envs < options_.envs) {
     throw UserError("environments must be at least one, and no more than all together");

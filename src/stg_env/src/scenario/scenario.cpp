@@ -16,6 +16,7 @@ void Describe(Scenario* s, config::Table* t) {
   Describe(&s->channel, t);
   Describe(&s->agent, t);
   Describe(&s->reward, t);
+  Describe(&s->critic, t);
   // True states need neither instruments nor packets; links between them follow Eq. 5.
   const config::Owner acoustic{"information mode", {"acoustic"}, "mode", [s] {
                                  const bool truth = s->mode == InformationMode::kTruth;

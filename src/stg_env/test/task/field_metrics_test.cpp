@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "auv_common/numbers/random.hpp"
+#include "auv_dynamics/vehicle/shaft_power.hpp"
 #include "stg_env/task/task.hpp"
 
 /// What a task judges of AUVs in open water beside the paper's terms.
@@ -149,6 +150,59 @@ TEST(FieldMetrics, CountErrorsSpellsOfLossAndNearness) {
   task.Step(swarm.State());
   EXPECT_EQ(task.Metrics(0).field->groundings, 0.0);
   EXPECT_EQ(task.Metrics(0).field->losses, 1.0);
+}
+
+TEST(FieldMetrics, CountTheWorkOfPropellers) {
+  JudgeConfig s = Sea(3);
+  s.world.vehicle.models = {"torpedo", "torpedo", "kinematic"};
+  Task<double> task(s);
+  Swarm swarm(s);
+  swarm.efforts[0][0] = 0.5;
+  swarm.efforts[1][0] = -0.25;
+  swarm.efforts[2][0] = 1.0;  // without a propeller
+  swarm.vehicles[0].v_WB = {0.0, 1.2, 0.0};
+  task.Start(true, swarm.State(), 100.0);
+  for (int k = 0; k < 10; ++k) task.Step(swarm.State());
+  const dynamics::TorpedoConfig& torpedo = s.world.vehicle.torpedo;
+  const double power = dynamics::ShaftPower(torpedo, 0.5 * 1525.0, 1.2) +
+                       dynamics::ShaftPower(torpedo, -0.25 * 1525.0, 0.0);
+  EXPECT_NEAR(task.Metrics(0).field->propulsion_energy, power * 10.0 * s.run.decision_dt_s() / 3.0,
+              1e-9);
+}
+
+TEST(CriticState, TellsInOpenWaterHowWrongTheEstimateIs) {
+  JudgeConfig s = Sea(1);
+  s.critic.near_scale_m = 200.0;
+  s.critic.far_scale_m = 1000.0;
+  Task<double> task(s);
+  Swarm swarm(s);
+  swarm.targets[0].p_WT = {100.0, 0.0, -40.0};
+  swarm.vehicles[0].p_WB = {0.0, 0.0, -40.0};
+  FieldState<double>& f = swarm.field[0];
+  f.r_BT_W = {150.0, -20.0, 10.0};
+  f.covariance[0] = 30.0 * 30.0;
+  f.covariance[3] = 40.0 * 40.0;
+  f.covariance[5] = 200.0 * 200.0;
+  f.age_s = 60.0;
+  const auto state = [&] {
+    std::vector<double> row;
+    task.Start(true, swarm.State(), 100.0);
+    task.WriteCriticState(swarm.State(),
+                          [&](const double* x, int n) { row.insert(row.end(), x, x + n); });
+    return row;
+  };
+  std::vector<double> row = state();
+  ASSERT_EQ(row.size(), static_cast<std::size_t>(CriticStateSize(s.run, s.world)));
+  ASSERT_EQ(row.size(), 19U + 7U + 6U);
+  EXPECT_NEAR(row[0], 0.1, 1e-12);  // by far_scale_m
+  EXPECT_NEAR(row[3], 0.5, 1e-12);  // by near_scale_m
+  EXPECT_NEAR(row[15], 10.0 / 200.0, 1e-12) << "d - d*";
+  const double expected[] = {1.0, 0.25, -0.1, 0.05, 0.2, 0.5, 0.5};
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(row[19 + k], expected[k], 1e-12) << k;
+  EXPECT_NEAR(row[26], 0.1, 1e-12) << "the target's place";
+  f.known = 0.0;
+  row = state();
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_EQ(row[19 + k], 0.0) << k;
 }
 
 TEST(FieldMetrics, AreNoneInABox) {

@@ -137,10 +137,8 @@ void BindScenario(py::module_& module) {
                              [](const Scenario& s) { return s.world.control.action_size(); })
       .def_property_readonly("observation_size",
                              [](const Scenario& s) { return s.agent.observation_size(); })
-      .def_property_readonly("state_size",
-                             [](const Scenario& s) {
-                               return task::CriticStateSize(s.run.agents, s.world.target.count);
-                             })
+      .def_property_readonly(
+          "state_size", [](const Scenario& s) { return task::CriticStateSize(s.run, s.world); })
       .def_property_readonly(
           "episode_steps", [](const Scenario& s) { return s.run.time.episode_steps; },
           "Decisions of an episode.")

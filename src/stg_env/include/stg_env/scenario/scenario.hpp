@@ -20,11 +20,12 @@ struct Scenario {
   acoustics::ChannelConfig channel;
   agent::AgentConfig agent;
   task::RewardConfig reward;
+  task::CriticConfig critic;
 
   /// What its agents know.
   agent::AgentModel model() const { return agent::ModelOf(run, world, channel, agent); }
   /// What its task judges by.
-  task::JudgeConfig judge() const { return {run, world, agent, reward}; }
+  task::JudgeConfig judge() const { return {run, world, agent, reward, critic}; }
 
   /// Throws UserError naming the key when a value is out of range or two keys
   /// contradict each other.

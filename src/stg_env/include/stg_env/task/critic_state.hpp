@@ -10,11 +10,35 @@ namespace stg::task {
 /// Numbers of one AUV: offset, offset at the scale of the band, relative velocity, rates, force,
 /// then distance error, progress, lost and uprightness.
 inline constexpr int kVehicleNumbers = 5 * 3 + 4;
+/// More of one AUV in open water, of its own estimate, which decides whether its target is lost:
+/// whether there is one, its error at the scale of the band, its deviation in the plane and of
+/// depth, and its age.
+inline constexpr int kEstimateNumbers = 1 + 3 + 3;
 /// Numbers of one target: position, velocity.
 inline constexpr int kTargetNumbers = 2 * 3;
 
-inline int CriticStateSize(int agents, int targets) {
-  return kVehicleNumbers * agents + kTargetNumbers * targets;
+inline int CriticStateSize(const RunConfig& run, const dynamics::WorldConfig& world) {
+  const int of_vehicle = kVehicleNumbers + (world.sea.open ? kEstimateNumbers : 0);
+  return of_vehicle * run.agents + kTargetNumbers * world.target.count;
+}
+
+/// Writes the numbers of an AUV's estimate. @param scale 1 / near_scale_m
+template <class T>
+int WriteEstimate(const FieldState<T>& f, const Vec3<T>& r_BT_W, const T& scale, T* numbers) {
+  const T one(1.0), age(1.0 / 60.0);
+  const auto share = [&](const T& x) { return x / (one + x); };
+  const T level = Sqrt(Max(f.covariance[0] + f.covariance[3], T(0.0)));
+  const Vec3<T> error = Clip((f.r_BT_W - r_BT_W) * scale, -1.0, 1.0);
+  const T values[kEstimateNumbers] = {one,
+                                      error.x,
+                                      error.y,
+                                      error.z,
+                                      share(level * scale),
+                                      share(Sqrt(Max(f.covariance[5], T(0.0))) * scale),
+                                      share(f.age_s * age)};
+  const auto known = f.known > T(0.5);
+  for (int k = 0; k < kEstimateNumbers; ++k) numbers[k] = Select(known, values[k], T(0.0));
+  return kEstimateNumbers;
 }
 
 /// Calls emit(numbers, count) for the blocks of the state in order.
@@ -22,14 +46,13 @@ inline int CriticStateSize(int agents, int targets) {
 template <class T, class Emit>
 void WriteCriticState(const JudgeConfig& s, const SwarmState<T>& swarm,
                       const std::vector<Tracking<T>>& tracking, Emit&& emit) {
-  // The band is two hundredths of the workspace wide: give the critic the same offset at both
-  // scales.
-  constexpr double kBandScale_m = 0.05, kTargetSpeedGain = 20.0;
+  // The band is small in the workspace: the critic sees the same offset at both scales.
+  const T far(1.0 / s.critic.far_scale_m), near(1.0 / s.critic.near_scale_m);
   const auto& vm = s.world.vehicle.max_velocity_mps;
   const auto& wm = s.world.vehicle.max_rate_radps;
   const Vec3<double> inv_v{1.0 / vm[0], 1.0 / vm[1], 1.0 / vm[2]};
   const Vec3<double> inv_w{1.0 / wm[0], 1.0 / wm[1], 1.0 / wm[2]};
-  T block[kVehicleNumbers];
+  T block[kVehicleNumbers + kEstimateNumbers];
   int n = 0;
   const auto put3 = [&](const Vec3<T>& v) {
     block[n] = v.x;
@@ -43,22 +66,25 @@ void WriteCriticState(const JudgeConfig& s, const SwarmState<T>& swarm,
     const auto target = static_cast<std::size_t>(s.world.target.of(static_cast<int>(i)));
     const Effort<T>& tau = swarm.tau[i];
     n = 0;
-    put3(k.r_BT_W);
-    put3(Clip(k.r_BT_W * T(1.0 / kBandScale_m), -1.0, 1.0));
+    put3(k.r_BT_W * far);
+    put3(Clip(k.r_BT_W * near, -1.0, 1.0));
     put3(Scale(swarm.targets[target].v_WT - v.v_WB, inv_v));
     put3(Scale(v.w_WB_B, inv_w));
     put3({tau[0], tau[1], tau[2]});
-    block[n++] = Clip((k.distance - T(s.agent.task.desired_distance_m)) * T(1.0 / kBandScale_m),
-                      T(-1.0), T(1.0));
+    block[n++] = Clip((k.distance - T(s.agent.task.desired_distance_m)) * near, T(-1.0), T(1.0));
     block[n++] = agent::Progress(s.agent.observation, k.previous_distance, k.distance);
     block[n++] = k.lost;
     block[n++] = v.trig.cos_phi * v.trig.cos_theta;
+    if (s.world.sea.open) {
+      n += WriteEstimate(swarm.field != nullptr ? (*swarm.field)[i] : FieldState<T>{}, k.r_BT_W,
+                         near, block + n);
+    }
     emit(static_cast<const T*>(block), n);
   }
   for (const dynamics::TargetState<T>& t : swarm.targets) {
     n = 0;
-    put3(t.p_WT);
-    put3(Scale(t.v_WT, inv_v) * T(kTargetSpeedGain));
+    put3(t.p_WT * far);
+    put3(Scale(t.v_WT, inv_v) * T(s.critic.target_speed_gain));
     emit(static_cast<const T*>(block), n);
   }
 }
