@@ -55,7 +55,7 @@ DurableFile::DurableFile(std::string path, std::string what)
     if (error) Fail(error.message());
   }
   temporary_ = place_ + ".tmp";
-  // With a slash, so that a file in the folder's place is told as such.
+  // With a slash, so that a file in the folder's place gives its own error.
   if (::access((FolderOf(place_) + "/").c_str(), W_OK | X_OK) != 0) Fail(std::strerror(errno));
 }
 

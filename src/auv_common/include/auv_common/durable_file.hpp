@@ -29,7 +29,7 @@ class DurableFile {
   void Commit();
   /// Writes and commits these bytes.
   void Write(const std::string& bytes);
-  /// Throws the UserError for whoever wrote into temporary().
+  /// Throws the UserError of a caller that wrote into temporary().
   [[noreturn]] void Fail(const std::string& reason) const;
 
  private:

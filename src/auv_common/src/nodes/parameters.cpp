@@ -110,7 +110,7 @@ bool SimulatedTimeParameter() {
   XmlRpc::XmlRpcValue request, response, value;
   request[0] = ros::this_node::getName();
   request[1] = std::string("/use_sim_time");
-  // Fails where nobody has set it.
+  // Fails where it is not set.
   return ros::master::execute("getParam", request, response, value, true) &&
          value.getType() == XmlRpc::XmlRpcValue::TypeBoolean && static_cast<bool>(value);
 }

@@ -32,7 +32,7 @@ StepBarrier::Opening StepBarrier::Open(TimeNs stamp, double deadline_s) {
   deadline_s_ = deadline_s;
   for (Party& party : parties_) {
     party.answered = party.excused = false;
-    // Who still owes an answer has no more time than it had.
+    // A party that still owes an answer has no more time than it had.
     party.deadline_s = party.owes ? std::min(party.deadline_s, deadline_s) : deadline_s;
     party.owed = party.owes;
     party.owes = true;

@@ -5,7 +5,7 @@ namespace stg {
 /// When the next step is due, and how long its answers are waited for.
 ///
 /// On the wall clock (real_time_factor > 0) a step is due one period after the one before was due,
-/// so that delays do not add up, and answers are waited for until then and no longer. Who is behind
+/// so that delays do not add up, and answers are waited for until then and no longer. A late run
 /// catches up without a pause, but after more than kMaxBehind periods the lost time is let go. In
 /// lockstep (real_time_factor 0) a step is due at once and waits for its answers alone, at most
 /// `deadline_s`. Before the run begins, its first answers are waited for `start_timeout_s` in all.
@@ -51,8 +51,8 @@ class Pacer {
   double deadline_s() const { return deadline_s_; }
 
   /// Seconds until something is to be done even without a message.
-  /// @param waiting_until_s when those who are waited for will be given up
-  ///        (StepBarrier::deadline_s()); infinity: nobody is, so until the step is due.
+  /// @param waiting_until_s when the parties that have not answered will be given up
+  ///        (StepBarrier::deadline_s()); infinity: there are none, so until the step is due.
   double WaitTime(double now_s, double waiting_until_s) const;
 
  private:

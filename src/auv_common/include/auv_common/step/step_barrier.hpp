@@ -7,19 +7,19 @@
 
 namespace stg {
 
-/// Who waits for whom in a step: everybody who is present answers, or is given up.
+/// Which parties a step waits for: each party that is present answers, or is given up.
 ///
 /// One step is open at a time, known by its stamp (simulated time). A party is present, and waited
-/// for, or absent. The first answer of a party to the open step counts. Whoever has not said a word
-/// by its deadline is absent and not waited for again before it speaks again; a word about another
+/// for, or absent. The first answer of a party to the open step counts. A party that has not spoken
+/// by its deadline is absent, and no step waits for it before it speaks again; a word about another
 /// recent step is enough for that, but is no answer to this one.
 ///
 /// Waiting always has an end: a party that has not spoken since it was first asked keeps the
 /// deadline of that step, however many steps are opened, left or closed meanwhile. Its silence
-/// costs nobody else's patience.
+/// costs no other party's patience.
 ///
 /// Deadlines are wall time in seconds of a clock of the caller's choice that does not go back. This
-/// class reads no clock. Parties that only listen have no place here: nobody waits for them (see
+/// class reads no clock. Parties that only listen have no place here: no step waits for them (see
 /// StepWindow). Nothing is allocated after construction. Not thread-safe.
 class StepBarrier {
  public:
@@ -29,7 +29,7 @@ class StepBarrier {
 
   enum class Opening {
     kOpened,
-    kReplaced,  ///< opened, and the step that was open is left without an end: nobody missed it
+    kReplaced,  ///< opened, and the step that was open is left without an end: no party missed it
     kRepeated,  ///< this very step is open or was the last one closed: nothing has changed
   };
 
@@ -42,7 +42,7 @@ class StepBarrier {
     kForeign,    ///< about a time that is not of this run: no sign of presence either
   };
 
-  /// Everybody is present.
+  /// All parties are present.
   /// @param parties at least 0.
   /// @param period of the steps [ns], at least 0; 0: short beside kRecent.
   explicit StepBarrier(int parties, TimeNs period = 0);
@@ -58,17 +58,17 @@ class StepBarrier {
   /// it owed before it goes on owing.
   void Excuse(int party);
 
-  /// Marks absent who is out of patience, and says who that is: valid until the next call.
+  /// Marks the parties absent that are out of time, and returns them: valid until the next call.
   const std::vector<int>& GiveUp(double now_s);
 
-  /// A step is open, and everybody who is present (of [first, last)) has answered or is excused.
+  /// A step is open, and each party of [first, last) that is present has answered or is excused.
   bool Complete() const { return Complete(0, parties()); }
   bool Complete(int first, int last) const;
 
-  /// Ends the open step: whoever has not answered, present or not, has missed it.
+  /// Ends the open step: a party that has not answered, present or not, has missed it.
   void Close();
 
-  /// Gives everybody until `deadline_s`: after a pause.
+  /// Gives all parties until `deadline_s`: after a pause.
   void Extend(double deadline_s);
 
   /// As new, but for the counters: another run begins.
@@ -76,11 +76,11 @@ class StepBarrier {
 
   int parties() const { return static_cast<int>(parties_.size()); }
   bool open() const { return open_; }
-  /// A step has been closed: whoever has part in the run has had the time to start.
+  /// A step has been closed: every party of the run has had the time to start.
   bool started() const { return started_; }
   /// Of the step that is open or was the last one; meaningless before the first.
   TimeNs stamp() const { return stamp_; }
-  /// The earliest deadline of those who are waited for; infinity: nobody is waited for.
+  /// The earliest deadline of the parties that the step waits for; infinity: there are none.
   double deadline_s() const;
 
   bool present(int party) const { return At(party).present; }

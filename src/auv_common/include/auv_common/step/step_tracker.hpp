@@ -8,7 +8,7 @@ namespace stg {
 
 /// Where in a run a message says that it is.
 struct RunPlace {
-  std::uint64_t run = 0;  ///< drawn anew by whoever starts a run
+  std::uint64_t run = 0;  ///< drawn anew when a run starts
   std::uint32_t episode = 0, step = 0;
   TimeNs stamp = 0;  ///< of the step
 };
@@ -20,7 +20,7 @@ struct RunPlace {
 /// has cut short. What contradicts this is refused, however near or far its stamp is. That a run
 /// has been started anew is never guessed from its stamps: it comes with another run number.
 ///
-/// Whoever was misled by a message that contradicts nothing, say a future episode in the future,
+/// A tracker misled by a message that contradicts nothing, say a future episode in the future,
 /// finds its way back: kPatience refused places that follow each other are believed, as the start
 /// of another run. Not thread-safe; reads no clock.
 class StepTracker {

@@ -18,8 +18,8 @@ namespace stg {
 ///
 /// The messages of a step may come in any order, mixed with those of its neighbours. The oldest
 /// step is taken when it is complete, or given up when patience with it is over and the run has
-/// come to a later one, as Reach() says. Nobody waits for a listener, so unlike a StepBarrier it
-/// waits for everybody in each step: that delays what it says, but not the steps. Patience with the
+/// come to a later one, as Reach() says. No step waits for a listener, so unlike a StepBarrier it
+/// waits for all parties in each step: that delays its output, not the steps. Patience with the
 /// steps runs side by side.
 ///
 /// Stamps from the future do no harm: no step is given up before the run has come to it, patience

@@ -29,7 +29,7 @@ inline void HandleMessages(double wait_s) {
   ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(wait_s));
 }
 
-/// For a process that only watches: its wake-ups interrupt nobody who is at work, so that a step is
+/// For a process that only watches: its wake-ups interrupt no process at work, so that a step is
 /// decided first and looked at then. To be called before ros::init, as threads inherit it. What
 /// `nice` does not do here: roslaunch gives each node a session, and Linux shares out the processor
 /// by session first.
@@ -41,7 +41,7 @@ inline void WatchOnly() {
 /// Where a node has its simulated time from.
 enum class NodeClock {
   kTopic,     ///< /clock, as every node of ROS
-  kMessages,  ///< the stamps of the messages that it answers, told by SetNodeTime(): each message
+  kMessages,  ///< the stamps of the messages that it answers, by SetNodeTime(): each message
               ///< on /clock would wake two of its threads, just when it has to decide
 };
 

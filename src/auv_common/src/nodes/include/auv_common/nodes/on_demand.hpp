@@ -9,8 +9,8 @@
 
 namespace stg::nodes {
 
-/// A topic that costs nothing while nobody listens. Whoever subscribes gets the newest message at
-/// once, as from a latched topic, but roscpp serialises what it latches also for nobody.
+/// A topic that costs nothing while it has no subscriber. A new one gets the newest message at
+/// once, as from a latched topic; but roscpp serialises a latched message without subscribers, too.
 template <class Message>
 class OnDemand {
  public:
@@ -30,7 +30,7 @@ class OnDemand {
         });
   }
 
-  /// Sends the newest message to those who listen.
+  /// Sends the newest message to the subscribers.
   void Publish() {
     if (publisher_.getNumSubscribers() > 0 && make_(&message_)) publisher_.publish(message_);
   }

@@ -48,7 +48,7 @@ int IntegerParameter(const std::string& name, int fallback, int lo, int hi,
 /// 0 to `count` - 1, or one such number.
 void RequireIndices(const std::string& name, int count);
 bool FlagParameter(const std::string& name, bool fallback);
-/// A list of texts, or one text of words; empty when nobody has set it.
+/// A list of texts, or one text of words; empty when it is not set.
 std::vector<std::string> TextsParameter(const std::string& name, Reach reach = Reach::kNode);
 std::string TextParameter(const std::string& name, const std::string& fallback,
                           Reach reach = Reach::kNode);
