@@ -25,7 +25,7 @@ using NavState = Navigation<double>;
 /// What a detection measures.
 enum class MeasurementKind { kPosition, kRange, kBearing, kRangeBearing };
 
-/// One detection of a target by one vehicle's own sensor, told in the frame of that vehicle's
+/// One detection of a target by one vehicle's own sensor, in the frame of that vehicle's
 /// navigation, whose errors it shares.
 struct Detection {
   TimeNs stamp = 0;

@@ -10,9 +10,8 @@ void Describe(AutopilotConfig* c, config::Table* t) {
   t->Section("control.autopilot");
   t->AddOptional("period_steps", &c->period_steps, "1", Within(1, 1000), "physics steps",
                  "autopilot: time between two commands to the actuators, a part of a decision");
-  t->AddOptional(
-      "min_speed_mps", &c->min_speed_mps, "0.8", NonNegative(100), "m/s",
-      "torpedo, kinematic: never told to be slower through the water, as fins need flow");
+  t->AddOptional("min_speed_mps", &c->min_speed_mps, "0.8", NonNegative(100), "m/s",
+                 "torpedo, kinematic: no command is slower through the water, as fins need flow");
   t->AddOptional("speed_integral_ps", &c->speed_integral_ps, "0.1", NonNegative(100), "1/s",
                  "torpedo: integral of the error of speed");
   t->AddOptional("course_gain_ps", &c->course_gain_ps, "0.25", NonNegative(100), "1/s",

@@ -13,7 +13,7 @@ struct Spread {
 
 /// One vehicle in all lanes.
 struct Reckoning {
-  Vec3<Pack> p_WB;      ///< as believed; its height is told by pressure, from the truth
+  Vec3<Pack> p_WB;      ///< as believed; its height comes from pressure, from the truth
   Vec3<Pack> before_W;  ///< true position one step ago
   Pack scale = Pack(0.0), heading = Pack(0.0);          ///< true errors [-], [rad]
   Pack sine = Pack(0.0), cosine = Pack(1.0);            ///< of `heading`
@@ -118,9 +118,9 @@ class DeadReckoning : public NavigationSystem {
     const Vec3<Pack> v_W = R_WB * nav->v_WB_B - r.water_W;
     const Vec3<Pack> noise{r.cosine * r.noise_W.x + r.sine * r.noise_W.y,
                            r.cosine * r.noise_W.y - r.sine * r.noise_W.x, Pack(0.0)};
-    const Vec3<Pack> told{v_W.x * (one + r.scale) + noise.x, v_W.y * (one + r.scale) + noise.y,
+    const Vec3<Pack> said{v_W.x * (one + r.scale) + noise.x, v_W.y * (one + r.scale) + noise.y,
                           v_W.z};
-    nav->v_WB_B = R_WB.TransposeTimes(told);
+    nav->v_WB_B = R_WB.TransposeTimes(said);
     nav->p_WB = {r.p_WB.x, r.p_WB.y, nav->p_WB.z + r.noise_W.z};
     Pack(&q)[4] = nav->q_WB;
     const Pack w = r.cosine_half * q[0] - r.sine_half * q[3];

@@ -25,7 +25,7 @@ namespace stg::nodes {
 ///   altitude  of the body's origin above the bottom, straight down however the body lies, along x
 ///             of a frame of its own in tf; +Inf where it is out of range (REP 117)
 ///   gps       within kSurface_m of the surface, where an aerial is out of the water
-/// Costs nothing while nobody listens.
+/// Costs nothing without subscribers.
 class Instruments {
  public:
   static constexpr double kDensity_kgpm3 = 1026.0, kGravity_mps2 = 9.81;

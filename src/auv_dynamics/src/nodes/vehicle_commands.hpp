@@ -38,7 +38,7 @@ class VehicleCommands {
   void Clear();
   /// Steps the world under the newest commands, which all lanes get.
   void Move(int steps, dynamics::World* world);
-  /// To those who judge what acted on the AUVs.
+  /// What acted on the AUVs, for the nodes that judge it.
   /// @param fresh of each AUV: the command was for the last step
   /// @param channel_fresh the acoustic channel had closed it
   void Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,

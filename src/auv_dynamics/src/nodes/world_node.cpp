@@ -21,7 +21,7 @@ constexpr TimeNs kFirstStamp = 1'000'000'000;
 /// /clock wakes every node, and would do so just when all of them are to decide.
 constexpr double kViewDelay_s = 0.005;
 /// Warnings wait so long: when a run is stopped its nodes end one after the other, the world last,
-/// and nobody needs to hear that an AUV has fallen silent.
+/// and then silent AUVs are no news.
 constexpr double kWarningDelay_s = 2.0;
 
 Pacer::Options PacerParameters(TimeNs period) {
@@ -131,7 +131,7 @@ void WorldNode::Advance() {
   }
 }
 
-/// Who joins while step 0 stands misses nothing, as every topic is latched.
+/// A node that joins while step 0 stands misses nothing, as every topic is latched.
 bool WorldNode::ListenersReady(double now) {
   // The metrics node announces summaries once it has seen all of step 0.
   const bool metrics = !wait_for_metrics_ || subscribers_.back().getNumPublishers() > 0;
@@ -239,7 +239,7 @@ void WorldNode::Finish() {
       static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
       static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   give_up_s_ = WallSeconds() + summary_timeout_s_;
-  // Nobody who could send it: fine, unless the run was asked for with metrics.
+  // No node could send it: fine, unless the run was asked for with metrics.
   if (summarised_) {
     done_ = true;
   } else if (subscribers_.back().getNumPublishers() == 0) {

@@ -88,7 +88,7 @@ class WorldNode {
   Pacer pacer_;
   double summary_timeout_s_;
   int episodes_;                            ///< to run; 0: until stopped
-  std::optional<ConnectionWatch> awaited_;  ///< who must hear the run from its start on
+  std::optional<ConnectionWatch> awaited_;  ///< must hear the run from its start on
   bool wait_for_metrics_;
   std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
   std::uint32_t seed_episode_ = 0;
@@ -99,10 +99,10 @@ class WorldNode {
   bool reset_ = false;       ///< the next episode begins when the open step is answered
   bool summarised_ = false;  ///< the episode that has ended
   std::uint64_t missed_steps_ = 0;
-  Throttle losses_;        ///< of warnings about those who are given up
+  Throttle losses_;        ///< of warnings about nodes that are given up
   std::string warning_;    ///< that waits; empty: none
   double warned_s_ = 0.0;  ///< wall time when it came up
-  double told_s_;          ///< wall time when the start's delay was told
+  double told_s_;          ///< wall time when the start's delay was reported
   bool shown_ = true;      ///< observers have the present step
   EventRate steps_;
   double began_ = 0.0;            ///< WallSeconds() when the run began

@@ -74,7 +74,7 @@ void WorldPublisher::Advertise() {
                               return !m->header.stamp.isZero();
                             });
   }
-  // roscpp sends in the order of these lines: who decides is served first.
+  // roscpp sends in the order of these lines: agents are served first.
   swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
   for (int k = 0; k < scenario_.world.target.count; ++k) {

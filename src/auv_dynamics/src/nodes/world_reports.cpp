@@ -9,7 +9,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMaxDelays = 10'000;
-/// Who keeps the start waiting is named this often.
+/// The nodes that the start waits for are named this often.
 constexpr double kWaitingNews_s = 5.0;
 
 }  // namespace
@@ -31,7 +31,7 @@ void WorldNode::Warn() {
   warning_.clear();
 }
 
-/// Before the run begins, when somebody's first answer does not come.
+/// Before the run begins, when a node's first answer does not come.
 void WorldNode::TellWhoIsMissing(double now) {
   if (now - told_s_ < kWaitingNews_s) return;
   told_s_ = now;

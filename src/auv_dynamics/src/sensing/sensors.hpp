@@ -22,7 +22,7 @@ bool LooksNow(const SensingConfig& config, const Look& look);
 /// rate and blind the sensor for that slot: memoryless across slots, so that a draw needs no
 /// history.
 bool Blind(const SensingConfig& config, const Look& look);
-/// Fills what every detection holds besides the measurement: when, of what, by whom.
+/// Fills what every detection holds besides the measurement: when, of what, by which vehicle.
 void SetObserver(const Look& look, Detection* out);
 
 }  // namespace stg::dynamics

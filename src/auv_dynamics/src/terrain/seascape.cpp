@@ -12,7 +12,7 @@
 namespace stg::dynamics {
 namespace {
 
-/// Of a scenario in open water; else nobody asks.
+/// Of a scenario in open water; others have no terrain.
 Terrain MakeTerrain(const SeaConfig& c, double region_m) {
   if (!c.open || c.terrain == "flat") return Terrain(c.bottom_m);
   // A little more than the region, which is a square of metres and not of degrees.

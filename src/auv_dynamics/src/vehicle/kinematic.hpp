@@ -4,7 +4,7 @@
 
 namespace stg::dynamics {
 
-/// A vehicle that is told its speed, turn rate and climb rate (KinematicConfig). It stays level,
+/// A vehicle whose commands are speed, turn rate and climb rate (KinematicConfig). It stays level,
 /// drifts with the current and feels neither contact nor disturbance: for research on what to do,
 /// not on how to steer, at full speed. Each physics step is exact for the lags and, to second order
 /// in dt, for the turn.

@@ -45,7 +45,7 @@ void Sea::Apply(int i, VehicleState<Pack>* s) {
   const auto above = s->p_WB.z > zero;
   Pack& aground = aground_[static_cast<std::size_t>(i)];
   Pack& groundings = groundings_[static_cast<std::size_t>(i)];
-  // Who lies on the bottom and does not rise stays aground; only coming there counts.
+  // A vehicle on the bottom that does not rise stays aground; only coming there counts.
   const auto on = below || (s->p_WB.z == bottom && aground > zero);
   groundings += Select(below, one - aground, zero);
   aground = Select(on, one, zero);
@@ -96,7 +96,7 @@ void Sea::Apply(std::vector<TargetState<Pack>>* targets) const {
         const Vec3<double> before = Lane(t.v_WT, lane);
         const Vec3<double> v = Along(before, o.Expel(&p));
         SetLane(&t.p_WT, lane, p);
-        // Aside at its own speed; who comes in at right angles has no side, and turns.
+        // Aside at its own speed; a target that comes at right angles has no side, and turns.
         const double speed = Norm(before), left = Norm(v);
         SetLane(
             &t.v_WT, lane,

@@ -22,7 +22,7 @@ bool Inside(const Vec3<double>& p, double half_extent) {
          std::abs(p.z) <= half_extent;
 }
 
-/// Nobody starts closer to the bottom or an obstacle [m].
+/// Vehicles and targets start no closer to the bottom or an obstacle [m].
 constexpr double kClearOfAll_m = 5.0;
 
 Vec3<double> LevelDirection(Random* random) {

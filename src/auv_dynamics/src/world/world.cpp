@@ -172,10 +172,10 @@ void World::Reset(int lane, std::uint64_t seed, std::uint32_t episode, ResetStag
   StartLane(lane, seed, episode, start_);
 }
 
-void World::RequireWater(const std::string& who, const Vec3<double>& p) const {
+void World::RequireWater(const std::string& name, const Vec3<double>& p) const {
   const bool bottom = sea_.scape().Altitude(p) < 0.0, obstacle = sea_.scape().Clearance(p) < 0.0;
   if (!bottom && !obstacle && p.z <= 0.0) return;
-  throw UserError(who + " would start " +
+  throw UserError(name + " would start " +
                   (bottom     ? "inside the bottom"
                    : obstacle ? "inside an obstacle"
                               : "above the surface") +

@@ -9,7 +9,7 @@ namespace stg::dynamics {
 /// constants.
 struct AutopilotConfig {
   int period_steps = 1;        ///< physics steps between two commands to the actuators
-  double min_speed_mps = 0.8;  ///< through the water: it is not told to be slower
+  double min_speed_mps = 0.8;  ///< through the water: no command is slower
   double speed_integral_ps = 0.1;
   double course_gain_ps = 0.25;  ///< turn rate per error of course
   double max_turn_rate_radps = 0.0873;

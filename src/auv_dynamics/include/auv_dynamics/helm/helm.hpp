@@ -12,7 +12,7 @@
 
 namespace stg::dynamics {
 
-/// The larger of the limits of a command's number, of which its share is told.
+/// The larger of the limits of a command's number: its shares are shares of this.
 inline double LargestOf(const Axis& axis) { return std::max(std::abs(axis.lo), std::abs(axis.hi)); }
 
 /// The autopilots of a world's vehicles, in all lanes: what a controller node of each AUV does, in

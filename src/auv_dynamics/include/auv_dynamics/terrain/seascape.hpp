@@ -32,7 +32,7 @@ struct Seascape {
   }
 };
 
-/// The shadows of a scenario's sea for whoever knows positions only, such as the acoustic channel;
+/// The shadows of a scenario's sea for a class that knows positions only, as the acoustic channel;
 /// empty where there can be none. Throws as Seascape does.
 std::function<bool(const Vec3<double>& a_W, const Vec3<double>& b_W)> ShadowsOf(
     const SeaConfig& config, double region_m);

@@ -4,7 +4,7 @@
 
 namespace stg::dynamics {
 
-/// A vehicle that is told speed, turn rate and climb rate, and reaches each with a first-order lag.
+/// A vehicle whose commands are speed, turn rate and climb rate; it follows with first-order lags.
 /// Its limits are those of the section `vehicle`: max_velocity_mps for speed (surge) and climb rate
 /// (heave), max_rate_radps for the turn rate (yaw).
 struct KinematicConfig {

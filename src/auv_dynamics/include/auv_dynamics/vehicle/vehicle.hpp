@@ -36,11 +36,11 @@ class Vehicle {
  public:
   virtual ~Vehicle() = default;
 
-  /// What it can be told directly: order, units and limits of a command. Fixed for the life of the
+  /// What its actuators take: order, units and limits of a command. Fixed for the life of the
   /// object.
   virtual const Space& actuators() const = 0;
 
-  /// What it can be told through its controller (control/), each component in [-1, 1] of its
+  /// What its controller (control/) takes for it, each component in [-1, 1] of its
   /// limits; empty for a vehicle without one.
   virtual const Space& actions() const = 0;
 

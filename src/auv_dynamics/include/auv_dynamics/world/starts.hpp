@@ -24,7 +24,7 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
 
 /// The same in open water: distances and directions in the horizontal plane, depths uniform within
-/// those of `sea`, targets level. Nobody starts within 5 m of the bottom or of an obstacle.
+/// those of `sea`, targets level. All start 5 m or more off the bottom and obstacles.
 /// Vehicles may also start in one place or anywhere: reset.deploy.
 void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascape& scape,
                   ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start);

@@ -108,8 +108,8 @@ class World {
  private:
   const EpisodeClock& clock(int lane) const { return clocks_[static_cast<size_t>(lane)]; }
   Pack Time() const;
-  /// @param who with its number, for the message
-  void RequireWater(const std::string& who, const Vec3<double>& p_W) const;
+  /// @param name with its number, for the message
+  void RequireWater(const std::string& name, const Vec3<double>& p_W) const;
   Navigation<Pack> TrueNav(int i) const;
   void Navigate();
   void StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const Start& start);

@@ -114,7 +114,7 @@ void ControllerNode::Begin(TimeNs stamp) {
     begins_ = stamp;
     return;
   }
-  // While nobody was known to send frames, that odometry was answered without.
+  // While no node was known to send frames, that odometry was answered without.
   const bool begun = began_ == stamp && answered_ - stamp < period_;
   if (!begun) Forget();
 }

@@ -5,7 +5,7 @@
 
 namespace stg::nodes {
 
-/// The private parameter `autopilot` of agents and world: who turns a desired velocity into what
+/// The private parameter `autopilot` of agents and world: what turns a desired velocity into what
 /// moves the vehicle. False, `external`: a controller node. True, `onboard`: of vehicles that force
 /// and moment command, the agent; of those that an autopilot steers, the world, as its own loop
 /// runs inside a real vehicle. Throws UserError for anything else.
