@@ -15,7 +15,7 @@ void Describe(ContentionConfig* c, config::Table* t) {
 
 void DescribeBackoff(ContentionConfig* c, config::Table* t) {
   t->Add("backoff_s", &c->backoff_s, config::Within(1e-3, 1e4), "s",
-         "longest first wait of who hears a carrier; it doubles up to 32 times this");
+         "longest first wait of a modem that hears a carrier; it doubles up to 32 times this");
 }
 
 void Aloha::Reset(std::uint64_t seed, std::uint32_t episode) {

@@ -11,7 +11,7 @@ void Describe(SlotsConfig* c, config::Table* t) {
   t->Add("length_s", &c->length_s, config::Within(1e-3, 1e4), "s",
          "length of a slot: airtime and guard");
   t->Add("guard_s", &c->guard_s, config::NonNegative(1e4), "s",
-         "end of a slot in which nobody sends: the way to the farthest node");
+         "end of a slot in which no modem sends: the way to the farthest node");
 }
 
 void DescribeDraw(SlotsConfig* c, config::Table* t) {

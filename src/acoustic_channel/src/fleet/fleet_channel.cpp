@@ -147,7 +147,7 @@ void FleetChannel::Ask(TimeNs now) {
   asked_.clear();
 }
 
-/// Where everybody is, and who is not there.
+/// Where all vehicles are, and which are not there.
 void FleetChannel::Place() {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const auto motion = tracks_[i].At(next_);

@@ -20,8 +20,8 @@ MotionTrack::Samples::const_iterator MotionTrack::FirstAfter(TimeNs t) const {
 
 bool MotionTrack::Add(TimeNs t, const Motion& motion) {
   const auto place = FirstAfter(t);
-  // The first of several that are rounded to one stamp: whoever waits for it has it as the others
-  // come in.
+  // The first of several that are rounded to one stamp: a caller has it as the
+  // others come in.
   if (place != samples_.cbegin() && (place - 1)->t == t) return false;
   samples_.insert(place, {t, motion});
   return true;

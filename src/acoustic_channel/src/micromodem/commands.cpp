@@ -195,7 +195,7 @@ bool Micromodem::CommandCycle(const Fields& fields, TimeNs t) {
 bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
   const std::string& name = fields[0];
   if (state_ != State::kDataRequest) {
-    Error(t, "DATA", 7, "nobody asked for data");
+    Error(t, "DATA", 7, "no request for data");
     return true;
   }
   const auto refuse = [&](const std::string& why) {

@@ -135,7 +135,7 @@ void Micromodem::TakeCycle(const Header& header, TimeNs t) {
   cycle_.wanted = header.frames;
   const bool polled = header.source == setting("SRC");
   if (polled) {
-    Enter(State::kDataRequest, kNever);  // it asks for its first frame once the poll is told
+    Enter(State::kDataRequest, kNever);  // it asks for its first frame once the poll is reported
   } else {
     Enter(State::kHeardCycle, t + std::max(1, setting("CTO")) * kSecondNs);
   }

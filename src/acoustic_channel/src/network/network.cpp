@@ -38,7 +38,7 @@ Network::Impl::Impl(const ChannelConfig& config, const RunConfig& run,
   }
   packets_.Reserve(n * (waiting + 4));
   arrivals_.Reserve(4 * n * n);
-  told_.Reserve(n);
+  moves_.Reserve(n);
   Reset(0, 0);
 }
 
@@ -49,7 +49,7 @@ void Network::Impl::Reset(std::uint64_t seed, std::uint32_t episode) {
   events_.Clear();
   packets_.Clear();
   arrivals_.Clear();
-  told_.Clear();
+  moves_.Clear();
   payloads_.Clear();
   table_.Reset(0);
   medium_->Reset(seed, episode);
@@ -80,12 +80,12 @@ void Network::Impl::Advance(TimeNs t) {
 void Network::Impl::Happen(const Event& e) {
   switch (e.kind()) {
     case EventKind::kPresence:
-      SetPresent(e.source(), e.t, told_[e.index].present);
-      told_.Remove(e.index);
+      SetPresent(e.source(), e.t, moves_[e.index].present);
+      moves_.Remove(e.index);
       break;
     case EventKind::kMove:
-      SetMotion(e.source(), e.t, told_[e.index].motion);
-      told_.Remove(e.index);
+      SetMotion(e.source(), e.t, moves_[e.index].motion);
+      moves_.Remove(e.index);
       break;
     case EventKind::kArrivalEnd:
       End(e.index, e.t);
@@ -187,8 +187,8 @@ void Network::Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<doubl
     return;
   }
   if (t < impl_->now_) throw std::invalid_argument("Network::Move: in the past");
-  const int told = impl_->told_.Add({{p_W, v_W}, true});
-  impl_->events_.Push(t, EventKind::kMove, node, 0, told);
+  const int move = impl_->moves_.Add({{p_W, v_W}, true});
+  impl_->events_.Push(t, EventKind::kMove, node, 0, move);
 }
 
 void Network::Offer(const Transmission& packet) {
@@ -210,7 +210,7 @@ void Network::SetPresent(int node, TimeNs t, bool present) {
     return;
   }
   if (t < impl_->now_) throw std::invalid_argument("Network::SetPresent: in the past");
-  impl_->events_.Push(t, EventKind::kPresence, node, 0, impl_->told_.Add({{}, present}));
+  impl_->events_.Push(t, EventKind::kPresence, node, 0, impl_->moves_.Add({{}, present}));
 }
 
 void Network::Ping(int source, int destination, TimeNs t, TimeNs timeout, std::uint32_t tag) {

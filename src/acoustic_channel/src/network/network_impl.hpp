@@ -33,7 +33,7 @@ class Network::Impl {
   /// A packet at one receiver, from its first to its last sound.
   struct Arrival {
     int packet = kNone, receiver = 0;
-    bool open = true;        ///< its fate is not told
+    bool open = true;        ///< its fate is not reported
     bool candidate = false;  ///< began now, and the receiver has not decided
     Hearing hearing;
     double power = 0.0;  ///< in the receiver's band, 1 uPa^2
@@ -85,7 +85,7 @@ class Network::Impl {
     TimeNs present_since = 0, present_ns = 0, sent_ns = 0, received_ns = 0;
   };
 
-  struct Told {
+  struct Move {
     NodeMotion motion;
     bool present = true;
   };
@@ -164,7 +164,7 @@ class Network::Impl {
   std::vector<Node> nodes_;
   Pool<Packet> packets_;
   Pool<Arrival> arrivals_;
-  Pool<Told> told_;
+  Pool<Move> moves_;
   PayloadPool payloads_;
   LinkTable table_;
 };

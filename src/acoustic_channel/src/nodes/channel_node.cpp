@@ -124,7 +124,7 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
 }
 
 /// Of a latched topic only the last message waits for a subscriber. Agents begin with this one, an
-/// empty window before the run: who has it is connected, and will hear all that follow.
+/// empty window before the run: an agent that has it is connected, and will hear all that follow.
 void ChannelNode::Greet() {
   received_.clear();
   for (int i = 0; i < scenario_.run.agents; ++i) PublishWindow(i, 0);
@@ -206,7 +206,7 @@ void ChannelNode::Close() {
     if (!barrier_.answered(static_cast<int>(i)) || m->data.empty()) continue;
     offered_.push_back(TransmissionOf(*m));
   }
-  // Who looks on learns what happens; otherwise nobody writes it down.
+  // Only subscribers learn what happens; without them it is not written down.
   const bool watched = packets_.getNumSubscribers() > 0;
   reports_.Begin(start_);
   channel_->Observe(watched ? &reports_ : nullptr);

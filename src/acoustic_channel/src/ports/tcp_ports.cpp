@@ -58,7 +58,7 @@ class TcpServer : public BytePort {
     BytePort::Watch(watched);
   }
   void Serve(TimeNs now, const PortListener& listener) override {
-    // Who has gone makes room for who comes.
+    // A client that has gone makes room for the next.
     BytePort::Serve(now, listener);
     for (;;) {
       const int client = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);

@@ -49,7 +49,7 @@ void S2cModem::Handle(const ModemEvent& event) {
       OnSendEnd(event.packet, event.t);
       break;
     case ModemEvent::Kind::kDiscarded:
-      // Taken back by the modem itself, or the vehicle has left: no host is told.
+      // Taken back by the modem itself, or the vehicle has left: no host hears of it.
       if (message_ && message_->tag == event.packet.tag &&
           message_->step == Message::Step::kOffered) {
         message_.reset();

@@ -207,7 +207,7 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
   try {
     stg::PrintResult(json);
   } catch (const stg::UserError&) {
-    // All is written; and nobody may be there to read it when the terminal was closed.
+    // All is written, and there may be no reader left when the terminal was closed.
     if (whole) throw;
   }
   return whole ? 0 : stg::kStopped;

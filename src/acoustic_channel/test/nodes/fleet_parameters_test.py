@@ -59,7 +59,7 @@ class FleetParameters(unittest.TestCase):
         # As another run leaves it on a master that lives longer.
         rospy.set_param("/use_sim_time", True)
         try:
-            self.assertIn("/use_sim_time is true, but nobody has published /clock",
+            self.assertIn("/use_sim_time is true, but no node has published /clock",
                           self.refusal(clock_timeout=1.0))
         finally:
             rospy.delete_param("/use_sim_time")

@@ -31,7 +31,7 @@ struct PacketTime {
 
 /// The rule by which the modems of a network share the water, in continuous time. Times count from
 /// the start of the episode. What a rule draws must depend on seed, episode and its arguments only,
-/// so that whoever asks, in whatever order, gets the same answer. Nothing is allocated.
+/// so that calls in any order give the same answer. Nothing is allocated.
 class MediumAccess {
  public:
   virtual ~MediumAccess() = default;
@@ -44,10 +44,10 @@ class MediumAccess {
   virtual TimeNs Next(int node, TimeNs from, const Attempt& attempt) const = 0;
 
   /// True: a modem that hears a carrier at that time does not begin, counts one more try and asks
-  /// again from there. On ideal channels nobody hears any.
+  /// again from there. On ideal channels no modem hears any.
   virtual bool listens() const { return false; }
 
-  /// True: the answer of Next depends on the attempt, so that nobody but the modem can know it.
+  /// True: the answer of Next depends on the attempt, so that only the modem can know it.
   virtual bool adapts() const { return listens(); }
 
   /// Why the rule cannot work with the section, the clock of the run and such packets; nothing: it

@@ -7,7 +7,7 @@
 
 namespace stg::acoustics {
 
-/// Slotted ALOHA (L. G. Roberts 1972): slots as those of Tdma but nobody's; a packet that waits
+/// Slotted ALOHA (L. G. Roberts 1972): slots of Tdma without owners; a packet that waits
 /// leaves at the start of a slot with probability q. Throughput G exp(-G) at load G where the guard
 /// covers the differences of the ways; without, it falls towards that of pure ALOHA.
 class SlottedAloha : public MediumAccess {

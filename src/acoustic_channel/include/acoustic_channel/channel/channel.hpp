@@ -31,7 +31,7 @@ class Channel {
   /// clock of the statistics.
   virtual void Reset(std::uint64_t seed, std::uint32_t episode) = 0;
 
-  /// Reports of all packets from now on go there; null: nobody is told, which costs nothing.
+  /// Reports of all packets from now on go there; null: there are none, which costs nothing.
   virtual void Observe(PacketObserver* observer) = 0;
   /// From the next Step on. An absent node neither sends nor hears. All are present after Reset.
   virtual void SetPresent(int node, bool present) = 0;

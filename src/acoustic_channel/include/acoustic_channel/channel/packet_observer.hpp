@@ -8,7 +8,7 @@
 #include "acoustic_channel/modem/packet.hpp"
 #include "auv_common/time.hpp"
 
-/// What happens to packets, for logs, views and whoever sent them. No part of the physics.
+/// What happens to packets, for logs, views and senders. No part of the physics.
 namespace stg::acoustics {
 
 inline constexpr std::uint32_t kNoSequence = std::numeric_limits<std::uint32_t>::max();
@@ -40,7 +40,7 @@ struct PacketFate {
   double loss_probability = 0.0;   ///< with which it could have been lost, once it was acquired
 };
 
-/// What a modem knows of a packet that it locked onto, whoever it was for, when it lets go of it.
+/// What a modem knows of a packet that it locked onto, for any destination, when it lets go of it.
 struct HeardEnd {
   PacketFate fate;           ///< kHalfDuplex and kLeft: it let go before the last sound
   double closing_mps = 0.0;  ///< at transmission
@@ -59,7 +59,7 @@ struct PingResult {
   double true_range_m = 0.0;    ///< when the reply left
 };
 
-/// Told of every packet by every model of Channel. Calls come in the order in which things are
+/// Every model of Channel calls it for every packet. Calls come in the order in which things are
 /// decided, at each node in order of time; nothing may be called back. All default to nothing.
 class PacketObserver {
  public:
@@ -72,11 +72,11 @@ class PacketObserver {
   virtual void OnSent(const PacketInfo&) {}
   /// Its last sound has left.
   virtual void OnSendEnd(const PacketInfo&) {}
-  /// The receiver locks onto the packet, whoever it is for; `begin` is the time of its first sound.
+  /// The receiver locks onto a packet, for any destination; `begin` is the time of its first sound.
   virtual void OnAcquired(const PacketInfo&, int /*receiver*/, TimeNs /*begin*/) {}
   /// And lets go of it at t. Of every packet that was acquired, after its OnFate if there is one.
   virtual void OnReceptionEnd(const PacketInfo&, const HeardEnd&, TimeNs /*t*/) {}
-  /// Once for each node that it was for. A delivered one is told when it is complete.
+  /// Once for each node that it was for. That of a delivered one comes when it is complete.
   virtual void OnFate(const PacketInfo&, const PacketFate&) {}
   virtual void OnPing(const PingResult&) {}
 };

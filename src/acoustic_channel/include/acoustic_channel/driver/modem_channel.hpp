@@ -27,7 +27,7 @@ struct ModemChannelConfig {
 /// Modems with ports of their own as the channel of a swarm, in real time: a packet offered at a
 /// step goes to its modem when the medium access of the section says so, and what modems receive is
 /// given out in the next step. Where packets come from, how strong they are and when they came is
-/// what modems tell. Nobody knows the distance of a link, which stays 0, or how many packets are
+/// what modems tell. The distance of a link is not known and stays 0, nor how many packets are
 /// lost: its quality is its freshness.
 class ModemChannel : public Channel {
  public:

@@ -31,7 +31,7 @@ struct DriverReception {
   double doppler_mps = 0.0;  ///< positive closing
 };
 
-/// Whom a driver talks to.
+/// What a driver talks to.
 class DriverWorld {
  public:
   virtual ~DriverWorld() = default;

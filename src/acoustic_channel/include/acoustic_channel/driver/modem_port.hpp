@@ -13,7 +13,7 @@ namespace stg::acoustics {
 /// A driver behind a real port. Times are those of SteadyNow().
 class ModemPort : private DriverWorld {
  public:
-  /// What the modem told about one packet.
+  /// What the modem said about one packet.
   struct Event {
     enum class Kind { kQueued, kSent, kSendEnd, kDropped, kRefused };
     Kind kind = Kind::kQueued;
@@ -34,7 +34,7 @@ class ModemPort : private DriverWorld {
   /// Waits for bytes of the ports, or `until`, and does what is due.
   static void Serve(const std::vector<ModemPort*>& ports, TimeNs until);
 
-  /// For those who wait for other streams as well: watch this one, then call Work at next().
+  /// For a loop that waits for other streams as well: watch this one, then call Work at next().
   BytePort* stream() { return port_.get(); }
   TimeNs next() const { return driver_->next(); }
   void Work();

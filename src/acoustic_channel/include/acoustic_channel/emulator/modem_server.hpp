@@ -37,7 +37,7 @@ class ModemServer : private ModemHosts {
     return places_[static_cast<std::size_t>(node)].gateway.get();
   }
   std::uint64_t bytes_read() const { return bytes_read_; }
-  /// What is to be told to the user: a port has a client, two modems have one address.
+  /// Messages for the user: a port has a client, two modems have one address.
   std::function<void(const std::string&)> say = [](const std::string&) {};
 
  private:

@@ -12,7 +12,7 @@
 
 namespace stg::acoustics {
 
-/// Whom the emulated modems talk to.
+/// What the emulated modems talk to.
 class ModemHosts {
  public:
   virtual ~ModemHosts() = default;
@@ -22,7 +22,7 @@ class ModemHosts {
   virtual void OnSharedAddress(int /*node*/, int /*address*/) {}
 };
 
-/// Emulated modems and ordinary vehicles in one water. Whoever owns it tells it what hosts write
+/// Emulated modems and ordinary vehicles in one water. Its owner says what hosts write
 /// and where vehicles are, and lets time pass. No thread, socket or clock of its own: the same
 /// words at the same times give the same answers, bit for bit. Times as in Network.
 class ModemWater : private PacketObserver {
@@ -40,7 +40,7 @@ class ModemWater : private PacketObserver {
 
   /// Before the first Advance. A node without an engine is an ordinary vehicle.
   void Attach(int node, int address, const MakeEngine& make);
-  /// Is told everything, too.
+  /// It gets all reports, too.
   void Observe(PacketObserver* observer) { observer_ = observer; }
   void SetUtcStart(TimeNs utc) { utc_start_ = utc; }
   /// Starts an episode: every modem is switched on at time 0.

@@ -17,7 +17,7 @@ struct ModemEvent {
     kSent,          ///< a packet of its own begins to leave
     kSendEnd,       ///< and has left
     kDiscarded,     ///< or never leaves
-    kAcquired,      ///< the modem locks onto a packet, whoever it is for
+    kAcquired,      ///< the modem locks onto a packet, for any destination
     kReceptionEnd,  ///< and lets go of it
   };
   Kind kind = Kind::kSent;

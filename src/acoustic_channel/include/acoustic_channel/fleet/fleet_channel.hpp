@@ -21,7 +21,7 @@ struct FleetPatience {
   bool has_velocity = true;
 };
 
-/// Whom a fleet's channel tells what happens. Times of packets count from the start of the run.
+/// A fleet's channel reports to it what happens. Times of packets count from the start of the run.
 class FleetListener : public PacketObserver {
  public:
   /// A run begins; `start` is its time 0 in the time of the stamps [ns].
@@ -35,7 +35,7 @@ class FleetListener : public PacketObserver {
   virtual void OnPingRefused(std::uint32_t tag, const std::string& why) = 0;
 };
 
-/// A channel for vehicles that nobody keeps in step: motion and packets come in as they do, each
+/// A channel for vehicles that are not kept in step: motion and packets come in as they do, each
 /// with its stamp; a clock tells how late it is. Steps are closed on a fixed grid of stamps, each
 /// when all that counts for it is in. What comes out is a function of the stamps, and not of the
 /// order or the moment in which they came in, as long as they come within the patience.

@@ -16,7 +16,7 @@ struct Motion {
   Vec3<double> v_W{0.0, 0.0, 0.0};  ///< [m/s]
 };
 
-/// The motion of one vehicle between and beyond the moments at which it told it.
+/// The motion of one vehicle between and beyond the moments at which it reported it.
 ///
 /// Stamps may jitter, be rounded, repeat, or come out of order. Between two samples no more than
 /// `patience` apart, position and velocity are interpolated linearly. Otherwise the position goes

@@ -11,7 +11,7 @@ struct ChannelConfig;
 
 /// What a node thinks of its links, from what it knows: how far away the other one is, how old the
 /// news of it is, and what it received so far. Comes with the propagation model, so that a channel
-/// and those who use it mean the same by the quality of a link.
+/// and its users mean the same by the quality of a link.
 ///
 /// One object serves one node, or the same node in kLanes environments, of which `lane` names one;
 /// a single node is lane 0.

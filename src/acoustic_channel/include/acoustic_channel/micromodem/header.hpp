@@ -25,7 +25,7 @@ struct Header {
   bool text = false;       ///< the host wrote them as text
   int frame_bytes = 0;     ///< of every frame but the last
   bool uneven = false;     ///< their lengths stand behind them, a byte each (0: 256)
-  int poller_command = 0;  ///< of kCycle: the field of CCCYC that nobody uses, 0 to 15
+  int poller_command = 0;  ///< of kCycle: the unused field of CCCYC, 0 to 15
 };
 
 inline std::uint64_t Pack(const Header& h) {

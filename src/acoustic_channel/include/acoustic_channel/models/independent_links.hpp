@@ -299,7 +299,7 @@ class IndependentLinks : public Channel {
     }
   }
 
-  /// Links from `source` to everybody into the scratch arrays, for a payload of this age at
+  /// Links from `source` to all nodes into the scratch arrays, for a payload of this age at
   /// transmission; quality is that at arrival.
   void Evaluate(int source, double age_s) {
     const auto s = static_cast<std::size_t>(source);

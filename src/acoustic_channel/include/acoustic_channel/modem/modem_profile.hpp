@@ -63,7 +63,7 @@ std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes);
 std::size_t LongestPayload(const ModemConfig& config, int nodes);
 
 /// Longest time that a packet of the network takes to leave a modem of the fleet, and the longest
-/// time that one of them needs between two packets. For rules that give everybody a slot.
+/// time that one of them needs between two packets. For rules that give each modem a slot.
 TimeNs LongestAirtime(const ModemConfig& config, int nodes);
 TimeNs LongestTurnaround(const ModemConfig& config, int nodes);
 

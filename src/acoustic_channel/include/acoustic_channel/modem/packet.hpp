@@ -8,7 +8,7 @@
 /// What modems exchange. The channel carries bytes and does not read them.
 namespace stg::acoustics {
 
-/// Bytes that somebody else owns.
+/// Bytes that the caller owns.
 struct ByteView {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
@@ -19,7 +19,7 @@ ByteView ViewOf(const Bytes& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-inline constexpr int kToAll = -1;     ///< destination of a packet for everybody who hears it
+inline constexpr int kToAll = -1;     ///< destination of a packet for all that hear it
 inline constexpr int kToNobody = -2;  ///< of one for a modem that is not in this water
 
 /// Longest payload of a modem without a profile of its own [bytes]: the largest frame set of the

@@ -12,7 +12,7 @@ namespace stg::acoustics {
 /// the number or the size of payloads under way reaches a new maximum.
 class PayloadPool {
  public:
-  /// Copies a payload that nobody holds yet; the handle of the copy.
+  /// Copies a payload that has no holder yet; returns the handle of the copy.
   int Store(const ByteView& payload);
   /// Valid until the next Store.
   ByteView at(int handle) const { return ViewOf(slots_[static_cast<std::size_t>(handle)].bytes); }
@@ -21,7 +21,7 @@ class PayloadPool {
   void Hold(int handle) { ++slots_[static_cast<std::size_t>(handle)].holders; }
   /// One receiver has it; also the last one may read it until Recycle.
   void Release(int handle);
-  /// Payloads that nobody holds are forgotten.
+  /// Payloads without a holder are forgotten.
   void Recycle();
   /// Forgets all payloads.
   void Clear();

@@ -18,12 +18,12 @@ namespace stg::acoustics {
 /// Modems and the water between them in continuous time, as a queue of events. Times count from the
 /// start of the episode [ns]. No thread may call it while another does.
 ///
-/// What is told about time t takes effect at t, and in Advance. Within one time, positions come
+/// What a call says of time t takes effect at t, and in Advance. Within one time, positions come
 /// before packets, packets before starts of transmissions, ends of receptions before begins; then
 /// the source and the receiver decide: the order of calls does not.
 ///
-/// A node moves on a straight line at its last velocity from its last Move; whoever stops hearing
-/// from a vehicle and does not believe that moves it with velocity zero.
+/// A node moves on a straight line at its last velocity from its last Move; a caller that no longer
+/// hears from a vehicle and does not believe that moves it with velocity zero.
 ///
 /// Allocates only while more is under way than ever before.
 class Network {
@@ -38,7 +38,7 @@ class Network {
 
   /// Starts an episode at time 0: all nodes present, at the origin and silent.
   void Reset(std::uint64_t seed, std::uint32_t episode);
-  /// Null: nobody is told. It must live as long as the network or the next call.
+  /// Null: no reports. It must live as long as the network or the next call.
   void Observe(PacketObserver* observer);
 
   int nodes() const;
@@ -73,7 +73,7 @@ class Network {
   void Advance(TimeNs t);
 
   /// Appends what node `receiver` received by `until` and was not given before, oldest first. A
-  /// payload is valid until the next Recycle. Who wants no receptions calls Forget instead.
+  /// payload is valid until the next Recycle. A caller without receptions calls Forget instead.
   void Take(int receiver, TimeNs until, std::vector<Reception>* out);
   void Forget();
   /// Payloads handed out by Take are given back.

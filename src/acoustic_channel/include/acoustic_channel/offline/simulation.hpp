@@ -40,7 +40,7 @@ struct SimulationSummary {
 /// time; elsewhere at the end of the step, and of several packets of a node in one step the newest.
 class Simulation {
  public:
-  /// @param log told of every packet; null: nobody. It must live as long as this object.
+  /// @param log gets every packet's reports; null: none. It must live as long as this object.
   Simulation(const SimulationFile& file, PacketObserver* log);
   ~Simulation();
 

@@ -7,7 +7,7 @@
 #include "acoustic_channel/modem/packet.hpp"
 #include "auv_common/time.hpp"
 
-/// Who wants to send what when, in a network that is simulated offline.
+/// Which node wants to send what and when, in a network that is simulated offline.
 namespace stg::acoustics {
 
 /// One flow of packets.
@@ -38,7 +38,7 @@ class Traffic {
  public:
   Traffic(std::vector<TrafficSpec> flows, std::uint64_t seed);
 
-  /// Appends what is offered up to and including t and was not told before, by time, then by flow.
+  /// Appends what is offered up to and including t and was not given before, by time, then by flow.
   void Take(TimeNs t, std::vector<Offer>* offers);
 
  private:

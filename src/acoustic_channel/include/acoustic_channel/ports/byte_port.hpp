@@ -15,7 +15,7 @@
 /// for poll(2). Nothing here blocks.
 namespace stg::acoustics {
 
-/// Told what comes over a port.
+/// Called with what comes over a port.
 struct PortListener {
   std::function<void()> connected;
   std::function<void()> disconnected;
@@ -33,7 +33,7 @@ class BytePort {
   /// What poll has to watch, appended.
   virtual void Watch(std::vector<pollfd>* watched) const;
   /// Accepts, connects, reads and writes what is possible now [ns of any clock that does not jump].
-  /// Reads at most 16 KiB, so that who floods does not keep others waiting.
+  /// Reads at most 16 KiB, so that one that floods does not keep others waiting.
   virtual void Serve(TimeNs now, const PortListener& listener);
   /// Earliest time at which Serve is wanted without an event.
   virtual TimeNs next() const;
@@ -48,7 +48,7 @@ class BytePort {
 
  protected:
   explicit BytePort(std::string name) : name_(std::move(name)) {}
-  /// False: the stream stays open when nobody reads it or a hang-up is wanted (a terminal).
+  /// False: the stream stays open when no program reads it or a hang-up is wanted (a terminal).
   virtual bool closes() const { return true; }
   void Open(int stream);
   void Close(const PortListener& listener);

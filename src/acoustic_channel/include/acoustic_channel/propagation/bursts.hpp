@@ -10,7 +10,7 @@ namespace stg::acoustics {
 
 /// Bursts of noise, each receiver its own: a Markov process in continuous time with two states,
 /// quiet for `burst_every_s` and loud for `burst_length_s` on average, both exponential. An episode
-/// begins quiet at time 0. The course depends on seed, episode and node only, not on who asks when.
+/// begins quiet at time 0. The course depends on seed, episode and node only, not on calls.
 class Bursts {
  public:
   /// [begin, end) in which nothing changes.

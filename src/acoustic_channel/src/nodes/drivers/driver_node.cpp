@@ -157,7 +157,7 @@ void DriverNode::TellEvents() {
         m.status = TransmitStatus::QUEUED;
         break;
       case Event::Kind::kSent:
-        leaving_[event.tag] = event.t;  // told with the airtime, once that is known
+        leaving_[event.tag] = event.t;  // reported with the airtime, once that is known
         continue;
       case Event::Kind::kSendEnd:
         m.status = TransmitStatus::SENT;

@@ -57,7 +57,7 @@ void FleetNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mess
         vehicle, Refusals::kFrame,
         "frame '" + message->header.frame_id.substr(0, kFrameText) + "' instead of " + frame_);
   }
-  // An orientation matters only where the twist is told in it.
+  // An orientation matters only where the twist is in its frame.
   const bool placed = twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position);
   if (!placed || (twist_ != TwistFrame::kNone && !FiniteVector(twist.linear))) {
     return RefuseOdometry(vehicle, Refusals::kNotFinite,

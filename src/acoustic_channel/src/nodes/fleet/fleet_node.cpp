@@ -143,7 +143,7 @@ double FleetNode::Work() {
   WatchClock(NsOf(ros::Time::now()));
   if (now_ == 0 && WallSeconds() > clock_deadline_s_) {
     throw UserError(
-        "parameter /use_sim_time is true, but nobody has published /clock: start the simulator "
+        "parameter /use_sim_time is true, but no node has published /clock: start the simulator "
         "first, or, where another run has left the parameter, `rosparam delete /use_sim_time`");
   }
   if (now_ > 0) {

@@ -31,8 +31,8 @@ namespace stg::nodes {
 /// The acoustic channel by itself, for vehicles of any simulator, of a replayed bag or at sea.
 ///
 /// Vehicles tell their odometry and offer packets when they like; the channel goes on with the
-/// clock of ROS, whatever that is, a moment behind it. Nobody waits for this node and it waits for
-/// nobody longer than its patience. When the clock goes back, everything starts anew.
+/// clock of ROS, whatever that is, a moment behind it. No node waits for this one, and it waits for
+/// none longer than its patience. When the clock goes back, everything starts anew.
 class FleetNode : private acoustics::FleetListener {
  public:
   /// Throws UserError.
@@ -119,7 +119,7 @@ class FleetNode : private acoustics::FleetListener {
   PacketFiles files_;
   acoustics::PacketObserver* log_ = nullptr;  ///< of this run
 
-  TimeNs now_ = 0;          ///< clock of ROS [ns]; 0: nobody has told it yet
+  TimeNs now_ = 0;          ///< clock of ROS [ns]; 0: not known yet
   TimeNs settled_ = 0;      ///< the clock a moment ago: what was on its way then has come in
   double settled_s_ = 0.0;  ///< wall time of that
   std::deque<Doubtful> doubtful_;

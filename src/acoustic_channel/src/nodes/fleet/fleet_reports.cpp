@@ -7,7 +7,7 @@
 #include "auv_common/nodes/topics.hpp"
 #include "fleet_node.hpp"
 
-/// What goes out: to vehicles, to those who look on, into the log.
+/// What goes out: to vehicles, to observers, into the log.
 namespace stg::nodes {
 
 using acoustics::DropReason;
@@ -159,7 +159,7 @@ void FleetNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   refused_packets_.Report(topics::kAcousticTx, &status);
   status.add("last refusal", last_refusal_);
   if (now_ == 0) {
-    status.mergeSummary(DiagnosticStatus::WARN, "no time yet: nobody publishes /clock");
+    status.mergeSummary(DiagnosticStatus::WARN, "no time yet: no node publishes /clock");
     return;
   }
   if (fleet_.begun()) {

@@ -31,7 +31,7 @@ std::string PacketFiles::Path(int run) const {
 }
 
 void PacketFiles::Open(int run) {
-  // To open a pipe that nobody reads would wait for ever.
+  // To open a pipe without a reader would wait for ever.
   if (std::filesystem::exists(Path(run))) {
     try {
       RequireRegularFile(Path(run));

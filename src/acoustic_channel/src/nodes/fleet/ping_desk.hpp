@@ -27,7 +27,7 @@ class PingDesk {
 
   /// @param service its name
   explicit PingDesk(const std::string& service);
-  /// Callers that still wait are told so.
+  /// Callers that still wait get an answer that says so.
   ~PingDesk();
 
   /// What was asked since the last call.

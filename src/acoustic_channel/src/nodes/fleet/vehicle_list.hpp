@@ -5,7 +5,7 @@
 
 namespace stg::nodes {
 
-/// A vehicle of somebody's, as the parameters name it.
+/// A vehicle of any simulator, as the parameters name it.
 struct Vehicle {
   std::string name;  ///< below it are its topics: "alpha", "fleet/beta"
   int id = 0;        ///< by which messages name it

@@ -32,9 +32,9 @@ namespace stg::nodes {
 class ChannelNode {
  public:
   /// Throws UserError.
-  /// @param line_of_sight of who knows what stands in the water; empty: all lines are free
+  /// @param line_of_sight where something may stand in the water; empty: all lines are free
   explicit ChannelNode(acoustics::LineOfSight line_of_sight = {});
-  /// With a channel that somebody else makes from the run's scenario. Throws UserError.
+  /// With a channel that the caller makes from the run's scenario. Throws UserError.
   using MakeChannel =
       std::function<std::unique_ptr<acoustics::Channel>(const acoustics::NetworkConfig&)>;
   explicit ChannelNode(const MakeChannel& make);

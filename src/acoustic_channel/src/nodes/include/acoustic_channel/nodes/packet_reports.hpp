@@ -8,7 +8,7 @@
 
 namespace stg::nodes {
 
-/// Gathers what the channel says of packets into the message for those who look from outside.
+/// Gathers what the channel says of packets into the message for observers.
 class PacketReports : public acoustics::PacketObserver {
  public:
   /// @param ids of the nodes, as messages name them
