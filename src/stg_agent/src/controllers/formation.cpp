@@ -9,7 +9,7 @@ using config::kNone;
 using config::NonNegative;
 
 constexpr double kFullTurn = 2.0 * kPi;
-/// Others that are told apart; of a larger team the first ones in the maker's order.
+/// Others that are distinguished; of a larger team the first ones in the maker's order.
 constexpr int kMost = 32;
 
 template <class T>

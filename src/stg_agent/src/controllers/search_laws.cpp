@@ -58,7 +58,7 @@ class MapLaw final : public SearchLaw {
     return {kFar_m * std::cos(plan.course), kFar_m * std::sin(plan.course)};
   }
 
-  /// What those senior, who have a lower number, will have swept is left to them.
+  /// Where AUVs of lower numbers, the seniors, will have swept is left to them.
   std::vector<Track> SeniorTracks(const AgentView& agent) const {
     std::vector<Track> tracks;
     for (const int id : agent.neighbours().known()) {

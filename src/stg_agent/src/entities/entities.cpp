@@ -97,8 +97,8 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   row.Put(0.0);
 }
 
-/// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target of who measured it
-/// in the last minute; both 1, as of one observer, where nobody did.
+/// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target of AUVs that
+/// measured it in the last minute; both 1, as of one observer, where none did.
 void Geometry(const EntityInput& in, double* once, double* twice) {
   const Vec3<double>& r = in.knowledge.r_BT_W;
   std::complex<double> first, second;

@@ -80,7 +80,7 @@ class AgentNode {
   float log_probability_ = 0.0F;
   auv_msgs::SensorFrame::ConstPtr decided_;  ///< what the last decision answers
   bool unreported_ = false;                  ///< the last decision's report has not gone out
-  std::string policy_id_;                    ///< who took it
+  std::string policy_id_;                    ///< of what took it
   ros::WallTime busy_, commanded_;
 
   auv_msgs::SensorFrame::ConstPtr frame_;  ///< of the open step; null: none is open

@@ -26,17 +26,17 @@ std::string Resolve(const std::string& name, const agent::AgentModel& model, int
   std::string shipped = config::ScenarioFolder() + "/../policies/" + model.run.name + ".onnx";
   std::error_code ignored;
   if (fs::exists(shipped, ignored)) return shipped;
-  // Whoever derives a scenario from a shipped one and names it may think that its policy flies.
+  // The user of a scenario derived from a shipped one may think that the latter's policy flies.
   if (agent == 0 && !fs::exists(ShippedScenario(model.run.name), ignored)) {
     ROS_WARN(
-        "no policy is shipped for a scenario named '%s': '%s' flies; policy:=FILE.onnx says "
-        "who else shall",
+        "no policy is shipped for a scenario named '%s': '%s' flies; policy:=FILE.onnx "
+        "names another one",
         model.run.name.c_str(), agent::DefaultController().c_str());
   }
   return agent::DefaultController();
 }
 
-/// Names the shipped scenarios that a policy fits, for whoever tried another one.
+/// Names the shipped scenarios that a policy fits, for the refusal of another one.
 std::string WhereItFits(const agent::Policy& policy) {
   std::set<std::string> names;
   std::error_code ignored;

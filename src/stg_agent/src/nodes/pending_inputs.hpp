@@ -11,7 +11,7 @@
 
 namespace stg::nodes {
 
-/// What one agent was told and has not decided on: detections and reception windows, checked. There
+/// What one agent has to decide on: detections and reception windows, checked. There
 /// is room for a hundred of each, whatever their stamps; where it ends, the latest window goes, as
 /// it is needed last, if it is true at all.
 class PendingInputs {

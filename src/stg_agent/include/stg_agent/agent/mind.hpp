@@ -13,12 +13,12 @@
 
 namespace stg::agent {
 
-/// Who keeps the books of an AUV's knowledge: its agent, or the truth mode, which rounds one mean
+/// What keeps the books of an AUV's knowledge: its agent, or the truth mode, which rounds one mean
 /// differently (ErrorMean) and may follow the release (observation.release_bookkeeping).
 enum class Bookkeeping { kAgent, kTruth };
 
 /// What an AUV makes of its inputs, the same at every decision: SetNavigation, SetTracking,
-/// SetNeighbours, from what it was told to what the policy sees; then Act, from the policy's action
+/// SetNeighbours, from what came in to what the policy sees; then Act, from the policy's action
 /// to the force. T = double: one AUV. T = Pack: the same AUV of kLanes environments, bit for bit,
 /// each lane with a clock of its own.
 template <class T>

@@ -21,7 +21,7 @@ struct EncircleOptions {
   double spread_limit = 0.35;      ///< largest such change
   double clearance_m = 60.0;       ///< others are to be missed by this, in the plane
   double doubt_mps = 0.5;          ///< and by this times the age of what they said
-  double mate_clearance_m = 40.0;  ///< the same of others on the own circle, whom spread keeps off
+  double mate_clearance_m = 40.0;  ///< the same of others on the own circle, which spread keeps off
   double horizon_s = 45.0;         ///< closest approaches later than this do not matter
   double layer_m = 20.0;           ///< others this much above or below do not matter
   double depth_gain_ps = 0.06;     ///< climb rate per missing depth
@@ -38,7 +38,7 @@ struct EncircleOptions {
 
 void Describe(EncircleOptions* o, config::Table* t);
 
-/// What the law is told to do otherwise; as it stands here: nothing.
+/// What a guide changes of the law; as it stands here: nothing.
 template <class T>
 struct Guidance {
   T radius_m = T(0.0);   ///< added to the radius of the circle in the plane [m]
@@ -114,8 +114,8 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
 /// A velocity that does not lead into a disc. A vehicle with the turning radius R_t that points at
 /// it by the angle a off the tangent comes nearer by 2 R_t (1 - cos a) while it turns away at half
 /// of its rate; the other half is for the curve of the edge. So at the distance g from the edge
-/// cos a = 1 - g / (2 R_t) is the steepest way in. Inside, the way leads out. Whoever wants to pass
-/// on the other side first turns its back to the disc: the shorter turn leads into it.
+/// cos a = 1 - g / (2 R_t) is the steepest way in. Inside, the way leads out. A vehicle that is to
+/// pass on the other side first turns its back to the disc: the shorter turn leads into it.
 /// @param v wanted, own what the vehicle does now [m/s]
 /// @param there centre of the disc from the vehicle, `radius` of the disc, `turn_m` R_t [m]
 template <class T>
@@ -141,7 +141,7 @@ Level<T> TurnedOff(const Level<T>& v, const Level<T>& own, const Level<T>& there
 /// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
 /// its own. On the circle it speeds up or slows down towards the middle between the one ahead and
 /// the one behind, as their packets and the time since tell; off it, it comes in on a spiral. It
-/// gives way to who would pass too closely at a like depth, and to the obstacles of its chart,
+/// gives way to AUVs that would pass too closely at a like depth and to obstacles of its chart,
 /// which is the scenario. In a team that is too large for one circle every other AUV flies inside,
 /// the others outside of d*. Without open water it keeps to the target's depth.
 ///

@@ -35,8 +35,8 @@ struct ContainOptions : FormationOptions {
 };
 
 /// Gives each AUV a place in an even ring around its target, in the order of their bearings, which
-/// every AUV knows from packets: nobody has to tell who goes where, and nobody crosses another's
-/// way. It flies with the target's estimated velocity and closes up on its place by going around
+/// every AUV knows from packets: no message has to assign places, and ways do not cross.
+/// It flies with the target's estimated velocity and closes up on its place by going around
 /// the ring. A target slower than the vehicles can fly is circled (`encircle`).
 struct Formation {
   FormationOptions options;

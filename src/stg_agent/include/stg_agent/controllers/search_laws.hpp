@@ -5,7 +5,7 @@
 #include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/formation.hpp"
 
-/// Controllers that look for a target that nobody sees, and circle it once it is found:
+/// Controllers that look for a target that no AUV sees, and circle it once it is found:
 /// `search_map`, `greedy_search`, `parallel_sweep`, `expanding_square`. They need the agents'
 /// search map (track.search_cell_m).
 namespace stg::agent {

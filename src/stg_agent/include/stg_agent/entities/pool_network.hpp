@@ -9,7 +9,7 @@ namespace stg::agent {
 /// and for policy files:
 ///
 ///   h_x = relu(V relu(U x + u) + v)            each row x of a set, V and U of that set
-///   p   = [mean, max] of the rows h_x and of one learned row that stands for nobody
+///   p   = [mean, max] of the rows h_x and of one learned row that stands for none
 ///   y   = relu(W2 relu(W1 [relu(W0 self), search, p of every set]))
 ///   out = W3 y + b3
 ///

@@ -6,7 +6,7 @@
 #include "stg_agent/graph/observation_spec.hpp"
 #include "stg_agent/graph/tracking.hpp"
 
-/// What one AUV knows when it decides, whoever found it out: an agent by its own means, or the
+/// What one AUV knows when it decides, from either source: an agent by its own means, or the
 /// truth mode by looking at true states. T = double: one AUV. T = Pack: the same AUV of kLanes
 /// environments.
 namespace stg::agent {

@@ -4,8 +4,8 @@
 
 #include "stg_agent/graph/observation_config.hpp"
 
-/// The one description of the policy input: which numbers it has and where they stand. Whoever
-/// writes, sizes, names or reads observations asks this.
+/// The one description of the policy input: which numbers it has and where they stand. All code
+/// that writes, sizes, names or reads observations asks this.
 namespace stg::agent {
 
 /// Neighbours that the observation shows.

@@ -13,7 +13,7 @@
 
 namespace stg::agent {
 
-/// All that one AUV was told in one environment: the cue, its own detections, its neighbours'
+/// What comes in to one AUV in one environment: the cue, its own detections, its neighbours'
 /// packets; and what it tells them. What happens at different times in different environments is
 /// here; the arithmetic that all of them share is in Mind.
 ///

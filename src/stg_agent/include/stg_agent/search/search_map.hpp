@@ -5,7 +5,7 @@
 #include "auv_dynamics/measurements.hpp"
 #include "stg_agent/agent_config.hpp"
 
-/// Where a target may be that nobody sees.
+/// Where a target may be that no AUV sees.
 namespace stg::agent {
 
 /// Probability of the target's place in the plane, in 32 x 32 cells around its datum, or over the

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastWeight = 1e-6;
 /// Two components this close, in units of the heavier one's covariance of the position and weighed
-/// by the smaller share of the two, are told apart by nothing that is measured.
+/// by the smaller share of the two, cannot be distinguished by measurements.
 constexpr double kTooClose = 0.1;
 /// However little weight there is on one of them, what lies this far apart is not the same.
 constexpr double kFar = 9.0;

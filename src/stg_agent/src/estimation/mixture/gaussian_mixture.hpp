@@ -67,7 +67,7 @@ class GaussianMixture {
   std::size_t step_;  // numbers of a component
   int size_ = 0;
   // Not filled before it is needed: most mixtures have one component most of the time, and memory
-  // that nobody touched costs nothing.
+  // that was never touched costs nothing.
   std::unique_ptr<double[]> data_;
 };
 

@@ -29,7 +29,7 @@ constexpr double kLeastMirrorWeight = 0.002;
 constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer
 constexpr double kLeastSurround = 0.3;     ///< for the other place to need less
 
-/// A detection and who made it.
+/// A detection and the AUV that made it.
 struct Sighting {
   Detection detection;
   int source = 0;

@@ -41,7 +41,7 @@ class Observers {
  private:
   static constexpr int kMost = 8;
   struct Block {
-    int id = -1;  ///< nobody
+    int id = -1;  ///< none
     TimeNs used = 0;
     double position_std_m = 0.0, heading_std_rad = 0.0;
     double own_std_m = 0.0;  ///< deviation of the own position then

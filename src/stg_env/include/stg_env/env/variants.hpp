@@ -13,8 +13,8 @@ namespace stg::env {
 /// - tau6: raw observation, force interface (scale 0.18, no smoothing or rate
 ///   limit), raw reward.
 /// The raw reward is the release's for its baselines. A training keeps the checkpoint that returns
-/// most by the reward it trains with. Returns by different rewards do not compare, so whoever
-/// compares variants flies them with the unchanged scenario's reward (EvaluationScenario).
+/// most by the reward it trains with. Returns by different rewards do not compare, so a
+/// comparison of variants flies them with the unchanged scenario's reward (EvaluationScenario).
 Scenario VariantScenario(const Scenario& scenario, const std::string& variant);
 /// VariantScenario with the reward of `scenario`.
 Scenario EvaluationScenario(const Scenario& scenario, const std::string& variant);

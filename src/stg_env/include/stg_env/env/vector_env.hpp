@@ -107,7 +107,7 @@ class VectorEnv {
   /// Acoustic mode only: what an AUV's agent holds, and the network.
   agent::AgentView agent(int env, int i) const;
   const acoustics::Channel& channel(int env) const;
-  /// The observer is told of all packets of one environment from now on; null: nobody is.
+  /// The observer gets the reports of all packets of one environment from now on; null: none does.
   void ObservePackets(int env, acoustics::PacketObserver* observer);
 
   /// The environments by SIMD register, for code that computes on registers, too.

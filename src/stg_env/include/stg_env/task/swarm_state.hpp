@@ -40,7 +40,7 @@ struct FieldState {
 };
 
 /// The true state of a swarm when a decision is due, and what the decision before led to it with:
-/// all that a task judges. A view; it says nothing of who moved the swarm. T = double: one swarm.
+/// all that a task judges. A view; it does not say what moved the swarm. T = double: one swarm.
 /// T = Pack: kLanes swarms.
 template <class T>
 struct SwarmState {

@@ -31,7 +31,7 @@ class AcousticSource : public InformationSource {
   void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
 
   const agent::AgentLanes& agent(int i) const { return agents_[static_cast<std::size_t>(i)]; }
-  /// The observer is told of all packets of one lane from now on; null: nobody is.
+  /// The observer gets the reports of all packets of one lane from now on; null: none does.
   void ObservePackets(int lane, acoustics::PacketObserver* observer) {
     channels_[static_cast<std::size_t>(lane)]->Observe(observer);
   }

@@ -7,8 +7,8 @@
 
 namespace stg::env {
 
-/// Everybody knows the true states of all: the paper's formulas, as its release computes them. The
-/// same minds as the agents', told by somebody who sees everything.
+/// All AUVs know the true states of all: the paper's formulas, as its release computes them. The
+/// same minds as the agents', with true states for inputs.
 class TruthSource : public InformationSource {
  public:
   explicit TruthSource(const agent::AgentModel& model);
