@@ -55,7 +55,7 @@ int main() {
 
   AgentModel config;
   config.run.agents = 1;
-  config.control.smoothing = config.control.max_delta = 0.0;  // moves as it is told
+  config.control.smoothing = config.control.max_delta = 0.0;  // moves as the command says
   config.run.time.decision_steps = 1;
   Agent agent(config, 0);
   const Vec3<double> p_WT{0.1, 0.0, 0.0};

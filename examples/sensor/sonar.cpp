@@ -35,7 +35,7 @@ class Sonar : public TargetSensor {
     const Vec3<double> p_WT = look.p_WT();
     const double distance = Norm(p_WT - look.p_WB());
     if (distance > config_.range_m) return false;
-    // The draws of this step, vehicle and target: whoever asks, and however often, gets the same.
+    // The draws of this step, vehicle and target: every call in this step gets the same.
     Random random = look.clock.Draw(Stream::kDetection, look.pair);
     if (random.Uniform() >= config_.detection_probability) return false;
     const double s = options_.near_std_m + options_.share * distance;

@@ -1,4 +1,4 @@
-// A vehicle of your own, flown by World: it is told a speed and a turn rate, reaches them with a
+// A vehicle of your own, flown by World: it takes a speed and a turn rate, reaches them with a
 // first-order lag, and stays at its depth. See docs/how_to/add_a_vehicle.md.
 
 #include <cmath>

@@ -22,7 +22,7 @@ namespace stg::nodes {
 /// new policy loaded into the agents.
 ///
 /// Live, the world stands still during an update and starts an episode after it, so that no step
-/// is flown for nothing. Where nobody offers /pause and /reset, episodes that more than one policy
+/// is flown for nothing. Where no node offers /pause and /reset, episodes that more than one policy
 /// flew are dropped.
 class TrainerNode {
  public:

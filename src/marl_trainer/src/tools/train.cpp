@@ -22,7 +22,7 @@ bool Leads(const stg::learn::Communicator& ranks) { return ranks.rank() == 0; }
 
 /// Says what went wrong and ends all ranks.
 int Fail(const stg::learn::Communicator& ranks, const std::exception& error, int status) {
-  // What is wrong with all of them is told by one, who ends the others meanwhile.
+  // One rank reports what is wrong with all of them, and ends the others meanwhile.
   if (!Leads(ranks)) std::this_thread::sleep_for(std::chrono::seconds(2));
   std::cerr << "train" << (Leads(ranks) ? "" : " (rank " + std::to_string(ranks.rank()) + ")")
             << ": " << error.what() << std::endl;

@@ -274,7 +274,7 @@ void Trainer::AlignEpisodes(bool force) {
 void Trainer::Save() {
   const TrainState now = state();
   if (leads()) {
-    log_->Flush();  // who resumes finds the rows up to the checkpoint
+    log_->Flush();  // a resumed run finds the rows up to the checkpoint
     folder_.Save(now, setup_.common.keep_checkpoints);
   }
   SavePolicy("policy_last");

@@ -32,7 +32,7 @@ std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episode
   options.episodes = episodes;
   options.seed = kValidationSeed;
   options.block = kBlock;
-  // Whole blocks, so that what is computed for a block does not depend on who does it.
+  // Whole blocks, so that what is computed for a block does not depend on the worker.
   const int blocks = (episodes + kBlock - 1) / kBlock;
   const auto first = [&](int rank) {
     return std::min(episodes, blocks * rank / team.ranks->size() * kBlock);

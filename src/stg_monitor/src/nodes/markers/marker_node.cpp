@@ -254,7 +254,7 @@ class MarkerNode {
       const int source = static_cast<int>(s.source), destination = static_cast<int>(s.destination);
       const auto [found, is_new] = view_.links.try_emplace({source, destination});
       LinkView& link = found->second;
-      // Counts tell of packets only where nobody tells more.
+      // Counts tell of packets only where no other message tells more.
       const bool counts = !is_new && !told_of_packets_;
       if (counts && s.delivered > link.delivered) {
         view_.packets.push_back({source, destination, t, false, auv_msgs::LinkState::NONE});

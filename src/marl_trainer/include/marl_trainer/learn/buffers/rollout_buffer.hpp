@@ -22,7 +22,7 @@ struct RolloutBuffer {
   std::vector<int> final_samples;   ///< [ends], t * E + e of the steps that ended an episode
   std::vector<float> last_states;   ///< [E, S], normalised, after the last step
 
-  // Written by whoever has a critic.
+  // Written by algorithms with a critic.
   std::vector<float> values;        ///< [T, E], in units of reward
   std::vector<float> final_values;  ///< [T, E], of the pre-reset state; where done
   std::vector<float> bootstrap;     ///< [E], of the last states

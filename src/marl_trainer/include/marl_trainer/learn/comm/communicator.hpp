@@ -55,7 +55,7 @@ class OneRank : public Communicator {
   std::vector<char> GatherBytes(const std::vector<char>& mine) override { return mine; }
   void Sum(float*, std::size_t) override {}
 };
-/// One for all who need no other.
+/// The communicator of a process alone.
 Communicator* Alone();
 
 /// As a sum over ranks: neighbours, then neighbouring pairs, and so on, into parts[0].

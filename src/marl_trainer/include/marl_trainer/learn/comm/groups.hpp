@@ -6,8 +6,8 @@
 
 namespace stg::learn {
 
-/// Work is cut into so many parts, whose results are added up in one fixed order, whoever computed
-/// them. So results depend neither on the number of workers nor on that of ranks.
+/// Work is cut into so many parts, whose results are added up in one fixed order, wherever they
+/// come from. So results depend neither on the number of workers nor on that of ranks.
 inline constexpr int kGroups = 16;
 
 /// The share of the groups that a rank has. There are kGroups, or one for each rank where there are

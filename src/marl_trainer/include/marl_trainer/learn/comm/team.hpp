@@ -5,7 +5,7 @@
 
 namespace stg::learn {
 
-/// Who computes a training: the threads of this process, and the ranks that train together. Both
+/// What computes a training: the threads of this process, and the ranks that train together. Both
 /// outlive the team.
 struct Team {
   // A pool is a whole team: that of a process that trains by itself.

@@ -17,7 +17,7 @@ namespace stg::learn {
 /// The folder of a training: checkpoints, policies, and what it was started with.
 class RunFolder {
  public:
-  /// Creates the folder; UserError when that fails. @param log where refused checkpoints are told.
+  /// Creates the folder; UserError when that fails. @param log of refused checkpoints.
   RunFolder(std::string path, std::ostream* log);
 
   /// Keeps other programs from writing into the folder, as long as this lives; UserError when one

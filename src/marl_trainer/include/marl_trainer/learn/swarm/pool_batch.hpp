@@ -59,7 +59,7 @@ class PoolBatch {
     friend class PoolBatch;
     struct Set {
       std::vector<float> first, second;  // [set rows, width]
-      std::vector<int> most;             // [rows, width], which set row is the largest; -1: nobody
+      std::vector<int> most;             // [rows, width], which set row is the largest; -1: none
     };
     std::vector<Set> sets_;
     std::vector<float> joined_, hidden1_, hidden2_, output_;

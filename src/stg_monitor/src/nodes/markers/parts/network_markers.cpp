@@ -125,7 +125,7 @@ class NetworkBuilder : private MarkerList {
     std::set<int> sending;
     for (const CarrierView& c : view_.carriers) {
       if (!Seen(c.source)) continue;
-      // Where time goes on in long steps: whoever has sent since the one before.
+      // Where time goes on in long steps: all that have sent since the one before.
       const double after_s = std::max(style_.carrier_s - (c.end - c.begin), view_.step_s);
       if (view_.now >= c.begin && view_.now <= c.end + after_s) sending.insert(c.source);
       const double radius = kSoundSpeed_mps * (view_.now - c.begin);

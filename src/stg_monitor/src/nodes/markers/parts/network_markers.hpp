@@ -8,8 +8,8 @@
 namespace stg::nodes {
 
 /// The acoustic network: links, packets under way and lost ones with their reasons; a ring around
-/// each modem that sends and the front of its sound; at receivers, where packets collided and who
-/// could not hear because it was sending.
+/// each modem that sends and the front of its sound; at receivers, where packets collided and
+/// which modem could not hear because it was sending.
 void AddNetworkMarkers(const SwarmView& view, const MarkerStyle& style,
                        visualization_msgs::MarkerArray* array);
 

@@ -55,7 +55,7 @@ struct VehicleView {
   bool target_known = false;
   geometry_msgs::Point estimate;  ///< where the AUV believes its target to be
   double estimate_std = 0.0;
-  std::array<double, 6> covariance{};  ///< of it, xx xy xz yy yz zz [m^2]; zero: not told
+  std::array<double, 6> covariance{};  ///< of it, xx xy xz yy yz zz [m^2]; zero: not known
   DetectionView detection;
   std::deque<TrailPoint> trail;
 };

@@ -33,7 +33,7 @@ class Ippo : public Algorithm {
   std::vector<NetworkSize> Sizes() const override { return single_.Sizes(); }
 
  private:
-  /// What an environment tells of the whole swarm, told to each AUV.
+  /// What an environment tells of the whole swarm, repeated for each AUV.
   struct Told {
     std::vector<float> rewards;           ///< [envs, agents]
     std::vector<std::uint8_t> truncated;  ///< [envs, agents]

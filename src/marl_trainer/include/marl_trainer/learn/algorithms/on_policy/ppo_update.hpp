@@ -16,7 +16,7 @@ class SlicedSums {
  public:
   explicit SlicedSums(const Team& team);
 
-  /// Of this rank's group; whoever computes its gradient adds to it.
+  /// Of this rank's group; the computation of its gradient adds to it.
   PpoSums& group(int g) { return groups_[static_cast<std::size_t>(g)]; }
   /// Sums of all minibatches of all ranks; the next epoch begins.
   PpoSums EndEpoch();
