@@ -19,8 +19,7 @@ PEOPLE = re.compile(
 )
 ADVICE = "a program is \"it\": name what does it"
 # Where the sentences have not been gone through yet.
-PENDING = ("src/{package}/test/", "scripts/lint/words.py", "docs/scenarios.md")
-LATER = {".cpp", ".hpp", ".msg"}  # whose sentences are gone through next
+PENDING = ("src/{package}/test/", "scripts/lint/words.py")
 PROSE = {".md", ".launch", ".msg", ".srv", ".test", ".xml", ".yaml"}
 QUOTED = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
@@ -75,7 +74,7 @@ def wrong_words(line):
 
 def _pending(path):
     text, package = path.as_posix(), path.parts[1] if len(path.parts) > 1 else ""
-    return path.suffix in LATER or any(text.startswith(p.format(package=package)) for p in PENDING)
+    return any(text.startswith(p.format(package=package)) for p in PENDING)
 
 
 def check_words(root=ROOT, files=None):
