@@ -91,7 +91,7 @@ Packet JanusModem::PacketOf(const Words& words) const {
     if (!packet) throw Refusal{"packet with a wrong checksum or version"};
     const std::size_t told =
         TellsCargo(*packet) ? DecodeReference(packet->app_type, packet->app_data).cargo_bytes : 0;
-    // Two bytes less than told: without the checksum.
+    // Two bytes less than stated: without the checksum.
     if (packet->app_type == 1 && told == cargo.size() + kChecksumBytes) AddChecksum(&cargo);
     if (told != cargo.size()) throw Refusal{"packet tells of another length of cargo"};
     packet->cargo = cargo;

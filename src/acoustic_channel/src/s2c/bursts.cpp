@@ -37,7 +37,7 @@ std::string S2cModem::SendBurst(const Header& header, const std::string& payload
 
 void S2cModem::TakeRaw(const std::string& bytes, TimeNs t) {
   const int remote = settings_.at("AR");
-  if (WrongDestination(remote, false) || state_ != State::kListen) return;  // nobody to give it to
+  if (WrongDestination(remote, false) || state_ != State::kListen) return;  // no modem takes it
   HeedSettings();
   for (std::size_t at = 0; at < bytes.size(); at += kLongestBurst) {
     const std::string answer = connection_.AddRaw(remote, bytes.substr(at, kLongestBurst), t);

@@ -18,7 +18,7 @@
 namespace stg::nodes {
 namespace {
 
-/// Messages of a topic that wait: in lockstep nobody waits for this node, and a lost message spoils
+/// Messages of a topic that wait: in lockstep no node waits for this one, and a lost message spoils
 /// an episode. So many are of ten seconds of the fastest run; a flood of messages takes no more.
 constexpr std::uint32_t kQueue = 50000;
 /// Memory for a run whose frames never get complete.

@@ -15,7 +15,7 @@ struct ModemOptions {
   int station = 1;  ///< in packets of class 16 whose host names none
 };
 
-/// Lines of a host, without their ends; a line that is too long is told once, as an empty optional
+/// Lines of a host, without their ends; a line that is too long comes once, as an empty optional
 /// in `Line::text`. The result does not depend on where the stream is split.
 class LineReader {
  public:
@@ -49,7 +49,7 @@ class JanusModem : public ModemEngine {
 
  private:
   using Words = std::map<std::string, std::string>;
-  /// What hosts are told instead of ok.
+  /// What hosts get instead of ok.
   struct Refusal {
     std::string why;
   };
