@@ -161,6 +161,13 @@ void Describe(ModemConfig* c, config::Table* t) {
          "standard deviation of a modem's clock at the start of an episode");
   t->Add("clock_drift_std_ppm", &c->clock_drift_std_ppm, config::NonNegative(1e3), "1e-6",
          "standard deviation of the rate of a modem's clock");
+  t->AddOptional("timing_std_s", &c->timing_std_s, "0.0", config::NonNegative(10), "s",
+                 "standard deviation of a travel time that a modem measures");
+  t->AddOptional("late_probability", &c->late_probability, "0.0", config::kFraction, "-",
+                 "probability that a modem takes the travel time of a later sound for that of the "
+                 "first");
+  t->AddOptional("late_max_s", &c->late_max_s, "0.1", config::NonNegative(10), "s",
+                 "by which that sound came later, at most");
   t->Add("freshness_s", &c->freshness_s, config::Positive(1e5), "s",
          "decay time of link quality with the age of the information");
 }

@@ -1,5 +1,8 @@
 #include "auv_dynamics/world/surroundings_config.hpp"
 
+#include <string>
+#include <vector>
+
 namespace stg::dynamics {
 
 using config::kFraction;
@@ -24,6 +27,19 @@ void Describe(CurrentConfig* c, config::Table* t) {
                  "period of the tide");
   t->AddOptional("tide_phase_rad", &c->tide_phase_rad, "0.0", NonNegative(6.3), "rad",
                  "phase of the tide when an episode starts");
+  t->AddOptional("random_mps", &c->random_mps, "[0.0, 0.0]", NonNegative(10), "m/s",
+                 "[low, high] speed at each of the layers' depths, drawn per episode, of a current "
+                 "that is added; its first direction is drawn, too");
+  t->AddOptional("random_turn_deg", &c->random_turn_deg, "28.6", NonNegative(180), "deg",
+                 "standard deviation of the turn of that current from one depth to the next");
+  t->AddOptional("random_tide_mps", &c->random_tide_mps, "0.0", NonNegative(10), "m/s",
+                 "amplitude of a tide that is added; its direction and phase are drawn");
+  const config::Owner drawn{
+      "current", {"drawn per episode"}, "current.random_mps", [c] {
+        return std::vector<std::string>{c->random() ? "drawn per episode" : "given"};
+      }};
+  t->Own("current.random_turn_deg", drawn);
+  t->Own("current.random_tide_mps", drawn);
 }
 
 std::optional<config::Violation> FindConflict(const CurrentConfig& c) {

@@ -160,6 +160,7 @@ void World::StartLane(int lane, std::uint64_t seed, std::uint32_t episode, const
   }
   motion_->Reset(lane);
   sea_.Reset(lane);
+  current_.Reset(lane, seed, episode);
   separations_.Measure(vehicles_);
 }
 

@@ -29,12 +29,15 @@ enum class Stream : std::uint32_t {
   kTraffic = 23,
   kClock = 25,
   kReception = 26,
+  kTiming = 27,
   kReplay = 40,
   kTargetNoise = 41,
   kNavigationStart = 50,
   kNavigation = 51,
   kMeasurement = 52,
   kFalseAlarm = 53,
+  kStation = 54,
+  kCurrent = 55,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

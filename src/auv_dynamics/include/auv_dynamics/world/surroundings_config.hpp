@@ -18,6 +18,13 @@ struct CurrentConfig {
   std::array<double, 2> tide_mps{0.0, 0.0};
   double tide_period_s = 44714.2;  ///< M2, 12.4206 h
   double tide_phase_rad = 0.0;
+  // Added and drawn per episode: a speed at each of the four depths and a direction that turns
+  // between them, and a tide that begins at any time of its period.
+  config::Interval random_mps{0.0, 0.0};
+  double random_turn_deg = 28.6;  ///< standard deviation, from one depth to the next
+  double random_tide_mps = 0.0;   ///< amplitude; its direction is drawn, too
+
+  bool random() const { return random_mps.hi > 0.0; }
 };
 
 /// First-order Gauss-Markov disturbance w of Eq. 3, body axes.
