@@ -26,6 +26,8 @@ void Describe(AgentConfig* c, config::Table* t) {
   Describe(&c->track, t);
   Describe(&c->observation, t);
   Describe(&c->task, t);
+  Describe(&c->localization, t);
+  Describe(&c->stations, t);
 }
 
 void Describe(AgentScenario* s, config::Table* t) {
@@ -46,6 +48,7 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
   }
   const AgentModel model = ModelOf(s.run, s.world, s.channel, s.agent);
   if (auto violation = FindFilterConflict(model)) return violation;
+  if (auto violation = FindLocalizationConflict(model)) return violation;
   if (s.agent.observation.quality_medium > s.agent.observation.quality_high) {
     return config::Violation{{"observation.quality_medium", "observation.quality_high"},
                              "medium quality cannot begin above high quality"};
@@ -56,19 +59,26 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
 AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& world,
                    const acoustics::ChannelConfig& channel, const AgentConfig& agent) {
   const auto& v = world.current.velocity_mps;
-  return {run,
-          world.vehicle,
-          world.workspace,
-          world.sea,
-          world.target,
-          world.navigation,
-          world.sensing,
-          world.control,
-          channel,
-          agent.track,
-          agent.observation,
-          agent.task,
-          std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])};
+  AgentModel model{run,
+                   world.vehicle,
+                   world.workspace,
+                   world.sea,
+                   world.target,
+                   world.navigation,
+                   world.sensing,
+                   world.control,
+                   channel,
+                   agent.track,
+                   agent.observation,
+                   agent.task,
+                   std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+                   agent.localization,
+                   agent.stations};
+  // In a frame that goes with the water the target moves against it.
+  if (model.locates()) {
+    model.target.max_speed_mps += 2.0 * agent.localization.current_std_mps;
+  }
+  return model;
 }
 
 }  // namespace stg::agent

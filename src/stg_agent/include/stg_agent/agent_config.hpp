@@ -6,6 +6,8 @@
 #include "auv_dynamics/world/world_config.hpp"
 #include "stg_agent/estimation/track_config.hpp"
 #include "stg_agent/graph/observation_spec.hpp"
+#include "stg_agent/localization/localization_config.hpp"
+#include "stg_agent/stations/stations_config.hpp"
 
 namespace stg::agent {
 
@@ -21,6 +23,8 @@ struct AgentConfig {
   TrackConfig track;
   ObservationConfig observation;
   TaskConfig task;
+  LocalizationConfig localization = {};
+  StationsConfig stations = {};
 
   int observation_size() const { return ObservationSpec(observation).size(); }
 };
@@ -42,8 +46,13 @@ struct AgentModel {
   ObservationConfig observation;
   TaskConfig task;
   double max_current_mps = 0.0;  ///< of the uniform current; packets must hold speeds over ground
+  LocalizationConfig localization = {};
+  StationsConfig stations = {};  ///< where beacons are charted, which craft there are
 
   double wall_m() const { return dynamics::WallOf(workspace, sea); }
+  /// Agents correct what they know of each other's positions.
+  int members() const { return run.agents + stations.count(); }  ///< of the acoustic network
+  bool locates() const;
   int observation_size() const { return ObservationSpec(observation).size(); }
 };
 

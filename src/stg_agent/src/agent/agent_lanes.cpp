@@ -68,7 +68,7 @@ void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
 
 template <class T>
 void LanedAgent<T>::Receive(int lane, const acoustics::Reception& reception) {
-  links_->Learn(lane, reception);
+  if (reception.source < model().run.agents) links_->Learn(lane, reception);
   const NeighbourState* news = At(lane).Receive(reception);
   if (news != nullptr) neighbours_.Set(lane, *news);
 }
@@ -98,7 +98,8 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   const T taking_part = Select(lanes, T(1.0), T(0.0));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
-    At(lane).Advance(OfLane(nav.stamp, lane), Lane(nav.position_std_m, lane));
+    At(lane).Advance(OfLane(nav.stamp, lane),
+                     {Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane)});
     EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
     memory.now = OfLane(nav.stamp, lane);
     memory.position_std_m = Lane(nav.position_std_m, lane);

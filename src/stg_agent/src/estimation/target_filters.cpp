@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 #include "filters.hpp"
 
@@ -24,6 +25,43 @@ std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
   if (filter->Takes(sensor->kind(), model.sensing.relative().ambiguous)) return {};
   return config::Violation{{"track.filter", "sensing.sensor"},
                            "this filter has no use for what this sensor measures"};
+}
+
+std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
+  const bool located = s.track.observers == ObserverErrors::kLocated;
+  if (!s.locates()) {
+    if (s.stations.count() > 0) {
+      return config::Violation{{"stations.beacons", "stations.crafts", "localization.kind"},
+                               "no localizer is there to make use of stations"};
+    }
+    if (!located) return {};
+    return config::Violation{{"track.measurements.observers", "localization.kind"},
+                             "no localizer leaves errors to reckon with"};
+  }
+  if (s.track.filter != "measurements" || !located) {
+    return config::Violation{{"localization.kind", "track.filter", "track.measurements.observers"},
+                             "what a localizer finds is used by the filter 'measurements' with "
+                             "'observers: located'"};
+  }
+  if (s.navigation.kind != "dead_reckoning" || s.navigation.gps_depth_m > 0.0) {
+    return config::Violation{
+        {"localization.kind", "navigation.kind", "navigation.dead_reckoning.gps_depth_m"},
+        "the positions must be those of a reckoning that no fix corrects: 'dead_reckoning' with "
+        "'gps_depth_m: 0'"};
+  }
+  const auto water =
+      acoustics::PropagationModels().Make(s.channel.model, s.channel.models, s.channel);
+  if (!water->has_modems()) {
+    return config::Violation{{"localization.kind", "channel.model"},
+                             "only modems measure travel times"};
+  }
+  constexpr int kMostMembers = 31, kMostTargets = 16;  // that a packet names
+  if (s.run.agents + s.stations.count() > kMostMembers || s.target.count > kMostTargets) {
+    return config::Violation{
+        {"localization.kind", "agents", "stations.beacons", "stations.crafts", "target.count"},
+        "packets with ranges name up to 31 AUVs and stations, and 16 targets"};
+  }
+  return acoustics::FindConflict(s.channel, NetworkRun(s.run, s.stations));
 }
 
 double Covariance3::SquaredNorm(const Vec3<double>& e) const {

@@ -16,9 +16,11 @@ void DescribeMeasurements(TrackConfig* c, config::Table* t) {
          "oldest measurement that is still taken");
   t->Add("share_spacing_s", &c->share_spacing_s, config::NonNegative(1e5), "s",
          "least time between the two measurements in one packet");
-  t->Add("observers", config::Enum(&c->observers, {"steps", "rates"}), config::kNone, "-",
-         "errors of observers' positions grow by independent steps, or at "
-         "lasting rates while their logs find no bottom");
+  t->Add("observers", config::Enum(&c->observers, {"steps", "rates", "located"}), config::kNone,
+         "-",
+         "errors of observers' positions grow by independent steps; or at "
+         "lasting rates while their logs find no bottom; or are those that localization.kind "
+         "leaves");
   t->Add("shear_std_mps", &c->shear_std_mps, config::NonNegative(10), "m/s",
          "rates: standard deviation of each component of the current that an AUV does not "
          "share with the others");

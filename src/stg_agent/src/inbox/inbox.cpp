@@ -14,7 +14,8 @@ Inbox::Inbox(SharedConstants constants, int id)
       id_(id),
       target_(constants_->model.target.of(id)),
       neighbours_(constants_->model, id),
-      filter_(TargetFilters().Make(constants_->model.track.filter, constants_->model, id_)) {
+      filter_(TargetFilters().Make(constants_->model.track.filter, constants_->model, id_)),
+      localizer_(MakeLocalizer(constants_->model, id_)) {
   if (id < 0 || id >= constants_->model.run.agents) {
     throw std::invalid_argument("agent index outside the swarm");
   }
@@ -23,6 +24,7 @@ Inbox::Inbox(SharedConstants constants, int id)
 void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
   neighbours_.Clear();
   filter_->Clear();
+  if (localizer_ != nullptr) localizer_->Reset();
   cue_ = cue;
   cue_pending_ = cue.target == target_;
   detection_ = dynamics::Detection();
@@ -48,8 +50,19 @@ void Inbox::Detect(const dynamics::Detection& detection) {
 
 const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
   try {
-    const NeighbourState state =
-        constants_->codec.Decode(reception.payload.data, reception.payload.size, reception.arrival);
+    const acoustics::ByteView& bytes = reception.payload;
+    Vec3<double> near;
+    if (localizer_ != nullptr) {
+      const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
+      if (source >= 0 && source < constants_->model.members()) near = localizer_->NearTo(source);
+    }
+    NeighbourState state =
+        constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
+    if (localizer_ != nullptr) {
+      localizer_->Hear(state, reception);
+      if (state.source >= constants_->model.run.agents) return nullptr;  // a station
+      ToOwnFrame(&state);
+    }
     if (state.has_target && state.target == target_) filter_->Hear(state);
     return neighbours_.Update(state) ? &neighbours_.state(state.source) : nullptr;
   } catch (const UserError&) {
@@ -58,9 +71,28 @@ const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
   }
 }
 
-void Inbox::Advance(TimeNs now, double position_std_m) {
+void Inbox::ToOwnFrame(NeighbourState* state) const {
+  const PlaneError now = localizer_->relative(state->source, state->generation);
+  state->p_W = state->p_W - Vec3<double>{now.x, now.y, 0.0};
+  state->position_std_m = now.std_m();
+  for (int k = 0; k < state->sightings; ++k) {
+    dynamics::Detection& d = state->sighting[static_cast<std::size_t>(k)];
+    const PlaneError then = localizer_->relative(state->source, d.stamp);
+    const Vec3<double> shift{then.x, then.y, 0.0};
+    d.p_WO = d.p_WO - shift;
+    d.p_WT = d.p_WT - shift;
+    d.p_WO_std_m = then.std_m();
+  }
+}
+
+void Inbox::Advance(TimeNs now, const OwnReckoning& own) {
   now_ = now;
-  position_std_m_ = position_std_m;
+  own_ = own;
+  OwnFrame frame{own.position_std_m};
+  if (localizer_ != nullptr) {
+    localizer_->Advance(now, own);
+    frame.error = localizer_->own();
+  }
   if (cue_pending_) {
     filter_->Start(cue_.p_WT, cue_.std_m, 0);
     cue_pending_ = false;
@@ -73,7 +105,7 @@ void Inbox::Advance(TimeNs now, double position_std_m) {
     filter_->Detect(detection_);
     detection_pending_ = false;
   }
-  filter_->Settle(now_, position_std_m_);
+  filter_->Settle(now_, frame);
 }
 
 void Inbox::FuseNewest() {
@@ -101,9 +133,10 @@ Packet Inbox::MakePacket(const Knowledge<double>& k) const {
   state.tracking_error = k.error;
   state.phase = PhaseOf(constants_->model.observation, k);
   state.link_quality = k.mean_quality;
-  state.position_std_m = position_std_m_;
+  state.position_std_m = own_.position_std_m;
   state.target = target_;
   filter_->Tell(k.lost > 0.5, &state);
+  if (localizer_ != nullptr) localizer_->Tell(&state);
   return constants_->codec.Encode(state);
 }
 

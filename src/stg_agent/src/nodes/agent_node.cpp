@@ -29,7 +29,7 @@ AgentNode::AgentNode()
       id_(IntegerParameter("id", 0, 0, model_.run.agents - 1)),
       body_frame_(frames::Body(id_)),
       agent_(model_, id_),
-      turns_(model_.channel, model_.run),
+      turns_(model_.channel, agent::NetworkRun(model_.run, model_.stations)),
       decider_(DeciderFor(TextParameter("policy", agent::DefaultController()), model_, id_)),
       period_(model_.run.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),

@@ -1,3 +1,4 @@
+// Long because: what writes a field and what reads it stand together.
 #include "stg_agent/packet/measurement_packet.hpp"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ using dynamics::MeasurementKind;
 
 namespace {
 
-constexpr std::uint64_t kMeasurementVersion = 2;
+constexpr std::uint64_t kMeasurementVersion = 2, kLocatedVersion = 5;
 constexpr int kSourceBits = 8, kGenerationBits = 18, kTargetBits = 5, kAgeBits = 10;
 constexpr int kPlaceBits = 15, kSpeedBits = 8, kUnitBits = 4, kDeviationBits = 6, kErrorBits = 7;
 constexpr int kOffsetBits = 9, kRiseBits = 7, kRangeBits = 14, kAzimuthBits = 11;
@@ -30,6 +31,14 @@ constexpr int kFirstSighting = 4 + kSourceBits + kGenerationBits + 3 * kPlaceBit
 constexpr int kSightingBits = 62;
 static_assert(kFirstSighting + kSightings * kSightingBits <= kCrcFirst, "both measurements fit");
 constexpr double kPlaceMargin = 1.25;
+// Of version 5.
+constexpr int kLocatedDeviationBits = kDeviationBits - 1;
+constexpr std::uint64_t kRangesCode = 31, kNoSource = 31;
+constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14;
+static_assert(1 + kTargetBits + kToldRanges * (kToldSourceBits + kToldAgeBits + kToldRangeBits) ==
+                  kSightingBits,
+              "two ranges take the room of a measurement");
+constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
 
 double Length(const std::array<double, 3>& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -97,6 +106,8 @@ double MeasurementPacket::Logarithm::Value(std::uint64_t code) const {
 MeasurementPacket::MeasurementPacket(const AgentModel& s)
     : agents_(s.run.agents),
       targets_(s.target.count),
+      located_(s.locates()),
+      members_(s.run.agents + (located_ ? s.stations.count() : 0)),
       sensing_(s.sensing),
       relative_(s.sensing.relative()) {
   const double half = s.workspace.half_extent_m;
@@ -127,7 +138,8 @@ MeasurementPacket::MeasurementPacket(const AgentModel& s)
   elevation_ = Quantiser::Signed(2.0, kElevationBits);
   fine_azimuth_ = Quantiser::Signed(kPi, kFineAzimuthBits);
   fine_elevation_ = Quantiser::Signed(2.0, kFineElevationBits);
-  deviation_ = Logarithm::Of(1e-5 * half, half, kDeviationBits);
+  told_range_ = Quantiser::Unsigned(kLeastRange_m, kMostRange_m, kToldRangeBits);
+  deviation_ = Logarithm::Of(1e-5 * half, half, located_ ? kLocatedDeviationBits : kDeviationBits);
   error_ = Logarithm::Of(1e-4 * half, 2.0 * std::sqrt(3.0) * half, kErrorBits);
 }
 
@@ -136,30 +148,33 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
       !std::isfinite(s.confidence + s.tracking_error + s.link_quality + s.position_std_m)) {
     throw std::invalid_argument("PacketCodec::Encode: non-finite value");
   }
-  if (s.source < 0 || s.source >= agents_ || s.phase < 0 || s.phase > 3 || s.generation < 0 ||
+  if (s.source < 0 || s.source >= members_ || s.phase < 0 || s.phase > 3 || s.generation < 0 ||
       s.sightings < 0 || s.sightings > kSightings) {
     throw std::invalid_argument("PacketCodec::Encode: value without a code");
   }
   Writer w;
-  w.Bits(kMeasurementVersion, 4);
+  w.Bits(located_ ? kLocatedVersion : kMeasurementVersion, 4);
   w.Bits(static_cast<std::uint64_t>(s.source), kSourceBits);
   w.Bits(static_cast<std::uint64_t>(Ticks(s.generation)) & ((1U << kGenerationBits) - 1),
          kGenerationBits);
-  w.Vector(position_, s.p_W, kPlaceBits);
+  WritePlace(s.p_W, &w);
   w.Vector(velocity_, s.v_W, kSpeedBits);
-  w.Bits(deviation_.Code(s.position_std_m, 1.0 - 1e-9, &w.saturated), kDeviationBits);
+  w.Bits(deviation_.Code(s.position_std_m, 1.0 - 1e-9, &w.saturated),
+         located_ ? kLocatedDeviationBits : kDeviationBits);
+  if (located_) w.Bits(s.adrift ? 1 : 0, 1);
   w.Bits(error_.Code(s.tracking_error, 0.5, &w.saturated), kErrorBits);
   w.Number(unit_, s.confidence, kUnitBits);
   w.Bits(static_cast<std::uint64_t>(s.phase), 2);
   w.Number(unit_, s.link_quality, kUnitBits);
   const int saturated_bit = w.at;
   if (s.has_target) {
-    const int fit = ambiguous_ ? 1 : kSightings;
+    const int fit = ambiguous_ || (located_ && s.ranges > 0) ? 1 : kSightings;
     for (int k = 0; k < std::min(s.sightings, fit); ++k) {
       w.at = kFirstSighting + k * kSightingBits;
       WriteSighting(s, s.sighting[static_cast<std::size_t>(k)], &w);
     }
   }
+  if (located_ && s.ranges > 0 && !ambiguous_) WriteRanges(s, &w);
   w.at = saturated_bit;
   w.Bits(w.saturated ? 1 : 0, 1);
   w.at = kCrcFirst;
@@ -167,6 +182,68 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
   Packet packet;
   std::memcpy(packet.data(), w.words.data(), packet.size());
   return packet;
+}
+
+void MeasurementPacket::WritePlace(const Vec3<double>& p, Writer* w) const {
+  if (!located_) {
+    w->Vector(position_, p, kPlaceBits);
+    return;
+  }
+  for (const double x : {p.x, p.y}) {
+    const auto code = static_cast<std::int64_t>(std::floor(x * position_.inverse + 0.5));
+    w->Bits(static_cast<std::uint64_t>(code) & ((1U << kPlaceBits) - 1), kPlaceBits);
+  }
+  w->Number(position_, p.z, kPlaceBits);
+}
+
+Vec3<double> MeasurementPacket::ReadPlace(const Vec3<double>& near, Reader* r) const {
+  if (!located_) return r->Vector(position_, kPlaceBits);
+  const auto nearest = [&](double to) {
+    const double x = static_cast<double>(r->Bits(kPlaceBits)) * position_.resolution;
+    const double region = static_cast<double>(1U << kPlaceBits) * position_.resolution;
+    return x + region * std::floor((to - x) / region + 0.5);
+  };
+  const double x = nearest(near.x), y = nearest(near.y);
+  return {x, y, r->Number(position_, kPlaceBits)};
+}
+
+void MeasurementPacket::WriteRanges(const NeighbourState& s, Writer* w) const {
+  w->at = kFirstSighting + (kSightings - 1) * kSightingBits;
+  w->Bits(1, 1);
+  w->Bits(kRangesCode, kTargetBits);
+  for (int k = 0; k < kToldRanges; ++k) {
+    const ToldRange& told = s.range[static_cast<std::size_t>(k)];
+    if (k >= s.ranges) {
+      w->Bits(kNoSource, kToldSourceBits);
+      w->at += kToldAgeBits + kToldRangeBits;
+      continue;
+    }
+    if (told.source < 0 || told.source >= members_ || told.stamp > s.generation ||
+        !std::isfinite(told.range_m)) {
+      throw std::invalid_argument("PacketCodec::Encode: value without a code");
+    }
+    const TimeNs steps = (s.generation - told.stamp + age_step_ / 2) / age_step_;
+    constexpr TimeNs kMost = (1 << kToldAgeBits) - 1;
+    w->saturated |= steps > kMost;
+    w->Bits(static_cast<std::uint64_t>(told.source), kToldSourceBits);
+    w->Bits(static_cast<std::uint64_t>(std::min(steps, kMost)), kToldAgeBits);
+    w->Number(told_range_, told.range_m, kToldRangeBits);
+  }
+}
+
+void MeasurementPacket::ReadRanges(Reader* r, NeighbourState* s) const {
+  for (int k = 0; k < kToldRanges; ++k) {
+    const std::uint64_t source = r->Bits(kToldSourceBits);
+    const TimeNs age = static_cast<TimeNs>(r->Bits(kToldAgeBits)) * age_step_;
+    const double range = r->Number(told_range_, kToldRangeBits);
+    if (source == kNoSource) continue;
+    if (static_cast<int>(source) >= members_) {
+      RefusePacket("source " + std::to_string(source) + " of a range does not exist");
+    }
+    if (s->generation - age < 0) RefusePacket("measured before the start");
+    s->range[static_cast<std::size_t>(s->ranges++)] = {static_cast<int>(source),
+                                                       s->generation - age, range};
+  }
 }
 
 void MeasurementPacket::WriteSighting(const NeighbourState& s, const Detection& d,
@@ -182,7 +259,7 @@ void MeasurementPacket::WriteSighting(const NeighbourState& s, const Detection& 
   w->Bits(static_cast<std::uint64_t>(std::min(steps, kMost)), kAgeBits);
   const bool point = kind_ == MeasurementKind::kPosition || kind_ == MeasurementKind::kRangeBearing;
   if (point && !ambiguous_) {
-    w->Vector(position_, d.p_WT, kPlaceBits);
+    WritePlace(d.p_WT, w);
     return;
   }
   const Vec3<double> offset = d.p_WO - s.p_W;
@@ -202,8 +279,8 @@ void MeasurementPacket::WriteSighting(const NeighbourState& s, const Detection& 
   }
 }
 
-NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t size,
-                                         TimeNs now) const {
+NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t size, TimeNs now,
+                                         const Vec3<double>& near) const {
   if (size != kPacketBytes) {
     RefusePacket(std::to_string(size) + " bytes instead of " + std::to_string(kPacketBytes));
   }
@@ -211,20 +288,21 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
   std::memcpy(r.words.data(), data, size);
   if (Checksum(r.words) != Get(r.words, {kCrcFirst, 8})) RefusePacket("wrong checksum");
   const std::uint64_t version = r.Bits(4);
-  if (version != kMeasurementVersion) {
+  if (version != (located_ ? kLocatedVersion : kMeasurementVersion)) {
     RefusePacket("version " + std::to_string(version) + " is unknown");
   }
   NeighbourState s;
   s.source = static_cast<int>(r.Bits(kSourceBits));
-  if (s.source >= agents_) RefusePacket("source " + std::to_string(s.source) + " does not exist");
+  if (s.source >= members_) RefusePacket("source " + std::to_string(s.source) + " does not exist");
   const std::int64_t ticks = Ticks(now);
   const std::int64_t behind = (ticks - static_cast<std::int64_t>(r.Bits(kGenerationBits))) &
                               ((std::int64_t{1} << kGenerationBits) - 1);
   if (ticks - behind < 0) RefusePacket("generated after the receiver's clock");
   s.generation = std::min((ticks - behind) * kTick, now);
-  s.p_W = r.Vector(position_, kPlaceBits);
+  s.p_W = ReadPlace(near, &r);
   s.v_W = r.Vector(velocity_, kSpeedBits);
-  s.position_std_m = deviation_.Value(r.Bits(kDeviationBits));
+  s.position_std_m = deviation_.Value(r.Bits(located_ ? kLocatedDeviationBits : kDeviationBits));
+  if (located_) s.adrift = r.Bits(1) != 0;
   s.tracking_error = error_.Value(r.Bits(kErrorBits));
   s.confidence = r.Number(unit_, kUnitBits);
   s.phase = static_cast<int>(r.Bits(2));
@@ -234,6 +312,12 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
   for (int k = 0; k < fit; ++k) {
     r.at = kFirstSighting + k * kSightingBits;
     if (r.Bits(1) == 0) continue;
+    if (located_ && !ambiguous_ && k == kSightings - 1 &&
+        Get(r.words, {r.at, kTargetBits}) == kRangesCode) {
+      r.at += kTargetBits;
+      ReadRanges(&r, &s);
+      continue;
+    }
     ReadSighting(s, &r, &s.sighting[static_cast<std::size_t>(s.sightings++)]);
   }
   s.has_target = s.sightings > 0;
@@ -258,7 +342,7 @@ void MeasurementPacket::ReadSighting(const NeighbourState& s, Reader* r, Detecti
   if (d->stamp < 0) RefusePacket("measured before the start");
   const bool point = kind_ == MeasurementKind::kPosition || kind_ == MeasurementKind::kRangeBearing;
   if (point && !ambiguous_) {
-    d->p_WT = r->Vector(position_, kPlaceBits);
+    d->p_WT = ReadPlace(s.p_W, r);
     // Where it was does not travel; only the directions of the deviations depend on it.
     d->p_WO = s.p_W - s.v_W * Seconds(age);
     const Vec3<double> line = d->p_WT - d->p_WO;

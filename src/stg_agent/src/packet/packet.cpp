@@ -89,9 +89,17 @@ Packet PacketCodec::Encode(const NeighbourState& s) const {
   return layout_ == PacketLayout::kEstimate ? EncodeEstimate(s) : measurements_.Encode(s);
 }
 
-NeighbourState PacketCodec::Decode(const std::uint8_t* data, std::size_t size, TimeNs now) const {
+NeighbourState PacketCodec::Decode(const std::uint8_t* data, std::size_t size, TimeNs now,
+                                   const Vec3<double>& near) const {
   return layout_ == PacketLayout::kEstimate ? DecodeEstimate(data, size, now)
-                                            : measurements_.Decode(data, size, now);
+                                            : measurements_.Decode(data, size, now, near);
+}
+
+int PacketCodec::SourceOf(const std::uint8_t* data, std::size_t size) {
+  if (size != kPacketBytes) return -1;
+  Words w;
+  std::memcpy(w.data(), data, size);
+  return static_cast<int>(Get(w, kSource));
 }
 
 Packet PacketCodec::EncodeEstimate(const NeighbourState& s) const {

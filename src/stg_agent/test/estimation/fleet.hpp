@@ -27,6 +27,7 @@ struct FleetOptions {
   double turn_period_s = 60.0;
   double cue_std_m = 50.0;
   int look_steps = 1;  ///< decisions between two looks
+  bool pile = false;   ///< all AUVs keep to one side of the target, in one place
 };
 
 /// A field of 4 km by 4 km with kinematic AUVs that measure every second.
@@ -155,7 +156,7 @@ class Fleet {
       dynamics::Detection d;
       const bool looks = k % o_.look_steps == 0;
       if (looks && world_.Sense(lane, i, 0, &d)) f.Detect(d);
-      f.Settle(now, world_.Nav(lane, i).position_std_m);
+      f.Settle(now, {world_.Nav(lane, i).position_std_m});
       if ((k + i) % interval == 0) Send(lane, i, now);
     }
   }
@@ -188,7 +189,9 @@ class Fleet {
         const double distance = std::hypot(r.x, r.y);
         const double off = Clip((distance - 90.0) / 60.0, -1.0, 1.0) * 0.5 * kPi;
         const double side = i % 2 == 0 ? 1.0 : -1.0;
-        const double wanted = std::atan2(r.y, r.x) + side * (0.5 * kPi - off);
+        double wanted = std::atan2(r.y, r.x) + side * (0.5 * kPi - off);
+        // A place 90 m east of the target, around which they go in circles of a few metres.
+        if (o_.pile) wanted = std::atan2(r.y, r.x + 90.0);
         const double heading = Lane(v.rpy.z, lane);
         SetLane(&turn, lane, Clip(WrapAngle(wanted - heading) * 0.5, -0.15, 0.15));
       }

@@ -51,7 +51,7 @@ NeighbourState Shared(int source, const dynamics::Detection& d) {
 
 void Step(TargetFilter* f, TimeNs now) {
   f->Predict(now);
-  f->Settle(now, 0.0);
+  f->Settle(now, {});
 }
 
 /// Smallest eigenvalue of the covariance of the position [m^2].
@@ -77,7 +77,7 @@ TEST(MeasurementFilter, RangesThatAreHalfBelievedLeaveACovariance) {
       const double wrong = k % 4 == 3 ? off(random) : 0.0;
       f->Predict(k * kSecond);
       f->Detect(Range(k * kSecond, p_WO, std::max(1.0, Norm(target - p_WO) + wrong)));
-      f->Settle(k * kSecond, 0.0);
+      f->Settle(k * kSecond, {});
       ASSERT_GT(Narrowest(f->belief()), 0.0) << "flight " << flight << ", range " << k;
     }
   }
@@ -278,7 +278,7 @@ TEST(MeasurementFilter, AWrongImageIsGivenUpAlsoWhereThreeStandTogether) {
     } else {
       f->Hear(Shared(source, d));
     }
-    f->Settle(k * kSecond, 0.0);
+    f->Settle(k * kSecond, {});
     const Vec3<double> off = f->belief().p_WT - target;
     error_m = std::hypot(off.x, off.y);
     if (k == 30) {

@@ -2,20 +2,27 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/terrain/seascape.hpp"
-#include "auv_dynamics/world/world_config.hpp"
+#include "station_reports.hpp"
+#include "stg_agent/stations/station_channel.hpp"
 
 namespace stg::nodes {
 namespace {
 
-acoustics::LineOfSight Shadows() {
-  const auto scenario = LoadScenarioParameters<dynamics::WorldScenario>();
-  return dynamics::ShadowsOf(scenario.world.sea, scenario.world.workspace.half_extent_m);
+std::unique_ptr<acoustics::Channel> MakeSea(const acoustics::NetworkConfig&,
+                                            StationReports* reports) {
+  const auto scenario = LoadScenarioParameters<agent::AgentScenario>();
+  const dynamics::WorldConfig& world = scenario.world;
+  return agent::MakeStationChannel(scenario.model(), scenario.channel,
+                                   dynamics::ShadowsOf(world.sea, world.workspace.half_extent_m),
+                                   reports);
 }
 
-/// The acoustic channel where bottom and obstacles of the scenario's sea stand between vehicles.
-class SeaChannelNode : public ChannelNode {
+/// The acoustic channel where bottom and obstacles of the scenario's sea stand between vehicles,
+/// and in whose water beacons and surface craft live.
+class SeaChannelNode : private StationReports, public ChannelNode {
  public:
-  SeaChannelNode() : ChannelNode(Shadows()) {}
+  SeaChannelNode()
+      : ChannelNode([this](const acoustics::NetworkConfig& c) { return MakeSea(c, this); }) {}
 };
 
 }  // namespace

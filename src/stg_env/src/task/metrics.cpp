@@ -27,6 +27,9 @@ std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
                                                     {"propulsion_energy", propulsion_energy}};
   for (const auto& item : estimates.Items()) items.push_back(item);
   for (const auto& item : search.Items()) items.push_back(item);
+  if (navigation) {
+    for (const auto& item : navigation->Items()) items.push_back(item);
+  }
   return items;
 }
 
@@ -61,7 +64,7 @@ std::vector<std::pair<std::string, double>> EpisodeMetrics::Items() const {
 bool OfTail(const std::string& metric) {
   return metric == "tail_distance" || metric == "tracking_error" || metric == "lost_rate" ||
          metric == "band_rate" || metric == "tail_colliding_pairs" || metric == "own_rmse_tail" ||
-         metric == "world_rmse_tail";
+         metric == "world_rmse_tail" || metric == "navigation_rmse_tail";
 }
 
 double MetricSummary::Mean(const std::string& name) const {

@@ -87,6 +87,10 @@ TEST(Allocation, NorDoDriftingAuvsThatShareMeasurements) {
             0);
 }
 
+TEST(Allocation, NorDoAuvsThatLocateEachOther) {
+  EXPECT_EQ(AllocationsAfterWarmUp(Shipped("deep", "craft")), 0);
+}
+
 TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
   std::vector<std::string> keys{"agents=20",
                                 "target.count=3",

@@ -5,6 +5,7 @@
 
 #include "auv_common/registry.hpp"
 #include "stg_agent/estimation/target_track.hpp"
+#include "stg_agent/localization/localizer.hpp"
 #include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
@@ -30,6 +31,13 @@ struct TargetBelief {
   Covariance3 P_WT;  ///< of p_WT
 
   double position_std_m() const { return std::sqrt(P_WT.trace() / 3.0); }
+};
+
+/// How far the frame of the own navigation may be off.
+struct OwnFrame {
+  double position_std_m = 0.0;  ///< as navigation states it; where no localizer knows better
+  /// Where a localizer does: the error of the own position, which is not in the former.
+  std::optional<PlaneError> error = {};
 };
 
 /// Follows one target for one AUV: from the cue, its own detections and what its neighbours share.
@@ -58,10 +66,9 @@ class TargetFilter {
   /// An own detection of this target, not of the future.
   virtual void Detect(const dynamics::Detection& detection) = 0;
   /// All of this decision is in.
-  /// @param position_std_m of the own position, as navigation states it now
-  virtual void Settle(TimeNs now, double position_std_m) {
+  virtual void Settle(TimeNs now, const OwnFrame& own) {
     (void)now;
-    (void)position_std_m;
+    (void)own;
   }
 
   /// In the frame of the own navigation: what own position and estimate differ by is what the
@@ -85,5 +92,7 @@ FilterRegistry& TargetFilters();
 PacketLayout LayoutOf(const AgentModel& model);
 /// A sensor that the filter cannot make use of.
 std::optional<config::Violation> FindFilterConflict(const AgentModel& model);
+/// What a localizer, or a station, does not go together with.
+std::optional<config::Violation> FindLocalizationConflict(const AgentModel& model);
 
 }  // namespace stg::agent

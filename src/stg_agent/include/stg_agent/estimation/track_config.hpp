@@ -6,9 +6,10 @@
 
 namespace stg::agent {
 
-/// How the errors of observers' positions grow in the filter `measurements`: by independent steps,
-/// or at rates that last, as those of AUVs that drift with the water do.
-enum class ObserverErrors { kSteps, kRates };
+/// How the errors of observers' positions behave in the filter `measurements`: they grow by
+/// independent steps; or at rates that last, as those of AUVs that drift with the water do; or they
+/// are what a localizer leaves of them.
+enum class ObserverErrors { kSteps, kRates, kLocated };
 
 /// The agents' target filter and their memory of neighbours.
 struct TrackConfig {

@@ -10,6 +10,7 @@
 #include "stg_agent/graph/target_view.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
 #include "stg_agent/inbox/neighbour_table.hpp"
+#include "stg_agent/localization/localizer.hpp"
 
 namespace stg::agent {
 
@@ -37,8 +38,7 @@ class Inbox {
   /// Forgets neighbours silent for too long at time `now`.
   void Forget(TimeNs now) { neighbours_.Forget(now); }
   /// Brings the target track to time `now`, with all that came in.
-  /// @param position_std_m deviation of the own position as navigation states it then
-  void Advance(TimeNs now, double position_std_m = 0.0);
+  void Advance(TimeNs now, const OwnReckoning& own = {});
 
   /// The target as of the last Advance.
   /// @param freshness_s information older than this is not current
@@ -59,21 +59,26 @@ class Inbox {
   TargetEstimate estimate() const { return filter_->estimate(); }
   /// The same in the true world frame, with what the own navigation adds to its deviation.
   TargetBelief belief() const { return filter_->belief(); }
+  /// What it knows of the errors of reckoned positions; null: nothing.
+  const Localizer* localizer() const { return localizer_.get(); }
   /// Packets of this episode that did not decode.
   std::uint64_t refused_packets() const { return refused_packets_; }
 
  private:
   void FuseNewest();
+  /// Turns what another AUV reported from its frame into the own one.
+  void ToOwnFrame(NeighbourState* state) const;
 
   SharedConstants constants_;
   int id_, target_;
   NeighbourTable neighbours_;
   std::unique_ptr<TargetFilter> filter_;
+  std::unique_ptr<Localizer> localizer_;  // null: none is chosen
   dynamics::Cue cue_;
   dynamics::Detection detection_;
   bool cue_pending_ = false, detection_pending_ = false;
   TimeNs now_ = 0;
-  double position_std_m_ = 0.0;
+  OwnReckoning own_;
   std::uint32_t episode_ = 0;
   std::uint64_t refused_packets_ = 0;
 };

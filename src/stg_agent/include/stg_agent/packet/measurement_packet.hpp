@@ -25,13 +25,22 @@ namespace stg::agent {
 /// limit plus the current, offsets what it can go in the largest age shared, deviation 1e-5 to 1
 /// half extents, tracking error 1e-4 to the workspace diagonal, range 1.25 times that of the
 /// sensor, azimuth a circle, elevation +-2 rad.
+///
+/// Of agents that locate each other (localization.kind) the layout is version 5, which differs so:
+/// positions are those of the reckoning, which may have drifted out of the region, so that their
+/// horizontal components are sent modulo 2.5 half extents and taken for the nearest to where the
+/// receiver expects the sender; the deviation has 5 bits, and one says whether the log measures
+/// against the water; the second measurement may be two ranges of packets: there 1, target 31, two
+/// times source 5 (31: none), age 9 (an eighth of a decision), range 14 (-100 m to 4.9 km). Sources
+/// are the AUVs, then the stations, which send this layout too.
 class MeasurementPacket {
  public:
   explicit MeasurementPacket(const AgentModel& model);
 
   /// As PacketCodec::Encode and Decode.
   Packet Encode(const NeighbourState& state) const;
-  NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now) const;
+  NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now,
+                        const Vec3<double>& near = {}) const;
 
   /// Largest error of a decoded number: half the distance of two codes.
   double position_error_m() const { return 0.5 * position_.resolution; }
@@ -39,6 +48,7 @@ class MeasurementPacket {
   double range_error_m() const { return 0.5 * range_.resolution; }
   double azimuth_error_rad() const { return 0.5 * azimuth_.resolution; }
   double elevation_error_rad() const { return 0.5 * elevation_.resolution; }
+  double told_range_error_m() const { return 0.5 * told_range_.resolution; }
   /// Distance of two ages [ns].
   TimeNs age_step() const { return age_step_; }
 
@@ -57,8 +67,14 @@ class MeasurementPacket {
   void WriteSighting(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
   void ReadSighting(const NeighbourState& s, Reader* r, dynamics::Detection* d) const;
   void SetDeviations(const NeighbourState& s, dynamics::Detection* d) const;
+  void WritePlace(const Vec3<double>& p, Writer* w) const;
+  Vec3<double> ReadPlace(const Vec3<double>& near, Reader* r) const;
+  void WriteRanges(const NeighbourState& s, Writer* w) const;
+  void ReadRanges(Reader* r, NeighbourState* s) const;
 
   int agents_, targets_;
+  bool located_;  ///< agents locate each other: version 5
+  int members_;   ///< AUVs and stations
   dynamics::MeasurementKind kind_;
   bool ambiguous_;
   dynamics::SensingConfig sensing_;
@@ -66,7 +82,7 @@ class MeasurementPacket {
   double heading_variance_, heading_walk_;  // [rad^2], [rad^2/s]
   TimeNs age_step_;
   Quantiser position_, velocity_, unit_, offset_, rise_, range_, azimuth_, elevation_;
-  Quantiser fine_azimuth_, fine_elevation_;
+  Quantiser fine_azimuth_, fine_elevation_, told_range_;
   Logarithm deviation_, error_;
 };
 

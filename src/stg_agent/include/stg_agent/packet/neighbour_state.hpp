@@ -19,6 +19,15 @@ enum class PacketLayout {
 
 /// Measurements in one packet.
 inline constexpr int kSightings = 2;
+/// Ranges in one packet of agents that locate each other.
+inline constexpr int kToldRanges = 2;
+
+/// A range that a member of the network took of a packet of another one.
+struct ToldRange {
+  int source = 0;        ///< member that sent the packet
+  TimeNs stamp = 0;      ///< when it began to leave
+  double range_m = 0.0;  ///< by its travel time
+};
 
 /// State of one AUV and its target estimate, as its neighbours learn it. World axes (ENU).
 struct NeighbourState {
@@ -42,6 +51,10 @@ struct NeighbourState {
   /// Own measurements of the target, newest first. Deviations do not travel: everybody knows the
   /// sensor. Those of the observer's position and heading are the sender's at `generation`.
   std::array<dynamics::Detection, kSightings> sighting;
+  // Of agents that locate each other.
+  bool adrift = false;  ///< its log measures against the water
+  int ranges = 0;       ///< how many of the following mean something
+  std::array<ToldRange, kToldRanges> range;
   bool saturated = false;  ///< set by Encode when a value did not fit and was clipped
 };
 

@@ -48,7 +48,12 @@ class PacketCodec {
 
   /// `now`: the receiver's clock; the generation time is the latest one not after it. Throws
   /// UserError on a wrong size, version, checksum, index, unused code, or a packet of the future.
-  NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now) const;
+  /// @param near where the sender may be: positions of agents that locate each other are sent
+  /// modulo the region, and are taken for the nearest ones to it
+  NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now,
+                        const Vec3<double>& near = {}) const;
+  /// The source that a packet names, if it is one.
+  static int SourceOf(const std::uint8_t* data, std::size_t size);
 
   static constexpr int kFieldCount = 8;
   /// Ranges and resolutions: position, velocity, confidence, tracking_error, link_quality,

@@ -123,8 +123,8 @@ class MeasurementFilter : public TargetFilter {
 
   void Detect(const Detection& detection) override { Insert({detection, self_}); }
 
-  void Settle(TimeNs now, double position_std_m) override {
-    position_std_m_ = position_std_m;
+  void Settle(TimeNs now, const OwnFrame& own) override {
+    own_ = own;
     while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= now) Play();
     Forget();
     Tell(now);
@@ -310,12 +310,20 @@ class MeasurementFilter : public TargetFilter {
     view_.Clear();
     for (int k = 0; k < now_.mixture.size(); ++k) view_.AddPart(now_.mixture, k);
     model_.Predict(Seconds(now - now_.stamp), &view_);
-    const bool in_own_frame = model_.layout().rates;
+    const bool in_own_frame = model_.layout().relative();
     SetMoments(view_, model_.layout().per_observer > 0 && !in_own_frame, &belief_, &estimate_);
-    if (in_own_frame) {
-      belief_.P_WT.xx += position_std_m_ * position_std_m_;
-      belief_.P_WT.yy += position_std_m_ * position_std_m_;
-    }
+    if (in_own_frame) ToWorld();
+  }
+
+  /// From the own frame into the world.
+  void ToWorld() {
+    PlaneError e;
+    e.xx = e.yy = own_.position_std_m * own_.position_std_m;
+    if (own_.error) e = *own_.error;
+    belief_.p_WT = belief_.p_WT - Vec3<double>{e.x, e.y, 0.0};
+    belief_.P_WT.xx += e.xx;
+    belief_.P_WT.xy += e.xy;
+    belief_.P_WT.yy += e.yy;
   }
 
   SightingModel model_;
@@ -327,8 +335,8 @@ class MeasurementFilter : public TargetFilter {
   Snapshot now_;
   std::vector<Snapshot> snapshots_;  // a ring
   int first_ = 0, kept_ = 0;
-  double position_std_m_ = 0.0;  // of the own position now
-  GaussianMixture view_;         // of the target and the own errors, now
+  OwnFrame own_;          // now
+  GaussianMixture view_;  // of the target and the own errors, now
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

@@ -49,6 +49,9 @@ constexpr double kAdrift = 0.5;
 /// is that of 0.06 m/s in a second, which covers scale and heading without states of their own.
 constexpr double kReckoning = 0.06 * 0.06;
 
+/// Correlation time of what a localizer leaves of an error.
+constexpr double kLocated_s = 100.0;
+
 /// State i of all components grows by `dt_s` times state `rate`.
 void Drift(int i, int rate, double dt_s, double added, double kept, double renewed,
            GaussianMixture* mixture) {
@@ -80,6 +83,7 @@ void Observers::Clear() {
 }
 
 void Observers::Predict(double dt_s, GaussianMixture* mixture) const {
+  if (layout_.located) Renew(dt_s, mixture);
   if (!layout_.rates || !adrift_ || dt_s <= 0.0) return;
   const double kept = std::exp(-dt_s / drift_.shear_memory_s);
   const double renewed = 2.0 * drift_.shear_variance * (1.0 - kept * kept);
@@ -88,6 +92,21 @@ void Observers::Predict(double dt_s, GaussianMixture* mixture) const {
     for (int axis = 0; axis < 2; ++axis) {
       const int i = layout_.block(b) + axis;
       Drift(i, i + layout_.rate(), dt_s, 2.0 * kReckoning * dt_s, kept, renewed, mixture);
+    }
+  }
+}
+
+/// What a localizer leaves of an error is a new one after a while.
+void Observers::Renew(double dt_s, GaussianMixture* mixture) const {
+  if (dt_s <= 0.0) return;
+  const double kept = std::exp(-dt_s / kLocated_s);
+  for (int b = 1; b < layout_.observers; ++b) {
+    const Block& block = blocks_[static_cast<std::size_t>(b)];
+    if (block.id < 0) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      Shrink(layout_.block(b) + axis, kept, mixture);
+      Grow(layout_.block(b) + axis,
+           block.position_std_m * block.position_std_m * (1.0 - kept * kept), mixture);
     }
   }
 }
@@ -117,7 +136,9 @@ int Observers::Admit(int id, TimeNs stamp, double position_std_m, double heading
     block = Block();
     block.id = id;
   }
-  if (!layout_.rates) {
+  if (layout_.located && slot == 0) {
+    // The own frame is the frame.
+  } else if (!layout_.rates) {
     Follow(first, position_std_m, block.position_std_m, mixture);
     Follow(first + 1, position_std_m, block.position_std_m, mixture);
   } else if (slot == 0) {

@@ -23,7 +23,8 @@ struct DriftModel {
 /// With steps, an error is of the world, and what it has grown by since it was last stated is new.
 /// With rates, an error is against the own one: a drift that all share is not in it, and while the
 /// logs find no bottom it grows at a rate that is a state, too. So a current that carries everybody
-/// alike blurs nothing that the vehicle steers by.
+/// alike blurs nothing that the vehicle steers by. With a localizer, an error is what that leaves
+/// of it, which is forgotten in a while; the deviations that are stated are those.
 class Observers {
  public:
   Observers(const StateLayout& layout, const DriftModel& drift, int self)
@@ -46,6 +47,7 @@ class Observers {
     double position_std_m = 0.0, heading_std_rad = 0.0;
     double own_std_m = 0.0;  ///< deviation of the own position then
   };
+  void Renew(double dt_s, GaussianMixture* mixture) const;
   int BlockOf(int id) const;
   void AdmitOwn(TimeNs stamp, double position_std_m, GaussianMixture* mixture);
   void AdmitOther(int slot, bool is_new, double position_std_m, GaussianMixture* mixture);

@@ -31,6 +31,7 @@ SightingModel::SightingModel(const AgentModel& s) {
   if (!navigation->perfect()) {
     layout_.heading = sensor->kind() != MeasurementKind::kRange;
     layout_.rates = s.track.observers == ObserverErrors::kRates;
+    layout_.located = s.track.observers == ObserverErrors::kLocated;
     layout_.per_observer = layout_.rate() + (layout_.rates ? 2 : 0);
     layout_.observers = std::min(s.run.agents, kMostObservers);
   }

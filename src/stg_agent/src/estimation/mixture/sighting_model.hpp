@@ -15,7 +15,10 @@ struct StateLayout {
   int observers = 0;
   bool heading = false;
   bool rates = false;
+  bool located = false;
 
+  /// Errors are against the own one.
+  bool relative() const { return rates || located; }
   /// Of the first number of a rate within a block.
   int rate() const { return heading ? 3 : 2; }
 

@@ -21,4 +21,14 @@ struct EstimateMetrics {
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
+/// How far AUVs with a localizer take themselves and each other to be from where they are,
+/// horizontal, east and north together [m].
+struct NavigationMetrics {
+  double rmse = 0.0, rmse_tail = 0.0;  ///< of their own positions in the world
+  double nees = 0.0;           ///< mean normalised square of these errors; 2 where it is consistent
+  double relative_rmse = 0.0;  ///< of the others' positions against the own one
+
+  std::vector<std::pair<std::string, double>> Items() const;
+};
+
 }  // namespace stg::task

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "stg_env/task/estimate_metrics.hpp"
@@ -47,5 +48,27 @@ class EstimateTotals {
 
 extern template class EstimateTotals<double>;
 extern template class EstimateTotals<Pack>;
+
+/// The sums behind NavigationMetrics. Every lane counts its own decisions.
+template <class T>
+class NavigationTotals {
+ public:
+  void Start(const Mask<T>& lanes);
+  /// Adds a decision. @param tail lanes in the tail of their episode
+  void Add(const SwarmState<T>& swarm, const Mask<T>& tail);
+  /// Of the episode up to now; nothing where no AUV was seen to locate itself.
+  std::optional<NavigationMetrics> Metrics(int lane) const;
+
+ private:
+  struct Sums {
+    T located = T(0.0), square = T(0.0), tail = T(0.0), in_tail = T(0.0), nees = T(0.0),
+      relative = T(0.0);
+  };
+
+  Sums sums_;
+};
+
+extern template class NavigationTotals<double>;
+extern template class NavigationTotals<Pack>;
 
 }  // namespace stg::task

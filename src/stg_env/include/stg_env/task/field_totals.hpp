@@ -77,6 +77,7 @@ class FieldTotals {
   Sums sums_;
   EstimateTotals<T> estimates_;
   SearchTotals<T> search_;
+  NavigationTotals<T> navigation_;
   std::vector<T> spell_;          // [agents] decisions of the spell of loss that runs
   std::vector<T> band_;           // [agents] decisions in the band
   std::vector<bool> is_torpedo_;  // [agents]

@@ -35,9 +35,10 @@ struct FieldMetrics {
   double information_age = 0.0;  ///< mean age of the newest observation in the estimates [s]
   EstimateMetrics estimates;
   SearchMetrics search;
-  double band_share = 0.0;        ///< share of AUV decisions inside [d_l, d_u]
-  double worst_band_share = 0.0;  ///< of the AUV that was inside least
-  double time_lost = 0.0;         ///< mean over AUVs [s]
+  std::optional<NavigationMetrics> navigation;  ///< of AUVs with a localizer
+  double band_share = 0.0;                      ///< share of AUV decisions inside [d_l, d_u]
+  double worst_band_share = 0.0;                ///< of the AUV that was inside least
+  double time_lost = 0.0;                       ///< mean over AUVs [s]
   double time_to_reacquire =
       0.0;                     ///< mean length of the spells of loss that ended [s]; 0: none did
   double losses = 0.0;         ///< spells of loss, per AUV

@@ -29,14 +29,19 @@ struct FieldState {
   /// Covariance of it, xx xy xz yy yz zz [m^2], what its navigation may be off included; all zero
   /// where it knows the truth.
   T covariance[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
-  T age_s = T(0.0);           ///< of the newest observation in the estimate
-  T altitude_m = T(1e9);      ///< above the bottom
-  T clearance_m = T(1e9);     ///< to the nearest obstacle
-  T groundings = T(0.0);      ///< of this episode up to now, as the next four
-  T collisions = T(0.0);      ///< with obstacles
-  T received = T(0.0);        ///< packets that it received, and that were lost on the way to it,
-  T missed = T(0.0);          ///< mean over the AUVs
-  T modem_energy_j = T(0.0);  ///< electric, of its modem
+  T age_s = T(0.0);  ///< of the newest observation in the estimate
+  // Of an AUV with a localizer: what is left of the errors of its position and of its neighbours'.
+  T located = T(0.0);        ///< 0: the next three mean nothing
+  Vec3<T> navigation_error;  ///< of its position in the world, horizontal [m]
+  T navigation_covariance[3] = {T(0.0), T(0.0), T(0.0)};  ///< of it, xx xy yy [m^2]
+  T relative_square = T(0.0);  ///< mean square of the others' errors against the own one [m^2]
+  T altitude_m = T(1e9);       ///< above the bottom
+  T clearance_m = T(1e9);      ///< to the nearest obstacle
+  T groundings = T(0.0);       ///< of this episode up to now, as the next four
+  T collisions = T(0.0);       ///< with obstacles
+  T received = T(0.0);         ///< packets that it received, and that were lost on the way to it,
+  T missed = T(0.0);           ///< mean over the AUVs
+  T modem_energy_j = T(0.0);   ///< electric, of its modem
 };
 
 /// The true state of a swarm when a decision is due, and what the decision before led to it with:

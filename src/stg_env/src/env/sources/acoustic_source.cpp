@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stg_agent/stations/station_channel.hpp"
+
 namespace stg::env {
 
 AcousticSource::AcousticSource(const agent::AgentModel& model,
@@ -16,7 +18,7 @@ AcousticSource::AcousticSource(const agent::AgentModel& model,
   agents_.reserve(n);
   for (int i = 0; i < count_; ++i) agents_.emplace_back(constants, i);
   for (int lane = 0; lane < kLanes; ++lane) {
-    channels_.push_back(acoustics::MakeChannel(channel, model.run, line_of_sight));
+    channels_.push_back(agent::MakeStationChannel(model, channel, line_of_sight));
   }
   packets_.resize(n);
   offered_.reserve(n);
@@ -91,6 +93,30 @@ void AcousticSource::Send(const dynamics::World& world) {
   }
 }
 
+/// What a localizer leaves of the errors of AUV i and of the others against its own.
+void AcousticSource::TellNavigation(const dynamics::World& world, int i, int lane,
+                                    task::FieldState<Pack>* f) const {
+  const agent::Localizer* localizer = agents_[static_cast<std::size_t>(i)].inbox(lane).localizer();
+  if (localizer == nullptr) return;
+  const auto error = [&](int j) {
+    return world.Nav(lane, j).p_WB - Lane(world.vehicle(j).p_WB, lane);
+  };
+  const Vec3<double> own = error(i);
+  const agent::PlaneError e = localizer->own();
+  SetLane(&f->located, lane, 1.0);
+  SetLane(&f->navigation_error, lane, {own.x - e.x, own.y - e.y, 0.0});
+  const double covariance[3] = {e.xx, e.xy, e.yy};
+  for (int k = 0; k < 3; ++k) SetLane(&f->navigation_covariance[k], lane, covariance[k]);
+  double square = 0.0;
+  for (int j = 0; j < count_; ++j) {
+    if (j == i) continue;
+    const Vec3<double> truth = error(j) - own;
+    const agent::PlaneError r = localizer->relative(j, world.time(lane));
+    square += (truth.x - r.x) * (truth.x - r.x) + (truth.y - r.y) * (truth.y - r.y);
+  }
+  SetLane(&f->relative_square, lane, square / std::max(1, count_ - 1));
+}
+
 Pack AcousticSource::LinkQuality(const dynamics::World&) const {
   Pack sum(0.0);
   for (const agent::AgentLanes& a : agents_) sum += a.knowledge().mean_quality;
@@ -109,6 +135,7 @@ void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<
     const double covariance[6] = {P.xx, P.xy, P.xz, P.yy, P.yz, P.zz};
     for (int k = 0; k < 6; ++k) SetLane(&f->covariance[k], lane, covariance[k]);
     SetLane(&f->age_s, lane, Seconds(now - belief.information));
+    TellNavigation(world, i, lane, f);
     const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
     SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));
     const acoustics::ChannelTotals& totals = channel.totals();

@@ -40,6 +40,9 @@ class AcousticSource : public InformationSource {
   }
 
  private:
+  void TellNavigation(const dynamics::World& world, int i, int lane,
+                      task::FieldState<Pack>* f) const;
+
   int count_;  // of AUVs
   dynamics::TargetConfig targets_;
   int action_size_;

@@ -65,6 +65,7 @@ void FieldTotals<T>::Start(const Mask<T>& lanes) {
   for (T& band : band_) restart(&band, 0.0);
   estimates_.Start(lanes);
   search_.Start(lanes);
+  navigation_.Start(lanes);
 }
 
 template <class T>
@@ -72,6 +73,7 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
                          const Mask<T>& tail) {
   estimates_.Add(swarm, tracking, tail);
   search_.Add(swarm, tracking);
+  navigation_.Add(swarm, tail);
   const T zero(0.0), one(1.0);
   const config::Interval& band = scenario_.reward.band_m;
   Sums& s = sums_;
@@ -137,6 +139,7 @@ FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   m.information_age = at(s.age) / known;
   m.estimates = estimates_.Metrics(lane, steps);
   m.search = search_.Metrics(lane, steps);
+  m.navigation = navigation_.Metrics(lane);
   m.band_share = at(s.band) / all;
   m.worst_band_share = at(band_.front()) / steps;
   for (const T& band : band_) m.worst_band_share = std::min(m.worst_band_share, at(band) / steps);

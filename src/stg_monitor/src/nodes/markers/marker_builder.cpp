@@ -25,6 +25,9 @@ class Builder : private MarkerList {
   MarkerArray Build() {
     if (style_.whole_workspace) Workspace();
     Targets();
+    for (size_t k = 0; k < view_.stations.size(); ++k) {
+      Sphere("station", static_cast<int>(k), view_.stations[k], unit_, Color(0.95, 0.6, 0.1, 0.9));
+    }
     for (size_t i = 0; i < view_.vehicles.size(); ++i) Vehicle(static_cast<int>(i));
     Summary();
     AddBeliefMarkers(view_, style_, &array_);

@@ -1,5 +1,6 @@
 /// Shows a running or a replayed swarm in rviz. It only listens, so it may come, go and fall behind
 /// without any effect on the run.
+/// Long because: each topic has its subscription and its answer here.
 
 #include <auv_msgs/LinkState.h>
 #include <auv_msgs/LinkStates.h>
@@ -40,7 +41,8 @@
 namespace stg::nodes {
 namespace {
 
-constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxTrailPoints = 1500;
+constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxStations = 32,
+                      kMaxTrailPoints = 1500;
 constexpr int kOdomQueue = 20;           // steps by which an AUV may come late
 constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
 
@@ -111,7 +113,7 @@ class MarkerNode {
 
   /// Subscribes to every AUV and target that anybody publishes: any number, live or from a bag.
   void OnDiscover(const ros::WallTimerEvent&) {
-    static const std::regex kPattern("/(auv|target)_([0-9]{1,4})/odom");
+    static const std::regex kPattern("/(auv|target|station)_([0-9]{1,4})/odom");
     ros::master::V_TopicInfo topics;
     if (!ros::master::getTopics(topics)) return;
     for (const ros::master::TopicInfo& topic : topics) {
@@ -120,6 +122,8 @@ class MarkerNode {
       const std::size_t index = std::stoul(match[2]);
       if (match[1] == "auv") {
         if (index < kMaxVehicles) AddVehicles(index + 1);
+      } else if (match[1] == "station") {
+        if (index < kMaxStations) AddStations(index + 1);
       } else if (index < kMaxTargets) {
         AddTargets(index + 1);
       }
@@ -139,6 +143,18 @@ class MarkerNode {
       subscribers_.push_back(nh_.subscribe<auv_msgs::TargetDetection>(
           topics::AuvTopic(id, topics::kTargetDetection), 20,
           [this, i](const auv_msgs::TargetDetection::ConstPtr& m) { OnDetection(i, *m); }));
+    }
+  }
+
+  void AddStations(std::size_t count) {
+    for (std::size_t k = view_.stations.size(); k < count; ++k) {
+      view_.stations.emplace_back();
+      subscribers_.push_back(
+          nh_.subscribe<nav_msgs::Odometry>(topics::StationOdom(static_cast<int>(k)), kOdomQueue,
+                                            [this, k](const nav_msgs::Odometry::ConstPtr& m) {
+                                              if (Finite(m->pose.pose.position))
+                                                view_.stations[k] = m->pose.pose.position;
+                                            }));
     }
   }
 

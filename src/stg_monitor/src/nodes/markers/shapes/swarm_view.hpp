@@ -94,6 +94,7 @@ struct SwarmView {
   std::uint32_t episode = 0, step = 0;
   std::vector<VehicleView> vehicles;
   std::vector<MovingTarget> targets;
+  std::vector<geometry_msgs::Point> stations;     ///< beacons and surface craft
   std::map<std::pair<int, int>, LinkView> links;  ///< by (source, destination)
   std::deque<PacketEvent> packets;
   std::deque<CarrierView> carriers;

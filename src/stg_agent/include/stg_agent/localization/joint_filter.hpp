@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "auv_common/numbers/vector.hpp"
+#include "auv_common/time.hpp"
+#include "stg_agent/localization/localization_config.hpp"
+#include "stg_agent/localization/localizer.hpp"
+
+namespace stg::agent {
+
+/// A member of the network that tells where it is: how good that is.
+struct AnchorModel {
+  double std_m = 1.0;     ///< of each horizontal component
+  double memory_s = 0.0;  ///< correlation time of the error; 0: it is constant
+};
+
+/// A range by the travel time of one packet. Positions are those that the two reported for the
+/// moment in which the packet began to leave.
+struct RangeReading {
+  int receiver = 0, source = 0;  ///< members of the network
+  TimeNs at = 0;
+  Vec3<double> p_receiver, p_source;  ///< [m]
+  double range_m = 0.0;
+};
+
+/// One Kalman filter over the errors of all reckoned positions that an AUV knows of.
+///
+/// States: of each AUV the error e of its reckoned position and the velocity w by which its water
+/// differs from the common one; the common current C; the share kappa by which ranges are too long;
+/// of each station the error g of the position that it tells. Of an AUV whose log measures against
+/// the water de/dt = -(C + w) + noise; C, w and the errors of craft are Ornstein-Uhlenbeck
+/// processes, those of beacons constants.
+///
+/// A range (1 + kappa) |p_j - p_l| that was taken some time ago sees the errors as they were then,
+/// e(t - a) = e + a (C + w): no old states are kept. Its bend across the line of sight is taken to
+/// second order. All that enters are raw readings and reported positions, each once; so ranges
+/// among AUVs alone leave the mean error, the mean current and their variances as they were.
+class JointFilter {
+ public:
+  static constexpr int kMostObservers = 8;
+
+  /// @param auvs members 0 .. auvs - 1; the anchors follow @param self always keeps its states
+  JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
+              const std::vector<AnchorModel>& anchors, int self);
+
+  void Clear();
+  /// Carries all states to a time, which is not before the last one.
+  void Predict(TimeNs now);
+  /// The log of an AUV measures against the water, or against the bottom.
+  void SetAdrift(int id, bool adrift);
+  /// An AUV has come to another depth: other water.
+  void SetDepth(int id, double depth_m);
+  /// Gives an AUV states if it has none; of more than kMostObservers the one heard longest ago
+  /// loses its own.
+  void Admit(int id, TimeNs heard);
+  bool knows(int id) const { return IsAnchor(id) || SlotOf(id) >= 0; }
+
+  /// Takes a reading, not of the future, between members that it knows. False: it was set aside.
+  bool Take(const RangeReading& reading);
+
+  /// Error of a reported position, at a time up to now.
+  PlaneError Error(int id, TimeNs at) const;
+  /// The first one's less the second one's.
+  PlaneError Relative(int id, int than, TimeNs at) const;
+  /// Mean over the AUVs that it knows.
+  PlaneError MeanError() const;
+  /// Of C.
+  PlaneError Current() const;
+
+  TimeNs now() const { return now_; }
+  /// Of the last Take: squared innovation by its variance, before the gate.
+  double last_nis() const { return nis_; }
+
+ private:
+  struct Observer {
+    int id = -1;
+    TimeNs heard = 0;
+    bool adrift = true;
+    bool dived = false;  ///< a depth is known
+    double depth_m = 0.0;
+  };
+  struct Row;
+
+  bool IsAnchor(int id) const { return id >= auvs_; }
+  int SlotOf(int id) const;
+  int ErrorAt(int slot) const { return 4 * slot; }
+  int ShearAt(int slot) const { return 4 * slot + 2; }
+  int CurrentAt() const { return 4 * slots_; }
+  int ScaleAt() const { return CurrentAt() + 2; }
+  int AnchorAt(int id) const { return ScaleAt() + 1 + 2 * (id - auvs_); }
+  double& P(int r, int c) { return P_[static_cast<std::size_t>(r * n_ + c)]; }
+  double P(int r, int c) const { return P_[static_cast<std::size_t>(r * n_ + c)]; }
+  void Scale(int i, double share);
+  void Forget(int i, double share, double variance);
+  void Start(int slot, int id);
+  /// Adds `weight` times component `axis` of the error of a member, `age_s` ago, to a row.
+  void AddError(int id, int axis, double weight, double age_s, Row* row) const;
+  double Mean(const Row& row) const;
+  double Column(const Row& row, double* column) const;
+  PlaneError Spread(const Row& east, const Row& north) const;
+
+  LocalizationConfig config_;
+  double start_variance_;
+  int auvs_, self_, slots_;
+  std::vector<AnchorModel> anchors_;
+  int n_;
+  TimeNs now_ = 0;
+  double nis_ = 0.0;
+  std::vector<Observer> observers_;  // [slots]
+  std::vector<double> x_, P_;        // [n], [n, n]
+};
+
+}  // namespace stg::agent

@@ -1,0 +1,338 @@
+#include "stg_agent/localization/joint_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stg::agent {
+namespace {
+
+constexpr int kMostJointStates = 128;
+
+double Squared(double x) { return x * x; }
+
+/// What an Ornstein-Uhlenbeck process of unit variance keeps of itself.
+double ShareKept(double dt_s, double memory_s) { return std::exp(-dt_s / memory_s); }
+
+}  // namespace
+
+/// The few numbers of a row that are not zero.
+struct JointFilter::Row {
+  std::array<int, 24> index{};
+  std::array<double, 24> value{};
+  int count = 0;
+
+  void Add(int i, double v) {
+    for (int k = 0; k < count; ++k) {
+      if (index[static_cast<std::size_t>(k)] != i) continue;
+      value[static_cast<std::size_t>(k)] += v;
+      return;
+    }
+    index[static_cast<std::size_t>(count)] = i;
+    value[static_cast<std::size_t>(count++)] = v;
+  }
+};
+
+JointFilter::JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
+                         const std::vector<AnchorModel>& anchors, int self)
+    : config_(config),
+      start_variance_(Squared(start_std_m)),
+      auvs_(auvs),
+      self_(self),
+      slots_(std::min(auvs, kMostObservers)),
+      anchors_(anchors),
+      n_(4 * slots_ + 3 + 2 * static_cast<int>(anchors.size())),
+      observers_(static_cast<std::size_t>(slots_)),
+      x_(static_cast<std::size_t>(n_)),
+      P_(static_cast<std::size_t>(n_ * n_)) {
+  Clear();
+}
+
+void JointFilter::Clear() {
+  now_ = 0;
+  std::fill(x_.begin(), x_.end(), 0.0);
+  std::fill(P_.begin(), P_.end(), 0.0);
+  // The own one first, so that it never loses its states to another; then by index.
+  int id = 0;
+  for (int slot = 0; slot < slots_; ++slot) {
+    const bool own = slot == 0 && !IsAnchor(self_);
+    if (!own && id == self_) ++id;
+    Observer& o = observers_[static_cast<std::size_t>(slot)];
+    o = Observer();
+    o.id = own ? self_ : id++;
+    for (int axis = 0; axis < 2; ++axis) {
+      P(ErrorAt(slot) + axis, ErrorAt(slot) + axis) = start_variance_;
+      P(ShearAt(slot) + axis, ShearAt(slot) + axis) = Squared(config_.shear_std_mps);
+    }
+  }
+  for (int axis = 0; axis < 2; ++axis) {
+    P(CurrentAt() + axis, CurrentAt() + axis) = Squared(config_.current_std_mps);
+  }
+  P(ScaleAt(), ScaleAt()) = Squared(config_.sound_speed_std);
+  for (std::size_t k = 0; k < anchors_.size(); ++k) {
+    const int g = AnchorAt(auvs_ + static_cast<int>(k));
+    P(g, g) = P(g + 1, g + 1) = Squared(anchors_[k].std_m);
+  }
+}
+
+int JointFilter::SlotOf(int id) const {
+  for (int slot = 0; slot < slots_; ++slot) {
+    if (observers_[static_cast<std::size_t>(slot)].id == id) return slot;
+  }
+  return -1;
+}
+
+void JointFilter::Scale(int i, double share) {
+  x_[static_cast<std::size_t>(i)] *= share;
+  for (int c = 0; c < n_; ++c) P(i, c) *= share;
+  for (int r = 0; r < n_; ++r) P(r, i) *= share;
+}
+
+/// A state keeps a share of itself and is renewed to its own variance.
+void JointFilter::Forget(int i, double share, double variance) {
+  Scale(i, share);
+  P(i, i) += variance * (1.0 - share * share);
+}
+
+void JointFilter::Predict(TimeNs now) {
+  const double dt_s = Seconds(now - now_);
+  if (dt_s <= 0.0) return;
+  now_ = now;
+  const int C = CurrentAt();
+  for (int slot = 0; slot < slots_; ++slot) {
+    if (!observers_[static_cast<std::size_t>(slot)].adrift) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      const int e = ErrorAt(slot) + axis, w = ShearAt(slot) + axis, common = C + axis;
+      x_[static_cast<std::size_t>(e)] -=
+          dt_s * (x_[static_cast<std::size_t>(common)] + x_[static_cast<std::size_t>(w)]);
+      for (int c = 0; c < n_; ++c) P(e, c) -= dt_s * (P(common, c) + P(w, c));
+      for (int r = 0; r < n_; ++r) P(r, e) -= dt_s * (P(r, common) + P(r, w));
+    }
+  }
+  const double noise = Squared(config_.reckoning_std_m) * dt_s;
+  const double w_kept = ShareKept(dt_s, config_.shear_memory_s);
+  for (int slot = 0; slot < slots_; ++slot) {
+    for (int axis = 0; axis < 2; ++axis) {
+      P(ErrorAt(slot) + axis, ErrorAt(slot) + axis) += noise;
+      Forget(ShearAt(slot) + axis, w_kept, Squared(config_.shear_std_mps));
+    }
+  }
+  const double c_kept = ShareKept(dt_s, config_.current_memory_s);
+  for (int axis = 0; axis < 2; ++axis) Forget(C + axis, c_kept, Squared(config_.current_std_mps));
+  for (std::size_t k = 0; k < anchors_.size(); ++k) {
+    if (anchors_[k].memory_s <= 0.0) continue;
+    const int g = AnchorAt(auvs_ + static_cast<int>(k));
+    const double g_kept = ShareKept(dt_s, anchors_[k].memory_s);
+    for (int axis = 0; axis < 2; ++axis) Forget(g + axis, g_kept, Squared(anchors_[k].std_m));
+  }
+}
+
+void JointFilter::SetAdrift(int id, bool adrift) {
+  const int slot = SlotOf(id);
+  if (slot >= 0) observers_[static_cast<std::size_t>(slot)].adrift = adrift;
+}
+
+void JointFilter::SetDepth(int id, double depth_m) {
+  const int slot = SlotOf(id);
+  if (slot < 0) return;
+  Observer& o = observers_[static_cast<std::size_t>(slot)];
+  if (o.dived && depth_m != o.depth_m) {
+    const double kept = std::exp(-std::abs(depth_m - o.depth_m) / config_.shear_depth_m);
+    for (int axis = 0; axis < 2; ++axis) {
+      Forget(ShearAt(slot) + axis, kept, Squared(config_.shear_std_mps));
+    }
+  }
+  o.dived = true;
+  o.depth_m = depth_m;
+}
+
+void JointFilter::Admit(int id, TimeNs heard) {
+  if (IsAnchor(id)) return;
+  int slot = SlotOf(id);
+  if (slot < 0) {
+    slot = IsAnchor(self_) ? 0 : 1;
+    if (slot >= slots_) return;
+    for (int s = slot; s < slots_; ++s) {
+      if (observers_[static_cast<std::size_t>(s)].heard <
+          observers_[static_cast<std::size_t>(slot)].heard) {
+        slot = s;
+      }
+    }
+    Start(slot, id);
+  }
+  Observer& o = observers_[static_cast<std::size_t>(slot)];
+  o.heard = std::max(o.heard, heard);
+}
+
+/// A new AUV came through the same water as the others: its error is another one's, and what they
+/// may have come to differ by since the start.
+void JointFilter::Start(int slot, int id) {
+  const int like = slot == 0 ? 1 : 0;
+  const double t = Seconds(now_);
+  Observer& o = observers_[static_cast<std::size_t>(slot)];
+  o = Observer();
+  o.id = id;
+  const double shear = Squared(config_.shear_std_mps);
+  for (int axis = 0; axis < 2; ++axis) {
+    const int e = ErrorAt(slot) + axis, w = ShearAt(slot) + axis, of = ErrorAt(like) + axis;
+    Scale(e, 0.0);
+    Scale(w, 0.0);
+    if (like < slots_) {
+      x_[static_cast<std::size_t>(e)] = x_[static_cast<std::size_t>(of)];
+      for (int c = 0; c < n_; ++c) P(e, c) = P(of, c);
+      for (int r = 0; r < n_; ++r) P(r, e) = P(r, of);
+      P(e, e) = P(of, of);
+    }
+    P(e, e) += 2.0 * start_variance_ + 2.0 * shear * t * t;
+    P(w, w) = shear;
+    P(e, w) -= shear * t;
+    P(w, e) -= shear * t;
+  }
+}
+
+void JointFilter::AddError(int id, int axis, double weight, double age_s, Row* row) const {
+  if (IsAnchor(id)) {
+    row->Add(AnchorAt(id) + axis, weight);
+    return;
+  }
+  const int slot = SlotOf(id);
+  if (slot < 0) return;
+  row->Add(ErrorAt(slot) + axis, weight);
+  if (age_s == 0.0 || !observers_[static_cast<std::size_t>(slot)].adrift) return;
+  row->Add(ShearAt(slot) + axis, weight * age_s);
+  row->Add(CurrentAt() + axis, weight * age_s);
+}
+
+double JointFilter::Mean(const Row& row) const {
+  double sum = 0.0;
+  for (int k = 0; k < row.count; ++k) {
+    sum += row.value[static_cast<std::size_t>(k)] *
+           x_[static_cast<std::size_t>(row.index[static_cast<std::size_t>(k)])];
+  }
+  return sum;
+}
+
+/// P times the row as a column; returns row P column.
+double JointFilter::Column(const Row& row, double* column) const {
+  std::fill_n(column, n_, 0.0);
+  for (int k = 0; k < row.count; ++k) {
+    const double v = row.value[static_cast<std::size_t>(k)];
+    const double* p = P_.data() + row.index[static_cast<std::size_t>(k)] * n_;
+    for (int c = 0; c < n_; ++c) column[c] += v * p[c];
+  }
+  double sum = 0.0;
+  for (int k = 0; k < row.count; ++k) {
+    sum += row.value[static_cast<std::size_t>(k)] * column[row.index[static_cast<std::size_t>(k)]];
+  }
+  return sum;
+}
+
+bool JointFilter::Take(const RangeReading& z) {
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  double offset[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    Row error;
+    AddError(z.receiver, axis, 1.0, age_s, &error);
+    AddError(z.source, axis, -1.0, age_s, &error);
+    const double told = axis == 0 ? z.p_receiver.x - z.p_source.x : z.p_receiver.y - z.p_source.y;
+    offset[axis] = told - Mean(error);
+  }
+  const double dz = z.p_receiver.z - z.p_source.z;
+  const double level = std::max(std::hypot(offset[0], offset[1]), 1e-3);
+  const double range = std::hypot(level, dz);
+  const double u[2] = {offset[0] / range, offset[1] / range};
+  const double across[2] = {-offset[1] / level, offset[0] / level};
+
+  Row row, bend;
+  for (int axis = 0; axis < 2; ++axis) {
+    AddError(z.receiver, axis, -u[axis], age_s, &row);
+    AddError(z.source, axis, u[axis], age_s, &row);
+    AddError(z.receiver, axis, across[axis], age_s, &bend);
+    AddError(z.source, axis, -across[axis], age_s, &bend);
+  }
+  row.Add(ScaleAt(), range);
+  std::array<double, kMostJointStates> column;
+  const double curved = Column(bend, column.data()) / range;
+  // What the currents did since then is not in the row.
+  const double wander = (Squared(config_.current_std_mps) / config_.current_memory_s +
+                         Squared(config_.shear_std_mps) / config_.shear_memory_s) *
+                        2.0 * age_s * age_s * age_s / 3.0;
+  const double noise = Squared(config_.range_std_m) + wander + 0.5 * curved * curved;
+  const double S = Column(row, column.data()) + noise;
+  const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range;
+  const double innovation = z.range_m - expected - 0.5 * curved;
+  nis_ = innovation * innovation / S;
+  if (nis_ > Squared(config_.gate_sigma)) return false;
+  // A late sound makes a range longer by anything up to the most.
+  const double first = (1.0 - config_.late_share) * std::exp(-0.5 * nis_) /
+                       std::sqrt(2.0 * 3.14159265358979323846 * S);
+  const double late = innovation > 0.0 ? config_.late_share / config_.late_max_m : 0.0;
+  const double truth = first / (first + late);
+  const double gain = truth * innovation / S;
+  const double less = (truth - truth * (1.0 - truth) * nis_) / S;
+  for (int r = 0; r < n_; ++r) {
+    const double f = column[static_cast<std::size_t>(r)];
+    x_[static_cast<std::size_t>(r)] += gain * f;
+    for (int c = 0; c <= r; ++c) {
+      const double p = P(r, c) - less * f * column[static_cast<std::size_t>(c)];
+      P(r, c) = p;
+      P(c, r) = p;
+    }
+  }
+  return true;
+}
+
+PlaneError JointFilter::Spread(const Row& east, const Row& north) const {
+  std::array<double, kMostJointStates> column;
+  PlaneError e;
+  e.x = Mean(east);
+  e.y = Mean(north);
+  e.yy = Column(north, column.data());
+  e.xx = Column(east, column.data());
+  for (int k = 0; k < north.count; ++k) {
+    e.xy += north.value[static_cast<std::size_t>(k)] *
+            column[static_cast<std::size_t>(north.index[static_cast<std::size_t>(k)])];
+  }
+  return e;
+}
+
+PlaneError JointFilter::Error(int id, TimeNs at) const {
+  const double age_s = std::max(0.0, Seconds(now_ - at));
+  Row east, north;
+  AddError(id, 0, 1.0, age_s, &east);
+  AddError(id, 1, 1.0, age_s, &north);
+  return Spread(east, north);
+}
+
+PlaneError JointFilter::Relative(int id, int than, TimeNs at) const {
+  const double age_s = std::max(0.0, Seconds(now_ - at));
+  Row east, north;
+  AddError(id, 0, 1.0, age_s, &east);
+  AddError(than, 0, -1.0, age_s, &east);
+  AddError(id, 1, 1.0, age_s, &north);
+  AddError(than, 1, -1.0, age_s, &north);
+  return Spread(east, north);
+}
+
+PlaneError JointFilter::MeanError() const {
+  Row east, north;
+  for (int slot = 0; slot < slots_; ++slot) {
+    east.Add(ErrorAt(slot), 1.0 / slots_);
+    north.Add(ErrorAt(slot) + 1, 1.0 / slots_);
+  }
+  return Spread(east, north);
+}
+
+PlaneError JointFilter::Current() const {
+  Row east, north;
+  east.Add(CurrentAt(), 1.0);
+  north.Add(CurrentAt() + 1, 1.0);
+  return Spread(east, north);
+}
+
+double PlaneError::std_m() const {
+  const double half = 0.5 * (xx - yy);
+  return std::sqrt(std::max(0.0, 0.5 * (xx + yy) + std::sqrt(half * half + xy * xy)));
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,53 @@
+#include "stg_agent/localization/localization_config.hpp"
+
+#include "stg_agent/localization/localizer.hpp"
+
+namespace stg::agent {
+
+using config::kFraction;
+using config::kNone;
+using config::NonNegative;
+using config::Positive;
+
+namespace {
+
+void DescribeRanges(LocalizationConfig* c, config::Table* t) {
+  t->Add("current_std_mps", &c->current_std_mps, Positive(10), "m/s, world ENU",
+         "standard deviation of each component of the current that all AUVs share");
+  t->Add("current_memory_s", &c->current_memory_s, Positive(1e7), "s",
+         "correlation time of that current");
+  t->Add("shear_std_mps", &c->shear_std_mps, NonNegative(10), "m/s, world ENU",
+         "standard deviation of each component by which an AUV's own current differs from that");
+  t->Add("shear_memory_s", &c->shear_memory_s, Positive(1e7), "s",
+         "correlation time of this difference");
+  t->Add("shear_depth_m", &c->shear_depth_m, Positive(1e5), "m",
+         "change of depth over which it is forgotten");
+  t->Add("reckoning_std_m", &c->reckoning_std_m, Positive(1e3), "m",
+         "standard deviation of what the log and the heading add to each component of the reckoned "
+         "position in a second");
+  t->Add("range_std_m", &c->range_std_m, Positive(1e4), "m",
+         "standard deviation of a range from a travel time");
+  t->Add("late_share", &c->late_share, kFraction, "-",
+         "share of ranges that are not of the first sound, and so too long");
+  t->Add("late_max_m", &c->late_max_m, Positive(1e5), "m", "by which these are too long, at most");
+  t->Add("sound_speed_std", &c->sound_speed_std, NonNegative(0.1), "-",
+         "standard deviation of the share by which all ranges are too long");
+  t->Add("gate_sigma", &c->gate_sigma, Positive(1e3), "-",
+         "ranges farther off than so many standard deviations are set aside");
+}
+
+}  // namespace
+
+void Describe(LocalizationConfig* c, config::Table* t) {
+  t->Section("localization");
+  t->AddOptional("kind", config::Name(&c->kind, Localizers().Names()), "uncorrected", kNone, "-",
+                 "how AUVs correct their reckoned positions: not at all, or by ranges from the "
+                 "travel times of packets");
+  t->Thing({"localizer",
+            {"ranges"},
+            "localization.kind",
+            [c] { return std::vector<std::string>{c->kind}; }},
+           "localization.ranges", c, DescribeRanges);
+}
+
+}  // namespace stg::agent

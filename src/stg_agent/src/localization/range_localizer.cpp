@@ -1,0 +1,277 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "acoustic_channel/water/sound_speed.hpp"
+#include "localizers.hpp"
+#include "stg_agent/localization/joint_filter.hpp"
+#include "told_ways.hpp"
+
+namespace stg::agent {
+namespace {
+
+constexpr std::size_t kMostPending = 128;
+constexpr std::size_t kMostTaken = 256;  ///< identities of readings that are in already
+constexpr TimeNs kOldest = 60'000'000'000;
+constexpr double kOwnWay_s = 20.0;
+constexpr int kMostOwnWay = 256;
+/// The own log finds no bottom where the own deviation grows by more than this share of the
+/// current's; judged only once it has grown to the other one, as it grows slowly at first.
+constexpr double kDriftShare = 0.5, kGrown = 1.3;
+constexpr TimeNs kJudged = 10'000'000'000;
+
+/// Identity of a reading: by the packet and the one that heard it.
+struct Taken {
+  int receiver = -1, source = -1;
+  TimeNs at = 0;
+};
+
+std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
+  std::vector<AnchorModel> anchors;
+  for (int k = 0; k < s.stations.count(); ++k) {
+    anchors.push_back(s.stations.is_craft(k)
+                          ? AnchorModel{s.stations.gps_std_m, s.stations.gps_memory_s}
+                          : AnchorModel{s.stations.survey_std_m, 0.0});
+  }
+  return anchors;
+}
+
+/// A joint filter over the own readings and those that the others tell of.
+class RangeLocalizer : public Localizer {
+ public:
+  RangeLocalizer(const AgentModel& s, int self)
+      : auvs_(s.run.agents),
+        self_(self),
+        current_std_mps_(s.navigation.current_std_mps),
+        tolerance_(s.run.decision_period() / 8),
+        sound_(s.channel.water),
+        surface_z_m_(s.channel.water.surface_z_m),
+        filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self),
+        ways_(static_cast<std::size_t>(s.run.agents + s.stations.count())),
+        newest_(ways_.size()),
+        own_way_(static_cast<std::size_t>(
+            std::clamp(static_cast<int>(kOwnWay_s / s.run.decision_dt_s()), 4, kMostOwnWay))),
+        taken_(kMostTaken) {
+    pending_.reserve(kMostPending);
+  }
+
+  void Reset() override {
+    filter_.Clear();
+    for (ToldWay& way : ways_) way.Clear();
+    std::fill(newest_.begin(), newest_.end(), ToldRange());
+    std::fill(taken_.begin(), taken_.end(), Taken());
+    pending_.clear();
+    next_taken_ = 0;
+    own_count_ = 0;
+    own_ = OwnReckoning();
+    adrift_ = true;
+    start_std_m_ = -1.0;
+  }
+
+  void Hear(const NeighbourState& packet, const acoustics::Reception& reception) override {
+    const int id = packet.source;
+    if (id == self_ || pending_.size() == kMostPending || reception.travel_time_s <= 0.0) return;
+    Letter letter;
+    letter.id = id;
+    letter.adrift = packet.adrift;
+    letter.way = {packet.generation, reception.transmit, packet.p_W, packet.v_W};
+    letter.travel_time_s = reception.travel_time_s;
+    letter.ranges = packet.ranges;
+    letter.range = packet.range;
+    pending_.push_back(letter);
+  }
+
+  void Advance(TimeNs now, const OwnReckoning& own) override {
+    FollowOwn(now, own);
+    filter_.Predict(now);
+    if (self_ < auvs_) {
+      filter_.SetAdrift(self_, adrift_);
+      filter_.SetDepth(self_, -own.p_WB.z);
+    }
+    // By what they are, not by when they came.
+    std::sort(pending_.begin(), pending_.end(), [](const Letter& a, const Letter& b) {
+      return a.way.transmit != b.way.transmit ? a.way.transmit < b.way.transmit : a.id < b.id;
+    });
+    for (const Letter& letter : pending_) Read(now, letter);
+    pending_.clear();
+  }
+
+  PlaneError own() const override { return filter_.Error(self_, filter_.now()); }
+  PlaneError relative(int id, TimeNs at) const override {
+    if (!filter_.knows(id)) {
+      PlaneError e;
+      e.xx = e.yy = filter_.Error(self_, filter_.now()).xx;
+      return e;
+    }
+    return filter_.Relative(id, self_, at);
+  }
+  PlaneError current() const override { return filter_.Current(); }
+
+  Vec3<double> NearTo(int id) const override {
+    const ToldWay& way = ways_[static_cast<std::size_t>(id)];
+    if (!way.empty()) return way.newest().p;
+    // No member is far from what can be heard: the own position in the other's frame.
+    const PlaneError e = filter_.knows(id) ? relative(id, filter_.now()) : PlaneError();
+    return {own_.p_WB.x + e.x, own_.p_WB.y + e.y, own_.p_WB.z};
+  }
+
+  void Tell(NeighbourState* packet) const override {
+    packet->adrift = adrift_;
+    packet->ranges = 0;
+    // Of a station if one was heard, and of an AUV: which ones changes from packet to packet.
+    const auto stations = static_cast<int>(newest_.size()) - auvs_;
+    const auto draw = static_cast<std::uint64_t>(packet->generation / 1000000);
+    Pick(auvs_, stations, draw, packet);
+    Pick(0, auvs_, draw, packet);
+    if (packet->ranges == 1) Pick(0, auvs_, draw + 1, packet);
+  }
+
+ private:
+  struct Letter {
+    int id = 0;
+    bool adrift = false;
+    ToldWay::Point way;
+    double travel_time_s = 0.0;
+    int ranges = 0;
+    std::array<ToldRange, kToldRanges> range;
+  };
+  struct Place {
+    TimeNs at = 0;
+    Vec3<double> p;
+  };
+
+  void FollowOwn(TimeNs now, const OwnReckoning& own) {
+    if (start_std_m_ < 0.0) {
+      start_std_m_ = own.position_std_m;
+      stated_ = now;
+    } else if (own.position_std_m != own_.position_std_m && now > stated_) {
+      // It is stated anew with each ping of the log.
+      const bool judged = own.position_std_m > kGrown * start_std_m_ || now > kJudged;
+      const double growth = (own.position_std_m - own_.position_std_m) / Seconds(now - stated_);
+      if (judged) adrift_ = growth > kDriftShare * current_std_mps_;
+      stated_ = now;
+    } else if (now - stated_ > kJudged) {
+      adrift_ = false;
+    }
+    if (self_ >= auvs_) adrift_ = false;
+    own_ = own;
+    own_way_[own_count_++ % own_way_.size()] = {now, own.p_WB};
+  }
+
+  /// Where this AUV took itself to be at a time.
+  bool OwnAt(TimeNs t, Vec3<double>* p) const {
+    const std::size_t kept = std::min(own_count_, own_way_.size());
+    for (std::size_t k = 0; k + 1 < kept; ++k) {
+      const Place& b = own_way_[(own_count_ - 1 - k) % own_way_.size()];
+      const Place& a = own_way_[(own_count_ - 2 - k) % own_way_.size()];
+      if (t < a.at || t > b.at) continue;
+      const double s = Seconds(t - a.at) / Seconds(b.at - a.at);
+      *p = a.p * (1.0 - s) + b.p * s;
+      return true;
+    }
+    return false;
+  }
+
+  void Read(TimeNs now, const Letter& letter) {
+    filter_.Admit(letter.id, letter.way.generation);
+    ToldWay& way = ways_[static_cast<std::size_t>(letter.id)];
+    if (!way.Add(letter.way)) return;
+    if (letter.id < auvs_) {
+      filter_.SetAdrift(letter.id, letter.adrift);
+      filter_.SetDepth(letter.id, -letter.way.p.z);
+    }
+    RangeReading z;
+    z.receiver = self_;
+    z.source = letter.id;
+    if (way.AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) && OwnAt(z.at, &z.p_receiver)) {
+      z.range_m = letter.travel_time_s / Slowness(z.p_receiver, z.p_source);
+      newest_[static_cast<std::size_t>(letter.id)] = {letter.id, z.at, z.range_m};
+      Take(now, z);
+    }
+    for (int k = 0; k < letter.ranges; ++k) {
+      const ToldRange& told = letter.range[static_cast<std::size_t>(k)];
+      if (told.source == letter.id) continue;
+      z.receiver = letter.id;
+      z.source = told.source;
+      z.range_m = told.range_m;
+      const bool source_known = told.source == self_
+                                    ? OwnPacketAt(told.stamp, &z.at, &z.p_source)
+                                    : ways_[static_cast<std::size_t>(told.source)].AtPacket(
+                                          told.stamp, tolerance_, &z.at, &z.p_source);
+      if (source_known && way.Between(z.at, &z.p_receiver)) Take(now, z);
+    }
+  }
+
+  /// The own packets are not heard; within the age's resolution it is known when one left.
+  bool OwnPacketAt(TimeNs stamp, TimeNs* at, Vec3<double>* p) const {
+    *at = stamp;
+    return OwnAt(stamp, p);
+  }
+
+  void Take(TimeNs now, const RangeReading& z) {
+    if (now - z.at > kOldest || !filter_.knows(z.receiver) || !filter_.knows(z.source)) return;
+    for (const Taken& t : taken_) {
+      const TimeNs off = t.at - z.at;
+      if (t.receiver == z.receiver && t.source == z.source && off <= tolerance_ &&
+          off >= -tolerance_) {
+        return;
+      }
+    }
+    taken_[next_taken_++ % taken_.size()] = {z.receiver, z.source, z.at};
+    filter_.Take(z);
+  }
+
+  double Slowness(const Vec3<double>& a, const Vec3<double>& b) const {
+    return sound_.MeanSlowness(std::max(0.0, surface_z_m_ - a.z),
+                               std::max(0.0, surface_z_m_ - b.z));
+  }
+
+  /// Adds one of the newest readings of members first .. first + count - 1.
+  void Pick(int first, int count, std::uint64_t draw, NeighbourState* packet) const {
+    if (packet->ranges == kToldRanges) return;
+    const auto usable = [&](int id) {
+      const ToldRange& r = newest_[static_cast<std::size_t>(id)];
+      if (r.range_m <= 0.0 || packet->generation - r.stamp > kOldest / 2) return false;
+      return packet->ranges == 0 || packet->range[0].source != id;
+    };
+    int heard = 0;
+    for (int id = first; id < first + count; ++id) heard += usable(id) ? 1 : 0;
+    if (heard == 0) return;
+    // A hash spreads the choice, whatever the rhythm of the packets.
+    const std::uint64_t mixed = (draw * 0x9E3779B97F4A7C15ULL) >> 33;
+    auto chosen = static_cast<int>(mixed % static_cast<std::uint64_t>(heard));
+    for (int id = first; id < first + count; ++id) {
+      if (!usable(id) || chosen-- > 0) continue;
+      packet->range[static_cast<std::size_t>(packet->ranges++)] =
+          newest_[static_cast<std::size_t>(id)];
+      return;
+    }
+  }
+
+  int auvs_, self_;
+  double current_std_mps_;
+  TimeNs tolerance_;
+  acoustics::SoundSpeedProfile sound_;
+  double surface_z_m_;
+  JointFilter filter_;
+  std::vector<ToldWay> ways_;      // [members]
+  std::vector<ToldRange> newest_;  // [members], own readings of their packets
+  std::vector<Letter> pending_;
+  std::vector<Place> own_way_;  // a ring
+  std::size_t own_count_ = 0;
+  std::vector<Taken> taken_;  // a ring
+  std::size_t next_taken_ = 0;
+  OwnReckoning own_;
+  bool adrift_ = true;
+  double start_std_m_ = -1.0;  // below zero: no decision yet
+  TimeNs stated_ = 0;          // when the own deviation last changed
+};
+
+}  // namespace
+
+std::unique_ptr<Localizer> MakeRangeLocalizer(const AgentModel& model, const int& self) {
+  return std::make_unique<RangeLocalizer>(model, self);
+}
+
+}  // namespace stg::agent

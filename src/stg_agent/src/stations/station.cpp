@@ -1,0 +1,131 @@
+#include "stg_agent/stations/station.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "auv_common/error.hpp"
+#include "auv_common/numbers/random.hpp"
+
+namespace stg::agent {
+namespace {
+
+constexpr double kCraftLag_s = 2.0;          ///< of a craft's velocity behind the wanted one
+constexpr double kDraught_m = 2.0;           ///< its modem hangs so far below the surface
+constexpr TimeNs kSilent = 120'000'000'000;  ///< an AUV is left out of the middle after it
+
+Vec3<double> HomeOf(const StationsConfig& s, int station) {
+  if (!s.is_craft(station)) {
+    const auto& row = s.beacons[static_cast<std::size_t>(station)];
+    return {row[0], row[1], row[2]};
+  }
+  const auto& row = s.crafts[static_cast<std::size_t>(station) - s.beacons.size()];
+  return {row[0], row[1], -kDraught_m};
+}
+
+}  // namespace
+
+Station::Station(SharedConstants constants, int station)
+    : constants_(std::move(constants)),
+      member_(constants_->model.run.agents + station),
+      craft_(constants_->model.stations.is_craft(station)),
+      home_W_(HomeOf(constants_->model.stations, station)),
+      heard_(static_cast<std::size_t>(constants_->model.run.agents)) {
+  if (craft_) localizer_ = MakeLocalizer(constants_->model, member_);
+  Reset(0, 0);
+}
+
+void Station::Reset(std::uint64_t seed, std::uint32_t episode) {
+  seed_ = seed;
+  episode_ = episode;
+  now_ = 0;
+  p_W_ = home_W_;
+  v_W_ = {};
+  std::fill(heard_.begin(), heard_.end(), Heard());
+  if (localizer_ != nullptr) localizer_->Reset();
+  Err(0, true);
+}
+
+/// Of a craft: the error of its position by satellite, anew at each decision; of a beacon: that of
+/// the survey, once.
+void Station::Err(std::uint32_t step, bool start) {
+  if (!start && !craft_) return;
+  const AgentModel& s = constants_->model;
+  Random random(seed_, Stream::kStation, episode_, step, static_cast<std::uint32_t>(member_));
+  const double x = random.Normal(), y = random.Normal();
+  if (start) {
+    const double std_m = craft_ ? s.stations.gps_std_m : s.stations.survey_std_m;
+    error_W_ = Vec3<double>{x, y, 0.0} * std_m;
+    // A beacon is reported to be where it was charted; it lies where the error leaves it.
+    if (!craft_) p_W_ = home_W_ - error_W_;
+    return;
+  }
+  const double kept = std::exp(-s.run.decision_dt_s() / s.stations.gps_memory_s);
+  error_W_ = error_W_ * kept +
+             Vec3<double>{x, y, 0.0} * (s.stations.gps_std_m * std::sqrt(1.0 - kept * kept));
+}
+
+void Station::Receive(const acoustics::Reception& reception) {
+  if (localizer_ == nullptr) return;
+  const acoustics::ByteView& bytes = reception.payload;
+  const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
+  if (source < 0 || source >= constants_->model.members()) return;
+  try {
+    const NeighbourState state = constants_->codec.Decode(bytes.data, bytes.size, reception.arrival,
+                                                          localizer_->NearTo(source));
+    localizer_->Hear(state, reception);
+    if (source >= constants_->model.run.agents) return;
+    Heard& heard = heard_[static_cast<std::size_t>(source)];
+    if (state.generation > heard.stamp) heard = {state.generation, state.p_W, state.v_W};
+  } catch (const UserError&) {
+    // What comes from the water may be damaged.
+  }
+}
+
+void Station::Advance(TimeNs now, std::uint32_t step) {
+  const double dt_s = Seconds(now - now_);
+  if (craft_ && dt_s > 0.0) {
+    p_W_ += v_W_ * dt_s;
+    Err(step, false);
+  }
+  now_ = now;
+  if (localizer_ == nullptr) return;
+  localizer_->Advance(now, {told_W(), constants_->model.stations.gps_std_m});
+  if (craft_ && dt_s > 0.0) v_W_ += (Wanted(now) - v_W_) * (1.0 - std::exp(-dt_s / kCraftLag_s));
+}
+
+Vec3<double> Station::Wanted(TimeNs now) const {
+  Vec3<double> middle;
+  int count = 0;
+  for (std::size_t i = 0; i < heard_.size(); ++i) {
+    const Heard& h = heard_[i];
+    if (h.stamp < 0 || now - h.stamp > kSilent) continue;
+    // From its frame into the own one, which is the world but for the error of the satellites.
+    const PlaneError e = localizer_->relative(static_cast<int>(i), now);
+    const Vec3<double> p = h.p_W + h.v_W * Seconds(now - h.stamp);
+    middle += Vec3<double>{p.x - e.x, p.y - e.y, 0.0};
+    ++count;
+  }
+  const Vec3<double> centre = count > 0 ? middle * (1.0 / count) : home_W_;
+  const StationsConfig& s = constants_->model.stations;
+  const Vec3<double> out{told_W().x - centre.x, told_W().y - centre.y, 0.0};
+  const double rho = std::max(Norm(out), 1e-3), R = s.craft_circle_m;
+  // Onto the circle and around it: the field of a limit cycle.
+  const double radial = (R * R - rho * rho) / rho, around = 2.0 * R;
+  const Vec3<double> way{radial * out.x - around * out.y, radial * out.y + around * out.x, 0.0};
+  return way * (s.craft_speed_mps / std::max(Norm(way), 1e-6));
+}
+
+Packet Station::MakePacket() const {
+  NeighbourState state;
+  state.source = member_;
+  state.generation = now_;
+  state.p_W = told_W();
+  state.v_W = v_W_;
+  const StationsConfig& s = constants_->model.stations;
+  state.position_std_m = craft_ ? s.gps_std_m : s.survey_std_m;
+  if (localizer_ != nullptr) localizer_->Tell(&state);
+  return constants_->codec.Encode(state);
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,146 @@
+#include "stg_agent/stations/station_channel.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace stg::agent {
+namespace {
+
+using acoustics::Channel;
+using acoustics::PacketFate;
+using acoustics::PacketInfo;
+
+/// Passes on what is between AUVs alone: observers know no other members.
+class AuvPackets : public acoustics::PacketObserver {
+ public:
+  explicit AuvPackets(int auvs) : auvs_(auvs) {}
+  void Pass(acoustics::PacketObserver* to) { to_ = to; }
+  bool passes() const { return to_ != nullptr; }
+
+  void OnQueued(const PacketInfo& p) override {
+    if (Of(p)) to_->OnQueued(p);
+  }
+  void OnDiscarded(const PacketInfo& p, acoustics::DropReason reason, TimeNs t) override {
+    if (Of(p)) to_->OnDiscarded(p, reason, t);
+  }
+  void OnSent(const PacketInfo& p) override {
+    if (Of(p)) to_->OnSent(p);
+  }
+  void OnSendEnd(const PacketInfo& p) override {
+    if (Of(p)) to_->OnSendEnd(p);
+  }
+  void OnAcquired(const PacketInfo& p, int receiver, TimeNs begin) override {
+    if (Of(p) && receiver < auvs_) to_->OnAcquired(p, receiver, begin);
+  }
+  void OnReceptionEnd(const PacketInfo& p, const acoustics::HeardEnd& end, TimeNs t) override {
+    if (Of(p) && end.fate.receiver < auvs_) to_->OnReceptionEnd(p, end, t);
+  }
+  void OnFate(const PacketInfo& p, const PacketFate& fate) override {
+    if (Of(p) && fate.receiver < auvs_) to_->OnFate(p, fate);
+  }
+  void OnPing(const acoustics::PingResult& ping) override {
+    if (ping.source < auvs_ && ping.destination < auvs_) to_->OnPing(ping);
+  }
+
+ private:
+  bool Of(const PacketInfo& p) const { return p.source < auvs_; }
+
+  int auvs_;
+  acoustics::PacketObserver* to_ = nullptr;
+};
+
+class StationChannel : public Channel {
+ public:
+  StationChannel(const AgentModel& model, std::unique_ptr<Channel> water, StationObserver* observer)
+      : auvs_(model.run.agents),
+        water_(std::move(water)),
+        observer_(observer),
+        packets_observer_(auvs_) {
+    const auto constants = std::make_shared<const AgentConstants>(model);
+    for (int k = 0; k < model.stations.count(); ++k) stations_.emplace_back(constants, k);
+    const auto members = static_cast<std::size_t>(model.members());
+    positions_.resize(members);
+    velocities_.resize(members);
+    packets_.resize(stations_.size());
+    offered_.reserve(members);
+    received_.reserve(8 * members);
+  }
+
+  void Reset(std::uint64_t seed, std::uint32_t episode) override {
+    water_->Reset(seed, episode);
+    for (Station& s : stations_) s.Reset(seed, episode);
+  }
+  void Observe(acoustics::PacketObserver* observer) override {
+    packets_observer_.Pass(observer);
+    water_->Observe(packets_observer_.passes() ? &packets_observer_ : nullptr);
+  }
+  void SetPresent(int node, bool present) override { water_->SetPresent(node, present); }
+  int nodes() const override { return auvs_; }
+  std::size_t max_payload() const override { return water_->max_payload(); }
+  bool Due(int node, TimeNs t) override { return water_->Due(node, t); }
+
+  void Step(TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>& p_W,
+            const std::vector<Vec3<double>>& v_W,
+            const std::vector<acoustics::Transmission>& offered) override {
+    offered_ = offered;
+    for (int i = 0; i < auvs_; ++i) {
+      positions_[At(i)] = p_W[At(i)];
+      velocities_[At(i)] = v_W[At(i)];
+    }
+    for (std::size_t k = 0; k < stations_.size(); ++k) {
+      Station& station = stations_[k];
+      if (step > 0) {
+        received_.clear();
+        water_->Deliver(station.member(), t, &received_);
+        for (const acoustics::Reception& r : received_) station.Receive(r);
+      }
+      station.Advance(t, step);
+      positions_[At(station.member())] = station.p_W();
+      velocities_[At(station.member())] = station.v_W();
+      if (observer_ != nullptr) observer_->OnStation(static_cast<int>(k), t, station);
+      if (!water_->Due(station.member(), t)) continue;
+      packets_[k] = station.MakePacket();
+      acoustics::Transmission& packet = offered_.emplace_back();
+      packet.source = station.member();
+      packet.stamp = packet.generation = t;
+      packet.payload = acoustics::ViewOf(packets_[k]);
+    }
+    water_->Step(t, step, positions_, velocities_, offered_);
+  }
+
+  void Deliver(int receiver, TimeNs until, std::vector<acoustics::Reception>* out) override {
+    water_->Deliver(receiver, until, out);
+  }
+  acoustics::LinkStatistics Link(int source, int destination, TimeNs now) const override {
+    return water_->Link(source, destination, now);
+  }
+  const acoustics::ChannelTotals& totals() const override { return water_->totals(); }
+  double EnergyJ(int node, TimeNs now) const override { return water_->EnergyJ(node, now); }
+
+ private:
+  static std::size_t At(int i) { return static_cast<std::size_t>(i); }
+
+  int auvs_;
+  std::unique_ptr<Channel> water_;
+  StationObserver* observer_;
+  AuvPackets packets_observer_;
+  std::vector<Station> stations_;
+  std::vector<Packet> packets_;  // [stations]
+  std::vector<Vec3<double>> positions_, velocities_;
+  std::vector<acoustics::Transmission> offered_;
+  std::vector<acoustics::Reception> received_;
+};
+
+}  // namespace
+
+std::unique_ptr<Channel> MakeStationChannel(const AgentModel& model,
+                                            const acoustics::ChannelConfig& channel,
+                                            const acoustics::LineOfSight& line_of_sight,
+                                            StationObserver* observer) {
+  auto water =
+      acoustics::MakeChannel(channel, NetworkRun(model.run, model.stations), line_of_sight);
+  if (model.stations.count() == 0) return water;
+  return std::make_unique<StationChannel>(model, std::move(water), observer);
+}
+
+}  // namespace stg::agent

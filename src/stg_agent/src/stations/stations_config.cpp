@@ -1,0 +1,34 @@
+#include "stg_agent/stations/stations_config.hpp"
+
+namespace stg::agent {
+
+using config::kNone;
+using config::Positive;
+using config::Within;
+
+void Describe(StationsConfig* c, config::Table* t) {
+  t->Section("stations");
+  t->AddOptional("beacons", config::RowsRef{&c->beacons, 3}, "[]", Within(-1e5, 1e5),
+                 "m, world ENU", "fixed beacons: [x, y, z] each, as charted");
+  t->AddOptional("survey_std_m", &c->survey_std_m, "1.0", config::NonNegative(1e3), "m, world ENU",
+                 "standard deviation of each horizontal component of a charted position, drawn per "
+                 "episode");
+  t->AddOptional("crafts", config::RowsRef{&c->crafts, 2}, "[]", Within(-1e5, 1e5), "m, world ENU",
+                 "surface craft: [x, y] each, where it starts");
+  t->AddOptional("craft_speed_mps", &c->craft_speed_mps, "1.5", Positive(50), "m/s",
+                 "speed over ground of a craft");
+  t->AddOptional("craft_circle_m", &c->craft_circle_m, "300.0", Positive(1e5), "m",
+                 "radius of the circle that a craft keeps around the AUVs that it heard");
+  t->AddOptional("gps_std_m", &c->gps_std_m, "2.0", Positive(1e3), "m, world ENU",
+                 "standard deviation of each horizontal component of a craft's position");
+  t->AddOptional("gps_memory_s", &c->gps_memory_s, "600.0", Positive(1e6), "s",
+                 "correlation time of that error");
+}
+
+RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations) {
+  RunConfig network = run;
+  network.agents += stations.count();
+  return network;
+}
+
+}  // namespace stg::agent

@@ -1,0 +1,153 @@
+// The joint filter of reckoned positions: as good as its model allows, and no better than that.
+
+#include "stg_agent/localization/joint_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "localization/drifting_sea.hpp"
+
+namespace stg::agent {
+namespace {
+
+constexpr int kRuns = 100;
+/// 99 % interval of chi-squared with 2 * 100 degrees of freedom, over 100.
+constexpr double kLower = 1.52, kUpper = 2.55;
+
+struct Judgement {
+  double rmse = 0.0, nees = 0.0, relative_rmse = 0.0, relative_nees = 0.0, current_nees = 0.0;
+  double nis = 0.0, aside = 0.0;
+};
+
+Judgement Judge(const DriftOptions& o, const char* what) {
+  DriftingSea sea(LocalizationConfig(), o);
+  Judgement j;
+  for (unsigned k = 0; k < kRuns; ++k) {
+    const DriftResult r = sea.Run(4000 + k);
+    j.rmse += (r.error_x * r.error_x + r.error_y * r.error_y) / kRuns;
+    j.nees += DriftResult::Nees(r.error_x, r.error_y, r.own) / kRuns;
+    j.relative_rmse += (r.relative_x * r.relative_x + r.relative_y * r.relative_y) / kRuns;
+    j.relative_nees += DriftResult::Nees(r.relative_x, r.relative_y, r.relative) / kRuns;
+    j.current_nees += DriftResult::Nees(r.current_x, r.current_y, r.current) / kRuns;
+    j.nis += r.nis / kRuns;
+    j.aside += static_cast<double>(r.aside) / std::max(1, r.ranges + r.aside) / kRuns;
+  }
+  j.rmse = std::sqrt(j.rmse);
+  j.relative_rmse = std::sqrt(j.relative_rmse);
+  std::printf(
+      "%-22s position %7.1f m, NEES %.2f; relative %5.2f m, %.2f; current %.2f; NIS %.3f, set "
+      "aside %.4f\n",
+      what, j.rmse, j.nees, j.relative_rmse, j.relative_nees, j.current_nees, j.nis, j.aside);
+  return j;
+}
+
+void ExpectConsistent(const Judgement& j) {
+  EXPECT_GT(j.nees, kLower);
+  EXPECT_LT(j.nees, kUpper);
+  EXPECT_GT(j.relative_nees, kLower);
+  EXPECT_LT(j.relative_nees, kUpper);
+  EXPECT_GT(j.current_nees, kLower);
+  EXPECT_LT(j.current_nees, kUpper);
+}
+
+TEST(JointFilter, ACraftThatKnowsWhereItIsHoldsTheSwarm) {
+  DriftOptions o;
+  o.craft = true;
+  const Judgement j = Judge(o, "craft");
+  ExpectConsistent(j);
+  EXPECT_LT(j.rmse, 4.5);
+  EXPECT_LT(j.relative_rmse, 1.5);
+  EXPECT_NEAR(j.nis, 1.0, 0.05);
+}
+
+TEST(JointFilter, BeaconsHoldTheSwarm) {
+  DriftOptions o;
+  o.slot_s = 2.5;
+  o.beacons = 2;
+  Judgement j = Judge(o, "2 beacons");
+  ExpectConsistent(j);
+  EXPECT_LT(j.rmse, 3.5);
+  o.beacons = 1;
+  j = Judge(o, "1 beacon");
+  EXPECT_LT(j.nees, kUpper);
+  EXPECT_LT(j.rmse, 14.0);
+}
+
+TEST(JointFilter, LostPacketsCostAccuracyAndNoHonesty) {
+  DriftOptions o;
+  o.craft = true;
+  o.loss = 0.7;
+  const Judgement j = Judge(o, "craft, 70 % lost");
+  ExpectConsistent(j);
+  EXPECT_LT(j.rmse, 7.0);
+}
+
+TEST(JointFilter, LateSoundsAreSetAside) {
+  DriftOptions o;
+  o.craft = true;
+  o.late = 0.02;
+  const Judgement j = Judge(o, "craft, 2 % late");
+  EXPECT_LT(j.nees, kUpper);
+  EXPECT_LT(j.rmse, 5.0);
+  EXPECT_GT(j.aside, 0.01);
+  EXPECT_LT(j.aside, 0.03);
+}
+
+TEST(JointFilter, AloneTheSwarmStatesTheDriftOfItsWater) {
+  DriftOptions o;
+  const Judgement j = Judge(o, "alone");
+  ExpectConsistent(j);
+  EXPECT_LT(j.relative_rmse, 2.2);
+  // Of an AUV: the integral of the common current's and of the mean of four AUVs' own.
+  const auto V = [](double std, double memory, double t) {
+    return 2.0 * std * std * memory * memory * (t / memory - 1.0 + std::exp(-t / memory));
+  };
+  const double variance = V(0.2, 43200.0, 3600.0) + V(0.1, 10800.0, 3600.0) / 4.0;
+  const DriftResult r = DriftingSea(LocalizationConfig(), o).Run(1);
+  EXPECT_NEAR(std::sqrt(r.mean_error.xx), std::sqrt(variance), 0.01 * std::sqrt(variance));
+}
+
+TEST(JointFilter, RangesAmongThemselvesTellNothingOfTheWorld) {
+  DriftOptions o;
+  const DriftResult with = DriftingSea(LocalizationConfig(), o).Run(5);
+  o.ranges = false;
+  const DriftResult without = DriftingSea(LocalizationConfig(), o).Run(5);
+  EXPECT_LT(with.relative.xx, 1e-3 * without.relative.xx);
+  EXPECT_NEAR(with.mean_error.xx / without.mean_error.xx, 1.0, 1e-6);
+  EXPECT_NEAR(with.mean_error.yy / without.mean_error.yy, 1.0, 1e-6);
+  EXPECT_NEAR(with.mean_error.x, without.mean_error.x, 1e-6);
+  // A single AUV's own current is in C and in w; what carries all of them stays as it was.
+  EXPECT_LE(with.current.xx, without.current.xx * (1.0 + 1e-9));
+}
+
+TEST(JointFilter, ADriftThatNobodySeesChangesNothing) {
+  DriftOptions o;
+  const DriftResult still = DriftingSea(LocalizationConfig(), o).Run(6);
+  o.shift_m = 1000.0;
+  o.drift_mps = 0.25;
+  const DriftResult moved = DriftingSea(LocalizationConfig(), o).Run(6);
+  EXPECT_NEAR(moved.own.x, still.own.x, 1e-5);
+  EXPECT_NEAR(moved.own.xx, still.own.xx, 1e-5);
+  EXPECT_NEAR(moved.relative.x, still.relative.x, 1e-5);
+}
+
+TEST(JointFilter, OfTooManyAuvsTheOneHeardLongestAgoIsForgotten) {
+  JointFilter filter(LocalizationConfig(), 1.0, 12, {}, 3);
+  EXPECT_TRUE(filter.knows(3));
+  EXPECT_FALSE(filter.knows(11));
+  filter.Predict(100'000'000'000);
+  for (const int id : {0, 1, 2, 4, 5, 6}) filter.Admit(id, 99'000'000'000);
+  filter.Admit(11, 100'000'000'000);
+  EXPECT_TRUE(filter.knows(11));
+  EXPECT_FALSE(filter.knows(7)) << "heard at the start only";
+  EXPECT_TRUE(filter.knows(3)) << "the own one stays";
+  // The newcomer came through the same water.
+  const PlaneError apart = filter.Relative(11, 3, filter.now()),
+                   own = filter.Error(3, filter.now());
+  EXPECT_LT(apart.xx, own.xx);
+  EXPECT_GT(apart.xx, 2.0 * 0.1 * 0.1 * 100.0 * 100.0 * 0.9);
+}
+
+}  // namespace
+}  // namespace stg::agent

@@ -1,0 +1,186 @@
+// The localizer between packets and filter: what counts once, whatever comes late, twice or
+// shuffled; and that those who are told nothing of the world pretend nothing.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "stg_agent/agent_config.hpp"
+#include "stg_agent/localization/localizer.hpp"
+
+namespace stg::agent {
+namespace {
+
+constexpr double kSound_mps = 1500.0;
+constexpr TimeNs kSecond = 1'000'000'000;
+
+AgentModel Model(int auvs, bool craft) {
+  AgentScenario s;
+  s.run.agents = auvs;
+  s.run.time.dt_s = 0.5;
+  s.run.time.decision_steps = 2;
+  s.world.navigation.kind = "dead_reckoning";
+  s.world.navigation.current_std_mps = 0.2;
+  s.world.navigation.gps_depth_m = 0.0;
+  s.channel.water.sound_speed = acoustics::WaterConfig::SoundSpeed::kProfile;
+  s.channel.water.profile_speeds_mps.fill(kSound_mps);
+  s.agent.localization.kind = "ranges";
+  if (craft) s.agent.stations.crafts = {{0.0, 0.0}};
+  return s.model();
+}
+
+/// A packet on its way to AUV 0.
+struct Letter {
+  NeighbourState state;
+  acoustics::Reception reception;
+};
+
+/// AUVs on circles of 90 m, carried away at 0.3 m/s; AUV 0 hears one packet a second.
+class Flight {
+ public:
+  explicit Flight(const AgentModel& model) : model_(model) {}
+
+  Vec3<double> True(int id, double t) const {
+    if (id >= model_.run.agents) {
+      return {300.0 * std::cos(0.005 * t), 300.0 * std::sin(0.005 * t), 0.0};
+    }
+    const double angle = 1.6 * id + (0.010 + 0.001 * id) * t;
+    return {90.0 * std::cos(angle), 90.0 * std::sin(angle), -20.0 - 10.0 * id};
+  }
+  Vec3<double> Told(int id, double t) const {
+    if (id >= model_.run.agents) return True(id, t);
+    return True(id, t) + Vec3<double>{-0.3 * t - 0.02 * id * t, 0.1 * t, 0.0};
+  }
+  Vec3<double> Speed(int id, double t) const {
+    return (Told(id, t + 0.01) - Told(id, t - 0.01)) * 50.0;
+  }
+  /// What AUV 0 hears in the second before t.
+  Letter At(int t) const {
+    const int source = 1 + t % (model_.members() - 1);
+    Letter l;
+    l.state.source = source;
+    l.state.generation = (t - 1) * kSecond;
+    l.state.p_W = Told(source, t - 1.0);
+    l.state.v_W = Speed(source, t - 1.0);
+    l.state.position_std_m = 0.3 * t;
+    l.state.adrift = source < model_.run.agents;
+    l.reception.source = source;
+    l.reception.transmit = l.state.generation + kSecond / 4;
+    l.reception.arrival = l.state.generation + kSecond / 2;
+    const double sent = t - 0.75;
+    l.reception.travel_time_s = Norm(True(source, sent) - True(0, sent)) / kSound_mps;
+    if (source < model_.run.agents && t > 20) {
+      // What it heard of the others a while ago.
+      const int other = 1 + (t - 2) % (model_.members() - 1);
+      const double then = t - 2.75;
+      if (other != source) {
+        l.state.range[0] = {other, l.state.generation - 7 * kSecond / 4,
+                            Norm(True(other, then) - True(source, then))};
+        l.state.ranges = 1;
+      }
+    }
+    return l;
+  }
+  OwnReckoning Own(int t) const { return {Told(0, t), std::hypot(1.0, 0.2 * t)}; }
+
+ private:
+  AgentModel model_;
+};
+
+void Advance(const Flight& flight, int t, const std::vector<Letter>& letters, Localizer* l) {
+  for (const Letter& letter : letters) l->Hear(letter.state, letter.reception);
+  l->Advance(t * kSecond, flight.Own(t));
+}
+
+TEST(RangeLocalizer, FindsTheDriftWithACraft) {
+  const AgentModel model = Model(4, true);
+  const Flight flight(model);
+  const auto localizer = MakeLocalizer(model, 0);
+  localizer->Reset();
+  for (int t = 0; t <= 900; ++t) {
+    std::vector<Letter> letters;
+    if (t > 0) letters.push_back(flight.At(t));
+    Advance(flight, t, letters, localizer.get());
+  }
+  const PlaneError own = localizer->own();
+  EXPECT_NEAR(own.x, -0.3 * 900.0, 5.0);
+  EXPECT_NEAR(own.y, 0.1 * 900.0, 5.0);
+  EXPECT_LT(own.std_m(), 6.0);
+  // The current is the drift turned back.
+  EXPECT_NEAR(localizer->current().x, 0.3, 0.1);
+  const PlaneError other = localizer->relative(2, 900 * kSecond);
+  EXPECT_NEAR(other.x, -0.02 * 2.0 * 900.0, 2.0);
+  EXPECT_NEAR(other.y, 0.0, 2.0);
+}
+
+TEST(RangeLocalizer, AloneItKnowsTheOthersAndStatesThatAllMayBeAway) {
+  const AgentModel model = Model(4, false);
+  const Flight flight(model);
+  const auto localizer = MakeLocalizer(model, 0);
+  localizer->Reset();
+  for (int t = 0; t <= 900; ++t) {
+    std::vector<Letter> letters;
+    if (t > 0) letters.push_back(flight.At(t));
+    Advance(flight, t, letters, localizer.get());
+  }
+  EXPECT_NEAR(localizer->relative(3, 900 * kSecond).x, -0.02 * 3.0 * 900.0, 3.0);
+  EXPECT_GT(localizer->own().std_m(), 0.19 * 900.0);
+}
+
+TEST(RangeLocalizer, WhatComesTwiceOrShuffledWithinADecisionChangesNothing) {
+  const AgentModel model = Model(4, true);
+  const Flight flight(model);
+  const auto once = MakeLocalizer(model, 0), often = MakeLocalizer(model, 0);
+  once->Reset();
+  often->Reset();
+  std::mt19937 random(3);
+  std::vector<Letter> seen;
+  for (int t = 0; t <= 600; t += 3) {
+    // Three packets a decision of the test.
+    std::vector<Letter> letters;
+    for (int k = t - 2; t > 0 && k <= t; ++k) letters.push_back(flight.At(k));
+    Advance(flight, t, letters, once.get());
+    for (const Letter& letter : letters) seen.push_back(letter);
+    // All of the last minute again, in any order.
+    std::vector<Letter> again(
+        seen.end() - std::min<std::ptrdiff_t>(60, static_cast<std::ptrdiff_t>(seen.size())),
+        seen.end());
+    std::shuffle(again.begin(), again.end(), random);
+    Advance(flight, t, again, often.get());
+  }
+  EXPECT_EQ(once->own().x, often->own().x);
+  EXPECT_EQ(once->own().xx, often->own().xx);
+  EXPECT_EQ(once->relative(2, 600 * kSecond).y, often->relative(2, 600 * kSecond).y);
+}
+
+TEST(RangeLocalizer, APacketTellsOfAStationAndOfAnAuv) {
+  const AgentModel model = Model(4, true);
+  const Flight flight(model);
+  const auto localizer = MakeLocalizer(model, 0);
+  localizer->Reset();
+  for (int t = 0; t <= 60; ++t) {
+    std::vector<Letter> letters;
+    if (t > 0) letters.push_back(flight.At(t));
+    Advance(flight, t, letters, localizer.get());
+  }
+  NeighbourState packet;
+  packet.generation = 60 * kSecond;
+  localizer->Tell(&packet);
+  ASSERT_EQ(packet.ranges, 2);
+  EXPECT_EQ(packet.range[0].source, 4);
+  EXPECT_LT(packet.range[1].source, 4);
+  EXPECT_TRUE(packet.adrift);
+  const double then = static_cast<double>(packet.range[0].stamp) * 1e-9;
+  EXPECT_NEAR(packet.range[0].range_m, Norm(flight.True(4, then) - flight.True(0, then)), 0.1);
+}
+
+TEST(RangeLocalizer, IsNotThereByDefault) {
+  AgentScenario s;
+  EXPECT_EQ(MakeLocalizer(s.model(), 0), nullptr);
+}
+
+}  // namespace
+}  // namespace stg::agent

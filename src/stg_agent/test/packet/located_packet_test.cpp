@@ -1,0 +1,96 @@
+// Version 5 of the packet: reckoned positions that have left the region, whether the log has
+// bottom, and two ranges in the place of the second measurement.
+
+#include <gtest/gtest.h>
+
+#include "auv_common/error.hpp"
+#include "stg_agent/packet/packet.hpp"
+
+namespace stg::agent {
+namespace {
+
+AgentModel Model(const std::string& localization) {
+  AgentScenario s;
+  s.run.agents = 4;
+  s.world.workspace.half_extent_m = 2000.0;
+  s.world.sensing.sensor = "range";
+  s.world.sensing.range_m = 600.0;
+  s.agent.track.filter = "measurements";
+  s.agent.localization.kind = localization;
+  s.agent.stations.crafts = {{0.0, 0.0}};
+  return s.model();
+}
+
+NeighbourState Example() {
+  NeighbourState s;
+  s.source = 2;
+  s.generation = 50'000'000'000;
+  s.p_W = {3100.0, -2700.0, -40.0};  // carried out of the region
+  s.v_W = {0.5, 0.25, 0.0};
+  s.position_std_m = 800.0;
+  s.adrift = true;
+  s.ranges = 2;
+  s.range[0] = {4, 49'900'000'000, 312.5};
+  s.range[1] = {1, 49'000'000'000, -1.5};
+  return s;
+}
+
+TEST(LocatedPacket, PositionsMayLeaveTheRegion) {
+  const AgentModel model = Model("ranges");
+  const PacketCodec codec(model, PacketLayout::kMeasurements);
+  const NeighbourState s = Example();
+  const Packet packet = codec.Encode(s);
+  EXPECT_EQ(PacketCodec::SourceOf(packet.data(), packet.size()), 2);
+  const NeighbourState told =
+      codec.Decode(packet.data(), packet.size(), s.generation, {2500.0, -2000.0, 0.0});
+  EXPECT_NEAR(told.p_W.x, s.p_W.x, 0.08);
+  EXPECT_NEAR(told.p_W.y, s.p_W.y, 0.08);
+  EXPECT_NEAR(told.p_W.z, s.p_W.z, 0.08);
+  EXPECT_FALSE(told.saturated);
+  EXPECT_TRUE(told.adrift);
+  EXPECT_GE(told.position_std_m, s.position_std_m);
+  EXPECT_LT(told.position_std_m, 1.5 * s.position_std_m);
+}
+
+TEST(LocatedPacket, CarriesTwoRangesBesideASighting) {
+  const AgentModel model = Model("ranges");
+  const PacketCodec codec(model, PacketLayout::kMeasurements);
+  NeighbourState s = Example();
+  dynamics::Detection d;
+  d.kind = dynamics::MeasurementKind::kRange;
+  d.stamp = 48'000'000'000;
+  d.p_WO = s.p_W;
+  d.range_m = 90.0;
+  s.has_target = true;
+  s.sightings = 1;
+  s.sighting[0] = d;
+  const Packet packet = codec.Encode(s);
+  const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+  ASSERT_EQ(told.sightings, 1);
+  EXPECT_NEAR(told.sighting[0].range_m, 90.0, 0.05);
+  ASSERT_EQ(told.ranges, 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(told.range[k].source, s.range[k].source);
+    EXPECT_NEAR(told.range[k].range_m, s.range[k].range_m, 0.16);
+    EXPECT_NEAR(static_cast<double>(told.range[k].stamp - s.range[k].stamp), 0.0, 0.0626e9);
+  }
+}
+
+TEST(LocatedPacket, AStationSpeaksTheSameLayoutAndOthersDoNot) {
+  const AgentModel model = Model("ranges");
+  const PacketCodec codec(model, PacketLayout::kMeasurements);
+  NeighbourState s = Example();
+  s.source = 4;
+  s.ranges = 0;
+  const Packet packet = codec.Encode(s);
+  const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+  EXPECT_EQ(told.source, 4);
+  EXPECT_EQ(told.ranges, 0);
+  const PacketCodec plain(Model("uncorrected"), PacketLayout::kMeasurements);
+  EXPECT_THROW(plain.Decode(packet.data(), packet.size(), s.generation), UserError);
+  s.source = 5;
+  EXPECT_THROW(codec.Encode(s), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stg::agent

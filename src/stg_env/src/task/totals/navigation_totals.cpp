@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <cmath>
+
+#include "stg_env/task/estimate_totals.hpp"
+
+namespace stg::task {
+
+std::vector<std::pair<std::string, double>> NavigationMetrics::Items() const {
+  return {{"navigation_rmse", rmse},
+          {"navigation_rmse_tail", rmse_tail},
+          {"navigation_nees", nees},
+          {"relative_rmse", relative_rmse}};
+}
+
+template <class T>
+void NavigationTotals<T>::Start(const Mask<T>& lanes) {
+  Sums& s = sums_;
+  for (T* sum : {&s.located, &s.square, &s.tail, &s.in_tail, &s.nees, &s.relative}) {
+    *sum = Select(lanes, T(0.0), *sum);
+  }
+}
+
+template <class T>
+void NavigationTotals<T>::Add(const SwarmState<T>& swarm, const Mask<T>& tail) {
+  const T zero(0.0), one(1.0);
+  Sums& s = sums_;
+  for (const FieldState<T>& f : *swarm.field) {
+    const auto located = f.located > T(0.5);
+    const T &x = f.navigation_error.x, &y = f.navigation_error.y;
+    const T square = x * x + y * y;
+    const T(&P)[3] = f.navigation_covariance;
+    const T determinant = P[0] * P[2] - P[1] * P[1];
+    const auto stated = determinant > zero;
+    const T nees =
+        (P[2] * x * x - T(2.0) * P[1] * x * y + P[0] * y * y) / Select(stated, determinant, one);
+    s.located += f.located;
+    s.square += Select(located, square, zero);
+    s.tail += Select(tail && located, square, zero);
+    s.in_tail += Select(tail && located, one, zero);
+    s.nees += Select(stated && located, nees, zero);
+    s.relative += Select(located, f.relative_square, zero);
+  }
+}
+
+template <class T>
+std::optional<NavigationMetrics> NavigationTotals<T>::Metrics(int lane) const {
+  const auto at = [lane](const T& value) { return Lane(value, lane); };
+  const double all = at(sums_.located);
+  if (all == 0.0) return {};
+  NavigationMetrics m;
+  m.rmse = std::sqrt(at(sums_.square) / all);
+  m.rmse_tail = std::sqrt(at(sums_.tail) / std::max(1.0, at(sums_.in_tail)));
+  m.nees = at(sums_.nees) / all;
+  m.relative_rmse = std::sqrt(at(sums_.relative) / all);
+  return m;
+}
+
+template class NavigationTotals<double>;
+template class NavigationTotals<Pack>;
+
+}  // namespace stg::task
