@@ -85,6 +85,9 @@ TEST(LinkEstimator, OfPhysicalLearnsFromGapsAndLevels) {
   EXPECT_NEAR(links->Learnt(1)[0], 0.5, 0.1) << "every other one is lost";
   hear(kLanes - 1, 0, -5.0);
   EXPECT_LT(links->Learnt(1)[kLanes - 1], 0.01) << "hardly above what is lost";
+  links->Reset(1);
+  hear(1, 0, 0.0);  // a modem that measures neither ratio nor noise
+  EXPECT_EQ(links->Learnt(1)[1], 1.0);
   EXPECT_EQ(links->Learnt(2)[0], 1.0);
   EXPECT_NEAR(links->Quality(777.0, 10.0, 0.6), 0.6 * std::exp(-0.5), 1e-12);
   EXPECT_EQ(links->freshness_s(), 20.0);

@@ -57,7 +57,9 @@ void ReceivedLinks::Learn(int lane, const Reception& reception) {
   const auto source = static_cast<std::size_t>(reception.source);
   const ModemProfile& p = fleet_[source];
   double sample = 1.0;
-  if (!p.ideal) {
+  // A real modem may tell neither noise nor ratio: then only losses are learnt from.
+  const bool measured = reception.sinr_db != 0.0 || reception.noise_level_db != 0.0;
+  if (!p.ideal && measured) {
     const double bits = 8.0 * static_cast<double>(p.frames(reception.payload.size) * p.frame_bytes);
     sample =
         std::exp(p.errors.LogSuccess(reception.sinr_db - p.implementation_db - kMarginDb, bits));
