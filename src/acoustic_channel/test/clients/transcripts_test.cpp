@@ -1,4 +1,4 @@
-#include "modem_fixture.hpp"
+#include "modems/modem_fixture.hpp"
 
 /// What third-party clients wrote to emulated modems, byte for byte and in their rhythm, and what
 /// they must hear. Recorded with modems.launch command_log:=FILE; docs/modems.md names the
