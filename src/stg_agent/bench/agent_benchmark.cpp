@@ -99,11 +99,12 @@ void Decode(benchmark::State& bench) {
 BENCHMARK(Decode);
 
 /// Entities and command of one AUV. @param neighbours that it knows; @param targets rows
-void EntityCommand(benchmark::State& bench) {
+void EntityCommand(benchmark::State& bench, EntityNetwork network) {
   const int neighbours = static_cast<int>(bench.range(0)),
             targets = static_cast<int>(bench.range(1));
   EntityPolicy::Parameters p;
-  p.numbers.assign(PoolBlocks(EntityActorSpec(5)).size, 0.01F);
+  p.network = network;
+  p.numbers.assign(EntityParameters(network, 5), 0.01F);
   p.log_std.assign(5, -1.0F);
   const EntityPolicy policy(p);
   const EntityExample example = MakeExample(1, neighbours);
@@ -114,13 +115,22 @@ void EntityCommand(benchmark::State& bench) {
     BuildEntities(input, &entities);
     for (int t = 1; t < targets; ++t) {
       std::copy(entities.target[0], entities.target[0] + kTargetNumbers, entities.target[t]);
+      std::copy(entities.edge[0][0], entities.edge[0][0] + kNeighbourRows * kEdgeNumbers,
+                entities.edge[t][0]);
     }
     entities.targets = targets;
     policy.Command(entities, command);
     benchmark::DoNotOptimize(command);
   }
 }
-BENCHMARK(EntityCommand)->Args({3, 1})->Args({7, 3})->Args({16, 5});
+BENCHMARK_CAPTURE(EntityCommand, pool, EntityNetwork::kPool)
+    ->Args({3, 1})
+    ->Args({7, 3})
+    ->Args({16, 5});
+BENCHMARK_CAPTURE(EntityCommand, graph, EntityNetwork::kGraph)
+    ->Args({3, 1})
+    ->Args({7, 3})
+    ->Args({16, 5});
 
 }  // namespace
 }  // namespace stg::agent

@@ -14,7 +14,7 @@
 /// Trains one policy for swarms of any size in open water.
 int main(int argc, char** argv) {
   CLI::App app("Trains one policy for swarms of any size in open water and writes it as ONNX.");
-  std::string scenario = "field", action = "law5";
+  std::string scenario = "field", action = "law5", network = "pool";
   stg::learn::SwarmConfig config;
   stg::learn::SwarmTrainer::Options options;
   options.workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -34,6 +34,12 @@ int main(int argc, char** argv) {
                  "law5: the policy guides the law that the situation asks for; guidance: always "
                  "encircle; course3: it steers by itself")
       ->capture_default_str();
+  app.add_option("--network", network,
+                 "pool: means and maxima over rows; graph: attention and messages over the task "
+                 "graph, which also chooses whom to follow")
+      ->capture_default_str();
+  app.add_option("--without", config.without,
+                 "what the policy cannot see: " + stg::learn::BlindNames());
   app.add_option("--seed", config.seed, "of networks, episodes and exploration")
       ->check(stg::learn::SeedCheck())
       ->capture_default_str();
@@ -67,6 +73,7 @@ int main(int argc, char** argv) {
   }
   try {
     config.action = stg::agent::EntityActionNamed(action);
+    config.network = stg::agent::EntityNetworkNamed(network);
     options.log = &std::cout;
     options.stop = &stg::HeedStopSignals();
     const std::string folder = stg::config::ScenarioFolder();

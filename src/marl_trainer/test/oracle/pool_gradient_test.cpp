@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "learn/draw.hpp"
-#include "marl_trainer/learn/swarm/pool_batch.hpp"
+#include "marl_trainer/learn/swarm/network/pool_batch.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
 /// The network over sets against libtorch's automatic differentiation, and against the agent's.
@@ -24,7 +24,7 @@ agent::PoolSpec SmallSpec() {
 
 /// AUVs with 0, 1, ... rows in a set, drawn.
 PackedRows DrawRows(const agent::PoolSpec& spec, int rows) {
-  PackedRows packed(spec);
+  PackedRows packed{RowSizes(spec)};
   for (int r = 0; r < rows; ++r) {
     const auto key = static_cast<unsigned>(10 * r);
     const std::vector<float> self = Draw(static_cast<std::size_t>(spec.self), 1.0F, key + 1);

@@ -156,12 +156,12 @@ void SearchLaw::Act(const ControllerInput<Pack>& in, Pack* action) const { Follo
 
 void SearchLaw::Act(const AgentView& agent, float* action) const {
   double a[dynamics::kMaxActionSize] = {};
-  Act(agent, {}, a);
+  Act(agent, {}, false, a);
   for (int i = 0; i < agent.model().control.action_size(); ++i)
     action[i] = static_cast<float>(a[i]);
 }
 
-void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance,
+void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance, bool searches,
                     double* action) const {
   SearchMemory* search = agent.search();
   if (search == nullptr) {
@@ -171,7 +171,7 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance,
   const int count = agent.Nearest(kNearestKnown, nearest);
   Knowledge<double> k = agent.knowledge();
   const TargetBelief belief = agent.belief();
-  const bool found = belief.started && belief.observed &&
+  const bool found = !searches && belief.started && belief.observed &&
                      Seconds(search->now() - belief.information) <= found_.give_up_s;
   if (found && Certain(belief)) {
     search->plan.made = false;

@@ -38,7 +38,7 @@ void SteerLaw(const AgentView& agent, const Guidance<double>& guidance, double* 
   static const std::unique_ptr<SearchLaw> keeping = MakeSearchMap(SearchForm(1.0));
   const bool fast = agent.model().target.max_speed_mps > EncircleOptions{}.cruise_mps;
   if (agent.search() != nullptr) {
-    (fast ? keeping : circling)->Act(agent, guidance, action);
+    (fast ? keeping : circling)->Act(agent, guidance, agent.memory().search, action);
   } else if (fast) {
     NeighbourSight<double> nearest[Controller::kNearestKnown];
     const int count = agent.Nearest(Controller::kNearestKnown, nearest);
@@ -103,6 +103,11 @@ void TakeCommand(const AgentView& agent, EntityAction action, const float* comma
   }
 }
 
+void TakeChoice(const AgentView& agent, const Entities& entities, int choice) {
+  // Without a target the law looks for one by itself, and follows it as soon as it is found.
+  agent.memory().search = entities.targets > 0 && choice == entities.targets;
+}
+
 void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
   const AgentModel& model = agent.model();
   const EntityMemory& memory = agent.memory();
@@ -127,8 +132,9 @@ void Fly(const EntityPolicy& policy, const AgentView& agent, float* out) {
     Entities entities;
     BuildEntities(agent, &entities);
     float command[kCommandNumbers];
-    policy.Command(entities, command);
+    const int choice = policy.Command(entities, command);
     TakeCommand(agent, policy.action(), command);
+    if (policy.parameters().network == EntityNetwork::kGraph) TakeChoice(agent, entities, choice);
   }
   FollowCommand(agent, policy.action(), out);
 }

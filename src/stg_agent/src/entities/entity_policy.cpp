@@ -1,5 +1,6 @@
 #include "stg_agent/entities/entity_policy.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,17 @@ EntityAction EntityActionNamed(const std::string& name) {
   throw UserError("action '" + name + "': none of guidance, law5, course3");
 }
 
+std::string EntityNetworkName(EntityNetwork network) {
+  return network == EntityNetwork::kGraph ? "graph" : "pool";
+}
+
+EntityNetwork EntityNetworkNamed(const std::string& name) {
+  for (const EntityNetwork network : {EntityNetwork::kPool, EntityNetwork::kGraph}) {
+    if (name == EntityNetworkName(network)) return network;
+  }
+  throw UserError("network '" + name + "': none of pool, graph");
+}
+
 PoolSpec EntityActorSpec(int outputs) {
   PoolSpec spec;
   spec.self = kSelfNumbers;
@@ -36,15 +48,54 @@ PoolSpec EntityActorSpec(int outputs) {
   return spec;
 }
 
+GraphSpec EntityGraphSpec(int outputs) {
+  GraphSpec spec;
+  spec.self = kSelfNumbers;
+  spec.search = kSearchNumbers;
+  spec.targets = kTargetNumbers;
+  spec.neighbours = kNeighbourNumbers;
+  spec.obstacles = kObstacleNumbers;
+  spec.edges = kEdgeNumbers;
+  spec.quality = kNeighbourQuality;
+  spec.follows = kTargetFollowed;
+  spec.outputs = outputs;
+  return spec;
+}
+
+std::size_t EntityParameters(EntityNetwork network, int outputs) {
+  return network == EntityNetwork::kGraph ? GraphBlocks(EntityGraphSpec(outputs)).size
+                                          : PoolBlocks(EntityActorSpec(outputs)).size;
+}
+
 void EntityRows(const Entities& e, PoolRows (*sets)[kEntitySets]) {
   (*sets)[0] = {e.target[0], e.targets, kTargetNumbers};
   (*sets)[1] = {e.neighbour[0], e.neighbours, kNeighbourNumbers};
   (*sets)[2] = {e.obstacle[0], e.obstacles, kObstacleNumbers};
 }
 
+GraphRows EntityGraphRows(const Entities& e) {
+  GraphRows rows;
+  rows.self = e.self;
+  rows.search = e.search;
+  EntityRows(e, &rows.sets);
+  rows.edges = e.edge[0][0];
+  rows.edge_target_stride = kNeighbourRows * kEdgeNumbers;
+  rows.edge_stride = kEdgeNumbers;
+  return rows;
+}
+
+namespace {
+
+std::variant<PoolNetwork, GraphNetwork> NetworkOf(const EntityPolicy::Parameters& p) {
+  const int outputs = CommandSize(p.action);
+  if (p.network == EntityNetwork::kGraph) return GraphNetwork(EntityGraphSpec(outputs), p.numbers);
+  return PoolNetwork(EntityActorSpec(outputs), p.numbers);
+}
+
+}  // namespace
+
 EntityPolicy::EntityPolicy(Parameters parameters)
-    : parameters_(std::move(parameters)),
-      network_(EntityActorSpec(CommandSize(parameters_.action)), parameters_.numbers) {
+    : parameters_(std::move(parameters)), network_(NetworkOf(parameters_)) {
   if (static_cast<int>(parameters_.log_std.size()) != CommandSize(parameters_.action)) {
     throw UserError("policy: has " + std::to_string(parameters_.log_std.size()) +
                     " deviations for " + std::to_string(CommandSize(parameters_.action)) +
@@ -58,11 +109,24 @@ EntityPolicy::EntityPolicy(Parameters parameters)
   parameters_.metadata.action_scale = 1.0;
 }
 
-void EntityPolicy::Command(const Entities& entities, float* command) const {
-  PoolRows sets[kEntitySets];
-  EntityRows(entities, &sets);
-  network_.Forward(entities.self, entities.search, sets, command);
-  for (int k = 0; k < CommandSize(parameters_.action); ++k) command[k] = std::tanh(command[k]);
+int EntityPolicy::Command(const Entities& entities, float* command) const {
+  const int size = CommandSize(parameters_.action);
+  int choice = 0;
+  if (const auto* graph = std::get_if<GraphNetwork>(&network_)) {
+    float choices[kTargetRows + 1], commands[(kTargetRows + 1) * kCommandNumbers];
+    graph->Forward(EntityGraphRows(entities), choices, commands);
+    // The first one of those that are equal: all zeros follow what is followed.
+    for (int t = 1; t <= entities.targets; ++t) {
+      if (choices[t] > choices[choice]) choice = t;
+    }
+    std::copy(commands + choice * size, commands + (choice + 1) * size, command);
+  } else {
+    PoolRows sets[kEntitySets];
+    EntityRows(entities, &sets);
+    std::get<PoolNetwork>(network_).Forward(entities.self, entities.search, sets, command);
+  }
+  for (int k = 0; k < size; ++k) command[k] = std::tanh(command[k]);
+  return choice;
 }
 
 }  // namespace stg::agent

@@ -12,6 +12,7 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/names.hpp"
+#include "onnx_operators.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
 /// Files of policies over entities. The reader takes the numbers out of a file, makes the one
@@ -22,110 +23,6 @@ namespace {
 
 constexpr int kEntityOpset = 10, kEntityIrVersion = 5;
 constexpr char kEntityMetric[] = "stg.metric.";
-constexpr const char* kSetNames[kEntitySets] = {"targets", "neighbours", "obstacles"};
-
-/// Writes the operators of PoolNetwork.
-class GraphWriter {
- public:
-  GraphWriter(onnx::GraphProto* graph, const PoolBlocks& blocks, const std::vector<float>& numbers)
-      : graph_(graph), blocks_(blocks), numbers_(numbers) {}
-
-  void Write(const PoolSpec& spec) {
-    graph_->set_name("policy");
-    Value(graph_->add_input(), "self", 1, spec.self);
-    Value(graph_->add_input(), "search", 1, spec.search);
-    for (int s = 0; s < spec.sets_count(); ++s) {
-      Value(graph_->add_input(), kSetNames[s], 0, spec.sets[static_cast<std::size_t>(s)]);
-    }
-    Value(graph_->add_output(), "command", 1, spec.outputs);
-    std::vector<std::string> joined = {Dense("self", "self", blocks_.self, true), "search"};
-    for (int s = 0; s < spec.sets_count(); ++s) Pool(s, &joined);
-    Node("Concat", joined, "joined", {{"axis", 1}});
-    const std::string first = Dense("joined", "trunk1", blocks_.trunk1, true);
-    const std::string second = Dense(first, "trunk2", blocks_.trunk2, true);
-    Node("Tanh", {Dense(second, "head", blocks_.head, false)}, "command", {});
-  }
-
- private:
-  /// @param rows 0: any number, named after the value
-  static void Value(onnx::ValueInfoProto* info, const std::string& name, int rows, int columns) {
-    info->set_name(name);
-    auto* type = info->mutable_type()->mutable_tensor_type();
-    type->set_elem_type(onnx::TensorProto::FLOAT);
-    auto* dimension = type->mutable_shape()->add_dim();
-    if (rows > 0) {
-      dimension->set_dim_value(rows);
-    } else {
-      dimension->set_dim_param("rows_of_" + name);
-    }
-    type->mutable_shape()->add_dim()->set_dim_value(columns);
-  }
-
-  void Node(const std::string& op, const std::vector<std::string>& inputs,
-            const std::string& output,
-            const std::vector<std::pair<std::string, std::int64_t>>& attributes) {
-    onnx::NodeProto* node = graph_->add_node();
-    node->set_op_type(op);
-    node->set_name(output);
-    for (const std::string& input : inputs) node->add_input(input);
-    node->add_output(output);
-    for (const auto& [name, value] : attributes) {
-      onnx::AttributeProto* a = node->add_attribute();
-      a->set_name(name);
-      if (name == "axes") {
-        a->set_type(onnx::AttributeProto::INTS);
-        a->add_ints(value);
-      } else {
-        a->set_type(onnx::AttributeProto::INT);
-        a->set_i(value);
-      }
-    }
-  }
-
-  /// The block as a constant [rows, columns]; of a matrix its transpose, for x W.
-  std::string Constant(const std::string& name, const PoolBlock& block) {
-    std::vector<float> data(block.size());
-    const float* from = numbers_.data() + block.offset;
-    for (int r = 0; r < block.rows; ++r) {
-      for (int c = 0; c < block.cols; ++c) {
-        data[static_cast<std::size_t>(c * block.rows + r)] = *from++;
-      }
-    }
-    onnx::TensorProto* tensor = graph_->add_initializer();
-    tensor->set_name(name);
-    tensor->set_data_type(onnx::TensorProto::FLOAT);
-    tensor->add_dims(block.cols);
-    tensor->add_dims(block.rows);
-    tensor->set_raw_data(data.data(), data.size() * sizeof(float));
-    return name;
-  }
-
-  std::string Dense(const std::string& input, const std::string& name,
-                    const PoolBlocks::Layer& layer, bool relu) {
-    Node("MatMul", {input, Constant(name + "_weight", layer.weight)}, name + "_product", {});
-    Node("Add", {name + "_product", Constant(name + "_bias", layer.bias)}, name + "_sum", {});
-    if (!relu) return name + "_sum";
-    Node("Relu", {name + "_sum"}, name + "_out", {});
-    return name + "_out";
-  }
-
-  void Pool(int s, std::vector<std::string>* joined) {
-    const PoolBlocks::Set& set = blocks_.sets[static_cast<std::size_t>(s)];
-    const std::string name = kSetNames[s];
-    const std::string rows =
-        Dense(Dense(name, name + "_1", set.first, true), name + "_2", set.second, true);
-    Node("Concat", {rows, Constant(name + "_nobody", set.nobody)}, name + "_all", {{"axis", 0}});
-    for (const char* op : {"ReduceMean", "ReduceMax"}) {
-      const std::string out = name + "_" + (op[6] == 'M' && op[7] == 'e' ? "mean" : "max");
-      Node(op, {name + "_all"}, out, {{"axes", 0}, {"keepdims", 1}});
-      joined->push_back(out);
-    }
-  }
-
-  onnx::GraphProto* graph_;
-  const PoolBlocks& blocks_;
-  const std::vector<float>& numbers_;
-};
 
 std::string ExactText(double x) {
   char text[40];
@@ -148,14 +45,25 @@ std::string ChecksumOf(const std::string& bytes) {
   return text;
 }
 
+/// Writes the network of a policy.
+std::vector<OnnxOperators::Held> WriteNetwork(const EntityPolicy::Parameters& p,
+                                              onnx::GraphProto* graph) {
+  graph->set_name("policy");
+  OnnxOperators operators(graph, p.numbers);
+  if (p.network == EntityNetwork::kGraph) {
+    WriteGraph(EntityGraphSpec(CommandSize(p.action)), &operators);
+  } else {
+    WritePool(EntityActorSpec(CommandSize(p.action)), &operators);
+  }
+  return operators.held();
+}
+
 onnx::ModelProto ModelOf(const EntityPolicy::Parameters& p) {
   onnx::ModelProto model;
   model.set_ir_version(kEntityIrVersion);
   model.set_producer_name("stg");
   model.add_opset_import()->set_version(kEntityOpset);
-  const PoolSpec spec = EntityActorSpec(CommandSize(p.action));
-  const PoolBlocks blocks(spec);
-  GraphWriter(model.mutable_graph(), blocks, p.numbers).Write(spec);
+  WriteNetwork(p, model.mutable_graph());
   const auto put = [&model](const std::string& key, const std::string& value) {
     onnx::StringStringEntryProto* entry = model.add_metadata_props();
     entry->set_key(key);
@@ -166,6 +74,7 @@ onnx::ModelProto ModelOf(const EntityPolicy::Parameters& p) {
   put("stg.observation_layout", kEntityLayout);
   put("stg.action_interface", EntityActionName(p.action));
   put("stg.action_scale", "1");
+  if (p.network != EntityNetwork::kPool) put("stg.network", EntityNetworkName(p.network));
   put("stg.scenario_hash", m.scenario_hash);
   put("stg.training_step", std::to_string(m.training_step));
   put("stg.seed", std::to_string(m.seed));
@@ -216,6 +125,10 @@ class EntityReader {
     EntityPolicy::Parameters p;
     Require(Property("stg.observation_layout") == kEntityLayout, "is of another layout");
     p.action = EntityActionNamed(Property("stg.action_interface"));
+    // Files from before there was a choice do not say it.
+    if (properties_.count("stg.network") > 0) {
+      p.network = EntityNetworkNamed(Property("stg.network"));
+    }
     p.metadata.id = Property("stg.id");
     p.metadata.scenario_hash = Property("stg.scenario_hash");
     p.metadata.training_step = std::strtoll(Property("stg.training_step").c_str(), nullptr, 10);
@@ -255,29 +168,19 @@ class EntityReader {
 
   /// The constants come in the order in which the writer puts them.
   void ReadNumbers(EntityPolicy::Parameters* p) const {
-    const PoolBlocks blocks(EntityActorSpec(CommandSize(p->action)));
-    std::vector<PoolBlock> order;
-    order.push_back(blocks.self.weight);
-    order.push_back(blocks.self.bias);
-    for (const PoolBlocks::Set& s : blocks.sets) {
-      for (const PoolBlock& b :
-           {s.first.weight, s.first.bias, s.second.weight, s.second.bias, s.nobody}) {
-        order.push_back(b);
-      }
-    }
-    for (const auto& l : {blocks.trunk1, blocks.trunk2, blocks.head}) {
-      order.push_back(l.weight);
-      order.push_back(l.bias);
-    }
+    p->numbers.assign(EntityParameters(p->network, CommandSize(p->action)), 0.0F);
+    onnx::GraphProto written;
+    const std::vector<OnnxOperators::Held> order = WriteNetwork(*p, &written);
     const onnx::GraphProto& graph = model_.graph();
     Require(graph.initializer_size() == static_cast<int>(order.size()),
             "has another number of constants");
-    p->numbers.resize(blocks.size);
     for (std::size_t k = 0; k < order.size(); ++k) {
       const onnx::TensorProto& tensor = graph.initializer(static_cast<int>(k));
-      const PoolBlock& block = order[k];
-      Require(tensor.dims_size() == 2 && tensor.dims(0) == block.cols &&
-                  tensor.dims(1) == block.rows &&
+      const PoolBlock& block = order[k].block;
+      if (block.size() == 0) continue;  // the same in every file, compared with the graph
+      const int rows = order[k].transposed ? block.cols : block.rows;
+      const int cols = order[k].transposed ? block.rows : block.cols;
+      Require(tensor.dims_size() == 2 && tensor.dims(0) == rows && tensor.dims(1) == cols &&
                   tensor.raw_data().size() == block.size() * sizeof(float),
               "constant '" + tensor.name() + "' has another shape");
       std::vector<float> data(block.size());
@@ -285,7 +188,8 @@ class EntityReader {
       float* to = p->numbers.data() + block.offset;
       for (int r = 0; r < block.rows; ++r) {
         for (int c = 0; c < block.cols; ++c) {
-          *to++ = data[static_cast<std::size_t>(c * block.rows + r)];
+          const int at = order[k].transposed ? c * block.rows + r : r * block.cols + c;
+          *to++ = data[static_cast<std::size_t>(at)];
         }
       }
     }

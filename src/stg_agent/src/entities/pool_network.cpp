@@ -1,32 +1,18 @@
 #include "stg_agent/entities/pool_network.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "auv_common/error.hpp"
+#include "dense.hpp"
 
 namespace stg::agent {
 namespace {
 
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 void RequirePool(bool ok, const std::string& what) {
   if (!ok) throw UserError("policy: " + what);
-}
-
-/// out = W x + b, then relu if asked.
-void Dense(const float* parameters, const PoolBlocks::Layer& layer, const float* x, bool relu,
-           float* out) {
-  const Eigen::Map<const RowMajor> W(parameters + layer.weight.offset, layer.weight.rows,
-                                     layer.weight.cols);
-  const Eigen::Map<const Eigen::VectorXf> b(parameters + layer.bias.offset, layer.bias.rows);
-  Eigen::Map<Eigen::VectorXf> y(out, layer.weight.rows);
-  y = b;
-  y.noalias() += W * Eigen::Map<const Eigen::VectorXf>(x, layer.weight.cols);
-  if (relu) y = y.cwiseMax(0.0F);
 }
 
 }  // namespace

@@ -4,26 +4,29 @@
 #include <onnx/onnx_pb.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <sstream>
 
 #include "auv_common/error.hpp"
 #include "entities/entity_examples.hpp"
+#include "entities/onnx_interpreter.hpp"
 
 namespace stg::agent {
 namespace {
 
 namespace fs = std::filesystem;
 
-EntityPolicy::Parameters DrawnPolicy(EntityAction action = EntityAction::kGuidance) {
+EntityPolicy::Parameters DrawnPolicy(EntityNetwork network = EntityNetwork::kPool,
+                                     EntityAction action = EntityAction::kGuidance) {
   EntityPolicy::Parameters p;
   p.action = action;
-  p.numbers.resize(PoolBlocks(EntityActorSpec(CommandSize(action))).size);
+  p.network = network;
+  p.numbers.resize(EntityParameters(network, CommandSize(action)));
   Random random(11, Stream::kInit, 0, 0, 0);
   for (float& x : p.numbers) x = static_cast<float>(0.2 * random.Normal());
   p.log_std.assign(static_cast<std::size_t>(CommandSize(action)), -1.25F);
@@ -35,14 +38,14 @@ EntityPolicy::Parameters DrawnPolicy(EntityAction action = EntityAction::kGuidan
   return p;
 }
 
-class EntityPolicyFile : public ::testing::Test {
+class EntityPolicyFile : public ::testing::TestWithParam<EntityNetwork> {
  protected:
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "entity_policy_XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
     file_ = (folder_ / "policy.onnx").string();
-    EntityPolicy(DrawnPolicy()).SaveOnnx(file_);
+    EntityPolicy(DrawnPolicy(GetParam())).SaveOnnx(file_);
   }
   void TearDown() override { fs::remove_all(folder_); }
 
@@ -72,87 +75,11 @@ class EntityPolicyFile : public ::testing::Test {
   std::string file_;
 };
 
-/// A matrix with a shape of its own, for the reader below.
-struct Matrix {
-  int rows = 0, cols = 0;
-  std::vector<double> x;
-  double at(int r, int c) const { return x[static_cast<std::size_t>(r * cols + c)]; }
-};
-
-/// Evaluates an ONNX graph by the operators' definitions, in double, whatever graph it is: a
-/// reader that shares nothing with the writer's network.
-Matrix Interpret(const onnx::ModelProto& model, std::map<std::string, Matrix> values) {
-  for (const onnx::TensorProto& t : model.graph().initializer()) {
-    Matrix m{static_cast<int>(t.dims(0)), static_cast<int>(t.dims(1)), {}};
-    std::vector<float> data(t.raw_data().size() / sizeof(float));
-    std::memcpy(data.data(), t.raw_data().data(), t.raw_data().size());
-    m.x.assign(data.begin(), data.end());
-    values[t.name()] = m;
-  }
-  for (const onnx::NodeProto& node : model.graph().node()) {
-    const std::string& op = node.op_type();
-    const Matrix& a = values.at(node.input(0));
-    Matrix y;
-    if (op == "MatMul") {
-      const Matrix& b = values.at(node.input(1));
-      EXPECT_EQ(a.cols, b.rows) << node.name();
-      y = {a.rows, b.cols, std::vector<double>(static_cast<std::size_t>(a.rows * b.cols))};
-      for (int r = 0; r < y.rows; ++r) {
-        for (int c = 0; c < y.cols; ++c) {
-          for (int k = 0; k < a.cols; ++k) {
-            y.x[static_cast<std::size_t>(r * y.cols + c)] += a.at(r, k) * b.at(k, c);
-          }
-        }
-      }
-    } else if (op == "Add") {
-      const Matrix& b = values.at(node.input(1));
-      y = a;
-      for (int r = 0; r < y.rows; ++r) {
-        for (int c = 0; c < y.cols; ++c) {
-          y.x[static_cast<std::size_t>(r * y.cols + c)] += b.at(b.rows == 1 ? 0 : r, c);
-        }
-      }
-    } else if (op == "Relu" || op == "Tanh") {
-      y = a;
-      for (double& v : y.x) v = op == "Relu" ? std::max(v, 0.0) : std::tanh(v);
-    } else if (op == "Concat") {
-      const bool down = node.attribute(0).i() == 0;
-      for (const std::string& name : node.input()) {
-        const Matrix& b = values.at(name);
-        if (down) {
-          y.rows += b.rows;
-          y.cols = b.cols;
-          y.x.insert(y.x.end(), b.x.begin(), b.x.end());
-        } else {
-          EXPECT_EQ(b.rows, 1);
-          y.rows = 1;
-          y.cols += b.cols;
-          y.x.insert(y.x.end(), b.x.begin(), b.x.end());
-        }
-      }
-    } else if (op == "ReduceMean" || op == "ReduceMax") {
-      y = {1, a.cols, {}};
-      for (int c = 0; c < a.cols; ++c) {
-        double sum = 0.0, most = -1e300;
-        for (int r = 0; r < a.rows; ++r) {
-          sum += a.at(r, c);
-          most = std::max(most, a.at(r, c));
-        }
-        y.x.push_back(op == "ReduceMax" ? most : sum / a.rows);
-      }
-    } else {
-      ADD_FAILURE() << "unknown operator " << op;
-    }
-    values[node.output(0)] = y;
-  }
-  return values.at(model.graph().output(0).name());
+OnnxTensor RowsOf(const float* data, int rows, int cols) {
+  return {{rows, cols}, std::vector<double>(data, data + rows * cols)};
 }
 
-Matrix RowsOf(const float* data, int rows, int cols) {
-  return {rows, cols, std::vector<double>(data, data + rows * cols)};
-}
-
-TEST_F(EntityPolicyFile, AnIndependentReaderOfTheFileSeesTheSameCommands) {
+TEST_P(EntityPolicyFile, AnIndependentReaderOfTheFileSeesTheSameCommands) {
   const EntityPolicy policy = EntityPolicy::LoadOnnx(file_);
   for (const int neighbours : {0, 1, 3, 16}) {
     for (const int targets : {0, 1, 5}) {
@@ -161,28 +88,49 @@ TEST_F(EntityPolicyFile, AnIndependentReaderOfTheFileSeesTheSameCommands) {
       for (int t = 1; t < targets; ++t) {
         std::copy(e.target[0], e.target[0] + kTargetNumbers, e.target[t]);
         e.target[t][2] += 0.1F * static_cast<float>(t);
+        std::copy(e.edge[0][0], e.edge[0][0] + kNeighbourRows * kEdgeNumbers, e.edge[t][0]);
+        e.edge[t][0][2] += 0.2F * static_cast<float>(t);
       }
       e.targets = targets;
+      OnnxTensor edges{{targets, neighbours, kEdgeNumbers}, {}};
+      for (int t = 0; t < targets; ++t) {
+        edges.x.insert(edges.x.end(), e.edge[t][0], e.edge[t][0] + neighbours * kEdgeNumbers);
+      }
       float command[5];
-      policy.Command(e, command);
-      const Matrix theirs =
-          Interpret(Model(), {{"self", RowsOf(e.self, 1, kSelfNumbers)},
-                              {"search", RowsOf(e.search, 1, kSearchNumbers)},
-                              {"targets", RowsOf(e.target[0], e.targets, kTargetNumbers)},
-                              {"neighbours", RowsOf(e.neighbour[0], neighbours, kNeighbourNumbers)},
-                              {"obstacles", RowsOf(e.obstacle[0], e.obstacles, kObstacleNumbers)}});
-      ASSERT_EQ(theirs.cols, 5);
-      for (int k = 0; k < 5; ++k) EXPECT_NEAR(command[k], theirs.at(0, k), 1e-5);
+      const int choice = policy.Command(e, command);
+      const OnnxInterpreter::Values theirs = OnnxInterpreter::Run(
+          Model(), {{"self", RowsOf(e.self, 1, kSelfNumbers)},
+                    {"search", RowsOf(e.search, 1, kSearchNumbers)},
+                    {"targets", RowsOf(e.target[0], e.targets, kTargetNumbers)},
+                    {"neighbours", RowsOf(e.neighbour[0], neighbours, kNeighbourNumbers)},
+                    {"obstacles", RowsOf(e.obstacle[0], e.obstacles, kObstacleNumbers)},
+                    {"edges", edges}});
+      OnnxTensor commands;
+      int row = 0;
+      if (GetParam() == EntityNetwork::kGraph) {
+        const OnnxTensor& choices = theirs.at("choices");
+        ASSERT_EQ(choices.shape, (std::vector<int>{1, targets + 1}));
+        row = static_cast<int>(std::max_element(choices.x.begin(), choices.x.end()) -
+                               choices.x.begin());
+        commands = theirs.at("commands");
+        ASSERT_EQ(commands.shape, (std::vector<int>{targets + 1, 5}));
+      } else {
+        commands = theirs.at("command");
+        ASSERT_EQ(commands.shape, (std::vector<int>{1, 5}));
+      }
+      EXPECT_EQ(choice, row);
+      for (int k = 0; k < 5; ++k) EXPECT_NEAR(command[k], commands.at(5 * row + k), 1e-5);
     }
   }
 }
 
-TEST_F(EntityPolicyFile, ComesBackBitForBit) {
+TEST_P(EntityPolicyFile, ComesBackBitForBit) {
   ASSERT_TRUE(EntityPolicy::IsOne(file_));
-  const EntityPolicy::Parameters ours = DrawnPolicy();
+  const EntityPolicy::Parameters ours = DrawnPolicy(GetParam());
   const EntityPolicy read = EntityPolicy::LoadOnnx(file_);
   EXPECT_EQ(read.parameters().numbers, ours.numbers);
   EXPECT_EQ(read.parameters().log_std, ours.log_std);
+  EXPECT_EQ(read.parameters().network, GetParam());
   EXPECT_EQ(read.metadata().id, "drawn");
   EXPECT_EQ(read.metadata().action_interface, "guidance");
   EXPECT_EQ(read.metadata().observation_layout, kEntityLayout);
@@ -190,7 +138,7 @@ TEST_F(EntityPolicyFile, ComesBackBitForBit) {
   EXPECT_EQ(read.metadata().metrics.at("note"), "text");
 }
 
-TEST_F(EntityPolicyFile, IsRefusedWhenAnythingInItIsNotAsWritten) {
+TEST_P(EntityPolicyFile, IsRefusedWhenAnythingInItIsNotAsWritten) {
   const auto has = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find("not a policy"), std::string::npos) << text;
     EXPECT_NE(text.find(part), std::string::npos) << text;
@@ -215,6 +163,10 @@ TEST_F(EntityPolicyFile, IsRefusedWhenAnythingInItIsNotAsWritten) {
   has(Refusal([](onnx::ModelProto* m) { m->mutable_opset_import(0)->set_version(11); }), "graph");
   EXPECT_FALSE(EntityPolicy::IsOne((folder_ / "missing.onnx").string()));
 }
+
+INSTANTIATE_TEST_SUITE_P(Networks, EntityPolicyFile,
+                         ::testing::Values(EntityNetwork::kPool, EntityNetwork::kGraph),
+                         [](const auto& info) { return EntityNetworkName(info.param); });
 
 TEST(EntityPolicy, RefusesWhatIsNotFinite) {
   EntityPolicy::Parameters p = DrawnPolicy();

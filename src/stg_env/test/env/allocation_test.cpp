@@ -111,15 +111,20 @@ TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
 TEST(Allocation, AnAgentsPassThroughAPolicyOverEntitiesTakesNone) {
   TestEnv env(Short(LoadNamedScenario(STG_SCENARIO_FOLDER, "field", "nominal", {"agents=20"}), 60));
   env.Reset();
-  agent::EntityPolicy::Parameters p;
-  p.numbers.assign(agent::PoolBlocks(agent::EntityActorSpec(5)).size, 0.01F);
-  p.log_std.assign(5, -1.0F);
-  const agent::EntityPolicy policy(p);
   const agent::AgentView view = env.agent(0, 3);
-  float action[dynamics::kMaxActionSize];
-  const long before = g_allocations;
-  agent::Fly(policy, view, action);
-  EXPECT_EQ(g_allocations - before, 0);
+  for (const agent::EntityNetwork network :
+       {agent::EntityNetwork::kPool, agent::EntityNetwork::kGraph}) {
+    agent::EntityPolicy::Parameters p;
+    p.network = network;
+    p.numbers.assign(agent::EntityParameters(network, 5), 0.01F);
+    p.log_std.assign(5, -1.0F);
+    const agent::EntityPolicy policy(p);
+    view.memory().commanded = false;  // a new command is due
+    float action[dynamics::kMaxActionSize];
+    const long before = g_allocations;
+    agent::Fly(policy, view, action);
+    EXPECT_EQ(g_allocations - before, 0);
+  }
 }
 
 }  // namespace

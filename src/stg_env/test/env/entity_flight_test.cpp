@@ -12,18 +12,16 @@
 namespace stg::env {
 namespace {
 
-/// A policy whose commands are `bias` always, or, with a spread, depend on all it sees.
-std::shared_ptr<const agent::EntityPolicy> PolicyOf(agent::EntityAction action, double spread,
-                                                    double bias = 0.0) {
+/// A policy whose commands are 0, or, with a spread, depend on all it sees.
+std::shared_ptr<const agent::EntityPolicy> PolicyOf(
+    agent::EntityAction action, double spread,
+    agent::EntityNetwork network = agent::EntityNetwork::kPool) {
   agent::EntityPolicy::Parameters p;
   p.action = action;
-  const agent::PoolBlocks blocks(agent::EntityActorSpec(agent::CommandSize(action)));
-  p.numbers.resize(blocks.size);
+  p.network = network;
+  p.numbers.resize(agent::EntityParameters(network, agent::CommandSize(action)));
   Random random(3, Stream::kInit, 0, 0, 0);
   for (float& x : p.numbers) x = static_cast<float>(spread * random.Normal());
-  for (int k = 0; k < blocks.head.bias.rows; ++k) {
-    p.numbers[blocks.head.bias.offset + static_cast<std::size_t>(k)] += static_cast<float>(bias);
-  }
   p.log_std.assign(static_cast<std::size_t>(agent::CommandSize(action)), -1.0F);
   return std::make_shared<agent::EntityPolicy>(p);
 }
@@ -35,9 +33,10 @@ std::vector<double> Decided(const agent::Decider& c, TestEnv* env) {
 }
 
 /// Flies two copies of the same waters, because a law that searches writes its plan into the agent.
-void ExpectZerosAre(agent::EntityAction action, const std::string& law, const Scenario& s) {
+void ExpectZerosAre(agent::EntityAction action, const std::string& law, const Scenario& s,
+                    agent::EntityNetwork network = agent::EntityNetwork::kPool) {
   agent::Decider guided;
-  guided.entities = PolicyOf(action, 0.0);
+  guided.entities = PolicyOf(action, 0.0, network);
   const agent::Decider alone = agent::MakeDecider(law, s.model());
   TestEnv env(s), other(s);
   env.Reset();
@@ -66,6 +65,8 @@ TEST(EntityFlight, CommandsOfZeroAreTheLawOfTheSituationBitForBit) {
   for (const auto& c : cases) {
     ExpectZerosAre(agent::EntityAction::kLaw5, c.law, Short(Shipped(c.scenario, c.condition), 120));
   }
+  ExpectZerosAre(agent::EntityAction::kLaw5, "search_map", Short(Shipped("search"), 60),
+                 agent::EntityNetwork::kGraph);
 }
 
 TEST(EntityFlight, WhileItSearchesACommandTurnsTheCourse) {
@@ -85,6 +86,22 @@ TEST(EntityFlight, WhileItSearchesACommandTurnsTheCourse) {
   };
   // 0.5 stands for 30 deg; what keeps AUVs apart may turn it a little more or less.
   EXPECT_NEAR(std::remainder(course_of(0.5F) - course_of(0.0F), 2.0 * kPi), kPi / 6.0, 0.05);
+}
+
+TEST(EntityFlight, APolicyThatChoosesToSearchLeavesATargetThatIsSeen) {
+  const Scenario s = Short(Shipped("search"), 60);
+  TestEnv env(s);
+  env.Reset();
+  const agent::AgentView view = env.agent(0, 0);
+  agent::Entities entities;
+  entities.targets = 1;
+  agent::TakeChoice(view, entities, 0);
+  EXPECT_FALSE(view.memory().search);
+  agent::TakeChoice(view, entities, 1);
+  EXPECT_TRUE(view.memory().search);
+  entities.targets = 0;  // there is nothing to leave
+  agent::TakeChoice(view, entities, 0);
+  EXPECT_FALSE(view.memory().search);
 }
 
 TEST(EntityFlight, EveryNumberOfACommandChangesTheFlight) {

@@ -15,24 +15,27 @@ namespace stg::learn {
 SwarmLearner::SwarmLearner(const SwarmConfig& config)
     : config_(config),
       size_(agent::CommandSize(config.action)),
-      actor_(agent::EntityActorSpec(size_)),
+      actor_(config.network, size_),
       critic_(SwarmCriticSpec()),
       actor_numbers_(actor_.parameters() + static_cast<std::size_t>(size_)),
       critic_numbers_(critic_.parameters()),
       actor_adam_(actor_numbers_.size()),
       critic_adam_(critic_numbers_.size()) {
-  InitialisePool(actor_.blocks(), 0.01, config.seed, 0, actor_numbers_.data());
+  actor_.Initialise(config.seed, 0, actor_numbers_.data());
+  if (!config.without.empty()) blind_ = Blinded(config.network, size_, config.without);
+  KeepBlind(&actor_numbers_);
   InitialisePool(critic_.blocks(), 1.0, config.seed, 1, critic_numbers_.data());
   std::fill(actor_numbers_.end() - size_, actor_numbers_.end(), static_cast<float>(config.log_std));
   for (int s = 0; s < kSlices; ++s) {
-    parts_.push_back({PackedRows(actor_.spec()),
-                      PackedRows(critic_.spec()),
+    parts_.push_back({PackedRows(RowSizes(agent::EntityGraphSpec(size_))),
+                      PackedRows(RowSizes(critic_.spec())),
                       {},
                       {},
                       {},
                       {},
                       {},
                       {},
+                      0.0,
                       0.0,
                       0.0,
                       0.0});
@@ -103,14 +106,64 @@ void SwarmLearner::Normalise(const std::vector<SwarmRollout>& rollouts) {
   advantage_scale_ = static_cast<float>(1.0 / (spread + 1e-6));
 }
 
+void SwarmLearner::ActorLoss(const SwarmRollout& r, std::size_t row, int at, double entropy,
+                             float share, Part* part) const {
+  ActorWorkspace& w = part->actor;
+  const float* log_std = actor_numbers_.data() + actor_.parameters();
+  float* d_log_std = part->actor_gradient.data() + actor_.parameters();
+  const auto clip = static_cast<float>(config_.clip);
+  const float* command = r.commands.data() + row * static_cast<std::size_t>(size_);
+  const auto first = static_cast<std::size_t>(w.first[static_cast<std::size_t>(at)]);
+  const auto chosen = static_cast<std::size_t>(r.choices[row]);
+  const float* mean = w.means.data() + (first + chosen) * static_cast<std::size_t>(size_);
+  float z[agent::kCommandNumbers];
+  float log_prob = 0.0F;
+  for (int c = 0; c < size_; ++c) {
+    z[c] = (command[c] - mean[c]) * std::exp(-log_std[c]);
+    log_prob -= 0.5F * z[c] * z[c] + log_std[c] + agent::kHalfLogTwoPi;
+  }
+  if (actor_.chooses()) {
+    LogShares(w, at, &part->log_shares);
+    log_prob += part->log_shares[chosen];
+  }
+  const float log_ratio = log_prob - r.log_prob[row], ratio = std::exp(log_ratio);
+  const float advantage = (r.advantages[row] - advantage_mean_) * advantage_scale_;
+  const bool cut =
+      (advantage > 0.0F && ratio > 1.0F + clip) || (advantage < 0.0F && ratio < 1.0F - clip);
+  part->kl += static_cast<double>(ratio - 1.0F - log_ratio);
+  part->clipped += std::abs(ratio - 1.0F) > clip ? 1.0 : 0.0;
+  const float d_log_prob = cut ? 0.0F : -share * advantage * ratio;
+  float* d_mean = w.d_means.data() + (first + chosen) * static_cast<std::size_t>(size_);
+  for (int c = 0; c < size_; ++c) {
+    d_mean[c] = d_log_prob * z[c] * std::exp(-log_std[c]) * (1.0F - mean[c] * mean[c]);
+    d_log_std[c] += d_log_prob * (z[c] * z[c] - 1.0F);
+  }
+  if (!actor_.chooses()) return;
+  float disorder = 0.0F;
+  for (const float l : part->log_shares) disorder -= std::exp(l) * l;
+  part->entropy += static_cast<double>(disorder);
+  for (std::size_t k = 0; k < part->log_shares.size(); ++k) {
+    const float l = part->log_shares[k], p = std::exp(l);
+    w.d_logits[first + k] = d_log_prob * ((k == chosen ? 1.0F : 0.0F) - p) +
+                            share * static_cast<float>(entropy) * p * (l + disorder);
+  }
+}
+
+/// What the network cannot see, it does not learn of either.
+void SwarmLearner::KeepBlind(std::vector<float>* numbers) const {
+  for (std::size_t k = 0; k < blind_.size(); ++k) {
+    if (blind_[k]) (*numbers)[k] = 0.0F;
+  }
+}
+
 void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std::vector<Row>& rows,
-                            std::size_t begin, std::size_t end, std::size_t batch,
+                            std::size_t begin, std::size_t end, std::size_t batch, double entropy,
                             Part* part) const {
   part->actor_rows.Clear();
   part->critic_rows.Clear();
   part->actor_gradient.assign(actor_numbers_.size(), 0.0F);
   part->critic_gradient.assign(critic_numbers_.size(), 0.0F);
-  part->kl = part->clipped = part->value_loss = 0.0;
+  part->kl = part->clipped = part->value_loss = part->entropy = 0.0;
   for (std::size_t k = begin; k < end; ++k) {
     const SwarmRollout& r = rollouts[static_cast<std::size_t>(rows[k].rollout)];
     part->actor_rows.Add(r.actor, rows[k].row);
@@ -118,42 +171,18 @@ void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std
   }
   actor_.Forward(actor_numbers_.data(), part->actor_rows, &part->actor);
   critic_.Forward(critic_numbers_.data(), part->critic_rows, &part->critic);
-  part->d_actor.resize((end - begin) * static_cast<std::size_t>(size_));
   part->d_critic.resize(end - begin);
-  const float* log_std = actor_numbers_.data() + actor_.parameters();
-  float* d_log_std = part->actor_gradient.data() + actor_.parameters();
   const float share = 1.0F / static_cast<float>(batch);
-  const auto clip = static_cast<float>(config_.clip);
   for (std::size_t k = begin; k < end; ++k) {
     const SwarmRollout& r = rollouts[static_cast<std::size_t>(rows[k].rollout)];
     const auto row = static_cast<std::size_t>(rows[k].row);
-    const std::size_t at = (k - begin) * static_cast<std::size_t>(size_);
-    const float* command = r.commands.data() + row * static_cast<std::size_t>(size_);
-    float mean[agent::kCommandNumbers], z[agent::kCommandNumbers];
-    float log_prob = 0.0F;
-    for (int c = 0; c < size_; ++c) {
-      mean[c] = std::tanh(part->actor.output()[at + static_cast<std::size_t>(c)]);
-      z[c] = (command[c] - mean[c]) * std::exp(-log_std[c]);
-      log_prob -= 0.5F * z[c] * z[c] + log_std[c] + agent::kHalfLogTwoPi;
-    }
-    const float log_ratio = log_prob - r.log_prob[row], ratio = std::exp(log_ratio);
-    const float advantage = (r.advantages[row] - advantage_mean_) * advantage_scale_;
-    const bool cut =
-        (advantage > 0.0F && ratio > 1.0F + clip) || (advantage < 0.0F && ratio < 1.0F - clip);
-    part->kl += static_cast<double>(ratio - 1.0F - log_ratio);
-    part->clipped += std::abs(ratio - 1.0F) > clip ? 1.0 : 0.0;
-    const float d_log_prob = cut ? 0.0F : -share * advantage * ratio;
-    for (int c = 0; c < size_; ++c) {
-      const float d_mean = d_log_prob * z[c] * std::exp(-log_std[c]);
-      part->d_actor[at + static_cast<std::size_t>(c)] = d_mean * (1.0F - mean[c] * mean[c]);
-      d_log_std[c] += d_log_prob * (z[c] * z[c] - 1.0F);
-    }
+    ActorLoss(r, row, static_cast<int>(k - begin), entropy, share, part);
     const auto wanted = static_cast<float>((static_cast<double>(r.returns[row]) - mean_) / std_);
     const float miss = part->critic.output()[k - begin] - wanted;
     part->value_loss += static_cast<double>(miss) * static_cast<double>(miss);
     part->d_critic[k - begin] = share * miss;
   }
-  actor_.Backward(actor_numbers_.data(), part->actor_rows, part->d_actor.data(), &part->actor,
+  actor_.Backward(actor_numbers_.data(), part->actor_rows, &part->actor,
                   part->actor_gradient.data());
   critic_.Backward(critic_numbers_.data(), part->critic_rows, part->d_critic.data(), &part->critic,
                    part->critic_gradient.data());
@@ -188,7 +217,8 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
                                    static_cast<std::size_t>(config_.minibatch));
   const double rate =
       config_.learning_rate + (config_.last_learning_rate - config_.learning_rate) * progress;
-  double kl = 0.0, clipped = 0.0, value_loss = 0.0, norm = 0.0;
+  const double entropy = config_.entropy + (config_.last_entropy - config_.entropy) * progress;
+  double kl = 0.0, clipped = 0.0, value_loss = 0.0, norm = 0.0, disorder = 0.0;
   int updates = 0, epochs = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
     Random random(config_.seed, Stream::kShuffle, collection, static_cast<std::uint32_t>(epoch), 0);
@@ -202,7 +232,7 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
       pool->Run(kSlices, [&](int s, int) {
         const auto i = static_cast<std::size_t>(s);
         Gradient(*rollouts, rows, begin + batch * i / kSlices, begin + batch * (i + 1) / kSlices,
-                 batch, &parts_[i]);
+                 batch, entropy, &parts_[i]);
       });
       for (std::size_t s = 1; s < kSlices; ++s) {
         for (std::size_t k = 0; k < actor_numbers_.size(); ++k) {
@@ -216,7 +246,9 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
         epoch_kl += p.kl;
         clipped += p.clipped / static_cast<double>(batch);
         value_loss += p.value_loss / static_cast<double>(batch);
+        disorder += p.entropy / static_cast<double>(batch);
       }
+      KeepBlind(&parts_[0].actor_gradient);
       const auto step = [&](std::vector<float>* gradient, std::vector<float>* numbers,
                             AdamState* state) {
         const double length = GradientNorm(gradient->data(), 0, gradient->size());
@@ -251,6 +283,7 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
           {"value_loss", value_loss / updates},
           {"gradient_norm", norm / updates},
           {"sigma", sigma},
+          {"choice_entropy", disorder / updates},
           {"return_mean", mean_},
           {"return_std", std_},
           {"rows", static_cast<double>(count)}};
@@ -261,6 +294,7 @@ agent::EntityPolicy SwarmLearner::Policy(const agent::PolicyMetadata& metadata) 
   p.numbers.assign(actor_numbers_.begin(), actor_numbers_.end() - size_);
   p.log_std.assign(actor_numbers_.end() - size_, actor_numbers_.end());
   p.action = config_.action;
+  p.network = config_.network;
   p.metadata = metadata;
   return agent::EntityPolicy(std::move(p));
 }

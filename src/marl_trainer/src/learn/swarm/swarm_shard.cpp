@@ -35,10 +35,10 @@ int DecisionsOf(const Scenario& s) {
 }  // namespace
 
 SwarmRollout::SwarmRollout()
-    : actor(agent::EntityActorSpec(1)),
-      critic(SwarmCriticSpec()),
-      finals(SwarmCriticSpec()),
-      next(SwarmCriticSpec()) {}
+    : actor(RowSizes(agent::EntityGraphSpec(1))),
+      critic(RowSizes(SwarmCriticSpec())),
+      finals(RowSizes(SwarmCriticSpec())),
+      next(RowSizes(SwarmCriticSpec())) {}
 
 SwarmShard::SwarmShard(const Scenario& scenario, const SwarmConfig& config, int first_env, int envs,
                        int total_envs)
@@ -47,8 +47,8 @@ SwarmShard::SwarmShard(const Scenario& scenario, const SwarmConfig& config, int 
       env_(scenario, ShardOptions(config, first_env, envs, total_envs)),
       memory_(env_.MakeMemory()),
       entities_(static_cast<std::size_t>(envs * env_.agents())),
-      now_(agent::EntityActorSpec(1)),
-      last_(SwarmCriticSpec()) {
+      now_(RowSizes(agent::EntityGraphSpec(1))),
+      last_(RowSizes(SwarmCriticSpec())) {
   if (scenario.mode != InformationMode::kAcoustic) {
     throw UserError("scenario '" + scenario.run.name +
                     "': entities are what an AUV finds out by itself, so mode must be acoustic");
@@ -76,31 +76,49 @@ double SwarmShard::Potential(int e, int i) const {
 
 void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int step,
                          SwarmRollout* out) {
-  const int n = env_.agents(), size = actor.network.spec().outputs;
+  const int n = env_.agents(), size = actor.network.outputs();
   now_.Clear();
   for (int e = 0; e < env_.envs(); ++e) {
     for (int i = 0; i < n; ++i) {
       agent::Entities& entities = entities_[static_cast<std::size_t>(e * n + i)];
       agent::BuildEntities(env_.agent(e, i), &entities);
-      agent::PoolRows sets[agent::kEntitySets];
-      agent::EntityRows(entities, &sets);
-      now_.Add(entities.self, entities.search, sets);
+      now_.Add(agent::EntityGraphRows(entities));
       AddCriticRow(env_, e, i, entities, &out->critic);
     }
   }
   actor.network.Forward(actor.parameters, now_, &workspace_);
-  const float* mean = workspace_.output();
   for (int row = 0; row < now_.rows(); ++row) {
     out->actor.Add(now_, row);
-    float command[agent::kCommandNumbers];
-    for (int k = 0; k < size; ++k) command[k] = std::tanh(*mean++);
     const auto key = static_cast<std::uint32_t>(first_env_ + row / n) * kMostAgents +
                      static_cast<std::uint32_t>(row % n);
     Random random(TrainingSeed(config_.seed), Stream::kPolicy, collection,
                   static_cast<std::uint32_t>(step), key);
-    out->log_prob.push_back(agent::SampleGaussian(actor.log_std, size, &random, command));
+    const agent::AgentView view = env_.agent(row / n, row % n);
+    int choice = 0;
+    float log_prob = 0.0F;
+    if (actor.network.chooses()) {
+      const int count = LogShares(workspace_, row, &log_shares_);
+      double left = random.Uniform();
+      while (choice + 1 < count && (left -= std::exp(static_cast<double>(
+                                        log_shares_[static_cast<std::size_t>(choice)]))) >= 0.0) {
+        ++choice;
+      }
+      log_prob = log_shares_[static_cast<std::size_t>(choice)];
+    }
+    const float* mean =
+        workspace_.means.data() +
+        static_cast<std::ptrdiff_t>(workspace_.first[static_cast<std::size_t>(row)] + choice) *
+            size;
+    float command[agent::kCommandNumbers];
+    std::copy(mean, mean + size, command);
+    out->log_prob.push_back(log_prob +
+                            agent::SampleGaussian(actor.log_std, size, &random, command));
     out->commands.insert(out->commands.end(), command, command + size);
-    agent::TakeCommand(env_.agent(row / n, row % n), config_.action, command);
+    out->choices.push_back(choice);
+    agent::TakeCommand(view, config_.action, command);
+    if (actor.network.chooses()) {
+      agent::TakeChoice(view, entities_[static_cast<std::size_t>(row)], choice);
+    }
   }
 }
 

@@ -79,6 +79,8 @@ std::string SwarmTrainer::ConfigText() const {
   }
   return nlohmann::ordered_json{{"seed", config_.seed},
                                 {"action", agent::EntityActionName(config_.action)},
+                                {"network", agent::EntityNetworkName(config_.network)},
+                                {"without", config_.without},
                                 {"steps", config_.steps},
                                 {"envs", config_.envs},
                                 {"horizon", config_.horizon},

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -65,9 +67,13 @@ class SwarmTraining : public ::testing::Test {
 };
 
 TEST_F(SwarmTraining, DoesNotDependOnTheNumberOfWorkers) {
-  for (const agent::EntityAction action :
-       {agent::EntityAction::kGuidance, agent::EntityAction::kCourse3}) {
+  const std::pair<agent::EntityAction, agent::EntityNetwork> cases[] = {
+      {agent::EntityAction::kGuidance, agent::EntityNetwork::kPool},
+      {agent::EntityAction::kCourse3, agent::EntityNetwork::kPool},
+      {agent::EntityAction::kLaw5, agent::EntityNetwork::kGraph}};
+  for (const auto& [action, network] : cases) {
     config_.action = action;
+    config_.network = network;
     const std::string name = agent::EntityActionName(action);
     EXPECT_TRUE(Train(name + "_one", 1, false));
     EXPECT_TRUE(Train(name + "_three", 3, false));
@@ -79,6 +85,7 @@ TEST_F(SwarmTraining, DoesNotDependOnTheNumberOfWorkers) {
 }
 
 TEST_F(SwarmTraining, ResumedEqualsUninterruptedBitForBit) {
+  config_.network = agent::EntityNetwork::kGraph;
   ASSERT_TRUE(Train("whole", 1, false));
   const std::atomic<int> stop{1};  // asked to end from the start: it ends at the first checkpoint
   EXPECT_FALSE(Train("halves", 1, false, &stop));
@@ -86,6 +93,34 @@ TEST_F(SwarmTraining, ResumedEqualsUninterruptedBitForBit) {
   ASSERT_TRUE(Train("halves", 1, true));
   EXPECT_EQ(Last("whole").parameters().numbers, Last("halves").parameters().numbers);
   EXPECT_EQ(TextIn(folder_ / "whole/config.json"), TextIn(folder_ / "halves/config.json"));
+}
+
+TEST_F(SwarmTraining, WhatAnAblationHidesChangesNoCommand) {
+  config_.steps = 320;
+  for (const auto network : {agent::EntityNetwork::kPool, agent::EntityNetwork::kGraph}) {
+    config_.network = network;
+    const std::string name = agent::EntityNetworkName(network);
+    for (const std::string without : {"", "neighbours"}) {
+      config_.without = without;
+      ASSERT_TRUE(Train(name + without, 2, false));
+      const agent::EntityPolicy policy = Last(name + without);
+      agent::Entities few = {}, many = {};
+      few.targets = many.targets = 1;
+      many.neighbours = 5;
+      std::fill_n(many.neighbour[0], 5 * agent::kNeighbourNumbers, 0.5F);
+      std::fill_n(many.edge[0][0], 5 * agent::kEdgeNumbers, 0.5F);
+      many.self[agent::kSelfNeighbours] = 0.6F;
+      float ours[agent::kCommandNumbers] = {}, theirs[agent::kCommandNumbers] = {};
+      policy.Command(few, ours);
+      policy.Command(many, theirs);
+      float most = 0.0F;
+      for (int k = 0; k < agent::kCommandNumbers; ++k) {
+        most = std::max(most, std::abs(ours[k] - theirs[k]));
+      }
+      EXPECT_EQ(most < 1e-6F, !without.empty()) << name << " " << most;  // means are rounded
+    }
+  }
+  EXPECT_THROW(Blinded(config_.network, 5, "nonsense"), UserError);
 }
 
 TEST_F(SwarmTraining, RefusesAFolderOfAnotherTraining) {

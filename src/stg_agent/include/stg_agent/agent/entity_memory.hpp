@@ -20,6 +20,7 @@ struct EntityMemory {
   bool commanded = false;       ///< there is a command
   TimeNs command_time = 0;
   std::array<float, kCommandNumbers> command{};  ///< in [-1, 1]
+  bool search = false;      ///< the command is to search, although there is a belief of the target
   Vec3<double> velocity_W;  ///< what a command of `course3` stands for, world axes [m/s]
 };
 

@@ -69,7 +69,9 @@ class SearchLaw : public Controller {
   /// Throws UserError for an agent without a search map.
   void Act(const AgentView& agent, float* action) const override;
   /// The same law, guided, not rounded: while it searches the phase turns its course.
-  void Act(const AgentView& agent, const Guidance<double>& guidance, double* action) const;
+  /// @param searches it searches although the target is observed
+  void Act(const AgentView& agent, const Guidance<double>& guidance, bool searches,
+           double* action) const;
 
  protected:
   /// Where to go now, relative to the own position [m].

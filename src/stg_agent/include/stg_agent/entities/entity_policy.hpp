@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "stg_agent/entities/entities.hpp"
+#include "stg_agent/entities/graph_network.hpp"
 #include "stg_agent/entities/pool_network.hpp"
 #include "stg_agent/policy/policy.hpp"
 
@@ -23,19 +25,33 @@ std::string EntityActionName(EntityAction action);
 /// Throws UserError for another name.
 EntityAction EntityActionNamed(const std::string& name);
 
-/// The network of an actor over entities.
-/// @param outputs CommandSize
+/// The networks of an actor over entities, named in the policy file.
+enum class EntityNetwork {
+  kPool,  ///< PoolNetwork, which reads no edges and follows the target that it follows
+  kGraph  ///< GraphNetwork, which chooses whom to follow, or to search
+};
+/// "pool" or "graph".
+std::string EntityNetworkName(EntityNetwork network);
+/// Throws UserError for another name.
+EntityNetwork EntityNetworkNamed(const std::string& name);
+
+/// Their sizes. @param outputs CommandSize
 PoolSpec EntityActorSpec(int outputs);
+GraphSpec EntityGraphSpec(int outputs);
+/// Numbers of such a network. @param outputs CommandSize
+std::size_t EntityParameters(EntityNetwork network, int outputs);
 /// The rows that such a network takes, in its order: targets, neighbours, obstacles.
 inline constexpr int kEntitySets = 3;
 void EntityRows(const Entities& entities, PoolRows (*sets)[kEntitySets]);
+GraphRows EntityGraphRows(const Entities& entities);
 
 /// A policy over entities: one file for any number of AUVs. command = tanh(network). Immutable.
 class EntityPolicy {
  public:
   struct Parameters {
-    std::vector<float> numbers;  ///< PoolBlocks(EntityActorSpec)
+    std::vector<float> numbers;  ///< [EntityParameters]
     EntityAction action = EntityAction::kGuidance;
+    EntityNetwork network = EntityNetwork::kPool;
     std::vector<float> log_std;  ///< [CommandSize], for exploration; not used by Command
     PolicyMetadata metadata;     ///< layout and interface are set by the constructor
   };
@@ -49,20 +65,21 @@ class EntityPolicy {
   /// Reads a file that SaveOnnx wrote, and no other graph; throws UserError that names the file.
   static EntityPolicy LoadOnnx(const std::string& path);
   /// Inputs `self` [1, 26], `search` [1, 28], `targets` [T, 40], `neighbours` [N, 22], `obstacles`
-  /// [O, 10]; output `command` [1, n].
+  /// [O, 10]; output `command` [1, n]. Of `graph` also the input `edges` [T, N, 8], and the outputs
+  /// `commands` [T + 1, n] and `choices` [1, T + 1], the largest of which counts.
   void SaveOnnx(const std::string& path) const;
 
   /// @param command [CommandSize], in [-1, 1]
-  void Command(const Entities& entities, float* command) const;
+  /// Returns the row of the target that is chosen, or their number: to search. Of `pool` always 0.
+  int Command(const Entities& entities, float* command) const;
 
   EntityAction action() const { return parameters_.action; }
   const Parameters& parameters() const { return parameters_; }
   const PolicyMetadata& metadata() const { return parameters_.metadata; }
-  const PoolNetwork& network() const { return network_; }
 
  private:
   Parameters parameters_;
-  PoolNetwork network_;
+  std::variant<PoolNetwork, GraphNetwork> network_;
 };
 
 }  // namespace stg::agent

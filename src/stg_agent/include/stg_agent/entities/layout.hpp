@@ -26,9 +26,17 @@ inline constexpr int kObstacleRows = 8;
 inline constexpr float kEntityClip = 3.0F;
 
 /// Where some of the numbers stand.
-inline constexpr int kSelfCommand = 9;  ///< the five of the last command
-inline constexpr int kSelfGraph = 14;   ///< the six of Eq. 18
+inline constexpr int kSelfDeviation = 8;     ///< of the own position
+inline constexpr int kSelfCommand = 9;       ///< the five of the last command
+inline constexpr int kSelfGraph = 14;        ///< the six of Eq. 18
+inline constexpr int kSelfNeighbours = 20;   ///< how many there are
+inline constexpr int kTargetDeviation = 11;  ///< the six of the ellipse, depth and velocity
+inline constexpr int kTargetAge = 21;        ///< of the newest observation, and of the own one
+inline constexpr int kTargetPhase = 31;      ///< four phases, and then four qualities
+inline constexpr int kTargetFollowed = 39;   ///< 1 of the target that it follows
+inline constexpr int kNeighbourAge = 9;      ///< of the packet; stated deviation, its growth since
 inline constexpr int kNeighbourQuality = 12;
 inline constexpr int kNeighbourError = 21;
+inline constexpr int kEdgeAge = 5;  ///< of the neighbour's newest measurement
 
 }  // namespace stg::agent

@@ -15,6 +15,8 @@ struct SwarmConfig {
   std::uint64_t seed = 0;
   std::int64_t steps = 6'000'000;  ///< decisions of a swarm, 1 s each in the field
   agent::EntityAction action = agent::EntityAction::kLaw5;
+  agent::EntityNetwork network = agent::EntityNetwork::kPool;
+  std::string without;  ///< what the actor cannot see (Blinded); empty: nothing
 
   int envs = 128;
   int horizon = 40;         ///< policy steps of one collection
@@ -31,7 +33,8 @@ struct SwarmConfig {
   double learning_rate = 5e-4, last_learning_rate = 5e-5;
   double clip = 0.2, target_kl = 0.02, gradient_norm = 0.5, adam_eps = 1e-5;
   double log_std = -1.0, least_log_std = -3.0, most_log_std = -0.5;
-  double value_memory = 500'000;  ///< rows that the moments of the returns remember
+  double entropy = 0.01, last_entropy = 0.001;  ///< weight of the choices' entropy
+  double value_memory = 500'000;                ///< rows that the moments of the returns remember
 
   int validation_interval = 2;  ///< segments
   int validation_episodes = 32;

@@ -7,6 +7,7 @@
 #include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/checkpoint/archive.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
+#include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 #include "marl_trainer/learn/swarm/swarm_shard.hpp"
 
 namespace stg::learn {
@@ -41,9 +42,10 @@ class SwarmLearner {
   };
   struct Part {
     PackedRows actor_rows, critic_rows;
-    PoolBatch::Workspace actor, critic;
-    std::vector<float> d_actor, d_critic, actor_gradient, critic_gradient;
-    double kl = 0.0, clipped = 0.0, value_loss = 0.0;
+    ActorWorkspace actor;
+    PoolBatch::Workspace critic;
+    std::vector<float> d_critic, actor_gradient, critic_gradient, log_shares;
+    double kl = 0.0, clipped = 0.0, value_loss = 0.0, entropy = 0.0;
   };
 
   void Evaluate(SwarmRollout* rollout, Part* part) const;
@@ -51,11 +53,18 @@ class SwarmLearner {
                   const std::vector<float>& next) const;
   void Normalise(const std::vector<SwarmRollout>& rollouts);
   void Gradient(const std::vector<SwarmRollout>& rollouts, const std::vector<Row>& rows,
-                std::size_t begin, std::size_t end, std::size_t batch, Part* part) const;
+                std::size_t begin, std::size_t end, std::size_t batch, double entropy,
+                Part* part) const;
+  /// Adds what a row of a part says to the gradient of the actor's outputs.
+  void ActorLoss(const SwarmRollout& rollout, std::size_t row, int at, double entropy, float share,
+                 Part* part) const;
+  void KeepBlind(std::vector<float>* numbers) const;
 
   SwarmConfig config_;
   int size_;
-  PoolBatch actor_, critic_;
+  EntityActor actor_;
+  PoolBatch critic_;
+  std::vector<bool> blind_;                            // of the actor's parameters, or empty
   std::vector<float> actor_numbers_, critic_numbers_;  // the actor's with its log deviations
   AdamState actor_adam_, critic_adam_;
   double mean_ = 0.0, square_ = 1.0, seen_ = 0.0;  // moments of the returns

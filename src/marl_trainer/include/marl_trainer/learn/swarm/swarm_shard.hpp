@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "marl_trainer/learn/swarm/pool_batch.hpp"
+#include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 #include "marl_trainer/learn/swarm/swarm_config.hpp"
 #include "stg_env/env/vector_env.hpp"
 
@@ -17,6 +17,7 @@ struct SwarmRollout {
   int steps = 0, envs = 0, agents = 0;
   PackedRows actor, critic;
   std::vector<float> commands;      // [rows, command size], unclipped
+  std::vector<int> choices;         // [rows], of what the network could choose from
   std::vector<float> log_prob;      // [rows]
   std::vector<float> own, rewards;  // [rows], the AUV's own mean reward; what it learns from
   std::vector<std::uint8_t> done;   // [rows], the episode ended with this step
@@ -29,7 +30,7 @@ struct SwarmRollout {
 
 /// The actor as a shard needs it.
 struct SwarmActor {
-  const PoolBatch& network;
+  const EntityActor& network;
   const float* parameters;
   const float* log_std;  ///< [command size]
 };
@@ -59,7 +60,8 @@ class SwarmShard {
   std::vector<agent::Entities> entities_;  // [envs, agents]
   std::vector<float> actions_, sums_, potential_, next_potential_;
   PackedRows now_, last_;
-  PoolBatch::Workspace workspace_;
+  ActorWorkspace workspace_;
+  std::vector<float> log_shares_;
 };
 
 }  // namespace stg::learn

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "marl_trainer/learn/swarm/pool_batch.hpp"
+#include "marl_trainer/learn/swarm/network/pool_batch.hpp"
 #include "stg_agent/entities/entities.hpp"
 #include "stg_env/env/vector_env.hpp"
 

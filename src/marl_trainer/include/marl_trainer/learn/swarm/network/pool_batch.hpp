@@ -3,41 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "stg_agent/entities/pool_network.hpp"
+#include "marl_trainer/learn/swarm/network/packed_rows.hpp"
 
 namespace stg::learn {
-
-/// The rows of many AUVs, packed: the rows of a set of all AUVs in one array, with offsets (CSR).
-/// An AUV without rows costs nothing.
-class PackedRows {
- public:
-  explicit PackedRows(const agent::PoolSpec& spec);
-
-  void Clear();
-  /// Appends one AUV. @param self, search, sets as PoolNetwork::Forward takes them
-  void Add(const float* self, const float* search, const agent::PoolRows* sets);
-  /// Appends AUV `row` of another store of the same sizes.
-  void Add(const PackedRows& from, int row);
-
-  int rows() const { return rows_; }
-  const float* self() const { return self_.data(); }
-  const float* search(int row) const {
-    return search_.data() + static_cast<std::ptrdiff_t>(row) * search_size_;
-  }
-  /// Rows of set s, [offset(s, rows()), numbers].
-  const float* set(int s) const { return sets_[static_cast<std::size_t>(s)].data(); }
-  /// Where the rows of an AUV begin.
-  int offset(int s, int row) const {
-    return offsets_[static_cast<std::size_t>(s)][static_cast<std::size_t>(row)];
-  }
-
- private:
-  int rows_ = 0, self_size_, search_size_;
-  std::vector<int> set_sizes_;
-  std::vector<float> self_, search_;
-  std::vector<std::vector<float>> sets_;
-  std::vector<std::vector<int>> offsets_;
-};
 
 /// agent::PoolNetwork for many AUVs at once, with its gradient, written out by hand: products of
 /// packed rows and sums over segments, in an order that depends on the rows alone. A test holds it

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "stg_agent/entities/pool_network.hpp"
+
+/// Products of one row for the networks over entities; they allocate nothing.
+namespace stg::agent {
+
+using RowMajorMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+inline Eigen::Map<const RowMajorMatrix> MatrixOf(const float* parameters, const PoolBlock& block) {
+  return {parameters + block.offset, block.rows, block.cols};
+}
+
+/// out = W x, added to what is there if asked.
+inline void Product(const float* parameters, const PoolBlock& weight, const float* x, bool add,
+                    float* out) {
+  Eigen::Map<Eigen::VectorXf> y(out, weight.rows);
+  if (!add) y.setZero();
+  y.noalias() += MatrixOf(parameters, weight) * Eigen::Map<const Eigen::VectorXf>(x, weight.cols);
+}
+
+inline void Rectify(float* x, int count) {
+  Eigen::Map<Eigen::VectorXf> y(x, count);
+  y = y.cwiseMax(0.0F);
+}
+
+/// out = W x + b, then relu if asked.
+inline void Dense(const float* parameters, const PoolBlocks::Layer& layer, const float* x,
+                  bool relu, float* out) {
+  Eigen::Map<Eigen::VectorXf>(out, layer.weight.rows) =
+      Eigen::Map<const Eigen::VectorXf>(parameters + layer.bias.offset, layer.bias.rows);
+  Product(parameters, layer.weight, x, true, out);
+  if (relu) Rectify(out, layer.weight.rows);
+}
+
+}  // namespace stg::agent
