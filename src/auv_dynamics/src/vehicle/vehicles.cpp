@@ -1,4 +1,5 @@
 #include "auv_dynamics/vehicle/fully_actuated.hpp"
+#include "auv_dynamics/vehicle/shaft_power.hpp"
 #include "auv_dynamics/vehicle/torpedo.hpp"
 #include "kinematic.hpp"
 
@@ -21,6 +22,8 @@ Space VelocityActions(const VehicleConfig& config) {
   }
   return space;
 }
+
+bool TurnsPropeller(const VehicleConfig& config, int i) { return config.model_of(i) == "torpedo"; }
 
 VehicleRegistry& Vehicles() {
   static VehicleRegistry registry("vehicle", {

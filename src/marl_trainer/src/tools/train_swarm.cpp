@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--network", network,
                  "pool: means and maxima over rows; graph: attention and messages over the task "
-                 "graph, which also chooses whom to follow")
+                 "graph, which also chooses which target to follow")
       ->capture_default_str();
   app.add_option("--without", config.without,
                  "what the policy cannot see: " + stg::learn::BlindNames());

@@ -13,10 +13,10 @@ namespace {
 
 constexpr int kWidth = GraphNetwork::kMaxWidth, kRows = GraphNetwork::kMaxRows + 1;
 
-/// Rows of a set as the layers of its own make them, and one for nobody behind them.
+/// Rows of a set as the layers of its own make them, and one for an empty set behind them.
 struct Hidden {
   alignas(64) float h[kRows][kWidth];
-  int count = 0;  // without nobody
+  int count = 0;  // without the row of an empty set
 };
 
 void RequireGraph(bool ok, const std::string& what) {
@@ -34,7 +34,7 @@ void Embed(const float* p, const PoolBlocks::Set& set, const PoolRows& rows, Hid
   std::copy(p + set.nobody.offset, p + set.nobody.offset + width, out->h[rows.count]);
 }
 
-/// Maximum of the rows and of nobody.
+/// Maximum of the rows and of that of an empty set.
 void Most(const Hidden& x, int width, float* most) {
   std::copy(x.h[0], x.h[0] + width, most);
   for (int r = 1; r <= x.count; ++r) {
@@ -77,7 +77,7 @@ void Attend(const float* p, const GraphBlocks::Attention& a, int heads, const fl
   }
 }
 
-/// Who is on which target: h_t' of every target, and nobody as it is.
+/// Which AUV is on which target: h_t' of every target, and the row of an empty set as it is.
 void PassMessages(const float* p, const GraphBlocks& b, const GraphRows& in,
                   const Hidden& neighbours, Hidden* targets) {
   const int width = b.edge_neighbour.rows, count = neighbours.count;

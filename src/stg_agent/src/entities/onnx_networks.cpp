@@ -41,7 +41,7 @@ class GraphWriter {
     to_.Fixed("heads", spec_.heads, spec_.width, Heads(spec_, 1.0F));
     to_.Fixed("zero", 1, 1, {0.0F});
     Messages(targets, neighbours);
-    WithNobody("targets", "targets_told", b_.sets[0].nobody);
+    WithNobody("targets", "targets_updated", b_.sets[0].nobody);
     WithNobody("neighbours", neighbours, b_.sets[1].nobody);
     WithNobody("obstacles", obstacles, b_.sets[2].nobody);
     Prior();
@@ -92,11 +92,11 @@ class GraphWriter {
     to_.Node("Relu", {"edges_all"}, "messages");
     to_.Node("ReduceMean", {"messages"}, "messages_mean", {{"axes", 1}, {"keepdims", 0}});
     to_.Node("ReduceMax", {"messages"}, "messages_max", {{"axes", 1}, {"keepdims", 0}});
-    to_.Node("Concat", {targets, "messages_mean", "messages_max"}, "told", {{"axis", 1}});
-    to_.Node("Relu", {to_.Dense("told", "update", b_.update, false)}, "targets_told");
+    to_.Node("Concat", {targets, "messages_mean", "messages_max"}, "target_inputs", {{"axis", 1}});
+    to_.Node("Relu", {to_.Dense("target_inputs", "update", b_.update, false)}, "targets_told");
   }
 
-  /// w ln(quality + 0.01) of every neighbour, 0 of nobody.
+  /// w ln(quality + 0.01) of every neighbour, 0 of the row of an empty set.
   void Prior() {
     to_.Node("MatMul",
              {"neighbours",

@@ -1,4 +1,4 @@
-#include "stg_env/task/critic_config.hpp"
+#include "stg_env/task/judge_config.hpp"
 
 namespace stg::task {
 

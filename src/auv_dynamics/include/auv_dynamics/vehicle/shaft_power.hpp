@@ -1,9 +1,13 @@
 #pragma once
 
 #include "auv_common/numbers/attitude.hpp"
-#include "auv_dynamics/vehicle/torpedo_config.hpp"
+#include "auv_dynamics/vehicle/vehicle_config.hpp"
 
 namespace stg::dynamics {
+
+/// Whether the first actuator of AUV i is the propeller of `vehicle.torpedo`, as a share of its
+/// largest rpm.
+bool TurnsPropeller(const VehicleConfig& config, int i);
 
 /// Mechanical power of a torpedo's shaft, P = 2 pi n Q with Q = rho n^2 D^5 K_Q(J) [W]. K_Q is that
 /// of TorpedoModel: linear in the advance number J = inflow speed / (n D) ahead, and that of J = 0

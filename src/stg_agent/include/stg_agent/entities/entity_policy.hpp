@@ -28,7 +28,7 @@ EntityAction EntityActionNamed(const std::string& name);
 /// The networks of an actor over entities, named in the policy file.
 enum class EntityNetwork {
   kPool,  ///< PoolNetwork, which reads no edges and follows the target that it follows
-  kGraph  ///< GraphNetwork, which chooses whom to follow, or to search
+  kGraph  ///< GraphNetwork, which chooses a target to follow, or to search
 };
 /// "pool" or "graph".
 std::string EntityNetworkName(EntityNetwork network);

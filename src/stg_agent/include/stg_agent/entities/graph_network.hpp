@@ -21,8 +21,8 @@ namespace stg::agent {
 ///   choice = softmax over the rows h_t' and one that stands for "search" of (P y) h + f follows_t
 ///   out    = W3 y + W4 h_choice + b3
 ///
-/// Mean, max and attention also take one learned row that stands for nobody, so any number of rows
-/// from 0 is defined. The prior p_k of a neighbour is w ln(link quality + 0.01), else 0. All
+/// Mean, max and attention also take one learned row that stands for an empty set, so any number of
+/// rows from 0 is defined. The prior p_k of a neighbour is w ln(link quality + 0.01), else 0. All
 /// numbers stand in one flat array; matrices are [outputs, inputs], row-major.
 struct GraphSpec {
   int self = 1;
@@ -50,7 +50,7 @@ struct GraphBlocks {
     PoolBlock key;    ///< [width, width]
     PoolBlock value;  ///< [width, width]
   };
-  /// Targets, neighbours, obstacles. Nobody among the targets stands for "search".
+  /// Targets, neighbours, obstacles. The empty row of the targets stands for "search".
   std::array<PoolBlocks::Set, 3> sets;
   Layer self;
   PoolBlock edge_neighbour, edge_row, edge_nobody;

@@ -78,9 +78,9 @@ class FieldTotals {
   EstimateTotals<T> estimates_;
   SearchTotals<T> search_;
   NavigationTotals<T> navigation_;
-  std::vector<T> spell_;          // [agents] decisions of the spell of loss that runs
-  std::vector<T> band_;           // [agents] decisions in the band
-  std::vector<bool> is_torpedo_;  // [agents]
+  std::vector<T> spell_;               // [agents] decisions of the spell of loss that runs
+  std::vector<T> band_;                // [agents] decisions in the band
+  std::vector<bool> turns_propeller_;  // [agents] whether tau tells the rpm of a propeller
 };
 
 extern template class SearchTotals<double>;

@@ -44,9 +44,9 @@ FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
       search_(scenario),
       spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)),
       band_(spell_),
-      is_torpedo_(spell_.size()) {
-  for (std::size_t i = 0; i < is_torpedo_.size(); ++i) {
-    is_torpedo_[i] = scenario.world.vehicle.model_of(static_cast<int>(i)) == "torpedo";
+      turns_propeller_(spell_.size()) {
+  for (std::size_t i = 0; i < turns_propeller_.size(); ++i) {
+    turns_propeller_[i] = dynamics::TurnsPropeller(scenario.world.vehicle, static_cast<int>(i));
   }
 }
 
@@ -108,7 +108,7 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
     s.received += f.received;
     s.missed += f.missed;
     s.modem_energy += f.modem_energy_j;
-    if (is_torpedo_[i]) {
+    if (turns_propeller_[i]) {
       const dynamics::TorpedoConfig& torpedo = scenario_.world.vehicle.torpedo;
       const T rpm = swarm.tau[i][0] * T(torpedo.max_propeller_rpm);
       s.propulsion += dynamics::ShaftPower(torpedo, rpm, Norm(swarm.vehicles[i].v_WB));

@@ -7,7 +7,7 @@
 namespace stg::learn {
 
 /// The rows of one set of many AUVs, as attention takes them: those of AUV r are
-/// rows[begin(r), begin(r + 1)), and nobody's row is behind them.
+/// rows[begin(r), begin(r + 1)), and the row of an empty set is behind them.
 struct AttendedRows {
   const float* rows;    ///< [all, width]
   const float* nobody;  ///< [width]
