@@ -12,7 +12,7 @@
 namespace stg::learn {
 namespace {
 
-agent::GraphSpec SmallSpec() {
+agent::GraphSpec SmallGraph() {
   agent::GraphSpec spec;
   spec.self = 7;
   spec.search = 3;
@@ -158,7 +158,7 @@ struct TorchGraph {
 };
 
 TEST(GraphBatch, OutputsAndGradientsAreLibtorchs) {
-  for (const agent::GraphSpec& spec : {SmallSpec(), agent::EntityGraphSpec(5)}) {
+  for (const agent::GraphSpec& spec : {SmallGraph(), agent::EntityGraphSpec(5)}) {
     const GraphBatch graph(spec);
     const std::vector<float> p = Draw(graph.parameters(), 0.3F, 1);
     const std::vector<DrawnRows> many = DrawMany(spec, 11);

@@ -93,7 +93,7 @@ class GraphWriter {
     to_.Node("ReduceMean", {"messages"}, "messages_mean", {{"axes", 1}, {"keepdims", 0}});
     to_.Node("ReduceMax", {"messages"}, "messages_max", {{"axes", 1}, {"keepdims", 0}});
     to_.Node("Concat", {targets, "messages_mean", "messages_max"}, "target_inputs", {{"axis", 1}});
-    to_.Node("Relu", {to_.Dense("target_inputs", "update", b_.update, false)}, "targets_told");
+    to_.Node("Relu", {to_.Dense("target_inputs", "update", b_.update, false)}, "targets_updated");
   }
 
   /// w ln(quality + 0.01) of every neighbour, 0 of the row of an empty set.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -118,8 +119,12 @@ TEST_F(RecorderTest, HasEveryPacketOfItsLogOnce) {
   std::istringstream log(FileText(folder_ + "/packets.csv"));
   std::string line;
   std::getline(log, line);
+  // Fields of a line before that of the fate; none of them holds a comma.
+  const auto before = std::count(line.begin(), line.begin() + line.find(",fate"), ',') + 1;
   while (std::getline(log, line)) {
-    const std::string fate = line.substr(line.rfind(',') + 1);
+    std::istringstream fields(line);
+    std::string fate;
+    for (auto k = before; k >= 0; --k) std::getline(fields, fate, ',');
     int reason = 0;
     while (reason > 0 ? acoustics::ToString(static_cast<acoustics::DropReason>(reason)) != fate
                       : fate != "delivered") {
