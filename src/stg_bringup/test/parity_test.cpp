@@ -174,7 +174,14 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_TRUE(summary.complete);
     EXPECT_EQ(summary.deadline_misses, 0U);
     EXPECT_EQ(summary.seed, env_options.seed);
-    const auto items = m.Items();
+    auto items = m.Items();
+    // The metrics node does not hear what an AUV knows of its own position.
+    items.erase(std::remove_if(items.begin(), items.end(),
+                               [](const auto& item) {
+                                 return item.first.rfind("navigation_", 0) == 0 ||
+                                        item.first == "relative_rmse";
+                               }),
+                items.end());
     ASSERT_EQ(summary.metric_names.size(), items.size());
     for (std::size_t k = 0; k < items.size(); ++k) {
       EXPECT_EQ(summary.metric_names[k], items[k].first);
