@@ -50,8 +50,8 @@ struct AgentModel {
   StationsConfig stations = {};  ///< where beacons are charted, which craft there are
 
   double wall_m() const { return dynamics::WallOf(workspace, sea); }
-  /// Agents correct what they know of each other's positions.
   int members() const { return run.agents + stations.count(); }  ///< of the acoustic network
+  /// Agents correct what they know of each other's positions.
   bool locates() const;
   int observation_size() const { return ObservationSpec(observation).size(); }
 };
