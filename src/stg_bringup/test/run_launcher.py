@@ -1,5 +1,6 @@
 """Starts and ends whole runs as `./stg run` does, for tests."""
 
+import contextlib
 import os
 import pathlib
 import signal
@@ -63,11 +64,16 @@ def processes_with(master_uri):
 
 
 def stop(process):
-    """Ends a roslaunch as Ctrl-C does."""
+    """Ends a roslaunch as Ctrl-C does; one that does not end is killed with its nodes."""
     if process.poll() is None:
         process.send_signal(signal.SIGINT)
     try:
         return process.communicate(timeout=20)[0]
     except subprocess.TimeoutExpired:
         process.kill()
+        port = process.args[process.args.index("-p") + 1]
+        while found := processes_with(f"http://127.0.0.1:{port}"):  # they hold its output open
+            for node in found.values():
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(node, signal.SIGKILL)
         return process.communicate()[0]
