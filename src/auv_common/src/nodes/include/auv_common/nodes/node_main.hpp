@@ -85,6 +85,7 @@ template <class Node>
 int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic,
             std::size_t memory = kNodeMemory) {
   if (memory > 0) LimitMemory(memory);
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // news is news in a pipe, too, as of `| tee`
   std::vector<char*> arguments(argv, argv + argc);
   // roscpp listens to /clock if it finds this parameter.
   char no_clock[] = "/use_sim_time:=/not_asked/use_sim_time";
