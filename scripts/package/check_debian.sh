@@ -97,11 +97,23 @@ for set in baseline x86-64-v3; do
   say "return on $set: $(python3 -c 'import json, sys; print(repr(json.load(sys.stdin)["return"]))' <"$work/$set.json")"
   cp "$work/$set.json" "$root/dist/evaluate-$set.json"
 done
+# Also without what is only recommended: a module that a program imports and no package brings ends it.
+# shellcheck disable=SC2016
+timed "the help of every command line" inside 'cd /usr/lib && for program in acoustic_channel/*.py acoustic_channel/simulate \
+  auv_dynamics/c[hr]*_* marl_trainer/* stg_bringup/* stg_monitor/*report.py stg_monitor/view.py; do
+    case $program in *_node) continue ;; esac
+    timeout 60 $program --help </dev/null >/dev/null || { echo "$program --help fails"; exit 1; }
+  done'
 timed "python3 -m stg.examples.random_actions" inside python3 -m stg.examples.random_actions
 timed "an episode in the field, recorded, and its report" inside "roslaunch stg_bringup field.launch episodes:=1 \
   real_time_factor:=0 record:=true bag:=/root/field.bag overrides:='[time.episode_steps=60,time.tail_steps=10]' && \
   rosrun stg_monitor report.py /root/field.bag --out /root/field.html"
 [[ -s "$new/root/field.html" ]]
+timed "twelve seconds over emulated modems" inside "roslaunch stg_bringup sea.launch episodes:=1 \
+  summary_file:=/root/sea.json overrides:='[time.episode_steps=12,time.tail_steps=4]'"
+[[ -s "$new/root/sea.json" ]]
+timed "a search, flown by the graph" inside "roslaunch stg_bringup field.launch task:=search episodes:=1 \
+  real_time_factor:=0 overrides:='[time.episode_steps=60,time.tail_steps=10]'"
 timed "an episode over bathymetry" inside "rosrun marl_trainer evaluate --policy encircle --scenario field20 --episodes 1 \
   --set time.episode_steps=20 --set time.tail_steps=10"
 timed "training" inside "rosrun marl_trainer train --scenario medium_separated --steps 20000 --out /root/run"

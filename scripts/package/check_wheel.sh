@@ -19,3 +19,12 @@ import stg
 print("check_wheel:", stg.INSTRUCTION_SET, stg.evaluate(stg.policy_file("medium"), "medium", episodes=4)["return"])
 PYTHON
 done
+"${alone[@]}" venv/bin/python - <<'PYTHON'
+import stg
+names = stg.scenario_names()
+for name in names:
+    stg.parallel_env(name).reset()
+short = {"time.episode_steps": 60, "time.tail_steps": 10}
+flown = stg.evaluate(stg.policy_file("field"), "field", overrides=short, episodes=1)
+print("check_wheel:", len(names), "scenarios start; a minute of field:", flown["return"])
+PYTHON
