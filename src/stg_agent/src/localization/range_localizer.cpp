@@ -27,6 +27,16 @@ struct Taken {
   TimeNs at = 0;
 };
 
+/// Where the stations are known to begin: beacons as charted, crafts at the surface.
+std::vector<Vec3<double>> ChartOf(const AgentModel& s) {
+  std::vector<Vec3<double>> chart;
+  for (const auto& at : s.stations.beacons) chart.push_back({at[0], at[1], at[2]});
+  for (const auto& at : s.stations.crafts) {
+    chart.push_back({at[0], at[1], s.channel.water.surface_z_m});
+  }
+  return chart;
+}
+
 std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
   std::vector<AnchorModel> anchors;
   for (int k = 0; k < s.stations.count(); ++k) {
@@ -47,6 +57,7 @@ class RangeLocalizer : public Localizer {
         tolerance_(s.run.decision_period() / 8),
         sound_(s.channel.water),
         surface_z_m_(s.channel.water.surface_z_m),
+        chart_(ChartOf(s)),
         filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self),
         ways_(static_cast<std::size_t>(s.run.agents + s.stations.count())),
         newest_(ways_.size()),
@@ -111,7 +122,9 @@ class RangeLocalizer : public Localizer {
   Vec3<double> NearTo(int id) const override {
     const ToldWay& way = ways_[static_cast<std::size_t>(id)];
     if (!way.empty()) return way.newest().p;
-    // No member is far from what can be heard: the own position in the other's frame.
+    // A station can be farther than the own position tells apart: packets hold it modulo.
+    if (id >= auvs_) return chart_[static_cast<std::size_t>(id - auvs_)];
+    // No AUV is far from what can be heard: the own position in the other's frame.
     const PlaneError e = filter_.knows(id) ? relative(id, filter_.now()) : PlaneError();
     return {own_.p_WB.x + e.x, own_.p_WB.y + e.y, own_.p_WB.z};
   }
@@ -254,6 +267,7 @@ class RangeLocalizer : public Localizer {
   TimeNs tolerance_;
   acoustics::SoundSpeedProfile sound_;
   double surface_z_m_;
+  std::vector<Vec3<double>> chart_;  // [stations]
   JointFilter filter_;
   std::vector<ToldWay> ways_;      // [members]
   std::vector<ToldRange> newest_;  // [members], own readings of their packets

@@ -53,6 +53,14 @@ TEST(LocalizationFlight, TwoBeaconsDoSoToo) {
   EXPECT_LT(m.Mean("navigation_nees"), 5.0);
 }
 
+// Positions are told modulo 5 km, and an AUV can be 2.5 km from a beacon along one axis.
+TEST(LocalizationFlight, BeaconsOnTheEdgeAreTakenForWhereTheyAre) {
+  const task::MetricSummary m =
+      Fly("beacons", {"stations.beacons=[[1900, 1900, -100], [-1900, -1900, -100]]"});
+  EXPECT_LT(m.Mean("navigation_rmse_tail"), 8.0);
+  EXPECT_LT(m.Mean("navigation_nees"), 5.0);
+}
+
 TEST(LocalizationFlight, LateSoundsAreSetAside) {
   EXPECT_LT(Fly("craft_late_sound").Mean("navigation_rmse_tail"), 10.0);
 }
