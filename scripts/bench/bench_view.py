@@ -24,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 from stg_view.browser import show, started
 
 PORT, AGENTS, RATE_HZ, EPISODES = 8318, 20, 10.0, 40
+SETTLED_S = 3.0  # that a browser works on after its start, which is no part of opening a page
 FRAMES = """const done = arguments[1], seconds = arguments[0], times = [];
 const next = (now) => { times.push(now);
   if (now - times[0] < 1000 * seconds) requestAnimationFrame(next); else done((times.length - 1) * 1000 / (now - times[0])); };
@@ -55,6 +56,8 @@ def work_of(pid):
 def measure_page(page, seconds):
     """Figures of a report."""
     with started() as driver:
+        driver.get("about:blank")
+        time.sleep(SETTLED_S)
         begin, before = time.monotonic(), work_of(driver.service.process.pid)
         show(driver, page.resolve().as_uri())
         opening, opened = time.monotonic() - begin, work_of(driver.service.process.pid)

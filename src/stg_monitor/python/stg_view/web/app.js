@@ -33,8 +33,9 @@
       try {
         const embedded = by("recording");
         if (embedded) {
-          const packed = Uint8Array.from(atob(embedded.textContent.trim()), (c) => c.charCodeAt(0));
+          const text = atob(embedded.textContent), packed = new Uint8Array(text.length);
           embedded.remove();
+          for (let k = 0; k < text.length; ++k) packed[k] = text.charCodeAt(k);
           const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
           this.recording.takeFile(await new Response(stream).arrayBuffer());
         }

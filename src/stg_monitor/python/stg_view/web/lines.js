@@ -1,19 +1,23 @@
 /* All lines that move, in one drawing: where the processor draws, each object costs more than its lines do.
  * Each line is a slim rectangle whose width is given in pixels and whose edges are soft. Its four corners have
  * data of their own: instances would take the processor six times as long. Lines are put anew for each
- * drawing, into arrays that are made once. World axes are ENU, z up, metres. */
+ * drawing, into arrays that grow when they are full. World axes are ENU, z up, metres. */
 (function (STG) {
   "use strict";
 
   const MOST = 24000;  // segments; what is more is left out
+  const FIRST = 3000;  // segments that there is room for at first
   const CIRCLE = 72, THIN = 1.2;
+  const PARTS = [12, 18, 24, 36];  // of circles that are small on the screen
+  const CURVED = 4.5;  // parts of a circle by the root of its radius [pixels]: none is a quarter of a pixel off
   const COS = Float64Array.from({ length: CIRCLE + 1 }, (_, k) => Math.cos(2 * Math.PI * k / CIRCLE));
   const SIN = Float64Array.from({ length: CIRCLE + 1 }, (_, k) => Math.sin(2 * Math.PI * k / CIRCLE));
+  const CORNERS = [0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], TRIANGLES = [0, 1, 2, 0, 2, 3];
   // A corner is (end, side). What lies behind the near plane is cut off before the division by w.
   const VERTEX = `attribute vec3 head; attribute vec4 tail; attribute vec4 tint;
     uniform vec2 screen; varying vec4 seen; varying float across; varying float reach;
     void main() {
-      vec4 a = projectionMatrix * modelViewMatrix * vec4(tail.xyz, 1.0), b = projectionMatrix * modelViewMatrix * vec4(head, 1.0);
+      vec4 a = projectionMatrix * (modelViewMatrix * vec4(tail.xyz, 1.0)), b = projectionMatrix * (modelViewMatrix * vec4(head, 1.0));
       float da = a.z + a.w, db = b.z + b.w;
       if (da < 0.0 && db > 0.0) a = mix(a, b, da / (da - db));
       if (db < 0.0 && da > 0.0) b = mix(b, a, db / (db - da));
@@ -31,23 +35,8 @@
 
   class Lines {
     constructor(group) {
-      const geometry = new THREE.BufferGeometry(), corners = new Int8Array(12 * MOST), index = new Uint32Array(6 * MOST);
-      for (let k = 0; k < MOST; ++k) {
-        corners.set([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 12 * k);
-        index.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * k + corner), 6 * k);
-      }
-      geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
-      geometry.setIndex(new THREE.BufferAttribute(index, 1));
-      const add = (name, array, size) => {
-        const attribute = new THREE.BufferAttribute(array, size, array instanceof Uint8Array).setUsage(THREE.DynamicDrawUsage);
-        geometry.setAttribute(name, attribute);
-        return attribute;
-      };
-      this.tail = add("tail", new Float32Array(16 * MOST), 4);  // and its width
-      this.head = add("head", new Float32Array(12 * MOST), 3);
-      this.tint = add("tint", new Uint8Array(16 * MOST), 4);
       this.screen = new THREE.Vector2(1, 1);
-      this.object = new THREE.Mesh(geometry, new THREE.ShaderMaterial(
+      this.object = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.ShaderMaterial(
         { vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { screen: { value: this.screen } },
           transparent: true, depthWrite: false, side: THREE.DoubleSide }));
       this.object.frustumCulled = false;
@@ -55,13 +44,39 @@
       group.add(this.object);
       this.pen = new Uint8Array(16);
       this.width = THIN;
-      this.count = 0;
+      this.count = this.room = 0;
+      this.makeRoom(FIRST);
     }
 
-    /** Begins a drawing on a canvas of so many pixels. */
-    begin(width, height) {
+    /** Makes room for so many segments, and keeps those that were put. */
+    makeRoom(room) {
+      const geometry = new THREE.BufferGeometry(), corners = new Int8Array(12 * room), index = new Uint32Array(6 * room);
+      for (let k = 0; k < room; ++k) {
+        for (let m = 0; m < 12; ++m) corners[12 * k + m] = CORNERS[m];
+        for (let m = 0; m < 6; ++m) index[6 * k + m] = 4 * k + TRIANGLES[m];
+      }
+      geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
+      geometry.setIndex(new THREE.BufferAttribute(index, 1));
+      const add = (name, array, size, old) => {
+        if (old) array.set(old.array);
+        const attribute = new THREE.BufferAttribute(array, size, array instanceof Uint8Array).setUsage(THREE.DynamicDrawUsage);
+        geometry.setAttribute(name, attribute);
+        return attribute;
+      };
+      this.tail = add("tail", new Float32Array(16 * room), 4, this.tail);  // and its width
+      this.head = add("head", new Float32Array(12 * room), 3, this.head);
+      this.tint = add("tint", new Uint8Array(16 * room), 4, this.tint);
+      this.object.geometry.dispose();
+      this.object.geometry = geometry;
+      this.room = room;
+    }
+
+    /** Begins a drawing on a canvas of so many pixels, seen by a camera. */
+    begin(width, height, camera) {
       this.count = 0;
       this.screen.set(width / 2, height / 2);
+      this.eye = camera.position;
+      this.perPixel = 2 * Math.tan(camera.fov * Math.PI / 360) / Math.max(1, height);  // metres, at a distance of one
     }
 
     /** Sets the colour [red, green, blue], the opacity and the width [pixels] of what comes. */
@@ -72,7 +87,10 @@
 
     /** A line from p to q, in the colour that was set. */
     segment(px, py, pz, qx, qy, qz) {
-      if (this.count >= MOST) return;
+      if (this.count >= this.room) {
+        if (this.room >= MOST) return;
+        this.makeRoom(Math.min(MOST, 2 * this.room));
+      }
       const a = this.tail.array, b = this.head.array;
       let k = 16 * this.count, m = 12 * this.count;
       this.tint.array.set(this.pen, 16 * this.count++);
@@ -82,11 +100,20 @@
       }
     }
 
+    /** Places between two points of a circle of that radius: it has as many points as can be told apart. */
+    strideOf(x, y, z, radius) {
+      const away = Math.hypot(this.eye.x - x, this.eye.y - y, this.eye.z - z) - radius;  // of its nearest point, at least
+      if (!(away > 0)) return 1;
+      const wanted = CURVED * Math.sqrt(radius / (away * this.perPixel));
+      const parts = PARTS.find((n) => n >= wanted);
+      return parts ? CIRCLE / parts : 1;
+    }
+
     /** A level circle around a point, or an ellipse whose half axis a is turned by an angle from east. */
     circle(x, y, z, a, b = a, angle = 0) {
-      const c = Math.cos(angle), s = Math.sin(angle);
+      const c = Math.cos(angle), s = Math.sin(angle), stride = this.strideOf(x, y, z, Math.max(a, b));
       let px = x + c * a, py = y + s * a;
-      for (let k = 1; k <= CIRCLE; ++k) {
+      for (let k = stride; k <= CIRCLE; k += stride) {
         const u = a * COS[k], v = b * SIN[k], qx = x + c * u - s * v, qy = y + s * u + c * v;
         this.segment(px, py, z, qx, qy, z);
         px = qx;

@@ -110,7 +110,8 @@
         ++used;
         label.hidden = false;
         if (label.textContent !== one.text) label.textContent = one.text;
-        label.className = one.chosen ? "chosen" : one.loss ? "loss" : one.target ? "target" : "";
+        const kind = one.chosen ? "chosen" : one.loss ? "loss" : one.target ? "target" : "";
+        if (label.className !== kind) label.className = kind;
         label.style.transform = `translate(${Math.round(place[0])}px, ${Math.round(place[1])}px)`;
       }
       for (; used < this.names.length; ++used) this.names[used].hidden = true;

@@ -35,6 +35,7 @@
     constructor() {
       this.count = 0;
       this.room = 0;
+      this.expected = 0;  // rows that are to come, where that is known
       this.columns = {};
     }
 
@@ -50,17 +51,22 @@
 
     append(rows, columns) {
       const enough = this.count + rows;
-      if (enough > this.room) this.room = Math.max(1024, enough, Math.ceil(1.25 * this.room));
+      if (this.room === 0 && rows >= this.expected) {  // they are all: they stay where they came
+        for (const { name, width, data } of columns) this.columns[name] = { width, data };
+        this.room = this.count = rows;
+        return;
+      }
+      if (enough > this.room) this.room = Math.max(1024, enough, this.expected, Math.ceil(1.25 * this.room));
       for (const { name, type, width, data } of columns) {
         let c = this.columns[name];
         if (c === undefined) {
           c = this.columns[name] = { width, data: new TYPES[type](this.room * width) };
-          if (type[0] === "f") c.data.fill(NaN);
+          if (type[0] === "f") { c.data.fill(NaN, 0, this.count * width); c.data.fill(NaN, enough * width); }
         }
         if (c.width !== width) throw new Error(`column ${name} changes its width`);
         if (c.data.length < this.room * width) {
           const wider = new c.data.constructor(this.room * width);
-          if (type[0] === "f") wider.fill(NaN);
+          if (type[0] === "f") wider.fill(NaN, c.data.length);
           wider.set(c.data);
           c.data = wider;
         }
@@ -95,6 +101,9 @@
     find(name, value) { return this.columns[name] ? STG.lastUpTo(this.columns[name].data, this.count, value) : -1; }
   }
 
+  /** Number of the link from one node to another. */
+  const keyOf = (source, receiver) => source * 65536 + receiver;
+
   /** Everything that a page shows. */
   class Recording {
     constructor() {
@@ -106,7 +115,7 @@
       this.notes = [];
       this.curves = [];
       this.terms = [];
-      this.links = new Map();  // "source>receiver": counts by fate
+      this.links = new Map();  // by keyOf: counts by fate
       this.fates = new Array(STG.FATES.length).fill(0);
       this.totals = null;      // counts of a log that is longer than what is shown
       this.thinned = 0;
@@ -144,19 +153,28 @@
     takeFile(buffer) {
       const magic = String.fromCharCode(...new Uint8Array(buffer, 0, Math.min(8, buffer.byteLength)));
       if (magic !== MAGIC) throw new Error("this is no recording");
+      const messages = [];
       let at = 8;
       while (at + 8 <= buffer.byteLength) {
         const view = new DataView(buffer, at);
         const length = 8 + view.getUint32(0, true) + view.getUint32(4, true);
         if (at + length > buffer.byteLength) break;
-        this.take(buffer, at);
+        messages.push(this.read(buffer, at));
         at += length;
       }
+      for (const [header] of messages) {  // tables of the right size need not grow
+        const table = { steps: this.steps, packets: this.packets }[header.kind];
+        if (table && header.rows > 0) table.expected += header.rows;
+      }
+      for (const message of messages) this.put(...message);
       if (at < buffer.byteLength) this.notes.push("The recording is cut off; its whole part is shown.");
     }
 
     /** Eats the message at `at` of an ArrayBuffer. */
-    take(buffer, at = 0) {
+    take(buffer, at = 0) { this.put(...this.read(buffer, at)); }
+
+    /** [header, columns] of the message at `at`. */
+    read(buffer, at) {
       const view = new DataView(buffer, at);
       const headerBytes = view.getUint32(0, true);
       const text = new TextDecoder().decode(new Uint8Array(buffer, at + 8, headerBytes));
@@ -171,6 +189,10 @@
         columns.push({ name, type, width, data });
         from += Math.ceil(data.byteLength / 8) * 8;
       }
+      return [header, columns];
+    }
+
+    put(header, columns) {
       this[`on_${header.kind}`] && this[`on_${header.kind}`](header, columns);
       ++this.version;
     }
@@ -200,9 +222,9 @@
     on_packets(header, columns) {
       const first = this.packets.count;
       this.packets.append(header.rows, columns);
+      const [fates, sources, receivers] = ["fate", "source", "receiver"].map((name) => this.packets.column(name).data);
       for (let row = first; row < this.packets.count; ++row) {
-        const fate = this.packets.at("fate", row);
-        const key = `${this.packets.at("source", row)}>${this.packets.at("receiver", row)}`;
+        const fate = fates[row], key = keyOf(sources[row], receivers[row]);
         let link = this.links.get(key);
         if (link === undefined) this.links.set(key, link = new Array(STG.FATES.length).fill(0));
         ++link[fate];
@@ -219,8 +241,7 @@
     counts() { return this.totals ? this.totals.fates : this.fates; }
     /** Counts by fate of the link source -> receiver, or null. */
     link(source, receiver) {
-      const key = `${source}>${receiver}`;
-      return (this.totals ? this.totals.links[key] : this.links.get(key)) || null;
+      return (this.totals ? this.totals.links[`${source}>${receiver}`] : this.links.get(keyOf(source, receiver))) || null;
     }
 
     /** Row of the step that is shown at time t; -1: none. */

@@ -9,27 +9,39 @@
   "use strict";
 
   const HULL_PIXELS = 15, MARK_PIXELS = 5, TRAIL = 400, TRAIL_SHARE = 0.06, TRAIL_STEPS = 60;
+  const APART = 8;  // pixels between two points of a way, at most about
   /** Whether the processor draws: smooth edges would then cost half of the frames. */
-  function drawnBySoftware() {
-    const gl = document.createElement("canvas").getContext("webgl");
-    const info = gl && gl.getExtension("WEBGL_debug_renderer_info");
+  function drawnBySoftware(gl) {
+    const info = gl.getExtension("WEBGL_debug_renderer_info");
     const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
     return /swiftshader|llvmpipe|software/i.test(name);
   }
 
+  /** The canvas, a context to draw on it, and whether the processor draws. A second context costs more than a second canvas. */
+  function contextOf(canvas) {
+    const plain = { alpha: false, antialias: false, stencil: false };
+    const gl = canvas.getContext("webgl", plain);
+    if (!gl) throw new Error("no WebGL");
+    if (drawnBySoftware(gl)) return [canvas, gl, true];
+    const fresh = canvas.cloneNode();
+    canvas.replaceWith(fresh);
+    return [fresh, fresh.getContext("webgl", { ...plain, antialias: true }), false];
+  }
+
   class Scene extends STG.View {
     constructor(app, canvas) {
-      super(app, canvas);
-      this.canvas = canvas;
-      this.soft = drawnBySoftware();
-      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.soft });
+      const [drawn, context, soft] = contextOf(canvas);
+      super(app, drawn);
+      this.canvas = drawn;
+      this.soft = soft;
+      this.renderer = new THREE.WebGLRenderer({ canvas: drawn, context });
       this.scene = new THREE.Scene();
       this.still = new THREE.Group();
       this.moving = new THREE.Group();
       this.scene.add(this.still, this.moving);
-      this.scene.add(new THREE.HemisphereLight(0xffffff, 0x405060, 0.8));
-      const sun = new THREE.DirectionalLight(0xffffff, 0.55);
-      sun.position.set(-1, -2, 4);
+      const { LIGHT } = STG.shapes, sun = new THREE.DirectionalLight(0xffffff, LIGHT.direct);
+      this.scene.add(new THREE.HemisphereLight(0xffffff, LIGHT.ground, LIGHT.diffuse));
+      sun.position.set(...LIGHT.sun);
       this.scene.add(sun);
       this.vehicles = [];
       this.targets = [];
@@ -144,7 +156,7 @@
         this.row = row;
         this.share = this.shareOf(t, row);
         this.follow(row);
-        this.lines.begin(this.width, this.height);
+        this.lines.begin(this.width, this.height, this.camera);
         this.targets.forEach((one, k) => this.drawTarget(one, row, k));
         this.vehicles.forEach((one, i) => this.drawVehicle(one, row, i));
         this.sound.draw(t, row);
@@ -211,18 +223,32 @@
     drawTrack(row, i) {
       const { recording: r, colours, selected } = this.app, { lines } = this;
       const [first, stride] = this.trail(row), phases = r.steps.column("phase"), chosen = selected === i, opacity = selected >= 0 && !chosen ? 0.25 : 0.9;
-      this.way("position", i, first, row, stride, (at) => {
+      this.way("position", i, first, row, stride, this.vehicles[i].group.position, (at) => {
         const young = 0.15 + 0.85 * (at - first + 1) / (row - first + 1);
         lines.ink(colours.rgb[phases ? phases.data[at * phases.width + i] : 4] || colours.rgb[4], young * opacity, chosen ? 2.6 : 1.8);
       });
     }
 
-    /** Puts the way of a point through the rows first, first + stride, ... row; ink(row) chooses the colour. */
-    way(name, i, first, row, stride, ink) {
-      const { data, width } = this.app.recording.steps.column(name);
+    /** Rows that may be left out between two points of a way, so that these are a few pixels apart: a power of two. */
+    sparse({ data, width }, i, first, row, place) {
+      const hop = Math.max(1, Math.floor((row - first) / 8));
+      let length = 0, rows = 0;
+      for (let at = row - hop, to = row * width + 3 * i; at >= first; at -= hop) {
+        const from = at * width + 3 * i, d = Math.hypot(data[to] - data[from], data[to + 1] - data[from + 1], data[to + 2] - data[from + 2]);
+        if (d >= 0) { length += d; rows += hop; }
+        to = from;
+      }
+      const pixels = length / this.metresPerPixel(place) / rows;  // a row
+      return pixels > 0 ? Math.pow(2, Math.min(8, Math.max(0, Math.floor(Math.log2(APART / pixels))))) : 1;
+    }
+
+    /** Puts the way of a point through the rows first to row; ink(row) chooses the colour. */
+    way(name, i, first, row, most, place, ink) {
+      const column = this.app.recording.steps.column(name), { data, width } = column;
+      const stride = Math.max(most, this.sparse(column, i, first, row, place));
       let from = first * width + 3 * i;
       for (let at = first; at < row;) {
-        at = Math.min(row, at + stride);
+        at = Math.min(row, stride * (Math.floor(at / stride) + 1));  // the same rows in the next drawing
         const to = at * width + 3 * i;
         if (data[from] === data[from] && data[to] === data[to]) {  // NaN: it was not there
           ink(at);
@@ -257,7 +283,7 @@
       one.mesh.position.set(...p);
       one.mesh.scale.setScalar(this.metresPerPixel(one.mesh.position) * 13);
       const [first, stride] = this.trail(row), band = r.meta.band_m || [0, 0];
-      this.way("target", k, first, row, stride, () => lines.ink(colours.rgbOf.target, 0.9, 1.8));
+      this.way("target", k, first, row, stride, one.mesh.position, () => lines.ink(colours.rgbOf.target, 0.9, 1.8));
       for (const [radius, name, opacity] of [[band[0], "stable", 0.75], [band[1], "stable", 0.75], [r.meta.sensing_range_m || 0, "search", 0.4]]) {
         lines.ink(colours.rgbOf[name], opacity, name === "stable" ? 1.8 : 1.2);
         if (radius > 0 && radius < 4 * this.half) lines.circle(...p, radius);

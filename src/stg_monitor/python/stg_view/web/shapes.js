@@ -10,6 +10,8 @@
   };
   const LAND = [0.45, 0.36, 0.22];
   const OBSTACLE = "#a9744f";
+  // Of the sky and the ground, and of a sun in that direction.
+  const LIGHT = { ground: 0x405060, diffuse: 0.8, sun: [-1, -2, 4], direct: 0.55 };
 
   /** Colour of a depth in a theme, as a share from the deepest (0) to the shallowest (1). */
   STG.depthColour = (share, theme) => {
@@ -24,13 +26,39 @@
     return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity, depthWrite: false }));
   }
 
+  /** One geometry of several that have positions, normals and an index. */
+  function merged(parts) {
+    const all = new THREE.BufferGeometry(), index = [];
+    let first = 0;
+    for (const part of parts) {
+      for (const corner of part.index.array) index.push(first + corner);
+      first += part.attributes.position.count;
+    }
+    for (const name of ["position", "normal"]) {
+      const array = new Float32Array(3 * first);
+      parts.reduce((at, part) => { array.set(part.attributes[name].array, at); return at + part.attributes[name].array.length; }, 0);
+      all.setAttribute(name, new THREE.BufferAttribute(array, 3));
+    }
+    all.setIndex(index);
+    return all;
+  }
+
   /** A slim body with fins, bow along +x, one unit long. */
   function hullGeometry() {
     const profile = [[0, -0.5], [0.045, -0.47], [0.085, -0.36], [0.1, -0.2], [0.1, 0.22], [0.09, 0.34], [0.06, 0.45], [0, 0.5]];
-    const body = new THREE.LatheGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 12);
-    body.rotateZ(-Math.PI / 2);
-    for (const fin of [new THREE.BoxGeometry(0.1, 0.34, 0.015), new THREE.BoxGeometry(0.1, 0.015, 0.34)]) body.merge(fin.translate(-0.38, 0, 0));
-    return new THREE.BufferGeometry().fromGeometry(body);
+    const body = new THREE.LatheBufferGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 10).rotateZ(-Math.PI / 2);
+    const fins = [[0.1, 0.34, 0.015], [0.1, 0.015, 0.34]].map((size) => new THREE.BoxBufferGeometry(...size).translate(-0.38, 0, 0));
+    return merged([body, ...fins]);
+  }
+
+  /** Puts the light that falls on each corner into its colour: what stands still need not be lit for each drawing. */
+  function lightUp(tint, normal) {
+    const sun = new THREE.Vector3(...LIGHT.sun).normalize(), ground = new THREE.Color(LIGHT.ground).toArray();
+    for (let k = 0; k < normal.count; ++k) {
+      const up = 0.5 + 0.5 * normal.getY(k);
+      const direct = LIGHT.direct * Math.max(0, sun.x * normal.getX(k) + sun.y * normal.getY(k) + sun.z * normal.getZ(k));
+      for (let a = 0; a < 3; ++a) tint[3 * k + a] *= direct + LIGHT.diffuse * (ground[a] + up * (1 - ground[a]));
+    }
   }
 
   /** The bottom and its grid as a group; its lowest and highest water depth are [low, high]. */
@@ -49,11 +77,12 @@
         tint.set(z > 0 ? LAND : STG.depthColour(share, theme), 3 * k);
       }
     }
-    geometry.setAttribute("color", new THREE.BufferAttribute(tint, 3));
     geometry.computeVertexNormals();
-    group.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
-      { vertexColors: THREE.VertexColors, transparent: true, opacity: 0.92, side: THREE.DoubleSide,
-        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 })));
+    lightUp(tint, geometry.attributes.normal);
+    geometry.deleteAttribute("normal");
+    geometry.setAttribute("color", new THREE.BufferAttribute(tint, 3));
+    group.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors, side: THREE.DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 })));
     const every = Math.max(1, Math.round((n - 1) / 8));
     const points = [];
     const at = (i, j) => [-half + 2 * half * i / (n - 1), -half + 2 * half * j / (n - 1),
@@ -96,5 +125,5 @@
     return group;
   }
 
-  STG.shapes = { OBSTACLE, hullGeometry, bottomOf, obstacleOf, frameOf };
+  STG.shapes = { OBSTACLE, LIGHT, hullGeometry, bottomOf, obstacleOf, frameOf };
 })(window.STG = window.STG || {});

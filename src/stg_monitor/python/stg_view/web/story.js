@@ -17,7 +17,7 @@
     clear() {
       this.list = [];
       this.byKey = new Map();
-      this.rows = 0;
+      this.rows = this.longest = 0;
     }
 
     /** Takes what came since the last call. */
@@ -26,12 +26,18 @@
       if (packets.count === this.rows) return;
       if (packets.count < this.rows) this.clear();
       const at = (name, row) => packets.at(name, row);
-      let sorted = true;
+      const [transmit, sources, numbers, fates, arrivals] = ["transmit", "source", "sequence", "fate", "arrival"].map((name) => packets.column(name).data);
+      let sorted = true, one;
       for (let row = this.rows; row < packets.count; ++row) {
-        const left = Number.isFinite(at("transmit", row));
-        const begin = left ? at("transmit", row) : at("offered", row);
-        const key = `${at("source", row)}/${at("sequence", row)}/${begin}/${left}`;
-        let one = this.byKey.get(key);
+        const left = Number.isFinite(transmit[row]);
+        const begin = left ? transmit[row] : at("offered", row);
+        // Most rows tell of the same packet as the row before.
+        if (one && one.source === sources[row] && one.sequence === numbers[row] && one.begin === begin && one.left === left) {
+          this.takeRow(one, row, fates[row], arrivals[row]);
+          continue;
+        }
+        const key = `${sources[row]}/${numbers[row]}/${begin}/${left}`;
+        one = this.byKey.get(key);
         if (one === undefined) {
           one = {
             source: at("source", row), sequence: at("sequence", row), left, begin,
@@ -44,15 +50,19 @@
           sorted = sorted && (this.list.length === 0 || this.list[this.list.length - 1].begin <= begin);
           this.list.push(one);
         }
-        one.rows.push(row);
-        if (at("fate", row) === 0) ++one.heard;
-        const arrival = at("arrival", row);
-        if (arrival > one.last) one.last = arrival;
+        this.takeRow(one, row, fates[row], arrivals[row]);
       }
       if (!sorted) this.list.sort((a, b) => a.begin - b.begin);
       this.rows = packets.count;
+    }
+
+    /** Puts what became of a packet at one receiver to its transmission. */
+    takeRow(one, row, fate, arrival) {
+      one.rows.push(row);
+      if (fate === 0) ++one.heard;
+      if (arrival > one.last) one.last = arrival;
       // How long sound is under way at most: where a window has to begin to look.
-      this.longest = this.list.reduce((most, one) => Math.max(most, one.last - one.begin), 0);
+      if (one.last - one.begin > this.longest) this.longest = one.last - one.begin;
     }
 
     /** Index of the first transmission that begins at t or later. */
@@ -121,7 +131,7 @@
         const episode = r.episodeAt(t);
         if (episode !== this.episode) this.begin(episode);
         for (let i = 0; i < r.agents; ++i) this.readVehicle(row, t, i);
-        if (r.meta.radius_m > 0) this.readContacts(row, t);
+        if (r.meta.radius_m > 0 && steps.has("position")) this.readContacts(row, t);
       }
     }
 
@@ -182,19 +192,16 @@
 
     readContacts(row, t) {
       const r = this.recording, reach = 2 * r.meta.radius_m;
-      const at = (i, a) => r.steps.at("position", row, 3 * i + a);
-      for (let i = 0; i < r.agents; ++i) {
+      const { data, width } = r.steps.column("position"), first = row * width, agents = Math.min(r.agents, Math.floor(width / 3));
+      for (let i = 0; i < agents; ++i) {
+        const a = first + 3 * i, x = data[a], y = data[a + 1], z = data[a + 2];
         for (let j = 0; j < i; ++j) {
+          const b = first + 3 * j, dx = x - data[b], dy = y - data[b + 1], dz = z - data[b + 2];
+          const near = dx * dx + dy * dy + dz * dz < reach * reach;
+          if (!near && this.touching.size === 0) continue;
           const key = i * 1024 + j;
-          const dx = at(i, 0) - at(j, 0), dy = at(i, 1) - at(j, 1), dz = at(i, 2) - at(j, 2);
-          if (dx * dx + dy * dy + dz * dz < reach * reach) {
-            if (!this.touching.has(key)) {
-              this.touching.add(key);
-              this.add(t, "contact", i, `${r.name(j)} and ${r.name(i)} touch`);
-            }
-          } else {
-            this.touching.delete(key);
-          }
+          if (near && !this.touching.has(key)) this.add(t, "contact", i, `${r.name(j)} and ${r.name(i)} touch`);
+          if (near) this.touching.add(key); else this.touching.delete(key);
         }
       }
     }
