@@ -89,7 +89,7 @@
 
   /** The range of an axis. Ticks of a line that is all but level would be closer than numbers can tell. */
   function rangeOf(u, low, high) {
-    if (low === null) return [0, 1];
+    if (low === null || (low === 0 && high === 0)) return [0, 1];
     const least = 1e-3 * Math.max(Math.abs(low), Math.abs(high)), lack = Math.max(0, least - (high - low)) / 2;
     return uPlot.rangeNum(low - lack, high + lack, 0.1, true);
   }
@@ -175,7 +175,7 @@
         };
       });
       const options = {
-        width, height: HEIGHT, padding: [6, 8, 0, 0], legend: { show: false },
+        width, height: HEIGHT, padding: [6, plot.free ? 26 : 8, 0, 0], legend: { show: false },
         scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: rangeOf } },
         cursor: { sync: plot.free ? undefined : { key: "stg" }, drag: { x: true, y: false }, points: { show: false } },
         axes: [{ ...axis, size: 26, values: plot.free ? undefined : (u, ticks) => ticks.map((x) => STG.number(x - r.start)) },
@@ -216,7 +216,7 @@
     playhead(u) {
       if (!u.head) return;
       const x = u.valToPos(this.app.t, "x");
-      u.head.hidden = !(x >= 0 && x <= u.over.clientWidth);
+      u.head.hidden = !(x >= 0 && x <= u.bbox.width / devicePixelRatio);  // the element itself would be laid out to be asked
       if (!u.head.hidden) u.head.style.transform = `translateX(${x.toFixed(1)}px)`;
     }
 
