@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 
+import headers as cpp
 from navigation import navigation
 from references import write_commands, write_python, write_topics
 
@@ -46,28 +47,6 @@ VERSIONS_FROM_DISK = """if (window.__versions) {
   window.fetch = (url, ...more) => String(url.url || url).endsWith("/versions.json")
     ? Promise.resolve(new Response(JSON.stringify(window.__versions))) : asked(url, ...more);
 }
-"""
-CPP = """# C++ headers
-
-Of all classes and functions that another package may use, made by doxygen from `include/` of each package:
-<a href="../cpp/index.html">all headers</a>, <a href="../cpp/annotated.html">classes</a>, <a href="../cpp/namespaces.html">namespaces</a>.
-"""
-DOXYFILE = """
-PROJECT_NAME = "STG Swarm"
-INPUT = {input}
-RECURSIVE = YES
-FILE_PATTERNS = *.hpp
-STRIP_FROM_INC_PATH = {input}
-OUTPUT_DIRECTORY = {out}
-HTML_OUTPUT = cpp
-GENERATE_LATEX = NO
-QUIET = YES
-WARNINGS = NO
-EXTRACT_ALL = YES
-SEARCHENGINE = YES
-HAVE_DOT = NO
-SOURCE_BROWSER = NO
-VERBATIM_HEADERS = NO
 """
 
 
@@ -105,17 +84,6 @@ def copy_pages(to):
     readme = re.sub(r"\]\((?!docs/|https?:|mailto:|#)", "](../", (ROOT / "README.md").read_text())
     readme = readme.replace("](docs/", "](")
     (to / "index.md").write_text(rebased(readme, pathlib.Path(".")))
-
-
-def write_headers(site):
-    """The C++ headers by doxygen."""
-    if not shutil.which("doxygen"):
-        print("docs: without doxygen the C++ headers are left out", file=sys.stderr)
-        return
-    inputs = " ".join(str(p) for p in sorted((ROOT / "src").glob("*/include")))
-    # It remarks on words of comments that look like its commands, and has no option against it.
-    subprocess.run(["doxygen", "-"], input=DOXYFILE.format(input=inputs, out=site), text=True, check=True,
-                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
 
 
 def search_from_disk(site, several):
@@ -162,7 +130,7 @@ def build(site, headers, several):
         for write in (write_topics, write_commands, write_python):
             write(pages / "reference")
         if headers and shutil.which("doxygen"):
-            (pages / "reference/cpp.md").write_text(CPP)
+            (pages / "reference/cpp.md").write_text(cpp.PAGE)
         shutil.copyfile(pathlib.Path(__file__).with_name("site.css"), pages / "site.css")
         config = pathlib.Path(folder) / "mkdocs.yml"
         config.write_text(CONFIG.replace("STG Swarm", f"STG Swarm, {version()}") + EXTRA[several] + f"nav: {navigation(pages)}\n")
@@ -172,7 +140,7 @@ def build(site, headers, several):
             return 1
     search_from_disk(site, several)
     if headers:
-        write_headers(site)
+        cpp.write_headers(site)
     print(f"docs: {site}/index.html")
     return 0
 

@@ -36,7 +36,7 @@ def navigation(pages):
         for name in names:
             if name.endswith(".md"):
                 entries.append(name)
-            elif len(names) == 1:
+            elif len(names) == 1 or name == tab.lower():
                 entries += listed(pages, pages / name)
             else:
                 entries.append({name.replace("_", " ").capitalize(): listed(pages, pages / name)})

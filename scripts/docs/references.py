@@ -89,11 +89,17 @@ def described(node, depth=3, of=""):
     text = ast.get_docstring(node)
     if isinstance(node, ast.ClassDef):
         inner = [part for one in node.body for part in described(one, depth + 1, node.name)]
-        return ["", f"{'#' * depth} {node.name}", "", *fenced(text), *inner]
+        return ["", f"{'#' * depth} {node.name}", "", *told(text), *inner]
     arguments = ast.unparse(node.args)
-    return ["", f"{'#' * depth} {of + '.' if of else ''}{node.name}", "", f"`{node.name}({arguments})`", "", *fenced(text)]
+    return ["", f"{'#' * depth} {of + '.' if of else ''}{node.name}", "", f"`{node.name}({arguments})`", "", *told(text)]
 
 
-def fenced(text):
-    """A docstring with its own lines."""
-    return ["```text", text, "```"] if text else []
+def told(text):
+    """A docstring: as text, or with its own lines where these are more than paragraphs."""
+    if not text:
+        return []
+    if re.search(r"^([ \t]|[-*>] )", text.replace("\n\n", "\n"), re.MULTILINE):
+        return ["```text", text, "```"]
+    parts = text.split("`")  # every second one is code, and stays as it is
+    parts[::2] = [re.sub(r"([\\*_\[\]<>#|~])", r"\\\1", part) for part in parts[::2]]
+    return ["`".join(parts)]
