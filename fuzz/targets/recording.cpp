@@ -35,8 +35,8 @@ bool RunRecording(const std::string& bytes) {
       LoadNamedScenario(STG_SCENARIOS, "medium", "nominal",
                         {"agents=1", "time.episode_steps=2", "time.tail_steps=1"});
   static const agent::Policy policy = MakePolicy(scenario);
-  static const learn::EpisodeChecker checker(scenario, 2, policy);
-  learn::EpisodeAssembler assembler(scenario, "fuzz");
+  static const learn::EpisodeChecker checker(scenario.run, scenario.agent.observation, 2, policy);
+  learn::EpisodeAssembler assembler(scenario.run, "fuzz");
   Bytes in(bytes);
   bool whole = false;
   const auto judge = [&](const std::vector<learn::RecordedEpisode>& episodes) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "acoustic_channel/models/propagation_model.hpp"
+#include "auv_common/config/value.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/packet/packet.hpp"
 
@@ -35,6 +36,7 @@ void Describe(AgentScenario* s, config::Table* t) {
   Describe(&s->world, t);
   Describe(&s->channel, t);
   Describe(&s->agent, t);
+  t->Differ("believed", KeysOfModel(), &s->agent_model);
 }
 
 std::optional<config::Violation> FindConflict(const AgentScenario& s) {
@@ -46,7 +48,7 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
         {"channel.physical.modem.packet_bytes", "channel.physical.modem.profile"},
         "the packet of an agent has " + std::to_string(kPacketBytes) + " bytes"};
   }
-  const AgentModel model = ModelOf(s.run, s.world, s.channel, s.agent);
+  const AgentModel model = s.model();
   if (auto violation = FindFilterConflict(model)) return violation;
   if (auto violation = FindLocalizationConflict(model)) return violation;
   if (s.agent.observation.quality_medium > s.agent.observation.quality_high) {
@@ -56,9 +58,30 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
   return {};
 }
 
-AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& world,
-                   const acoustics::ChannelConfig& channel, const AgentConfig& agent) {
-  const auto& v = world.current.velocity_mps;
+const std::vector<std::string>& KeysOfModel() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all = dynamics::KeysOnBoard();
+    for (const char* key :
+         {"channel.range_m", "channel.extended.attenuation_per_m",
+          "channel.extended.loss_probability", "channel.extended.loss_distance_m"}) {
+      all.emplace_back(key);
+    }
+    return all;
+  }();
+  return keys;
+}
+
+AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
+                   const acoustics::ChannelConfig& channel, const AgentConfig& agent,
+                   const config::Differences& differences) {
+  const dynamics::WorldConfig world = dynamics::Believed(truth, differences);
+  acoustics::ChannelConfig links = channel;
+  if (!differences.empty()) {
+    config::Table table;
+    Describe(&links, &table);
+    config::Apply(differences, table);
+  }
+  const auto& v = truth.current.velocity_mps;
   AgentModel model{run,
                    world.vehicle,
                    world.workspace,
@@ -67,7 +90,7 @@ AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& world,
                    world.navigation,
                    world.sensing,
                    world.control,
-                   channel,
+                   links,
                    agent.track,
                    agent.observation,
                    agent.task,

@@ -194,7 +194,7 @@ ModemFile LoadModemFile(const std::string& path) {
   if (const auto violation = FindConflict(file.network.channel, file.network.run)) {
     loader.Refuse(*violation);
   }
-  const auto profiles = MakeFleet(file.network.channel.modem, file.network.run.agents);
+  const auto profiles = MakeProfiles(file.network.channel.modem, file.network.run.agents);
   for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
     if (!file.vehicles[i].modem) continue;
     const std::string why = WhyNot(file.vehicles[i].modem->protocol, profiles[i].name);

@@ -29,7 +29,7 @@ const double* LinkEstimator::Learnt(int /*source*/) const { return Ones().data()
 
 ReceivedLinks::ReceivedLinks(const ModemConfig& config, int nodes)
     : freshness_s_(config.freshness_s),
-      fleet_(MakeFleet(config, nodes)),
+      fleet_(MakeProfiles(config, nodes)),
       links_(static_cast<std::size_t>(nodes)) {
   for (int lane = 0; lane < kLanes; ++lane) ReceivedLinks::Reset(lane);
 }

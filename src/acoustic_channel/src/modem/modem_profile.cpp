@@ -170,6 +170,9 @@ void Describe(ModemConfig* c, config::Table* t) {
                  "by which that sound came later, at most");
   t->Add("freshness_s", &c->freshness_s, config::Positive(1e5), "s",
          "decay time of link quality with the age of the information");
+  t->AddOptional("source_level_offset_db", &c->source_level_offset_db, "0.0",
+                 config::Within(-60.0, 60.0), "dB",
+                 "added to the source level of every profile; the energy of sending stays");
 }
 
 TimeNs ModemProfile::airtime(std::size_t bytes) const {
@@ -196,7 +199,7 @@ ModemProfileRegistry& ModemProfiles() {
   return registry;
 }
 
-std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
+std::vector<ModemProfile> MakeProfiles(const ModemConfig& config, int nodes) {
   const std::vector<std::string>& names = config.profiles;
   if (!names.empty() && names.size() != static_cast<std::size_t>(nodes)) {
     throw UserError("channel.physical.modem.profiles: " + std::to_string(names.size()) +
@@ -206,6 +209,7 @@ std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes) {
   for (int i = 0; i < nodes; ++i) {
     const std::string& name = names.empty() ? config.profile : names[static_cast<std::size_t>(i)];
     fleet.push_back(*ModemProfiles().Make(name));
+    fleet.back().source_level_db += config.source_level_offset_db;
   }
   return fleet;
 }
@@ -217,7 +221,7 @@ std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
         {"channel.physical.modem.profiles", "agents"},
         std::to_string(names.size()) + " modems for " + std::to_string(nodes) + " nodes"};
   }
-  for (const ModemProfile& p : MakeFleet(c, nodes)) {
+  for (const ModemProfile& p : MakeProfiles(c, nodes)) {
     if (static_cast<std::size_t>(c.packet_bytes) <= p.max_payload()) continue;
     return config::Violation{
         {"channel.physical.modem.packet_bytes",
@@ -229,21 +233,22 @@ std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes) {
 
 std::size_t LongestPayload(const ModemConfig& config, int nodes) {
   std::size_t least = kLargestFrame;
-  for (const ModemProfile& p : MakeFleet(config, nodes)) least = std::min(least, p.max_payload());
+  for (const ModemProfile& p : MakeProfiles(config, nodes))
+    least = std::min(least, p.max_payload());
   return config.packet_bytes > 0 ? static_cast<std::size_t>(config.packet_bytes) : least;
 }
 
 TimeNs LongestAirtime(const ModemConfig& config, int nodes) {
   const std::size_t bytes = LongestPayload(config, nodes);
   TimeNs longest = 0;
-  for (const ModemProfile& p : MakeFleet(config, nodes))
+  for (const ModemProfile& p : MakeProfiles(config, nodes))
     longest = std::max(longest, p.airtime(bytes));
   return longest;
 }
 
 TimeNs LongestTurnaround(const ModemConfig& config, int nodes) {
   TimeNs longest = 0;
-  for (const ModemProfile& p : MakeFleet(config, nodes))
+  for (const ModemProfile& p : MakeProfiles(config, nodes))
     longest = std::max(longest, p.turnaround());
   return longest;
 }

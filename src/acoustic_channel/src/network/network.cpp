@@ -29,7 +29,7 @@ Network::Impl::Impl(const ChannelConfig& config, const RunConfig& run,
   const auto n = static_cast<std::size_t>(count_);
   const std::size_t waiting =
       config_.queue == QueuePolicy::kFifo ? static_cast<std::size_t>(config_.queue_length) : 1;
-  for (ModemProfile& profile : MakeFleet(config.modem, count_)) {
+  for (ModemProfile& profile : MakeProfiles(config.modem, count_)) {
     Node& node = nodes_.emplace_back();
     node.profile = std::move(profile);
     node.queue.reserve(waiting + 1);

@@ -3,9 +3,18 @@
 #include <algorithm>
 
 #include "auv_common/config/value.hpp"
+#include "auv_common/error.hpp"
 #include "key_path.hpp"
 
 namespace stg::config {
+namespace {
+
+/// Sets a key to a text that FormatValue or the user wrote. Message when it cannot be read.
+std::optional<std::string> SetText(const Field& field, const std::string& text) {
+  return ParseValue(field, ParseYaml(text, field.path, false));
+}
+
+}  // namespace
 
 bool Owner::IsChosen() const {
   const std::vector<std::string> choice = chosen();
@@ -68,9 +77,60 @@ void Table::AlsoReadIf(const std::string& path, std::function<bool()> holds) {
   fields_[index_.at(path)].also_read = std::move(holds);
 }
 
+void Table::Differ(const std::string& section, const std::vector<std::string>& keys,
+                   Differences* differences) {
+  differences_ = section + ".";
+  const std::size_t count = fields_.size();
+  for (const std::string& key : keys) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Field of = fields_[k];
+      if (of.path != key && of.path.rfind(key + ".", 0) != 0) continue;
+      Section(section + "." + Parent(of.path));
+      AddOptional(Leaf(of.path), DifferenceRef{differences, std::make_shared<const Field>(of)}, "",
+                  of.limits, of.unit, "the agents' value of " + of.path);
+      fields_.back().owners = of.owners;
+      fields_.back().also_read = of.also_read;
+    }
+  }
+}
+
+std::string Table::TrueKey(const std::string& path) const {
+  const bool differs = !differences_.empty() && path.rfind(differences_, 0) == 0;
+  return differs ? path.substr(differences_.size()) : path;
+}
+
 const Field* Table::Find(const std::string& path) const {
   const auto found = index_.find(path);
   return found == index_.end() ? nullptr : &fields_[found->second];
+}
+
+std::string TextOf(const DifferenceRef& difference) {
+  const auto found = difference.all->find(difference.of->path);
+  return found == difference.all->end() ? std::string() : found->second;
+}
+
+std::optional<std::string> ParseDifference(const DifferenceRef& difference, const YamlTree& node) {
+  // The key itself reads the value, and gets its own back.
+  const Field& key = *difference.of;
+  const std::string truth = FormatValue(key.value);
+  const std::optional<std::string> message = ParseValue(key, node);
+  if (!message) (*difference.all)[key.path] = FormatValue(key.value);
+  SetText(key, truth);
+  return message;
+}
+
+std::optional<std::string> CheckDifference(const DifferenceRef& difference) {
+  const std::string text = TextOf(difference);
+  if (text.empty()) return {};
+  return ParseDifference(difference, ParseYaml(text, difference.of->path, false));
+}
+
+void Apply(const Differences& differences, const Table& table) {
+  for (const auto& [path, text] : differences) {
+    const Field* const field = table.Find(path);
+    if (field == nullptr) continue;
+    if (const auto message = SetText(*field, text)) throw UserError(path + ": " + *message);
+  }
 }
 
 }  // namespace stg::config

@@ -181,7 +181,7 @@ void Loader::RequireAll(const YamlTree& root, const std::string& file, const Key
 bool Loader::Foreign(const std::string& path) const {
   if (scope_ == Scope::kWhole) return false;
   if (NewName(path)) return false;
-  const std::string top = path.substr(0, path.find('.'));
+  const std::string key = table_.TrueKey(path), top = key.substr(0, key.find('.'));
   return table_.Find(top) == nullptr && table_.sections().count(top) == 0;
 }
 
@@ -211,7 +211,10 @@ std::string Loader::Nearest(const std::string& path) const {
 std::string Loader::Unknown(const std::string& path) const {
   if (const auto name = NewName(path)) return path + ": this key is called " + *name;
   const std::string best = path.size() <= 200 ? Nearest(path) : "";
-  const std::string name = Shortened(path);
+  const std::string name = Shortened(path), truth = table_.TrueKey(path);
+  if (truth != path && table_.Find(truth) != nullptr) {
+    return name + ": agents have no value of their own for " + truth;
+  }
   const std::string text = name + ": unknown key";
   if (table_.sections().count(path) != 0) return name + ": names a section, not a value";
   return best.empty() ? text : text + ", did you mean " + best + "?";

@@ -192,6 +192,9 @@ struct Assign {
       v.list->push_back(item.scalar);
     }
   }
+  void operator()(const DifferenceRef& v) const {
+    if (const auto message = ParseDifference(v, node)) throw Refusal{*message};
+  }
 };
 
 }  // namespace
@@ -244,7 +247,8 @@ std::string FormatValue(const ValueRef& value) {
                                return "[" + text + "]";
                              },
                              [](const NamesRef& v) { return FormatWords(*v.list); },
-                             [](const NameOrFileRef& v) { return FormatWord(*v.text); }},
+                             [](const NameOrFileRef& v) { return FormatWord(*v.text); },
+                             [](const DifferenceRef& v) { return TextOf(v); }},
                     value);
 }
 
@@ -266,7 +270,8 @@ std::string FormatRange(const Field& field) {
                [&](const RowsRef& v) {
                  return "any number of rows of " + std::to_string(v.columns) + " in " + range;
                },
-               [](const NamesRef& v) { return "any number of " + JoinNames(v.names); }},
+               [](const NamesRef& v) { return "any number of " + JoinNames(v.names); },
+               [](const DifferenceRef& v) { return FormatRange(*v.of); }},
       field.value);
 }
 
@@ -320,7 +325,8 @@ std::optional<std::string> CheckValue(const Field& field) {
                    }
                  }
                  return {};
-               }},
+               },
+               [](const DifferenceRef& v) -> Result { return CheckDifference(v); }},
       field.value);
 }
 

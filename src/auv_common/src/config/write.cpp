@@ -11,8 +11,8 @@ std::string ToYaml(const Table& table) {
   std::string open;  // section whose heading was written last
   for (const Field& field : table.fields()) {
     if (field.Unchosen() != nullptr) continue;
-    if (field.owners.empty() && field.fallback && FormatValue(field.value) == *field.fallback)
-      continue;
+    const bool whole = field.owners.empty() || std::holds_alternative<DifferenceRef>(field.value);
+    if (whole && field.fallback && FormatValue(field.value) == *field.fallback) continue;
     const std::string section = Parent(field.path);
     const auto indent = [](const std::string& path) {
       return std::string(static_cast<std::size_t>(2 * std::count(path.begin(), path.end(), '.')),

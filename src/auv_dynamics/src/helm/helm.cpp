@@ -4,21 +4,22 @@ namespace stg::dynamics {
 
 bool Helm::Steers(const VehicleConfig& vehicle) { return Autopilots().Has(vehicle.model_of(0)); }
 
-Helm::Helm(const VehicleConfig& vehicle, const AutopilotConfig& config, const RunConfig& run)
+Helm::Helm(const VehicleConfig& vehicle, const VehicleConfig& believed,
+           const AutopilotConfig& config, const RunConfig& run)
     : steps_(config.period_steps),
       periods_(run.time.decision_steps / steps_),
       dt_s_(run.time.dt_s * steps_) {
-  const Fleet fleet(vehicle, run.agents);
-  inputs_ = fleet.command_size();
+  const VehicleSet kinds(vehicle, run.agents);
+  inputs_ = kinds.command_size();
   for (int i = 0; i < run.agents; ++i) {
     const std::string& model = vehicle.model_of(i);
     auto& autopilot = kinds_[model];
     if (autopilot == nullptr) {
-      autopilot = Autopilots().Make(model, vehicle, config);
+      autopilot = Autopilots().Make(model, believed, config);
     }
     states_ = std::max(states_, static_cast<std::size_t>(autopilot->state_size()));
     autopilots_.push_back(autopilot.get());
-    actuators_.push_back(fleet[i].actuators());
+    actuators_.push_back(kinds[i].actuators());
   }
   state_.assign(autopilots_.size() * states_, Pack(0.0));
   commands_.assign(autopilots_.size() * inputs_, Pack(0.0));

@@ -37,18 +37,19 @@ struct Reckoning {
 /// The stated deviation is that of the linear error model (e position, s scale, h heading, c
 /// current, d the way of a ping, J a quarter turn): e += s d + h J d + c t + noise, h += walk, with
 /// the covariances carried along. A fix enters with a gain that is equal for both axes; scale and
-/// heading are not estimated from it.
+/// heading are not estimated from it. What is stated, and that gain, follow from the deviations
+/// that the vehicle takes its instruments to have.
 class DeadReckoning : public NavigationSystem {
  public:
   explicit DeadReckoning(const NavigationSetup& setup)
       : config_(setup.navigation),
+        stated_(setup.stated),
         dt_s_(setup.dt_s),
         steps_(static_cast<std::uint32_t>(
             std::max(1.0, std::round(setup.navigation.period_s / setup.dt_s)))),
         ping_s_(steps_ * setup.dt_s),
-        heading_std_(setup.navigation.heading_std_deg * kPi / 180.0),
-        walk_std_(setup.navigation.gyro_walk_deg_per_sqrt_h * kPi / 180.0 *
-                  std::sqrt(ping_s_ / 3600.0)),
+        walk_std_(WalkOf(setup.navigation)),
+        stated_walk_std_(WalkOf(setup.stated)),
         states_(static_cast<std::size_t>(setup.vehicles)) {}
 
   void Reset(int lane, int i, const EpisodeClock& clock,
@@ -58,20 +59,21 @@ class DeadReckoning : public NavigationSystem {
     const Vec3<double> p_WB = Lane(vehicle.p_WB, lane);
     const double x = random.Normal(), y = random.Normal();
     SetLane(&r.scale, lane, config_.dvl_scale_std * random.Normal());
-    SetLane(&r.heading, lane, heading_std_ * random.Normal());
+    SetLane(&r.heading, lane, HeadingOf(config_) * random.Normal());
     SetLane(&r.p_WB, lane, p_WB + Vec3<double>{x, y, 0.0} * config_.start_std_m);
     SetLane(&r.before_W, lane, p_WB);
     SetLane(&r.run_W, lane, {});
     SetLane(&r.water_W, lane, {});
     SetLane(&r.through_water, lane, 0.0);
-    const double variance = config_.start_std_m * config_.start_std_m;
+    const double variance = stated_.start_std_m * stated_.start_std_m;
+    const double heading_std = HeadingOf(stated_);
     SetLane(&r.spread.xx, lane, variance);
     SetLane(&r.spread.xy, lane, 0.0);
     SetLane(&r.spread.yy, lane, variance);
     SetLane(&r.with_scale, lane, {});
     SetLane(&r.with_heading, lane, {});
     SetLane(&r.with_current, lane, 0.0);
-    SetLane(&r.heading_variance, lane, heading_std_ * heading_std_);
+    SetLane(&r.heading_variance, lane, heading_std * heading_std);
     Ping(lane, i, clock, 0.0);
     FollowHeading(&r);
     State(&r);
@@ -147,6 +149,12 @@ class DeadReckoning : public NavigationSystem {
   }
 
  private:
+  static double HeadingOf(const NavigationConfig& c) { return c.heading_std_deg * kPi / 180.0; }
+  /// Of the heading between two pings [rad].
+  double WalkOf(const NavigationConfig& c) const {
+    return c.gyro_walk_deg_per_sqrt_h * kPi / 180.0 * std::sqrt(ping_s_ / 3600.0);
+  }
+
   Reckoning& At(int i) { return states_[static_cast<std::size_t>(i)]; }
 
   /// Draws the noise of one ping; the generator goes on with that of a fix.
@@ -168,9 +176,9 @@ class DeadReckoning : public NavigationSystem {
 
   /// Carries the covariances over one ping, in the lanes of the mask.
   void Spend(const Mask<Pack>& lanes, Reckoning* r) const {
-    const Pack zero(0.0), two(2.0), t(ping_s_), noise(config_.dvl_noise_mps * ping_s_);
-    const Pack ss(config_.dvl_scale_std * config_.dvl_scale_std);
-    const Pack current(config_.current_std_mps * config_.current_std_mps);
+    const Pack zero(0.0), two(2.0), t(ping_s_), noise(stated_.dvl_noise_mps * ping_s_);
+    const Pack ss(stated_.dvl_scale_std * stated_.dvl_scale_std);
+    const Pack current(stated_.current_std_mps * stated_.current_std_mps);
     const Pack &hh = r->heading_variance, water = r->through_water;
     const Pack dx = r->run_W.x, dy = r->run_W.y;
     const Vec3<Pack>&s = r->with_scale, &h = r->with_heading;
@@ -187,13 +195,13 @@ class DeadReckoning : public NavigationSystem {
     r->with_heading +=
         Vec3<Pack>{Select(lanes, -hh * dy, zero), Select(lanes, hh * dx, zero), zero};
     r->with_current += Select(lanes, water * current * t, zero);
-    r->heading_variance += Select(lanes, Pack(walk_std_ * walk_std_), zero);
+    r->heading_variance += Select(lanes, Pack(stated_walk_std_ * stated_walk_std_), zero);
     r->run_W = Select<Pack>(lanes, Vec3<Pack>(), r->run_W);
   }
 
   /// A fix of the position in one lane.
   void Fix(int lane, const Vec3<double>& p_WB, Random* random, Reckoning* r) const {
-    const double noise = config_.gps_std_m * config_.gps_std_m;
+    const double noise = stated_.gps_std_m * stated_.gps_std_m;
     const double variance = Largest(r->spread, lane);
     const double gain = variance / (variance + noise), kept = 1.0 - gain;
     const double x = p_WB.x + config_.gps_std_m * random->Normal();
@@ -223,10 +231,10 @@ class DeadReckoning : public NavigationSystem {
     r->heading_std = Sqrt(r->heading_variance);
   }
 
-  NavigationConfig config_;
+  NavigationConfig config_, stated_;
   double dt_s_;
   std::uint32_t steps_;  // of physics between two pings
-  double ping_s_, heading_std_, walk_std_;
+  double ping_s_, walk_std_, stated_walk_std_;
   std::vector<Reckoning> states_;  // [vehicles]
 };
 

@@ -20,10 +20,10 @@ VehicleCommands::VehicleCommands(const dynamics::WorldScenario& scenario,
       vehicle_(scenario.world.vehicle),
       row_(world.command_size()),
       steered_(dynamics::Helm::Steers(scenario.world.vehicle)),
-      helm_(steered_ && onboard
-                ? std::make_unique<dynamics::Helm>(scenario.world.vehicle,
-                                                   scenario.world.control.autopilot, scenario.run)
-                : nullptr),
+      helm_(steered_ && onboard ? std::make_unique<dynamics::Helm>(
+                                      scenario.world.vehicle, scenario.believed().vehicle,
+                                      scenario.world.control.autopilot, scenario.run)
+                                : nullptr),
       parts_(steered_ && !onboard
                  ? scenario.run.time.decision_steps / scenario.world.control.autopilot.period_steps
                  : 1),

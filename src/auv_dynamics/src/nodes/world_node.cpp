@@ -37,7 +37,7 @@ Pacer::Options PacerParameters(TimeNs period) {
 
 WorldNode::WorldNode()
     : scenario_(LoadScenarioParameters<dynamics::WorldScenario>()),
-      world_(scenario_.world, scenario_.run),
+      world_(scenario_),
       period_(scenario_.run.decision_period()),
       commands_(scenario_, world_, AutopilotOnBoardParameter(),
                 [this](int i, TimeNs stamp) { return Hear(i, stamp); }),

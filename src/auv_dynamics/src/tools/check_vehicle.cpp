@@ -8,7 +8,7 @@
 #include "auv_common/error.hpp"
 #include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
-#include "auv_dynamics/check/recorded_motion.hpp"
+#include "auv_dynamics/playback/recorded_motion.hpp"
 #include "auv_dynamics/vehicle/torpedo.hpp"
 #include "auv_dynamics/world/world_config.hpp"
 

@@ -11,7 +11,7 @@ namespace stg::dynamics {
 namespace {
 
 const WorldConfig& Valid(const WorldConfig& config, const RunConfig& run) {
-  config::ValidateOrThrow(WorldScenario{run, config});
+  config::ValidateOrThrow(WorldScenario{run, config, {}});
   return config;
 }
 
@@ -29,7 +29,7 @@ NavState LaneOfNav(const Navigation<Pack>& all, int lane) {
 
 }  // namespace
 
-World::World(const WorldConfig& config, const RunConfig& run)
+World::World(const WorldConfig& config, const RunConfig& run, const NavigationConfig& stated)
     : dt_s_(run.time.dt_s),
       dt_ns_(run.step_period()),
       current_(Valid(config, run).current),
@@ -38,13 +38,13 @@ World::World(const WorldConfig& config, const RunConfig& run)
       reset_(config.reset),
       depths_(config.sea),
       sensing_(config.sensing),
-      fleet_(config.vehicle, run.agents),
+      kinds_(config.vehicle, run.agents),
       motion_(TargetMotions().Make(config.target.motion, config.target.motions,
                                    {config.target, WallOf(config.workspace, config.sea), dt_s_,
                                     config.workspace.half_extent_m})),
       sensor_(TargetSensors().Make(config.sensing.sensor, config.sensing.sensors, config.sensing)),
       navigation_(NavigationSystems().Make(config.navigation.kind, config.navigation.kinds,
-                                           {config.navigation, run.agents, run.time.dt_s})),
+                                           {config.navigation, run.agents, run.time.dt_s, stated})),
       perfect_(navigation_->perfect()),
       separations_(run.agents, 2.0 * config.vehicle.radius_m),
       contacts_(config.contact, run.agents, config.vehicle.radius_m),
@@ -54,7 +54,7 @@ World::World(const WorldConfig& config, const RunConfig& run)
       open_(config.sea.open),
       vehicles_(static_cast<size_t>(run.agents)),
       targets_(static_cast<size_t>(config.target.count)),
-      internal_(vehicles_.size() * fleet_.internal_size(), Pack(0.0)),
+      internal_(vehicles_.size() * kinds_.internal_size(), Pack(0.0)),
       commands_(vehicles_.size() * kWrenchSize, Pack(0.0)),
       start_{std::vector<Vec3<double>>(vehicles_.size()),
              std::vector<TargetState<double>>(targets_.size())} {
@@ -68,7 +68,7 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 
 void World::Step(const std::vector<Pack>& commands) {
-  const size_t inputs = fleet_.command_size(), internals = fleet_.internal_size();
+  const size_t inputs = kinds_.command_size(), internals = kinds_.internal_size();
   assert(commands.size() == vehicles_.size() * inputs);
   contacts_.Update(vehicles_, separations_);
   disturbance_.Advance(clocks_);
@@ -76,7 +76,7 @@ void World::Step(const std::vector<Pack>& commands) {
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     const int id = static_cast<int>(i);
     if (!current_.uniform()) v_WC_ = current_.At(vehicles_[i].p_WB.z, time_s);
-    fleet_[id].Step(commands.data() + i * inputs,
+    kinds_[id].Step(commands.data() + i * inputs,
                     {v_WC_, contacts_.force(id), disturbance_.wrench(id)}, dt_s_, &vehicles_[i],
                     internal_.data() + i * internals);
     if (open_) {
@@ -101,7 +101,7 @@ void World::Navigate() {
 }
 
 void World::Step(const std::vector<Wrench<Pack>>& tau) {
-  if (fleet_.command_size() != kWrenchSize) {
+  if (kinds_.command_size() != kWrenchSize) {
     throw UserError("vehicle.model: these vehicles are not commanded by force and moment");
   }
   assert(tau.size() == vehicles_.size());
@@ -206,7 +206,7 @@ Navigation<Pack> World::TrueNav(int i) const {
   nav.p_WB = v.p_WB;
   nav.v_WB_B = v.v_WB_B;
   nav.w_WB_B = v.w_WB_B;
-  fleet_[i].Orientation(v, &nav.q_WB);
+  kinds_[i].Orientation(v, &nav.q_WB);
   return nav;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "auv_common/config/value.hpp"
 #include "auv_dynamics/autopilot/autopilot.hpp"
 
 namespace stg::dynamics {
@@ -69,6 +70,57 @@ void Describe(WorldConfig* c, config::Table* t) {
                                }});
 }
 
+const std::vector<std::string>& KeysOnBoard() {
+  // Of the torpedo those that its autopilot reads.
+  static const std::vector<std::string> keys{
+      "vehicle.max_velocity_mps",
+      "vehicle.max_rate_radps",
+      "vehicle.max_tau",
+      "vehicle.torpedo.length_m",
+      "vehicle.torpedo.diameter_m",
+      "vehicle.torpedo.cg_below_m",
+      "vehicle.torpedo.drag_coefficient",
+      "vehicle.torpedo.yaw_time_s",
+      "vehicle.torpedo.pitch_damping",
+      "vehicle.torpedo.fin_area_m2",
+      "vehicle.torpedo.rudder_lift",
+      "vehicle.torpedo.stern_plane_lift",
+      "vehicle.torpedo.max_fin_rad",
+      "vehicle.torpedo.propeller_diameter_m",
+      "vehicle.torpedo.max_propeller_rpm",
+      "vehicle.torpedo.thrust_coefficient",
+      "vehicle.torpedo.propeller_advance",
+      "vehicle.torpedo.propeller_inflow",
+      "vehicle.torpedo.thrust_deduction",
+      "workspace.half_extent_m",
+      "sea.bottom_m",
+      "sea.auv_depth_m",
+      "sea.target_depth_m",
+      "sea.spheres",
+      "sea.cylinders",
+      "target.max_speed_mps",
+      "navigation.dead_reckoning.dvl_scale_std",
+      "navigation.dead_reckoning.dvl_noise_mps",
+      "navigation.dead_reckoning.heading_std_deg",
+      "navigation.dead_reckoning.gyro_walk_deg_per_sqrt_h",
+      "navigation.dead_reckoning.depth_std_m",
+      "navigation.dead_reckoning.gps_std_m",
+      "navigation.dead_reckoning.start_std_m",
+      "navigation.dead_reckoning.current_std_mps",
+      "sensing.range_m",
+      "sensing.detection_probability",
+  };
+  return keys;
+}
+
+WorldConfig Believed(WorldConfig world, const config::Differences& agent_model) {
+  if (agent_model.empty()) return world;
+  config::Table table;
+  Describe(&world, &table);
+  config::Apply(agent_model, table);
+  return world;
+}
+
 std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunConfig& run) {
   if (auto violation = FindConflict(s.vehicle)) return violation;
   if (auto violation = FindConflict(s.current)) return violation;
@@ -119,6 +171,7 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunCon
 void Describe(WorldScenario* s, config::Table* t) {
   Describe(&s->run, t);
   Describe(&s->world, t);
+  t->Differ("believed", KeysOnBoard(), &s->agent_model);
 }
 
 std::optional<config::Violation> FindConflict(const WorldScenario& s) {

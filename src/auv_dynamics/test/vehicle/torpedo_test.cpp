@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "auv_dynamics/check/recorded_motion.hpp"
+#include "auv_dynamics/playback/recorded_motion.hpp"
 #include "auv_dynamics/vehicle/shaft_power.hpp"
 #include "physics.hpp"
 

@@ -72,7 +72,7 @@ void ReadMessages(const rosbag::Bag& bag, const Scenario& scenario, RecordInlet*
 
 BagContents ReadBag(const std::string& path, const Scenario& scenario) {
   BagContents contents;
-  RecordInlet inlet(scenario, path);
+  RecordInlet inlet(scenario.run, path);
   try {
     RequireSoundBag(path);
     rosbag::Bag bag(path, rosbag::bagmode::Read);

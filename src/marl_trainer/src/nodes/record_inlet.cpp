@@ -4,10 +4,8 @@
 
 namespace stg::nodes {
 
-RecordInlet::RecordInlet(const Scenario& scenario, const std::string& source)
-    : period_(scenario.run.decision_period()),
-      agents_(scenario.run.agents),
-      episodes_(scenario, source) {}
+RecordInlet::RecordInlet(const RunConfig& run, const std::string& source)
+    : period_(run.decision_period()), agents_(run.agents), episodes_(run, source) {}
 
 void RecordInlet::Add(int agent, const auv_msgs::AgentStep& m) {
   if (agent < 0 || agent >= agents_ || m.agent != static_cast<std::uint32_t>(agent)) {

@@ -14,7 +14,7 @@ namespace stg::nodes {
 /// Turns messages of one source, live or from a bag, into episodes.
 class RecordInlet {
  public:
-  RecordInlet(const Scenario& scenario, const std::string& source);
+  RecordInlet(const RunConfig& run, const std::string& source);
 
   /// @param agent index of the AUV on whose topic the message came.
   void Add(int agent, const auv_msgs::AgentStep& message);

@@ -51,7 +51,7 @@ TrainerNode::TrainerNode()
   options.workers = IntegerParameter("workers", 2, 1, 1024);
   options.log = &std::cout;
   learn::TrainSetup setup =
-      learn::RecordedSetup(scenario_, TextParameter("algorithm", learn::DefaultAlgorithm()));
+      learn::RecordedSetup(scenario_.run, TextParameter("algorithm", learn::DefaultAlgorithm()));
   LoadTrainParameters(&setup);
   trainer_ = std::make_unique<learn::RecordedTrainer>(scenario_, setup, options);
 }
@@ -99,7 +99,7 @@ void TrainerNode::TrainOnBags() {
 
 void TrainerNode::Subscribe() {
   ros::NodeHandle node;
-  inlet_ = std::make_unique<RecordInlet>(scenario_, "live");
+  inlet_ = std::make_unique<RecordInlet>(scenario_.run, "live");
   for (int i = 0; i < scenario_.run.agents; ++i) {
     const boost::function<void(const auv_msgs::AgentStep::ConstPtr&)> callback =
         [this, i](const auv_msgs::AgentStep::ConstPtr& m) { OnAgentStep(i, *m); };
@@ -205,7 +205,7 @@ void TrainerNode::StartEpisode() {
   if (ros::service::call(topics::kReset, call) && call.response.success) {
     first_episode_ = call.response.episode;
   }
-  inlet_ = std::make_unique<RecordInlet>(scenario_, "live");
+  inlet_ = std::make_unique<RecordInlet>(scenario_.run, "live");
 }
 
 void TrainerNode::PauseWorld(bool pause) {

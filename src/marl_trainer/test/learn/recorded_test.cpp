@@ -36,7 +36,7 @@ class RecordedTest : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   static TrainSetup MakeSetup() {
-    TrainSetup setup = RecordedSetup(Short());
+    TrainSetup setup = RecordedSetup(Short().run);
     MappoConfig& own = Own(setup);
     own.actor_hidden = {8};
     own.critic_hidden = {8};
@@ -82,7 +82,7 @@ class RecordedTest : public ::testing::Test {
   }
 
   RecordedEpisode Episode(std::uint32_t number) const {
-    EpisodeAssembler assembler(scenario_, "test");
+    EpisodeAssembler assembler(scenario_.run, "test");
     Record(number, TimeNs{number} * 100 * kSecond, &assembler);
     std::vector<RecordedEpisode> all = assembler.TakeAll();
     EXPECT_EQ(all.size(), 1U);
@@ -164,7 +164,7 @@ TEST_F(RecordedTest, NamesEachFlawOfAnEpisode) {
 }
 
 TEST_F(RecordedTest, KeepsRunsApartThatCountEpisodesFromZero) {
-  EpisodeAssembler assembler(scenario_, "test");
+  EpisodeAssembler assembler(scenario_.run, "test");
   Record(0, 0, &assembler);
   Record(0, 500 * kSecond, &assembler, kSteps / 2);
   const std::vector<RecordedEpisode> all = assembler.TakeAll();
@@ -174,7 +174,7 @@ TEST_F(RecordedTest, KeepsRunsApartThatCountEpisodesFromZero) {
 }
 
 TEST_F(RecordedTest, ARepeatedMessageIsFineAndAContradictoryOneIsNot) {
-  EpisodeAssembler assembler(scenario_, "test");
+  EpisodeAssembler assembler(scenario_.run, "test");
   Record(0, 0, &assembler);
   Record(0, 0, &assembler);
   assembler.Add(0, 0, kSteps, 0, AgentRecord());  // the decision after the end leads nowhere
@@ -190,7 +190,7 @@ TEST_F(RecordedTest, ARepeatedMessageIsFineAndAContradictoryOneIsNot) {
 }
 
 TEST_F(RecordedTest, GivesUpEpisodesThatNewerOnesOvertook) {
-  EpisodeAssembler assembler(scenario_, "live");
+  EpisodeAssembler assembler(scenario_.run, "live");
   Record(0, 0, &assembler, 5);
   Record(1, 100 * kSecond, &assembler);
   std::vector<RecordedEpisode> done = assembler.TakeDone();
@@ -205,7 +205,7 @@ TEST_F(RecordedTest, GivesUpEpisodesThatNewerOnesOvertook) {
 }
 
 TEST_F(RecordedTest, StepsFromTheFutureTakeNoEpisodesPlace) {
-  EpisodeAssembler assembler(scenario_, "live");
+  EpisodeAssembler assembler(scenario_.run, "live");
   for (const std::uint32_t number : {900U, 901U}) {
     assembler.Add(number, number * 100 * kSecond, 3, 0, Step(trainer_->policy(), number, 3, 0));
   }
@@ -222,7 +222,7 @@ TEST_F(RecordedTest, StepsFromTheFutureTakeNoEpisodesPlace) {
 }
 
 TEST_F(RecordedTest, LateWordsOpenNoEpisodeAnew) {
-  EpisodeAssembler assembler(scenario_, "live");
+  EpisodeAssembler assembler(scenario_.run, "live");
   for (std::uint32_t number = 0; number < 4; ++number) {
     Record(number, number * 100 * kSecond, &assembler, kSteps / 2);
   }

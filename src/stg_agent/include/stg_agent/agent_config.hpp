@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "acoustic_channel/channel_config.hpp"
 #include "auv_dynamics/world/world_config.hpp"
@@ -60,9 +62,15 @@ struct AgentModel {
 void Describe(TaskConfig* c, config::Table* t);
 void Describe(AgentConfig* c, config::Table* t);
 
-/// What the agents of a scenario know.
-AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& world,
-                   const acoustics::ChannelConfig& channel, const AgentConfig& agent);
+/// Keys for which agents may have another value than the true one: dynamics::KeysOnBoard, and what
+/// they take links for.
+const std::vector<std::string>& KeysOfModel();
+
+/// What the agents of a scenario know: its sections, but for what they believe otherwise.
+/// @param differences of KeysOfModel
+AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
+                   const acoustics::ChannelConfig& channel, const AgentConfig& agent,
+                   const config::Differences& differences);
 
 /// What a program needs that runs an agent: the truth as the scenario says it, and the agents'
 /// sections.
@@ -71,8 +79,9 @@ struct AgentScenario {
   dynamics::WorldConfig world;
   acoustics::ChannelConfig channel;
   AgentConfig agent;
+  config::Differences agent_model;
 
-  AgentModel model() const { return ModelOf(run, world, channel, agent); }
+  AgentModel model() const { return ModelOf(run, world, channel, agent, agent_model); }
 };
 void Describe(AgentScenario* s, config::Table* t);
 std::optional<config::Violation> FindConflict(const AgentScenario& s);

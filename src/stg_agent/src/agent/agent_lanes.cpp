@@ -31,10 +31,10 @@ template <class T>
 LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
     : constants_(constants),
       links_(acoustics::MakeLinkEstimator(constants->model.channel, constants->model.run.agents)),
-      neighbours_(constants->model),
+      neighbours_(constants->model, id),
       mind_(constants->model),
       memory_(static_cast<std::size_t>(kLanesOf<T>)),
-      neighbours_before_(neighbours_),
+      sights_before_(neighbours_.sights()),
       mind_before_(mind_) {
   if (constants->model.track.search_cell_m > 0.0) {
     search_.resize(static_cast<std::size_t>(kLanesOf<T>), SearchMemory(constants->model));
@@ -69,8 +69,8 @@ void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
 template <class T>
 void LanedAgent<T>::Receive(int lane, const acoustics::Reception& reception) {
   if (reception.source < model().run.agents) links_->Learn(lane, reception);
-  const NeighbourState* news = At(lane).Receive(reception);
-  if (news != nullptr) neighbours_.Set(lane, *news);
+  const std::optional<NeighbourState> state = At(lane).Receive(reception);
+  if (state) neighbours_.Update(lane, *state);
 }
 
 template <class T>
@@ -80,10 +80,10 @@ void LanedAgent<T>::Observe(const dynamics::Navigation<T>& nav) {
 
 template <class T>
 void LanedAgent<T>::Observe(const dynamics::Navigation<T>& nav, const Mask<T>& lanes) {
-  neighbours_before_ = neighbours_;
+  sights_before_ = neighbours_.sights();
   mind_before_ = mind_;
   Think(nav, lanes);
-  neighbours_.KeepOthers(lanes, neighbours_before_);
+  neighbours_.KeepOthers(lanes, sights_before_);
   mind_.KeepOthers(lanes, mind_before_);
 }
 
@@ -93,19 +93,24 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   for (const T& q : nav.q_WB) finite += NonFiniteness(q);
   if (Any(!(finite == T(0.0)))) throw std::invalid_argument("non-finite navigation state");
   const Mask<T> past = neighbours_.Age(Nanoseconds<T>(nav.stamp)) && lanes;
-  if (Any(past)) Forget(past, nav.stamp);
+  if (Any(past)) {
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+      if (InMask<T>(past, lane)) neighbours_.Forget(lane, OfLane(nav.stamp, lane));
+    }
+  }
   TargetView<T> target;
   const T taking_part = Select(lanes, T(1.0), T(0.0));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
-    At(lane).Advance(OfLane(nav.stamp, lane),
+    At(lane).Advance(OfLane(nav.stamp, lane), neighbours(lane),
                      {Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane)});
+    neighbours_.MarkRead(lane);
     EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
     memory.now = OfLane(nav.stamp, lane);
     memory.position_std_m = Lane(nav.position_std_m, lane);
     if (!search_.empty()) {
       search_[static_cast<std::size_t>(lane)].Update(memory.now, Lane(nav.p_WB, lane),
-                                                     inbox(lane).neighbours());
+                                                     neighbours(lane));
     }
     SetLaneOf(&target, lane, inbox(lane).Target(links_->freshness_s()));
   }
@@ -114,17 +119,6 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   neighbours_.Predict(nav.p_WB, *links_);
   mind_.SetNeighbours(
       model(), SeeNeighbours<T>(model(), id(), neighbours_.sights(), target.p_WT, mind_.knowledge));
-}
-
-template <class T>
-void LanedAgent<T>::Forget(const Mask<T>& lanes, const PerLane<T, TimeNs>& now) {
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    if (!InMask<T>(lanes, lane)) continue;
-    At(lane).Forget(OfLane(now, lane));
-    for (int j = 0; j < model().run.agents; ++j) {
-      if (!inbox(lane).neighbours().knows(j)) neighbours_.Drop(lane, j);
-    }
-  }
 }
 
 template <class T>
@@ -146,6 +140,7 @@ AgentView LanedAgent<T>::view(int lane) const {
   for (std::size_t k = 0; k < action.size(); ++k) action[k] = Lane(mind_.action[k], lane);
   return {model(),
           inbox(lane),
+          neighbours(lane),
           LaneOf(mind_.knowledge, lane),
           action,
           SightReader(neighbours_.sights(), lane),

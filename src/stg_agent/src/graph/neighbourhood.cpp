@@ -5,10 +5,13 @@
 namespace stg::agent {
 
 template <class T>
-Neighbourhood<T>::Neighbourhood(const AgentModel& model)
+Neighbourhood<T>::Neighbourhood(const AgentModel& model, int self)
     : max_age_s_(model.track.neighbour_max_age_s),
       wall_m_(model.wall_m()),
       sights_(static_cast<std::size_t>(model.run.agents)) {
+  // One by one: a copy would not have the room that the table keeps for the swarm.
+  tables_.reserve(static_cast<std::size_t>(kLanesOf<T>));
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) tables_.emplace_back(model, self);
   const int padded = (model.run.agents + kLanes - 1) / kLanes * kLanes;
   for (auto* v : {&distance_, &age_, &learnt_, &quality_})
     v->assign(static_cast<std::size_t>(padded), 0.0);
@@ -16,22 +19,31 @@ Neighbourhood<T>::Neighbourhood(const AgentModel& model)
 
 template <class T>
 void Neighbourhood<T>::Clear(int lane) {
+  tables_[static_cast<std::size_t>(lane)].Clear();
   for (NeighbourSight<T>& n : sights_) SetLaneOf(&n, lane, NeighbourSight<double>());
 }
 
 template <class T>
-void Neighbourhood<T>::Set(int lane, const NeighbourState& state) {
+bool Neighbourhood<T>::Update(int lane, const NeighbourState& state) {
+  if (!tables_[static_cast<std::size_t>(lane)].Update(state)) return false;
   NeighbourSight<T>& n = sights_[static_cast<std::size_t>(state.source)];
   SetLane(&n.known, lane, 1.0);
   SetLane(&n.p_W, lane, state.p_W);
   SetLane(&n.v_W, lane, state.v_W);
   SetLane(&n.generation_ns, lane, static_cast<double>(state.generation));
   SetLane(&n.tracking_error, lane, state.tracking_error);
+  return true;
 }
 
 template <class T>
-void Neighbourhood<T>::Drop(int lane, int id) {
-  SetLaneOf(&sights_[static_cast<std::size_t>(id)], lane, NeighbourSight<double>());
+void Neighbourhood<T>::Forget(int lane, TimeNs now) {
+  NeighbourTable& table = tables_[static_cast<std::size_t>(lane)];
+  table.Forget(now);
+  for (std::size_t j = 0; j < sights_.size(); ++j) {
+    if (!table.knows(static_cast<int>(j))) {
+      SetLaneOf(&sights_[j], lane, NeighbourSight<double>());
+    }
+  }
 }
 
 template <class T>
@@ -87,9 +99,9 @@ void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimat
 }
 
 template <class T>
-void Neighbourhood<T>::KeepOthers(const Mask<T>& lanes, const Neighbourhood& before) {
+void Neighbourhood<T>::KeepOthers(const Mask<T>& lanes, const Sights& before) {
   for (std::size_t j = 0; j < sights_.size(); ++j) {
-    stg::KeepOthers(lanes, before.sights_[j], &sights_[j]);
+    stg::KeepOthers(lanes, before[j], &sights_[j]);
   }
 }
 

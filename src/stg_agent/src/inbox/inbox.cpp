@@ -13,7 +13,6 @@ Inbox::Inbox(SharedConstants constants, int id)
     : constants_(std::move(constants)),
       id_(id),
       target_(constants_->model.target.of(id)),
-      neighbours_(constants_->model, id),
       filter_(TargetFilters().Make(constants_->model.track.filter, constants_->model, id_)),
       localizer_(MakeLocalizer(constants_->model, id_)) {
   if (id < 0 || id >= constants_->model.run.agents) {
@@ -22,7 +21,6 @@ Inbox::Inbox(SharedConstants constants, int id)
 }
 
 void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
-  neighbours_.Clear();
   filter_->Clear();
   if (localizer_ != nullptr) localizer_->Reset();
   cue_ = cue;
@@ -48,7 +46,7 @@ void Inbox::Detect(const dynamics::Detection& detection) {
   detection_pending_ = true;
 }
 
-const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
+std::optional<NeighbourState> Inbox::Receive(const acoustics::Reception& reception) {
   try {
     const acoustics::ByteView& bytes = reception.payload;
     Vec3<double> near;
@@ -60,14 +58,14 @@ const NeighbourState* Inbox::Receive(const acoustics::Reception& reception) {
         constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
     if (localizer_ != nullptr) {
       localizer_->Hear(state, reception);
-      if (state.source >= constants_->model.run.agents) return nullptr;  // a station
+      if (state.source >= constants_->model.run.agents) return {};  // a station
       ToOwnFrame(&state);
     }
     if (state.has_target && state.target == target_) filter_->Hear(state);
-    return neighbours_.Update(state) ? &neighbours_.state(state.source) : nullptr;
+    return state;
   } catch (const UserError&) {
     ++refused_packets_;  // what comes from the water may be damaged
-    return nullptr;
+    return {};
   }
 }
 
@@ -85,7 +83,7 @@ void Inbox::ToOwnFrame(NeighbourState* state) const {
   }
 }
 
-void Inbox::Advance(TimeNs now, const OwnReckoning& own) {
+void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnReckoning& own) {
   now_ = now;
   own_ = own;
   OwnFrame frame{own.position_std_m};
@@ -100,7 +98,7 @@ void Inbox::Advance(TimeNs now, const OwnReckoning& own) {
   filter_->Predict(now_);
   // A fixed order, whatever order the messages came in: shared estimates by index, then the
   // own detection.
-  if (neighbours_.unread()) FuseNewest();
+  if (neighbours.unread()) FuseNewest(neighbours);
   if (detection_pending_ && detection_.stamp <= now_) {
     filter_->Detect(detection_);
     detection_pending_ = false;
@@ -108,12 +106,11 @@ void Inbox::Advance(TimeNs now, const OwnReckoning& own) {
   filter_->Settle(now_, frame);
 }
 
-void Inbox::FuseNewest() {
-  for (const int id : neighbours_.known()) {
-    const NeighbourState& s = neighbours_.state(id);
-    if (neighbours_.unread(id) && s.target == target_) filter_->Fuse(s);
+void Inbox::FuseNewest(const NeighbourTable& neighbours) {
+  for (const int id : neighbours.known()) {
+    const NeighbourState& s = neighbours.state(id);
+    if (neighbours.unread(id) && s.target == target_) filter_->Fuse(s);
   }
-  neighbours_.MarkRead();
 }
 
 TargetView<double> Inbox::Target(double freshness_s) const {

@@ -20,7 +20,7 @@
 #include "auv_common/nodes/poll_loop.hpp"
 #include "auv_common/step/step_barrier.hpp"
 #include "auv_common/step/step_tracker.hpp"
-#include "decider.hpp"
+#include "decider_lookup.hpp"
 #include "pending_inputs.hpp"
 #include "stg_agent/agent/agent.hpp"
 

@@ -117,7 +117,8 @@ MeasurementPacket::MeasurementPacket(const AgentModel& s)
   const auto sensor =
       dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing.sensors, s.sensing);
   const auto navigation = dynamics::NavigationSystems().Make(
-      s.navigation.kind, s.navigation.kinds, {s.navigation, s.run.agents, s.run.time.dt_s});
+      s.navigation.kind, s.navigation.kinds,
+      {s.navigation, s.run.agents, s.run.time.dt_s, s.navigation});
   kind_ = sensor->kind();
   ambiguous_ = relative_.ambiguous &&
                (kind_ == MeasurementKind::kBearing || kind_ == MeasurementKind::kRangeBearing);

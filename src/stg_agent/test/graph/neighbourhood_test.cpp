@@ -17,8 +17,8 @@ void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& 
 }
 
 TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
-  Neighbourhood<double> neighbours{AgentModel()};
-  neighbours.Set(0, Report(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0}));
+  Neighbourhood<double> neighbours{AgentModel(), 0};
+  neighbours.Update(0, Report(2, kSecond, {0.1, 0.2, 0.3}, {0.1, -0.1, 0.0}));
   Predict(&neighbours, 3 * kSecond, {0.3, 0.0, 0.0});
   const NeighbourSight<double>& n = neighbours.sights()[2];
   EXPECT_EQ(n.known, 1.0);
@@ -30,25 +30,25 @@ TEST(Neighbourhood, DeadReckonsFromTheGenerationTime) {
 }
 
 TEST(Neighbourhood, DeadReckoningStopsAtTheWalls) {
-  Neighbourhood<double> neighbours{AgentModel()};
-  neighbours.Set(0, Report(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
+  Neighbourhood<double> neighbours{AgentModel(), 0};
+  neighbours.Update(0, Report(1, 0, {0.9, 0.0, 0.0}, {1.5, 0.0, 0.0}));
   Predict(&neighbours, 5 * kSecond, {});
   EXPECT_DOUBLE_EQ(neighbours.sights()[1].p_WN.x, 1.0);
 }
 
-TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsDropped) {
-  Neighbourhood<Pack> neighbours{AgentModel()};  // 10 s
+TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsForgotten) {
+  Neighbourhood<Pack> neighbours{AgentModel(), 0};  // 10 s
   const int last = kLanes - 1;
-  neighbours.Set(last, Report(1, 0, {}));
+  neighbours.Update(last, Report(1, 0, {}));
   const auto old = [&](TimeNs now) {
     return Select(neighbours.Age(Pack(static_cast<double>(now))), Pack(1.0), Pack(0.0));
   };
   EXPECT_EQ(Lane(old(10 * kSecond), last), 0.0);
   EXPECT_EQ(Lane(old(10 * kSecond + 1), last), 1.0);
   if (kLanes > 1) {
-    EXPECT_EQ(Lane(old(10 * kSecond + 1), 0), 0.0) << "nobody was heard there";
+    EXPECT_EQ(Lane(old(10 * kSecond + 1), 0), 0.0) << "no neighbour was heard there";
   }
-  neighbours.Drop(last, 1);
+  neighbours.Forget(last, 10 * kSecond + 1);
   EXPECT_EQ(Lane(old(10 * kSecond + 1), last), 0.0);
 }
 
@@ -58,9 +58,9 @@ TEST(Neighbourhood, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
       AgentModel s;
       s.run.agents = agents;
       s.channel.model = model;
-      Neighbourhood<double> neighbours(s);
+      Neighbourhood<double> neighbours(s, 1);
       for (int i = agents - 1; i >= 0; --i) {
-        if (i != 1) neighbours.Set(0, Report(i, i * kSecond / 10, {0.03 * i, 0.1, 0.0}));
+        if (i != 1) neighbours.Update(0, Report(i, i * kSecond / 10, {0.03 * i, 0.1, 0.0}));
       }
       Predict(&neighbours, 3 * kSecond, {}, s);
       for (int i = 0; i < agents; ++i) {

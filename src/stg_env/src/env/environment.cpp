@@ -11,7 +11,9 @@ namespace stg::env {
 namespace {
 
 std::unique_ptr<InformationSource> MakeSource(const Scenario& s, const agent::AgentModel& model) {
-  if (s.mode == InformationMode::kTruth) return std::make_unique<TruthSource>(model);
+  if (s.mode == InformationMode::kTruth) {
+    return std::make_unique<TruthSource>(model, s.channel.range_m);
+  }
   const auto shadows = dynamics::ShadowsOf(s.world.sea, s.world.workspace.half_extent_m);
   return std::make_unique<AcousticSource>(model, s.channel, shadows);
 }
@@ -20,20 +22,23 @@ std::unique_ptr<InformationSource> MakeSource(const Scenario& s, const agent::Ag
 
 Environment::Environment(const Scenario& scenario)
     : scenario_(scenario),
-      world_(scenario.world, scenario.run),
       model_(scenario.model()),
+      world_(scenario.world, scenario.run, model_.navigation),
       source_(MakeSource(scenario, model_)),
       task_(scenario.judge()),
       observation_size_(model_.observation_size()) {
   task::Effort<Pack> zero;
   zero.fill(Pack(0.0));
+  for (std::size_t k = 0; k < share_.size(); ++k) {
+    share_[k] = model_.vehicle.max_tau[k] / scenario.world.vehicle.max_tau[k];
+  }
   tau_.assign(static_cast<std::size_t>(scenario.run.agents), zero);
   action_ = tau_;
   wrench_.resize(tau_.size());
   if (scenario.world.sea.open) field_.resize(tau_.size());
   if (dynamics::Helm::Steers(scenario.world.vehicle)) {
-    helm_ = std::make_unique<dynamics::Helm>(scenario.world.vehicle,
-                                             scenario.world.control.autopilot, scenario.run);
+    helm_ = std::make_unique<dynamics::Helm>(scenario.world.vehicle, model_.vehicle,
+                                             model_.control.autopilot, scenario.run);
     v_des_W_.resize(tau_.size());
   }
 }
@@ -78,9 +83,10 @@ void Environment::Begin(const LaneSet& lanes) {
 void Environment::Move(const Pack* wanted) {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     source_->Act(world_, static_cast<int>(i), wanted, &action_[i], &tau_[i]);
-    const auto wrench = dynamics::ScaleWrench(scenario_.world.vehicle, tau_[i].data());
+    const auto wrench = dynamics::ScaleWrench(model_.vehicle, tau_[i].data());
     wrench_[i].force = wrench.force;  // by halves: the whole is copied by a call
     wrench_[i].moment = wrench.moment;
+    for (std::size_t k = 0; k < share_.size(); ++k) tau_[i][k] = tau_[i][k] * Pack(share_[k]);
     wanted += scenario_.world.control.action_size();
   }
   source_->Send(world_);
@@ -94,7 +100,7 @@ void Environment::Move(const Pack* wanted) {
 
 void Environment::Steer() {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
-    v_des_W_[i] = dynamics::DesiredVelocity(scenario_.world.vehicle, action_[i].data());
+    v_des_W_[i] = dynamics::DesiredVelocity(model_.vehicle, action_[i].data());
   }
   helm_->Drive(v_des_W_, &world_);
   for (std::size_t i = 0; i < tau_.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -55,13 +56,14 @@ class Environment {
   void LookAround();
 
   Scenario scenario_;
-  dynamics::World world_;
   agent::AgentModel model_;  // what the agents know
+  dynamics::World world_;
   std::unique_ptr<InformationSource> source_;
   task::Task<Pack> task_;
   int observation_size_;
   Pack length_ = Pack(0.0);  // decisions of the episode of each lane
   Pack link_quality_ = Pack(0.0);
+  std::array<double, dynamics::kWrenchSize> share_;  // what agents take for the most, of the most
   task::Efforts<Pack> tau_, action_;
   std::vector<dynamics::Wrench<Pack>> wrench_;
   std::vector<task::FieldState<Pack>> field_;  // [agents] in open water; else empty

@@ -30,10 +30,12 @@ void Describe(Scenario* s, config::Table* t) {
                           "track.filter", "channel.range_m", "sensing.range_m"}) {
     t->AlsoReadIf(key, [] { return true; });
   }
+  t->Differ("believed", agent::KeysOfModel(), &s->agent_model);
 }
 
 std::optional<config::Violation> FindConflict(const Scenario& s) {
-  if (auto violation = FindConflict(agent::AgentScenario{s.run, s.world, s.channel, s.agent})) {
+  if (auto violation =
+          FindConflict(agent::AgentScenario{s.run, s.world, s.channel, s.agent, s.agent_model})) {
     return violation;
   }
   return FindConflict(s.judge());

@@ -330,7 +330,11 @@ std::string KeyTables() {
     open = section;
     std::string range = std::regex_replace(config::FormatRange(field), std::regex(" \\| "), ", ");
     text += "| `" + field.path + "` | " + field.meaning + " | " + field.unit + " | " + range +
-            " | `" + config::FormatValue(field.value) + "` |\n";
+            " | " +
+            (std::holds_alternative<config::DifferenceRef>(field.value)
+                 ? "that of the key"
+                 : "`" + config::FormatValue(field.value) + "`") +
+            " |\n";
   }
   return text + "\n";
 }

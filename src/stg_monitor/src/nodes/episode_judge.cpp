@@ -8,9 +8,9 @@
 
 namespace stg::nodes {
 
-EpisodeJudge::EpisodeJudge(const Scenario& scenario)
+EpisodeJudge::EpisodeJudge(const task::JudgeConfig& scenario)
     : scenario_(scenario),
-      task_(scenario.judge()),
+      task_(scenario),
       vehicles_(static_cast<std::size_t>(scenario.run.agents)),
       targets_(static_cast<std::size_t>(scenario.world.target.count)),
       separations_(scenario.run.agents, 2.0 * scenario.world.vehicle.radius_m),

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "stg_env/scenario/scenario.hpp"
 #include "stg_env/task/task.hpp"
 #include "swarm_frame.hpp"
 
@@ -18,7 +17,7 @@ namespace stg::nodes {
 /// world publishes.
 class EpisodeJudge {
  public:
-  explicit EpisodeJudge(const Scenario& scenario);
+  explicit EpisodeJudge(const task::JudgeConfig& scenario);
 
   /// What one frame led to. A report answers the step that ended at this frame.
   struct Verdict {
@@ -53,7 +52,7 @@ class EpisodeJudge {
   void FillSummary(const ros::Time& stamp, const task::EpisodeMetrics& metrics,
                    Verdict* verdict) const;
 
-  Scenario scenario_;
+  task::JudgeConfig scenario_;
   task::Task<double> task_;
   // The swarm at the present frame, and the decision that led there.
   std::vector<dynamics::VehicleState<double>> vehicles_;

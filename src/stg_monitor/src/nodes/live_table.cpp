@@ -31,11 +31,12 @@ double Mean(const std::vector<double>& values) {
 
 }  // namespace
 
-LiveTable::LiveTable(const Scenario& scenario, int episodes)
-    : scenario_(scenario),
+LiveTable::LiveTable(const RunConfig& run, double link_available, int episodes)
+    : run_(run),
+      link_available_(link_available),
       episodes_(episodes),
       terminal_(isatty(STDOUT_FILENO) != 0),
-      phases_(static_cast<std::size_t>(scenario.run.agents), -1),
+      phases_(static_cast<std::size_t>(run.agents), -1),
       age_(phases_.size(), 0.0),
       quality_(phases_.size(), 0.0),
       live_links_(phases_.size(), 0) {}
@@ -44,13 +45,13 @@ void LiveTable::SetLinks(const auv_msgs::LinkStates& links) {
   std::fill(age_.begin(), age_.end(), 0.0);
   std::fill(quality_.begin(), quality_.end(), 0.0);
   std::fill(live_links_.begin(), live_links_.end(), 0);
-  const double others = std::max(1, scenario_.run.agents - 1);
+  const double others = std::max(1, run_.agents - 1);
   for (const auto& link : links.links) {
     const auto i = static_cast<std::size_t>(link.destination);
     if (i >= age_.size()) continue;
     age_[i] += link.age / others;
     quality_[i] += link.quality / others;
-    if (link.quality > scenario_.agent.observation.link_available) ++live_links_[i];
+    if (link.quality > link_available_) ++live_links_[i];
   }
 }
 
@@ -70,32 +71,30 @@ void LiveTable::Tick(const EpisodeJudge& judge, double now_s) {
 }
 
 std::string LiveTable::Table(const EpisodeJudge& judge, double now_s) const {
-  std::string text = Format("\033[1m%s\033[0m  %s  episode %u", scenario_.run.name.c_str(),
+  std::string text = Format("\033[1m%s\033[0m  %s  episode %u", run_.name.c_str(),
                             judge.policy_id().c_str(), judge.episode() + 1);
   if (episodes_ > 0) text += Format("/%d", episodes_);
   text += Format("  t %.1f of %.1f s  %.1f x real time\n", now_s,
-                 scenario_.run.time.episode_steps * scenario_.run.decision_dt_s(), speed_);
+                 run_.time.episode_steps * run_.decision_dt_s(), speed_);
   text += " AUV  phase     distance [m]  error [m]  links  quality  age [s]\n";
-  const int rows = std::min(scenario_.run.agents, kMaxRows);
+  const int rows = std::min(run_.agents, kMaxRows);
   for (int i = 0; i < rows; ++i) {
     const auto u = static_cast<std::size_t>(i);
     const auto& k = judge.tracking(i);
-    text +=
-        Format(" %3d  %-8s  %12.4f  %9.4f  %2d/%-2d  %7.2f  %7.2f\n", i, PhaseName(phases_[u]),
-               k.distance, k.error, live_links_[u], scenario_.run.agents - 1, quality_[u], age_[u]);
+    text += Format(" %3d  %-8s  %12.4f  %9.4f  %2d/%-2d  %7.2f  %7.2f\n", i, PhaseName(phases_[u]),
+                   k.distance, k.error, live_links_[u], run_.agents - 1, quality_[u], age_[u]);
   }
-  if (rows < scenario_.run.agents)
-    text += Format(" ... and %d more\n", scenario_.run.agents - rows);
+  if (rows < run_.agents) text += Format(" ... and %d more\n", run_.agents - rows);
   return text;
 }
 
 std::string LiveTable::Line(const EpisodeJudge& judge, double now_s) const {
   double distance = 0.0, error = 0.0;
   int count[4] = {}, links = 0;
-  for (int i = 0; i < scenario_.run.agents; ++i) {
+  for (int i = 0; i < run_.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    distance += judge.tracking(i).distance / scenario_.run.agents;
-    error += judge.tracking(i).error / scenario_.run.agents;
+    distance += judge.tracking(i).distance / run_.agents;
+    error += judge.tracking(i).error / run_.agents;
     if (phases_[u] >= 0 && phases_[u] < 4) ++count[phases_[u]];
     links += live_links_[u];
   }
@@ -103,7 +102,7 @@ std::string LiveTable::Line(const EpisodeJudge& judge, double now_s) const {
       "episode %u  t %6.1f s  search %d approach %d stable %d lost %d  distance %.4f m  error "
       "%.4f m  links %d/%d  age %.2f s  %.1f x real time\n",
       judge.episode() + 1, now_s, count[0], count[1], count[2], count[3], distance, error, links,
-      scenario_.run.agents * (scenario_.run.agents - 1), Mean(age_), speed_);
+      run_.agents * (run_.agents - 1), Mean(age_), speed_);
 }
 
 void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s,
@@ -112,8 +111,7 @@ void LiveTable::PrintEpisode(const auv_msgs::EpisodeSummary& s,
       "\nepisode %u, seed %llu, %u steps%s, policy %s, %u deadline misses, %u of the channel\n",
       s.episode + 1, static_cast<unsigned long long>(s.seed), s.steps,
       s.complete ? "" : " (incomplete)", s.policy_id.c_str(), s.deadline_misses, s.channel_misses);
-  const bool cut =
-      metrics.steps <= scenario_.run.time.episode_steps - scenario_.run.time.tail_steps;
+  const bool cut = metrics.steps <= run_.time.episode_steps - run_.time.tail_steps;
   for (const auto& item : metrics.Items()) {
     if (cut && task::OfTail(item.first)) {
       std::printf("  %-22s %12s\n", item.first.c_str(), "-");

@@ -13,7 +13,8 @@ namespace stg::nodes {
 /// second.
 class LiveTable {
  public:
-  LiveTable(const Scenario& scenario, int episodes);
+  /// @param link_available quality from which on a link counts as usable
+  LiveTable(const RunConfig& run, double link_available, int episodes);
 
   /// What the agents and the channel say; kept for the next drawing.
   void SetPhase(int agent, int phase) { phases_[static_cast<std::size_t>(agent)] = phase; }
@@ -31,7 +32,8 @@ class LiveTable {
   std::string Table(const EpisodeJudge& judge, double now_s) const;
   std::string Line(const EpisodeJudge& judge, double now_s) const;
 
-  Scenario scenario_;
+  RunConfig run_;
+  double link_available_;
   int episodes_;
   bool terminal_;
   int drawn_lines_ = 0;

@@ -46,8 +46,9 @@ MetricsNode::MetricsNode()
       show_table_(FlagParameter("table", true)),
       tracker_(period_, scenario_.run.time.episode_steps),
       frames_(kMaxFrames, SwarmFrame(scenario_.run.agents)),
-      judge_(scenario_),
-      table_(scenario_, IntegerParameter("episodes", 0, 0, 1'000'000'000)),
+      judge_(scenario_.judge()),
+      table_(scenario_.run, scenario_.agent.observation.link_available,
+             IntegerParameter("episodes", 0, 0, 1'000'000'000)),
       file_name_(TextParameter("summary_file", "")),
       health_("metrics", "simulation", [this](auto& status) { Report(status); }) {
   if (!file_name_.empty() && !std::ofstream(file_name_, std::ios::app)) {

@@ -11,6 +11,7 @@
 #include "auv_common/step/step_tracker.hpp"
 #include "auv_common/step/step_window.hpp"
 #include "live_table.hpp"
+#include "stg_env/scenario/scenario.hpp"
 #include "swarm_frame.hpp"
 
 namespace stg::nodes {

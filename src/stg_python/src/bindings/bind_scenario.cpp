@@ -34,6 +34,10 @@ struct Cast {
   py::object operator()(const config::RowsRef& x) const { return py::cast(*x.rows); }
   py::object operator()(const config::NamesRef& x) const { return py::cast(*x.list); }
   py::object operator()(const config::NameOrFileRef& x) const { return py::str(*x.text); }
+  py::object operator()(const config::DifferenceRef& x) const {
+    const auto found = x.all->find(x.of->path);
+    return found == x.all->end() ? py::object(py::none()) : py::str(found->second);
+  }
 };
 
 py::object ToPython(const config::ValueRef& value) { return std::visit(Cast{}, value); }

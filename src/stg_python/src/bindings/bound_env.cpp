@@ -11,7 +11,7 @@
 namespace stg::python {
 
 BoundEnv::Use::Use(const BoundEnv* env) : env_(*env) {
-  env_.fleet();
+  env_.pool();
   if (env_.process_ != static_cast<int>(getpid())) {
     throw std::runtime_error(
         "this environment belongs to the process that made it: its threads did not follow the "
@@ -24,10 +24,10 @@ BoundEnv::Use::Use(const BoundEnv* env) : env_(*env) {
 
 BoundEnv::BoundEnv(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options,
                    int workers)
-    : fleet_(std::make_unique<Fleet>(mix, options, workers)),
+    : pool_(std::make_unique<EnvPool>(mix, options, workers)),
       envs_(options.envs),
       process_(static_cast<int>(getpid())) {
-  const env::VectorEnv& first = *fleet_->parts().front().envs;
+  const env::VectorEnv& first = *pool_->parts().front().envs;
   agents_ = first.agents();
   action_size_ = first.action_size();
   observation_size_ = first.observation_size();
@@ -38,12 +38,12 @@ BoundEnv::BoundEnv(const std::vector<Scenario>& mix, const env::VectorEnvOptions
 
 BoundEnv::~BoundEnv() {
   // Threads that did not follow a fork cannot be joined.
-  if (process_ != static_cast<int>(getpid())) (void)fleet_.release();
+  if (process_ != static_cast<int>(getpid())) (void)pool_.release();
 }
 
-const Fleet& BoundEnv::fleet() const {
-  if (fleet_ == nullptr) throw std::runtime_error("the environment is closed");
-  return *fleet_;
+const EnvPool& BoundEnv::pool() const {
+  if (pool_ == nullptr) throw std::runtime_error("the environment is closed");
+  return *pool_;
 }
 
 void BoundEnv::RequireEnv(int env) const {
@@ -52,9 +52,9 @@ void BoundEnv::RequireEnv(int env) const {
   }
 }
 
-Fleet::Place BoundEnv::at(int env) const {
+EnvPool::Place BoundEnv::at(int env) const {
   RequireEnv(env);
-  return fleet().at(env);
+  return pool().at(env);
 }
 
 void BoundEnv::RequireBound() const {
@@ -97,12 +97,12 @@ void BoundEnv::RestartAt(std::uint64_t k) {
   const Use use(this);
   RequireBound();
   const WithoutGil release;
-  fleet_->RestartAt(k, out_);
+  pool_->RestartAt(k, out_);
 }
 
 void BoundEnv::Reseed(std::uint64_t seed) {
   const Use use(this);
-  fleet_->Reseed(seed);
+  pool_->Reseed(seed);
 }
 
 void BoundEnv::ResetEnv(int env, std::uint64_t seed) {
@@ -110,7 +110,7 @@ void BoundEnv::ResetEnv(int env, std::uint64_t seed) {
   const Use use(this);
   RequireBound();
   const WithoutGil release;
-  fleet_->ResetEnv(env, seed, out_);
+  pool_->ResetEnv(env, seed, out_);
 }
 
 template <class Number>
@@ -123,7 +123,7 @@ int BoundEnv::StepChecked(const Number* actions) {
                           std::to_string(bad % action_size_) + "] is not finite");
   }
   const WithoutGil release;
-  fleet_->Step(actions, out_);
+  pool_->Step(actions, out_);
   return static_cast<int>(std::count(out_.truncated, out_.truncated + envs_, 1));
 }
 
@@ -167,8 +167,8 @@ int BoundEnv::StepAgents(const py::dict& actions) {
 
 const agent::Decider& BoundEnv::ControllerOf(const std::string& name, bool privileged) {
   if (controller_.name != name) {
-    const Fleet& fleet = *fleet_;
-    controller_ = agent::MakeDecider(name, fleet.parts().front().envs->scenario().model());
+    const EnvPool& pool = *pool_;
+    controller_ = agent::MakeDecider(name, pool.parts().front().envs->scenario().model());
   }
   controller_.privileged = privileged;
   return controller_;
@@ -181,7 +181,7 @@ py::array_t<float> BoundEnv::Decide(const std::string& name, bool privileged) {
   py::array_t<float> actions(Shape{envs_, agents_, action_size_});
   float* to = actions.mutable_data();
   const WithoutGil release;
-  for (const Fleet::Part& part : fleet_->parts()) {
+  for (const EnvPool::Part& part : pool_->parts()) {
     const env::VectorEnv& envs = *part.envs;
     std::vector<double> wanted(static_cast<std::size_t>(envs.envs() * agents_ * action_size_));
     const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(agents_) * observation_size_;
@@ -193,40 +193,40 @@ py::array_t<float> BoundEnv::Decide(const std::string& name, bool privileged) {
 }
 
 void BoundEnv::Close() {
-  if (fleet_ == nullptr) return;
+  if (pool_ == nullptr) return;
   const Use use(this);
-  fleet_.reset();
+  pool_.reset();
   arrays_ = py::dict();
   out_ = {};
 }
 
 Scenario BoundEnv::scenario(int env) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   return place.envs.scenario(place.env);
 }
 
 std::uint64_t BoundEnv::seed(int env) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   return place.envs.seed(place.env);
 }
 
 std::uint64_t BoundEnv::round(int env) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   return place.envs.round(place.env);
 }
 
 int BoundEnv::step(int env) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   return place.envs.step(place.env);
 }
 
 py::dict BoundEnv::Metrics(int env) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   py::dict metrics;
   for (const auto& [name, value] : place.envs.metrics(place.env).Items()) {
     metrics[py::str(name)] = value;

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "stg_env/env/decide.hpp"
-#include "stg_python/env/fleet.hpp"
+#include "stg_python/env/env_pool.hpp"
 
 namespace stg::python {
 
 namespace py = pybind11;
 
-/// A Fleet with numpy arrays of the caller's, which are written to without the GIL.
+/// A EnvPool with numpy arrays of the caller's, which are written to without the GIL.
 ///
 /// Every call checks what it is given before anything moves: after an exception the environments
 /// are as they were. A second thread's call while one is under way, and any call in a process that
@@ -50,7 +50,7 @@ class BoundEnv {
   int step(int env) const;
 
   int envs() const { return envs_; }
-  int workers() const { return fleet().workers(); }
+  int workers() const { return pool().workers(); }
 
  private:
   /// Makes the environments one caller's for as long as it lives.
@@ -65,15 +65,15 @@ class BoundEnv {
     const BoundEnv& env_;
   };
 
-  const Fleet& fleet() const;
-  Fleet::Place at(int env) const;
+  const EnvPool& pool() const;
+  EnvPool::Place at(int env) const;
   void RequireEnv(int env) const;
   template <class Number>
   int StepChecked(const Number* actions);
   const agent::Decider& ControllerOf(const std::string& name, bool privileged);
   void RequireBound() const;
 
-  std::unique_ptr<Fleet> fleet_;
+  std::unique_ptr<EnvPool> pool_;
   int envs_, agents_, action_size_, observation_size_, state_size_;
   py::dict arrays_;  ///< keeps them alive
   env::EnvArrays out_;

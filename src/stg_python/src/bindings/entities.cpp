@@ -21,7 +21,7 @@ py::array_t<float> RowsOf(const float* data, int rows, int numbers) {
 
 py::dict BoundEnv::Entities(int env, int agent) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   if (agent < 0 || agent >= agents_) {
     throw py::index_error("agent: " + std::to_string(agent) + " is not in 0 to " +
                           std::to_string(agents_ - 1));

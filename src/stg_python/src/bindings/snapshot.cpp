@@ -42,7 +42,7 @@ double Quality(const env::VectorEnv& envs, int env, int i, int j) {
 
 py::dict BoundEnv::Snapshot(int env) const {
   const Use use(this);
-  const Fleet::Place place = at(env);
+  const EnvPool::Place place = at(env);
   const env::VectorEnv& envs = place.envs;
   const int e = place.env, n = agents_, targets = envs.scenario(place.env).world.target.count;
   Table position(n, 3), velocity(n, 3), rpy(n, 3), estimate(n, 3), links(n, n), tracking(n, 4);

@@ -20,12 +20,13 @@ struct ModemConfig {
   int packet_bytes = 0;                   ///< longest payload of the network; 0: the frames'
   QueuePolicy queue = QueuePolicy::kNewest;
   int queue_length = 8;
-  double clock_offset_std_s = 0.0;   ///< of a node's clock at the start of an episode
-  double clock_drift_std_ppm = 0.0;  ///< of its rate
-  double timing_std_s = 0.0;         ///< of a travel time that a modem measures
-  double late_probability = 0.0;     ///< that it takes a later sound for the first one
-  double late_max_s = 0.1;           ///< by which that came later, at most
-  double freshness_s = 30.0;         ///< decay time of link quality with the age of the news
+  double clock_offset_std_s = 0.0;      ///< of a node's clock at the start of an episode
+  double clock_drift_std_ppm = 0.0;     ///< of its rate
+  double timing_std_s = 0.0;            ///< of a travel time that a modem measures
+  double late_probability = 0.0;        ///< that it takes a later sound for the first one
+  double late_max_s = 0.1;              ///< by which that came later, at most
+  double freshness_s = 30.0;            ///< decay time of link quality with the age of the news
+  double source_level_offset_db = 0.0;  ///< added to the source level of every profile
 };
 
 void Describe(ModemConfig* c, config::Table* t);

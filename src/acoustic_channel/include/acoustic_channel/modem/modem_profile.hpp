@@ -54,7 +54,7 @@ ModemProfileRegistry& ModemProfiles();
 
 /// The profile of every node, as the section says. Throws UserError for a name that no profile has
 /// or a list that is not as long as the fleet.
-std::vector<ModemProfile> MakeFleet(const ModemConfig& config, int nodes);
+std::vector<ModemProfile> MakeProfiles(const ModemConfig& config, int nodes);
 
 /// Why the section cannot work for so many nodes; nothing: it can.
 std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -91,8 +92,20 @@ struct NameOrFileRef {
   std::string extension;
 };
 
-using ValueRef = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef,
-                              NumbersRef, Interval*, NamesRef, RowsRef, NameOrFileRef>;
+struct Field;
+
+/// Where a model differs from the truth: paths of keys, each with the model's value as text.
+using Differences = std::map<std::string, std::string>;
+
+/// The value that a model has for a key: that of the key itself unless `all` holds another one.
+struct DifferenceRef {
+  Differences* all = nullptr;
+  std::shared_ptr<const Field> of;  ///< the key, with the value that is true
+};
+
+using ValueRef =
+    std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef, NumbersRef, Interval*,
+                 NamesRef, RowsRef, NameOrFileRef, DifferenceRef>;
 
 /// The thing, or the few things, that a key belongs to, of those that a configuration chooses
 /// among. A key of a thing that was not chosen has no effect, and is refused.
@@ -151,6 +164,11 @@ class Table {
   void Own(const std::string& section, const Owner& owner);
   /// A key of a thing that is read where this holds, too, whatever was chosen.
   void AlsoReadIf(const std::string& path, std::function<bool()> holds);
+  /// Keys in a section of their own that say what a model holds for some keys instead of the truth.
+  /// Each takes what the key takes, belongs to what the key belongs to, and need not be stated.
+  /// @param keys keys, or sections at every depth; those that this table lacks are passed over
+  void Differ(const std::string& section, const std::vector<std::string>& keys,
+              Differences* differences);
   /// A key or a section that files of earlier versions may have, and the one that replaces it: the
   /// refusal names it.
   void Moved(const std::string& from, const std::string& to) { moved_.emplace_back(from, to); }
@@ -161,6 +179,8 @@ class Table {
   /// What keys lie in, at every depth: of "a.b.c", "a" and "a.b".
   const std::set<std::string>& sections() const { return sections_; }
   const std::vector<std::pair<std::string, std::string>>& moved() const { return moved_; }
+  /// The key that a key of Differ is about; of other keys the path itself.
+  std::string TrueKey(const std::string& path) const;
 
  private:
   std::string root_, prefix_;
@@ -168,6 +188,7 @@ class Table {
   std::unordered_map<std::string, std::size_t> index_;  ///< of a path's field
   std::set<std::string> sections_;
   std::vector<std::pair<std::string, std::string>> moved_;
+  std::string differences_;  ///< the section of Differ with a point; empty: there is none
 };
 
 /// Why a configuration as a whole is refused: the key to blame first, then the keys that it

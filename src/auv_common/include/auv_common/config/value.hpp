@@ -26,4 +26,13 @@ std::string FormatRange(const Field& field);
 /// Message when the value itself is not allowed, else nothing.
 std::optional<std::string> CheckValue(const Field& field);
 
+/// The value that a model has for a key, as text; empty: that of the key.
+std::string TextOf(const DifferenceRef& difference);
+/// Message when the key does not take the value, else nothing. The key keeps its own.
+std::optional<std::string> ParseDifference(const DifferenceRef& difference, const YamlTree& node);
+std::optional<std::string> CheckDifference(const DifferenceRef& difference);
+/// Sets the keys of the table to the values that a model has for them; passes over keys that the
+/// table lacks. Throws UserError for a value that its key does not take.
+void Apply(const Differences& differences, const Table& table);
+
 }  // namespace stg::config

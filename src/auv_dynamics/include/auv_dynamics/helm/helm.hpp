@@ -23,7 +23,9 @@ class Helm {
   static bool Steers(const VehicleConfig& vehicle);
 
   /// Throws UserError when they are not.
-  Helm(const VehicleConfig& vehicle, const AutopilotConfig& config, const RunConfig& run);
+  /// @param believed what the autopilots take the vehicle for
+  Helm(const VehicleConfig& vehicle, const VehicleConfig& believed, const AutopilotConfig& config,
+       const RunConfig& run);
 
   /// An episode begins in one lane.
   void Reset(int lane);

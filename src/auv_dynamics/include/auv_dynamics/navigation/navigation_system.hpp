@@ -15,7 +15,8 @@ namespace stg::dynamics {
 struct NavigationSetup {
   const NavigationConfig& navigation;
   int vehicles;
-  double dt_s;  ///< physics step
+  double dt_s;                     ///< physics step
+  const NavigationConfig& stated;  ///< what it takes its errors for, when it states them
 };
 
 /// Where a vehicle takes itself to be while it looks at a target, in one lane.

@@ -9,7 +9,7 @@
 #include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 #include "auv_dynamics/targets/target_motion.hpp"
-#include "auv_dynamics/vehicle/fleet.hpp"
+#include "auv_dynamics/vehicle/vehicle_set.hpp"
 #include "auv_dynamics/world/contacts.hpp"
 #include "auv_dynamics/world/current.hpp"
 #include "auv_dynamics/world/disturbance.hpp"
@@ -33,8 +33,10 @@ inline constexpr char kUnstableHint[] =
 class World {
  public:
   /// Throws UserError for a scenario that fails its validation.
-  World(const WorldConfig& config, const RunConfig& run);
-  explicit World(const WorldScenario& s) : World(s.world, s.run) {}
+  /// @param stated what the vehicles' navigation takes its errors for, when it states them
+  World(const WorldConfig& config, const RunConfig& run, const NavigationConfig& stated);
+  World(const WorldConfig& config, const RunConfig& run) : World(config, run, config.navigation) {}
+  explicit World(const WorldScenario& s) : World(s.world, s.run, s.believed().navigation) {}
   ~World();
   World(World&&) noexcept;
 
@@ -65,8 +67,8 @@ class World {
   int agents() const { return static_cast<int>(vehicles_.size()); }
   int targets() const { return static_cast<int>(targets_.size()); }
   /// What vehicle i is.
-  const Vehicle& model(int i = 0) const { return fleet_[i]; }
-  std::size_t command_size() const { return fleet_.command_size(); }
+  const Vehicle& model(int i = 0) const { return kinds_[i]; }
+  std::size_t command_size() const { return kinds_.command_size(); }
   const TargetSensor& sensor() const { return *sensor_; }
   const VehicleState<Pack>& vehicle(int i) const { return vehicles_[static_cast<size_t>(i)]; }
   VehicleState<Pack>& mutable_vehicle(int i) { return vehicles_[static_cast<size_t>(i)]; }
@@ -121,7 +123,7 @@ class World {
   ResetConfig reset_;
   SeaConfig depths_;
   SensingConfig sensing_;
-  Fleet fleet_;
+  VehicleSet kinds_;
   std::unique_ptr<TargetMotion> motion_;
   std::unique_ptr<const TargetSensor> sensor_;
   std::unique_ptr<NavigationSystem> navigation_;
@@ -134,7 +136,7 @@ class World {
   bool open_;  // sea, not walls
   std::vector<VehicleState<Pack>> vehicles_;
   std::vector<TargetState<Pack>> targets_;
-  std::vector<Pack> internal_;  // [agents, fleet_.internal_size()]
+  std::vector<Pack> internal_;  // [agents, kinds_.internal_size()]
   std::vector<Pack> commands_;  // [agents, actuators], of the last generalised forces
   Start start_;                 // scratch of Reset
   EpisodeClocks clocks_{};

@@ -2,6 +2,8 @@
 
 #include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "auv_common/config/run_config.hpp"
 #include "auv_dynamics/control/control_config.hpp"
@@ -37,6 +39,11 @@ inline double WallOf(const WorkspaceConfig& workspace, const SeaConfig& sea) {
 
 /// Keys, units and ranges of the sections.
 void Describe(WorldConfig* c, config::Table* t);
+/// Keys for which vehicles may have another value on board than the true one: what they know of
+/// themselves, of their instruments, of the water and of the targets.
+const std::vector<std::string>& KeysOnBoard();
+/// What vehicles take the world for that differ from it in these keys.
+WorldConfig Believed(WorldConfig world, const config::Differences& agent_model);
 /// Contradictions between their keys, and with those of the run.
 std::optional<config::Violation> FindConflict(const WorldConfig& c, const RunConfig& run);
 
@@ -44,6 +51,9 @@ std::optional<config::Violation> FindConflict(const WorldConfig& c, const RunCon
 struct WorldScenario {
   RunConfig run;
   WorldConfig world;
+  config::Differences agent_model;  ///< of KeysOnBoard; empty: all is known as it is
+
+  WorldConfig believed() const { return Believed(world, agent_model); }
 };
 void Describe(WorldScenario* s, config::Table* t);
 std::optional<config::Violation> FindConflict(const WorldScenario& s);

@@ -18,6 +18,7 @@ constexpr std::uint32_t kQueue = 20;
 
 ControllerNode::ControllerNode()
     : scenario_(LoadScenarioParameters<dynamics::WorldScenario>()),
+      believed_(scenario_.believed().vehicle),
       id_(IntegerParameter("id", 0, 0, scenario_.run.agents - 1)),
       body_frame_(frames::Body(id_)),
       period_(scenario_.run.decision_period()),
@@ -32,8 +33,7 @@ ControllerNode::ControllerNode()
   ros::NodeHandle node;
   if (dynamics::Helm::Steers(scenario_.world.vehicle)) {
     const std::string& model = scenario_.world.vehicle.model_of(id_);
-    autopilot_ = dynamics::Autopilots().Make(model, scenario_.world.vehicle,
-                                             scenario_.world.control.autopilot);
+    autopilot_ = dynamics::Autopilots().Make(model, believed_, scenario_.world.control.autopilot);
     memory_.assign(static_cast<std::size_t>(autopilot_->state_size()), 0.0);
     actuators_.header.frame_id = body_frame_;
     actuators_.vehicle = model;
@@ -158,9 +158,8 @@ void ControllerNode::AnswerWithActuators(const dynamics::WaitingCommands::Comman
 
 void ControllerNode::AnswerWithWrench(const dynamics::WaitingCommands::Command& command) {
   double fraction[6];
-  dynamics::VelocityController(scenario_.world.control, scenario_.world.vehicle, command.v_des_W,
-                               nav_, fraction);
-  const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(scenario_.world.vehicle, fraction);
+  dynamics::VelocityController(scenario_.world.control, believed_, command.v_des_W, nav_, fraction);
+  const dynamics::Wrench<double> wrench = dynamics::ScaleWrench(believed_, fraction);
   wrench_.header.stamp = TimeOf(command.stamp);
   SetVector(wrench.force, &wrench_.wrench.force);
   SetVector(wrench.moment, &wrench_.wrench.torque);

@@ -46,6 +46,7 @@ class ControllerNode {
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   dynamics::WorldScenario scenario_;
+  dynamics::VehicleConfig believed_;  ///< what the AUV takes itself for
   int id_;
   std::string body_frame_;
   TimeNs period_;           ///< of decisions

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/clock.hpp"
+#include "marl_trainer/learn/stopwatch.hpp"
 #include "stg_env/env/decide.hpp"
 #include "stg_env/env/vector_env.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/clock.hpp"
+#include "marl_trainer/learn/stopwatch.hpp"
 #include "started_by_mpi.hpp"
 
 namespace stg::learn {

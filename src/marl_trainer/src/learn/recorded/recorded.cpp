@@ -86,10 +86,8 @@ bool RecordedEpisode::Complete(int episode_steps) const {
          std::all_of(steps.begin(), steps.end(), [all](const auto& s) { return s.size() >= all; });
 }
 
-EpisodeAssembler::EpisodeAssembler(const Scenario& scenario, std::string source)
-    : agents_(scenario.run.agents),
-      episode_steps_(scenario.run.time.episode_steps),
-      source_(std::move(source)) {}
+EpisodeAssembler::EpisodeAssembler(const RunConfig& run, std::string source)
+    : agents_(run.agents), episode_steps_(run.time.episode_steps), source_(std::move(source)) {}
 
 RecordedEpisode* EpisodeAssembler::At(std::uint32_t episode, TimeNs start) {
   if (taken_.count({start, episode}) > 0) {
@@ -169,12 +167,12 @@ std::vector<RecordedEpisode> EpisodeAssembler::TakeAll() {
   return all;
 }
 
-EpisodeChecker::EpisodeChecker(const Scenario& scenario, int state_size,
-                               const agent::Policy& policy)
-    : agents_(scenario.run.agents),
-      episode_steps_(scenario.run.time.episode_steps),
+EpisodeChecker::EpisodeChecker(const RunConfig& run, const agent::ObservationConfig& observation,
+                               int state_size, const agent::Policy& policy)
+    : agents_(run.agents),
+      episode_steps_(run.time.episode_steps),
       state_size_(state_size),
-      layout_version_(LayoutVersion(scenario)),
+      layout_version_(LayoutVersion(observation)),
       policy_(policy) {}
 
 Finding EpisodeChecker::Check(const RecordedEpisode& episode) const {
@@ -253,8 +251,8 @@ double EpisodeChecker::LogProbability(const AgentRecord& r) const {
                                    r.action.data(), static_cast<int>(mean.size()));
 }
 
-std::uint32_t LayoutVersion(const Scenario& scenario) {
-  const std::string layout = agent::ObservationLayout(scenario.agent.observation);
+std::uint32_t LayoutVersion(const agent::ObservationConfig& observation) {
+  const std::string layout = agent::ObservationLayout(observation);
   return static_cast<std::uint32_t>(
       std::strtoul(layout.c_str() + layout.find('-') + 1, nullptr, 10));
 }

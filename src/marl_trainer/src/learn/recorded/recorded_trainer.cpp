@@ -7,32 +7,33 @@
 #include <numeric>
 
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/clock.hpp"
 #include "marl_trainer/learn/collect/collector.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/run/train_log.hpp"
+#include "marl_trainer/learn/stopwatch.hpp"
 
 namespace stg::learn {
 namespace {
 
-std::shared_ptr<const agent::Policy> LoadStart(const std::string& path, const Scenario& scenario) {
+std::shared_ptr<const agent::Policy> LoadStart(const std::string& path,
+                                               const agent::AgentModel& model) {
   if (path.empty()) return nullptr;
   auto policy = std::make_shared<const agent::Policy>(agent::Policy::LoadOnnx(path));
-  policy->RequireFits(scenario.model());
+  policy->RequireFits(model);
   const double scale = policy->metadata().action_scale;
-  if (std::abs(scale - scenario.world.control.action_scale) > 1e-6) {
+  if (std::abs(scale - model.control.action_scale) > 1e-6) {
     throw UserError(path + ": its action scale is " + std::to_string(scale) +
                     ", the scenario's control.action_scale " +
-                    std::to_string(scenario.world.control.action_scale));
+                    std::to_string(model.control.action_scale));
   }
   return policy;
 }
 
 /// The setup for collections of whole episodes, with the actor's shape taken from the policy to
 /// start from.
-TrainSetup Fit(TrainSetup setup, const Scenario& scenario, const agent::Policy* start) {
+TrainSetup Fit(TrainSetup setup, const RunConfig& run, const agent::Policy* start) {
   setup.common.envs = 1;
-  setup.common.horizon = scenario.run.time.episode_steps;
+  setup.common.horizon = run.time.episode_steps;
   setup.common.stagger = false;
   if (start != nullptr) setup.own->FitPolicy(*start);
   setup.ValidateOrThrow();
@@ -84,23 +85,23 @@ struct StepArrays {
 
 }  // namespace
 
-TrainSetup RecordedSetup(const Scenario& scenario, const std::string& algorithm) {
+TrainSetup RecordedSetup(const RunConfig& run, const std::string& algorithm) {
   TrainSetup setup(algorithm, "fast");
   setup.common.envs = 1;
-  setup.common.horizon = scenario.run.time.episode_steps;
+  setup.common.horizon = run.time.episode_steps;
   setup.own->ApplyRecordings(setup.common);
   return setup;
 }
 
 RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainSetup& setup,
                                  const Options& options)
-    : RecordedTrainer(scenario, setup, options, LoadStart(options.policy, scenario)) {}
+    : RecordedTrainer(scenario, setup, options, LoadStart(options.policy, scenario.model())) {}
 
 RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainSetup& setup,
                                  const Options& options,
                                  const std::shared_ptr<const agent::Policy>& start)
     : scenario_(scenario),
-      setup_(Fit(setup, scenario, start.get())),
+      setup_(Fit(setup, scenario.run, start.get())),
       options_(options),
       problem_(ProblemOf(scenario)),
       pool_(options.workers),
@@ -142,7 +143,8 @@ void RecordedTrainer::Restore(const TrainState& state, const agent::Policy* star
 }
 
 Finding RecordedTrainer::Check(const RecordedEpisode& episode) const {
-  return EpisodeChecker(scenario_, state_size(), *policy_).Check(episode);
+  return EpisodeChecker(scenario_.run, scenario_.agent.observation, state_size(), *policy_)
+      .Check(episode);
 }
 
 double RecordedTrainer::Observe(const RecordedEpisode& episode, int shard) {

@@ -11,8 +11,8 @@
 
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/clock.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/learn/stopwatch.hpp"
 #include "stg_agent/entities/entity_pilot.hpp"
 #include "stg_env/env/evaluation.hpp"
 

@@ -15,7 +15,7 @@ struct AgentOutput {
   Vec3<double> cmd_vel_W;
   /// tau / tau_max. tau6: the command itself. velocity3: what the velocity controller
   /// makes of cmd_vel_W and the same NavState, bit for bit; a runner that has no
-  /// controller of its own may apply it through ScaleWrench.
+  /// controller of its own may apply it through ScaleWrench. Zero where an autopilot steers.
   double fraction[dynamics::kWrenchSize] = {};
   /// Executed action in [-1, 1]: after rate limit and smoothing (velocity3), or clipped
   /// (tau6). The first action_size() entries count.
@@ -75,7 +75,7 @@ class Agent {
   /// State of knowledge of the last Observe.
   const Knowledge<double>& knowledge() const { return one_.knowledge(); }
   TaskView task() const { return TaskOf(model().observation, knowledge()); }
-  const NeighbourTable& neighbours() const { return one_.inbox(0).neighbours(); }
+  const NeighbourTable& neighbours() const { return one_.neighbours(0); }
   TargetEstimate estimate() const { return one_.inbox(0).estimate(); }
   TargetBelief belief() const { return one_.inbox(0).belief(); }
   /// Target this agent is tasked with.

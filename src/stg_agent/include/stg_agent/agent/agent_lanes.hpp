@@ -53,6 +53,8 @@ class LanedAgent {
   int id() const { return inbox(0).id(); }
   const AgentModel& model() const { return constants_->model; }
   const Inbox& inbox(int lane) const { return inboxes_[static_cast<std::size_t>(lane)]; }
+  /// The neighbours' packets of one lane, as received.
+  const NeighbourTable& neighbours(int lane) const { return neighbours_.table(lane); }
   /// Decisions begun in the episode of a lane.
   int decisions(int lane) const { return static_cast<int>(Lane(mind_.decisions(), lane)); }
   /// All that one lane's agent knows after Observe.
@@ -61,9 +63,6 @@ class LanedAgent {
  private:
   Inbox& At(int lane) { return inboxes_[static_cast<std::size_t>(lane)]; }
   void Think(const dynamics::Navigation<T>& nav, const Mask<T>& lanes);
-  /// Drops the neighbours that are too old in the lanes of the mask.
-  void Forget(const Mask<T>& lanes, const PerLane<T, TimeNs>& now);
-
   SharedConstants constants_;
   std::vector<Inbox> inboxes_;  // [lanes]
   std::unique_ptr<acoustics::LinkEstimator> links_;
@@ -72,7 +71,7 @@ class LanedAgent {
   mutable std::vector<EntityMemory> memory_;  // [lanes]; a view hands it to the pilot
   mutable std::vector<SearchMemory> search_;  // [lanes], or empty: no map; a view hands it to a law
   // As before the present Observe, for lanes that do not take part in it.
-  Neighbourhood<T> neighbours_before_;
+  typename Neighbourhood<T>::Sights sights_before_;
   Mind<T> mind_before_;
 };
 

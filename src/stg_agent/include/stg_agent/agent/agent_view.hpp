@@ -19,11 +19,12 @@ class AgentView {
  public:
   using Action = std::array<double, dynamics::kMaxActionSize>;
 
-  AgentView(const AgentModel& model, const Inbox& inbox, const Knowledge<double>& knowledge,
-            const Action& action, const SightReader& sights, EntityMemory* memory,
-            SearchMemory* search = nullptr)
+  AgentView(const AgentModel& model, const Inbox& inbox, const NeighbourTable& neighbours,
+            const Knowledge<double>& knowledge, const Action& action, const SightReader& sights,
+            EntityMemory* memory, SearchMemory* search = nullptr)
       : model_(model),
         inbox_(inbox),
+        neighbours_(neighbours),
         knowledge_(knowledge),
         action_(action),
         sights_(sights),
@@ -47,7 +48,7 @@ class AgentView {
   /// The same in the true world frame, with a whole covariance.
   TargetBelief belief() const { return inbox_.belief(); }
   /// The neighbours' packets, as received.
-  const NeighbourTable& neighbours() const { return inbox_.neighbours(); }
+  const NeighbourTable& neighbours() const { return neighbours_; }
   /// A known neighbour as of the last Observe.
   NeighbourSight<double> sight(int id) const { return sights_.at(id); }
   /// Writes the `count` known neighbours nearest to this AUV, nearest first (ties: lower index
@@ -66,6 +67,7 @@ class AgentView {
  private:
   const AgentModel& model_;
   const Inbox& inbox_;
+  const NeighbourTable& neighbours_;
   Knowledge<double> knowledge_;
   Action action_;
   SightReader sights_;

@@ -5,6 +5,7 @@
 
 #include "auv_common/numbers/lane_structs.hpp"
 #include "auv_dynamics/control/control.hpp"
+#include "auv_dynamics/helm/helm.hpp"
 #include "auv_dynamics/vehicle/vehicle_state.hpp"
 #include "stg_agent/agent/error_window.hpp"
 #include "stg_agent/graph/features.hpp"
@@ -25,7 +26,8 @@ template <class T>
 class Mind {
  public:
   explicit Mind(const AgentModel& s, Bookkeeping books = Bookkeeping::kAgent)
-      : release_(books == Bookkeeping::kTruth && s.observation.release_bookkeeping),
+      : steered_(dynamics::Helm::Steers(s.vehicle)),
+        release_(books == Bookkeeping::kTruth && s.observation.release_bookkeeping),
         errors_(std::max(1, s.observation.error_window), release_ ? ErrorMean::kRelease
                                                          : books == Bookkeeping::kTruth
                                                              ? ErrorMean::kTruth
@@ -93,7 +95,8 @@ class Mind {
     k.closest = n.closest;
   }
 
-  /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed.
+  /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed. Of a
+  /// vehicle that an autopilot steers tau stays zero: there is no force that the agent commands.
   /// Returns the desired velocity, world axes [m/s]; zero for tau6.
   /// @param wanted [action_size], clipped to [-1, 1]
   Vec3<T> Act(const AgentModel& s, const T* wanted) {
@@ -103,6 +106,10 @@ class Mind {
   template <class Rpy>
   Vec3<T> Act(const AgentModel& s, const T* wanted, const Rpy& rpy) {
     Knowledge<T>& k = knowledge;
+    if (steered_) {
+      dynamics::SmoothAction(s.control, s.control.action_size(), wanted, action.data());
+      return dynamics::DesiredVelocity(s.vehicle, action.data());
+    }
     return dynamics::ExecuteAction(s.control, s.vehicle, wanted, k.R_WB, k.v_WB, rpy, k.w_WB_B,
                                    action.data(), k.tau);
   }
@@ -125,6 +132,7 @@ class Mind {
   std::array<T, dynamics::kMaxActionSize> action{};
 
  private:
+  bool steered_;  // by an autopilot
   bool release_;
   ErrorWindow<T> errors_;
   T decisions_ = T(0.0);

@@ -22,7 +22,7 @@ struct Knowledge : Tracking<T> {
   Vec3<T> v_WT;  ///< velocity of the target
   // Offsets of up to three neighbours; zero where there is none.
   Vec3<T> neighbour[kNeighbourSlots];
-  // tau / tau_max of the previous step.
+  // tau / tau_max of the previous step; zero where an autopilot steers.
   T tau[dynamics::kWrenchSize] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
   // Tracking over time (Eq. 14).
   T mean_error = T(0.0);  ///< mean of e over the last k decisions

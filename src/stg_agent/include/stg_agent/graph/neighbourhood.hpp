@@ -6,10 +6,10 @@
 #include "auv_common/numbers/lane_structs.hpp"
 #include "stg_agent/agent_config.hpp"
 #include "stg_agent/graph/knowledge.hpp"
-#include "stg_agent/packet/packet.hpp"
+#include "stg_agent/graph/neighbour_table.hpp"
 
-/// The neighbours of one AUV (T = double), or of the same AUV in kLanes environments (T = Pack), as
-/// a decision sees them: what each one last reported, carried forward to now.
+/// The neighbours of one AUV (T = double), or of the same AUV in kLanes environments (T = Pack):
+/// what each one last reported, and the same carried forward to now, as a decision sees it.
 namespace stg::agent {
 
 /// Dead reckoning p + v age inside the walls [m].
@@ -53,31 +53,42 @@ class SightReader {
   int lane_ = 0;
 };
 
-/// Fixed capacity (the swarm); allocates nothing after construction.
+/// The one store of neighbours. Each lane has a table of the packets' contents; the sights hold
+/// what a decision needs of all tables, side by side, and no caller writes to either alone. Fixed
+/// capacity (the swarm); allocates nothing after construction.
 template <class T>
 class Neighbourhood {
  public:
-  explicit Neighbourhood(const AgentModel& model);
+  using Sights = std::vector<NeighbourSight<T>>;
 
-  /// Forgets everybody.
+  /// @param self the AUV whose neighbours these are
+  Neighbourhood(const AgentModel& model, int self);
+
+  /// Forgets all neighbours in a lane.
   void Clear(int lane);
-  /// The newest report of state.source in a lane.
-  void Set(int lane, const NeighbourState& state);
-  void Drop(int lane, int id);
+  /// A packet's content in a lane; see NeighbourTable::Update.
+  bool Update(int lane, const NeighbourState& state);
+  /// Forgets neighbours silent for too long at time `now`.
+  void Forget(int lane, TimeNs now);
 
   /// Ages all reports to a time; true where one is older than track.neighbour_max_age_s.
   Mask<T> Age(const T& now_ns);
   /// Carries all reports forward by their age, seen from own position p_WB [m].
   void Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links);
-  /// Takes back the lanes outside the mask.
-  void KeepOthers(const Mask<T>& lanes, const Neighbourhood& before);
+  /// Takes back the sights of the lanes outside the mask.
+  void KeepOthers(const Mask<T>& lanes, const Sights& before);
 
   /// [agents]; the own one is never known.
-  const std::vector<NeighbourSight<T>>& sights() const { return sights_; }
+  const Sights& sights() const { return sights_; }
+  /// The packets' contents of one lane.
+  const NeighbourTable& table(int lane) const { return tables_[static_cast<std::size_t>(lane)]; }
+  /// The target estimates of a lane have been taken.
+  void MarkRead(int lane) { tables_[static_cast<std::size_t>(lane)].MarkRead(); }
 
  private:
   double max_age_s_, wall_m_;
-  std::vector<NeighbourSight<T>> sights_;
+  std::vector<NeighbourTable> tables_;  // [lanes]
+  Sights sights_;
   // [agents] padded to whole packs; T = double
   std::vector<double> distance_, age_, learnt_, quality_;
 };

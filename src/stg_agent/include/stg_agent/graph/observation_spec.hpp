@@ -80,7 +80,7 @@ inline constexpr BlockDescription kBlocks[] = {
     {"target_offset_body", 3, "target_offset in body axes"},
     {"relative_velocity_body", 3, "relative_velocity in body axes"},
     {"line_of_sight", 3, "unit vector to the target, body axes"},
-    {"force", 6, "tau / tau_max of the previous decision"},
+    {"force", 6, "tau / tau_max of the previous decision; zero where an autopilot steers"},
     {"tracking", kTrackingNumbers, "Eq. 14"},
     {"phase", kPhases, "Eq. 15, one-hot"},
     {"quality", kQualities, "Eq. 16, one-hot"},

@@ -2,21 +2,23 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/graph/knowledge.hpp"
+#include "stg_agent/graph/neighbour_table.hpp"
 #include "stg_agent/graph/target_view.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
-#include "stg_agent/inbox/neighbour_table.hpp"
 #include "stg_agent/localization/localizer.hpp"
 
 namespace stg::agent {
 
 /// What comes in to one AUV in one environment: the cue, its own detections, its neighbours'
-/// packets; and what it tells them. What happens at different times in different environments is
-/// here; the arithmetic that all of them share is in Mind.
+/// packets; and what goes out to them. What happens at different times in different environments is
+/// here; the arithmetic that all of them share is in Mind, and the neighbours' states are in
+/// Neighbourhood.
 ///
 /// The result does not depend on the order in which things come in between two Advances.
 /// Deterministic; allocates nothing after construction.
@@ -31,14 +33,13 @@ class Inbox {
   /// Advance counts. A non-finite one throws std::invalid_argument: a bug of the caller.
   void Detect(const dynamics::Detection& detection);
 
-  /// A packet that the modem gave: the state it holds when that is news, else null. One that does
-  /// not decode is counted and ignored.
-  const NeighbourState* Receive(const acoustics::Reception& reception);
+  /// A packet that the modem gave: the state that it holds. One that does not decode is counted,
+  /// and holds none.
+  std::optional<NeighbourState> Receive(const acoustics::Reception& reception);
 
-  /// Forgets neighbours silent for too long at time `now`.
-  void Forget(TimeNs now) { neighbours_.Forget(now); }
   /// Brings the target track to time `now`, with all that came in.
-  void Advance(TimeNs now, const OwnReckoning& own = {});
+  /// @param neighbours whose unread target estimates are taken
+  void Advance(TimeNs now, const NeighbourTable& neighbours, const OwnReckoning& own = {});
 
   /// The target as of the last Advance.
   /// @param freshness_s information older than this is not current
@@ -54,7 +55,6 @@ class Inbox {
   std::uint32_t episode() const { return episode_; }
   /// Time of the last Advance.
   TimeNs now() const { return now_; }
-  const NeighbourTable& neighbours() const { return neighbours_; }
   /// The target in the frame of the own navigation, as of the last Advance.
   TargetEstimate estimate() const { return filter_->estimate(); }
   /// The same in the true world frame, with what the own navigation adds to its deviation.
@@ -65,13 +65,12 @@ class Inbox {
   std::uint64_t refused_packets() const { return refused_packets_; }
 
  private:
-  void FuseNewest();
+  void FuseNewest(const NeighbourTable& neighbours);
   /// Turns what another AUV reported from its frame into the own one.
   void ToOwnFrame(NeighbourState* state) const;
 
   SharedConstants constants_;
   int id_, target_;
-  NeighbourTable neighbours_;
   std::unique_ptr<TargetFilter> filter_;
   std::unique_ptr<Localizer> localizer_;  // null: none is chosen
   dynamics::Cue cue_;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "stg_agent/inbox/neighbour_table.hpp"
+#include "stg_agent/graph/neighbour_table.hpp"
 #include "stg_agent/search/search_map.hpp"
 
 namespace stg::agent {

@@ -25,7 +25,8 @@ constexpr double kLeastFalseShare = 1e-3;
 
 SightingModel::SightingModel(const AgentModel& s) {
   const auto navigation = dynamics::NavigationSystems().Make(
-      s.navigation.kind, s.navigation.kinds, {s.navigation, s.run.agents, s.run.time.dt_s});
+      s.navigation.kind, s.navigation.kinds,
+      {s.navigation, s.run.agents, s.run.time.dt_s, s.navigation});
   const auto sensor =
       dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing.sensors, s.sensing);
   if (!navigation->perfect()) {

@@ -21,9 +21,12 @@ struct Scenario {
   agent::AgentConfig agent;
   task::RewardConfig reward;
   task::CriticConfig critic;
+  config::Differences agent_model;  ///< of agent::KeysOfModel; empty: agents know what is true
 
   /// What its agents know.
-  agent::AgentModel model() const { return agent::ModelOf(run, world, channel, agent); }
+  agent::AgentModel model() const {
+    return agent::ModelOf(run, world, channel, agent, agent_model);
+  }
   /// What its task judges by.
   task::JudgeConfig judge() const { return {run, world, agent, reward, critic}; }
 

@@ -6,8 +6,9 @@
 
 namespace stg::env {
 
-TruthSource::TruthSource(const agent::AgentModel& model)
+TruthSource::TruthSource(const agent::AgentModel& model, double range_m)
     : model_(model),
+      range_m_(range_m),
       exact_angles_(model.vehicle.integrator == dynamics::Integrator::kSemiImplicit),
       minds_(static_cast<std::size_t>(model.run.agents),
              agent::Mind<Pack>(model, agent::Bookkeeping::kTruth)),
@@ -106,7 +107,7 @@ Pack TruthSource::LinkQuality(const dynamics::World& world) const {
   Pack sum = zero, edges = zero;
   for (int i = 0; i < model_.run.agents; ++i) {
     for (int j = i + 1; j < model_.run.agents; ++j) {
-      const Pack q = acoustics::RangeQuality(world.distance(i, j), model_.channel.range_m);
+      const Pack q = acoustics::RangeQuality(world.distance(i, j), range_m_);
       sum += q;
       edges += Select(q > zero, one, zero);
     }

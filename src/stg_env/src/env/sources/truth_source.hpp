@@ -11,7 +11,8 @@ namespace stg::env {
 /// same minds as the agents', with true states for inputs.
 class TruthSource : public InformationSource {
  public:
-  explicit TruthSource(const agent::AgentModel& model);
+  /// @param range_m of links, in truth; the model may have another one
+  TruthSource(const agent::AgentModel& model, double range_m);
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;
   void Observe(const dynamics::World& world, const LaneSet& lanes) override;
@@ -31,6 +32,7 @@ class TruthSource : public InformationSource {
   void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
 
   agent::AgentModel model_;
+  double range_m_;
   bool exact_angles_;                              // the integrator keeps roll, pitch and yaw
   std::vector<agent::Mind<Pack>> minds_;           // [agent]
   std::vector<agent::Mind<Pack>> before_;          // as minds_ before the present Observe

@@ -72,7 +72,7 @@ struct RecordedEpisode {
 /// when its step 0 was, so that two runs in one bag do not mix.
 class EpisodeAssembler {
  public:
-  EpisodeAssembler(const Scenario& scenario, std::string source);
+  EpisodeAssembler(const RunConfig& run, std::string source);
 
   /// @param start time of the episode's step 0. @param agent in [0, agents).
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent, AgentRecord record);
@@ -109,7 +109,8 @@ class EpisodeChecker {
   static constexpr double kLogProbabilityTolerance = 1e-3;
 
   /// @param policy must outlive this object, and fit the scenario.
-  EpisodeChecker(const Scenario& scenario, int state_size, const agent::Policy& policy);
+  EpisodeChecker(const RunConfig& run, const agent::ObservationConfig& observation, int state_size,
+                 const agent::Policy& policy);
   /// The first flaw found, kNone for an episode to learn from.
   Finding Check(const RecordedEpisode& episode) const;
 
@@ -124,7 +125,7 @@ class EpisodeChecker {
 };
 
 /// Version in ObservationLayout(): 1 for "stg-1:...".
-std::uint32_t LayoutVersion(const Scenario& scenario);
+std::uint32_t LayoutVersion(const agent::ObservationConfig& observation);
 
 /// How many episodes were used, and dropped for which reason.
 struct RecordingReport {

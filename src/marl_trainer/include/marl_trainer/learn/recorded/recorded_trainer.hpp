@@ -72,7 +72,6 @@ class RecordedTrainer {
 };
 
 /// Defaults for updates on few whole episodes: more passes over less data than the presets.
-TrainSetup RecordedSetup(const Scenario& scenario,
-                         const std::string& algorithm = DefaultAlgorithm());
+TrainSetup RecordedSetup(const RunConfig& run, const std::string& algorithm = DefaultAlgorithm());
 
 }  // namespace stg::learn

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/learn/clock.hpp"
 #include "marl_trainer/learn/collect/collector.hpp"
 #include "marl_trainer/learn/run/run_folder.hpp"
 #include "marl_trainer/learn/run/train_log.hpp"
+#include "marl_trainer/learn/stopwatch.hpp"
 
 namespace stg::learn {
 

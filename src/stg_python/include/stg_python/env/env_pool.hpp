@@ -12,13 +12,13 @@ namespace stg::python {
 /// The environments of one learner on any number of threads: one env::VectorEnv per thread, which
 /// share the numbering of environments, so that nothing but speed depends on the threads. All
 /// arrays are those of all environments. Not thread-safe.
-class Fleet {
+class EnvPool {
  public:
   /// @param options `envs` of them; `first_env` and `total_envs` are set here
   /// @param workers threads, the caller's included; at most one for each kMixBlock environments
   /// are used. Throws UserError as VectorEnv does, for fewer than one, and for more
   /// environments than this machine's memory holds.
-  Fleet(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers);
+  EnvPool(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers);
 
   void Reseed(std::uint64_t seed);
   /// See VectorEnv; `env` counts through all threads.

@@ -1,4 +1,4 @@
-#include "auv_dynamics/check/recorded_motion.hpp"
+#include "auv_dynamics/playback/recorded_motion.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "stg_python/env/fleet.hpp"
+#include "stg_python/env/env_pool.hpp"
 
 #include <unistd.h>
 
@@ -40,7 +40,8 @@ int Busy(const std::vector<Scenario>& mix, int envs, int workers) {
 
 }  // namespace
 
-Fleet::Fleet(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers)
+EnvPool::EnvPool(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options,
+                 int workers)
     : envs_(options.envs), pool_(Busy(mix, options.envs, workers)) {
   const int blocks = (envs_ + env::kMixBlock - 1) / env::kMixBlock;
   for (int w = 0; w < pool_.workers(); ++w) {
@@ -54,7 +55,7 @@ Fleet::Fleet(const std::vector<Scenario>& mix, const env::VectorEnvOptions& opti
   }
 }
 
-env::EnvArrays Fleet::PartOf(const env::EnvArrays& all, const Part& part) const {
+env::EnvArrays EnvPool::PartOf(const env::EnvArrays& all, const Part& part) const {
   const env::VectorEnv& envs = *part.envs;
   const auto from = [&part](auto* array, std::ptrdiff_t row) {
     return array == nullptr ? nullptr : array + part.first * row;
@@ -71,36 +72,36 @@ env::EnvArrays Fleet::PartOf(const env::EnvArrays& all, const Part& part) const 
   return own;
 }
 
-Fleet::Place Fleet::at(int env) const {
+EnvPool::Place EnvPool::at(int env) const {
   const auto after = std::upper_bound(parts_.begin(), parts_.end(), env,
                                       [](int e, const Part& part) { return e < part.first; });
   const Part& part = *std::prev(after);
   return {*part.envs, env - part.first};
 }
 
-void Fleet::Reseed(std::uint64_t seed) {
+void EnvPool::Reseed(std::uint64_t seed) {
   for (const Part& part : parts_) part.envs->Reseed(seed);
 }
 
-void Fleet::RestartAt(std::uint64_t k, const env::EnvArrays& out) {
+void EnvPool::RestartAt(std::uint64_t k, const env::EnvArrays& out) {
   pool_.Run(workers(), [&](int w, int) {
     const Part& part = parts_[static_cast<std::size_t>(w)];
     part.envs->RestartAt(k, PartOf(out, part));
   });
 }
 
-void Fleet::ResetEnv(int env, std::uint64_t seed, const env::EnvArrays& out) {
+void EnvPool::ResetEnv(int env, std::uint64_t seed, const env::EnvArrays& out) {
   for (const Part& part : parts_) {
     if (env < part.first || env >= part.first + part.envs->envs()) continue;
     part.envs->ResetEnv(env - part.first, seed, PartOf(out, part));
   }
 }
 
-void Fleet::Step(const float* actions, const env::EnvArrays& out) { StepAll(actions, out); }
-void Fleet::Step(const double* actions, const env::EnvArrays& out) { StepAll(actions, out); }
+void EnvPool::Step(const float* actions, const env::EnvArrays& out) { StepAll(actions, out); }
+void EnvPool::Step(const double* actions, const env::EnvArrays& out) { StepAll(actions, out); }
 
 template <class Number>
-void Fleet::StepAll(const Number* actions, const env::EnvArrays& out) {
+void EnvPool::StepAll(const Number* actions, const env::EnvArrays& out) {
   const auto step = [&](int w, int) {
     const Part& part = parts_[static_cast<std::size_t>(w)];
     const env::VectorEnv& envs = *part.envs;

@@ -1,4 +1,4 @@
-#include "auv_dynamics/vehicle/fleet.hpp"
+#include "auv_dynamics/vehicle/vehicle_set.hpp"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 
 namespace stg::dynamics {
 
-Fleet::Fleet(const VehicleConfig& config, int vehicles) {
+VehicleSet::VehicleSet(const VehicleConfig& config, int vehicles) {
   std::map<std::string, const Vehicle*> known;
   for (int i = 0; i < vehicles; ++i) {
     const auto [kind, is_new] = known.try_emplace(config.model_of(i));

@@ -34,7 +34,7 @@ class NeighbourTable {
 
   /// Some neighbour's target estimate is unread.
   bool unread() const { return unread_; }
-  /// This neighbour's is.
+  /// The target estimate of this neighbour is unread.
   bool unread(int id) const { return slot(id).unread_target; }
   /// The track has taken all target estimates.
   void MarkRead();

@@ -1,4 +1,4 @@
-#include "decider.hpp"
+#include "decider_lookup.hpp"
 
 #include <ros/console.h>
 

@@ -1,4 +1,4 @@
-#include "stg_agent/inbox/neighbour_table.hpp"
+#include "stg_agent/graph/neighbour_table.hpp"
 
 #include <algorithm>
 

@@ -9,10 +9,10 @@ namespace stg::dynamics {
 
 /// The vehicles of a world, which may be of several kinds (`vehicle.models`). Commands and internal
 /// states of all of them stand in rows of one length, that of the kind that needs most.
-class Fleet {
+class VehicleSet {
  public:
   /// @param vehicles how many there are
-  Fleet(const VehicleConfig& config, int vehicles);
+  VehicleSet(const VehicleConfig& config, int vehicles);
 
   const Vehicle& operator[](int i) const { return *of_[static_cast<std::size_t>(i)]; }
   /// Numbers of a row of commands, of which a vehicle takes as many as it has actuators.
