@@ -51,6 +51,8 @@ def _what_it_takes(name, text, default):
         fits, takes = isinstance(given, bool), "true or false"
     elif name in SEEDS and usual != ANY_SEED:
         fits, takes = _is_whole(given) and given >= 0, "a whole number from 0"
+    elif name == "agents":
+        fits, takes = _is_whole(given), "a whole number, such as 4"
     elif _is_whole(usual):
         fits, takes = _is_whole(given), f"a whole number, such as {default}"
     elif _is_number(usual):

@@ -19,14 +19,86 @@ void Describe(TaskConfig* c, config::Table* t) {
   t->AddOptional("lost_error_m", &c->lost_error_m, "0.0", config::NonNegative(1e5), "m",
                  "in open water a target whose own estimate is off by more counts as lost, too; 0: "
                  "no matter how far off");
+  t->AddOptional(
+      "assignment", config::Enum(&c->assignment, {"modulo", "free"}), "modulo", config::kNone, "-",
+      "which target an AUV follows: target i modulo their number, or the one that it "
+      "chooses; with free it keeps a belief of every target and shares what it measures of all");
   t->Moved("reward.desired_distance_m", "task.desired_distance_m");
   t->Moved("reward.lost_distance_m", "task.lost_distance_m");
 }
+
+bool FleetConfig::present(int agent, double time_s) const {
+  bool there = true;
+  double newest = -1.0;
+  const auto take = [&](const std::vector<std::vector<double>>& rows, bool joins) {
+    for (const std::vector<double>& row : rows) {
+      if (static_cast<int>(row[1]) != agent || row[0] > time_s || row[0] < newest) continue;
+      newest = row[0];
+      there = joins;
+    }
+  };
+  take(leave, false);
+  take(join, true);
+  return there;
+}
+
+void Describe(FleetConfig* c, config::Table* t) {
+  t->Section("fleet");
+  t->AddOptional(
+      "leave", config::RowsRef{&c->leave, 2}, "[]", config::Within(0.0, 1e9), "s, -",
+      "when which AUV leaves the swarm: rows of a time from the start of the episode "
+      "and an index; it falls silent, senses nothing, and its command is to stand still");
+  t->AddOptional("join", config::RowsRef{&c->join, 2}, "[]", config::Within(0.0, 1e9), "s, -",
+                 "when which AUV that has left joins again, where it is, knowing nothing");
+}
+
+namespace {
+
+std::optional<config::Violation> FindConflict(const FleetConfig& c, int agents) {
+  for (const auto* rows : {&c.leave, &c.join}) {
+    for (const std::vector<double>& row : *rows) {
+      if (row[1] >= agents || row[1] != std::floor(row[1])) {
+        return config::Violation{{rows == &c.leave ? "fleet.leave" : "fleet.join", "agents"},
+                                 "a row is a time from 0 and the index of an AUV"};
+      }
+    }
+  }
+  for (const std::vector<double>& row : c.join) {
+    if (c.present(static_cast<int>(row[1]), std::nextafter(row[0], -1.0))) {
+      return config::Violation{{"fleet.join", "fleet.leave"},
+                               "an AUV joins that has not left before"};
+    }
+  }
+  return {};
+}
+
+/// What targets that are chosen freely do not go together with.
+std::optional<config::Violation> FindFreeConflict(const AgentModel& model) {
+  if (!model.task.free()) return {};
+  if (model.target.count > kMostFreeTargets) {
+    return config::Violation{{"task.assignment", "target.count"},
+                             "a packet can tell of " + std::to_string(kMostFreeTargets) +
+                                 " targets that are chosen freely"};
+  }
+  if (model.track.search_cell_m > 0.0) {
+    return config::Violation{{"task.assignment", "track.search_cell_m"},
+                             "the search map is of one target, which is not chosen freely"};
+  }
+  if (model.locates()) {
+    return config::Violation{{"task.assignment", "localization.kind"},
+                             "packets with ranges have no room for what an AUV measures of targets "
+                             "that are chosen freely"};
+  }
+  return {};
+}
+
+}  // namespace
 
 void Describe(AgentConfig* c, config::Table* t) {
   Describe(&c->track, t);
   Describe(&c->observation, t);
   Describe(&c->task, t);
+  Describe(&c->fleet, t);
   Describe(&c->localization, t);
   Describe(&c->stations, t);
 }
@@ -48,9 +120,11 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
         {"channel.physical.modem.packet_bytes", "channel.physical.modem.profile"},
         "the packet of an agent has " + std::to_string(kPacketBytes) + " bytes"};
   }
+  if (auto violation = FindConflict(s.agent.fleet, s.run.agents)) return violation;
   const AgentModel model = s.model();
   if (auto violation = FindFilterConflict(model)) return violation;
   if (auto violation = FindLocalizationConflict(model)) return violation;
+  if (auto violation = FindFreeConflict(model)) return violation;
   if (s.agent.observation.quality_medium > s.agent.observation.quality_high) {
     return config::Violation{{"observation.quality_medium", "observation.quality_high"},
                              "medium quality cannot begin above high quality"};
@@ -94,6 +168,7 @@ AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
                    agent.track,
                    agent.observation,
                    agent.task,
+                   agent.fleet,
                    std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
                    agent.localization,
                    agent.stations};

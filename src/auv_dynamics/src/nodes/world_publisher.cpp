@@ -196,6 +196,11 @@ void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
     const dynamics::Cue cue = world.InitialCue(0, i, scenario_.world.target.of(i));
     SetVector(cue.p_WT, &m.cue_position);
     m.cue_std = cue.std_m;
+    m.cues.clear();
+    for (int k = 0; k < world.targets(); ++k) {
+      m.cues.emplace_back();
+      SetVector(world.InitialCue(0, i, k).p_WT, &m.cues.back());
+    }
   }
 }
 

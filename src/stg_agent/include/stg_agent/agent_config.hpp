@@ -13,11 +13,29 @@
 
 namespace stg::agent {
 
+/// Which AUV follows which target: AUV i target i modulo their number, for good; or the one that it
+/// chooses, for which it keeps a belief of every target and takes every detection.
+enum class Assignment { kModulo, kFree };
+
 /// What every AUV knows of its task.
 struct TaskConfig {
   double desired_distance_m = 0.015;  ///< d*
   double lost_distance_m = 0.65;      ///< farther from the target than this, it counts as lost
   double lost_error_m = 0.0;  ///< judged: so does a target whose estimate is off by more; 0: no
+  Assignment assignment = Assignment::kModulo;
+
+  bool free() const { return assignment == Assignment::kFree; }
+};
+
+/// Members that leave the swarm and join it again: rows of a time from the start of the episode [s]
+/// and the index of an AUV. One that has left is silent, hears and senses nothing, and its command
+/// is to stand still; one that joins knows what its navigation says and nothing else.
+struct FleetConfig {
+  std::vector<std::vector<double>> leave, join;
+
+  bool changes() const { return !leave.empty(); }
+  /// The newest row of an AUV says whether it is there; of one without rows it is.
+  bool present(int agent, double time_s) const;
 };
 
 /// The agents' own sections: how they track, what they observe, what they are to do.
@@ -25,6 +43,7 @@ struct AgentConfig {
   TrackConfig track;
   ObservationConfig observation;
   TaskConfig task;
+  FleetConfig fleet;
   LocalizationConfig localization = {};
   StationsConfig stations = {};
 
@@ -47,6 +66,7 @@ struct AgentModel {
   TrackConfig track;
   ObservationConfig observation;
   TaskConfig task;
+  FleetConfig fleet;
   double max_current_mps = 0.0;  ///< of the uniform current; packets must hold speeds over ground
   LocalizationConfig localization = {};
   StationsConfig stations = {};  ///< where beacons are charted, which craft there are
@@ -56,10 +76,13 @@ struct AgentModel {
   /// Agents correct what they know of each other's positions.
   bool locates() const;
   int observation_size() const { return ObservationSpec(observation).size(); }
+  /// Targets that each AUV keeps a belief of.
+  int beliefs() const { return task.free() ? target.count : 1; }
 };
 
 /// Keys, units and ranges of the section.
 void Describe(TaskConfig* c, config::Table* t);
+void Describe(FleetConfig* c, config::Table* t);
 void Describe(AgentConfig* c, config::Table* t);
 
 /// Keys for which agents may have another value than the true one: dynamics::KeysOnBoard, and what

@@ -1,5 +1,6 @@
 #include "stg_agent/agent/agent_lanes.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace stg::agent {
@@ -46,6 +47,7 @@ LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
 template <class T>
 void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue) {
   At(lane).Reset(episode, cue);
+  SetLane(&present_, lane, 1.0);
   links_->Reset(lane);
   neighbours_.Clear(lane);
   mind_.Reset(lane);
@@ -57,17 +59,20 @@ void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& 
 
 template <class T>
 void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
+  if (!present(lane)) return;
   At(lane).Detect(detection);
   EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
-  if (detection.target != inbox(lane).target()) return;
-  if (!search_.empty()) search_[static_cast<std::size_t>(lane)].Detect(detection);
-  if (memory.ranged && detection.stamp <= memory.own_detection) return;
-  memory.ranged = true;
-  memory.own_detection = detection.stamp;
+  if (detection.target < 0 || detection.target >= model().target.count) return;
+  if (!search_.empty() && detection.target == inbox(lane).target()) {
+    search_[static_cast<std::size_t>(lane)].Detect(detection);
+  }
+  TimeNs& newest = memory.own_detection[static_cast<std::size_t>(detection.target)];
+  newest = std::max(newest, detection.stamp);
 }
 
 template <class T>
 void LanedAgent<T>::Receive(int lane, const acoustics::Reception& reception) {
+  if (!present(lane)) return;
   if (reception.source < model().run.agents) links_->Learn(lane, reception);
   const std::optional<NeighbourState> state = At(lane).Receive(reception);
   if (state) neighbours_.Update(lane, *state);
@@ -102,6 +107,7 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   const T taking_part = Select(lanes, T(1.0), T(0.0));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
+    Attend(lane, OfLane(nav.stamp, lane));
     At(lane).Advance(OfLane(nav.stamp, lane), neighbours(lane),
                      {Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane)});
     neighbours_.MarkRead(lane);
@@ -122,11 +128,34 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
 }
 
 template <class T>
+void LanedAgent<T>::Attend(int lane, TimeNs now) {
+  EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
+  if (memory.follow >= 0 && memory.follow != inbox(lane).target()) {
+    At(lane).Follow(memory.follow);
+    memory.followed_since = now;
+  }
+  memory.follow = -1;
+  if (!model().fleet.changes()) return;
+  const bool there = model().fleet.present(id(), Seconds(now));
+  if (there && !present(lane)) {
+    dynamics::Cue none;
+    none.target = -1;
+    Reset(lane, inbox(lane).episode(), none);
+  }
+  SetLane(&present_, lane, there ? 1.0 : 0.0);
+}
+
+template <class T>
 Vec3<T> LanedAgent<T>::Act(const T* action) {
   T finite(0.0);
   for (int k = 0; k < model().control.action_size(); ++k) finite += NonFiniteness(action[k]);
   if (Any(!(finite == T(0.0)))) throw std::invalid_argument("non-finite action");
-  return mind_.Act(model(), action);
+  if (!model().fleet.changes()) return mind_.Act(model(), action);
+  T still[dynamics::kMaxActionSize];
+  for (int k = 0; k < model().control.action_size(); ++k) {
+    still[k] = Select(present_ > T(0.5), action[k], T(0.0));
+  }
+  return mind_.Act(model(), still);
 }
 
 template <class T>

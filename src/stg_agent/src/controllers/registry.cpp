@@ -1,3 +1,4 @@
+#include "stg_agent/controllers/assign.hpp"
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/formation.hpp"
@@ -9,6 +10,7 @@ namespace stg::agent {
 
 ControllerRegistry& Controllers() {
   static ControllerRegistry registry("controller", {
+                                                       {"assign", MakeAssign},
                                                        {"contain", MakeContain},
                                                        {"encircle", MakeEncircle},
                                                        {"expanding_square", MakeExpandingSquare},

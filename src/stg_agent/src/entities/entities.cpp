@@ -1,6 +1,8 @@
+// Long because: every number of the layout is written here, in the order of the rows.
 #include "stg_agent/entities/entities.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 
@@ -59,11 +61,26 @@ double ClosestApproach(const Vec3<double>& r, const Vec3<double>& w, double* mis
   return t;
 }
 
-/// The newest own measurement of the target that a packet holds; false: none.
-bool Sighted(const EntityInput& in, const NeighbourState& report, double* age_s) {
-  if (report.target != in.target || report.sightings <= 0) return false;
-  *age_s = std::max(0.0, Seconds(in.memory.now - report.sighting[0].stamp));
-  return true;
+/// One target as its row takes it: the one that the AUV is tasked with, or another one.
+struct Subject {
+  int target;
+  const Knowledge<double>& knowledge;  ///< of this target
+  const TargetBelief& belief;
+  double velocity_std_mps, information_age_s;
+  bool followed;
+};
+
+/// The newest own measurement of a target that a packet holds; false: none.
+bool Sighted(const EntityInput& in, const Subject& t, const NeighbourState& report, double* age_s) {
+  const bool free = in.model.task.free();
+  if (!free && report.target != t.target) return false;
+  for (int k = 0; k < report.sightings; ++k) {
+    const dynamics::Detection& d = report.sighting[static_cast<std::size_t>(k)];
+    if (free && d.target != t.target) continue;
+    *age_s = std::max(0.0, Seconds(in.memory.now - d.stamp));
+    return true;
+  }
+  return false;
 }
 
 void PutSelf(const EntityInput& in, const Frame& K, float* out) {
@@ -84,7 +101,8 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   GraphSummary(m.observation, k, &graph);
   for (const double g : graph) row.Put(g);
   row.Put(std::log(1.0 + in.neighbour_count) / 3.0);
-  row.Put(std::log(1.0 + (in.belief.started ? 1 : 0)) / 2.0);
+  const int targets = std::min((in.belief.started ? 1 : 0) + in.other_count, kTargetRows);
+  row.Put(std::log(1.0 + targets) / 2.0);
   const double slot = m.channel.slots.length_s, frame = slot * m.run.agents;
   const bool turns = frame > 0.0;  // as if slots went in turn, whatever the access
   const double since = turns ? std::fmod(now - slot * in.id + frame * 4096.0, frame) : 0.0;
@@ -99,8 +117,8 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
 
 /// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target of AUVs that
 /// measured it in the last minute; both 1, as of one observer, where none did.
-void Geometry(const EntityInput& in, double* once, double* twice) {
-  const Vec3<double>& r = in.knowledge.r_BT_W;
+void Geometry(const EntityInput& in, const Subject& t, double* once, double* twice) {
+  const Vec3<double>& r = t.knowledge.r_BT_W;
   std::complex<double> first, second;
   int count = 0;
   const auto add = [&](double x, double y) {
@@ -111,12 +129,13 @@ void Geometry(const EntityInput& in, double* once, double* twice) {
     second += e * e;
     ++count;
   };
-  if (in.memory.ranged && Seconds(in.memory.now - in.memory.own_detection) <= kGeometryAge) {
+  const TimeNs own = in.memory.own_detection[static_cast<std::size_t>(t.target)];
+  if (own >= 0 && Seconds(in.memory.now - own) <= kGeometryAge) {
     add(-r.x, -r.y);
   }
   for (int j = 0; j < in.neighbour_count; ++j) {
     double age = 0.0;
-    if (!Sighted(in, *in.neighbours[j].report, &age) || age > kGeometryAge) continue;
+    if (!Sighted(in, t, *in.neighbours[j].report, &age) || age > kGeometryAge) continue;
     const Vec3<double>& n = in.neighbours[j].sight.r_BN_W;
     add(n.x - r.x, n.y - r.y);
   }
@@ -124,8 +143,8 @@ void Geometry(const EntityInput& in, double* once, double* twice) {
   *twice = count > 0 ? std::abs(second) / count : 1.0;
 }
 
-void PutTarget(const EntityInput& in, const Frame& K, float* out) {
-  const Knowledge<double>& k = in.knowledge;
+void PutTarget(const EntityInput& in, const Subject& t, const Frame& K, float* out) {
+  const Knowledge<double>& k = t.knowledge;
   const ObservationConfig& c = in.model.observation;
   const double desired = in.model.task.desired_distance_m;
   const Vec3<double>& r = k.r_BT_W;
@@ -140,7 +159,7 @@ void PutTarget(const EntityInput& in, const Frame& K, float* out) {
   const auto across = [&](const Vec3<double>& v) { return (v.y * lx - v.x * ly) / kSpeedScale; };
   row.Put(along(k.v_WT)).Put(across(k.v_WT)).Put(along(k.v_WB)).Put(across(k.v_WB));
   row.Put((across(k.v_WT) - across(k.v_WB)) * kSpeedScale / std::max(level, 1.0) * 60.0);
-  const Covariance3& P = in.belief.P_WT;
+  const Covariance3& P = t.belief.P_WT;
   const double mean = 0.5 * (P.xx + P.yy), half = 0.5 * (P.xx - P.yy);
   const double radius = std::hypot(half, P.xy);
   const double s1 = std::sqrt(std::max(mean + radius, 0.0));
@@ -152,13 +171,14 @@ void PutTarget(const EntityInput& in, const Frame& K, float* out) {
   const double c2 = lx * lx - ly * ly, s2l = 2.0 * lx * ly;
   const double a = (s1 - s2) / std::max(s1 + s2, 1e-9);
   row.Put(a * (cos2 * c2 + sin2 * s2l)).Put(a * (sin2 * c2 - cos2 * s2l));
-  row.Put(DeviationScale(std::sqrt(std::max(P.zz, 0.0)))).Put(in.velocity_std_mps / 0.9);
+  row.Put(DeviationScale(std::sqrt(std::max(P.zz, 0.0)))).Put(t.velocity_std_mps / 0.9);
   for (int n = 0; n < 4; ++n) row.Put(0.0);
-  row.Put(AgeScale(in.information_age_s));
-  row.Put(in.memory.ranged ? AgeScale(Seconds(in.memory.now - in.memory.own_detection)) : 1.0F);
+  row.Put(AgeScale(t.information_age_s));
+  const TimeNs own = in.memory.own_detection[static_cast<std::size_t>(t.target)];
+  row.Put(own >= 0 ? AgeScale(Seconds(in.memory.now - own)) : 1.0F);
   row.Put(0.0);
   double once = 1.0, twice = 1.0;
-  Geometry(in, &once, &twice);
+  Geometry(in, t, &once, &twice);
   row.Put(once).Put(twice);
   row.Put(k.confidence).Put(ShownProgress(c, k)).Put(std::log(1.0 + k.mean_error / 30.0) / 4.0);
   row.Put(k.lost).Put(AgeScale(k.lost_steps * in.model.run.decision_dt_s()));
@@ -168,7 +188,7 @@ void PutTarget(const EntityInput& in, const Frame& K, float* out) {
   QualityOneHot(c, std::min(k.confidence, std::max(0.0, 1.0 - s1 / 100.0)), &quality);
   for (const double p : phase) row.Put(p);
   for (const double q : quality) row.Put(q);
-  row.Put(1.0);
+  row.Put(t.followed ? 1.0 : 0.0);
 }
 
 void PutNeighbour(const EntityInput& in, const Frame& K, const EntityNeighbour& n, float* out) {
@@ -188,8 +208,8 @@ void PutNeighbour(const EntityInput& in, const Frame& K, const EntityNeighbour& 
   row.Put(std::clamp(s.tracking_error / in.model.observation.error_scale_m, 0.0, 1.0));
 }
 
-void PutEdge(const EntityInput& in, const EntityNeighbour& n, float* out) {
-  const Vec3<double>& r = in.knowledge.r_BT_W;
+void PutEdge(const EntityInput& in, const Subject& t, const EntityNeighbour& n, float* out) {
+  const Vec3<double>& r = t.knowledge.r_BT_W;
   const Vec3<double>& s = n.sight.r_BN_W;
   const Vec3<double> q = s - r;  // of the neighbour, from the target
   const double d = Norm(q);
@@ -198,13 +218,32 @@ void PutEdge(const EntityInput& in, const EntityNeighbour& n, float* out) {
   Row row(out);
   row.Put(FarScale(d)).Put(BandScale(d, in.model.task.desired_distance_m));
   row.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
-  row.Put(n.report->target == in.target ? 1.0 : 0.0);
+  const int told = in.model.task.free() ? n.report->followed : n.report->target;
+  row.Put(told == t.target ? 1.0 : 0.0);
   double age = 0.0;
-  row.Put(Sighted(in, *n.report, &age) ? AgeScale(age) : 1.0F);
+  row.Put(Sighted(in, t, *n.report, &age) ? AgeScale(age) : 1.0F);
   row.Put(0.0);
   const double share = Dot(s, r) / std::max(Dot(r, r), 1e-9);
   const bool between = share > 0.0 && share < 1.0 && Norm(s - r * share) < 20.0;
   row.Put(between ? 1.0 : 0.0);
+}
+
+/// What the AUV would know at this decision of a target that it does not follow, if it did: there
+/// is no history of it.
+Knowledge<double> Regarding(const EntityInput& in, const EntityBelief& b) {
+  const AgentModel& m = in.model;
+  Knowledge<double> k = in.knowledge;
+  k.v_WT = b.v_WT;
+  k.Measure(b.r_BT_W, k.v_WB - k.v_WT, m.task.desired_distance_m);
+  k.previous_distance = k.distance;
+  k.mean_error = k.error;
+  const bool lost =
+      b.belief.position_std_m() > m.track.lost_std_m || k.distance > m.task.lost_distance_m;
+  const bool seen = b.belief.observed && b.information_age_s <= m.track.neighbour_max_age_s;
+  k.lost = lost ? 1.0 : 0.0;
+  k.lost_steps = 0.0;
+  k.confidence = !lost && seen ? Confidence(k.distance, m.sensing.range_m) : 0.0;
+  return k;
 }
 
 /// One obstacle of the chart, seen from the AUV.
@@ -269,13 +308,23 @@ void BuildEntities(const EntityInput& in, Entities* out) {
   } else {
     std::fill(out->search, out->search + kSearchNumbers, 0.0F);
   }
-  out->targets = in.belief.started ? 1 : 0;
-  if (out->targets > 0) PutTarget(in, K, out->target[0]);
   out->neighbours = std::min(in.neighbour_count, kNeighbourRows);
-  for (int j = 0; j < out->neighbours; ++j) {
-    PutNeighbour(in, K, in.neighbours[j], out->neighbour[j]);
-    if (out->targets > 0) PutEdge(in, in.neighbours[j], out->edge[0][j]);
+  out->targets = 0;
+  const auto put = [&](const Subject& t) {
+    const int row = out->targets++;
+    out->target_of_row[row] = t.target;
+    PutTarget(in, t, K, out->target[row]);
+    for (int j = 0; j < out->neighbours; ++j) PutEdge(in, t, in.neighbours[j], out->edge[row][j]);
+  };
+  if (in.belief.started) {
+    put({in.target, in.knowledge, in.belief, in.velocity_std_mps, in.information_age_s, true});
   }
+  for (int k = 0; k < in.other_count && out->targets < kTargetRows; ++k) {
+    const EntityBelief& b = in.others[k];
+    put({b.target, Regarding(in, b), b.belief, b.velocity_std_mps, b.information_age_s, false});
+  }
+  for (int j = 0; j < out->neighbours; ++j)
+    PutNeighbour(in, K, in.neighbours[j], out->neighbour[j]);
   Seen seen[kObstacleRows];
   out->obstacles = SeeObstacles(in, seen);
   for (int o = 0; o < out->obstacles; ++o) PutObstacle(in, K, seen[o], out->obstacle[o]);
@@ -288,6 +337,25 @@ void BuildEntities(const AgentView& agent, Entities* out) {
   in.velocity_std_mps = std::sqrt(std::max(estimate.vv, 0.0));
   in.information_age_s = std::max(0.0, Seconds(in.memory.now - in.belief.information));
   if (agent.search() != nullptr) in.search = &agent.search()->map();
+  std::array<EntityBelief, kMostTargets> others;
+  for (int k = 0; k < agent.beliefs(); ++k) {
+    const int target = agent.first_target() + k;
+    if (target == agent.target()) continue;
+    EntityBelief b{target, {}, {}, agent.belief(target)};
+    if (!b.belief.started) continue;
+    const TargetEstimate e = agent.estimate(target);
+    b.r_BT_W = e.p_WT - in.knowledge.p_WB;
+    b.v_WT = e.v_WT;
+    b.velocity_std_mps = std::sqrt(std::max(e.vv, 0.0));
+    b.information_age_s = std::max(0.0, Seconds(in.memory.now - b.belief.information));
+    const auto distance = [&](int at) { return Norm(others[static_cast<std::size_t>(at)].r_BT_W); };
+    int rank = in.other_count++;
+    for (; rank > 0 && Norm(b.r_BT_W) < distance(rank - 1); --rank) {
+      others[static_cast<std::size_t>(rank)] = others[static_cast<std::size_t>(rank - 1)];
+    }
+    others[static_cast<std::size_t>(rank)] = b;
+  }
+  in.others = others.data();
   EntityNeighbour nearest[kNeighbourRows];
   for (const int id : agent.neighbours().known()) {
     const NeighbourSight<double> sight = agent.sight(id);

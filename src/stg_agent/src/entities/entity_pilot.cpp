@@ -106,6 +106,7 @@ void TakeCommand(const AgentView& agent, EntityAction action, const float* comma
 void TakeChoice(const AgentView& agent, const Entities& entities, int choice) {
   // Without a target the law looks for one by itself, and follows it as soon as it is found.
   agent.memory().search = entities.targets > 0 && choice == entities.targets;
+  if (choice < entities.targets) agent.Follow(entities.target_of_row[choice]);
 }
 
 void FollowCommand(const AgentView& agent, EntityAction action, float* out) {

@@ -1,5 +1,6 @@
 #include "stg_agent/inbox/inbox.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -12,28 +13,44 @@ namespace stg::agent {
 Inbox::Inbox(SharedConstants constants, int id)
     : constants_(std::move(constants)),
       id_(id),
+      first_(constants_->model.task.free() ? 0 : constants_->model.target.of(id)),
       target_(constants_->model.target.of(id)),
-      filter_(TargetFilters().Make(constants_->model.track.filter, constants_->model, id_)),
+      pending_(static_cast<std::size_t>(constants_->model.beliefs())),
       localizer_(MakeLocalizer(constants_->model, id_)) {
+  for (int k = 0; k < constants_->model.beliefs(); ++k) {
+    filters_.push_back(
+        TargetFilters().Make(constants_->model.track.filter, constants_->model, id_));
+  }
   if (id < 0 || id >= constants_->model.run.agents) {
     throw std::invalid_argument("agent index outside the swarm");
   }
 }
 
 void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
-  filter_->Clear();
+  for (auto& filter : filters_) filter->Clear();
   if (localizer_ != nullptr) localizer_->Reset();
-  cue_ = cue;
-  cue_pending_ = cue.target == target_;
-  detection_ = dynamics::Detection();
-  detection_pending_ = false;
+  for (Pending& pending : pending_) pending = Pending();
+  target_ = constants_->model.target.of(id_);
+  changed_ = false;
+  wanted_ = -1;
+  AddCue(cue);
   now_ = 0;
   episode_ = episode;
   refused_packets_ = 0;
 }
 
+void Inbox::AddCue(const dynamics::Cue& cue) {
+  if (!Believes(cue.target)) return;
+  pending_[IndexOf(cue.target)].cue = cue;
+  pending_[IndexOf(cue.target)].has_cue = true;
+}
+
+void Inbox::Follow(int target) {
+  if (Believes(target)) wanted_ = target;
+}
+
 void Inbox::Detect(const dynamics::Detection& detection) {
-  if (detection.target != target_) return;
+  if (!Believes(detection.target)) return;
   if (!Finite(detection.p_WT) || !Finite(detection.p_WO) ||
       !std::isfinite(detection.std_m + detection.p_WO_std_m + detection.heading_std_rad +
                      detection.range_m + detection.range_std_m + detection.azimuth_rad +
@@ -41,9 +58,10 @@ void Inbox::Detect(const dynamics::Detection& detection) {
                      detection.mirror_azimuth_rad)) {
     throw std::invalid_argument("non-finite target detection");
   }
-  if (detection_pending_ && detection.stamp <= detection_.stamp) return;
-  detection_ = detection;
-  detection_pending_ = true;
+  Pending& pending = pending_[IndexOf(detection.target)];
+  if (pending.has_detection && detection.stamp <= pending.detection.stamp) return;
+  pending.detection = detection;
+  pending.has_detection = true;
 }
 
 std::optional<NeighbourState> Inbox::Receive(const acoustics::Reception& reception) {
@@ -61,7 +79,7 @@ std::optional<NeighbourState> Inbox::Receive(const acoustics::Reception& recepti
       if (state.source >= constants_->model.run.agents) return {};  // a station
       ToOwnFrame(&state);
     }
-    if (state.has_target && state.target == target_) filter_->Hear(state);
+    if (state.has_target) Hear(state);
     return state;
   } catch (const UserError&) {
     ++refused_packets_;  // what comes from the water may be damaged
@@ -83,6 +101,22 @@ void Inbox::ToOwnFrame(NeighbourState* state) const {
   }
 }
 
+void Inbox::Hear(const NeighbourState& state) {
+  if (!constants_->model.task.free()) {
+    if (state.target == target_) filters_.front()->Hear(state);
+    return;
+  }
+  for (int k = 0; k < beliefs(); ++k) {
+    NeighbourState part = state;
+    part.sightings = 0;
+    for (int s = 0; s < state.sightings; ++s) {
+      const dynamics::Detection& d = state.sighting[static_cast<std::size_t>(s)];
+      if (d.target == k) part.sighting[static_cast<std::size_t>(part.sightings++)] = d;
+    }
+    if (part.sightings > 0) filters_[static_cast<std::size_t>(k)]->Hear(part);
+  }
+}
+
 void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnReckoning& own) {
   now_ = now;
   own_ = own;
@@ -91,33 +125,70 @@ void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnRecko
     localizer_->Advance(now, own);
     frame.error = localizer_->own();
   }
-  if (cue_pending_) {
-    filter_->Start(cue_.p_WT, cue_.std_m, 0);
-    cue_pending_ = false;
+  changed_ = wanted_ >= 0 && wanted_ != target_;
+  if (changed_) target_ = wanted_;
+  wanted_ = -1;
+  for (std::size_t k = 0; k < filters_.size(); ++k) {
+    if (pending_[k].has_cue) filters_[k]->Start(pending_[k].cue.p_WT, pending_[k].cue.std_m, 0);
+    pending_[k].has_cue = false;
+    filters_[k]->Predict(now_);
   }
-  filter_->Predict(now_);
   // A fixed order, whatever order the messages came in: shared estimates by index, then the
   // own detection.
   if (neighbours.unread()) FuseNewest(neighbours);
-  if (detection_pending_ && detection_.stamp <= now_) {
-    filter_->Detect(detection_);
-    detection_pending_ = false;
+  for (std::size_t k = 0; k < filters_.size(); ++k) {
+    Pending& pending = pending_[k];
+    if (pending.has_detection && pending.detection.stamp <= now_) {
+      filters_[k]->Detect(pending.detection);
+      pending.has_detection = false;
+    }
+    filters_[k]->Settle(now_, frame);
   }
-  filter_->Settle(now_, frame);
 }
 
 void Inbox::FuseNewest(const NeighbourTable& neighbours) {
   for (const int id : neighbours.known()) {
     const NeighbourState& s = neighbours.state(id);
-    if (neighbours.unread(id) && s.target == target_) filter_->Fuse(s);
+    if (neighbours.unread(id) && Believes(s.target)) filters_[IndexOf(s.target)]->Fuse(s);
   }
 }
 
+/// Of every target the newest measurements of its own, the newest of all first, and of one instant
+/// those of the target that it follows.
+void Inbox::TellFreely(bool lost, NeighbourState* state) const {
+  state->followed = target_;
+  Of(target_).Tell(lost, state);
+  const auto before = [this](const dynamics::Detection& a, const dynamics::Detection& b) {
+    if (a.stamp != b.stamp) return a.stamp > b.stamp;
+    if ((a.target == target_) != (b.target == target_)) return a.target == target_;
+    return a.target < b.target;
+  };
+  for (int k = 0; k < beliefs(); ++k) {
+    if (k == target_) continue;
+    NeighbourState part;
+    part.generation = state->generation;
+    filters_[static_cast<std::size_t>(k)]->Tell(false, &part);
+    for (int s = 0; s < part.sightings; ++s) {
+      const dynamics::Detection& d = part.sighting[static_cast<std::size_t>(s)];
+      int rank = state->sightings;
+      while (rank > 0 && before(d, state->sighting[static_cast<std::size_t>(rank - 1)])) --rank;
+      if (rank == kFreeSightings) continue;
+      state->sightings = std::min(state->sightings + 1, kFreeSightings);
+      for (int j = state->sightings - 1; j > rank; --j) {
+        state->sighting[static_cast<std::size_t>(j)] =
+            state->sighting[static_cast<std::size_t>(j - 1)];
+      }
+      state->sighting[static_cast<std::size_t>(rank)] = d;
+    }
+  }
+  state->has_target = state->has_target || state->sightings > 0;
+}
+
 TargetView<double> Inbox::Target(double freshness_s) const {
-  const TargetEstimate e = filter_->estimate();
-  const TargetBelief b = filter_->belief();
+  const TargetEstimate e = estimate();
+  const TargetBelief b = belief();
   const bool current = b.observed && Seconds(now_ - b.information) <= freshness_s;
-  return {e.p_WT, e.v_WT, e.pp, b.started ? 1.0 : 0.0, current ? 1.0 : 0.0};
+  return {e.p_WT, e.v_WT, e.pp, b.started ? 1.0 : 0.0, current ? 1.0 : 0.0, changed_ ? 1.0 : 0.0};
 }
 
 Packet Inbox::MakePacket(const Knowledge<double>& k) const {
@@ -132,7 +203,11 @@ Packet Inbox::MakePacket(const Knowledge<double>& k) const {
   state.link_quality = k.mean_quality;
   state.position_std_m = own_.position_std_m;
   state.target = target_;
-  filter_->Tell(k.lost > 0.5, &state);
+  if (constants_->model.task.free()) {
+    TellFreely(k.lost > 0.5, &state);
+  } else {
+    filters_.front()->Tell(k.lost > 0.5, &state);
+  }
   if (localizer_ != nullptr) localizer_->Tell(&state);
   return constants_->codec.Encode(state);
 }

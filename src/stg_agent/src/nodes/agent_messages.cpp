@@ -17,6 +17,8 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   m->quality = static_cast<std::uint8_t>(task.quality);
   m->role = task.role;
   m->action.assign(output.action, output.action + agent.model().control.action_size());
+  m->target = static_cast<std::uint32_t>(agent.target());
+  m->absent = !agent.present();
   m->target_known = target.started;
   SetVector(target.p_WT, &m->target_position);
   SetVector(target.v_WT, &m->target_velocity);
@@ -32,6 +34,14 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
   m->neighbours.clear();
   m->neighbour_age = 0.0;
   const agent::AgentView view = agent.view();
+  m->beliefs.clear();
+  m->beliefs_known.clear();
+  for (int k = 0; agent.model().task.free() && k < view.beliefs(); ++k) {
+    const agent::TargetBelief belief = view.belief(k);
+    m->beliefs.emplace_back();
+    SetVector(belief.p_WT, &m->beliefs.back());
+    m->beliefs_known.push_back(agent::Known(agent.model(), belief) ? 1 : 0);
+  }
   for (const int id : view.neighbours().known()) {
     const double age = view.sight(id).age_s;
     m->neighbour_age = m->neighbours.empty() ? age : std::min(m->neighbour_age, age);

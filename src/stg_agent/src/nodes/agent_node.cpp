@@ -199,11 +199,21 @@ void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
   cue.target = -1;  // none
   if (frame.cue_valid && FiniteVector(frame.cue_position) && Finite(frame.cue_std) &&
       frame.cue_std >= 0.0) {
-    cue.target = agent_.target();
+    cue.target = model_.target.of(id_);
     cue.p_WT = VectorOf(frame.cue_position);
     cue.std_m = frame.cue_std;
   }
   agent_.Reset(frame.episode, cue);
+  const auto finite = [](const auto& p) { return FiniteVector(p); };
+  if (cue.target >= 0 && frame.cues.size() == static_cast<std::size_t>(model_.target.count) &&
+      std::all_of(frame.cues.begin(), frame.cues.end(), finite)) {
+    for (int k = 0; k < model_.target.count; ++k) {
+      if (k == agent_.target()) continue;
+      cue.target = k;
+      cue.p_WT = VectorOf(frame.cues[static_cast<std::size_t>(k)]);
+      agent_.AddCue(cue);
+    }
+  }
   turns_.Reset(frame.seed, 0);
   episode_ = frame.episode;
   sequence_ = 0;
@@ -256,10 +266,13 @@ void AgentNode::ReportDecision() {
   const ros::Time stamp = decided_->header.stamp;
   // A packet that cannot leave in this step would only be replaced by the next one.
   if (turns_.Due(id_, NsOf(stamp) - start_)) {
-    const agent::Packet packet = agent_.MakePacket();
     packet_message_.header.stamp = packet_message_.generation = stamp;
     packet_message_.sequence = sequence_++;
-    packet_message_.data.assign(packet.begin(), packet.end());
+    packet_message_.data.clear();  // one that has left is silent
+    if (agent_.present()) {
+      const agent::Packet packet = agent_.MakePacket();
+      packet_message_.data.assign(packet.begin(), packet.end());
+    }
     packet_.publish(packet_message_);
   }
   unreported_ = false;

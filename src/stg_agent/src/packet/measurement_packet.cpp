@@ -7,11 +7,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "auv_common/error.hpp"
 #include "auv_common/numbers/attitude.hpp"
 #include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
-#include "bits.hpp"
+#include "measurement_fields.hpp"
 
 namespace stg::agent {
 
@@ -20,16 +19,6 @@ using dynamics::MeasurementKind;
 
 namespace {
 
-constexpr std::uint64_t kMeasurementVersion = 2, kLocatedVersion = 5;
-constexpr int kSourceBits = 8, kGenerationBits = 18, kTargetBits = 5, kAgeBits = 10;
-constexpr int kPlaceBits = 15, kSpeedBits = 8, kUnitBits = 4, kDeviationBits = 6, kErrorBits = 7;
-constexpr int kOffsetBits = 9, kRiseBits = 7, kRangeBits = 14, kAzimuthBits = 11;
-constexpr int kElevationBits = 10, kFineAzimuthBits = 14, kFineElevationBits = 12;
-constexpr int kCrcFirst = 8 * kPacketBytes - 8;
-constexpr int kFirstSighting = 4 + kSourceBits + kGenerationBits + 3 * kPlaceBits + 3 * kSpeedBits +
-                               kDeviationBits + kErrorBits + kUnitBits + 2 + kUnitBits + 1;
-constexpr int kSightingBits = 62;
-static_assert(kFirstSighting + kSightings * kSightingBits <= kCrcFirst, "both measurements fit");
 constexpr double kPlaceMargin = 1.25;
 // Of version 5.
 constexpr int kLocatedDeviationBits = kDeviationBits - 1;
@@ -44,46 +33,7 @@ double Length(const std::array<double, 3>& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-[[noreturn]] void RefusePacket(const std::string& why) { throw UserError("packet: " + why); }
-
 }  // namespace
-
-/// Fields one after the other.
-struct MeasurementPacket::Writer {
-  Words words{};
-  int at = 0;
-  bool saturated = false;
-
-  void Bits(std::uint64_t code, int count) {
-    Put(&words, {at, count}, code);
-    at += count;
-  }
-  void Number(const Quantiser& q, double value, int count) {
-    Bits(Code(q, value, &saturated), count);
-  }
-  void Vector(const Quantiser& q, const Vec3<double>& v, int count) {
-    Number(q, v.x, count);
-    Number(q, v.y, count);
-    Number(q, v.z, count);
-  }
-};
-
-struct MeasurementPacket::Reader {
-  Words words{};
-  int at = 0;
-  bool unused_code = false;
-
-  std::uint64_t Bits(int count) {
-    const std::uint64_t code = Get(words, {at, count});
-    at += count;
-    return code;
-  }
-  double Number(const Quantiser& q, int count) { return Value(q, Bits(count), &unused_code); }
-  Vec3<double> Vector(const Quantiser& q, int count) {
-    const double x = Number(q, count), y = Number(q, count);
-    return {x, y, Number(q, count)};
-  }
-};
 
 MeasurementPacket::Logarithm MeasurementPacket::Logarithm::Of(double lo, double hi, int bits) {
   const int codes = (1 << bits) - 1;  // besides zero
@@ -106,7 +56,11 @@ double MeasurementPacket::Logarithm::Value(std::uint64_t code) const {
 MeasurementPacket::MeasurementPacket(const AgentModel& s)
     : agents_(s.run.agents),
       targets_(s.target.count),
+      free_(s.task.free()),
       located_(s.locates()),
+      version_(located_ ? kLocatedVersion
+               : free_  ? kFreeVersion
+                        : kMeasurementVersion),
       members_(s.run.agents + (located_ ? s.stations.count() : 0)),
       sensing_(s.sensing),
       relative_(s.sensing.relative()) {
@@ -134,7 +88,7 @@ MeasurementPacket::MeasurementPacket(const AgentModel& s)
   unit_ = Quantiser::Unsigned(0.0, 1.0, kUnitBits);
   offset_ = Quantiser::Signed(speed * longest, kOffsetBits);
   rise_ = Quantiser::Signed((s.vehicle.max_velocity_mps[2] + current) * longest, kRiseBits);
-  range_ = Quantiser::Unsigned(0.0, 1.25 * s.sensing.range_m, kRangeBits);
+  range_ = Quantiser::Unsigned(0.0, 1.25 * s.sensing.range_m, free_ ? kFreeRangeBits : kRangeBits);
   azimuth_ = Quantiser::Signed(kPi, kAzimuthBits);
   elevation_ = Quantiser::Signed(2.0, kElevationBits);
   fine_azimuth_ = Quantiser::Signed(kPi, kFineAzimuthBits);
@@ -150,11 +104,12 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
     throw std::invalid_argument("PacketCodec::Encode: non-finite value");
   }
   if (s.source < 0 || s.source >= members_ || s.phase < 0 || s.phase > 3 || s.generation < 0 ||
-      s.sightings < 0 || s.sightings > kSightings) {
+      s.sightings < 0 || s.sightings > (free_ ? kFreeSightings : kSightings) ||
+      s.followed >= targets_) {
     throw std::invalid_argument("PacketCodec::Encode: value without a code");
   }
   Writer w;
-  w.Bits(located_ ? kLocatedVersion : kMeasurementVersion, 4);
+  w.Bits(version_, 4);
   w.Bits(static_cast<std::uint64_t>(s.source), kSourceBits);
   w.Bits(static_cast<std::uint64_t>(Ticks(s.generation)) & ((1U << kGenerationBits) - 1),
          kGenerationBits);
@@ -168,14 +123,17 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
   w.Bits(static_cast<std::uint64_t>(s.phase), 2);
   w.Number(unit_, s.link_quality, kUnitBits);
   const int saturated_bit = w.at;
-  if (s.has_target) {
+  if (free_) {
+    w.at = kFirstSighting;
+    WriteFree(s, &w);
+  } else if (s.has_target) {
     const int fit = ambiguous_ || (located_ && s.ranges > 0) ? 1 : kSightings;
     for (int k = 0; k < std::min(s.sightings, fit); ++k) {
       w.at = kFirstSighting + k * kSightingBits;
       WriteSighting(s, s.sighting[static_cast<std::size_t>(k)], &w);
     }
   }
-  if (located_ && s.ranges > 0 && !ambiguous_) WriteRanges(s, &w);
+  if (located_ && s.ranges > 0 && !ambiguous_) WriteToldRanges(s, &w);
   w.at = saturated_bit;
   w.Bits(w.saturated ? 1 : 0, 1);
   w.at = kCrcFirst;
@@ -208,7 +166,7 @@ Vec3<double> MeasurementPacket::ReadPlace(const Vec3<double>& near, Reader* r) c
   return {x, y, r->Number(position_, kPlaceBits)};
 }
 
-void MeasurementPacket::WriteRanges(const NeighbourState& s, Writer* w) const {
+void MeasurementPacket::WriteToldRanges(const NeighbourState& s, Writer* w) const {
   w->at = kFirstSighting + (kSightings - 1) * kSightingBits;
   w->Bits(1, 1);
   w->Bits(kRangesCode, kTargetBits);
@@ -232,7 +190,7 @@ void MeasurementPacket::WriteRanges(const NeighbourState& s, Writer* w) const {
   }
 }
 
-void MeasurementPacket::ReadRanges(Reader* r, NeighbourState* s) const {
+void MeasurementPacket::ReadToldRanges(Reader* r, NeighbourState* s) const {
   for (int k = 0; k < kToldRanges; ++k) {
     const std::uint64_t source = r->Bits(kToldSourceBits);
     const TimeNs age = static_cast<TimeNs>(r->Bits(kToldAgeBits)) * age_step_;
@@ -247,26 +205,52 @@ void MeasurementPacket::ReadRanges(Reader* r, NeighbourState* s) const {
   }
 }
 
-void MeasurementPacket::WriteSighting(const NeighbourState& s, const Detection& d,
-                                      Writer* w) const {
+void MeasurementPacket::RequireCode(const NeighbourState& s, const Detection& d) const {
   if (d.target < 0 || d.target >= targets_ || d.kind != kind_ || d.stamp > s.generation) {
     throw std::invalid_argument("PacketCodec::Encode: value without a code");
   }
-  const TimeNs steps = (s.generation - d.stamp + age_step_ / 2) / age_step_;
-  constexpr TimeNs kMost = (1 << kAgeBits) - 1;
-  w->saturated |= steps > kMost;
+}
+
+TimeNs MeasurementPacket::AgeCode(const NeighbourState& s, const Detection& d) const {
+  return (s.generation - d.stamp + age_step_ / 2) / age_step_;
+}
+
+void MeasurementPacket::WriteAge(TimeNs steps, int bits, Writer* w) {
+  const TimeNs most = (TimeNs{1} << bits) - 1;
+  w->saturated |= steps > most;
+  w->Bits(static_cast<std::uint64_t>(std::min(steps, most)), bits);
+}
+
+void MeasurementPacket::WriteObserver(const NeighbourState& s, const Detection& d,
+                                      Writer* w) const {
+  const Vec3<double> offset = d.p_WO - s.p_W;
+  w->Number(offset_, offset.x, kOffsetBits);
+  w->Number(offset_, offset.y, kOffsetBits);
+  w->Number(rise_, offset.z, kRiseBits);
+}
+
+Vec3<double> MeasurementPacket::ReadObserver(const NeighbourState& s, Reader* r) const {
+  const double x = r->Number(offset_, kOffsetBits), y = r->Number(offset_, kOffsetBits);
+  return s.p_W + Vec3<double>{x, y, r->Number(rise_, kRiseBits)};
+}
+
+void MeasurementPacket::WriteSighting(const NeighbourState& s, const Detection& d,
+                                      Writer* w) const {
+  RequireCode(s, d);
   w->Bits(1, 1);
   w->Bits(static_cast<std::uint64_t>(d.target), kTargetBits);
-  w->Bits(static_cast<std::uint64_t>(std::min(steps, kMost)), kAgeBits);
+  WriteMeasured(s, d, w);
+}
+
+void MeasurementPacket::WriteMeasured(const NeighbourState& s, const Detection& d,
+                                      Writer* w) const {
+  WriteAge(AgeCode(s, d), kAgeBits, w);
   const bool point = kind_ == MeasurementKind::kPosition || kind_ == MeasurementKind::kRangeBearing;
   if (point && !ambiguous_) {
     WritePlace(d.p_WT, w);
     return;
   }
-  const Vec3<double> offset = d.p_WO - s.p_W;
-  w->Number(offset_, offset.x, kOffsetBits);
-  w->Number(offset_, offset.y, kOffsetBits);
-  w->Number(rise_, offset.z, kRiseBits);
+  WriteObserver(s, d, w);
   if (ambiguous_) {
     w->Number(range_, d.range_m, kRangeBits);
     w->Number(fine_azimuth_, WrapAngle(d.azimuth_rad), kFineAzimuthBits);
@@ -289,7 +273,7 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
   std::memcpy(r.words.data(), data, size);
   if (Checksum(r.words) != Get(r.words, {kCrcFirst, 8})) RefusePacket("wrong checksum");
   const std::uint64_t version = r.Bits(4);
-  if (version != (located_ ? kLocatedVersion : kMeasurementVersion)) {
+  if (version != version_) {
     RefusePacket("version " + std::to_string(version) + " is unknown");
   }
   NeighbourState s;
@@ -309,19 +293,21 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
   s.phase = static_cast<int>(r.Bits(2));
   s.link_quality = r.Number(unit_, kUnitBits);
   s.saturated = r.Bits(1) != 0;
-  const int fit = ambiguous_ ? 1 : kSightings;
+  const int fit = free_ ? 0 : ambiguous_ ? 1 : kSightings;
+  if (free_) ReadFree(&r, &s);
   for (int k = 0; k < fit; ++k) {
     r.at = kFirstSighting + k * kSightingBits;
     if (r.Bits(1) == 0) continue;
     if (located_ && !ambiguous_ && k == kSightings - 1 &&
         Get(r.words, {r.at, kTargetBits}) == kRangesCode) {
       r.at += kTargetBits;
-      ReadRanges(&r, &s);
+      ReadToldRanges(&r, &s);
       continue;
     }
     ReadSighting(s, &r, &s.sighting[static_cast<std::size_t>(s.sightings++)]);
   }
   s.has_target = s.sightings > 0;
+  if (!free_) s.followed = s.source % targets_;
   if (s.has_target) {
     s.target = s.sighting[0].target;
     s.target_stamp = s.sighting[0].stamp;
@@ -331,13 +317,17 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
 }
 
 void MeasurementPacket::ReadSighting(const NeighbourState& s, Reader* r, Detection* d) const {
+  const int target = static_cast<int>(r->Bits(kTargetBits));
+  if (target >= targets_) RefusePacket("target " + std::to_string(target) + " does not exist");
+  ReadMeasured(s, target, r, d);
+}
+
+void MeasurementPacket::ReadMeasured(const NeighbourState& s, int target, Reader* r,
+                                     Detection* d) const {
   *d = Detection();
   d->kind = kind_;
   d->ambiguous = ambiguous_;
-  d->target = static_cast<int>(r->Bits(kTargetBits));
-  if (d->target >= targets_) {
-    RefusePacket("target " + std::to_string(d->target) + " does not exist");
-  }
+  d->target = target;
   const TimeNs age = static_cast<TimeNs>(r->Bits(kAgeBits)) * age_step_;
   d->stamp = s.generation - age;
   if (d->stamp < 0) RefusePacket("measured before the start");
@@ -351,8 +341,7 @@ void MeasurementPacket::ReadSighting(const NeighbourState& s, Reader* r, Detecti
     d->azimuth_rad = std::atan2(line.y, line.x);
     d->elevation_rad = std::atan2(line.z, std::hypot(line.x, line.y));
   } else {
-    const double x = r->Number(offset_, kOffsetBits), y = r->Number(offset_, kOffsetBits);
-    d->p_WO = s.p_W + Vec3<double>{x, y, r->Number(rise_, kRiseBits)};
+    d->p_WO = ReadObserver(s, r);
     d->p_WT = d->p_WO;
     if (ambiguous_) {
       d->range_m = r->Number(range_, kRangeBits);

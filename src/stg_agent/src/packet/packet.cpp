@@ -63,6 +63,7 @@ PacketCodec::PacketCodec(const AgentModel& s, PacketLayout layout)
     : layout_(layout),
       agents_(s.run.agents),
       targets_(s.target.count),
+      free_(s.task.free()),
       position_(Quantiser::Signed(kPositionMargin * s.workspace.half_extent_m, kPositionBits)),
       velocity_(Quantiser::Signed(SpeedLimit(s), kVelocityBits)),
       unit_(Quantiser::Unsigned(0.0, 1.0, kConfidence.count)),
@@ -184,6 +185,7 @@ NeighbourState PacketCodec::DecodeEstimate(const std::uint8_t* data, std::size_t
     s.v_WT = GetVector(w, kTargetVelocity, target_velocity_, &unused_code);
     s.target_std = std_of_code_[Get(w, kStd)];
   }
+  s.followed = !free_ ? s.source % targets_ : s.has_target ? s.target : -1;
   if (unused_code) Refuse("a field holds an unused code");
   return s;
 }

@@ -10,8 +10,8 @@ namespace stg::agent {
 namespace {
 
 const std::vector<std::string> kBuiltIn = {
-    "contain", "encircle",       "expanding_square", "formation",         "greedy_search",
-    "idle",    "parallel_sweep", "pursuit",          "pursuit_separated", "search_map"};
+    "assign", "contain",        "encircle", "expanding_square",  "formation", "greedy_search",
+    "idle",   "parallel_sweep", "pursuit",  "pursuit_separated", "search_map"};
 
 /// An agent that has flown a while among neighbours.
 Agent Experienced(const AgentModel& s) {

@@ -151,7 +151,7 @@ TEST(Entities, OpposedObserversAreOneAxisAndSpreadOnesAreNone) {
   EntityExample x = MakeExample(1, 2);
   x.knowledge.r_BT_W = {100.0, 0.0, 0.0};
   x.memory.now = 70'000'000'000;
-  x.memory.own_detection = 65'000'000'000;
+  x.memory.own_detection[0] = 65'000'000'000;
   for (EntityNeighbour& n : x.neighbours) {
     n.sight.r_BN_W = {200.0, 0.0, 0.0};  // on the other side of the target
   }

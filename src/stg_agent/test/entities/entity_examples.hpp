@@ -76,8 +76,7 @@ inline EntityExample MakeExample(unsigned seed, int neighbours, double turn = 0.
   k.confidence = 0.8;
   x.memory.now = 93'000'000'000;
   x.memory.position_std_m = 3.0;
-  x.memory.ranged = true;
-  x.memory.own_detection = 90'000'000'000;
+  x.memory.own_detection[0] = 90'000'000'000;
   x.memory.command = {0.1F, -0.2F, 0.3F, 0.0F, -0.4F};
   x.belief.started = true;
   // Covariance with an axis of its own, turned with the world.

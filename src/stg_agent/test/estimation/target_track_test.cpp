@@ -8,14 +8,14 @@
 namespace stg::agent {
 namespace {
 
-constexpr TimeNs kStep = 100'000'000;
+constexpr TimeNs kTrackStep = 100'000'000;
 
 double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
 
 /// Feeds noise-free detections of a target that moves at constant velocity.
 void Follow(TargetTrack* track, int steps, const Vec3<double>& v, Vec3<double>* p, TimeNs* t) {
   for (int k = 0; k < steps; ++k) {
-    *t += kStep;
+    *t += kTrackStep;
     *p += v * 0.1;
     track->Detect({*t, 0, *p, 0.0});
   }
@@ -27,7 +27,7 @@ TEST(TargetTrack, ConvergesOnNoiseFreeDetectionsWithinTenSteps) {
     const Vec3<double> v = Vec3<double>{0.6, -0.64, 0.48} * speed;
     Vec3<double> p{0.3, -0.2, 0.1};
     track.Start(p + Vec3<double>{0.04, -0.05, 0.06}, 0.05, 0);
-    TimeNs t = -kStep;
+    TimeNs t = -kTrackStep;
     p += v * -0.1;
     Follow(&track, 10, v, &p, &t);
     EXPECT_LT(Distance(track.estimate().p_WT, p), 1e-4) << speed;
@@ -51,10 +51,10 @@ TEST(TargetTrack, PredictionInOneStrideEqualsManySmallOnes) {
   TargetTrack one{AgentModel()}, many{AgentModel()};
   for (TargetTrack* t : {&one, &many}) {
     t->Start({0.1, 0.2, 0.3}, 0.05, 0);
-    t->Detect({kStep, 0, {0.11, 0.2, 0.3}, 0.001});
+    t->Detect({kTrackStep, 0, {0.11, 0.2, 0.3}, 0.001});
   }
-  one.Predict(41 * kStep);
-  for (int k = 2; k <= 41; ++k) many.Predict(k * kStep);
+  one.Predict(41 * kTrackStep);
+  for (int k = 2; k <= 41; ++k) many.Predict(k * kTrackStep);
   EXPECT_NEAR(one.estimate().p_WT.x, many.estimate().p_WT.x, 1e-12);
   EXPECT_NEAR(one.estimate().pp, many.estimate().pp, 1e-12);
   EXPECT_NEAR(one.estimate().pv, many.estimate().pv, 1e-12);
@@ -71,7 +71,7 @@ TEST(TargetTrack, FollowsAReflectionAtTheWallWithoutLosingAStep) {
     // The world's rule: clamped at the wall, that component's sign flips.
     p = {1.0, p.y + 0.1 * v.y, 0.0};
     v.x = -v.x;
-    t += kStep;
+    t += kTrackStep;
     track.Detect({t, 0, p, 0.0});
     Follow(&track, 5, v, &p, &t);
     EXPECT_LT(Distance(track.estimate().p_WT, p), 1.5e-3) << speed;
@@ -100,7 +100,7 @@ TEST(TargetTrack, OneOutlierIsSetAsideAndARowOfThemRestarts) {
   track.Start(p, 0.01, 0);
   TimeNs t = 0;
   Follow(&track, 20, v, &p, &t);
-  t += kStep;
+  t += kTrackStep;
   p += v * 0.1;
   track.Detect({t, 0, p + Vec3<double>{0.3, 0.0, 0.0}, 0.0});
   EXPECT_EQ(track.rejected_in_a_row(), 1);
@@ -139,9 +139,9 @@ double MeanNees(bool share, double noise, int runs) {
       const Vec3<double> dv = draw(std::sqrt(S * h));
       p += v * h + dv * (0.5 * h) + draw(std::sqrt(S * h * h * h / 12.0));
       v += dv;
-      if (!share || k < 20) track.Detect({k * kStep, 0, p + draw(noise), noise});
-      other.Detect({k * kStep, 0, p + draw(noise), noise});
-      track.Predict(k * kStep);
+      if (!share || k < 20) track.Detect({k * kTrackStep, 0, p + draw(noise), noise});
+      other.Detect({k * kTrackStep, 0, p + draw(noise), noise});
+      track.Predict(k * kTrackStep);
       if (share && k % 5 == 0) {
         const SharedEstimate mine = track.shareable();
         track.Fuse(other.shareable());
@@ -170,18 +170,18 @@ TEST(TargetTrack, ExchangingOneEstimateBackAndForthAddsNoCertainty) {
   TargetTrack a{AgentModel()}, b{AgentModel()};
   a.Start({0.1, 0.0, 0.0}, 0.05, 0);
   b.Start({0.1, 0.0, 0.0}, 0.05, 0);
-  a.Detect({kStep, 0, {0.1, 0.0, 0.0}, 0.01});
+  a.Detect({kTrackStep, 0, {0.1, 0.0, 0.0}, 0.01});
   const double before = a.estimate().pp;
-  b.Predict(kStep);
+  b.Predict(kTrackStep);
   for (int k = 1; k < 20; ++k) {
-    a.Predict(k * kStep);
-    b.Predict(k * kStep);
+    a.Predict(k * kTrackStep);
+    b.Predict(k * kTrackStep);
     b.Fuse(a.shareable());
     a.Fuse(b.shareable());
   }
   EXPECT_GE(a.estimate().pp, before * (1.0 - 1e-9));
-  EXPECT_EQ(a.information_stamp(), kStep) << "no newer than the one detection there was";
-  EXPECT_EQ(b.information_stamp(), kStep);
+  EXPECT_EQ(a.information_stamp(), kTrackStep) << "no newer than the one detection there was";
+  EXPECT_EQ(b.information_stamp(), kTrackStep);
 }
 
 TEST(TargetTrack, ASharedEstimateIsWorthLessTheOlderItIs) {
@@ -189,23 +189,23 @@ TEST(TargetTrack, ASharedEstimateIsWorthLessTheOlderItIs) {
   for (const TimeNs age : {0, 1, 5, 20, 50}) {
     TargetTrack track{AgentModel()};
     track.Start({0.0, 0.0, 0.0}, 0.2, 0);
-    track.Predict(100 * kStep);
-    track.Fuse({(100 - age) * kStep, {0.05, 0.0, 0.0}, {0.01, 0.0, 0.0}, 0.002});
+    track.Predict(100 * kTrackStep);
+    track.Fuse({(100 - age) * kTrackStep, {0.05, 0.0, 0.0}, {0.01, 0.0, 0.0}, 0.002});
     EXPECT_GT(track.estimate().pp, previous);
     previous = track.estimate().pp;
     // Carried forward with its velocity, and far better than the track's own guess.
     EXPECT_NEAR(track.estimate().p_WT.x, 0.05 + 0.001 * static_cast<double>(age), 0.01);
-    EXPECT_EQ(track.estimate().stamp, 100 * kStep);
+    EXPECT_EQ(track.estimate().stamp, 100 * kTrackStep);
   }
 }
 
 TEST(TargetTrack, ASharedEstimateFarOffReplacesOnlyAnOlderAndWorseTrack) {
   TargetTrack stale{AgentModel()}, sharp{AgentModel()};
   stale.Start({0.0, 0.0, 0.0}, 0.01, 0);
-  stale.Predict(50 * kStep);
+  stale.Predict(50 * kTrackStep);
   sharp.Start({0.0, 0.0, 0.0}, 0.01, 0);
-  sharp.Detect({50 * kStep, 0, {0.0, 0.0, 0.0}, 0.0});
-  const SharedEstimate far{49 * kStep, {0.7, 0.0, 0.0}, {0.0, 0.0, 0.0}, 0.002};
+  sharp.Detect({50 * kTrackStep, 0, {0.0, 0.0, 0.0}, 0.0});
+  const SharedEstimate far{49 * kTrackStep, {0.7, 0.0, 0.0}, {0.0, 0.0, 0.0}, 0.002};
   stale.Fuse(far);
   sharp.Fuse(far);
   EXPECT_NEAR(stale.estimate().p_WT.x, 0.7, 1e-12);
@@ -219,13 +219,13 @@ TEST(TargetTrack, ALateDetectionIsCarriedForwardAndCountsForLess) {
     TimeNs stamp = 0;
     t->Start(p, 0.01, 0);
     Follow(t, 20, {0.01, 0.0, 0.0}, &p, &stamp);
-    t->Predict(30 * kStep);
+    t->Predict(30 * kTrackStep);
   }
-  on_time.Detect({30 * kStep, 0, {0.03, 0.0, 0.0}, 0.001});
-  late.Detect({25 * kStep, 0, {0.025, 0.0, 0.0}, 0.001});
+  on_time.Detect({30 * kTrackStep, 0, {0.03, 0.0, 0.0}, 0.001});
+  late.Detect({25 * kTrackStep, 0, {0.025, 0.0, 0.0}, 0.001});
   EXPECT_NEAR(late.estimate().p_WT.x, 0.03, 5e-4);
   EXPECT_GT(late.estimate().pp, on_time.estimate().pp);
-  EXPECT_EQ(late.estimate().stamp, 30 * kStep);
+  EXPECT_EQ(late.estimate().stamp, 30 * kTrackStep);
 }
 
 }  // namespace

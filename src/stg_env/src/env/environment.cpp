@@ -36,6 +36,10 @@ Environment::Environment(const Scenario& scenario)
   action_ = tau_;
   wrench_.resize(tau_.size());
   if (scenario.world.sea.open) field_.resize(tau_.size());
+  if (scenario.agent.task.free()) {
+    following_ =
+        std::make_unique<task::Following<Pack>>(scenario.run.agents, scenario.world.target.count);
+  }
   if (dynamics::Helm::Steers(scenario.world.vehicle)) {
     helm_ = std::make_unique<dynamics::Helm>(scenario.world.vehicle, model_.vehicle,
                                              model_.control.autopilot, scenario.run);
@@ -119,8 +123,22 @@ void Environment::Judge() {
   task_.Step(Swarm());
 }
 
+void Environment::AskWhatTheyFollow() {
+  if (following_ == nullptr) return;
+  for (std::size_t i = 0; i < tau_.size(); ++i) {
+    source_->Choose(static_cast<int>(i), following_.get());
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const dynamics::TargetState<Pack>& target =
+          world_.target(followed(lane, static_cast<int>(i)));
+      SetLane(&following_->state[i].p_WT, lane, Lane(target.p_WT, lane));
+      SetLane(&following_->state[i].v_WT, lane, Lane(target.v_WT, lane));
+    }
+  }
+}
+
 /// Where the AUVs stand in open water, and what they believe there.
 void Environment::LookAround() {
+  AskWhatTheyFollow();
   const dynamics::Sea& sea = world_.sea();
   for (std::size_t i = 0; i < field_.size(); ++i) {
     const int id = static_cast<int>(i);
@@ -141,7 +159,7 @@ agent::Knowledge<Pack> Environment::Truth(int i) const {
   agent::Knowledge<Pack> k;
   k.SetNavigation(world_.vehicle(i));
   static_cast<agent::Tracking<Pack>&>(k) = task_.tracking(i);
-  k.v_WT = world_.target(scenario_.world.target.of(i)).v_WT;
+  k.v_WT = Swarm().target_of(static_cast<std::size_t>(i)).v_WT;
   return k;
 }
 
@@ -152,7 +170,8 @@ task::SwarmState<Pack> Environment::Swarm() const {
           tau_,
           action_,
           link_quality_,
-          field_.empty() ? nullptr : &field_};
+          field_.empty() ? nullptr : &field_,
+          following_.get()};
 }
 
 void Environment::WriteObservations(int lanes, float* rows) const {

@@ -40,6 +40,12 @@ class Environment {
   void WriteStates(int lanes, float* rows) const;
   void WriteRewards(int lanes, float* rows) const;
 
+  /// The target that an AUV follows.
+  int followed(int lane, int i) const {
+    if (following_ == nullptr) return scenario_.world.target.of(i);
+    return static_cast<int>(Lane(following_->target[static_cast<std::size_t>(i)], lane));
+  }
+
   const Scenario& scenario() const { return scenario_; }
   const agent::AgentModel& model() const { return model_; }
   const dynamics::World& world() const { return world_; }
@@ -54,6 +60,7 @@ class Environment {
   void Zero(int lane, int episode_steps);
   task::SwarmState<Pack> Swarm() const;
   void LookAround();
+  void AskWhatTheyFollow();
 
   Scenario scenario_;
   agent::AgentModel model_;  // what the agents know
@@ -66,7 +73,8 @@ class Environment {
   std::array<double, dynamics::kWrenchSize> share_;  // what agents take for the most, of the most
   task::Efforts<Pack> tau_, action_;
   std::vector<dynamics::Wrench<Pack>> wrench_;
-  std::vector<task::FieldState<Pack>> field_;  // [agents] in open water; else empty
+  std::vector<task::FieldState<Pack>> field_;         // [agents] in open water; else empty
+  std::unique_ptr<task::Following<Pack>> following_;  // null: targets are not chosen freely
   // Of vehicles that are steered by autopilots; else null.
   std::unique_ptr<dynamics::Helm> helm_;
   std::vector<Vec3<Pack>> v_des_W_;

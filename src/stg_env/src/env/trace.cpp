@@ -169,7 +169,7 @@ Columns OurColumns(const VectorEnv& env, const EnvMemory& memory, const Scenario
   vec("state", {"u", "v", "w"}, [v](int i) { return v(i).v_WB_B; });
   vec("state", {"p", "q", "r"}, [v](int i) { return v(i).w_WB_B; });
   vec("angle", {"phi", "theta", "psi"}, [v](int i) { return v(i).rpy; });
-  const auto target = [&env, &s](int i) { return env.target(0, s.world.target.of(i)); };
+  const auto target = [&env](int i) { return env.target(0, env.followed(0, i)); };
   vec("target", {"tpx", "tpy", "tpz"}, [target](int i) { return target(i).p_WT; });
   vec("target", {"tvx", "tvy", "tvz"}, [target](int i) { return target(i).v_WT; });
   for (int k = 0; k < 6; ++k) {

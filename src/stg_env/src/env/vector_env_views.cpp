@@ -37,6 +37,14 @@ task::Tracking<double> VectorEnv::tracking(int env, int i) const {
   return LaneOf(SliceOf(env).lanes->task().tracking(i), lane_of(env));
 }
 
+int VectorEnv::followed(int env, int i) const {
+  return SliceOf(env).lanes->followed(lane_of(env), i);
+}
+
+bool VectorEnv::present(int env, int i) const {
+  return scenario(env).agent.fleet.present(i, Seconds(time(env)));
+}
+
 task::RewardTerms<double> VectorEnv::terms(int env, int i) const {
   return LaneOf(SliceOf(env).lanes->task().terms(i), lane_of(env));
 }

@@ -116,8 +116,9 @@ class StepRows {
       c_.phase.push_back(static_cast<std::uint8_t>(agent::PhaseOf(s_.agent.observation, known)));
       c_.distance.push_back(static_cast<float>(env.tracking(e, i).distance));
       dynamics::Detection detection;
-      const bool detected = acoustic && env.Sense(e, i, s_.world.target.of(i), &detection);
+      const bool detected = acoustic && env.Sense(e, i, env.followed(e, i), &detection);
       c_.detected.push_back(detected ? 1 : 0);
+      c_.followed.push_back(static_cast<std::uint8_t>(env.followed(e, i)));
       const bool ranged = detected && detection.kind == dynamics::MeasurementKind::kRange;
       c_.range.push_back(ranged ? static_cast<float>(detection.range_m) : kUnknown);
       c_.aground.push_back(Touches(v.p_WB));
@@ -146,6 +147,7 @@ class StepRows {
     m.Add("phase", n, c_.phase);
     m.Add("distance", n, c_.distance);
     m.Add("detected", n, c_.detected);
+    if (s_.agent.task.free()) m.Add("followed", n, c_.followed);
     m.Add("range", n, c_.range);
     m.Add("aground", n, c_.aground);
     m.Add("estimate", 3 * n, c_.estimate);
@@ -164,7 +166,7 @@ class StepRows {
     std::vector<double> t;
     std::vector<float> reward, position, heading, pitch, distance, range, estimate, covariance, age,
         neighbour_age, energy, terms, target;
-    std::vector<std::uint8_t> phase, detected, aground;
+    std::vector<std::uint8_t> phase, detected, aground, followed;
   };
 
   static void Put(std::vector<float>* to, const Vec3<double>& v) {

@@ -38,6 +38,15 @@ std::optional<config::Violation> FindConflict(const Scenario& s) {
           FindConflict(agent::AgentScenario{s.run, s.world, s.channel, s.agent, s.agent_model})) {
     return violation;
   }
+  const bool truth = s.mode == InformationMode::kTruth;
+  if (truth && s.agent.task.free()) {
+    return config::Violation{{"task.assignment", "mode"},
+                             "an AUV that knows the truth keeps no beliefs to choose among"};
+  }
+  if (s.agent.fleet.changes() && (truth || !s.world.sea.open)) {
+    return config::Violation{{"fleet.leave", "mode", "sea.open"},
+                             "members leave and join in open water, in the mode acoustic"};
+  }
   return FindConflict(s.judge());
 }
 

@@ -15,29 +15,26 @@ namespace {
 /// What the own estimate of the target is worth: 1 where it is off by `good_m` or less, falling to
 /// 0 within the next `fall_m`; 0 without an estimate or open water.
 struct EstimateTerm : TermOf<EstimateTerm> {
-  EstimateTerm(const EstimateOptions& options, const dynamics::TargetConfig& targets)
-      : options_(options), targets_(targets) {}
+  explicit EstimateTerm(const EstimateOptions& options) : options_(options) {}
 
   template <class T>
   T Of(const TermInput<T>& in) const {
     if (in.swarm.field == nullptr) return T(0.0);
     const FieldState<T>& f = (*in.swarm.field)[static_cast<std::size_t>(in.agent)];
-    const auto target = static_cast<std::size_t>(targets_.of(in.agent));
-    const T error = Norm(f.p_WT - in.swarm.targets[target].p_WT);
+    const T error = Norm(f.p_WT - in.swarm.target_of(static_cast<std::size_t>(in.agent)).p_WT);
     return f.known * Clip((T(options_.good_m + options_.fall_m) - error) * T(1.0 / options_.fall_m),
                           T(0.0), T(1.0));
   }
 
  private:
   EstimateOptions options_;
-  dynamics::TargetConfig targets_;
 };
 
 }  // namespace
 
 std::unique_ptr<const RewardTerm> MakeEstimateTerm(const EstimateOptions& options,
-                                                   const JudgeConfig& scenario) {
-  return std::make_unique<EstimateTerm>(options, scenario.world.target);
+                                                   const JudgeConfig&) {
+  return std::make_unique<EstimateTerm>(options);
 }
 
 }  // namespace stg::task

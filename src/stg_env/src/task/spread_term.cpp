@@ -6,21 +6,24 @@ namespace {
 
 /// How evenly the AUVs of the same target stand around it (Spread), in [0, 1].
 struct SpreadTerm : TermOf<SpreadTerm> {
-  explicit SpreadTerm(const dynamics::TargetConfig& targets) : targets_(targets) {}
-
   template <class T>
   T Of(const TermInput<T>& in) const {
-    return Spread(in.swarm, targets_.of(in.agent));
+    const auto u = static_cast<std::size_t>(in.agent);
+    const std::size_t targets = in.swarm.targets.size();
+    if (in.swarm.following == nullptr) return Spread(in.swarm, static_cast<int>(u % targets));
+    T spread(0.0);
+    for (std::size_t t = 0; t < targets; ++t) {
+      const auto own = in.swarm.following->target[u] == T(static_cast<double>(t));
+      spread = Select(own, Spread(in.swarm, static_cast<int>(t)), spread);
+    }
+    return spread;
   }
-
- private:
-  dynamics::TargetConfig targets_;
 };
 
 }  // namespace
 
-std::unique_ptr<const RewardTerm> MakeSpreadTerm(const JudgeConfig& scenario) {
-  return std::make_unique<SpreadTerm>(scenario.world.target);
+std::unique_ptr<const RewardTerm> MakeSpreadTerm(const JudgeConfig&) {
+  return std::make_unique<SpreadTerm>();
 }
 
 }  // namespace stg::task

@@ -10,6 +10,7 @@ template <class T>
 Task<T>::Task(const JudgeConfig& scenario)
     : scenario_(scenario),
       tracking_(static_cast<std::size_t>(scenario.run.agents)),
+      followed_(tracking_.size(), T(-1.0)),
       terms_(tracking_.size()),
       totals_(scenario) {
   Effort<T> zero;
@@ -33,7 +34,7 @@ void Task<T>::Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& e
 template <class T>
 void Task<T>::Step(const SwarmState<T>& swarm) {
   Measure(swarm, nullptr);
-  T coordination(0.0), communication(0.0), team(0.0);
+  T coordination(0.0), communication(0.0), team(0.0), there(0.0);
   ShareReward(swarm, &coordination, &communication);
   for (int i = 0; i < scenario_.run.agents; ++i) {
     const auto u = static_cast<std::size_t>(i);
@@ -44,9 +45,15 @@ void Task<T>::Step(const SwarmState<T>& swarm) {
     }
     terms_[u] = Reward(scenario_, InputOf(swarm, i), coordination, communication,
                        extra_.empty() ? nullptr : &extra);
+    if (scenario_.agent.fleet.changes()) {
+      const T& present = (*swarm.field)[u].present;
+      terms_[u].total = Select(present > T(0.5), terms_[u].total, T(0.0));
+      there += present;
+    }
     team += terms_[u].total;
   }
-  team_reward_ = team * T(1.0 / scenario_.run.agents);
+  team_reward_ = scenario_.agent.fleet.changes() ? team / Max(there, T(1.0))
+                                                 : team * T(1.0 / scenario_.run.agents);
   totals_.Add(swarm, tracking_, terms_);
   Remember(swarm);
 }
@@ -67,12 +74,18 @@ void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
   const T zero(0.0), one(1.0);
   for (std::size_t i = 0; i < tracking_.size(); ++i) {
     const dynamics::VehicleState<T>& v = swarm.vehicles[i];
-    const dynamics::TargetState<T>& t =
-        swarm.targets[static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)))];
+    const dynamics::TargetState<T>& t = swarm.target_of(i);
     Tracking<T>& k = tracking_[i];
-    const T before = k.distance;
+    T before = k.distance;
     k.Measure(t.p_WT - v.p_WB, v.v_WB - t.v_WT, scenario_.agent.task.desired_distance_m);
     const T d = k.distance;
+    if (swarm.following != nullptr) {
+      // Another target is as far now as it was.
+      const T& target = swarm.following->target[i];
+      before = Select(target == followed_[i], before, d);
+      k.previous_distance = Select(target == followed_[i], k.previous_distance, d);
+      followed_[i] = target;
+    }
     k.previous_distance = starting != nullptr ? Select(*starting, d, k.previous_distance) : before;
     k.confidence = agent::Confidence(d, scenario_.world.sensing.range_m);
     k.lost = Select(d > T(scenario_.agent.task.lost_distance_m), one, zero);

@@ -95,6 +95,7 @@ TEST(EntityFlight, APolicyThatChoosesToSearchLeavesATargetThatIsSeen) {
   const agent::AgentView view = env.agent(0, 0);
   agent::Entities entities;
   entities.targets = 1;
+  entities.target_of_row[0] = 0;
   agent::TakeChoice(view, entities, 0);
   EXPECT_FALSE(view.memory().search);
   agent::TakeChoice(view, entities, 1);

@@ -17,6 +17,10 @@ EpisodeJudge::EpisodeJudge(const task::JudgeConfig& scenario)
       tau_(vehicles_.size()),
       action_(vehicles_.size()),
       policy_ids_(vehicles_.size()) {
+  if (scenario.agent.task.free()) {
+    following_ =
+        std::make_unique<task::Following<double>>(scenario.run.agents, scenario.world.target.count);
+  }
   if (!scenario.world.sea.open) return;
   scape_ = std::make_unique<const dynamics::Seascape>(scenario.world.sea,
                                                       scenario.world.workspace.half_extent_m);
@@ -30,7 +34,8 @@ task::SwarmState<double> EpisodeJudge::Swarm() const {
           tau_,
           action_,
           link_quality_,
-          field_.empty() ? nullptr : &field_};
+          field_.empty() ? nullptr : &field_,
+          following_.get()};
 }
 
 std::vector<float> EpisodeJudge::CriticState() const {
@@ -113,6 +118,22 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
   }
   link_quality_ = sum / static_cast<double>(frame.tasks.size());
   if (!field_.empty()) SetField(frame);
+  if (following_ != nullptr) SetFollowing(frame);
+}
+
+void EpisodeJudge::SetFollowing(const SwarmFrame& frame) {
+  task::Following<double>& f = *following_;
+  const std::size_t n = targets_.size();
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    const auto& task = frame.tasks[i];
+    if (task && task->target < n) f.target[i] = task->target;
+    f.state[i] = targets_[static_cast<std::size_t>(f.target[i])];
+    if (!task || task->beliefs.size() != n || task->beliefs_known.size() != n) continue;
+    for (std::size_t k = 0; k < n; ++k) {
+      f.known[i * n + k] = task->beliefs_known[k] ? 1.0 : 0.0;
+      f.p_WT[i * n + k] = VectorOf(task->beliefs[k]);
+    }
+  }
 }
 
 void EpisodeJudge::SetField(const SwarmFrame& frame) {
@@ -125,6 +146,7 @@ void EpisodeJudge::SetField(const SwarmFrame& frame) {
     if (i < truth.collisions.size()) f.collisions = truth.collisions[i];
     const auto& task = frame.tasks[i];
     if (!task) continue;
+    f.present = task->absent ? 0.0 : 1.0;
     f.known = task->target_known ? 1.0 : 0.0;
     f.p_WT = VectorOf(task->target_position);
     f.r_BT_W = VectorOf(task->target_offset);
@@ -213,10 +235,10 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
     m.distances.push_back(task_.tracking(i).distance);
     m.reward += m.agent_rewards.back() / scenario_.run.agents;
   }
+  if (scenario_.agent.fleet.changes()) m.reward = task_.team_reward();  // of those that are there
   for (std::size_t i = 0; i < field_.size(); ++i) {
     const task::FieldState<double>& f = field_[i];
-    const auto target = static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)));
-    const double error = Norm(f.p_WT - targets_[target].p_WT);
+    const double error = Norm(f.p_WT - Swarm().target_of(i).p_WT);
     m.estimate_errors.push_back(f.known > 0.5 ? error : -1.0);
     m.altitudes.push_back(f.altitude_m);
     m.clearances.push_back(f.clearance_m);

@@ -40,6 +40,7 @@ class EpisodeJudge {
  private:
   void SetTruth(const SwarmFrame& frame);
   void SetField(const SwarmFrame& frame);
+  void SetFollowing(const SwarmFrame& frame);
   /// Packets delivered to and lost on the way to all AUVs, and energy of their modems, in this
   /// episode up to now; of open water.
   void SetLinks(const auv_msgs::LinkStates& links);
@@ -62,6 +63,7 @@ class EpisodeJudge {
   double link_quality_ = 0.0;
   // In open water; else null and empty.
   std::unique_ptr<const dynamics::Seascape> scape_;
+  std::unique_ptr<task::Following<double>> following_;  // null: targets are not chosen freely
   std::vector<task::FieldState<double>> field_;
   std::vector<float> state_;  // the critic's, at the present frame
   bool started_ = false;      ///< an episode is being judged

@@ -140,7 +140,9 @@ bool MetricsNode::Near(TimeNs stamp) const {
 bool MetricsNode::Usable(const auv_msgs::TaskState& m) const {
   return Finite(m.graph_summary[1]) && std::all_of(m.action.begin(), m.action.end(), Finite) &&
          FiniteVector(m.target_position) && FiniteVector(m.target_offset) && Finite(m.target_age) &&
-         std::all_of(m.target_covariance.begin(), m.target_covariance.end(), FiniteSquare);
+         std::all_of(m.target_covariance.begin(), m.target_covariance.end(), FiniteSquare) &&
+         std::all_of(m.beliefs.begin(), m.beliefs.end(),
+                     [](const auto& p) { return FiniteVector(p); });
 }
 
 bool MetricsNode::Usable(const auv_msgs::SwarmState& m) const {

@@ -53,8 +53,9 @@ def check_parallel(make, cycles=30):
 
 def _check_parallel_episode(env, cycles):
     observations, infos = env.reset(seed=3)
-    assert env.agents == list(env.possible_agents) and env.num_agents == len(env.agents)
+    assert set(env.agents) <= set(env.possible_agents) and env.num_agents == len(env.agents)
     assert observations.keys() == infos.keys() == set(env.agents)
+    gone = set()
     for _ in range(cycles):
         if not env.agents:
             break
@@ -62,8 +63,9 @@ def _check_parallel_episode(env, cycles):
         actions = {name: env.action_space(name).sample() for name in flying}
         results = env.step(actions)
         assert len(results) == 5
+        joined = [name for name in env.agents if name not in flying]
         for result in results:
-            assert isinstance(result, dict) and list(result) == flying
+            assert isinstance(result, dict) and list(result) == flying + joined
         observations, rewards, terminations, truncations, infos = results
         for name in flying:
             assert env.observation_space(name).contains(observations[name])
@@ -71,7 +73,9 @@ def _check_parallel_episode(env, cycles):
             assert type(terminations[name]) is bool and type(truncations[name]) is bool
             assert isinstance(infos[name], dict)
         ended = {name for name in flying if terminations[name] or truncations[name]}
-        assert set(env.agents) == set(flying) - ended
+        gone |= ended
+        assert set(env.agents) == set(flying + joined) - ended
+        assert not gone & set(env.agents), "an agent that is gone came back"
         if hasattr(env, "state_space"):
             assert env.state_space.contains(env.state())
 

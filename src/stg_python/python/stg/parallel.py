@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 
 from stg import _core, spaces
+from stg.members import Members
 from stg.scenarios import load_scenario
 from stg.vector import seed_of
 
@@ -36,12 +37,14 @@ except ImportError:
 
 
 class ParallelEnv(_Base):
-    """One swarm: AUV i is the agent "auv_<i>". No agent leaves before all do.
+    """One swarm: AUV i is the agent "auv_<i>". Where the scenario says so (fleet.leave, fleet.join),
+    agents leave in the middle of an episode, which ends by termination for them, and join: `agents`
+    shrinks and grows. One that joins again is another agent, "auv_<i>_2"; see Members.
 
     observations  [K] float32 each, of the decision to come
     actions       [A] float32 or float64 each, clipped to [-1, 1]
     rewards       a float each
-    terminations  never true
+    terminations  true for an agent that leaves with this decision
     truncations   true for all at the last decision of an episode; `agents` is then empty
     infos         empty but for the last decision: "metrics" of the episode, one dictionary for all
 
@@ -72,7 +75,10 @@ class ParallelEnv(_Base):
         arrays = {"observations": self._observations, "final_observations": self._final}
         arrays.update(states=self._states[0], final_states=self._states[1], rewards=self._rewards)
         self._core.bind({**arrays, "truncated": np.zeros(1, bool)})
-        self.possible_agents = [f"auv_{i}" for i in range(s.agents)]
+        self._members = Members(s)
+        self._auvs = [f"auv_{i}" for i in range(s.agents)]
+        self._decision = 0
+        self.possible_agents = self._members.names
         self.agents = []
         self._history = []
         self._ended = False
@@ -110,23 +116,41 @@ class ParallelEnv(_Base):
         self._core.reset_env(0, seed)
         self._next_seed = seed + 1
         self._ended = False
-        self.agents = list(self.possible_agents)
+        self._decision = 0
+        self.agents = self._members.at(0)
         self._history = []
         self._remember()
-        return self._by_name(self._observations), {name: {} for name in self.agents}
+        return self._by_name(self._observations, self.agents), {name: {} for name in self.agents}
 
-    def _by_name(self, rows):
+    def _by_name(self, rows, names):
         """Returns {agent: row} of a fresh copy of [1, N, ...]."""
-        return dict(zip(self.possible_agents, rows[0].copy()))
+        rows = rows[0].copy()
+        return {name: rows[self._members.auv[name]] for name in names}
+
+    def _of_auvs(self, actions):
+        """The actions of all AUVs by their names; those that have left get zeros."""
+        if not self._members.changes:
+            return actions
+        missing = [name for name in self.agents if name not in actions]
+        foreign = [name for name in actions if name not in self.agents]
+        if missing or foreign:
+            raise ValueError(
+                f"actions: expected those of {', '.join(self.agents)}"
+                + (f"; {missing[0]} is missing" if missing else f", not of {foreign[0]}")
+            )
+        still = np.zeros(self.scenario.action_size, np.float32)
+        flying = {self._members.auv[name]: actions[name] for name in self.agents}
+        return {name: flying.get(i, still) for i, name in enumerate(self._auvs)}
 
     def _remember(self):
         if self.render_mode is not None:
             self._history.append(self._core.snapshot(0))
 
     def step(self, actions):
-        """One decision: {agent: [A] array} of all AUVs.
+        """One decision: {agent: [A] array} of all that fly.
 
-        Returns five dictionaries by agent: observations, rewards, terminations, truncations, infos.
+        Returns five dictionaries by agent: observations, rewards, terminations, truncations, infos;
+        of those that flew and of those that join now.
         Raises RuntimeError after the end of an episode or before the first reset, ValueError or
         TypeError for actions that are missing, of another shape or type, or not finite.
         """
@@ -134,20 +158,26 @@ class ParallelEnv(_Base):
             raise RuntimeError("no AUV flies: the episode has ended or not begun; call reset")
         if not isinstance(actions, dict):
             raise TypeError(f"actions: expected a dictionary, not {type(actions).__name__}")
-        names = self.possible_agents
-        ended = self._core.step_agents(actions) == 1
+        flew = self.agents
+        ended = self._core.step_agents(self._of_auvs(actions)) == 1
+        self._decision += 1
+        stay = flew if not self._members.changes else self._members.at(self._decision)
         if ended:
             self._ended = True
             self.agents = []
+            names = flew
             metrics = self._core.metrics(0)
             infos = {name: {"metrics": metrics} for name in names}
         else:
             self._remember()
+            self.agents = stay
+            names = flew + [name for name in stay if name not in flew]
             infos = {name: {} for name in names}
+        rewards = self._rewards[0].tolist()
         return (
-            self._by_name(self._final if ended else self._observations),
-            dict(zip(names, self._rewards[0].tolist())),
-            dict.fromkeys(names, False),
+            self._by_name(self._final if ended else self._observations, names),
+            {name: rewards[self._members.auv[name]] if name in flew else 0.0 for name in names},
+            {name: name not in stay for name in names},
             dict.fromkeys(names, ended),
             infos,
         )
@@ -170,7 +200,7 @@ class ParallelEnv(_Base):
         """
         if not self.agents:
             raise RuntimeError("no AUV flies: the episode has ended or not begun; call reset")
-        return self._by_name(self._core.decide(str(controller), privileged))
+        return self._by_name(self._core.decide(str(controller), privileged), self.agents)
 
     def render(self):
         """A picture [height, width, 3] uint8 of the episode up to now: see stg.render."""

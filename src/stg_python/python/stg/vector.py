@@ -237,12 +237,22 @@ class VectorEnv(_Base):
         """What one AUV knows, as rows: the layout `stg-2:entities`, in acoustic mode.
 
         Returns {"self": [1, 26], "search": [1, 28], "targets": [T, 40], "neighbours": [n, 22],
-        "obstacles": [O, 10], "edges": [T, n, 8]}, float32; a policy file over entities has inputs of
-        the same names.
+        "obstacles": [O, 10], "edges": [T, n, 8]}, float32, and where targets are chosen freely
+        "target_of_row", the targets that the rows are about; a policy file over entities has inputs of the same names.
         """
         if not self._started:
             raise RuntimeError("reset must come before entities")
         return self._core.entities(env, agent)
+
+    def follow(self, env, agent, target):
+        """AUV `agent` follows `target` from the next decision on, where task.assignment is free."""
+        if not self._started:
+            raise RuntimeError("reset must come before follow")
+        self._core.follow(env, agent, target)
+
+    def followed(self, env=0, agent=0):
+        """The target that an AUV is tasked with, or follows."""
+        return self._core.followed(env, agent)
 
     def controller_actions(self, controller, privileged=False):
         """Returns what a controller does now: actions [num_envs, N, A].

@@ -144,6 +144,8 @@ py::dict Task(const BoundAgent& a) {
   all["graph_summary"] = task.graph;
   all["role"] = task.role;
   all["action"] = a.action;
+  all["target"] = a.mind.target();
+  all["absent"] = !a.mind.present();
   all["target_known"] = a.mind.belief().started;
   all["target_std"] = a.mind.estimate().position_std_m();
   all["target_distance"] = k.distance;
@@ -240,6 +242,25 @@ void BindAgent(py::module_& module) {
           },
           py::arg("stamp"), py::arg("p_WT"), py::arg("std_m"), py::arg("target") = 0,
           "An own detection; the newest before the next observe counts.")
+      .def(
+          "follow", [](BoundAgent& a, int target) { a.mind.view().Follow(target); },
+          py::arg("target"),
+          "Follows another target from the next observe on, where targets are chosen freely\n"
+          "(task.assignment); else nothing happens.")
+      .def(
+          "add_cue",
+          [](BoundAgent& a, int target, const Triple& p_WT, double std_m) {
+            dynamics::Cue cue;
+            cue.target = target;
+            cue.p_WT = VectorOf(p_WT);
+            cue.std_m = std_m;
+            a.mind.AddCue(cue);
+          },
+          py::arg("target"), py::arg("p_WT"), py::arg("std_m"),
+          "Where another target was said to be at time 0 [m], after reset.")
+      .def_property_readonly(
+          "present", [](const BoundAgent& a) { return a.mind.present(); },
+          "False: it has left the swarm, as of the last observe.")
       .def("receive", &Receive, py::arg("data"), py::arg("arrival"),
            "A packet from the modem; one that does not decode is counted and ignored.")
       .def("observe", &Observe, py::arg("stamp"), py::arg("p_WB"), py::arg("q_WB"),

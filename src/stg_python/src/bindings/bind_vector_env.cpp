@@ -38,6 +38,10 @@ void BindVectorEnv(py::module_& module) {
       .def("snapshot", &BoundEnv::Snapshot, py::arg("env"), "The truth, for drawing.")
       .def("entities", &BoundEnv::Entities, py::arg("env"), py::arg("agent"),
            "What one AUV knows, as rows: the layout stg-2:entities.")
+      .def("follow", &BoundEnv::Follow, py::arg("env"), py::arg("agent"), py::arg("target"),
+           "An AUV follows another target from the next decision on.")
+      .def("followed", &BoundEnv::followed, py::arg("env"), py::arg("agent"),
+           "The target that an AUV is tasked with, or follows.")
       .def("scenario", &BoundEnv::scenario, py::arg("env"), py::return_value_policy::copy)
       .def("seed", &BoundEnv::seed, py::arg("env"), "World seed of the episode under way.")
       .def("round", &BoundEnv::round, py::arg("env"), "k of the episode under way.")

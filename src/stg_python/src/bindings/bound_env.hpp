@@ -44,6 +44,9 @@ class BoundEnv {
   py::dict Snapshot(int env) const;
   /// The rows of the layout `stg-2:entities` of one AUV, by their names.
   py::dict Entities(int env, int agent) const;
+  /// An AUV follows another target from the next decision on, where targets are chosen freely.
+  void Follow(int env, int agent, int target);
+  int followed(int env, int agent) const;
   Scenario scenario(int env) const;
   std::uint64_t seed(int env) const;
   std::uint64_t round(int env) const;
@@ -68,6 +71,7 @@ class BoundEnv {
   const EnvPool& pool() const;
   EnvPool::Place at(int env) const;
   void RequireEnv(int env) const;
+  void RequireAgent(int agent) const;
   template <class Number>
   int StepChecked(const Number* actions);
   const agent::Decider& ControllerOf(const std::string& name, bool privileged);

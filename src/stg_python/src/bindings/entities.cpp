@@ -19,13 +19,38 @@ py::array_t<float> RowsOf(const float* data, int rows, int numbers) {
 
 }  // namespace
 
-py::dict BoundEnv::Entities(int env, int agent) const {
-  const Use use(this);
-  const EnvPool::Place place = at(env);
+void BoundEnv::RequireAgent(int agent) const {
   if (agent < 0 || agent >= agents_) {
     throw py::index_error("agent: " + std::to_string(agent) + " is not in 0 to " +
                           std::to_string(agents_ - 1));
   }
+}
+
+void BoundEnv::Follow(int env, int agent, int target) {
+  const Use use(this);
+  const EnvPool::Place place = at(env);
+  RequireAgent(agent);
+  const Scenario& s = place.envs.scenario(place.env);
+  if (!s.agent.task.free()) {
+    throw py::value_error("follow: targets are not chosen here; set task.assignment to free");
+  }
+  if (target < 0 || target >= s.world.target.count) {
+    throw py::index_error("target: " + std::to_string(target) + " is not in 0 to " +
+                          std::to_string(s.world.target.count - 1));
+  }
+  place.envs.agent(place.env, agent).Follow(target);
+}
+
+int BoundEnv::followed(int env, int agent) const {
+  const EnvPool::Place place = at(env);
+  RequireAgent(agent);
+  return place.envs.followed(place.env, agent);
+}
+
+py::dict BoundEnv::Entities(int env, int agent) const {
+  const Use use(this);
+  const EnvPool::Place place = at(env);
+  RequireAgent(agent);
   if (place.envs.scenario(place.env).mode != InformationMode::kAcoustic) {
     throw py::value_error("entities are what an AUV finds out by itself: mode must be acoustic");
   }
@@ -43,6 +68,11 @@ py::dict BoundEnv::Entities(int env, int agent) const {
     to = std::copy(e.edge[t][0], e.edge[t][0] + e.neighbours * agent::kEdgeNumbers, to);
   }
   rows["edges"] = edges;
+  if (place.envs.scenario(place.env).agent.task.free()) {
+    py::list of;
+    for (int t = 0; t < e.targets; ++t) of.append(e.target_of_row[t]);
+    rows["target_of_row"] = of;
+  }
   return rows;
 }
 

@@ -33,7 +33,7 @@ agent::PoolSpec SwarmCriticSpec() {
 void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities& entities,
                   PackedRows* rows) {
   const Scenario& s = env.scenario(e);
-  const int target = s.world.target.of(i);
+  const int target = env.followed(e, i);
   const double desired = s.agent.task.desired_distance_m;
   const dynamics::VehicleState<double> own = env.vehicle(e, i);
   const dynamics::TargetState<double> goal = env.target(e, target);
@@ -84,7 +84,7 @@ void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities
     o.Put(static_cast<double>(agent::FarScale(far)));
     o.Put(static_cast<double>(agent::BandScale(far, desired)));
     o.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
-    o.Put(s.world.target.of(j) == target ? 1.0 : 0.0);
+    o.Put(env.followed(e, j) == target ? 1.0 : 0.0);
   }
   const agent::PoolRows sets[2] = {{goals, 1, kCriticTarget}, {others[0], count, kCriticOther}};
   rows->Add(self, nullptr, sets);

@@ -47,7 +47,10 @@ class Agent {
   /// Observe is: one that comes late finds it as uncertain as it has become.
   void Reset(std::uint32_t episode, const dynamics::Cue& cue) { one_.Reset(0, episode, cue); }
 
-  /// Own detection; of another target than this agent's: ignored. The newest before the
+  /// A cue of another target, likewise, after Reset.
+  void AddCue(const dynamics::Cue& cue) { one_.AddCue(0, cue); }
+
+  /// Own detection; of a target that it keeps no belief of: ignored. The newest before the
   /// next Observe counts.
   void Detect(const dynamics::Detection& detection) { one_.Detect(0, detection); }
 
@@ -66,6 +69,9 @@ class Agent {
   /// Own state and target estimate at the last Observe: what it offers to its modem.
   Packet MakePacket() const { return one_.MakePacket(0); }
 
+  /// False: it has left the swarm, as of the last Observe, and offers no packet.
+  bool present() const { return one_.present(0); }
+
   int id() const { return one_.id(); }
   const AgentModel& model() const { return one_.model(); }
   std::uint32_t episode() const { return one_.inbox(0).episode(); }
@@ -78,7 +84,7 @@ class Agent {
   const NeighbourTable& neighbours() const { return one_.neighbours(0); }
   TargetEstimate estimate() const { return one_.inbox(0).estimate(); }
   TargetBelief belief() const { return one_.inbox(0).belief(); }
-  /// Target this agent is tasked with.
+  /// Target this agent is tasked with, or follows.
   int target() const { return one_.inbox(0).target(); }
   bool lost() const { return knowledge().lost > 0.5; }
   /// All that it knows.

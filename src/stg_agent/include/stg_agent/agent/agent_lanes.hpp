@@ -28,6 +28,8 @@ class LanedAgent {
   /// Starts an episode in one lane, which forgets everything. The cue was true at time 0, whenever
   /// the first Observe is: one that comes late finds it as uncertain as it has become.
   void Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue);
+  /// A cue of another target, likewise, after Reset.
+  void AddCue(int lane, const dynamics::Cue& cue) { At(lane).AddCue(cue); }
   void Detect(int lane, const dynamics::Detection& detection);
   void Receive(int lane, const acoustics::Reception& reception);
 
@@ -50,6 +52,9 @@ class LanedAgent {
   /// Own state and target estimate at the last Observe: what a lane's agent offers to its modem.
   Packet MakePacket(int lane) const;
 
+  /// False: it has left the swarm (fleet.leave), as of the last Observe. It tells nothing.
+  bool present(int lane) const { return Lane(present_, lane) > 0.5; }
+
   int id() const { return inbox(0).id(); }
   const AgentModel& model() const { return constants_->model; }
   const Inbox& inbox(int lane) const { return inboxes_[static_cast<std::size_t>(lane)]; }
@@ -63,11 +68,15 @@ class LanedAgent {
  private:
   Inbox& At(int lane) { return inboxes_[static_cast<std::size_t>(lane)]; }
   void Think(const dynamics::Navigation<T>& nav, const Mask<T>& lanes);
+  /// Leaves and joins as the scenario says.
+  void Attend(int lane, TimeNs now);
+
   SharedConstants constants_;
   std::vector<Inbox> inboxes_;  // [lanes]
   std::unique_ptr<acoustics::LinkEstimator> links_;
   Neighbourhood<T> neighbours_;
   Mind<T> mind_;
+  T present_ = T(1.0);
   mutable std::vector<EntityMemory> memory_;  // [lanes]; a view hands it to the pilot
   mutable std::vector<SearchMemory> search_;  // [lanes], or empty: no map; a view hands it to a law
   // As before the present Observe, for lanes that do not take part in it.

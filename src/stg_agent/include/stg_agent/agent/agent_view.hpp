@@ -34,6 +34,9 @@ class AgentView {
   const AgentModel& model() const { return model_; }
   int id() const { return inbox_.id(); }
   int target() const { return inbox_.target(); }
+  /// The targets that it keeps beliefs of: first_target() .. first_target() + beliefs() - 1.
+  int first_target() const { return inbox_.first_target(); }
+  int beliefs() const { return inbox_.beliefs(); }
   std::uint32_t episode() const { return inbox_.episode(); }
 
   /// State of knowledge of the last Observe.
@@ -47,6 +50,9 @@ class AgentView {
   TargetEstimate estimate() const { return inbox_.estimate(); }
   /// The same in the true world frame, with a whole covariance.
   TargetBelief belief() const { return inbox_.belief(); }
+  /// The same of any target that it keeps a belief of.
+  TargetEstimate estimate(int target) const { return inbox_.estimate(target); }
+  TargetBelief belief(int target) const { return inbox_.belief(target); }
   /// The neighbours' packets, as received.
   const NeighbourTable& neighbours() const { return neighbours_; }
   /// A known neighbour as of the last Observe.
@@ -58,6 +64,9 @@ class AgentView {
   /// What it remembers for its entities, and the command that it flies by; a pilot writes the
   /// latter, which is why it is not constant.
   EntityMemory& memory() const { return *memory_; }
+  /// Follows another target from the next decision on, of those that it keeps beliefs of; others
+  /// are ignored. Where targets are not chosen freely (task.assignment) there is one.
+  void Follow(int target) const { memory_->follow = target; }
   /// Where it has searched; null: it keeps no map. A law writes its plan into it.
   SearchMemory* search() const { return search_; }
 

@@ -64,7 +64,7 @@ class Mind {
     k.v_WT = target.v_WT;
     k.Measure(target.p_WT - k.p_WB, k.v_WB - k.v_WT, s.task.desired_distance_m);
     const T distance = k.distance;
-    k.previous_distance = Select(decisions_ == zero, distance, before);
+    k.previous_distance = Select((decisions_ == zero) || (target.changed > half), distance, before);
     k.mean_error = errors_.Add(k.error);
     const Mask<T> lost = (target.started < half) ||
                          (Sqrt(target.variance) > T(s.track.lost_std_m)) ||

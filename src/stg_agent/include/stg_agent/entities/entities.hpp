@@ -16,12 +16,21 @@ struct Entities {
   float neighbour[kNeighbourRows][kNeighbourNumbers];
   float obstacle[kObstacleRows][kObstacleNumbers];
   float edge[kTargetRows][kNeighbourRows][kEdgeNumbers];  ///< of target t and neighbour n
+  int target_of_row[kTargetRows];                         ///< the target that a row is about
 };
 
 /// A neighbour as the entities take it.
 struct EntityNeighbour {
   NeighbourSight<double> sight;
   const NeighbourState* report = nullptr;  ///< its newest packet
+};
+
+/// Beliefs of targets beyond the one that it follows, as the entities take them.
+struct EntityBelief {
+  int target = 0;
+  Vec3<double> r_BT_W, v_WT;  ///< against the own position, in the frame of the own navigation
+  TargetBelief belief;
+  double velocity_std_mps = 0.0, information_age_s = 0.0;
 };
 
 /// All that the entities are made of. World axes.
@@ -36,11 +45,14 @@ struct EntityInput {
   double information_age_s = 0.0;               ///< of the newest observation in it
   const EntityNeighbour* neighbours = nullptr;  ///< [neighbour_count], nearest first
   int neighbour_count = 0;
-  const SearchMap* search = nullptr;  ///< null: it keeps no map
+  const SearchMap* search = nullptr;     ///< null: it keeps no map
+  const EntityBelief* others = nullptr;  ///< [other_count], nearest first; all of them started
+  int other_count = 0;
 };
 
 /// Writes the rows; allocates nothing. Their order is that of the input for neighbours, and by
-/// distance for obstacles.
+/// distance for obstacles. The first row of a target is of the one that the AUV is tasked with or
+/// follows, where it has a belief of it; those of the others follow by distance, up to kTargetRows.
 ///
 /// Always zero today, because nothing in the agent tells them: of a target the second mixture
 /// component and the last innovation, of a neighbour the share of its packets missed and their

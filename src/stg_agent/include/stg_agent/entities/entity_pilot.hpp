@@ -20,8 +20,8 @@ bool CommandDue(const EntityMemory& memory);
 /// Takes a command for the time to come.
 /// @param command [CommandSize], clipped to [-1, 1]
 void TakeCommand(const AgentView& agent, EntityAction action, const float* command);
-/// Takes what a policy has chosen for the same time: the row of a target, which the AUV follows, or
-/// their number: to search, where it keeps a map.
+/// Takes what a policy has chosen for the same time: the row of a target, which the AUV follows
+/// from the next decision on, or their number: to search, where it keeps a map.
 void TakeChoice(const AgentView& agent, const Entities& entities, int choice);
 /// The scenario's action that follows the last command now, rounded to float; every decision.
 /// @param out [action_size]

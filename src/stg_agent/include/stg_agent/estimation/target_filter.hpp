@@ -33,6 +33,11 @@ struct TargetBelief {
   double position_std_m() const { return std::sqrt(P_WT.trace() / 3.0); }
 };
 
+/// Whether it is good enough to count as knowing where the target is.
+inline bool Known(const AgentModel& model, const TargetBelief& belief) {
+  return belief.started && belief.position_std_m() <= model.track.lost_std_m;
+}
+
 /// How far the frame of the own navigation may be off.
 struct OwnFrame {
   double position_std_m = 0.0;  ///< as navigation states it; where no localizer knows better

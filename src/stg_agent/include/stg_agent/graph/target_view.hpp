@@ -11,6 +11,7 @@ struct TargetView {
   T variance = T(0.0);  ///< of each position component [m^2]
   T started = T(0.0);   ///< 1: there is an estimate
   T current = T(0.0);   ///< 1: it rests on a recent observation
+  T changed = T(0.0);   ///< 1: of another target than at the last decision
 };
 
 }  // namespace stg::agent

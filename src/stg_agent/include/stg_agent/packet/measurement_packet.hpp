@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "stg_agent/agent_config.hpp"
 #include "stg_agent/packet/neighbour_state.hpp"
@@ -20,6 +21,14 @@ namespace stg::agent {
 /// - position, range_bearing: the point 3 x 15, as the position.
 /// Of a sensor that cannot tell port from starboard there is one measurement in both places: the
 /// same 25, range 14, azimuth 14, elevation 12, mirrored azimuth 14.
+///
+/// Where targets are chosen freely, version 3, the two measurements are replaced: the target that
+/// the sender follows 4 (one more than its index; 0: it does not tell); then
+/// - range: looks 2, of which there is one with five ranges, or two with one range of the first and
+///   two of the second, or two and one. Of a look age 10 (of the second 9: so much earlier), where
+///   the observer was 9 + 9 + 7; of a range the target 4, as above, range 12;
+/// - else two measurements, each its target 4, age 10 and the rest as above; of a sensor that
+///   cannot tell port from starboard one.
 ///
 /// Ranges follow the scenario: positions 1.25 workspace half extents, velocities the vehicle's
 /// limit plus the current, offsets what it can go in the largest age shared, deviation 1e-5 to 1
@@ -64,17 +73,34 @@ class MeasurementPacket {
     double Value(std::uint64_t code) const;
     static Logarithm Of(double lo, double hi, int bits);
   };
+  void RequireCode(const NeighbourState& s, const dynamics::Detection& d) const;
+  TimeNs AgeCode(const NeighbourState& s, const dynamics::Detection& d) const;
+  static void WriteAge(TimeNs steps, int bits, Writer* w);
+  void WriteObserver(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
+  Vec3<double> ReadObserver(const NeighbourState& s, Reader* r) const;
   void WriteSighting(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
   void ReadSighting(const NeighbourState& s, Reader* r, dynamics::Detection* d) const;
+  /// Age and what was measured, without the target.
+  void WriteMeasured(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
+  void ReadMeasured(const NeighbourState& s, int target, Reader* r, dynamics::Detection* d) const;
+  /// What follows the status where targets are chosen freely.
+  void WriteFree(const NeighbourState& s, Writer* w) const;
+  void ReadFree(Reader* r, NeighbourState* s) const;
+  void WriteLooks(const NeighbourState& s, Writer* w) const;
+  void ReadLooks(Reader* r, NeighbourState* s) const;
+  void WriteName(int target, Writer* w) const;
+  int ReadName(Reader* r) const;
   void SetDeviations(const NeighbourState& s, dynamics::Detection* d) const;
   void WritePlace(const Vec3<double>& p, Writer* w) const;
   Vec3<double> ReadPlace(const Vec3<double>& near, Reader* r) const;
-  void WriteRanges(const NeighbourState& s, Writer* w) const;
-  void ReadRanges(Reader* r, NeighbourState* s) const;
+  void WriteToldRanges(const NeighbourState& s, Writer* w) const;
+  void ReadToldRanges(Reader* r, NeighbourState* s) const;
 
   int agents_, targets_;
+  bool free_;     ///< targets are chosen freely: version 3
   bool located_;  ///< agents locate each other: version 5
-  int members_;   ///< AUVs and stations
+  std::uint64_t version_;
+  int members_;  ///< AUVs and stations
   dynamics::MeasurementKind kind_;
   bool ambiguous_;
   dynamics::SensingConfig sensing_;

@@ -17,8 +17,12 @@ enum class PacketLayout {
   kMeasurements  ///< what it measured itself
 };
 
-/// Measurements in one packet.
+/// Measurements in one packet, at most: of the one target that its sender is tasked with, and where
+/// targets are chosen freely.
 inline constexpr int kSightings = 2;
+inline constexpr int kFreeSightings = 5;
+/// Targets that may be chosen freely: a packet names them by 4 bits, one code of which is none.
+inline constexpr int kMostFreeTargets = 15;
 /// Ranges in one packet of agents that locate each other.
 inline constexpr int kToldRanges = 2;
 
@@ -45,12 +49,14 @@ struct NeighbourState {
   Vec3<double> p_WT;            ///< estimated target position [m]
   Vec3<double> v_WT;            ///< estimated target velocity [m/s]
   double target_std = 0.0;      ///< standard deviation of the estimate, each component [m]
+  int followed = -1;            ///< target that it follows, as it tells; -1: it does not tell
   // Of the layout kMeasurements, in place of the estimate.
   double position_std_m = 0.0;  ///< of each horizontal component of p_W, as navigation states it
   int sightings = 0;            ///< how many of the following mean something
-  /// Own measurements of the target, newest first. Deviations do not travel: everybody knows the
-  /// sensor. Those of the observer's position and heading are the sender's at `generation`.
-  std::array<dynamics::Detection, kSightings> sighting;
+  /// Own measurements, newest first: of the target, or of any where targets are chosen freely.
+  /// Deviations do not travel: everybody knows the sensor. Those of the observer's position and
+  /// heading are the sender's at `generation`.
+  std::array<dynamics::Detection, kFreeSightings> sighting;
   // Of agents that locate each other.
   bool adrift = false;  ///< its log measures against the water
   int ranges = 0;       ///< how many of the following mean something

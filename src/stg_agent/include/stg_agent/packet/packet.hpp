@@ -66,6 +66,7 @@ class PacketCodec {
 
   PacketLayout layout_;
   int agents_, targets_;
+  bool free_;  // targets are chosen freely
   Quantiser position_, velocity_, unit_, error_, target_velocity_, log_std_;
   std::array<double, 256> std_of_code_{};  ///< exp(log_std_) for every code
   MeasurementPacket measurements_;

@@ -102,6 +102,9 @@ class VectorEnv {
   TimeNs time(int env) const;
   task::Tracking<double> tracking(int env, int i) const;
   task::RewardTerms<double> terms(int env, int i) const;
+  /// The target that an AUV is tasked with, or follows; and whether it is in the swarm.
+  int followed(int env, int i) const;
+  bool present(int env, int i) const;
   /// What an AUV decides on.
   agent::Knowledge<double> knowledge(int env, int i) const;
   /// Acoustic mode only: what an AUV's agent holds, and the network.

@@ -63,12 +63,11 @@ void WriteCriticState(const JudgeConfig& s, const SwarmState<T>& swarm,
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const Tracking<T>& k = tracking[i];
     const dynamics::VehicleState<T>& v = swarm.vehicles[i];
-    const auto target = static_cast<std::size_t>(s.world.target.of(static_cast<int>(i)));
     const Effort<T>& tau = swarm.tau[i];
     n = 0;
     put3(k.r_BT_W * far);
     put3(Clip(k.r_BT_W * near, -1.0, 1.0));
-    put3(Scale(swarm.targets[target].v_WT - v.v_WB, inv_v));
+    put3(Scale(swarm.target_of(i).v_WT - v.v_WB, inv_v));
     put3(Scale(v.w_WB_B, inv_w));
     put3({tau[0], tau[1], tau[2]});
     block[n++] = Clip((k.distance - T(s.agent.task.desired_distance_m)) * near, T(-1.0), T(1.0));

@@ -29,15 +29,15 @@ class EstimateTotals {
   /// Adds a decision. @param swarm with its field @param tail lanes in the tail of their episode
   void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
            const Mask<T>& tail);
-  /// Of the episode up to now. @param steps decisions of this lane
-  EstimateMetrics Metrics(int lane, double steps) const;
+  /// Of the episode up to now.
+  EstimateMetrics Metrics(int lane) const;
 
  private:
   static constexpr int kBins = 330;
   using Histogram = std::array<std::uint32_t, kBins>;
   struct Sums {
-    T known = T(0.0), known_tail = T(0.0), own = T(0.0), own_tail = T(0.0), world = T(0.0),
-      world_tail = T(0.0), vertical = T(0.0), lost_in_world = T(0.0);
+    T present = T(0.0), known = T(0.0), known_tail = T(0.0), own = T(0.0), own_tail = T(0.0),
+      world = T(0.0), world_tail = T(0.0), vertical = T(0.0), lost_in_world = T(0.0);
   };
   void Count(int lane, double own_m, double world_m);
 

@@ -40,7 +40,10 @@ class SearchTotals {
     T way = T(0.0), net = T(0.0);  ///< in the whole windows up to now [m]
     Vec3<T> p_WT, p_window;        ///< at the last decision, and where the window began
     T window_way = T(0.0);
+    double wanted = 2.0;  ///< AUVs that follow it
   };
+  /// Of targets that are chosen freely.
+  void AddChoices(const SwarmState<T>& swarm);
   T InBand(const Tracking<T>& k) const;
   void Follow(const Vec3<T>& p_WT, OfTarget* target) const;
 
@@ -48,6 +51,9 @@ class SearchTotals {
   double window_;  // decisions
   T decisions_ = T(0.0), gathered_ = T(-1.0), info_spread_ = T(0.0);
   std::vector<OfTarget> targets_;
+  // Of targets that are chosen freely.
+  T switches_ = T(0.0), judged_ = T(0.0), ospa_ = T(0.0), gospa_ = T(0.0);
+  std::vector<T> chosen_;  // [agents] at the last decision
 };
 
 /// The sums behind FieldMetrics. Every lane counts its own decisions.
@@ -66,10 +72,11 @@ class FieldTotals {
 
  private:
   struct Sums {
-    T square = T(0.0), nees = T(0.0), judged = T(0.0), known = T(0.0), age = T(0.0), band = T(0.0),
-      lost = T(0.0), losses = T(0.0), recovered = T(0.0), recovered_steps = T(0.0), spread = T(0.0),
-      near_pairs = T(0.0), groundings = T(0.0), collisions = T(0.0), received = T(0.0),
-      missed = T(0.0), modem_energy = T(0.0), propulsion = T(0.0);
+    T present = T(0.0), square = T(0.0), nees = T(0.0), judged = T(0.0), known = T(0.0),
+      age = T(0.0), band = T(0.0), lost = T(0.0), losses = T(0.0), recovered = T(0.0),
+      recovered_steps = T(0.0), spread = T(0.0), near_pairs = T(0.0), groundings = T(0.0),
+      collisions = T(0.0), received = T(0.0), missed = T(0.0), modem_energy = T(0.0),
+      propulsion = T(0.0);
     T min_altitude = T(1e9), min_clearance = T(1e9);
   };
 
@@ -80,6 +87,7 @@ class FieldTotals {
   NavigationTotals<T> navigation_;
   std::vector<T> spell_;               // [agents] decisions of the spell of loss that runs
   std::vector<T> band_;                // [agents] decisions in the band
+  std::vector<T> there_;               // [agents] decisions for which it was there
   std::vector<bool> turns_propeller_;  // [agents] whether tau tells the rpm of a propeller
 };
 

@@ -9,6 +9,14 @@
 
 namespace stg::task {
 
+/// Of targets that are chosen freely (task.assignment).
+struct ChoiceMetrics {
+  double switches = 0.0;  ///< changes to another target, per AUV
+  /// How far the set of positions that an AUV believes targets to be at is from that of the
+  /// targets, mean over AUVs and decisions (DistanceOfSets with a cutoff of 100 m) [m].
+  double ospa = 0.0, gospa = 0.0;
+};
+
 /// How soon targets are found, how well they are surrounded, and how many of them are followed.
 struct SearchMetrics {
   double found = 0.0;           ///< 1: some AUV had an observation of each target
@@ -17,12 +25,14 @@ struct SearchMetrics {
   /// Mean of 1 - |mean of e^{2 i theta}| over the AUVs' bearings from a target: 0 where all stand
   /// on one line through it, whose ranges tell one axis only.
   double info_spread = 0.0;
-  /// Share of targets and decisions with two AUVs in the band, or one that is alone, and the best
-  /// estimate of those tasked with the target off by less than 20 m in the plane.
+  /// Share of targets and decisions with two AUVs in the band, or one where there are not two for
+  /// every target, and the best estimate of those that follow it off by less than 20 m in the
+  /// plane.
   double followed = 0.0;
   double worst_followed = 0.0;  ///< the same of the target that was followed least
   /// Displacement of the targets over 600 s as a share of their way; 0 in shorter episodes.
   double target_net_speed = 0.0;
+  std::optional<ChoiceMetrics> choices;
 
   std::vector<std::pair<std::string, double>> Items() const;
 };

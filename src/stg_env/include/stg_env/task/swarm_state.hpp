@@ -21,8 +21,9 @@ static_assert(dynamics::kMaxActionSize <= dynamics::kWrenchSize, "an action is a
 /// what its modem did.
 template <class T>
 struct FieldState {
-  T known = T(0.0);  ///< 1: it has an estimate of its target; 0: the next four mean nothing
-  Vec3<T> p_WT;      ///< its estimate of the target's position, world axes [m]
+  T present = T(1.0);  ///< 0: it has left the swarm (fleet.leave) and is judged no more
+  T known = T(0.0);    ///< 1: it has an estimate of its target; 0: the next four mean nothing
+  Vec3<T> p_WT;        ///< its estimate of the target's position, world axes [m]
   /// Its estimate of the vector from itself to the target, world axes [m]: what it steers by. An
   /// error of its own navigation is in p_WT, but not in this.
   Vec3<T> r_BT_W;
@@ -44,6 +45,22 @@ struct FieldState {
   T modem_energy_j = T(0.0);   ///< electric, of its modem
 };
 
+/// Where targets are chosen freely (task.assignment): which target each AUV follows, and where it
+/// believes every target to be.
+template <class T>
+struct Following {
+  Following(int agents, int targets)
+      : target(static_cast<std::size_t>(agents), T(0.0)),
+        state(target.size()),
+        known(target.size() * static_cast<std::size_t>(targets), T(0.0)),
+        p_WT(known.size()) {}
+
+  std::vector<T> target;                        ///< [agents], index of the target it follows
+  std::vector<dynamics::TargetState<T>> state;  ///< [agents], true state of that target
+  std::vector<T> known;                         ///< [agents, targets], 1: it has a belief of it
+  std::vector<Vec3<T>> p_WT;                    ///< [agents, targets], which is this [m]
+};
+
 /// The true state of a swarm when a decision is due, and what the decision before led to it with:
 /// all that a task judges. A view; it does not say what moved the swarm. T = double: one swarm.
 /// T = Pack: kLanes swarms.
@@ -58,6 +75,19 @@ struct SwarmState {
   T link_quality = T(0.0);
   /// [agents], of scenarios in open water; null: there is none.
   const std::vector<FieldState<T>>* field = nullptr;
+  /// Null: AUV i is tasked with target i modulo their number.
+  const Following<T>* following = nullptr;
+
+  /// The target that AUV i follows.
+  const dynamics::TargetState<T>& target_of(std::size_t i) const {
+    return following != nullptr ? following->state[i] : targets[i % targets.size()];
+  }
+  /// 1: AUV i follows target t and has not left; else 0.
+  T follows(std::size_t i, std::size_t t) const {
+    const T there = field != nullptr ? (*field)[i].present : T(1.0);
+    if (following == nullptr) return i % targets.size() == t ? there : T(0.0);
+    return Select(following->target[i] == T(static_cast<double>(t)), there, T(0.0));
+  }
 };
 
 /// How one AUV stands to its target, truly. `lost`: farther than task.lost_distance_m, or

@@ -61,6 +61,7 @@ class Task {
   JudgeConfig scenario_;
   std::vector<Weighted> extra_;  // registered terms of a weight that is not 0
   std::vector<Tracking<T>> tracking_;
+  std::vector<T> followed_;  // by each AUV at the last state, where targets are chosen freely
   std::vector<RewardTerms<T>> terms_;
   Efforts<T> previous_tau_, previous_action_;
   T team_reward_ = T(0.0);

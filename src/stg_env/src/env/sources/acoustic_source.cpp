@@ -34,6 +34,12 @@ void AcousticSource::Start(const dynamics::World& world, const LaneSet& lanes) {
     for (int i = 0; i < count_; ++i) {
       agents_[static_cast<std::size_t>(i)].Reset(lane, world.episode(lane),
                                                  world.InitialCue(lane, i, targets_.of(i)));
+      for (int k = 0; k < targets_.count; ++k) {
+        // Of one without a belief it is ignored.
+        if (k != targets_.of(i)) {
+          agents_[static_cast<std::size_t>(i)].AddCue(lane, world.InitialCue(lane, i, k));
+        }
+      }
     }
   }
 }
@@ -81,7 +87,7 @@ void AcousticSource::Send(const dynamics::World& world) {
       const auto u = static_cast<std::size_t>(i);
       positions_[u] = Lane(world.vehicle(i).p_WB, lane);
       velocities_[u] = Lane(world.vehicle(i).v_WB, lane);
-      if (!channel.Due(i, now)) continue;
+      if (!channel.Due(i, now) || !agents_[u].present(lane)) continue;
       packets_[u] = agents_[u].MakePacket(lane);
       acoustics::Transmission& t = offered_.emplace_back();
       t.source = i;
@@ -108,13 +114,15 @@ void AcousticSource::TellNavigation(const dynamics::World& world, int i, int lan
   const double covariance[3] = {e.xx, e.xy, e.yy};
   for (int k = 0; k < 3; ++k) SetLane(&f->navigation_covariance[k], lane, covariance[k]);
   double square = 0.0;
+  int others = 0;
   for (int j = 0; j < count_; ++j) {
-    if (j == i) continue;
+    if (j == i || !agents_[static_cast<std::size_t>(j)].present(lane)) continue;
     const Vec3<double> truth = error(j) - own;
     const agent::PlaneError r = localizer->relative(j, world.time(lane));
     square += (truth.x - r.x) * (truth.x - r.x) + (truth.y - r.y) * (truth.y - r.y);
+    ++others;
   }
-  SetLane(&f->relative_square, lane, square / std::max(1, count_ - 1));
+  SetLane(&f->relative_square, lane, square / std::max(1, others));
 }
 
 Pack AcousticSource::LinkQuality(const dynamics::World&) const {
@@ -123,11 +131,26 @@ Pack AcousticSource::LinkQuality(const dynamics::World&) const {
   return sum / Pack(count_);
 }
 
+void AcousticSource::Choose(int i, task::Following<Pack>* f) const {
+  const agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
+  const auto u = static_cast<std::size_t>(i), n = static_cast<std::size_t>(targets_.count);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const agent::Inbox& inbox = agent.inbox(lane);
+    SetLane(&f->target[u], lane, static_cast<double>(inbox.target()));
+    for (std::size_t k = 0; k < n; ++k) {
+      const agent::TargetBelief belief = inbox.belief(static_cast<int>(k));
+      SetLane(&f->known[u * n + k], lane, agent::Known(agent.model(), belief) ? 1.0 : 0.0);
+      SetLane(&f->p_WT[u * n + k], lane, belief.p_WT);
+    }
+  }
+}
+
 void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<Pack>* f) const {
   f->r_BT_W = agents_[static_cast<std::size_t>(i)].knowledge().r_BT_W;
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto u = static_cast<std::size_t>(i);
     const TimeNs now = world.time(lane);
+    SetLane(&f->present, lane, agents_[u].present(lane) ? 1.0 : 0.0);
     const agent::TargetBelief belief = agents_[u].inbox(lane).belief();
     SetLane(&f->known, lane, belief.started ? 1.0 : 0.0);
     SetLane(&f->p_WT, lane, belief.p_WT);

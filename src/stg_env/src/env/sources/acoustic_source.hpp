@@ -29,6 +29,7 @@ class AcousticSource : public InformationSource {
   /// it is 0.
   Pack LinkQuality(const dynamics::World& world) const override;
   void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
+  void Choose(int i, task::Following<Pack>* following) const override;
 
   const agent::AgentLanes& agent(int i) const { return agents_[static_cast<std::size_t>(i)]; }
   /// The observer gets the reports of all packets of one lane from now on; null: none does.

@@ -66,6 +66,12 @@ class InformationSource {
   /// What AUV i believes of its target, and what its modem did: those members of `state`, in every
   /// lane.
   virtual void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const = 0;
+  /// Which target AUV i follows, and where it believes every target to be, in every lane; where
+  /// targets are chosen freely.
+  virtual void Choose(int i, task::Following<Pack>* following) const {
+    (void)i;
+    (void)following;
+  }
 };
 
 }  // namespace stg::env

@@ -65,8 +65,8 @@ EstimateTotals<T>::EstimateTotals(const JudgeConfig& scenario)
 template <class T>
 void EstimateTotals<T>::Start(const Mask<T>& lanes) {
   Sums& s = sums_;
-  for (T* sum : {&s.known, &s.known_tail, &s.own, &s.own_tail, &s.world, &s.world_tail, &s.vertical,
-                 &s.lost_in_world}) {
+  for (T* sum : {&s.present, &s.known, &s.known_tail, &s.own, &s.own_tail, &s.world, &s.world_tail,
+                 &s.vertical, &s.lost_in_world}) {
     *sum = Select(lanes, T(0.0), *sum);
   }
   const T starting = Select(lanes, T(1.0), T(0.0));
@@ -85,10 +85,11 @@ void EstimateTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracki
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const FieldState<T>& f = (*swarm.field)[i];
     const Tracking<T>& k = tracking[i];
-    const auto target = static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)));
-    const Vec3<T>& p_WT = swarm.targets[target].p_WT;
+    const Vec3<T>& p_WT = swarm.target_of(i).p_WT;
     const Vec3<T> own = f.r_BT_W - k.r_BT_W, world = f.p_WT - p_WT;
-    const auto known = f.known > T(0.5);
+    const auto there = f.present > T(0.5);
+    const auto known = (f.known > T(0.5)) && there;
+    s.present += f.present;
     const T own2 = Select(known, own.x * own.x + own.y * own.y, zero);
     const T world2 = Select(known, world.x * world.x + world.y * world.y, zero);
     s.known += Select(known, one, zero);
@@ -99,9 +100,10 @@ void EstimateTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracki
     s.own_tail += Select(tail, own2, zero);
     s.world_tail += Select(tail, world2, zero);
     const auto far = k.distance > T(scenario_.agent.task.lost_distance_m);
-    s.lost_in_world += Select(far, one, OffInWorld(scenario_.agent.task, f, p_WT));
+    s.lost_in_world +=
+        Select(there, Select(far, one, OffInWorld(scenario_.agent.task, f, p_WT)), zero);
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-      if (Lane(f.known, lane) > 0.5) {
+      if (Lane(f.known, lane) > 0.5 && Lane(f.present, lane) > 0.5) {
         Count(lane, std::sqrt(Lane(own2, lane)), std::sqrt(Lane(world2, lane)));
       }
     }
@@ -116,7 +118,7 @@ void EstimateTotals<T>::Count(int lane, double own_m, double world_m) {
 }
 
 template <class T>
-EstimateMetrics EstimateTotals<T>::Metrics(int lane, double steps) const {
+EstimateMetrics EstimateTotals<T>::Metrics(int lane) const {
   const Sums& s = sums_;
   const auto root = [lane](const T& sum, const T& count) {
     return std::sqrt(Lane(sum, lane) / std::max(1.0, Lane(count, lane)));
@@ -130,8 +132,7 @@ EstimateMetrics EstimateTotals<T>::Metrics(int lane, double steps) const {
   m.world_rmse_tail = root(s.world_tail, s.known_tail);
   m.world_95 = Quantile(world_[u], 0.95);
   m.vertical_rmse = root(s.vertical, s.known);
-  m.lost_in_world =
-      Lane(s.lost_in_world, lane) / (steps * static_cast<double>(scenario_.run.agents));
+  m.lost_in_world = Lane(s.lost_in_world, lane) / std::max(1.0, Lane(s.present, lane));
   return m;
 }
 

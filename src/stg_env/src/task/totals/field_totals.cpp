@@ -9,18 +9,21 @@ namespace stg::task {
 
 template <class T>
 T Spread(const SwarmState<T>& swarm, int target) {
-  T east(0.0), north(0.0);
-  int count = 0;
-  const Vec3<T>& p_WT = swarm.targets[static_cast<std::size_t>(target)].p_WT;
-  for (std::size_t i = static_cast<std::size_t>(target); i < swarm.vehicles.size();
-       i += swarm.targets.size()) {
+  T east(0.0), north(0.0), count(0.0);
+  const auto t = static_cast<std::size_t>(target);
+  const Vec3<T>& p_WT = swarm.targets[t].p_WT;
+  for (std::size_t i = 0; i < swarm.vehicles.size(); ++i) {
+    if (swarm.following == nullptr && i % swarm.targets.size() != t) continue;
+    const T follows = swarm.follows(i, t);
     const Vec3<T> r = swarm.vehicles[i].p_WB - p_WT;
-    const T inverse = T(1.0) / Max(Sqrt(r.x * r.x + r.y * r.y), T(1e-6));
+    const T inverse = follows / Max(Sqrt(r.x * r.x + r.y * r.y), T(1e-6));
     east += r.x * inverse;
     north += r.y * inverse;
-    ++count;
+    count += follows;
   }
-  return T(1.0) - Sqrt(east * east + north * north) * T(1.0 / std::max(1, count));
+  const T spread = T(1.0) - Sqrt(east * east + north * north) * (T(1.0) / Max(count, T(1.0)));
+  if (swarm.following == nullptr) return spread;
+  return Select(count > T(0.5), spread, T(0.0));
 }
 
 template <class T>
@@ -44,6 +47,7 @@ FieldTotals<T>::FieldTotals(const JudgeConfig& scenario)
       search_(scenario),
       spell_(static_cast<std::size_t>(scenario.run.agents), T(0.0)),
       band_(spell_),
+      there_(spell_),
       turns_propeller_(spell_.size()) {
   for (std::size_t i = 0; i < turns_propeller_.size(); ++i) {
     turns_propeller_[i] = dynamics::TurnsPropeller(scenario.world.vehicle, static_cast<int>(i));
@@ -54,15 +58,17 @@ template <class T>
 void FieldTotals<T>::Start(const Mask<T>& lanes) {
   const auto restart = [&](T* value, double first) { *value = Select(lanes, T(first), *value); };
   Sums& s = sums_;
-  for (T* sum : {&s.square, &s.nees, &s.judged, &s.known, &s.age, &s.band, &s.lost, &s.losses,
-                 &s.recovered, &s.recovered_steps, &s.spread, &s.near_pairs, &s.groundings,
-                 &s.collisions, &s.received, &s.missed, &s.modem_energy, &s.propulsion}) {
+  for (T* sum :
+       {&s.present, &s.square, &s.nees, &s.judged, &s.known, &s.age, &s.band, &s.lost, &s.losses,
+        &s.recovered, &s.recovered_steps, &s.spread, &s.near_pairs, &s.groundings, &s.collisions,
+        &s.received, &s.missed, &s.modem_energy, &s.propulsion}) {
     restart(sum, 0.0);
   }
   restart(&s.min_altitude, 1e9);
   restart(&s.min_clearance, 1e9);
   for (T& spell : spell_) restart(&spell, 0.0);
   for (T& band : band_) restart(&band, 0.0);
+  for (T& there : there_) restart(&there, 0.0);
   estimates_.Start(lanes);
   search_.Start(lanes);
   navigation_.Start(lanes);
@@ -82,20 +88,22 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const FieldState<T>& f = (*swarm.field)[i];
     const Tracking<T>& k = tracking[i];
-    const auto target = static_cast<std::size_t>(scenario_.world.target.of(static_cast<int>(i)));
-    const Vec3<T> error = f.p_WT - swarm.targets[target].p_WT;
-    const auto known = f.known > T(0.5);
+    const Vec3<T> error = f.p_WT - swarm.target_of(i).p_WT;
+    const auto known = (f.known > T(0.5)) && (f.present > T(0.5));
     const T nees = NormalisedSquare(error, f.covariance);
-    s.known += f.known;
+    s.present += f.present;
+    s.known += Select(known, one, zero);
     s.square += Select(known, Dot(error, error), zero);
     s.nees += Select(known, nees, zero);
     s.judged += Select(known && (nees > zero), one, zero);
     s.age += Select(known, f.age_s, zero);
-    const auto inside = (k.distance <= T(band.hi)) && (k.distance >= T(band.lo));
+    const auto inside =
+        (k.distance <= T(band.hi)) && (k.distance >= T(band.lo)) && (f.present > T(0.5));
+    there_[i] += f.present;
     s.band += Select(inside, one, zero);
     band_[i] += Select(inside, one, zero);
-    s.lost += k.lost;
-    const auto lost = k.lost > T(0.5);
+    s.lost += Select(f.present > T(0.5), k.lost, zero);
+    const auto lost = (k.lost > T(0.5)) && (f.present > T(0.5));
     const auto before = spell_[i] > zero;
     s.losses += Select(lost, Select(before, zero, one), zero);
     s.recovered += Select(lost, zero, Select(before, one, zero));
@@ -128,21 +136,25 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
 template <class T>
 FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   const auto at = [lane](const T& value) { return Lane(value, lane); };
-  const double agents = static_cast<double>(scenario_.run.agents), all = agents * steps;
   const double dt_s = scenario_.run.decision_dt_s();
   const Sums& s = sums_;
+  const double agents = static_cast<double>(scenario_.run.agents);
+  const double all = std::max(1.0, at(s.present));
   FieldMetrics m;
   const double known = std::max(1.0, at(s.known));
   m.estimate_rmse = std::sqrt(at(s.square) / known);
   m.nees = at(s.nees) / std::max(1.0, at(s.judged));
   m.estimate_known = at(s.known) / all;
   m.information_age = at(s.age) / known;
-  m.estimates = estimates_.Metrics(lane, steps);
+  m.estimates = estimates_.Metrics(lane);
   m.search = search_.Metrics(lane, steps);
   m.navigation = navigation_.Metrics(lane);
   m.band_share = at(s.band) / all;
-  m.worst_band_share = at(band_.front()) / steps;
-  for (const T& band : band_) m.worst_band_share = std::min(m.worst_band_share, at(band) / steps);
+  m.worst_band_share = 1.0;
+  for (std::size_t i = 0; i < band_.size(); ++i) {
+    const double there = at(there_[i]);
+    if (there > 0.0) m.worst_band_share = std::min(m.worst_band_share, at(band_[i]) / there);
+  }
   m.time_lost = at(s.lost) * dt_s / agents;
   m.time_to_reacquire = at(s.recovered_steps) * dt_s / std::max(1.0, at(s.recovered));
   m.losses = at(s.losses) / agents;

@@ -25,7 +25,7 @@ void NavigationTotals<T>::Add(const SwarmState<T>& swarm, const Mask<T>& tail) {
   const T zero(0.0), one(1.0);
   Sums& s = sums_;
   for (const FieldState<T>& f : *swarm.field) {
-    const auto located = f.located > T(0.5);
+    const auto located = (f.located > T(0.5)) && (f.present > T(0.5));
     const T &x = f.navigation_error.x, &y = f.navigation_error.y;
     const T square = x * x + y * y;
     const T(&P)[3] = f.navigation_covariance;
@@ -33,7 +33,7 @@ void NavigationTotals<T>::Add(const SwarmState<T>& swarm, const Mask<T>& tail) {
     const auto stated = determinant > zero;
     const T nees =
         (P[2] * x * x - T(2.0) * P[1] * x * y + P[0] * y * y) / Select(stated, determinant, one);
-    s.located += f.located;
+    s.located += Select(located, one, zero);
     s.square += Select(located, square, zero);
     s.tail += Select(tail && located, square, zero);
     s.in_tail += Select(tail && located, one, zero);

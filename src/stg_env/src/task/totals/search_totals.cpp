@@ -1,13 +1,17 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "set_distance.hpp"
+#include "stg_agent/agent/entity_memory.hpp"
 #include "stg_env/task/field_totals.hpp"
 
 namespace stg::task {
 namespace {
 
 constexpr double kWindow_s = 600.0;
-constexpr double kGood_m = 20.0;  // an estimate is off by less
+constexpr double kGood_m = 20.0;     // an estimate is off by less
+constexpr double kCutoff_m = 100.0;  // an estimate that is off by more is none
 
 template <class T>
 T Level(const Vec3<T>& r) {
@@ -17,20 +21,34 @@ T Level(const Vec3<T>& r) {
 }  // namespace
 
 std::vector<std::pair<std::string, double>> SearchMetrics::Items() const {
-  return {{"found", found},
-          {"time_to_detect", time_to_detect},
-          {"time_to_gather", time_to_gather},
-          {"info_spread", info_spread},
-          {"followed", followed},
-          {"worst_followed", worst_followed},
-          {"target_net_speed", target_net_speed}};
+  std::vector<std::pair<std::string, double>> items{{"found", found},
+                                                    {"time_to_detect", time_to_detect},
+                                                    {"time_to_gather", time_to_gather},
+                                                    {"info_spread", info_spread},
+                                                    {"followed", followed},
+                                                    {"worst_followed", worst_followed},
+                                                    {"target_net_speed", target_net_speed}};
+  if (choices) {
+    items.insert(
+        items.end(),
+        {{"switches", choices->switches}, {"ospa", choices->ospa}, {"gospa", choices->gospa}});
+  }
+  return items;
 }
 
 template <class T>
 SearchTotals<T>::SearchTotals(const JudgeConfig& scenario)
     : scenario_(scenario),
       window_(std::max(1.0, std::round(kWindow_s / scenario.run.decision_dt_s()))),
-      targets_(static_cast<std::size_t>(scenario.world.target.count)) {}
+      targets_(static_cast<std::size_t>(scenario.world.target.count)),
+      chosen_(static_cast<std::size_t>(scenario.run.agents), T(-1.0)) {
+  const int agents = scenario.run.agents, targets = scenario.world.target.count;
+  for (int t = 0; t < targets; ++t) {
+    const int team = scenario.agent.task.free() ? std::max(1, agents / targets)
+                                                : (agents - t + targets - 1) / targets;
+    targets_[static_cast<std::size_t>(t)].wanted = std::min(2, std::max(team, 0));
+  }
+}
 
 template <class T>
 void SearchTotals<T>::Start(const Mask<T>& lanes) {
@@ -38,6 +56,8 @@ void SearchTotals<T>::Start(const Mask<T>& lanes) {
   restart(&decisions_, 0.0);
   restart(&gathered_, -1.0);
   restart(&info_spread_, 0.0);
+  for (T* sum : {&switches_, &judged_, &ospa_, &gospa_}) restart(sum, 0.0);
+  for (T& chosen : chosen_) restart(&chosen, -1.0);
   for (OfTarget& t : targets_) {
     restart(&t.detected, -1.0);
     for (T* sum : {&t.followed, &t.way, &t.net, &t.window_way}) restart(sum, 0.0);
@@ -66,6 +86,34 @@ void SearchTotals<T>::Follow(const Vec3<T>& p_WT, OfTarget* t) const {
 }
 
 template <class T>
+void SearchTotals<T>::AddChoices(const SwarmState<T>& swarm) {
+  const Following<T>& f = *swarm.following;
+  const T zero(0.0), one(1.0);
+  const std::size_t n = targets_.size();
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    const T present = (*swarm.field)[i].present;
+    const auto changed = (chosen_[i] >= zero) && !(chosen_[i] == f.target[i]);
+    switches_ += Select(changed && (present > T(0.5)), one, zero);
+    chosen_[i] = f.target[i];
+    judged_ += present;
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+      if (Lane(present, lane) < 0.5) continue;
+      std::array<Vec3<double>, agent::kMostTargets> believed, truth;
+      int known = 0;
+      for (std::size_t t = 0; t < n; ++t) {
+        truth[t] = Lane(swarm.targets[t].p_WT, lane);
+        if (Lane(f.known[i * n + t], lane) < 0.5) continue;
+        believed[static_cast<std::size_t>(known++)] = Lane(f.p_WT[i * n + t], lane);
+      }
+      const SetDistance d =
+          DistanceOfSets(believed.data(), known, truth.data(), static_cast<int>(n), kCutoff_m);
+      SetLane(&ospa_, lane, Lane(ospa_, lane) + d.ospa_m);
+      SetLane(&gospa_, lane, Lane(gospa_, lane) + d.gospa_m);
+    }
+  }
+}
+
+template <class T>
 void SearchTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking) {
   const T zero(0.0), one(1.0);
   decisions_ += one;
@@ -73,29 +121,32 @@ void SearchTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking
   for (const Tracking<T>& k : tracking) outside += one - InBand(k);
   gathered_ = Select((gathered_ < zero) && (outside < T(0.5)), decisions_, gathered_);
   const T elapsed_s = decisions_ * T(scenario_.run.decision_dt_s());
+  if (swarm.following != nullptr) AddChoices(swarm);
   for (std::size_t t = 0; t < targets_.size(); ++t) {
     OfTarget& target = targets_[t];
-    T c2 = zero, s2 = zero, near = zero, best = T(1e9), seen = zero;
-    double team = 0.0;
-    for (std::size_t i = t; i < tracking.size(); i += targets_.size()) {
+    T c2 = zero, s2 = zero, near = zero, best = T(1e9), seen = zero, team = zero;
+    for (std::size_t i = 0; i < tracking.size(); ++i) {
+      if (swarm.following == nullptr && i % targets_.size() != t) continue;
+      const T follows = swarm.follows(i, t);
+      const auto ours = follows > T(0.5);
       const FieldState<T>& f = (*swarm.field)[i];
       const Vec3<T>& r = tracking[i].r_BT_W;
       const T square = Max(r.x * r.x + r.y * r.y, T(1e-6));
-      c2 += (r.x * r.x - r.y * r.y) / square;
-      s2 += T(2.0) * r.x * r.y / square;
-      near += InBand(tracking[i]);
-      best = Min(best, Select(f.known > T(0.5), Level(f.r_BT_W - r), T(1e9)));
+      c2 += follows * ((r.x * r.x - r.y * r.y) / square);
+      s2 += follows * (T(2.0) * r.x * r.y / square);
+      near += follows * InBand(tracking[i]);
+      best = Min(best, Select((f.known > T(0.5)) && ours, Level(f.r_BT_W - r), T(1e9)));
       // The cue is of the start; an observation is younger than the episode.
       const auto observed = (f.known > T(0.5)) && (f.age_s < elapsed_s - T(1e-3));
-      seen = Select(observed, one, seen);
-      team += 1.0;
+      seen = Select(observed && ours, one, seen);
+      team += follows;
     }
     target.detected =
         Select((target.detected < zero) && (seen > T(0.5)), decisions_, target.detected);
-    const auto followed = (near > T(std::min(2.0, team) - 0.5)) && (best < T(kGood_m));
+    const auto followed = (near > T(target.wanted - 0.5)) && (best < T(kGood_m));
     target.followed += Select(followed, one, zero);
-    info_spread_ += (one - Sqrt(c2 * c2 + s2 * s2) / T(std::max(1.0, team))) /
-                    T(static_cast<double>(targets_.size()));
+    info_spread_ +=
+        (one - Sqrt(c2 * c2 + s2 * s2) / Max(team, one)) / T(static_cast<double>(targets_.size()));
     Follow(swarm.targets[t].p_WT, &target);
   }
 }
@@ -120,6 +171,11 @@ SearchMetrics SearchTotals<T>::Metrics(int lane, double steps) const {
   m.time_to_gather = gathered < 0.0 ? length_s : gathered * dt_s;
   m.info_spread = Lane(info_spread_, lane) / steps;
   m.target_net_speed = way > 0.0 ? net / way : 0.0;
+  if (scenario_.agent.task.free()) {
+    const double judged = std::max(1.0, Lane(judged_, lane));
+    m.choices = ChoiceMetrics{Lane(switches_, lane) / static_cast<double>(chosen_.size()),
+                              Lane(ospa_, lane) / judged, Lane(gospa_, lane) / judged};
+  }
   return m;
 }
 

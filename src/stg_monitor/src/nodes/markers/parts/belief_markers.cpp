@@ -30,7 +30,14 @@ class BeliefBuilder : private MarkerList {
     if (!v.target_known) {
       Delete("estimate", id, Marker::SPHERE);
       Delete("estimate_std", id, Marker::SPHERE);
+      Delete("follows", id, Marker::LINE_LIST);
       return;
+    }
+    if (view_.targets.size() > 1) {
+      Marker line =
+          Lines("follows", id, Marker::LINE_LIST, 0.04 * unit_, PhaseColor(v.phase, 0.35));
+      line.points = {v.pose.position, v.estimate};
+      Add(std::move(line));
     }
     Sphere("estimate", id, v.estimate, 0.3 * unit_, PhaseColor(v.phase, 0.9));
     Marker m = New("estimate_std", id, Marker::SPHERE, PhaseColor(v.phase, 0.12));

@@ -1,0 +1,136 @@
+#include "stg_agent/controllers/assign.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "auv_common/numbers/assignment.hpp"
+
+namespace stg::agent {
+namespace {
+
+using config::NonNegative;
+
+constexpr int kMostSwarm =
+    32;  ///< AUVs that are taken into account, the own one first, then by index
+constexpr int kMostPlaces = 96;
+constexpr double kUnmanned_s = 1e6;  ///< what a target without one of its `least` AUVs costs
+constexpr double kLeastLead_mps = 0.3;
+
+/// An AUV as the assignment takes it.
+struct Member {
+  Vec3<double> p_W;
+  int follows;  ///< -1: it is not known
+};
+
+/// The swarm as one AUV knows it, itself first.
+int Muster(const AgentView& agent, double silent_frames, Member* members) {
+  const AgentModel& model = agent.model();
+  const double frame_s = model.channel.slots.length_s * model.run.agents;
+  const double silent_s = silent_frames * std::max(frame_s, model.sensing.period_s);
+  int count = 0;
+  members[count++] = {agent.knowledge().p_WB, agent.target()};
+  for (const int id : agent.neighbours().known()) {
+    const NeighbourSight<double> sight = agent.sight(id);
+    if (sight.age_s > silent_s || count == kMostSwarm) continue;
+    members[count++] = {sight.p_WN, agent.neighbours().state(id).followed};
+  }
+  return count;
+}
+
+EncircleOptions CircleOf(const AssignOptions& o) {
+  EncircleOptions circle;
+  circle.fast_mps = o.fast_mps;
+  return circle;
+}
+
+FormationOptions FormOf(const AssignOptions& o) {
+  FormationOptions form;
+  form.fast_mps = o.fast_mps;
+  form.weave_below_mps = 0.5;
+  return form;
+}
+
+}  // namespace
+
+Assign::Assign(const AssignOptions& options)
+    : o_(options), circle_{CircleOf(options)}, form_{FormOf(options)} {}
+
+template <class T>
+void Assign::Follow(const ControllerInput<T>& in, T* action) const {
+  if (o_.form > 0.5) {
+    form_.Act(in, {}, action);
+  } else {
+    circle_.Act(in, {}, action);
+  }
+}
+
+void Assign::Act(const ControllerInput<double>& in, double* action) const { Follow(in, action); }
+void Assign::Act(const ControllerInput<Pack>& in, Pack* action) const { Follow(in, action); }
+
+void Assign::Act(const AgentView& agent, float* action) const {
+  EntityMemory& memory = agent.memory();
+  const auto since_s = [&](TimeNs t) { return Seconds(memory.now - t); };
+  const bool due = !memory.assigned || since_s(memory.assigned_time) >= o_.period_s - 1e-6;
+  if (agent.beliefs() > 1 && due) {
+    const bool settled = memory.assigned && since_s(memory.followed_since) < o_.hysteresis_s;
+    if (!settled) agent.Follow(Choose(agent));
+    memory.assigned = true;
+    memory.assigned_time = memory.now;
+  }
+  Controller::Act(agent, action);
+}
+
+int Assign::Choose(const AgentView& agent) const {
+  const AgentModel& model = agent.model();
+  Member members[kMostSwarm];
+  const int swarm = Muster(agent, o_.silent_frames, members);
+  struct Goal {
+    int target;
+    Vec3<double> p_WT;
+    double lead_mps;
+  };
+  Goal goals[kMostTargets];
+  int targets = 0;
+  for (int k = 0; k < agent.beliefs(); ++k) {
+    const int target = agent.first_target() + k;
+    if (!agent.belief(target).started) continue;
+    const TargetEstimate e = agent.estimate(target);
+    const double speed = std::min(std::hypot(e.v_WT.x, e.v_WT.y), model.target.max_speed_mps);
+    goals[targets++] = {target, e.p_WT, std::max(o_.fast_mps - speed, kLeastLead_mps)};
+  }
+  if (targets == 0) return agent.target();
+  const int each = std::min((swarm + targets - 1) / targets + 1, kMostPlaces / targets);
+  const auto cost = [&](int row, int column) {
+    const Member& m = members[row];
+    const Goal& goal = goals[column / each];
+    const int place = column % each;
+    const double d = std::hypot(goal.p_WT.x - m.p_W.x, goal.p_WT.y - m.p_W.y);
+    const double way_s = std::max(0.0, d - model.task.desired_distance_m) / goal.lead_mps;
+    const double rank =
+        place < o_.least ? -kUnmanned_s * (o_.least - place) : o_.load_s * (place - o_.least + 1);
+    return way_s + rank - (m.follows == goal.target ? o_.hysteresis_s : 0.0);
+  };
+  AssignmentSolver<kMostSwarm, kMostPlaces> solver;
+  solver.Solve(swarm, each * targets, cost);
+  return goals[solver.column_of(0) / each].target;
+}
+
+void Describe(AssignOptions* o, config::Table* t) {
+  t->Add("load", &o->load_s, NonNegative(1e5), "s",
+         "what each AUV beyond the least number at a target costs more");
+  t->Add("hysteresis", &o->hysteresis_s, NonNegative(1e5), "s",
+         "another target must be better by this, and so long a choice stays");
+  t->Add("least", &o->least, config::Within(1, 16), "AUVs", "that every target should have");
+  t->Add("period", &o->period_s, NonNegative(1e5), "s", "between two choices");
+  t->Add("silent", &o->silent_frames, NonNegative(1e3), "frames",
+         "an AUV that is silent for so long is taken to be gone");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
+  t->Add("form", &o->form, config::Within(0.0, 1.0), "-",
+         "0: circles the target that it follows; 1: keeps a place at it");
+}
+
+std::unique_ptr<Controller> MakeAssign(const AssignOptions& options) {
+  return std::make_unique<Assign>(options);
+}
+
+}  // namespace stg::agent
