@@ -68,8 +68,9 @@ read it. `scripts/docs/gallery.py` flies these runs and makes all pictures, vide
 
 
 def told(run):
-    """The commands of a run as a block."""
-    return f"```\n{RUNS[run][1].replace('OUT', f'runs/{run}')}\n./stg report runs/{run}\n```\n"
+    """The commands of a run as a block, in lines that a page of the site has room for."""
+    command = RUNS[run][1].replace("OUT", f"runs/{run}").replace(" --scenario", " \\\n    --scenario")
+    return f"```\n{command}\n./stg report runs/{run}\n```\n"
 
 
 def page_text():
