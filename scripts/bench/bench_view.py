@@ -8,11 +8,13 @@ with them, and the work (seconds of processor time of all processes of the brows
 """
 
 import argparse
+import contextlib
 import json
 import os
 import pathlib
 import re
 import resource
+import socket
 import statistics
 import subprocess
 import sys
@@ -23,7 +25,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 from stg_view.browser import show, started
 
-PORT, AGENTS, RATE_HZ, EPISODES = 8318, 20, 10.0, 40
+MASTER_PORT = 11818
+PORT, AGENTS, RATE_HZ = 8318, 20, 10.0
 SETTLED_S = 3.0  # that a browser works on after its start, which is no part of opening a page
 FRAMES = """const done = arguments[1], seconds = arguments[0], times = [];
 const next = (now) => { times.push(now);
@@ -93,16 +96,26 @@ def publish(seconds):
         time.sleep(1.0 / RATE_HZ)
 
 
+def wait_for(port):
+    """Waits until somebody listens there."""
+    for _ in range(600):
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
+            return
+        time.sleep(0.1)
+    raise SystemExit(f"bench_view: nobody listens on port {port}")
+
+
 def measure_live(seconds):
     """Lag and frames of a live page."""
     server = [sys.executable, ROOT / "src/stg_monitor/scripts/view_server.py", f"_port:={PORT}", f"_rate_hz:={RATE_HZ}"]
+    own = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
     ends = []
     try:
-        ends.append(subprocess.Popen(["roscore"], stdout=subprocess.DEVNULL))
-        time.sleep(5.0)
-        ends.append(subprocess.Popen(server, stdout=subprocess.DEVNULL))
-        ends.append(subprocess.Popen([sys.executable, __file__, "--publish", str(3 * seconds + 60)]))
-        time.sleep(5.0)
+        ends.append(subprocess.Popen(["roscore", "-p", str(MASTER_PORT)], stdout=subprocess.DEVNULL, env=own))
+        wait_for(MASTER_PORT)
+        ends.append(subprocess.Popen(server, stdout=subprocess.DEVNULL, env=own))
+        ends.append(subprocess.Popen([sys.executable, __file__, "--publish", str(3 * seconds + 120)], env=own))
+        wait_for(PORT)
         with started() as driver:
             show(driver, f"http://127.0.0.1:{PORT}")
             frames, lags = frames_per_s(driver, seconds), []
@@ -127,9 +140,9 @@ def look(stop):
         async with aiohttp.ClientSession() as session:
             while not stop.is_set():
                 try:
-                    async with session.ws_connect(f"http://127.0.0.1:{PORT}/stream", max_msg_size=0) as socket:
+                    async with session.ws_connect(f"http://127.0.0.1:{PORT}/stream", max_msg_size=0) as stream:
                         while not stop.is_set():
-                            await asyncio.wait_for(socket.receive_bytes(), 1.0)
+                            await asyncio.wait_for(stream.receive_bytes(), 1.0)
                 except (OSError, TypeError, aiohttp.ClientError, asyncio.TimeoutError):
                     await asyncio.sleep(0.1)  # not there yet, or there no more
 
@@ -137,25 +150,27 @@ def look(stop):
 
 
 def work_of_ended():
-    """Seconds that all processes below this one have worked which have ended."""
+    """Seconds that all processes below this one have worked and ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
-def run_lockstep(kind):
+def run_lockstep(kind, episodes):
     """Decisions a second of a run in lockstep, as the world tells at its end, and its work."""
     import multiprocessing
 
     stop = multiprocessing.Event()
     eye = multiprocessing.Process(target=look, args=(stop,), daemon=True)
-    command = [ROOT / "stg", "run", "medium", f"episodes:={EPISODES}", "real_time_factor:=0", "table:=false"]
+    launch = [sys.executable, ROOT / "scripts/run/launch.py", "stg_bringup", "medium.launch"]
+    command = [*launch, f"episodes:={episodes}", "real_time_factor:=0", "table:=false", "gui:=false"]
     if kind != "plain":
         command += ["view:=web", f"port:={PORT}"]
     if kind == "watched":
         eye.start()
     work = -work_of_ended()
     try:
-        done = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        own = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
+        done = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=own)
         work += work_of_ended()  # the eye works on, and is none of the run
     finally:
         stop.set()
@@ -165,12 +180,12 @@ def run_lockstep(kind):
     return int(steps) / float(seconds), work
 
 
-def measure_lockstep(repeats):
+def measure_lockstep(repeats, episodes):
     """Runs without the view, with it, and with somebody who looks, in turns."""
     rates, works = ({kind: [] for kind in ("plain", "viewed", "watched")} for _ in range(2))
     for _ in range(repeats):
         for kind, found in rates.items():
-            rate, work = run_lockstep(kind)
+            rate, work = run_lockstep(kind, episodes)
             found.append(rate)
             works[kind].append(work)
     best, least = {kind: max(found) for kind, found in rates.items()}, {kind: min(found) for kind, found in works.items()}
@@ -186,6 +201,7 @@ def main():
     parser.add_argument("--page", type=pathlib.Path, help="a report (default: one of field20 is flown and made)")
     parser.add_argument("--seconds", type=float, default=10.0, help="of each measurement (default: 10)")
     parser.add_argument("--repeats", type=int, default=2, help="runs of lockstep of each kind (default: 2)")
+    parser.add_argument("--episodes", type=int, default=40, help="of a run of lockstep (default: 40)")
     parser.add_argument("--publish", type=float, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.publish:
@@ -196,7 +212,7 @@ def main():
         if part == "live":
             found[part] = measure_live(options.seconds)
         elif part == "lockstep":
-            found[part] = measure_lockstep(options.repeats)
+            found[part] = measure_lockstep(options.repeats, options.episodes)
         elif part == "page":
             with tempfile.TemporaryDirectory() as folder:
                 page = options.page or fly(pathlib.Path(folder))
