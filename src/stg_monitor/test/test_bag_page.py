@@ -48,7 +48,7 @@ def write_bag(path):
             task = auv_msgs.msg.TaskState(episode=0, step=k, phase=3 if k >= 20 else 2, target_known=True)
             task.header.stamp, task.target_position = t, Point(0.6, 0.0, -1.0)
             task.target_covariance = [0.01, 0, 0, 0.01, 0, 0.01]
-            bag.write("/auv_1/task_state", task, t)
+            bag.write("/auv_1/task_state", task, t + genpy.Duration.from_sec(0.35))  # recorded late: it belongs to its stamp
             bag.write("/acoustic_channel/packets", packets_of(k, t), t)
         summary = auv_msgs.msg.EpisodeSummary(scenario=view_fixtures.HOSTILE, policy_id=view_fixtures.HOSTILE)
         bag.write("/episode_summary", summary, t)

@@ -14,6 +14,7 @@ DELIVERED, DROPPED = 3, 4
 NO_SEQUENCE = 4294967295
 TERMS = ("r_track", "r_obs", "r_coord", "r_comm", "r_sem", "r_sep", "cost")
 MOST_AUVS = 256
+STEPS_LATE = 8  # that a message is written into a bag after the state that it belongs to
 
 
 def scene_of(scenario, tool=("rosrun", "stg_monitor", "view_scene")):
@@ -30,15 +31,19 @@ def scene_of(scenario, tool=("rosrun", "stg_monitor", "view_scene")):
 
 
 class Collector:
-    """Takes the messages of a graph, one after the other, into a Recording."""
+    """Takes the messages of a graph, one after the other, into a Recording.
 
-    def __init__(self, recording):
-        self.recording = recording
+    wait: steps for which a state waits for what the agents say of it. Messages of different nodes come in
+    any order; what belongs together has the same stamp.
+    """
+
+    def __init__(self, recording, wait=0):
+        self.recording, self.wait = recording, wait
         self.episode = None
-        self.tasks, self.detections, self.reports, self.energy = {}, {}, {}, []
+        self.tasks, self.detections, self.reports, self.energy = {}, {}, {}, []  # the newest messages of each
         self.ages = {}
         self.counts = ([], [])
-        self.state = None
+        self.states = []
         self.scenario = ""
         self.seen_s = 1e-6  # how far from a step's time a detection may be to be of that step
 
@@ -50,11 +55,11 @@ class Collector:
             for event in m.events:
                 self.take_packet(event)
         elif topic.endswith("/task_state"):
-            self.tasks[_auv_of(topic)] = m
+            self.keep(self.tasks, _auv_of(topic), m)
         elif topic.endswith("/target_detection"):
-            self.detections[_auv_of(topic)] = m
+            self.keep(self.detections, _auv_of(topic), m)
         elif topic == "/step_report":
-            self.reports = {"report": m}
+            self.keep(self.reports, "report", m)
         elif topic == "/acoustic_channel/links":
             self.take_links(m)
         elif topic == "/episode_summary":
@@ -62,6 +67,12 @@ class Collector:
             self.recording.add("summary", episode=int(m.episode), metrics={n: getattr(m, n) for n in names})
         elif topic == "/scenario":
             self.scenario = m.data
+
+    def keep(self, kept, key, m):
+        """Keeps a message beside as many as may still be asked for."""
+        messages = kept.setdefault(key, [])
+        messages.append(m)
+        del messages[: -2 * self.wait - 2]
 
     def take_links(self, m):
         """Keeps the energies, and how old what each AUV last heard of the others is."""
@@ -73,11 +84,10 @@ class Collector:
         self.ages = {i: total / count for i, (total, count) in sums.items()}
 
     def take_state(self, m):
-        """A step has ended: what is known of the one before it becomes a row."""
-        if self.state is not None:
-            self.finish()
-        self.state, meta = m, self.recording.meta
-        n = len(m.poses)
+        """A step has ended: a state that has waited long enough becomes a row."""
+        while len(self.states) > (self.wait if m.episode == self.episode else 0):
+            self.add_row(*self.states.pop(0))
+        meta, n = self.recording.meta, len(m.poses)
         if n > MOST_AUVS:
             raise ValueError(f"{n} AUVs, more than {MOST_AUVS}")
         meta["agents"] = max(n, meta.get("agents", 0))
@@ -88,12 +98,15 @@ class Collector:
             self.counts = ([], [])
             seed = int(m.seed)
             self.recording.add("episode", episode=int(m.episode), seed=seed, start=m.header.stamp.to_sec())
+        self.states.append((m, self.ages, self.energy))
 
     def finish(self):
-        """Makes a row of the newest state, and of what the agents said about it."""
-        m, self.state = self.state, None
-        if m is None:
-            return
+        """Makes rows of the states that still wait."""
+        while self.states:
+            self.add_row(*self.states.pop(0))
+
+    def add_row(self, m, ages, energy):
+        """Makes a row of a state, and of what the agents said about it."""
         n = len(m.poses)
         t = m.header.stamp.to_sec()
         targets = [(p.x, p.y, p.z) for p in m.target_positions]
@@ -103,14 +116,14 @@ class Collector:
             self.add_vehicle(row, t, i, pose, targets)
         row["target"] = [x for p in targets for x in p]
         if len(targets) > 1:
-            row["followed"] = [self.followed(i, len(targets)) for i in range(n)]
-        row["neighbour_age"] = [self.ages.get(i, NAN) for i in range(n)]
+            row["followed"] = [self.followed(i, t, len(targets)) for i in range(n)]
+        row["neighbour_age"] = [ages.get(i, NAN) for i in range(n)]
         row["aground"] = self.touches(m, n)
         if len(m.fresh) == n:
             row["fresh"] = [int(x) for x in m.fresh]
-        if len(self.energy) == n and any(self.energy):
-            row["energy"] = self.energy
-        report = self.reports.get("report")
+        if len(energy) == n and any(energy):
+            row["energy"] = energy
+        report = _at(self.reports, "report", t)
         if report is not None:
             row["reward"] = report.reward
             terms = [getattr(report, name) for name in TERMS]
@@ -119,9 +132,9 @@ class Collector:
                 self.recording.terms = [name.replace("r_", "") for name in TERMS]
         self.recording.steps.add(**row)
 
-    def followed(self, i, targets):
+    def followed(self, i, t, targets):
         """The target that AUV i follows, as it says; older bags do not tell."""
-        chosen = getattr(self.tasks.get(i), "target", i % targets)
+        chosen = getattr(_at(self.tasks, i, t), "target", i % targets)
         return chosen if chosen < targets else i % targets
 
     def touches(self, m, n):
@@ -142,9 +155,9 @@ class Collector:
         row["heading"].append(math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))
         # Up is positive here, and negative about the body's y axis.
         row["pitch"].append(-math.asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x)))))
-        target = targets[self.followed(i, len(targets))] if targets else (NAN,) * 3
+        target = targets[self.followed(i, t, len(targets))] if targets else (NAN,) * 3
         row["distance"].append(math.dist(target, (p.x, p.y, p.z)))
-        task, detection = self.tasks.get(i), self.detections.get(i)
+        task, detection = _at(self.tasks, i, t), _at(self.detections, i, t)
         known = task is not None and task.target_known
         place = task.target_position if known else None
         row["phase"].append(task.phase if task is not None and task.phase < 4 else 255)
@@ -176,6 +189,11 @@ class Collector:
             )  # fmt: skip
 
 
+def _at(kept, key, t):
+    """The kept message whose stamp is nearest to a time; None where there is none."""
+    return min(kept.get(key, ()), key=lambda m: abs(m.header.stamp.to_sec() - t), default=None)
+
+
 def _auv_of(topic):
     """The number in /auv_<i>/...; ValueError where there is none."""
     return int(topic.split("/")[1].rpartition("_")[2])
@@ -192,7 +210,7 @@ def read_bag(path, salvage, title):
     from stg_view.bag_reading import BagError, messages, open_bag
 
     recording = Recording(title=title)
-    collector, topic = Collector(recording), ""
+    collector, topic = Collector(recording, wait=STEPS_LATE), ""
     with open_bag(path, salvage) as bag:
         try:
             for topic, message in messages(bag, path):
