@@ -94,6 +94,13 @@
     return uPlot.rangeNum(low - lack, high + lack, 0.1, true);
   }
 
+  /** Ticks of a time that is counted from a start, which no round number need be. */
+  function ticksFrom(start, low, high, every) {
+    const ticks = [];
+    for (let k = Math.ceil((low - start) / every - 1e-6); start + k * every <= high + 1e-6 * every; ++k) ticks.push(start + k * every);
+    return ticks;
+  }
+
   class Plots {
     constructor(app, element) {
       this.app = app;
@@ -175,10 +182,10 @@
         };
       });
       const options = {
-        width, height: HEIGHT, padding: [6, plot.free ? 26 : 8, 0, 0], legend: { show: false },
+        width, height: HEIGHT, padding: [6, plot.free ? 26 : 14, 0, 0], legend: { show: false },
         scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: rangeOf } },
         cursor: { sync: plot.free ? undefined : { key: "stg" }, drag: { x: true, y: false }, points: { show: false } },
-        axes: [{ ...axis, size: 26, values: plot.free ? undefined : (u, ticks) => ticks.map((x) => STG.number(x - r.start)) },
+        axes: [{ ...axis, size: 26, splits: plot.free ? undefined : (u, k, low, high, every) => ticksFrom(r.start, low, high, every), values: plot.free ? undefined : (u, ticks) => ticks.map((x) => STG.number(x - r.start)) },
           { ...axis, size: 56, values: (u, ticks) => ticks.map((x) => (x === null ? "" : x === 0 ? "0" : STG.number(x))) }],
         series: [{}, ...series],
         hooks: {
