@@ -309,7 +309,8 @@ async def own_only(request, handler):
 
 def main():
     """Runs until ROS ends it."""
-    rospy.init_node("view_server", disable_signals=False)
+    # It counts by the wall clock alone: a run in lockstep sends /clock at every step.
+    rospy.init_node("view_server", disable_signals=False, disable_rostime=True)
     port, rate_hz = rospy.get_param("~port", 8300), rospy.get_param("~rate_hz", 10.0)
     if not (isinstance(port, int) and 1 <= port <= 65535 and isinstance(rate_hz, (int, float)) and 0.1 <= rate_hz <= 100):
         raise PageError(f"port {port} or rate_hz {rate_hz} cannot be: a port is 1 to 65535, a rate 0.1 to 100")
