@@ -97,12 +97,12 @@ def publish(seconds):
 
 
 def wait_for(port):
-    """Waits until somebody listens there."""
+    """Waits until a program listens there."""
     for _ in range(600):
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
             return
         time.sleep(0.1)
-    raise SystemExit(f"bench_view: nobody listens on port {port}")
+    raise SystemExit(f"bench_view: port {port} has no listener")
 
 
 def measure_live(seconds):
