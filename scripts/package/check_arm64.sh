@@ -44,8 +44,9 @@ inside() {
   # shellcheck disable=SC2016
   unshare --mount --pid --fork --kill-child bash -c '
     mount --make-rprivate /
-    mount -t proc proc "$0/proc" && mount --bind "$1" "$0/source"
-    exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 CCACHE_DIR=/cache chroot "$0" sh -c "$2"' \
+    mount -t proc proc "$0/proc" && mount -t devpts devpts "$0/dev/pts" && mount --bind "$1" "$0/source"
+    exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 CCACHE_DIR=/cache \
+      STG_SCENARIOS=/source/src/stg_bringup/scenarios chroot "$0" sh -c "$2"' \
     "$new" "$root" "$*"
 }
 
