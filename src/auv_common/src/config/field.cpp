@@ -113,7 +113,7 @@ std::optional<std::string> ParseDifference(const DifferenceRef& difference, cons
   // The key itself reads the value, and gets its own back.
   const Field& key = *difference.of;
   const std::string truth = FormatValue(key.value);
-  const std::optional<std::string> message = ParseValue(key, node);
+  std::optional<std::string> message = ParseValue(key, node);
   if (!message) (*difference.all)[key.path] = FormatValue(key.value);
   SetText(key, truth);
   return message;
