@@ -30,6 +30,12 @@ task::MetricSummary Fly(const std::string& condition, const std::vector<std::str
   return m;
 }
 
+/// It knows where it is, as well as it says.
+void ExpectLocated(const task::MetricSummary& m) {
+  EXPECT_LT(m.Mean("navigation_rmse_tail"), 8.0);
+  EXPECT_LT(m.Mean("navigation_nees"), 5.0);
+}
+
 TEST(LocalizationFlight, AloneTheSwarmHoldsTogetherAndDriftsAway) {
   const task::MetricSummary m = Fly("nominal");
   EXPECT_GT(m.Mean("navigation_rmse_tail"), 50.0);
@@ -41,24 +47,16 @@ TEST(LocalizationFlight, AloneTheSwarmHoldsTogetherAndDriftsAway) {
 
 TEST(LocalizationFlight, ACraftHoldsTheSwarmInTheWorld) {
   const task::MetricSummary m = Fly("craft");
-  EXPECT_LT(m.Mean("navigation_rmse_tail"), 8.0);
-  EXPECT_LT(m.Mean("navigation_nees"), 5.0);
+  ExpectLocated(m);
   EXPECT_LT(m.Mean("relative_rmse"), 3.0);
   EXPECT_GT(m.Mean("band_share"), 0.75);
 }
 
-TEST(LocalizationFlight, TwoBeaconsDoSoToo) {
-  const task::MetricSummary m = Fly("beacons");
-  EXPECT_LT(m.Mean("navigation_rmse_tail"), 8.0);
-  EXPECT_LT(m.Mean("navigation_nees"), 5.0);
-}
+TEST(LocalizationFlight, TwoBeaconsDoSoToo) { ExpectLocated(Fly("beacons")); }
 
-// Positions are told modulo 5 km, and an AUV can be 2.5 km from a beacon along one axis.
+// Packets hold positions modulo 5 km, and an AUV can be 2.5 km from a beacon along one axis.
 TEST(LocalizationFlight, BeaconsOnTheEdgeAreTakenForWhereTheyAre) {
-  const task::MetricSummary m =
-      Fly("beacons", {"stations.beacons=[[1900, 1900, -100], [-1900, -1900, -100]]"});
-  EXPECT_LT(m.Mean("navigation_rmse_tail"), 8.0);
-  EXPECT_LT(m.Mean("navigation_nees"), 5.0);
+  ExpectLocated(Fly("beacons", {"stations.beacons=[[1900, 1900, -100], [-1900, -1900, -100]]"}));
 }
 
 TEST(LocalizationFlight, LateSoundsAreSetAside) {
