@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
     for (const auto& episode : own) training_returns.push_back(episode.episode_return);
     table.Write(Table(metrics, training_returns, seed));
     if (!record.empty()) {
-      stg::env::RecordEpisodes(s, controller, seed, episodes, record_episodes, record);
+      stg::env::RecordEpisodes(s, controller, seed, episodes, record_episodes, record, condition);
     }
     stg::task::MetricSummary summary = stg::task::Summarise(metrics);
     const stg::task::MetricSummary own_summary = stg::task::Summarise(own);

@@ -224,11 +224,12 @@ class Recorder {
            std::ostream* csv)
       : s_(s), controller_(controller), out_(out), csv_(csv) {}
 
-  void Meta() {
+  void Meta(const std::string& condition) {
     *out_ << kRecordingMagic;
     nlohmann::json scene = SceneOf(s_);
     scene["source"] = "evaluate --record";
     scene["policy"] = controller_.name;
+    scene["condition"] = condition;
     *out_ << Message("meta", {{"meta", scene}}).Bytes();
   }
 
@@ -295,7 +296,8 @@ void Finish(std::ofstream* out, DurableFile* file) {
 }  // namespace
 
 void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, std::uint64_t seed,
-                    int flown, int recorded, const std::string& folder) {
+                    int flown, int recorded, const std::string& folder,
+                    const std::string& condition) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw UserError(folder + ": cannot make the folder: " + error.message());
@@ -304,7 +306,7 @@ void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, 
   std::ofstream out(recording.temporary(), std::ios::binary);
   std::ofstream csv(log.temporary(), std::ios::binary);
   Recorder recorder(scenario, controller, &out, &csv);
-  recorder.Meta();
+  recorder.Meta(condition);
   const int total = (flown + kMixBlock - 1) / kMixBlock * kMixBlock;
   for (int e = 0; e < std::min(flown, recorded); ++e) recorder.Fly(e, seed, total);
   Finish(&out, &recording);

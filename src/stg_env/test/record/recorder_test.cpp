@@ -85,7 +85,8 @@ class RecorderTest : public testing::Test {
                              {"time.episode_steps=60", "time.tail_steps=20"});
   }
   std::vector<Read> Record(const Scenario& s, int flown, int recorded) {
-    RecordEpisodes(s, agent::MakeDecider("pursuit", s.model()), 3000, flown, recorded, folder_);
+    RecordEpisodes(s, agent::MakeDecider("pursuit", s.model()), 3000, flown, recorded, folder_,
+                   "combined_stress");
     return ReadAll(FileText(folder_ + "/recording.stgv"));
   }
 
@@ -106,6 +107,13 @@ TEST_F(RecorderTest, FliesWhatTheEvaluationFlies) {
     ++episode;
   }
   EXPECT_EQ(episode, 6U);
+}
+
+TEST_F(RecorderTest, NamesScenarioConditionAndPolicy) {
+  const Read first = Record(Short("medium"), 1, 1).front();
+  EXPECT_EQ(first.header["meta"]["scenario"], "medium");
+  EXPECT_EQ(first.header["meta"]["condition"], "combined_stress");
+  EXPECT_EQ(first.header["meta"]["policy"], "pursuit");
 }
 
 TEST_F(RecorderTest, HasEveryPacketOfItsLogOnce) {

@@ -16,7 +16,9 @@ namespace stg::env {
 /// @param seed of episode 0
 /// @param flown how many episodes the evaluation has
 /// @param recorded how many of them are recorded, the first ones
+/// @param condition of the scenario, which the page names
 void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, std::uint64_t seed,
-                    int flown, int recorded, const std::string& folder);
+                    int flown, int recorded, const std::string& folder,
+                    const std::string& condition = "nominal");
 
 }  // namespace stg::env
