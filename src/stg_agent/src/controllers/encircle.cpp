@@ -73,10 +73,11 @@ Level<T> Encircle::ClearOfChart(const ControllerInput<T>& in, Level<T> v) const 
   const EncircleOptions& o = options;
   const Level<T> own{k.v_WB.x, k.v_WB.y};
   const T turn_m = Norm(v) * T(1.0 / s.control.autopilot.max_turn_rate_radps + o.lead_s);
+  const T keep_off = T(o.keep_off_m) + k.position_std_m * T(o.keep_off_doubt);
   const auto pass = [&](double x, double y, double lo, double hi, double radius_m) {
     const auto beside = (k.p_WB.z > T(lo - o.layer_m)) && (k.p_WB.z < T(hi + o.layer_m));
     const Level<T> there{T(x) - k.p_WB.x, T(y) - k.p_WB.y};
-    const Level<T> off = TurnedOff(v, own, there, T(radius_m + o.keep_off_m), turn_m);
+    const Level<T> off = TurnedOff(v, own, there, keep_off + T(radius_m), turn_m);
     v = {Select(beside, off.x, v.x), Select(beside, off.y, v.y)};
   };
   for (const auto& b : s.sea.spheres) pass(b[0], b[1], b[2] - b[3], b[2] + b[3], b[3]);
@@ -208,6 +209,8 @@ void Describe(EncircleOptions* o, config::Table* t) {
          "the same of other AUVs, where there is one circle");
   t->Add("keep-off", &o->keep_off_m, NonNegative(1e4), "m",
          "distance that is kept from obstacles, in the plane");
+  t->Add("keep-off-doubt", &o->keep_off_doubt, NonNegative(10), "-",
+         "standard deviations of the own position that are kept off beside");
   t->Add("hurry-from", &o->hurry_from, NonNegative(10), "-",
          "farther outside than this share of d*, the AUV begins to hurry");
 }

@@ -128,6 +128,18 @@ TEST(Encircle, PassesOthersAtLikeDepthAndObstaclesAside) {
   EXPECT_NEAR(Velocity(s, k, o).y, alone, 1e-12) << "it ends 57 m below";
 }
 
+TEST(Encircle, KeepsOffByTheDeviationOfItsOwnPosition) {
+  Knowledge<double> k = Near({1000.0, 0.0, 0.0}, {-2.0, 0.0, 0.0});
+  AgentModel s = Sea();
+  s.sea.cylinders = {{930.0, 10.0, -120.0, 20.0 + 12.0, 120.0}};
+  const Vec3<double> large = Velocity(s, k);
+  s.sea.cylinders = {{930.0, 10.0, -120.0, 20.0, 120.0}};
+  EXPECT_GT(std::abs(Velocity(s, k).y - large.y), 0.1);
+  k.position_std_m = 12.0;
+  EXPECT_NEAR(Velocity(s, k).x, large.x, 1e-12);
+  EXPECT_NEAR(Velocity(s, k).y, large.y, 1e-12);
+}
+
 TEST(Encircle, NeverComesIntoADiscFromWhichItCanTurnAway) {
   // A point that turns at 5 deg/s towards the velocity that is wanted: into the disc, whatever way.
   const double rate = 0.0873, speed = 2.0, dt = 0.1, radius = 70.0;

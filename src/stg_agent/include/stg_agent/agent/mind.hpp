@@ -51,6 +51,7 @@ class Mind {
     k.R_WB = RotationOf(nav.q_WB);
     k.trig = TrigOf(k.R_WB);
     k.v_WB = k.R_WB * nav.v_WB_B;
+    k.position_std_m = nav.position_std_m;
   }
 
   /// The same from the true state, exact.

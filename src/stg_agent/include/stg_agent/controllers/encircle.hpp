@@ -33,6 +33,7 @@ struct EncircleOptions {
   double on_circle = 0.5;          ///< closer to the circle than this share of d*: it is on it
   double mate_on_circle = 0.6;     ///< the same of others, where there is one circle
   double keep_off_m = 20.0;        ///< of obstacles, in the plane
+  double keep_off_doubt = 1.0;     ///< and so many standard deviations of the own position
   double hurry_from = 0.3;         ///< farther outside than this share of d* it begins to hurry
 };
 

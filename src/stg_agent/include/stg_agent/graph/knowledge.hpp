@@ -17,6 +17,7 @@ template <class T>
 struct Knowledge : Tracking<T> {
   // Own navigation.
   Vec3<T> p_WB, v_WB, v_WB_B, w_WB_B;
+  T position_std_m = T(0.0);  ///< of each horizontal component of p_WB, as stated; 0: exact
   Mat3<T> R_WB;
   EulerTrig<T> trig;
   Vec3<T> v_WT;  ///< velocity of the target
