@@ -40,6 +40,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--without", config.without,
                  "what the policy cannot see: " + stg::learn::BlindNames());
+  app.add_flag("--free-assignment", config.free_assignment,
+               "a quarter of the waters has two targets, which the AUVs choose; --network graph");
   app.add_option("--seed", config.seed, "of networks, episodes and exploration")
       ->check(stg::learn::SeedCheck())
       ->capture_default_str();

@@ -1,5 +1,7 @@
 #include "marl_trainer/learn/swarm/swarm_config.hpp"
 
+#include "auv_common/error.hpp"
+
 namespace stg::learn {
 namespace {
 
@@ -30,15 +32,34 @@ constexpr Waters kWaters[] = {
     {nullptr, "far_initialization", 1},
     {nullptr, "combined_stress", 2},
 };
+/// With free_assignment these take the place of others: {place above, waters}.
+constexpr std::pair<int, Waters> kFreeWaters[] = {
+    {3, {"many8", "nominal", 8, 2}},
+    {7, {"many8", "nominal", 4, 2}},
+    {10, {"many8", "nominal", 6, 2}},
+    {12, {"many8", "nominal", 7, 2}},
+};
 constexpr int kWatersCount = static_cast<int>(sizeof(kWaters) / sizeof(kWaters[0]));
+
+Waters WatersAt(int place, bool free_assignment) {
+  for (const auto& [replaced, waters] : kFreeWaters) {
+    if (free_assignment && replaced == place) return waters;
+  }
+  return kWaters[place];
+}
 
 }  // namespace
 
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count) {
+  if (config.free_assignment && config.network != agent::EntityNetwork::kGraph) {
+    throw UserError(std::string("--free-assignment: the network '") +
+                    agent::EntityNetworkName(config.network) +
+                    "' does not choose a target; --network graph does");
+  }
   std::vector<SwarmTask> mixture;
   for (int k = 0; k < count; ++k) {
-    const Waters& waters = kWaters[k % kWatersCount];
+    const Waters waters = WatersAt(k % kWatersCount, config.free_assignment);
     const std::string steps = std::to_string(config.episode_steps * waters.longer);
     const std::string name = waters.scenario != nullptr ? waters.scenario : scenario;
     const std::vector<std::string> overrides = {

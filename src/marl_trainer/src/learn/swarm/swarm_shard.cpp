@@ -15,6 +15,7 @@ namespace stg::learn {
 namespace {
 
 constexpr std::uint32_t kMostAgents = 64;
+constexpr double kEnough = 2.0;  ///< AUVs in the band of a target: two ranges tell where it is
 
 env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int envs,
                                    int total_envs) {
@@ -145,14 +146,7 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
       }
     }
     env_.Step(actions_.data(), memory_.arrays());
-    for (std::size_t row = 0; row < sums_.size(); ++row) {
-      const auto e = static_cast<int>(row) / n, i = static_cast<int>(row) % n;
-      const config::Interval& band = env_.scenario().reward.band_m;
-      const double distance = env_.tracking(e, i).distance;
-      sums_[row] += memory_.rewards[row];
-      if (distance >= band.lo && distance <= band.hi)
-        sums_[row] += static_cast<float>(config_.band);
-    }
+    Pay();
     if (!last) {
       assert(std::none_of(memory_.truncated.begin(), memory_.truncated.end(),
                           [](std::uint8_t t) { return t != 0; }));
@@ -173,18 +167,45 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
   Reward(step, out);
 }
 
+void SwarmShard::Pay() {
+  const int n = env_.agents();
+  const config::Interval& band = env_.scenario().reward.band_m;
+  const bool free = env_.scenario().agent.task.free();
+  std::vector<int> inside(static_cast<std::size_t>(env_.scenario().world.target.count));
+  const auto is_inside = [&](int e, int i) {
+    const double distance = env_.tracking(e, i).distance;
+    return distance >= band.lo && distance <= band.hi;
+  };
+  for (int e = 0; e < env_.envs(); ++e) {
+    std::fill(inside.begin(), inside.end(), 0);
+    for (int i = 0; i < n; ++i) {
+      if (is_inside(e, i)) ++inside[static_cast<std::size_t>(env_.followed(e, i))];
+    }
+    for (int i = 0; i < n; ++i) {
+      const auto row = static_cast<std::size_t>(e * n + i);
+      sums_[row] += memory_.rewards[row];
+      if (!is_inside(e, i)) continue;
+      const int count = inside[static_cast<std::size_t>(env_.followed(e, i))];
+      const double share = free ? std::min(1.0, kEnough / count) : 1.0;
+      sums_[row] += static_cast<float>(config_.band * share);
+    }
+  }
+}
+
 void SwarmShard::Reward(int step, SwarmRollout* out) const {
   const int n = env_.agents();
   const auto own_share = static_cast<float>(config_.own_reward);
   const auto gamma = static_cast<float>(config_.gamma);
   const float* own = out->own.data() + static_cast<std::ptrdiff_t>(step) * env_.envs() * n;
   const dynamics::TargetConfig& targets = env_.scenario().world.target;
+  // AUVs that choose have all targets in common.
+  const bool free = env_.scenario().agent.task.free();
   for (int e = 0; e < env_.envs(); ++e) {
     for (int i = 0; i < n; ++i) {
       float sum = 0.0F;
       int mates = 0;
       for (int j = 0; j < n; ++j) {
-        if (targets.of(j) != targets.of(i)) continue;
+        if (!free && targets.of(j) != targets.of(i)) continue;
         sum += own[e * n + j];
         ++mates;
       }

@@ -81,6 +81,7 @@ std::string SwarmTrainer::ConfigText() const {
                                 {"action", agent::EntityActionName(config_.action)},
                                 {"network", agent::EntityNetworkName(config_.network)},
                                 {"without", config_.without},
+                                {"free_assignment", config_.free_assignment},
                                 {"steps", config_.steps},
                                 {"envs", config_.envs},
                                 {"horizon", config_.horizon},

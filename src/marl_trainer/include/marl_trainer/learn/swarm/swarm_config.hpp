@@ -16,7 +16,8 @@ struct SwarmConfig {
   std::int64_t steps = 6'000'000;  ///< decisions of a swarm, 1 s each in the field
   agent::EntityAction action = agent::EntityAction::kLaw5;
   agent::EntityNetwork network = agent::EntityNetwork::kPool;
-  std::string without;  ///< what the actor cannot see (Blinded); empty: nothing
+  std::string without;           ///< what the actor cannot see (Blinded); empty: nothing
+  bool free_assignment = false;  ///< some waters have targets that the AUVs choose freely
 
   int envs = 128;
   int horizon = 40;         ///< policy steps of one collection
@@ -25,8 +26,10 @@ struct SwarmConfig {
   double gamma = 0.9835;    ///< per policy step: 300 s
   double lambda = 0.95;
   double own_reward = 0.7;  ///< share of the AUV's own reward; the rest is the mean of its team
-  double band = 1.0;        ///< reward of a decision inside the band, beside the scenario's
-  double shaping = 1.0;     ///< weight of gamma Phi(s') - Phi(s), Phi = -|d - d*| / 100 m
+  /// Reward of a decision inside the band, beside the scenario's. Of targets that are chosen freely
+  /// it is the share of two in what the AUVs in that band are more than two.
+  double band = 1.0;
+  double shaping = 1.0;  ///< weight of gamma Phi(s') - Phi(s), Phi = -|d - d*| / 100 m
 
   int epochs = 3;
   int minibatch = 7000;  ///< rows of AUVs
@@ -48,7 +51,8 @@ struct SwarmTask {
 };
 
 /// The mixture of the field for `count` shards: sizes of 1 to 8 AUVs, one or two targets, stresses,
-/// search and hunt, and the reward of training in place of the scenario's.
+/// search and hunt, and the reward of training in place of the scenario's. Throws UserError for
+/// free_assignment with a network that does not choose.
 /// @param folder of the shipped scenarios
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count);

@@ -50,6 +50,8 @@ class SwarmShard {
  private:
   void Observe(const SwarmActor& actor, std::uint32_t collection, int step, SwarmRollout* out);
   void FlyOn(int step, SwarmRollout* out);
+  /// Adds what the decision that was just flown pays to sums_.
+  void Pay();
   void Reward(int step, SwarmRollout* out) const;
   double Potential(int e, int i) const;
 
