@@ -15,7 +15,6 @@ namespace stg::learn {
 namespace {
 
 constexpr std::uint32_t kMostAgents = 64;
-constexpr double kEnough = 2.0;  ///< AUVs in the band of a target: two ranges tell where it is
 
 env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int envs,
                                    int total_envs) {
@@ -34,6 +33,11 @@ int DecisionsOf(const Scenario& s) {
 }
 
 }  // namespace
+
+double ShareOfBand(bool chosen, int inside) {
+  constexpr double kEnough = 2.0;
+  return chosen ? std::min(1.0, kEnough / inside) : 1.0;
+}
 
 SwarmRollout::SwarmRollout()
     : actor(RowSizes(agent::EntityGraphSpec(1))),
@@ -186,8 +190,7 @@ void SwarmShard::Pay() {
       sums_[row] += memory_.rewards[row];
       if (!is_inside(e, i)) continue;
       const int count = inside[static_cast<std::size_t>(env_.followed(e, i))];
-      const double share = free ? std::min(1.0, kEnough / count) : 1.0;
-      sums_[row] += static_cast<float>(config_.band * share);
+      sums_[row] += static_cast<float>(config_.band * ShareOfBand(free, count));
     }
   }
 }

@@ -123,6 +123,27 @@ TEST_F(SwarmTraining, WhatAnAblationHidesChangesNoCommand) {
   EXPECT_THROW(Blinded(config_.network, 5, "nonsense"), UserError);
 }
 
+TEST_F(SwarmTraining, TargetsAreChosenInSomeWatersByTheNetworkThatChooses) {
+  config_.free_assignment = true;
+  const std::string folder = config::ScenarioFolder();
+  EXPECT_THROW(FieldMixture(folder, "field", config_, 16), UserError) << "pool does not choose";
+  config_.network = agent::EntityNetwork::kGraph;
+  int free = 0;
+  for (const SwarmTask& task : FieldMixture(folder, "field", config_, 16)) {
+    free += task.scenario.agent.task.free() ? 1 : 0;
+    EXPECT_LE(task.scenario.run.agents, 8);
+    EXPECT_LE(task.scenario.world.target.count, 2);
+  }
+  EXPECT_EQ(free, 4);
+  config_.free_assignment = false;
+  for (const SwarmTask& task : FieldMixture(folder, "field", config_, 16)) {
+    EXPECT_FALSE(task.scenario.agent.task.free()) << task.name;
+  }
+  for (const int inside : {1, 2}) EXPECT_EQ(ShareOfBand(true, inside), 1.0);
+  EXPECT_EQ(ShareOfBand(true, 8), 0.25);
+  EXPECT_EQ(ShareOfBand(false, 8), 1.0);
+}
+
 TEST_F(SwarmTraining, RefusesAFolderOfAnotherTraining) {
   config_.steps = 320;
   ASSERT_TRUE(Train("run", 1, false));
