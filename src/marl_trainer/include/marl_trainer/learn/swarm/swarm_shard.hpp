@@ -35,9 +35,9 @@ struct SwarmActor {
   const float* log_std;  ///< [command size]
 };
 
-/// What a decision in the band of a target pays one of the `inside` AUVs there, as a share of what it
-/// pays one alone: of targets that are chosen two AUVs are enough, whose ranges tell where it is, and
-/// more of them share the pay of two.
+/// What a decision in the band of a target pays one of the `inside` AUVs there, as a share of what
+/// it pays one alone: of targets that are chosen two AUVs are enough, whose ranges tell where it
+/// is, and more of them share the pay of two.
 double ShareOfBand(bool chosen, int inside);
 
 /// Environments of one scenario, so of one size of swarm, that one worker flies on its own.
