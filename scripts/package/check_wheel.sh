@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
 # Installs the wheel of dist/ into a new virtual environment, without index, compiler and ROS, and flies.
+# With STG_FARAMA, folders (colons between several) that hold gymnasium and pettingzoo, which Debian lacks,
+# it also flies by the names that both know.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -27,4 +29,23 @@ for name in names:
 short = {"time.episode_steps": 60, "time.tail_steps": 10}
 flown = stg.evaluate(stg.policy_file("field"), "field", overrides=short, episodes=1)
 print("check_wheel:", len(names), "scenarios start; a minute of field:", flown["return"])
+PYTHON
+[[ -n "${STG_FARAMA:-}" ]] || exit 0
+"${alone[@]}" PYTHONPATH="$STG_FARAMA" venv/bin/python - <<'PYTHON'
+import gymnasium
+# What stands before the colon is imported first.
+team = gymnasium.make("stg:stg/Team-v1", scenario="hard")
+team.reset(seed=1)
+team.step(team.action_space.sample())
+many = gymnasium.make_vec("stg/Team-v1", num_envs=8)
+many.reset(seed=1)
+many.step(many.action_space.sample())
+import pettingzoo, stg
+from stg import swarm_v1
+made = [swarm_v1.parallel_env()]
+if hasattr(pettingzoo, "make"):  # 1.27
+    made += [pettingzoo.make("parallel", "stg/Swarm-v1", scenario="hard"), pettingzoo.make("aec", "stg/Swarm-v1")]
+for env in made:
+    env.reset(seed=1)
+print("check_wheel: gymnasium", gymnasium.__version__, "and pettingzoo", pettingzoo.__version__, "make", len(made) + 2)
 PYTHON

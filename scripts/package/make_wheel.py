@@ -46,7 +46,6 @@ Generator: scripts/package/make_wheel.py
 Root-Is-Purelib: false
 Tag: {tag}
 """
-ENTRY_POINTS = "[gymnasium.envs]\n__root__ = stg.registration:register\n"
 
 
 def run(*command):
@@ -114,7 +113,6 @@ def write(folder, out, version):
     readme = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
     (info / "METADATA").write_text(METADATA.format(version=version) + readme, encoding="utf-8")
     (info / "WHEEL").write_text(WHEEL.format(tag=TAG))
-    (info / "entry_points.txt").write_text(ENTRY_POINTS)
     out.mkdir(parents=True, exist_ok=True)
     wheel = out / f"{NAME}-{version}-{TAG}.whl"
     record = []

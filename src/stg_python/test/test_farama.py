@@ -17,6 +17,7 @@ try:
 except ImportError as error:
     print("absent:", error)
     sys.exit()
+gymnasium.make("stg:stg/Team-v1").reset(seed=4)  # imports stg
 from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
 from pettingzoo.test import api_test, parallel_api_test, parallel_seed_test

@@ -1,7 +1,7 @@
 """Names for `gymnasium.make` and `pettingzoo.make`, registered by `import stg`.
 
-Gymnasium knows stg/Team-v1, the swarm as one agent, and many swarms for `make_vec`; where stg is
-installed as a wheel, without that import, too. PettingZoo, from 1.27 on, knows stg/Swarm-v1.
+Gymnasium knows stg/Team-v1, the swarm as one agent, and many swarms for `make_vec`; by the name
+stg:stg/Team-v1 it imports stg itself. PettingZoo, from 1.27 on, knows stg/Swarm-v1.
 """
 
 __all__ = ["make_team", "make_vector", "register"]
