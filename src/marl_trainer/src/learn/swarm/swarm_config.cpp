@@ -37,7 +37,7 @@ constexpr std::pair<int, Waters> kFreeWaters[] = {
     {3, {"many8", "nominal", 8, 2}},
     {7, {"many8", "nominal", 4, 2}},
     {10, {"many8", "nominal", 6, 2}},
-    {12, {"many8", "nominal", 7, 2}},
+    {12, {"many8", "nominal", 5, 2}},
 };
 constexpr int kWatersCount = static_cast<int>(sizeof(kWaters) / sizeof(kWaters[0]));
 

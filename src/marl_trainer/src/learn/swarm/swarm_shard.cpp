@@ -15,6 +15,7 @@ namespace stg::learn {
 namespace {
 
 constexpr std::uint32_t kMostAgents = 64;
+constexpr double kEnough = 2.0;  ///< AUVs in the band of a target: two ranges tell where it is
 
 env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int envs,
                                    int total_envs) {
@@ -35,8 +36,13 @@ int DecisionsOf(const Scenario& s) {
 }  // namespace
 
 double ShareOfBand(bool chosen, int inside) {
-  constexpr double kEnough = 2.0;
   return chosen ? std::min(1.0, kEnough / inside) : 1.0;
+}
+
+double ShareCovered(const std::vector<int>& inside) {
+  double sum = 0.0;
+  for (const int count : inside) sum += std::min(1.0, count / kEnough);
+  return sum / static_cast<double>(inside.size());
 }
 
 SwarmRollout::SwarmRollout()
@@ -185,9 +191,10 @@ void SwarmShard::Pay() {
     for (int i = 0; i < n; ++i) {
       if (is_inside(e, i)) ++inside[static_cast<std::size_t>(env_.followed(e, i))];
     }
+    const double covered = free ? ShareCovered(inside) : 0.0;
     for (int i = 0; i < n; ++i) {
       const auto row = static_cast<std::size_t>(e * n + i);
-      sums_[row] += memory_.rewards[row];
+      sums_[row] += memory_.rewards[row] + static_cast<float>(config_.band * covered);
       if (!is_inside(e, i)) continue;
       const int count = inside[static_cast<std::size_t>(env_.followed(e, i))];
       sums_[row] += static_cast<float>(config_.band * ShareOfBand(free, count));

@@ -142,6 +142,8 @@ TEST_F(SwarmTraining, TargetsAreChosenInSomeWatersByTheNetworkThatChooses) {
   for (const int inside : {1, 2}) EXPECT_EQ(ShareOfBand(true, inside), 1.0);
   EXPECT_EQ(ShareOfBand(true, 8), 0.25);
   EXPECT_EQ(ShareOfBand(false, 8), 1.0);
+  EXPECT_EQ(ShareCovered({5, 0}), 0.5);
+  EXPECT_EQ(ShareCovered({1, 2, 3}), 2.5 / 3.0);
 }
 
 TEST_F(SwarmTraining, RefusesAFolderOfAnotherTraining) {

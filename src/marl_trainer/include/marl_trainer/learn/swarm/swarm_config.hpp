@@ -27,7 +27,8 @@ struct SwarmConfig {
   double lambda = 0.95;
   double own_reward = 0.7;  ///< share of the AUV's own reward; the rest is the mean of its team
   /// Reward of a decision inside the band, beside the scenario's. Of targets that are chosen freely
-  /// it is the share of two in what the AUVs in that band are more than two.
+  /// it is divided among more than two AUVs, and all get as much for the share of targets that have
+  /// two.
   double band = 1.0;
   double shaping = 1.0;  ///< weight of gamma Phi(s') - Phi(s), Phi = -|d - d*| / 100 m
 

@@ -39,6 +39,9 @@ struct SwarmActor {
 /// it pays one alone: of targets that are chosen two AUVs are enough, whose ranges tell where it
 /// is, and more of them share the pay of two.
 double ShareOfBand(bool chosen, int inside);
+/// What such a decision pays everybody: mean over the targets of the AUVs in its band as a share of
+/// two, 1 at most. @param inside of each target
+double ShareCovered(const std::vector<int>& inside);
 
 /// Environments of one scenario, so of one size of swarm, that one worker flies on its own.
 class SwarmShard {
