@@ -11,7 +11,6 @@ Exit status: 0 done, 2 wrong usage or a file that cannot be read.
 import argparse
 import os
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from stg_common.csv_files import number, table_rows
@@ -24,8 +23,6 @@ GOOD, PARTLY, BAD, GREY = "#2fb457", "#f5a11a", "#e23636", "#9aa3ad"
 MAX_LINKS = 40
 # What a row must tell of a packet that left, of one that found a receiver, and of one that arrived.
 OF_SENT, OF_RECEIVER, OF_DELIVERED = ("transmit_end_s",), ("distance_m",), ("generation_s", "arrival_s")
-plt.switch_backend("Agg")  # draws to files
-plt.rcParams["text.parse_math"] = False  # names of nodes are shown as they are
 
 
 def number_or_nan(text):
@@ -241,6 +238,11 @@ def read_summary(path):
 
 def draw(log, summary, window, path):
     """Draws all panels into one file."""
+    # Its package is only recommended, and help goes without it.
+    import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+
+    plt.switch_backend("Agg")  # draws to files
+    plt.rcParams["text.parse_math"] = False  # names of nodes are shown as they are
     sent = log.transmissions()
     if window is None:
         airtime = np.median([s[1] - s[0] for s in sent]) if sent else 0.0

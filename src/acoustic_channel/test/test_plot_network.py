@@ -3,6 +3,7 @@
 
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -177,6 +178,15 @@ class PlotNetwork(unittest.TestCase):
         result = self.run_script()
         self.assertEqual(result.returncode, 2)
         self.assertRegex(result.stderr, r"^plot_network: [^\n]*summary.json: transmitted[^\n]*\n$")
+
+    def test_helps_where_nothing_can_draw(self):
+        program = "import runpy, sys; sys.modules['matplotlib'] = None; sys.argv[1:] = ['--help']; "
+        result = subprocess.run(
+            [sys.executable, "-c", program + f"runpy.run_path({SCRIPT!r}, run_name='__main__')"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False,
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertIn("usage:", result.stdout)
 
 
 if __name__ == "__main__":
