@@ -26,8 +26,8 @@ struct HillClimbingConfig : AlgorithmConfig {
   std::unique_ptr<AlgorithmConfig> Clone() const override {
     return std::make_unique<HillClimbingConfig>(*this);
   }
-  void Describe(OptionTable* table) override {
-    table->Add("step", &step, {1e-6, 10}, "standard deviation of the candidates' weights");
+  void Describe(config::Table* table) override {
+    table->Add("step", &step, {1e-6, 10}, "-", "standard deviation of the candidates' weights");
   }
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   const Team& team) const override;

@@ -124,7 +124,7 @@ struct Minibatch {
   static PpoOptions MakeConfig(int width) {
     PpoOptions config;
     config.actor_hidden = config.critic_hidden = {width, width};
-    config.activation = width == 64 ? "tanh" : "relu";
+    config.activation = width == 64 ? HiddenActivation::kTanh : HiddenActivation::kRelu;
     return config;
   }
   /// The actor's, then the critic's.

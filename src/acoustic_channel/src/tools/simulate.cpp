@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -15,11 +14,11 @@
 #include "acoustic_channel/log/packet_log.hpp"
 #include "acoustic_channel/offline/simulation.hpp"
 #include "acoustic_channel/offline/simulation_file.hpp"
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/folder_lock.hpp"
-#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
 
@@ -229,19 +228,7 @@ int main(int argc, char** argv) {
   app.add_flag("--summary-only", summary_only,
                "do not write packets.csv, and remove one that is there");
   stg::AddPluginOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
   const std::atomic<int>& stop = stg::HeedStopSignals();
-  try {
-    return Simulate(path, folder, quiet, !summary_only, stop);
-  } catch (const stg::UserError& e) {
-    std::cerr << "simulate: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "simulate: " << e.what() << "\n";
-    return 1;
-  }
+  return stg::RunProgram("simulate", &app, argc, argv,
+                         [&] { return Simulate(path, folder, quiet, !summary_only, stop); });
 }

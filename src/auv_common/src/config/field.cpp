@@ -7,14 +7,6 @@
 #include "key_path.hpp"
 
 namespace stg::config {
-namespace {
-
-/// Sets a key to a text that FormatValue or the user wrote. Message when it cannot be read.
-std::optional<std::string> SetText(const Field& field, const std::string& text) {
-  return ParseValue(field, ParseYaml(text, field.path, false));
-}
-
-}  // namespace
 
 bool Owner::IsChosen() const {
   const std::vector<std::string> choice = chosen();
@@ -115,7 +107,7 @@ std::optional<std::string> ParseDifference(const DifferenceRef& difference, cons
   const std::string truth = FormatValue(key.value);
   std::optional<std::string> message = ParseValue(key, node);
   if (!message) (*difference.all)[key.path] = FormatValue(key.value);
-  SetText(key, truth);
+  ParseText(key, truth);
   return message;
 }
 
@@ -129,7 +121,7 @@ void Apply(const Differences& differences, const Table& table) {
   for (const auto& [path, text] : differences) {
     const Field* const field = table.Find(path);
     if (field == nullptr) continue;
-    if (const auto message = SetText(*field, text)) throw UserError(path + ": " + *message);
+    if (const auto message = ParseText(*field, text)) throw UserError(path + ": " + *message);
   }
 }
 

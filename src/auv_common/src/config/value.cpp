@@ -10,13 +10,6 @@
 namespace stg::config {
 namespace {
 
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overload(F...) -> Overload<F...>;
-
 constexpr char kNameRule[] = "a letter, then letters, digits, _ or -";
 
 bool IsFile(const std::string& text, const std::string& extension) {
@@ -30,45 +23,12 @@ bool IsFile(const std::string& text, const std::string& extension) {
          text[0] != '-' && std::all_of(text.begin(), text.end(), plain);
 }
 
-/// Shortest text that reads back as the same double, always with a point so
-/// that every YAML reader takes it for a real number.
-std::string FormatNumber(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  std::string text(buffer, result.ptr);
-  if (text.find_first_of(".n") == std::string::npos) {
-    const auto exponent = text.find('e');
-    text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
-  }
-  return text;
-}
-
 /// Bounds are written as a person would.
 std::string FormatBound(double value) {
   char buffer[32];
   const auto result =
       std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::general);
   return {buffer, result.ptr};
-}
-
-std::string FormatNumbers(const double* values, int size) {
-  std::string text = "[";
-  for (int i = 0; i < size; ++i) text += (i > 0 ? ", " : "") + FormatNumber(values[i]);
-  return text + "]";
-}
-
-/// Quotes the words that some YAML readers take for something else.
-std::string FormatWord(const std::string& word) {
-  for (const char* special : {"on", "off", "yes", "no", "true", "false", "null", "y", "n"}) {
-    if (word == special) return "\"" + word + "\"";
-  }
-  return word;
-}
-
-std::string FormatWords(const std::vector<std::string>& words) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < words.size(); ++i) text += (i > 0 ? ", " : "") + FormatWord(words[i]);
-  return text + "]";
 }
 
 std::optional<std::string> CheckNumbers(const Field& field, const double* values, int size) {
@@ -79,6 +39,11 @@ std::optional<std::string> CheckNumbers(const Field& field, const double* values
     }
   }
   return {};
+}
+
+std::optional<std::string> CheckWhole(const Field& field, std::int64_t value) {
+  if (field.limits.Contain(static_cast<double>(value))) return {};
+  return std::to_string(value) + " is out of range " + FormatRange(field);
 }
 
 /// Message of a refused value; the caller adds file, line and key.
@@ -143,6 +108,7 @@ struct Assign {
 
   void operator()(double* v) const { *v = ToDouble(node); }
   void operator()(int* v) const { *v = ToInteger<int>(node); }
+  void operator()(std::int64_t* v) const { *v = ToInteger<std::int64_t>(node); }
   void operator()(std::uint64_t* v) const { *v = ToInteger<std::uint64_t>(node); }
   void operator()(bool* v) const {
     if (node.kind != YamlTree::Kind::kScalar || node.quoted ||
@@ -158,6 +124,7 @@ struct Assign {
     *v = node.scalar;
   }
   void operator()(const NameOrFileRef& v) const { (*this)(v.text); }
+  void operator()(const TextRef& v) const { (*this)(v.text); }
   void operator()(const EnumRef& v) const {
     const auto found = std::find(v.names.begin(), v.names.end(), node.scalar);
     if (node.kind != YamlTree::Kind::kScalar || found == v.names.end()) {
@@ -172,6 +139,13 @@ struct Assign {
   void operator()(Interval* v) const {
     const auto values = ToDoubles(node, 2);
     *v = {values[0], values[1]};
+  }
+  void operator()(const WholeNumbersRef& v) const {
+    if (node.kind != YamlTree::Kind::kSequence) {
+      throw Refusal{"expected a sequence of whole numbers, found " + KindName(node)};
+    }
+    v.list->clear();
+    for (const YamlTree& item : node.items) v.list->push_back(ToInteger<int>(item));
   }
   void operator()(const RowsRef& v) const {
     if (node.kind != YamlTree::Kind::kSequence) {
@@ -222,41 +196,12 @@ std::string KindName(const YamlTree& node) {
   return "?";
 }
 
-std::string FormatValue(const ValueRef& value) {
-  return std::visit(Overload{[](double* v) { return FormatNumber(*v); },
-                             [](int* v) { return std::to_string(*v); },
-                             [](std::uint64_t* v) { return std::to_string(*v); },
-                             [](bool* v) { return std::string(*v ? "true" : "false"); },
-                             [](std::string* v) { return FormatWord(*v); },
-                             [](const EnumRef& v) {
-                               const auto index = static_cast<std::size_t>(v.get());
-                               return index < v.names.size() ? FormatWord(v.names[index])
-                                                             : std::string("?");
-                             },
-                             [](const NumbersRef& v) { return FormatNumbers(v.data, v.size); },
-                             [](Interval* v) {
-                               const double ends[] = {v->lo, v->hi};
-                               return FormatNumbers(ends, 2);
-                             },
-                             [](const RowsRef& v) {
-                               std::string text;
-                               for (const auto& row : *v.rows) {
-                                 text += (text.empty() ? "" : ", ") +
-                                         FormatNumbers(row.data(), static_cast<int>(row.size()));
-                               }
-                               return "[" + text + "]";
-                             },
-                             [](const NamesRef& v) { return FormatWords(*v.list); },
-                             [](const NameOrFileRef& v) { return FormatWord(*v.text); },
-                             [](const DifferenceRef& v) { return TextOf(v); }},
-                    value);
-}
-
 std::string FormatRange(const Field& field) {
   std::string range = std::string(field.limits.lo_excluded ? "(" : "[") +
                       FormatBound(field.limits.lo) + ", " + FormatBound(field.limits.hi) + "]";
   return std::visit(
       Overload{[&](double*) { return range; }, [&](int*) { return range; },
+               [&](std::int64_t*) { return range; },
                [](std::uint64_t*) { return std::string("[0, 18446744073709551615]"); },
                [](bool*) { return std::string("true | false"); },
                [](std::string*) { return std::string(kNameRule); },
@@ -267,6 +212,10 @@ std::string FormatRange(const Field& field) {
                [](const EnumRef& v) { return JoinNames(v.names); },
                [&](const NumbersRef&) { return range; },
                [&](Interval*) { return range + ", low <= high"; },
+               [&](const WholeNumbersRef& v) {
+                 return "1 to " + std::to_string(v.most) + " whole numbers in " + range;
+               },
+               [](const TextRef&) { return std::string("any text in one line"); },
                [&](const RowsRef& v) {
                  return "any number of rows of " + std::to_string(v.columns) + " in " + range;
                },
@@ -279,10 +228,8 @@ std::optional<std::string> CheckValue(const Field& field) {
   using Result = std::optional<std::string>;
   return std::visit(
       Overload{[&](double* v) { return CheckNumbers(field, v, 1); },
-               [&](int* v) -> Result {
-                 if (field.limits.Contain(*v)) return {};
-                 return std::to_string(*v) + " is out of range " + FormatRange(field);
-               },
+               [&](int* v) { return CheckWhole(field, *v); },
+               [&](std::int64_t* v) { return CheckWhole(field, *v); },
                [](std::uint64_t*) -> Result { return {}; }, [](bool*) -> Result { return {}; },
                [&](std::string* v) -> Result {
                  if (IsName(*v)) return {};
@@ -307,6 +254,20 @@ std::optional<std::string> CheckValue(const Field& field) {
                  if (v->lo > v->hi)
                    return "low " + FormatNumber(v->lo) + " is above high " + FormatNumber(v->hi);
                  return {};
+               },
+               [&](const WholeNumbersRef& v) -> Result {
+                 if (v.list->empty() || v.list->size() > static_cast<std::size_t>(v.most)) {
+                   return "needs " + FormatRange(field);
+                 }
+                 for (const int x : *v.list) {
+                   if (auto message = CheckWhole(field, x)) return message;
+                 }
+                 return {};
+               },
+               [](const TextRef& v) -> Result {
+                 const auto control = [](unsigned char c) { return c < 0x20; };
+                 if (std::none_of(v.text->begin(), v.text->end(), control)) return {};
+                 return Quoted(*v.text) + " is not text in one line";
                },
                [&](const RowsRef& v) -> Result {
                  for (const auto& row : *v.rows) {
@@ -337,6 +298,15 @@ std::optional<std::string> ParseValue(const Field& field, const YamlTree& node) 
     return refusal.message;
   }
   return CheckValue(field);
+}
+
+std::optional<std::string> ParseText(const Field& field, const std::string& text) {
+  if (const auto* free = std::get_if<TextRef>(&field.value)) {
+    *free->text = text;
+    return CheckValue(field);
+  }
+  const bool list = std::holds_alternative<WholeNumbersRef>(field.value) && text.find('[') != 0;
+  return ParseValue(field, ParseYaml(list ? "[" + text + "]" : text, field.path, false));
 }
 
 }  // namespace stg::config

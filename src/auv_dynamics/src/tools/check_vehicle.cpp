@@ -1,12 +1,11 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "auv_dynamics/playback/recorded_motion.hpp"
 #include "auv_dynamics/vehicle/torpedo.hpp"
@@ -78,12 +77,7 @@ int main(int argc, char** argv) {
   app.add_flag("--advance-over-ground", over_ground,
                "propeller inflow from the speed over ground, as the public model has it");
   stg::AddPluginOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+  return stg::RunProgram("check_vehicle", &app, argc, argv, [&] {
     stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
     stg::CheckOption("--dt", dt_s, 1e-4, 1.0);
     stg::dynamics::VehicleConfig vehicle;
@@ -130,11 +124,5 @@ int main(int argc, char** argv) {
     }
     stg::PrintResult(json);
     return pass ? 0 : 1;
-  } catch (const stg::UserError& e) {
-    std::cerr << "check_vehicle: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "check_vehicle: " << e.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -1,10 +1,10 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
 #include "auv_dynamics/terrain/bathymetry.hpp"
@@ -54,12 +54,7 @@ int main(int argc, char** argv) {
   app.add_option("--columns", columns, "width of the map in letters")
       ->capture_default_str()
       ->check(CLI::Range(2, 400));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+  return stg::RunProgram("crop_terrain", &app, argc, argv, [&] {
     const Bathymetry grid =
         region.empty() ? Bathymetry::Load(file)
                        : Bathymetry::Load(file, {region[0], region[1], region[2], region[3]});
@@ -80,11 +75,5 @@ int main(int argc, char** argv) {
                        {"highest_m", grid.highest()},
                        {"file", out.empty() ? nlohmann::json() : nlohmann::json(out)}});
     return 0;
-  } catch (const stg::UserError& e) {
-    std::cerr << "crop_terrain: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "crop_terrain: " << e.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -8,22 +8,23 @@
 
 namespace stg::learn {
 
-void TrainConfig::Describe(OptionTable* table) {
-  table->Add("seed", &seed, "seed of weights, exploration and episodes");
-  table->Add("steps", &steps, {1, 1e12}, "environment steps to train for");
-  table->Add("envs", &envs, {1, 65536}, "parallel environments");
-  table->Add("horizon", &horizon, {1, 100000}, "decisions of each environment between two updates");
-  table->Add("stagger", &stagger, "spread the ends of the first episodes");
-  table->Add("start-from", &start_from,
+void TrainConfig::Describe(config::Table* table) {
+  table->Add("seed", &seed, config::kNone, "-", "seed of weights, exploration and episodes");
+  table->Add("steps", &steps, {1, 1e12}, "-", "environment steps to train for");
+  table->Add("envs", &envs, {1, 65536}, "-", "parallel environments");
+  table->Add("horizon", &horizon, {1, 100000}, "-",
+             "decisions of each environment between two updates");
+  table->Add("stagger", &stagger, config::kNone, "-", "spread the ends of the first episodes");
+  table->Add("start-from", config::TextRef{&start_from}, config::kNone, "-",
              "folder of a finished run whose networks and normalisers to start from; steps, "
              "optimiser and exploration start anew; empty: untrained networks");
-  table->Add("validation-interval", &validation_interval, {1, 1e12},
+  table->Add("validation-interval", &validation_interval, {1, 1e12}, "-",
              "environment steps between validations");
-  table->Add("validation-episodes", &validation_episodes, {1, 10000},
+  table->Add("validation-episodes", &validation_episodes, {1, 10000}, "-",
              "held-out episodes per validation");
-  table->Add("checkpoint-interval", &checkpoint_interval, {1, 1e12},
+  table->Add("checkpoint-interval", &checkpoint_interval, {1, 1e12}, "-",
              "environment steps between checkpoints");
-  table->Add("keep-checkpoints", &keep_checkpoints, {1, 1000}, "checkpoints kept");
+  table->Add("keep-checkpoints", &keep_checkpoints, {1, 1000}, "-", "checkpoints kept");
 }
 
 TrainSetup::TrainSetup(const std::string& name, const std::string& preset)
@@ -37,15 +38,16 @@ TrainSetup::TrainSetup(const TrainSetup& other)
 
 TrainSetup& TrainSetup::operator=(const TrainSetup& other) { return *this = TrainSetup(other); }
 
-OptionTable TrainSetup::Options() {
-  OptionTable table;
+config::Table TrainSetup::Options() {
+  config::Table table;
   common.Describe(&table);
   own->Describe(&table);
   return table;
 }
 
 void TrainSetup::ValidateOrThrow() const {
-  TrainSetup(*this).Options().RequireRanges();
+  TrainSetup copy(*this);  // a table refers to what can be changed
+  RequireRanges(copy.Options());
   own->ValidateOrThrow(common);
 }
 
@@ -54,7 +56,8 @@ nlohmann::ordered_json ToJson(const TrainSetup& setup) {
   json["algorithm"] = setup.algorithm;
   json["preset"] = setup.common.preset;
   json["variant"] = setup.common.variant;
-  TrainSetup(setup).Options().Dump(&json);
+  TrainSetup copy(setup);
+  DumpOptions(copy.Options(), &json);
   return json;
 }
 
@@ -65,9 +68,9 @@ TrainSetup TrainSetupFromJson(const nlohmann::ordered_json& json) {
     TrainSetup setup(algorithm, "fast");  // the values of the preset are all replaced
     TakeMember(json, "preset", &setup.common.preset);
     TakeMember(json, "variant", &setup.common.variant);
-    const OptionTable table = setup.Options();
-    table.Read(json);
-    if (json.size() != 3 + table.options().size()) throw UserError("unknown fields");
+    const config::Table table = setup.Options();
+    ReadOptions(table, json);
+    if (json.size() != 3 + table.fields().size()) throw UserError("unknown fields");
     return setup;
   } catch (const UserError& error) {
     throw UserError(std::string("training configuration: ") + error.what());

@@ -3,45 +3,57 @@
 #include <ros/node_handle.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
-#include <type_traits>
 
+#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/nodes/parameters.hpp"
 
 namespace stg::nodes {
 namespace {
 
-void Load(const std::string& name, std::string* value) { *value = TextParameter(name, *value); }
-void Load(const std::string& name, bool* value) { *value = FlagParameter(name, *value); }
-void Load(const std::string& name, double* value) {
-  *value = NumberParameter(name, *value, -1e12, 1e12);
-}
-void Load(const std::string& name, std::vector<int>* value) {
-  std::vector<int> list;
-  const ros::NodeHandle node("~");
-  if (!node.hasParam(name)) return;
-  if (!node.getParam(name, list)) throw UserError("parameter " + name + ": must be whole numbers");
-  *value = list;
-}
-template <class Integer>
-std::enable_if_t<std::is_integral_v<Integer>> Load(const std::string& name, Integer* value) {
-  const auto limit = static_cast<Integer>(2000000000);
-  *value = static_cast<Integer>(
-      IntegerParameter(name, static_cast<int>(std::min(*value, limit)), 0, 2000000000));
+/// What a parameter says, as text of a command line.
+std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
+  using Value = XmlRpc::XmlRpcValue;
+  switch (value.getType()) {
+    case Value::TypeString:
+      return value;
+    case Value::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case Value::TypeInt:
+      return std::to_string(static_cast<int>(value));
+    case Value::TypeDouble: {
+      const double number = value;
+      // A whole number that is too large for the server's 32 bits comes as a real one.
+      const bool whole = std::floor(number) == number && std::abs(number) < 1e15;
+      return whole ? std::to_string(static_cast<std::int64_t>(number))
+                   : config::FormatNumber(number);
+    }
+    case Value::TypeArray: {
+      std::string list;
+      for (int i = 0; i < value.size(); ++i) list += (i > 0 ? ", " : "") + TextOf(name, value[i]);
+      return "[" + list + "]";
+    }
+    default:
+      throw UserError("parameter " + name + ": is no value of an option");
+  }
 }
 
 }  // namespace
 
 void LoadTrainParameters(learn::TrainSetup* setup) {
   const ros::NodeHandle node("~");
-  const learn::OptionTable table = setup->Options();
-  for (const learn::Option& option : table.options()) {
-    std::string name = option.name;
+  const config::Table table = setup->Options();
+  for (const config::Field& option : table.fields()) {
+    std::string name = option.path;
     std::replace(name.begin(), name.end(), '-', '_');
     // Private ones only: `seed` of the world, say, is another one.
-    if (!node.hasParam(name)) continue;
-    std::visit([&name](auto* field) { Load(name, field); }, option.value);
+    XmlRpc::XmlRpcValue value;
+    if (!node.getParam(name, value)) continue;
+    if (const auto message = config::ParseText(option, TextOf(name, value))) {
+      throw UserError("parameter " + name + ": " + *message);
+    }
   }
 }
 

@@ -1,13 +1,12 @@
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
-#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "stg_env/env/vector_env.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -75,12 +74,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--scaling", scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
   stg::AddPluginOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+  return stg::RunProgram("bench_env", &app, argc, argv, [&] {
     stg::CheckOption("--seconds", seconds, 1e-6, 1e6);
     const auto load = [&](std::vector<std::string> extra) {
       extra.insert(extra.begin(), overrides.begin(), overrides.end());
@@ -109,11 +103,5 @@ int main(int argc, char** argv) {
     }
     stg::PrintResult(json);
     return 0;
-  } catch (const stg::UserError& e) {
-    std::cerr << "bench_env: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "bench_env: " << e.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -1,7 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
@@ -19,12 +19,7 @@ int main(int argc, char** argv) {
   app.add_option("--scenario", scenario, "settings that the trace's config does not state")
       ->capture_default_str();
   app.add_option("--tolerance", tolerance, "largest absolute error allowed")->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+  return stg::RunProgram("check_trace", &app, argc, argv, [&] {
     stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
     const stg::Scenario base = stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario);
     double worst = 0.0;
@@ -56,11 +51,5 @@ int main(int argc, char** argv) {
                                     {"pass", worst <= tolerance},
                                     {"traces", traces}});
     return worst <= tolerance ? 0 : 1;
-  } catch (const stg::UserError& e) {
-    std::cerr << "check_trace: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "check_trace: " << e.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -7,13 +7,13 @@
 #include <optional>
 #include <thread>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
+#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/plugin_option.hpp"
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
-#include "seed_check.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace {
@@ -46,18 +46,15 @@ bool HasFlag(int argc, char** argv, const std::string& flag) {
 }
 
 /// Declares one option of the table.
-struct Declare {
-  CLI::App& app;
-  const stg::learn::Option& option;
-
-  template <class T>
-  void operator()(T* field) const {
-    CLI::Option* added = app.add_option("--" + option.name, *field, option.meaning);
-    if constexpr (std::is_same_v<T, std::vector<int>>) added->delimiter(',');
-    if constexpr (std::is_same_v<T, std::uint64_t>) added->check(stg::learn::SeedCheck());
-    added->capture_default_str();
-  }
-};
+void Declare(const stg::config::Field& option, CLI::App* app) {
+  const auto take = [&option](const std::string& text) {
+    const auto message = stg::config::ParseText(option, text);
+    if (message) throw CLI::ValidationError("--" + option.path, *message);
+  };
+  app->add_option_function<std::string>("--" + option.path, take, option.meaning)
+      ->type_name(stg::config::FormatRange(option))
+      ->default_str(stg::config::FormatValue(option.value));
+}
 
 int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   stg::LoadPluginArguments(argc, argv);
@@ -103,10 +100,8 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  const stg::learn::OptionTable table = setup.Options();
-  for (const stg::learn::Option& option : table.options()) {
-    std::visit(Declare{app, option}, option.value);
-  }
+  const stg::config::Table table = setup.Options();
+  for (const stg::config::Field& option : table.fields()) Declare(option, &app);
   stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);

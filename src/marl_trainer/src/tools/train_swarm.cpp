@@ -1,11 +1,10 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <thread>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
@@ -68,12 +67,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   stg::AddPluginOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+  return stg::RunProgram("train_swarm", &app, argc, argv, [&] {
     config.action = stg::agent::EntityActionNamed(action);
     config.network = stg::agent::EntityNetworkNamed(network);
     options.log = &std::cout;
@@ -85,11 +79,5 @@ int main(int argc, char** argv) {
     if (trainer.Run()) return 0;
     std::cout << "stopped and saved; --resume goes on" << std::endl;
     return stg::kStopped;
-  } catch (const stg::UserError& error) {
-    std::cerr << "train_swarm: " << error.what() << "\n";
-    return 2;
-  } catch (const std::exception& error) {
-    std::cerr << "train_swarm: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -22,8 +22,8 @@ int Third(float action, double scale) {
 TrainSetup GameSetup(const std::string& algorithm, const nlohmann::json& options) {
   TrainSetup setup(algorithm, "fast");
   nlohmann::ordered_json json;
-  const OptionTable table = setup.Options();
-  table.Dump(&json);
+  const config::Table table = setup.Options();
+  DumpOptions(table, &json);
   json["envs"] = 24;  // a full shard and a part of one
   json["horizon"] = 8;
   nlohmann::json small = {{"actor-hidden", {16, 16}},
@@ -43,7 +43,7 @@ TrainSetup GameSetup(const std::string& algorithm, const nlohmann::json& options
     if (!json.contains(key)) throw std::logic_error(algorithm + " has no option " + key);
     json[key] = value;
   }
-  table.Read(json);
+  ReadOptions(table, json);
   setup.ValidateOrThrow();
   return setup;
 }

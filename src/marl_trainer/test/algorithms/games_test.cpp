@@ -128,7 +128,7 @@ TEST(Codebook, ForcesAndMomentsShareTheirLevels) {
   Problem forces;
   forces.action_size = 6;
   QOptions options;
-  options.heads = "book";
+  options.heads = QHeads::kBook;
   const Codebook book(forces, options);
   ASSERT_EQ(book.heads, 1);
   ASSERT_EQ(book.count, 125);
@@ -145,7 +145,7 @@ TEST(Codebook, ForcesAndMomentsShareTheirLevels) {
   Problem velocities;
   velocities.action_size = 3;
   QOptions joint;
-  joint.heads = "joint";
+  joint.heads = QHeads::kJoint;
   EXPECT_EQ(Codebook(velocities, options).choices, Codebook(velocities, joint).choices);
 }
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
+#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
 #include "learn/mappo_setup.hpp"
 #include "stg_env/env/variants.hpp"
@@ -87,6 +89,34 @@ TEST(TrainSetup, WhatAnOptionCannotHoldIsRefusedByName) {
   EXPECT_EQ(TrainSetupFromJson(json).common.steps, 1000000);
 }
 
+TEST(TrainSetup, ACommandLineIsReadLikeAFile) {
+  TrainSetup setup("mappo", "fast");
+  const config::Table options = setup.Options();
+  const auto refusal = [&options](const char* name, const std::string& text) {
+    return config::ParseText(*options.Find(name), text).value_or("");
+  };
+  EXPECT_EQ(refusal("actor-hidden", "32,16"), "");
+  EXPECT_EQ(Own(setup).actor_hidden, (std::vector<int>{32, 16}));
+  EXPECT_EQ(refusal("critic-hidden", "[8]"), "");
+  EXPECT_EQ(Own(setup).critic_hidden, std::vector<int>{8});
+  EXPECT_EQ(refusal("steps", "3000000000000"), "3000000000000 is out of range [1, 1e+12]");
+  EXPECT_EQ(refusal("steps", "300000000000"), "");
+  EXPECT_EQ(setup.common.steps, 300000000000);
+  EXPECT_EQ(refusal("imitate", "pursuit:gain=2,cap=0.5"), "");
+  EXPECT_EQ(Own(setup).imitation.controller, "pursuit:gain=2,cap=0.5");
+  EXPECT_EQ(refusal("activation", "relu"), "");
+  EXPECT_EQ(Own(setup).activation, HiddenActivation::kRelu);
+  EXPECT_EQ(refusal("activation", "sine"), "expected one of tanh | relu, found 'sine'");
+  EXPECT_EQ(refusal("stagger", "false"), "");
+  EXPECT_FALSE(setup.common.stagger);
+  for (const auto& [name, text] :
+       {std::pair("stagger", "0"), std::pair("seed", "-1"), std::pair("envs", "2.5"),
+        std::pair("actor-hidden", "8,0"), std::pair("actor-hidden", "1,2,3,4,5,6,7,8"),
+        std::pair("start-from", "a\nb"), std::pair("lr", "nan")}) {
+    EXPECT_NE(refusal(name, text), "") << name;
+  }
+}
+
 TEST(TrainSetup, IsAValue) {
   const TrainSetup setup("mappo", "fast");
   TrainSetup copy = setup;
@@ -117,7 +147,7 @@ TEST(TrainSetup, NamesTheOptionWithABadValue) {
   EXPECT_NE(Refusal(setup).find("--imitation-steps"), std::string::npos);
   setup = TrainSetup("mappo", "fast");
   Own(setup).wall_units = 0.015;
-  Own(setup).activation = "relu";
+  Own(setup).activation = HiddenActivation::kRelu;
   EXPECT_NE(Refusal(setup).find("--start-from"), std::string::npos);
   setup.common.start_from = "there";
   EXPECT_NO_THROW(setup.ValidateOrThrow());
@@ -128,13 +158,13 @@ TEST(TrainSetup, NamesTheOptionWithABadValue) {
 TEST(TrainSetup, TellsTheBoundsOfARangeHoweverSmall) {
   TrainSetup setup("mappo", "fast");
   Own(setup).lr = 0.0;
-  EXPECT_EQ(Refusal(setup), "--lr: 0 is not in [1e-08, 1]");
+  EXPECT_EQ(Refusal(setup), "--lr: 0.0 is out of range [1e-08, 1]");
   setup = TrainSetup("mappo", "fast");
   Own(setup).adam_eps = 5e-13;
-  EXPECT_EQ(Refusal(setup), "--adam-eps: 5e-13 is not in [1e-12, 1]");
+  EXPECT_EQ(Refusal(setup), "--adam-eps: 5.0e-13 is out of range [1e-12, 1]");
   setup = TrainSetup("mappo", "fast");
   setup.common.envs = 65537;
-  EXPECT_EQ(Refusal(setup), "--envs: 65537 is not in [1, 65536]");
+  EXPECT_EQ(Refusal(setup), "--envs: 65537 is out of range [1, 65536]");
 }
 
 TEST(TrainSetup, AnUnknownAlgorithmOrPresetIsToldWhatThereIs) {

@@ -110,7 +110,8 @@ TEST(BackEnds, ExchangeParameters) {
 /// The loss of Eqs. 41-44 in libtorch operations, by automatic differentiation.
 TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
   for (const auto& [activation, imitation] :
-       {std::pair("tanh", 0.0F), std::pair("relu", 0.0F), std::pair("tanh", 0.3F)}) {
+       {std::pair(HiddenActivation::kTanh, 0.0F), std::pair(HiddenActivation::kRelu, 0.0F),
+        std::pair(HiddenActivation::kTanh, 0.3F)}) {
     PpoOptions config;
     config.activation = activation;
     config.actor_hidden = {32, 16};
@@ -187,8 +188,8 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     kernels.AddActor(p.data(), batch, minibatch, gradient.data(), &sums);
     kernels.AddCritic(p.data() + split, batch, minibatch, gradient.data() + split, &sums);
     EXPECT_LT(GradientError(actor, gradient.data()), 1e-4)
-        << activation << ", imitation " << imitation;
-    EXPECT_LT(GradientError(critic, gradient.data() + split), 1e-4) << activation;
+        << static_cast<int>(activation) << ", imitation " << imitation;
+    EXPECT_LT(GradientError(critic, gradient.data() + split), 1e-4) << static_cast<int>(activation);
     for (int i = 0; i < actions; ++i) {
       EXPECT_NEAR(gradient[networks.actor.log_std_offset() + static_cast<std::size_t>(i)],
                   log_std.grad()[i].item<float>(), 1e-4);

@@ -19,6 +19,7 @@ namespace py = pybind11;
 struct Cast {
   py::object operator()(const double* x) const { return py::float_(*x); }
   py::object operator()(const int* x) const { return py::int_(*x); }
+  py::object operator()(const std::int64_t* x) const { return py::int_(*x); }
   py::object operator()(const std::uint64_t* x) const { return py::int_(*x); }
   py::object operator()(const bool* x) const { return py::bool_(*x); }
   py::object operator()(const std::string* x) const { return py::str(*x); }
@@ -31,6 +32,8 @@ struct Cast {
   py::object operator()(const config::Interval* x) const {
     return py::cast(std::vector<double>{x->lo, x->hi});
   }
+  py::object operator()(const config::WholeNumbersRef& x) const { return py::cast(*x.list); }
+  py::object operator()(const config::TextRef& x) const { return py::str(*x.text); }
   py::object operator()(const config::RowsRef& x) const { return py::cast(*x.rows); }
   py::object operator()(const config::NamesRef& x) const { return py::cast(*x.list); }
   py::object operator()(const config::NameOrFileRef& x) const { return py::str(*x.text); }

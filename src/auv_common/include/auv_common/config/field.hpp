@@ -73,6 +73,17 @@ NumbersRef Numbers(std::array<double, N>* values) {
   return {values->data(), static_cast<int>(N)};
 }
 
+/// One to `most` whole numbers, written as a sequence.
+struct WholeNumbersRef {
+  std::vector<int>* list = nullptr;
+  int most = 1;
+};
+
+/// Any text in one line. Only options have one: what a key of a scenario says is a name or a file.
+struct TextRef {
+  std::string* text = nullptr;
+};
+
 /// Any number of rows of as many numbers each, written as a sequence of sequences.
 struct RowsRef {
   std::vector<std::vector<double>>* rows = nullptr;
@@ -103,9 +114,17 @@ struct DifferenceRef {
   std::shared_ptr<const Field> of;  ///< the key, with the value that is true
 };
 
-using ValueRef =
-    std::variant<double*, int*, std::uint64_t*, bool*, std::string*, EnumRef, NumbersRef, Interval*,
-                 NamesRef, RowsRef, NameOrFileRef, DifferenceRef>;
+using ValueRef = std::variant<double*, int*, std::int64_t*, std::uint64_t*, bool*, std::string*,
+                              EnumRef, NumbersRef, Interval*, WholeNumbersRef, NamesRef, RowsRef,
+                              NameOrFileRef, TextRef, DifferenceRef>;
+
+/// A function for each type of a value, for std::visit.
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overload(F...) -> Overload<F...>;
 
 /// The thing, or the few things, that a key belongs to, of those that a configuration chooses
 /// among. A key of a thing that was not chosen has no effect, and is refused.

@@ -17,6 +17,14 @@ std::string KindName(const YamlTree& node);
 /// no quotes, no NaN or infinity, integers without a point.
 std::optional<std::string> ParseValue(const Field& field, const YamlTree& node);
 
+/// The same from the text of a command line: a TextRef takes it as it is, a list needs no brackets.
+/// Throws UserError for a text that is no YAML.
+std::optional<std::string> ParseText(const Field& field, const std::string& text);
+
+/// Shortest text that reads back as the same double, always with a point so that every YAML reader
+/// takes it for a real number.
+std::string FormatNumber(double value);
+
 /// The value as a YAML scalar or flow sequence; numbers round-trip exactly.
 std::string FormatValue(const ValueRef& value);
 

@@ -21,7 +21,7 @@ class AlgorithmConfig {
   virtual std::unique_ptr<AlgorithmConfig> Clone() const = 0;
 
   /// Adds its options, whose names differ from the common ones (TrainConfig::Describe).
-  virtual void Describe(OptionTable* table) = 0;
+  virtual void Describe(config::Table* table) = 0;
   /// Turns the defaults into those of a preset, of this configuration and of the common one. There
   /// is at least `fast`. Throws UserError that lists the presets for another name.
   virtual void ApplyPreset(const std::string& preset, TrainConfig* common);

@@ -28,7 +28,7 @@ struct TrainConfig {
   std::int64_t checkpoint_interval = 128000;
   int keep_checkpoints = 3;
 
-  void Describe(OptionTable* table);
+  void Describe(config::Table* table);
 };
 
 /// Everything of a training run besides the scenario and its output folder: a value.
@@ -45,7 +45,7 @@ struct TrainSetup {
   std::unique_ptr<AlgorithmConfig> own;  ///< of the algorithm; never null
 
   /// Every option of the command line but preset, variant and algorithm. Refers to this object.
-  OptionTable Options();
+  config::Table Options();
 
   /// Throws UserError naming the option.
   void ValidateOrThrow() const;

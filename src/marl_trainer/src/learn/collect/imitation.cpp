@@ -4,19 +4,19 @@
 
 namespace stg::learn {
 
-void ImitationConfig::Describe(OptionTable* table) {
-  table->Add("imitate", &controller,
+void ImitationConfig::Describe(config::Table* table) {
+  table->Add("imitate", config::TextRef{&controller}, config::kNone, "-",
              "built-in controller whose actions the policy first learns, with constants if need "
              "be, as in pursuit_separated:gain=2,cap=0.5; empty: none");
-  table->Add("imitation-steps", &steps, {0, 1e12},
+  table->Add("imitation-steps", &steps, {0, 1e12}, "-",
              "environment steps of imitation: in full for the first half, then fading into the "
              "return");
-  table->Add("imitation-share", &share, {0, 1},
+  table->Add("imitation-share", &share, {0, 1}, "-",
              "share of the actor's loss that is imitation where it is in full");
-  table->Add("imitation-focus", &focus, {0, 4},
+  table->Add("imitation-focus", &focus, {0, 4}, "-",
              "misses weigh by the size of the teacher's action, in sigmas, to minus this power: 0 "
              "all alike, 2 little more than the hold");
-  table->Add("privileged-teacher", &privileged,
+  table->Add("privileged-teacher", &privileged, config::kNone, "-",
              "the controller to imitate reads true states, as the critic does; the policy never "
              "does");
 }

@@ -5,16 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace stg::learn {
-
-HiddenActivation ActivationNamed(const std::string& name) {
-  if (name == "tanh") return HiddenActivation::kTanh;
-  if (name == "relu") return HiddenActivation::kRelu;
-  throw UserError("'" + name + "' is not tanh or relu");
-}
 
 int NetworkSpec::layer_inputs(int l) const {
   return l == 0 ? inputs : hidden[static_cast<std::size_t>(l) - 1];

@@ -17,7 +17,7 @@ struct ImitationConfig {
   double focus = 1.0;
   bool privileged = false;
 
-  void Describe(OptionTable* table);
+  void Describe(config::Table* table);
   /// Throws UserError naming the option.
   void ValidateOrThrow() const;
 

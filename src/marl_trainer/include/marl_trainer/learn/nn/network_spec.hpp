@@ -2,16 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace stg::learn {
 
 /// Nonlinearity of the hidden layers.
 enum class HiddenActivation { kTanh, kRelu };
-
-/// "tanh" or "relu"; UserError for another name.
-HiddenActivation ActivationNamed(const std::string& name);
 
 /// A multilayer perceptron, described once for the hand-written kernels (Mlp) and for libtorch's
 /// modules, which tests compare them with.

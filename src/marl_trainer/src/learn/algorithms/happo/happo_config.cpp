@@ -6,9 +6,9 @@
 
 namespace stg::learn {
 
-void HappoConfig::Describe(OptionTable* t) {
+void HappoConfig::Describe(config::Table* t) {
   PpoConfig::Describe(t);
-  t->Add("sequential", &sequential,
+  t->Add("sequential", &sequential, config::kNone, "-",
          "each AUV's update knows those before it; off: MAPPO with an actor for each AUV");
 }
 

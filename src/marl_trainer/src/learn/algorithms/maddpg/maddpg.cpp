@@ -13,7 +13,7 @@ NetworkSpec DeterministicSpec(const Problem& problem, const ReplayOptions& optio
   NetworkSpec spec;
   spec.inputs = problem.observation_size;
   spec.hidden = options.actor_hidden;
-  spec.activation = ActivationNamed(options.activation);
+  spec.activation = options.activation;
   spec.outputs = problem.action_size;
   spec.squash = 1.0F;
   spec.output_gain = 0.01F;  // an untrained policy hardly moves
@@ -44,7 +44,7 @@ Maddpg::Maddpg(const ReplayOptions& options, const DeterministicOptions& own,
     : CentralCriticLearner(options, DeterministicSpec(problem, options), own.critics, common,
                            problem, team),
       own_(own),
-      others_act_now_(own.others == "policy"),
+      others_act_now_(own.others == OthersAct::kNow),
       actor_target_(actor_parameters()) {
   Keep("target_actor", &actor_target_);
   for (int s = 0; s < kGroups; ++s) {

@@ -4,11 +4,11 @@
 
 namespace stg::learn {
 
-void MaddpgConfig::Describe(OptionTable* t) {
+void MaddpgConfig::Describe(config::Table* t) {
   ReplayConfig::Describe(t);
   DescribeCritics(t);
   noise.Describe("noise", 10.0, "exploration noise, in shares of the action's scale,", t);
-  t->Add("others", &others, {"buffer", "policy"},
+  t->Add("others", config::Enum(&others, {"buffer", "policy"}), config::kNone, "-",
          "actions of the other AUVs in the actor's loss: buffer (as they were, Lowe et al.) or "
          "policy (as they would be now)");
 }
@@ -17,7 +17,12 @@ void MaddpgConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   ReplayConfig::ApplyPreset(preset, common);
   if (preset != "paper") return;
   noise = {0.1, 0.1};
-  others = "buffer";
+  others = OthersAct::kThen;
+}
+
+void MaddpgConfig::ValidateOrThrow(const TrainConfig& common) const {
+  ReplayConfig::ValidateOrThrow(common);
+  noise.ValidateOrThrow("noise");
 }
 
 std::unique_ptr<Algorithm> MaddpgConfig::Make(const TrainConfig& common, const Problem& problem,

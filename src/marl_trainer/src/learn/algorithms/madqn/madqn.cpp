@@ -14,7 +14,7 @@ NetworkSpec QSpec(const Problem& problem, const ReplayOptions& options, const Co
   NetworkSpec spec;
   spec.inputs = problem.observation_size;
   spec.hidden = options.actor_hidden;
-  spec.activation = ActivationNamed(options.activation);
+  spec.activation = options.activation;
   spec.outputs = 1 + codebook.heads * codebook.count;
   spec.output_gain = 0.1F;
   return spec;
@@ -39,14 +39,14 @@ Codebook::Codebook(const Problem& problem, const QOptions& options) {
     const double x = 2.0 * k / (options.bins - 1) - 1.0;
     bins.push_back(static_cast<float>(std::copysign(std::pow(std::abs(x), options.bin_power), x)));
   }
-  if (options.heads == "separate") {
+  if (options.heads == QHeads::kSeparate) {
     heads = problem.action_size;
     count = options.bins;
     choices = bins;
     return;
   }
   width = problem.action_size;
-  const int free = options.heads == "book" ? std::min(width, kBookDimensions) : width;
+  const int free = options.heads == QHeads::kBook ? std::min(width, kBookDimensions) : width;
   for (int d = 0; d < free; ++d) count *= options.bins;
   std::vector<float> code(static_cast<std::size_t>(free));
   for (int k = 0; k < count; ++k) {
@@ -91,7 +91,7 @@ struct Madqn::Scratch {
 
 Madqn::Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
              const Problem& problem, const Team& team)
-    : ReplayLearner(options, common, problem, team, own.reward == "own"),
+    : ReplayLearner(options, common, problem, team, own.reward == QReward::kOwn),
       own_(own),
       codebook_(problem, own),
       network_(QSpec(problem, options, codebook_)),

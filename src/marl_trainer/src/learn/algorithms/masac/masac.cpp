@@ -16,7 +16,7 @@ NetworkSpec SoftSpec(const Problem& problem, const ReplayOptions& options) {
   NetworkSpec spec;
   spec.inputs = problem.observation_size;
   spec.hidden = options.actor_hidden;
-  spec.activation = ActivationNamed(options.activation);
+  spec.activation = options.activation;
   spec.outputs = 2 * problem.action_size;
   spec.output_gain = 0.01F;  // an untrained policy hardly moves, but for its spread
   return spec;

@@ -4,16 +4,16 @@
 
 namespace stg::learn {
 
-void MasacConfig::Describe(OptionTable* t) {
+void MasacConfig::Describe(config::Table* t) {
   ReplayConfig::Describe(t);
   DescribeCritics(t);
-  t->Add("initial-alpha", &initial_alpha, {1e-9, 1e3},
+  t->Add("initial-alpha", &initial_alpha, {1e-9, 1e3}, "-",
          "weight of the entropy at the start, against rewards of deviation 1 - gamma");
-  t->Add("alpha-lr", &alpha_lr, {0, 1}, "Adam's learning rate of its logarithm; 0: fixed");
-  t->Add("target-entropy", &target_entropy, {-20, 1},
+  t->Add("alpha-lr", &alpha_lr, {0, 1}, "-", "Adam's learning rate of its logarithm; 0: fixed");
+  t->Add("target-entropy", &target_entropy, {-20, 1}, "-",
          "entropy that it aims at, of each AUV and action dimension in [-1, 1]");
-  t->Add("min-log-std", &min_log_std, {-20, 2}, "lower bound of log sigma before the squash");
-  t->Add("max-log-std", &max_log_std, {-20, 2}, "upper bound of log sigma before the squash");
+  t->Add("min-log-std", &min_log_std, {-20, 2}, "-", "lower bound of log sigma before the squash");
+  t->Add("max-log-std", &max_log_std, {-20, 2}, "-", "upper bound of log sigma before the squash");
 }
 
 void MasacConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {

@@ -13,13 +13,13 @@ void Matd3Config::ApplyPreset(const std::string& preset, TrainConfig* common) {
   if (preset == "paper") target_noise = 0.2;
 }
 
-void Matd3Config::Describe(OptionTable* t) {
+void Matd3Config::Describe(config::Table* t) {
   MaddpgConfig::Describe(t);
-  t->Add("policy-delay", &policy_delay, {1, 1000},
+  t->Add("policy-delay", &policy_delay, {1, 1000}, "-",
          "steps of the critics for each of the actor and the targets");
-  t->Add("target-noise", &target_noise, {0, 10},
+  t->Add("target-noise", &target_noise, {0, 10}, "-",
          "noise of the target's actions, in shares of the action's scale");
-  t->Add("target-noise-clip", &target_noise_clip, {0, 10}, "its bound");
+  t->Add("target-noise-clip", &target_noise_clip, {0, 10}, "-", "its bound");
 }
 
 }  // namespace stg::learn

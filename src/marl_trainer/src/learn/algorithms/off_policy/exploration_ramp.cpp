@@ -9,17 +9,18 @@ double ExplorationRamp::At(double place) const {
 }
 
 void ExplorationRamp::Describe(const std::string& name, double limit, const std::string& what,
-                               OptionTable* table) {
-  table->Add(name + "-min", &min, {0, limit},
+                               config::Table* table) {
+  table->Add(name + "-min", &min, {0, limit}, "-",
              what +
                  " in the first environment; between it and the last one it grows by equal "
                  "factors");
-  table->Add(name + "-max", &max, {0, limit}, what + " in the last environment");
-  table->Check([this, name] {
-    RequireOption(min <= max, name + "-max", "is below --" + name + "-min");
-    RequireOption(min > 0.0 || max == 0.0, name + "-min",
-                  "must not be 0 where --" + name + "-max is not");
-  });
+  table->Add(name + "-max", &max, {0, limit}, "-", what + " in the last environment");
+}
+
+void ExplorationRamp::ValidateOrThrow(const std::string& name) const {
+  RequireOption(min <= max, name + "-max", "is below --" + name + "-min");
+  RequireOption(min > 0.0 || max == 0.0, name + "-min",
+                "must not be 0 where --" + name + "-max is not");
 }
 
 }  // namespace stg::learn

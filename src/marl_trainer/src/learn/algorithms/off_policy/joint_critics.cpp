@@ -11,7 +11,7 @@ NetworkSpec CriticSpec(const Problem& problem, const ReplayOptions& options) {
   NetworkSpec spec;
   spec.inputs = problem.state_size + problem.agents * problem.action_size;
   spec.hidden = options.critic_hidden;
-  spec.activation = ActivationNamed(options.activation);
+  spec.activation = options.activation;
   spec.layer_norm = options.layer_norm;
   spec.output_gain = 0.1F;
   return spec;

@@ -5,34 +5,39 @@
 
 namespace stg::learn {
 
-void ReplayConfig::Describe(OptionTable* t) {
-  t->Add("replay", &replay, {1, 1e9},
+void ReplayConfig::Describe(config::Table* t) {
+  t->Add("replay", &replay, {1, 1e9}, "-",
          "environment steps that are remembered; a checkpoint holds them all");
-  t->Add("warmup", &warmup, {0, 1e9}, "environment steps of random actions before anything learns");
-  t->Add("batch", &batch, {1, 1e6}, "remembered environment steps per gradient step");
-  t->Add("replayed", &replayed, {0, 1000}, "samples that are replayed per environment step");
-  t->Add("n-step", &n_step, {1, 100}, "steps of a sample before the value of what follows");
-  t->Add("gamma", &gamma, {0, 0.9999}, "discount per decision");
-  t->Add("tau", &tau, {1e-6, 1}, "how far the target networks move at each gradient step");
-  t->Add("actor-hidden", &actor_hidden, {1, 4096},
+  t->Add("warmup", &warmup, {0, 1e9}, "-",
+         "environment steps of random actions before anything learns");
+  t->Add("batch", &batch, {1, 1e6}, "-", "remembered environment steps per gradient step");
+  t->Add("replayed", &replayed, {0, 1000}, "-", "samples that are replayed per environment step");
+  t->Add("n-step", &n_step, {1, 100}, "-", "steps of a sample before the value of what follows");
+  t->Add("gamma", &gamma, {0, 0.9999}, "-", "discount per decision");
+  t->Add("tau", &tau, {1e-6, 1}, "-", "how far the target networks move at each gradient step");
+  t->Add("actor-hidden", Widths(&actor_hidden), {1, 4096}, "-",
          "widths of the hidden layers of what decides on an observation");
-  t->Add("activation", &activation, {"tanh", "relu"}, "of the hidden layers: tanh or relu");
-  t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of what decides, at the start");
-  t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
-  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "Adam's epsilon");
-  t->Add("grad-clip", &grad_clip, {1e-6, 1e6}, "largest gradient norm");
-  t->Add("observation-clip", &observation_clip, {0.1, 1e6},
+  t->Add("activation", config::Enum(&activation, {"tanh", "relu"}), config::kNone, "-",
+         "of the hidden layers: tanh or relu");
+  t->Add("lr", &lr, {1e-8, 1}, "-", "Adam's learning rate of what decides, at the start");
+  t->Add("lr-final", &lr_final, {0, 1}, "-",
+         "share of the learning rates left at the end (linear)");
+  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "-", "Adam's epsilon");
+  t->Add("grad-clip", &grad_clip, {1e-6, 1e6}, "-", "largest gradient norm");
+  t->Add("observation-clip", &observation_clip, {0.1, 1e6}, "-",
          "bound of normalised observations and states");
-  t->Add("std-floor", &std_floor, {1e-6, 1}, "smallest standard deviation of the normalisers");
+  t->Add("std-floor", &std_floor, {1e-6, 1}, "-", "smallest standard deviation of the normalisers");
 }
 
-void ReplayConfig::DescribeCritics(OptionTable* t) {
-  t->Add("critic-hidden", &critic_hidden, {1, 4096},
+void ReplayConfig::DescribeCritics(config::Table* t) {
+  t->Add("critic-hidden", Widths(&critic_hidden), {1, 4096}, "-",
          "widths of the hidden layers of the critics of state and joint action");
-  t->Add("layer-norm", &layer_norm, "whether the critics normalise their hidden layers");
-  t->Add("action-gain", &action_gain, {1e-3, 1e3},
+  t->Add("layer-norm", &layer_norm, config::kNone, "-",
+         "whether the critics normalise their hidden layers");
+  t->Add("action-gain", &action_gain, {1e-3, 1e3}, "-",
          "the critics see actions of [-1, 1] times this: above 1, they tell fine actions apart");
-  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critics at the start");
+  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "-",
+         "Adam's learning rate of the critics at the start");
 }
 
 void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {

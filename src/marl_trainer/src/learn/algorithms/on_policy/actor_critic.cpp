@@ -10,7 +10,7 @@ NetworkSpec ActorSpec(const Problem& problem, const PpoOptions& config) {
   NetworkSpec spec;
   spec.inputs = problem.observation_size;
   spec.hidden = config.actor_hidden;
-  spec.activation = ActivationNamed(config.activation);
+  spec.activation = config.activation;
   spec.outputs = problem.action_size;
   spec.squash = static_cast<float>(problem.action_scale);
   spec.output_gain = 0.01F;  // an untrained policy hardly moves
@@ -21,7 +21,7 @@ NetworkSpec CriticSpec(const Problem& problem, const PpoOptions& config) {
   NetworkSpec spec;
   spec.inputs = problem.state_size;
   spec.hidden = config.critic_hidden;
-  spec.activation = ActivationNamed(config.activation);
+  spec.activation = config.activation;
   return spec;
 }
 

@@ -7,32 +7,38 @@
 
 namespace stg::learn {
 
-void PpoConfig::Describe(OptionTable* t) {
-  t->Add("epochs", &epochs, {1, 1000}, "passes over the collected steps per update");
-  t->Add("minibatch", &minibatch, {1, 1e9}, "environment steps per gradient step");
-  t->Add("actor-hidden", &actor_hidden, {1, 4096}, "widths of the actor's hidden layers");
-  t->Add("critic-hidden", &critic_hidden, {1, 4096}, "widths of the critic's hidden layers");
-  t->Add("activation", &activation, {"tanh", "relu"}, "of the hidden layers: tanh or relu");
-  t->Add("lr", &lr, {1e-8, 1}, "Adam's learning rate of the actor at the start");
-  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "Adam's learning rate of the critic at the start");
-  t->Add("lr-final", &lr_final, {0, 1}, "share of the learning rates left at the end (linear)");
-  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "Adam's epsilon");
-  t->Add("gamma", &gamma, {0, 1}, "discount per decision");
-  t->Add("lambda", &lambda, {0, 1}, "GAE's lambda");
-  t->Add("clip", &clip, {1e-3, 10}, "PPO's clip of the probability ratio");
-  t->Add("entropy", &entropy, {0, 10}, "weight of the entropy bonus");
-  t->Add("value-weight", &value_weight, {0, 100}, "weight of the critic's loss");
-  t->Add("grad-clip", &grad_clip, {1e-6, 1e6},
+void PpoConfig::Describe(config::Table* t) {
+  t->Add("epochs", &epochs, {1, 1000}, "-", "passes over the collected steps per update");
+  t->Add("minibatch", &minibatch, {1, 1e9}, "-", "environment steps per gradient step");
+  t->Add("actor-hidden", Widths(&actor_hidden), {1, 4096}, "-",
+         "widths of the actor's hidden layers");
+  t->Add("critic-hidden", Widths(&critic_hidden), {1, 4096}, "-",
+         "widths of the critic's hidden layers");
+  t->Add("activation", config::Enum(&activation, {"tanh", "relu"}), config::kNone, "-",
+         "of the hidden layers: tanh or relu");
+  t->Add("lr", &lr, {1e-8, 1}, "-", "Adam's learning rate of the actor at the start");
+  t->Add("critic-lr", &critic_lr, {1e-8, 1}, "-",
+         "Adam's learning rate of the critic at the start");
+  t->Add("lr-final", &lr_final, {0, 1}, "-",
+         "share of the learning rates left at the end (linear)");
+  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "-", "Adam's epsilon");
+  t->Add("gamma", &gamma, {0, 1}, "-", "discount per decision");
+  t->Add("lambda", &lambda, {0, 1}, "-", "GAE's lambda");
+  t->Add("clip", &clip, {1e-3, 10}, "-", "PPO's clip of the probability ratio");
+  t->Add("entropy", &entropy, {0, 10}, "-", "weight of the entropy bonus");
+  t->Add("value-weight", &value_weight, {0, 100}, "-", "weight of the critic's loss");
+  t->Add("grad-clip", &grad_clip, {1e-6, 1e6}, "-",
          "largest gradient norm of the actor and of the critic");
-  t->Add("target-kl", &target_kl, {0, 100}, "KL divergence that ends an update early; 0: never");
-  t->Add("initial-log-std", &initial_log_std, {-20, 2},
+  t->Add("target-kl", &target_kl, {0, 100}, "-",
+         "KL divergence that ends an update early; 0: never");
+  t->Add("initial-log-std", &initial_log_std, {-20, 2}, "-",
          "log sigma of the exploration at the start");
-  t->Add("min-log-std", &min_log_std, {-20, 2}, "lower bound of log sigma");
-  t->Add("max-log-std", &max_log_std, {-20, 2}, "upper bound of log sigma");
-  t->Add("observation-clip", &observation_clip, {0.1, 1e6},
+  t->Add("min-log-std", &min_log_std, {-20, 2}, "-", "lower bound of log sigma");
+  t->Add("max-log-std", &max_log_std, {-20, 2}, "-", "upper bound of log sigma");
+  t->Add("observation-clip", &observation_clip, {0.1, 1e6}, "-",
          "bound of normalised observations and states");
-  t->Add("std-floor", &std_floor, {1e-6, 1}, "smallest standard deviation of the normalisers");
-  t->Add("std-scale", &std_scale, {1e-3, 1e3},
+  t->Add("std-floor", &std_floor, {1e-6, 1}, "-", "smallest standard deviation of the normalisers");
+  t->Add("std-scale", &std_scale, {1e-3, 1e3}, "-",
          "the actor's inputs are divided by this much of their standard deviation: below 1, the "
          "neighbourhood of the target is seen larger and distant offsets are clipped");
   imitation.Describe(t);
@@ -50,7 +56,7 @@ void PpoConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   // takes four times as long on a small machine.
   actor_hidden = {128, 128};
   critic_hidden = {128, 128};
-  activation = "relu";
+  activation = HiddenActivation::kRelu;
   lr = 3e-4;
   critic_lr = 3e-4;
   lr_final = 1.0;
@@ -84,7 +90,8 @@ void PpoConfig::FitPolicy(const agent::Policy& policy) {
   for (std::size_t l = 0; l + 1 < p.layers.size(); ++l) {
     actor_hidden.push_back(static_cast<int>(p.layers[l].bias.size()));
   }
-  activation = p.activation == agent::Policy::Activation::kRelu ? "relu" : "tanh";
+  activation = p.activation == agent::Policy::Activation::kRelu ? HiddenActivation::kRelu
+                                                                : HiddenActivation::kTanh;
   observation_clip = static_cast<double>(p.input_clip);
   // A component that never moved has the smallest deviation: the floor, scaled.
   const auto smallest = static_cast<double>(p.input_std.minCoeff());

@@ -11,7 +11,7 @@ namespace stg::learn {
 struct HappoConfig : CopyableConfig<HappoConfig, PpoConfig> {
   bool sequential = true;
 
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ApplyRecordings(const TrainConfig& common) override;
   void FitPolicy(const agent::Policy& policy) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,

@@ -8,10 +8,14 @@
 
 namespace stg::learn {
 
+/// Which actions of the other AUVs the actor's loss is about: those that they took, or those that
+/// they would take now.
+enum class OthersAct { kThen, kNow };
+
 /// Options of methods with a deterministic actor.
 struct DeterministicOptions {
   ExplorationRamp noise{0.02, 0.2};  ///< in shares of the action's scale
-  std::string others = "policy";
+  OthersAct others = OthersAct::kNow;
   int critics = 1;
   int policy_delay = 1;
   double target_noise = 0.0, target_noise_clip = 0.5;
@@ -19,8 +23,9 @@ struct DeterministicOptions {
 
 /// Configuration of MADDPG.
 struct MaddpgConfig : CopyableConfig<MaddpgConfig, ReplayConfig>, DeterministicOptions {
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
+  void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   const Team& team) const override;
 };

@@ -8,19 +8,26 @@
 
 namespace stg::learn {
 
+/// What has a value of its own: each bin of each dimension, each combination of all dimensions, or
+/// each combination of three dimensions, which the other three repeat.
+enum class QHeads { kSeparate, kJoint, kBook };
+/// What an AUV learns from.
+enum class QReward { kTeam, kOwn };
+
 /// Options of MADQN's own.
 struct QOptions {
   int bins = 5;
   double bin_power = 1.0;
-  std::string heads = "separate";
+  QHeads heads = QHeads::kSeparate;
   ExplorationRamp epsilon{0.02, 0.5};  ///< share of random choices
-  std::string reward = "team";
+  QReward reward = QReward::kTeam;
 };
 
 /// Configuration of MADQN.
 struct MadqnConfig : CopyableConfig<MadqnConfig, ReplayConfig>, QOptions {
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
+  void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   const Team& team) const override;
 };

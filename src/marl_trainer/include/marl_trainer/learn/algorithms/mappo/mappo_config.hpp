@@ -10,7 +10,7 @@ namespace stg::learn {
 struct MappoConfig : CopyableConfig<MappoConfig, PpoConfig> {
   double wall_units = 0.0;  ///< margin [m] of PlaceWallUnits; 0: none
 
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   const Team& team) const override;

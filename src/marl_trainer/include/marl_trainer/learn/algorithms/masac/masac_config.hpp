@@ -17,7 +17,7 @@ struct SoftOptions {
 
 /// Configuration of MASAC.
 struct MasacConfig : CopyableConfig<MasacConfig, ReplayConfig>, SoftOptions {
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,

@@ -11,7 +11,7 @@ namespace stg::learn {
 /// noise, and an actor that learns at every other step (Fujimoto et al. 2018).
 struct Matd3Config : CopyableConfig<Matd3Config, MaddpgConfig> {
   Matd3Config();
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
 };
 

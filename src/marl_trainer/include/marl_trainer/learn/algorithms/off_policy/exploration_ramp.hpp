@@ -13,9 +13,12 @@ struct ExplorationRamp {
 
   /// @param place of an environment among all, in [0, 1]
   double At(double place) const;
-  /// Adds the options <name>-min and <name>-max, each up to `limit`, and what they must not be.
+  /// Adds the options <name>-min and <name>-max, each up to `limit`.
   /// @param what is explored with, for the help
-  void Describe(const std::string& name, double limit, const std::string& what, OptionTable* table);
+  void Describe(const std::string& name, double limit, const std::string& what,
+                config::Table* table);
+  /// Throws UserError that names one of them when they contradict each other.
+  void ValidateOrThrow(const std::string& name) const;
 };
 
 }  // namespace stg::learn

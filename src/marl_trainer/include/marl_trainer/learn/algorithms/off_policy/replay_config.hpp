@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "marl_trainer/learn/algorithm_config.hpp"
+#include "marl_trainer/learn/nn/network_spec.hpp"
 
 namespace stg::learn {
 
@@ -19,7 +20,7 @@ struct ReplayOptions {
   double tau = 0.02;
   std::vector<int> actor_hidden{64, 64};
   std::vector<int> critic_hidden{128, 128};
-  std::string activation = "relu";
+  HiddenActivation activation = HiddenActivation::kRelu;
   bool layer_norm = true;
   double action_gain = 4.0;
   double lr = 3e-3;
@@ -34,9 +35,9 @@ struct ReplayOptions {
 /// Their configuration, and their presets: `fast` (ours) and `paper` (Table S2, where it says
 /// something).
 struct ReplayConfig : AlgorithmConfig, ReplayOptions {
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   /// Adds the options of critics of state and joint action.
-  void DescribeCritics(OptionTable* table);
+  void DescribeCritics(config::Table* table);
   /// The common part of `fast` and `paper`.
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;

@@ -6,6 +6,7 @@
 
 #include "marl_trainer/learn/algorithm_config.hpp"
 #include "marl_trainer/learn/collect/imitation.hpp"
+#include "marl_trainer/learn/nn/network_spec.hpp"
 
 namespace stg::learn {
 
@@ -15,7 +16,7 @@ struct PpoOptions {
   int minibatch = 400;
   std::vector<int> actor_hidden{64, 64};
   std::vector<int> critic_hidden{64, 64};
-  std::string activation = "tanh";
+  HiddenActivation activation = HiddenActivation::kTanh;
   double lr = 5e-3;
   double critic_lr = 5e-3;
   double lr_final = 0.1;
@@ -40,7 +41,7 @@ struct PpoOptions {
 
 /// Their configuration, and their presets: `fast` (ours) and `paper` (Table S2).
 struct PpoConfig : AlgorithmConfig, PpoOptions {
-  void Describe(OptionTable* table) override;
+  void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   void ApplyRecordings(const TrainConfig& common) override;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,28 @@ inline void LoadPluginArguments(int argc, char** argv) {
     } else if (argument.rfind(name + "=", 0) == 0) {
       config::LoadPlugin(argument.substr(name.size() + 1), name + ": ");
     }
+  }
+}
+
+/// Parses the arguments and runs `body`. Returns the exit status: 0 after the help, 2 for arguments
+/// and input that are refused, with the reason on standard error, 1 for another failure, else what
+/// `body` returns.
+/// @param program its name, for the reason
+template <class Body>
+int RunProgram(const std::string& program, CLI::App* app, int argc, char** argv, const Body& body) {
+  const auto fail = [&program](const std::exception& error, int status) {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    return status;
+  };
+  try {
+    app->parse(argc, argv);
+    return body();
+  } catch (const CLI::ParseError& error) {
+    return app->exit(error) == 0 ? 0 : 2;
+  } catch (const UserError& error) {
+    return fail(error, 2);
+  } catch (const std::exception& error) {
+    return fail(error, 1);
   }
 }
 
