@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import subprocess
 import unittest
 
 from stg_common.loading import load_program
@@ -75,6 +76,33 @@ class Equations(unittest.TestCase):
             "  std::vector<T> Reward(int n) const;",
         ):
             self.assertIsNotNone(re.search(self.declaration("Reward"), text, re.MULTILINE), text)
+
+
+class Diffs(unittest.TestCase):
+    """The page that shows what a new thing changes is true of the sources of today."""
+
+    page = DOCS / "how_to" / "in_this_repository.md"
+
+    def test_every_diff_applies(self):
+        sections = self.page.read_text().split("\n## ")[1:]
+        self.assertEqual(len(sections), len(list((DOCS / "how_to").glob("add_*.md"))))
+        for section in sections:
+            with self.subTest(section.splitlines()[0]):
+                diff = re.search(r"```diff\n(.*?)```", section, re.S).group(1)
+                done = subprocess.run(
+                    ["git", "apply", "--check", "-"],
+                    cwd=ROOT, input=diff, text=True, stderr=subprocess.PIPE, check=False,
+                )  # fmt: skip
+                self.assertEqual(done.returncode, 0, done.stderr)
+                added = re.findall(r"^\+ +(.*)$", diff, re.M)
+                self.assertEqual(len(added), 2, "a name in the list of sources, a line in the registry")
+                entry = re.search(r"STG_ENTRY\((\w+), (\w+)\)", added[1])
+                self.assertIn(f"{entry.group(1)}::Entry {entry.group(2)}() {{ return", section)
+                folder = re.search(r"^--- a/(.*)/CMakeLists", diff).group(1)
+                self.assertIn(f"`{folder}/{pathlib.PurePath(added[0]).parent}`", section)
+                factory = re.search(r"return \{\"\w+\", (.*)\}; \}", section).group(1)
+                example = re.search(r"\((\S+\.cpp)\)", section).group(1)
+                self.assertIn(factory, (self.page.parent / example).read_text())
 
 
 class Links(unittest.TestCase):

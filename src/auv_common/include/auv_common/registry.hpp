@@ -17,13 +17,18 @@
 ///
 ///   MotionRegistry& TargetMotions() {
 ///     static MotionRegistry registry("target motion", {
-///         {"constant_velocity", MakeConstantVelocity},
-///         {"evasive", MakeEvasive},
+///         STG_ENTRY(MotionRegistry, ConstantVelocityEntry),
+///         STG_ENTRY(MotionRegistry, EvasiveEntry),
 ///     });
 ///     return registry;
 ///   }
 ///
-/// A thing is added by its own file and one line there. Its factory takes the arguments that all
+/// A thing is added by its own file and one line there. The file ends with the entry, which no
+/// header declares:
+///
+///   MotionRegistry::Entry EvasiveEntry() { return {"evasive", MakeEvasive}; }
+///
+/// Its factory takes the arguments that all
 /// things of its kind take; or, of a thing with options of its own, a struct with Describe before
 /// them (auv_common/config/options.hpp):
 ///
@@ -158,3 +163,11 @@ class Registry {
 };
 
 }  // namespace stg
+
+/// The entry that a function without arguments returns, which another file defines in the namespace
+/// around this line.
+#define STG_ENTRY(Registry, function)  \
+  [] {                                 \
+    extern Registry::Entry function(); \
+    return function();                 \
+  }()

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -238,10 +238,12 @@ class DeadReckoning : public NavigationSystem {
   std::vector<Reckoning> states_;  // [vehicles]
 };
 
-}  // namespace
-
 std::unique_ptr<NavigationSystem> MakeDeadReckoning(const NavigationSetup& setup) {
   return std::make_unique<DeadReckoning>(setup);
 }
+
+}  // namespace
+
+NavigationRegistry::Entry DeadReckoningEntry() { return {"dead_reckoning", MakeDeadReckoning}; }
 
 }  // namespace stg::dynamics

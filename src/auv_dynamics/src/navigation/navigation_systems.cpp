@@ -1,5 +1,4 @@
 #include "auv_dynamics/navigation/navigation_system.hpp"
-#include "systems.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -22,7 +21,7 @@ NavigationRegistry& NavigationSystems() {
       "navigation system",
       {
           {"perfect", [](const NavigationSetup&) { return std::make_unique<PerfectNavigation>(); }},
-          {"dead_reckoning", MakeDeadReckoning},
+          STG_ENTRY(NavigationRegistry, DeadReckoningEntry),
       });
   return registry;
 }

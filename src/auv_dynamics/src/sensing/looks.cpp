@@ -1,6 +1,6 @@
-#include <cmath>
+#include "looks.hpp"
 
-#include "sensors.hpp"
+#include <cmath>
 
 namespace stg::dynamics {
 

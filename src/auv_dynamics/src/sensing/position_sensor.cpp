@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "sensors.hpp"
+#include "looks.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -51,10 +51,12 @@ class PositionSensor : public TargetSensor {
   SensingConfig config_;
 };
 
-}  // namespace
-
 std::unique_ptr<const TargetSensor> MakePositionSensor(const SensingConfig& config) {
   return std::make_unique<PositionSensor>(config);
 }
+
+}  // namespace
+
+SensorRegistry::Entry PositionSensorEntry() { return {"position", MakePositionSensor}; }
 
 }  // namespace stg::dynamics

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "sensors.hpp"
+#include "looks.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -118,8 +118,6 @@ class RelativeSensor : public TargetSensor {
   double bearing_std_, cos_half_view_;
 };
 
-}  // namespace
-
 std::unique_ptr<const TargetSensor> MakeRangeSensor(const RelativeOptions& options,
                                                     const SensingConfig& config) {
   return std::make_unique<RelativeSensor>(options, config, MeasurementKind::kRange);
@@ -133,6 +131,18 @@ std::unique_ptr<const TargetSensor> MakeBearingSensor(const RelativeOptions& opt
 std::unique_ptr<const TargetSensor> MakeRangeBearingSensor(const RelativeOptions& options,
                                                            const SensingConfig& config) {
   return std::make_unique<RelativeSensor>(options, config, MeasurementKind::kRangeBearing);
+}
+
+}  // namespace
+
+SensorRegistry::Entry RangeSensorEntry() {
+  return {"range", MakeRangeSensor, RelativeOptions{true, false}};
+}
+SensorRegistry::Entry BearingSensorEntry() {
+  return {"bearing", MakeBearingSensor, RelativeOptions{false, true}};
+}
+SensorRegistry::Entry RangeBearingSensorEntry() {
+  return {"range_bearing", MakeRangeBearingSensor};
 }
 
 }  // namespace stg::dynamics

@@ -1,15 +1,14 @@
 #include "auv_dynamics/sensing/target_sensor.hpp"
-#include "sensors.hpp"
 
 namespace stg::dynamics {
 
 SensorRegistry& TargetSensors() {
   static SensorRegistry registry("target sensor",
                                  {
-                                     {"position", MakePositionSensor},
-                                     {"range", MakeRangeSensor, RelativeOptions{true, false}},
-                                     {"bearing", MakeBearingSensor, RelativeOptions{false, true}},
-                                     {"range_bearing", MakeRangeBearingSensor},
+                                     STG_ENTRY(SensorRegistry, PositionSensorEntry),
+                                     STG_ENTRY(SensorRegistry, RangeSensorEntry),
+                                     STG_ENTRY(SensorRegistry, BearingSensorEntry),
+                                     STG_ENTRY(SensorRegistry, RangeBearingSensorEntry),
                                  });
   return registry;
 }

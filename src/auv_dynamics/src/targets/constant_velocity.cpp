@@ -1,4 +1,4 @@
-#include "motions.hpp"
+#include "auv_dynamics/targets/target_motion.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -26,10 +26,14 @@ class ConstantVelocity : public TargetMotion {
   double dt_, half_extent_;
 };
 
-}  // namespace
-
 std::unique_ptr<TargetMotion> MakeConstantVelocity(const MotionSetup& setup) {
   return std::make_unique<ConstantVelocity>(setup);
+}
+
+}  // namespace
+
+MotionRegistry::Entry ConstantVelocityEntry() {
+  return {"constant_velocity", MakeConstantVelocity};
 }
 
 }  // namespace stg::dynamics

@@ -1,15 +1,17 @@
 #include "auv_dynamics/targets/steered_motion.hpp"
-#include "motions.hpp"
 
 namespace stg::dynamics {
+namespace {
+
+struct CoordinatedTurnOptions {
+  double rate_radps = 0.1, period_s = 10.0;
+};
 
 void Describe(CoordinatedTurnOptions* o, config::Table* t) {
   t->Add("rate_radps", &o->rate_radps, config::NonNegative(10), "rad/s",
          "mean magnitude of the turn rate");
   t->Add("period_s", &o->period_s, config::Positive(1e5), "s", "time between new turn rates");
 }
-
-namespace {
 
 /// Turns about an axis at a rate, both drawn anew every turn period; in open water to port or to
 /// starboard.
@@ -34,11 +36,13 @@ class CoordinatedTurn : public SteeredMotion {
   CoordinatedTurnOptions options_;
 };
 
-}  // namespace
-
 std::unique_ptr<TargetMotion> MakeCoordinatedTurn(const CoordinatedTurnOptions& options,
                                                   const MotionSetup& setup) {
   return std::make_unique<CoordinatedTurn>(options, setup);
 }
+
+}  // namespace
+
+MotionRegistry::Entry CoordinatedTurnEntry() { return {"coordinated_turn", MakeCoordinatedTurn}; }
 
 }  // namespace stg::dynamics

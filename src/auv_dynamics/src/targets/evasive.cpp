@@ -1,16 +1,18 @@
 #include <algorithm>
 
 #include "auv_dynamics/targets/steered_motion.hpp"
-#include "motions.hpp"
 
 namespace stg::dynamics {
+namespace {
+
+struct EvasiveOptions {
+  double range_m = 0.10;
+};
 
 void Describe(EvasiveOptions* o, config::Table* t) {
   t->Add("range_m", &o->range_m, config::NonNegative(1e4), "m",
          "the target flees AUVs closer than this");
 }
-
-namespace {
 
 /// Away from every vehicle in range, the closer the stronger, in open water at its depth; straight
 /// on while none is.
@@ -38,10 +40,12 @@ class Evasive : public SteeredMotion {
   EvasiveOptions options_;
 };
 
-}  // namespace
-
 std::unique_ptr<TargetMotion> MakeEvasive(const EvasiveOptions& options, const MotionSetup& setup) {
   return std::make_unique<Evasive>(options, setup);
 }
+
+}  // namespace
+
+MotionRegistry::Entry EvasiveEntry() { return {"evasive", MakeEvasive}; }
 
 }  // namespace stg::dynamics

@@ -1,14 +1,16 @@
 #include "auv_dynamics/targets/steered_motion.hpp"
-#include "motions.hpp"
 
 namespace stg::dynamics {
+namespace {
+
+struct RandomWaypointOptions {
+  double radius_m = 0.05;
+};
 
 void Describe(RandomWaypointOptions* o, config::Table* t) {
   t->Add("radius_m", &o->radius_m, config::Positive(1e4), "m",
          "distance at which a waypoint counts as reached");
 }
-
-namespace {
 
 /// Whether `to`, relative to a target of velocity v, lies inside the circle of
 /// its tightest turn: turning towards it would orbit it forever.
@@ -61,11 +63,13 @@ class RandomWaypoint : public SteeredMotion {
   std::vector<std::uint32_t> index_;  // [lane, target] points reached or given up
 };
 
-}  // namespace
-
 std::unique_ptr<TargetMotion> MakeRandomWaypoint(const RandomWaypointOptions& options,
                                                  const MotionSetup& setup) {
   return std::make_unique<RandomWaypoint>(options, setup);
 }
+
+}  // namespace
+
+MotionRegistry::Entry RandomWaypointEntry() { return {"random_waypoint", MakeRandomWaypoint}; }
 
 }  // namespace stg::dynamics

@@ -1,15 +1,15 @@
 #include "auv_dynamics/targets/target_motion.hpp"
-#include "motions.hpp"
 
 namespace stg::dynamics {
 
 MotionRegistry& TargetMotions() {
-  static MotionRegistry registry("target motion", {
-                                                      {"constant_velocity", MakeConstantVelocity},
-                                                      {"coordinated_turn", MakeCoordinatedTurn},
-                                                      {"random_waypoint", MakeRandomWaypoint},
-                                                      {"evasive", MakeEvasive},
-                                                  });
+  static MotionRegistry registry("target motion",
+                                 {
+                                     STG_ENTRY(MotionRegistry, ConstantVelocityEntry),
+                                     STG_ENTRY(MotionRegistry, CoordinatedTurnEntry),
+                                     STG_ENTRY(MotionRegistry, RandomWaypointEntry),
+                                     STG_ENTRY(MotionRegistry, EvasiveEntry),
+                                 });
   return registry;
 }
 

@@ -1,4 +1,4 @@
-#include "filters.hpp"
+#include "stg_agent/estimation/target_filter.hpp"
 
 namespace stg::agent {
 namespace {
@@ -62,10 +62,12 @@ class KalmanFilter : public TargetFilter {
   TimeNs now_ = 0;
 };
 
-}  // namespace
-
 std::unique_ptr<TargetFilter> MakeKalmanFilter(const AgentModel& model, const int&) {
   return std::make_unique<KalmanFilter>(model);
 }
+
+}  // namespace
+
+FilterRegistry::Entry KalmanFilterEntry() { return {"kalman", MakeKalmanFilter}; }
 
 }  // namespace stg::agent

@@ -2,15 +2,16 @@
 
 #include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
-#include "filters.hpp"
+#include "stg_agent/estimation/target_filter.hpp"
 
 namespace stg::agent {
 
 FilterRegistry& TargetFilters() {
-  static FilterRegistry registry("target filter", {
-                                                      {"kalman", MakeKalmanFilter},
-                                                      {"measurements", MakeMeasurementFilter},
-                                                  });
+  static FilterRegistry registry("target filter",
+                                 {
+                                     STG_ENTRY(FilterRegistry, KalmanFilterEntry),
+                                     STG_ENTRY(FilterRegistry, MeasurementFilterEntry),
+                                 });
   return registry;
 }
 

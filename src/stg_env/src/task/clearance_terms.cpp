@@ -1,6 +1,17 @@
-#include "terms.hpp"
+#include "stg_env/task/reward_term.hpp"
 
 namespace stg::task {
+namespace {
+
+/// What survey vehicles keep over rough ground.
+struct SeabedOptions {
+  double margin_m = 10.0;
+};
+
+/// The turning circle of a torpedo.
+struct ObstacleOptions {
+  double margin_m = 25.0;
+};
 
 void Describe(SeabedOptions* o, config::Table* t) {
   t->Add("margin_m", &o->margin_m, config::Positive(1e4), "m",
@@ -11,8 +22,6 @@ void Describe(ObstacleOptions* o, config::Table* t) {
   t->Add("margin_m", &o->margin_m, config::Positive(1e4), "m",
          "distance to the nearest obstacle from which on nothing is subtracted");
 }
-
-namespace {
 
 /// Minus the share of a margin that is missing to something to be kept clear of: 0 from the margin
 /// on, -1 in contact. 0 where there is no open water.
@@ -52,8 +61,6 @@ struct ObstacleTerm : TermOf<ObstacleTerm> {
   }
 };
 
-}  // namespace
-
 std::unique_ptr<const RewardTerm> MakeSeabedTerm(const SeabedOptions& options, const JudgeConfig&) {
   return std::make_unique<SeabedTerm>(options);
 }
@@ -62,5 +69,10 @@ std::unique_ptr<const RewardTerm> MakeObstacleTerm(const ObstacleOptions& option
                                                    const JudgeConfig&) {
   return std::make_unique<ObstacleTerm>(options);
 }
+
+}  // namespace
+
+RewardTermRegistry::Entry SeabedTermEntry() { return {"seabed", MakeSeabedTerm}; }
+RewardTermRegistry::Entry ObstacleTermEntry() { return {"obstacle", MakeObstacleTerm}; }
 
 }  // namespace stg::task

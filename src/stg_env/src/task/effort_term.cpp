@@ -1,4 +1,4 @@
-#include "terms.hpp"
+#include "stg_env/task/reward_term.hpp"
 
 namespace stg::task {
 namespace {
@@ -16,10 +16,12 @@ struct EffortTerm : TermOf<EffortTerm> {
   }
 };
 
-}  // namespace
-
 std::unique_ptr<const RewardTerm> MakeEffortTerm(const JudgeConfig&) {
   return std::make_unique<EffortTerm>();
 }
+
+}  // namespace
+
+RewardTermRegistry::Entry EffortTermEntry() { return {"effort", MakeEffortTerm}; }
 
 }  // namespace stg::task

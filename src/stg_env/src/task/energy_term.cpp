@@ -1,4 +1,4 @@
-#include "terms.hpp"
+#include "stg_env/task/reward_term.hpp"
 
 namespace stg::task {
 namespace {
@@ -13,10 +13,12 @@ struct EnergyTerm : TermOf<EnergyTerm> {
   }
 };
 
-}  // namespace
-
 std::unique_ptr<const RewardTerm> MakeEnergyTerm(const JudgeConfig&) {
   return std::make_unique<EnergyTerm>();
 }
+
+}  // namespace
+
+RewardTermRegistry::Entry EnergyTermEntry() { return {"energy", MakeEnergyTerm}; }
 
 }  // namespace stg::task

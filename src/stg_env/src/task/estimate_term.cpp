@@ -1,7 +1,13 @@
 #include "stg_env/task/judge_config.hpp"
-#include "terms.hpp"
+#include "stg_env/task/reward_term.hpp"
 
 namespace stg::task {
+namespace {
+
+/// As UTracking rewards an estimate (arXiv 2505.08222).
+struct EstimateOptions {
+  double good_m = 10.0, fall_m = 40.0;
+};
 
 void Describe(EstimateOptions* o, config::Table* t) {
   t->Add("good_m", &o->good_m, config::NonNegative(1e5), "m",
@@ -9,8 +15,6 @@ void Describe(EstimateOptions* o, config::Table* t) {
   t->Add("fall_m", &o->fall_m, config::Positive(1e5), "m",
          "farther off than that by this much it earns nothing");
 }
-
-namespace {
 
 /// What the own estimate of the target is worth: 1 where it is off by `good_m` or less, falling to
 /// 0 within the next `fall_m`; 0 without an estimate or open water.
@@ -30,11 +34,13 @@ struct EstimateTerm : TermOf<EstimateTerm> {
   EstimateOptions options_;
 };
 
-}  // namespace
-
 std::unique_ptr<const RewardTerm> MakeEstimateTerm(const EstimateOptions& options,
                                                    const JudgeConfig&) {
   return std::make_unique<EstimateTerm>(options);
 }
+
+}  // namespace
+
+RewardTermRegistry::Entry EstimateTermEntry() { return {"estimate", MakeEstimateTerm}; }
 
 }  // namespace stg::task

@@ -1,5 +1,5 @@
 #include "stg_env/task/field_totals.hpp"
-#include "terms.hpp"
+#include "stg_env/task/reward_term.hpp"
 
 namespace stg::task {
 namespace {
@@ -20,10 +20,12 @@ struct SpreadTerm : TermOf<SpreadTerm> {
   }
 };
 
-}  // namespace
-
 std::unique_ptr<const RewardTerm> MakeSpreadTerm(const JudgeConfig&) {
   return std::make_unique<SpreadTerm>();
 }
+
+}  // namespace
+
+RewardTermRegistry::Entry SpreadTermEntry() { return {"spread", MakeSpreadTerm}; }
 
 }  // namespace stg::task

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "../filters.hpp"
 #include "moments.hpp"
 #include "observers.hpp"
+#include "stg_agent/estimation/target_filter.hpp"
 #include "surround.hpp"
 
 namespace stg::agent {
@@ -343,8 +343,8 @@ class MeasurementFilter : public TargetFilter {
 
 }  // namespace
 
-std::unique_ptr<TargetFilter> MakeMeasurementFilter(const AgentModel& model, const int& self) {
-  return std::make_unique<MeasurementFilter>(model, self);
+FilterRegistry::Entry MeasurementFilterEntry() {
+  return {"measurements", std::make_unique<MeasurementFilter, const AgentModel&, const int&>};
 }
 
 }  // namespace stg::agent
