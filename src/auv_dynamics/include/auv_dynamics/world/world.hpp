@@ -26,14 +26,14 @@ inline constexpr char kUnstableHint[] =
     "the motion is unstable with these vehicle constants; check damping, mass and limits, clip "
     "velocities (vehicle.clip_velocity), or use a smaller time.dt_s or more vehicle.substeps";
 
-/// kLanes independent copies of one scenario's physics, one per SIMD lane:
-/// vehicles, contacts, walls, targets, sensors. What a vehicle, a target motion or a sensor is, the
-/// registries say. Knows nothing of agents, channel or reward. A caller that wants one world uses
-/// lane 0.
+/// kLanes independent copies of one scenario's physics, one per SIMD lane: vehicles, contacts,
+/// walls, targets, sensors. The registries make its vehicles, target motion and sensor. It knows
+/// nothing of agents, channel or reward. A caller that wants one world uses lane 0.
 class World {
  public:
   /// Throws UserError for a scenario that fails its validation.
-  /// @param stated what the vehicles' navigation takes its errors for, when it states them
+  /// @param stated the errors that the vehicles' navigation states of itself, which may differ from
+  /// those that it has
   World(const WorldConfig& config, const RunConfig& run, const NavigationConfig& stated);
   World(const WorldConfig& config, const RunConfig& run) : World(config, run, config.navigation) {}
   explicit World(const WorldScenario& s) : World(s.world, s.run, s.believed().navigation) {}
@@ -83,7 +83,7 @@ class World {
   NavState Nav(int lane, int i) const;
   /// The same of all lanes.
   Navigation<Pack> Nav(int i) const;
-  /// What a perfect navigation would tell, whatever the vehicles have.
+  /// What a perfect navigation would report, whatever navigation the vehicles have.
   NavState Truth(int lane, int i) const;
   /// Simulated time since the start of the episode: physics steps times dt.
   TimeNs time(int lane) const { return dt_ns_ * static_cast<TimeNs>(step(lane)); }

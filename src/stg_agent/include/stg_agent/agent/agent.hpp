@@ -22,39 +22,40 @@ struct AgentOutput {
   double action[dynamics::kMaxActionSize] = {};
 };
 
-/// One AUV's mind in `acoustic` mode: from own navigation, own detections and received
-/// packets to the observation; from the policy's action to the command, and to the packet that it
-/// offers to its modem. Knows nothing else of the world.
+/// The mind of one AUV in the mode `acoustic`. It makes the observation from its own navigation,
+/// its own detections and received packets. It makes the command from the policy's action, and it
+/// writes the packet that it offers to its modem. It knows nothing else of the world.
 ///
-/// Use, for every decision k: Receive and Detect in any order (the result does not depend
-/// on it), Observe, Act, MakePacket. Deterministic; allocates nothing after construction.
+/// For every decision, call Receive and Detect in any order, which does not change the result, then
+/// Observe, Act and MakePacket. It is deterministic and allocates nothing after construction.
 ///
 /// Conventions that the paper leaves open:
-/// - Confidence (Eq. 13) is that of the estimated distance while the track is not lost and
-///   rests on an observation, own or shared, current as the link estimator says; else 0.
-///   The cue is no observation.
+/// - Confidence (Eq. 13) is that of the estimated distance. It is 0 while the track is lost, and
+///   while every observation, own or shared, is too old for the link estimator. The cue is no
+///   observation.
 /// - Lost: position std above track.lost_std_m, or estimated distance above
 ///   task.lost_distance_m.
-/// - A neighbour not heard of counts as link quality 0 in the mean, and in no other average.
+/// - A neighbour that was not heard counts with link quality 0 in the mean link quality. No other
+///   average contains it.
 class Agent {
  public:
-  /// Throws UserError when the scenario does not fit the packet layout.
+  /// Throws UserError when the model does not fit the packet layout.
   Agent(const AgentModel& model, int id);
-  /// An agent that shares scenario and tables with others.
+  /// An agent that shares model and tables with others.
   Agent(const SharedConstants& constants, int id) : one_(constants, id) {}
 
-  /// Starts an episode: forgets everything. The cue was true at time 0, whenever the first
-  /// Observe is: one that comes late finds it as uncertain as it has become.
+  /// Starts an episode and forgets everything. The cue was true at time 0; the later the first
+  /// Observe is, the more uncertain the cue has become.
   void Reset(std::uint32_t episode, const dynamics::Cue& cue) { one_.Reset(0, episode, cue); }
 
-  /// A cue of another target, likewise, after Reset.
+  /// Adds a cue of another target, after Reset.
   void AddCue(const dynamics::Cue& cue) { one_.AddCue(0, cue); }
 
-  /// Own detection; of a target that it keeps no belief of: ignored. The newest before the
-  /// next Observe counts.
+  /// Takes an own detection. The newest before the next Observe counts. A detection of a target
+  /// without a belief is ignored.
   void Detect(const dynamics::Detection& detection) { one_.Detect(0, detection); }
 
-  /// A packet that the modem gave. One that does not decode is counted and ignored.
+  /// Takes a packet that the modem received. One that does not decode is counted and ignored.
   void Receive(const acoustics::Reception& reception) { one_.Receive(0, reception); }
 
   /// Brings all knowledge to nav.stamp and writes the observation.
@@ -94,7 +95,7 @@ class Agent {
   LanedAgent<double> one_;
 };
 
-/// Agents 0 .. scenario.agents - 1, sharing one copy of the scenario.
+/// Agents 0 .. run.agents - 1, which share one copy of the model.
 std::vector<Agent> MakeAgents(const AgentModel& model);
 
 }  // namespace stg::agent

@@ -14,14 +14,14 @@
 
 namespace stg::agent {
 
-/// What keeps the books of an AUV's knowledge: its agent, or the truth mode, which rounds one mean
+/// What fills an AUV's knowledge: its agent, or the truth mode. The truth mode rounds one mean
 /// differently (ErrorMean) and may follow the release (observation.release_bookkeeping).
 enum class Bookkeeping { kAgent, kTruth };
 
-/// What an AUV makes of its inputs, the same at every decision: SetNavigation, SetTracking,
-/// SetNeighbours, from what came in to what the policy sees; then Act, from the policy's action
-/// to the force. T = double: one AUV. T = Pack: the same AUV of kLanes environments, bit for bit,
-/// each lane with a clock of its own.
+/// Turns what came in into what the policy sees, by SetNavigation, SetTracking and SetNeighbours in
+/// this order, and the policy's action into a force, by Act. With T = double it is one AUV. With
+/// T = Pack it is the same AUV in kLanes environments, bit for bit, and each lane has its own
+/// clock.
 template <class T>
 class Mind {
  public:

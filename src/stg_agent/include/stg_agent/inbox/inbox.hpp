@@ -16,34 +16,35 @@
 
 namespace stg::agent {
 
-/// What comes in to one AUV in one environment: the cue, its own detections, its neighbours'
-/// packets; and what goes out to them. What happens at different times in different environments is
-/// here; the arithmetic that all of them share is in Mind, and the neighbours' states are in
-/// Neighbourhood.
+/// Takes what reaches one AUV in one environment, which is the cue, its own detections and the
+/// packets of neighbours, and writes the packet that goes out to them. It holds what happens at
+/// different times in different environments. The arithmetic that all environments share is in
+/// Mind, and the neighbours' states are in Neighbourhood.
 ///
-/// It keeps one belief, of the target that the AUV is tasked with; where targets are chosen freely
-/// (task.assignment) it keeps one of every target, and `target` is the one that it follows.
+/// It keeps one belief, of the target that the AUV is tasked with. Where targets are chosen freely
+/// (task.assignment), it keeps a belief of every target, and `target` is the one that it follows.
 ///
-/// The result does not depend on the order in which things come in between two Advances.
-/// Deterministic; allocates nothing after construction.
+/// The result does not depend on the order in which things come in between two calls of Advance. It
+/// is deterministic and allocates nothing after construction.
 class Inbox {
  public:
   Inbox(SharedConstants constants, int id);
 
-  /// Starts an episode: forgets everything. The cue was true at time 0.
+  /// Starts an episode and forgets everything. The cue was true at time 0.
   void Reset(std::uint32_t episode, const dynamics::Cue& cue);
-  /// A cue of another target, likewise; of one without a belief: ignored.
+  /// Adds a cue of another target. A cue of a target without a belief is ignored.
   void AddCue(const dynamics::Cue& cue);
 
-  /// Own detection; of a target without a belief: ignored. The newest of each target before the
-  /// next Advance counts. A non-finite one throws std::invalid_argument: a bug of the caller.
+  /// Takes an own detection. The newest of each target before the next Advance counts. A detection
+  /// of a target without a belief is ignored. One that is not finite is a bug of the caller and
+  /// throws std::invalid_argument.
   void Detect(const dynamics::Detection& detection);
 
-  /// A packet that the modem gave: the state that it holds. One that does not decode is counted,
-  /// and holds none.
+  /// Takes a packet that the modem received, and returns the state that it holds. One that does not
+  /// decode is counted and holds none.
   std::optional<NeighbourState> Receive(const acoustics::Reception& reception);
 
-  /// Follows another target from the next Advance on; one without a belief: ignored.
+  /// Follows another target from the next Advance on. A target without a belief is ignored.
   void Follow(int target);
 
   /// Brings the beliefs to time `now`, with all that came in.
