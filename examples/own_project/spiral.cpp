@@ -47,8 +47,8 @@ int Fly() {
   env::EvaluationOptions options;
   options.episodes = 4;
   for (const std::string name : {"spiral:speed=0.3", "pursuit_separated"}) {
-    const auto episodes =
-        env::Evaluate(scenario, agent::MakeDecider(name, scenario.model()), options, &pool);
+    const auto episodes = env::Evaluate(env::EnvFactory(scenario),
+                                        agent::MakeDecider(name, scenario.model()), options, &pool);
     const task::MetricSummary summary = task::Summarise(episodes);
     std::printf("%s %.17g %.17g\n", name.c_str(), summary.Mean("return"),
                 summary.Mean("tail_distance"));

@@ -18,18 +18,18 @@ learn::Algorithm& Learner() {
   static WorkerPool pool(1);
   static learn::TrainSetup setup = [] {
     learn::TrainSetup small(learn::DefaultAlgorithm(), "fast");
-    const learn::OptionTable table = small.Options();
-    for (const learn::Option& option : table.options()) {
-      if (option.name == "actor-hidden" || option.name == "critic-hidden") {
-        *std::get<std::vector<int>*>(option.value) = {1};
+    const config::Table table = small.Options();
+    for (const config::Field& option : table.fields()) {
+      if (const auto* widths = std::get_if<config::WholeNumbersRef>(&option.value)) {
+        *widths->list = {1};
       }
     }
     return small;
   }();
   static const Scenario scenario =
       LoadNamedScenario(STG_SCENARIOS, "medium", "nominal", {"agents=2"});
-  static const std::unique_ptr<learn::Algorithm> algorithm =
-      setup.own->Make(setup.common, learn::ProblemOf(scenario), &pool);
+  static const std::unique_ptr<learn::Algorithm> algorithm = setup.own->Make(
+      setup.common, learn::ProblemOf(scenario.run, scenario.world, scenario.agent), &pool);
   return *algorithm;
 }
 

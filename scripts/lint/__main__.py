@@ -60,6 +60,8 @@ def main(argv):
         "topics": house.check_topics,
         "namespaces": house.check_namespaces,
         "registries": house.check_registries,
+        "scenarios": house.check_scenarios,
+        "ranks": house.check_ranks,
         "versions": check_versions,
         "words": check_words,
         "tidy": lambda: check_tidy(options.build),

@@ -39,6 +39,20 @@ CORE_NAMESPACES = {
 }
 # What composes the sections of all packages belongs to all of them.
 SHARED_NAMESPACES = {("stg_env", "scenario"): ("stg",)}
+# What puts things together out of a whole scenario, as `logical` names it; everything else takes the
+# sections that it needs. docs/architecture.md says what each does.
+COMPOSITION_ROOTS = (
+    "stg_env/scenario/",
+    "stg_env/env/environment",
+    "stg_env/env/trace",
+    "stg_env/env/variants",
+    "stg_env/env/vector_env",
+    "marl_trainer/learn/recorded/recorded_trainer",
+    "marl_trainer/learn/run/trainer",
+    "marl_trainer/tools/",
+    "stg_python/bindings/",
+    "stg_python/env/env_pool",
+)
 NODE_NAMESPACES = ("stg::nodes", "stg::topics", "stg::frames")
 # Headers that a core must not see.
 ROS = re.compile(
@@ -207,16 +221,20 @@ def check_namespaces(source=SOURCE):
     return f"{looked_at} files", findings
 
 
+ENTRY_FUNCTION = re.compile(r'Registry::Entry (\w+)\(\) \{\s*return \{"(\w+)"')
+LISTED = re.compile(r"STG_ENTRY\(\w+, (\w+)\)")
 ENTRY = re.compile(r'\{\s*"(\w+)",\s*(?:&?[A-Z]\w*|\[)')
 
 
 def registered(source=SOURCE):
     """Returns {name: the file whose registry lists it}."""
     names = {}
-    for path, lines in _product(source):
-        text = "\n".join(lines)
+    texts = {path: "\n".join(lines) for path, lines in _product(source)}
+    defined = {f: name for text in texts.values() for f, name in ENTRY_FUNCTION.findall(text)}
+    for path, text in texts.items():
         for body in re.findall(r"static \w*Registry\w*(?:<[^;{]*>)?\s+\w+[({](.*?)\);", text, re.S):
             names.update({name: path for name in ENTRY.findall(body)})
+            names.update({defined[f]: path for f in LISTED.findall(body) if f in defined})
     return names
 
 
@@ -233,3 +251,36 @@ def check_registries(source=SOURCE):
                 if name in names and path != names[name]:
                     findings.append(f'src/{path}:{number}: "{name}" is for {names[name]} to know')
     return f"{len(names)} names", findings
+
+
+WHOLE = re.compile(
+    r"[(,]\s*(?:const\s+)?(?:std::vector<)?(?:stg::)?Scenario>?\s*[&*]?\s*\w*\s*(?==|[,)])"
+)
+
+
+def check_scenarios(source=SOURCE):
+    """Looks for parameters that are a whole scenario, or several, outside the composition roots."""
+    findings, looked_at = [], 0
+    for path, lines in _product(source):
+        looked_at += 1
+        if str(logical(path)).startswith(COMPOSITION_ROOTS):
+            continue
+        text = "\n".join(lines)
+        for match in WHOLE.finditer(text):
+            number = text.count("\n", 0, match.start()) + 1
+            findings.append(f"src/{path}:{number}: takes a whole Scenario: take the sections it needs")
+    return f"{looked_at} files", findings
+
+
+ALONE = re.compile(r"\branks?\w*(?:\(\))?(?:\.|->)size\(\)\s*(?:[=!]=|[<>]=?)\s*[12]\b|\b(?:Is)?Alone\(\)\s*[?!=&|]")
+
+
+def check_ranks(source=SOURCE):
+    """Looks for questions whether a process trains alone: it is the one rank of one."""
+    findings, looked_at = [], 0
+    for path, lines in _product(source):
+        looked_at += 1
+        for number, line in enumerate(lines, start=1):
+            if ALONE.search(line):
+                findings.append(f"src/{path}:{number}: asks whether it is alone: {line.strip()}")
+    return f"{looked_at} files", findings

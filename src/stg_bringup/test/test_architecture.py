@@ -1,3 +1,4 @@
+# Long because: one class for each rule of the house.
 """Checks the rules of the house: the code keeps each of them, and each of them can be broken."""
 
 import pathlib
@@ -259,6 +260,52 @@ class Registries(Rule):
             self.assert_found({**files, path: text}, f"src/{path}:1", "motions.cpp")
         self.assert_clean({**files, "auv_dynamics/test/a_test.cpp": 'EXPECT_TRUE(n == "evasive");'})
         self.assert_clean({**files, "stg_env/src/env/env.cpp": 'if (c.motion == "other") {\n'})
+
+
+@on_the_code
+class Scenarios(Rule):
+    """Only composition roots take a whole scenario."""
+
+    check = house.check_scenarios
+
+    def test_a_parameter_is_found_however_it_is_passed(self):
+        for text in (
+            "void Fly(const Scenario& s);\n",
+            "void Fly(int n, stg::Scenario scenario = {});\n",
+            "void Fly(\n    const std::vector<Scenario>& mix, int n) {\n",
+            "auto f = [](const Scenario&) {};\n",
+        ):
+            self.assert_found({"stg_env/src/record/a.cpp": text}, "src/stg_env/src/record/a.cpp:1")
+            self.assert_clean({"stg_env/src/env/vector_env.cpp": text})
+            self.assert_clean({"stg_env/test/env/a_test.cpp": text})
+
+    def test_a_section_a_result_and_a_local_are_none(self):
+        for text in (
+            "void Fly(const WorldScenario& s, const RunConfig& run);\n",
+            "const Scenario& s = env.scenario(e);\n",
+            "Scenario Load(const std::string& file);\n",
+            "return config::Load<Scenario>(file, scope);\n",
+        ):
+            self.assert_clean({"stg_env/src/record/a.cpp": text})
+
+    def test_the_page_names_every_root(self):
+        page = (ROOT / "docs" / "architecture.md").read_text()
+        for root in house.COMPOSITION_ROOTS:
+            self.assertIn(f"`{root}`", page)
+
+
+@on_the_code
+class Ranks(Rule):
+    """A process alone is the one rank of one, and no code asks for it."""
+
+    check = house.check_ranks
+
+    def test_the_question_is_found(self):
+        path = "marl_trainer/src/learn/a.cpp"
+        for text in ("if (team.ranks->size() == 1) {\n", "x = ranks.size() > 1 ? a : b;\n"):
+            self.assert_found({path: text}, f"src/{path}:1")
+        for text in ("Communicator* ranks = Alone();\n", "const int n = ranks.size();\n"):
+            self.assert_clean({path: text})
 
 
 class Picture(unittest.TestCase):

@@ -15,7 +15,6 @@
 #include "auv_dynamics/nodes/topics.hpp"
 #include "record_inlet.hpp"
 #include "stg_agent/nodes/topics.hpp"
-#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -36,16 +35,15 @@ std::string Difference(const std::string& theirs, const std::string& ours) {
   return "'" + x.substr(0, 100) + "' instead of '" + y.substr(0, 100) + "'";
 }
 
-void ReadMessages(const rosbag::Bag& bag, const Scenario& scenario, RecordInlet* inlet,
-                  BagContents* contents) {
+void ReadMessages(const rosbag::Bag& bag, int agents, const std::string& scenario,
+                  RecordInlet* inlet, BagContents* contents) {
   std::map<std::string, int> agent_of;
   std::vector<std::string> topics{topics::kStepReport, topics::kScenario};
-  for (int i = 0; i < scenario.run.agents; ++i) {
+  for (int i = 0; i < agents; ++i) {
     const std::string topic = topics::AuvTopic(i, topics::kAgentStep);
     agent_of[topic] = i;
     topics.push_back(topic);
   }
-  const std::string ours = ToYaml(scenario);
   rosbag::View view(bag, rosbag::TopicQuery(topics));
   for (const rosbag::MessageInstance& m : view) {
     const auto agent = agent_of.find(m.getTopic());
@@ -60,7 +58,7 @@ void ReadMessages(const rosbag::Bag& bag, const Scenario& scenario, RecordInlet*
         continue;
       }
     } else if (const auto text = m.instantiate<std_msgs::String>()) {
-      const std::string difference = Difference(text->data, ours);
+      const std::string difference = Difference(text->data, scenario);
       if (!difference.empty()) throw UserError("recorded in another scenario: " + difference);
       continue;
     }
@@ -70,13 +68,13 @@ void ReadMessages(const rosbag::Bag& bag, const Scenario& scenario, RecordInlet*
 
 }  // namespace
 
-BagContents ReadBag(const std::string& path, const Scenario& scenario) {
+BagContents ReadBag(const std::string& path, const RunConfig& run, const std::string& scenario) {
   BagContents contents;
-  RecordInlet inlet(scenario.run, path);
+  RecordInlet inlet(run, path);
   try {
     RequireSoundBag(path);
     rosbag::Bag bag(path, rosbag::bagmode::Read);
-    ReadMessages(bag, scenario, &inlet, &contents);
+    ReadMessages(bag, run.agents, scenario, &inlet, &contents);
   } catch (const UserError& error) {
     contents.error = error.what();
     return contents;

@@ -15,10 +15,11 @@ struct BagContents {
   std::string error;                             ///< why the bag, or its rest, could not be used
 };
 
+/// @param scenario of this training, as ToYaml writes it
 /// Reads agent steps, rewards and the scenario of a bag. Never throws for what a bag holds: a
 /// damaged one gives the episodes before the damage and an error, one of another scenario only an
 /// error.
-BagContents ReadBag(const std::string& path, const Scenario& scenario);
+BagContents ReadBag(const std::string& path, const RunConfig& run, const std::string& scenario);
 
 /// The bags that `names` mean: files, and all *.bag of folders, by name. Throws UserError for a
 /// name that does not exist or a folder without bags.

@@ -82,7 +82,7 @@ void TrainerNode::Judge(learn::RecordedEpisode episode) {
 
 void TrainerNode::TrainOnBags() {
   for (const std::string& bag : FindBags(bags_)) {
-    BagContents contents = ReadBag(bag, scenario_);
+    BagContents contents = ReadBag(bag, scenario_.run, ToYaml(scenario_));
     if (!contents.error.empty()) {
       ++recording_.unreadable_sources;
       ROS_ERROR("trainer: %s: %s", bag.c_str(), contents.error.c_str());

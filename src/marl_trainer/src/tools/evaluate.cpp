@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -10,10 +9,10 @@
 #include <sstream>
 #include <thread>
 
+#include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/plugin_option.hpp"
 #include "auv_common/program.hpp"
 #include "seed_check.hpp"
 #include "stg_agent/controllers/controller.hpp"
@@ -21,6 +20,7 @@
 #include "stg_env/env/seed_blocks.hpp"
 #include "stg_env/env/variants.hpp"
 #include "stg_env/record/recorder.hpp"
+#include "stg_env/record/scene.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace {
@@ -159,12 +159,7 @@ int main(int argc, char** argv) {
                "a built-in controller reads true states in acoustic mode, too");
   Constants constants(&app);
   stg::AddPluginOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+  return stg::RunProgram("evaluate", &app, argc, argv, [&] {
     const stg::Scenario given =
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
@@ -176,9 +171,9 @@ int main(int argc, char** argv) {
     options.episodes = episodes;
     options.seed = seed;
     const auto fly = [&](const stg::Scenario& flown) {
-      auto metrics = stg::env::Evaluate(flown, controller, options, &pool, [&](int done) {
-        std::fprintf(stderr, "\r%d / %d episodes", done, episodes);
-      });
+      auto metrics = stg::env::Evaluate(
+          stg::env::EnvFactory(flown), controller, options, &pool,
+          [&](int done) { std::fprintf(stderr, "\r%d / %d episodes", done, episodes); });
       std::fprintf(stderr, "\n");
       return metrics;
     };
@@ -189,7 +184,10 @@ int main(int argc, char** argv) {
     for (const auto& episode : own) training_returns.push_back(episode.episode_return);
     table.Write(Table(metrics, training_returns, seed));
     if (!record.empty()) {
-      stg::env::RecordEpisodes(s, controller, seed, episodes, record_episodes, record, condition);
+      nlohmann::json scene = stg::env::SceneOf(s.judge(), s.channel);
+      scene["condition"] = condition;
+      stg::env::RecordEpisodes(stg::env::EnvFactory(s), scene, controller, seed, episodes,
+                               record_episodes, record);
     }
     stg::task::MetricSummary summary = stg::task::Summarise(metrics);
     const stg::task::MetricSummary own_summary = stg::task::Summarise(own);
@@ -211,11 +209,5 @@ int main(int argc, char** argv) {
     }
     stg::PrintResult(json);
     return 0;
-  } catch (const stg::UserError& e) {
-    std::cerr << "evaluate: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "evaluate: " << e.what() << "\n";
-    return 1;
-  }
+  });
 }

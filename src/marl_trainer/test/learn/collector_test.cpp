@@ -89,7 +89,7 @@ class CollectorTest : public ::testing::Test {
   CollectorTest()
       : scenario_(LoadNamedScenario(config::ScenarioFolder(), "medium_release", "nominal",
                                     {"time.episode_steps=40", "time.tail_steps=10"})),
-        problem_(ProblemOf(scenario_)) {
+        problem_(ProblemOf(scenario_.run, scenario_.world, scenario_.agent)) {
     config_.envs = 22;  // blocks of four and a part of one
     config_.horizon = kHorizon;
     config_.stagger = false;
@@ -98,7 +98,7 @@ class CollectorTest : public ::testing::Test {
   /// All shards of the second of two collections.
   std::vector<Seen> SecondCollection(int workers, bool teach) {
     WorkerPool pool(workers);
-    Collector collector({scenario_}, config_, &imitation_, &pool);
+    Collector collector(env::EnvFactory(scenario_), config_, &imitation_, &pool);
     Recorder recorder(problem_);
     collector.Collect(0, teach, &recorder);
     report_ = collector.Collect(1, teach, &recorder);
@@ -125,7 +125,7 @@ TEST_F(CollectorTest, EpisodesStartInTheStageOfTheCurriculum) {
     scenario.world.reset.curriculum_easy_resets = easy_until;
     scenario.world.reset.curriculum_medium_resets = medium_until;
     WorkerPool pool(1);
-    Collector collector({scenario}, config_, &imitation_, &pool);
+    Collector collector(env::EnvFactory(scenario), config_, &imitation_, &pool);
     Recorder recorder(problem_);
     std::vector<std::vector<float>> seen;
     for (std::uint32_t number = 0; number < 2; ++number) {
@@ -231,7 +231,7 @@ TEST_F(CollectorTest, AsksTheTeacherAtTheStatesThatAreVisited) {
 TEST_F(CollectorTest, RestartsWhereItIsTold) {
   WorkerPool pool(1);
   config_.stagger = true;
-  Collector collector({scenario_}, config_, &imitation_, &pool);
+  Collector collector(env::EnvFactory(scenario_), config_, &imitation_, &pool);
   Recorder recorder(problem_);
   EXPECT_TRUE(collector.at_episode_start());
   collector.Collect(0, false, &recorder);
@@ -241,7 +241,7 @@ TEST_F(CollectorTest, RestartsWhereItIsTold) {
   EXPECT_EQ(collector.round(), 5U);
   collector.Collect(1, false, &recorder);
   const std::vector<Seen> first = recorder.shards;
-  Collector fresh({scenario_}, config_, &imitation_, &pool);
+  Collector fresh(env::EnvFactory(scenario_), config_, &imitation_, &pool);
   fresh.RestartAt(5);
   fresh.Collect(1, false, &recorder);
   for (std::size_t k = 0; k < first.size(); ++k)

@@ -250,7 +250,7 @@ TEST_F(TrainerTest, TheSummaryTellsSizesAndWorkOfTheNetworks) {
   Trainer::Options options = Options("run");
   options.halt_after = 2560;
   const Scenario scenario = ShortScenario();
-  const Problem problem = ProblemOf(scenario);
+  const Problem problem = ProblemOf(scenario.run, scenario.world, scenario.agent);
   Trainer(scenario, SmallSetup(), options).Run();
   options.halt_after = 0;
   options.resume = true;
@@ -318,7 +318,7 @@ TEST_F(TrainerTest, AShortRunImprovesTheReturn) {
   Trainer trainer(scenario, setup, Options("run", 2));
   WorkerPool pool(2);
   const task::MetricSummary before =
-      task::Summarise(Validate(scenario, 16, &trainer.algorithm(), &pool));
+      task::Summarise(Validate(env::EnvFactory(scenario), 16, &trainer.algorithm(), &pool));
   EXPECT_TRUE(trainer.Run());
   const double untrained = before.mean[0];
   ASSERT_EQ(before.names[0], "return");

@@ -10,12 +10,14 @@
 namespace stg::env {
 namespace {
 
-std::unique_ptr<InformationSource> MakeSource(const Scenario& s, const agent::AgentModel& model) {
-  if (s.mode == InformationMode::kTruth) {
-    return std::make_unique<TruthSource>(model, s.channel.range_m);
+std::unique_ptr<InformationSource> MakeSource(InformationMode mode, const agent::AgentModel& model,
+                                              const dynamics::WorldConfig& world,
+                                              const acoustics::ChannelConfig& channel) {
+  if (mode == InformationMode::kTruth) {
+    return std::make_unique<TruthSource>(model, channel.range_m);
   }
-  const auto shadows = dynamics::ShadowsOf(s.world.sea, s.world.workspace.half_extent_m);
-  return std::make_unique<AcousticSource>(model, s.channel, shadows);
+  const auto shadows = dynamics::ShadowsOf(world.sea, world.workspace.half_extent_m);
+  return std::make_unique<AcousticSource>(model, channel, shadows);
 }
 
 }  // namespace
@@ -24,7 +26,7 @@ Environment::Environment(const Scenario& scenario)
     : scenario_(scenario),
       model_(scenario.model()),
       world_(scenario.world, scenario.run, model_.navigation),
-      source_(MakeSource(scenario, model_)),
+      source_(MakeSource(scenario.mode, model_, scenario.world, scenario.channel)),
       task_(scenario.judge()),
       observation_size_(model_.observation_size()) {
   task::Effort<Pack> zero;

@@ -13,8 +13,8 @@ namespace stg::env {
 
 class AcousticSource;
 
-/// kLanes environments of one scenario, one per SIMD lane, each in its own episode: the world moves
-/// the AUVs, an information source tells them what they know, the task judges.
+/// kLanes environments of one scenario, one per SIMD lane, each in its own episode. The world moves
+/// the AUVs, an information source says what they know, and the task judges.
 class Environment {
  public:
   explicit Environment(const Scenario& scenario);
@@ -51,7 +51,7 @@ class Environment {
   const dynamics::World& world() const { return world_; }
   const task::Task<Pack>& task() const { return task_; }
   const agent::Knowledge<Pack>& knowledge(int i) const { return source_->knowledge(i); }
-  /// What an AUV would know that saw its own state and its target truly; of neighbours nothing.
+  /// What an AUV would know if it saw its own state and its target truly, and no neighbour.
   agent::Knowledge<Pack> Truth(int i) const;
   AcousticSource& acoustic() const;  ///< acoustic mode only
 

@@ -6,7 +6,7 @@
 
 namespace stg::env {
 
-std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFactory& make_act,
+std::vector<task::EpisodeMetrics> Evaluate(const EnvFactory& make_env, const ActFactory& make_act,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress) {
   assert(options.episodes > 0 && options.block > 0 && options.block % kMixBlock == 0);
@@ -20,7 +20,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
     o.envs = options.block;
     o.first_env = b * options.block;
     o.total_envs = blocks * options.block;
-    VectorEnv env(scenario, o);
+    VectorEnv env = make_env.Make(o);
     EnvMemory memory = env.MakeMemory();
     const ActFunction act = make_act(env, worker);
     std::vector<double> actions(
@@ -46,7 +46,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFa
   return metrics;
 }
 
-std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario,
+std::vector<task::EpisodeMetrics> Evaluate(const EnvFactory& make_env,
                                            const agent::Decider& controller,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress) {
@@ -55,7 +55,7 @@ std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario,
       Decide(controller, env, observations, actions);
     };
   };
-  return Evaluate(scenario, make_act, options, pool, progress);
+  return Evaluate(make_env, make_act, options, pool, progress);
 }
 
 }  // namespace stg::env

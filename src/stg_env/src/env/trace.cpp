@@ -151,7 +151,8 @@ void ReadSteps(const std::string& file, Trace* trace) {
 /// Our value of every column we know, by name.
 using Columns = std::map<std::string, std::pair<std::string, std::function<double(int)>>>;
 
-Columns OurColumns(const VectorEnv& env, const EnvMemory& memory, const Scenario& s) {
+Columns OurColumns(const VectorEnv& env, const EnvMemory& memory,
+                   const dynamics::VehicleConfig& vehicle) {
   Columns c;
   const auto add = [&](const std::string& group, const std::string& name,
                        std::function<double(int)> f) {
@@ -173,7 +174,7 @@ Columns OurColumns(const VectorEnv& env, const EnvMemory& memory, const Scenario
   vec("target", {"tpx", "tpy", "tpz"}, [target](int i) { return target(i).p_WT; });
   vec("target", {"tvx", "tvy", "tvz"}, [target](int i) { return target(i).v_WT; });
   for (int k = 0; k < 6; ++k) {
-    const double max = s.world.vehicle.max_tau[static_cast<size_t>(k)];
+    const double max = vehicle.max_tau[static_cast<size_t>(k)];
     add("tau", "tau" + std::to_string(k),
         [&env, k, max](int i) { return env.knowledge(0, i).tau[k] * max; });
   }
@@ -257,7 +258,7 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
   VectorEnv env(s, options);
   EnvMemory memory = env.MakeMemory();
   env.Place(trace.p_WB, trace.p_WT, trace.v_WT, memory.arrays());
-  const Columns ours = OurColumns(env, memory, s);
+  const Columns ours = OurColumns(env, memory, s.world.vehicle);
   const int n = s.run.agents, size = s.world.control.action_size();
   std::map<std::string, size_t> column;
   for (size_t c = 0; c < trace.columns.size(); ++c) column[trace.columns[c]] = c;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "acoustic_channel/channel/packet_observer.hpp"
 #include "acoustic_channel/log/packet_log.hpp"
@@ -15,7 +16,6 @@
 #include "auv_dynamics/terrain/seascape.hpp"
 #include "stg_agent/graph/task_view.hpp"
 #include "stg_env/record/message.hpp"
-#include "stg_env/record/scene.hpp"
 
 namespace stg::env {
 namespace {
@@ -94,14 +94,13 @@ class PacketRows : public acoustics::PacketObserver {
 /// Rows of the message `steps`.
 class StepRows {
  public:
-  explicit StepRows(const Scenario& scenario) : s_(scenario) {
+  StepRows(task::JudgeConfig judge, bool acoustic) : s_(std::move(judge)), acoustic_(acoustic) {
     if (s_.world.sea.open) sea_.emplace(s_.world.sea, s_.world.workspace.half_extent_m);
   }
 
   int rows() const { return static_cast<int>(c_.t.size()); }
 
   void Add(const VectorEnv& env, int e, TimeNs offset, double reward) {
-    const bool acoustic = s_.mode == InformationMode::kAcoustic;
     const TimeNs now = env.time(e);
     c_.t.push_back(Seconds(now + offset));
     c_.reward.push_back(static_cast<float>(reward));
@@ -116,13 +115,13 @@ class StepRows {
       c_.phase.push_back(static_cast<std::uint8_t>(agent::PhaseOf(s_.agent.observation, known)));
       c_.distance.push_back(static_cast<float>(env.tracking(e, i).distance));
       dynamics::Detection detection;
-      const bool detected = acoustic && env.Sense(e, i, env.followed(e, i), &detection);
+      const bool detected = acoustic_ && env.Sense(e, i, env.followed(e, i), &detection);
       c_.detected.push_back(detected ? 1 : 0);
       c_.followed.push_back(static_cast<std::uint8_t>(env.followed(e, i)));
       const bool ranged = detected && detection.kind == dynamics::MeasurementKind::kRange;
       c_.range.push_back(ranged ? static_cast<float>(detection.range_m) : kUnknown);
       c_.aground.push_back(Touches(v.p_WB));
-      if (acoustic) {
+      if (acoustic_) {
         AddBelief(env, e, i, now);
       } else {
         Put(&c_.estimate, known.p_WB + known.r_BT_W);
@@ -212,7 +211,8 @@ class StepRows {
   inline static const std::vector<std::string> kTerms = {
       "track", "observation", "coordination", "communication", "semantic", "separation", "cost"};
 
-  const Scenario& s_;
+  const task::JudgeConfig s_;
+  const bool acoustic_;
   std::optional<dynamics::Seascape> sea_;
   Columns c_;
 };
@@ -220,16 +220,14 @@ class StepRows {
 /// The episodes of one recording.
 class Recorder {
  public:
-  Recorder(const Scenario& s, const agent::Decider& controller, std::ostream* out,
+  Recorder(const EnvFactory& make_env, const agent::Decider& controller, std::ostream* out,
            std::ostream* csv)
-      : s_(s), controller_(controller), out_(out), csv_(csv) {}
+      : make_env_(make_env), controller_(controller), out_(out), csv_(csv) {}
 
-  void Meta(const std::string& condition) {
+  void Meta(nlohmann::json scene) {
     *out_ << kRecordingMagic;
-    nlohmann::json scene = SceneOf(s_);
     scene["source"] = "evaluate --record";
     scene["policy"] = controller_.name;
-    scene["condition"] = condition;
     *out_ << Message("meta", {{"meta", scene}}).Bytes();
   }
 
@@ -240,34 +238,35 @@ class Recorder {
     o.envs = kMixBlock;
     o.first_env = episode / kMixBlock * kMixBlock;
     o.total_envs = total;
-    VectorEnv env(s_, o);
+    VectorEnv env = make_env_.Make(o);
     EnvMemory memory = env.MakeMemory();
     std::vector<double> actions(static_cast<std::size_t>(env.envs() * env.agents()) *
                                 static_cast<std::size_t>(env.action_size()));
     const int e = episode % kMixBlock;
+    const Scenario& s = env.scenario(e);
     env.Reset(memory.arrays());
     std::ostringstream own_log;
-    PacketRows packets(s_.run.agents, offset_, &own_log);
-    const bool acoustic = s_.mode == InformationMode::kAcoustic;
+    PacketRows packets(s.run.agents, offset_, &own_log);
+    const bool acoustic = s.mode == InformationMode::kAcoustic;
     if (acoustic) env.ObservePackets(e, &packets);
     *out_ << Message("episode", {{"episode", episode},
                                  {"seed", seed + static_cast<std::uint64_t>(episode)},
                                  {"start", Seconds(offset_)}})
                  .Bytes();
-    StepRows steps(s_);
+    StepRows steps(s.judge(), acoustic);
     double reward = 0.0;
     while (true) {
       steps.Add(env, e, offset_, reward);
       if (steps.rows() == kRowsOfMessage) *out_ << steps.Take().Bytes();
       // The last decision starts the next episode at once, whose packets are not of this one.
-      const bool last = env.step(e) + 1 == s_.run.time.episode_steps;
+      const bool last = env.step(e) + 1 == s.run.time.episode_steps;
       const TimeNs now = env.time(e);
       if (acoustic && last) env.ObservePackets(e, nullptr);
       Decide(controller_, env, memory.observations.data(), actions.data());
       env.Step(actions.data(), memory.arrays());
       reward = static_cast<double>(memory.team_rewards[static_cast<std::size_t>(e)]);
       if (!last) continue;
-      offset_ += now + s_.run.decision_period();
+      offset_ += now + s.run.decision_period();
       break;
     }
     if (steps.rows() > 0) *out_ << steps.Take().Bytes();
@@ -280,7 +279,7 @@ class Recorder {
   }
 
  private:
-  const Scenario& s_;
+  const EnvFactory& make_env_;
   const agent::Decider& controller_;
   std::ostream *out_, *csv_;
   TimeNs offset_ = 0;
@@ -295,9 +294,9 @@ void Finish(std::ofstream* out, DurableFile* file) {
 
 }  // namespace
 
-void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, std::uint64_t seed,
-                    int flown, int recorded, const std::string& folder,
-                    const std::string& condition) {
+void RecordEpisodes(const EnvFactory& make_env, const nlohmann::json& scene,
+                    const agent::Decider& controller, std::uint64_t seed, int flown, int recorded,
+                    const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw UserError(folder + ": cannot make the folder: " + error.message());
@@ -305,8 +304,8 @@ void RecordEpisodes(const Scenario& scenario, const agent::Decider& controller, 
   DurableFile log(folder + "/packets.csv", "the packet log");
   std::ofstream out(recording.temporary(), std::ios::binary);
   std::ofstream csv(log.temporary(), std::ios::binary);
-  Recorder recorder(scenario, controller, &out, &csv);
-  recorder.Meta(condition);
+  Recorder recorder(make_env, controller, &out, &csv);
+  recorder.Meta(scene);
   const int total = (flown + kMixBlock - 1) / kMixBlock * kMixBlock;
   for (int e = 0; e < std::min(flown, recorded); ++e) recorder.Fly(e, seed, total);
   Finish(&out, &recording);

@@ -36,7 +36,7 @@ nlohmann::json ObstaclesOf(const dynamics::Seascape& sea) {
 
 }  // namespace
 
-nlohmann::json SceneOf(const Scenario& s) {
+nlohmann::json SceneOf(const task::JudgeConfig& s, const acoustics::ChannelConfig& channel) {
   nlohmann::json scene = {{"scenario", s.run.name},
                           {"agents", s.run.agents},
                           {"targets", s.world.target.count},
@@ -47,8 +47,8 @@ nlohmann::json SceneOf(const Scenario& s) {
                           {"lost_distance_m", s.agent.task.lost_distance_m},
                           {"sensing_range_m", s.world.sensing.range_m},
                           {"radius_m", s.world.vehicle.radius_m},
-                          {"channel", s.channel.model},
-                          {"access", s.channel.access}};
+                          {"channel", channel.model},
+                          {"access", channel.access}};
   if (!s.world.sea.open) return scene;
   try {
     const dynamics::Seascape sea(s.world.sea, s.world.workspace.half_extent_m);

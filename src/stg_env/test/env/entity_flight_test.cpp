@@ -156,11 +156,12 @@ TEST(EntityFlight, OneFileFliesSwarmsOfOneToTwentyAndIsTheSameOnAnyBlock) {
     const Scenario s = Short(Shipped("field", "nominal", {"agents=" + std::to_string(agents)}), 30);
     EvaluationOptions o;
     o.episodes = 4;
-    const auto metrics = Evaluate(s, c, o, nullptr);
+    const auto metrics = Evaluate(EnvFactory(s), c, o, nullptr);
     ASSERT_EQ(metrics.size(), 4u);
     EXPECT_TRUE(std::isfinite(metrics.front().episode_return));
     o.block = 8;
-    EXPECT_EQ(Evaluate(s, c, o, nullptr).front().episode_return, metrics.front().episode_return);
+    EXPECT_EQ(Evaluate(EnvFactory(s), c, o, nullptr).front().episode_return,
+              metrics.front().episode_return);
   }
 }
 

@@ -18,7 +18,7 @@ namespace {
 std::vector<task::EpisodeMetrics> Fly(const Scenario& s, const agent::Decider& c, int episodes,
                                       std::uint64_t seed, int workers = 1) {
   WorkerPool pool(workers);
-  return Evaluate(s, c, {episodes, seed, kMixBlock}, &pool);
+  return Evaluate(EnvFactory(s), c, {episodes, seed, kMixBlock}, &pool);
 }
 
 double Value(const task::EpisodeMetrics& m, const std::string& name) {
@@ -58,10 +58,11 @@ TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
 TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
   const Scenario s = Short(Shipped("medium_release"), 5);
   int last = 0;
-  Evaluate(s, agent::MakeDecider("idle", s.model()), {6, 1, kMixBlock}, nullptr, [&](int done) {
-    EXPECT_GT(done, last);
-    last = done;
-  });
+  Evaluate(EnvFactory(s), agent::MakeDecider("idle", s.model()), {6, 1, kMixBlock}, nullptr,
+           [&](int done) {
+             EXPECT_GT(done, last);
+             last = done;
+           });
   EXPECT_EQ(last, 6);
 }
 

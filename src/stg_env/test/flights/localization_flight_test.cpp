@@ -18,8 +18,8 @@ constexpr int kFlights = 8;
 task::MetricSummary Fly(const std::string& condition, const std::vector<std::string>& keys = {}) {
   Scenario s = Short(Shipped("deep", condition, keys), 900);
   s.run.time.tail_steps = 300;
-  const auto flights =
-      Evaluate(s, agent::MakeDecider("encircle", s.model()), {kFlights, 500, kMixBlock}, nullptr);
+  const auto flights = Evaluate(EnvFactory(s), agent::MakeDecider("encircle", s.model()),
+                                {kFlights, 500, kMixBlock}, nullptr);
   task::MetricSummary m = task::Summarise(flights);
   std::printf(
       "%-18s position %.1f m, NEES %.2f; relative %.2f m; target in own frame %.1f m; band %.3f, "

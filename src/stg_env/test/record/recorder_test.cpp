@@ -14,6 +14,7 @@
 #include "auv_common/error.hpp"
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/record/message.hpp"
+#include "stg_env/record/scene.hpp"
 
 namespace stg::env {
 namespace {
@@ -85,8 +86,10 @@ class RecorderTest : public testing::Test {
                              {"time.episode_steps=60", "time.tail_steps=20"});
   }
   std::vector<Read> Record(const Scenario& s, int flown, int recorded) {
-    RecordEpisodes(s, agent::MakeDecider("pursuit", s.model()), 3000, flown, recorded, folder_,
-                   "combined_stress");
+    nlohmann::json scene = SceneOf(s.judge(), s.channel);
+    scene["condition"] = "combined_stress";
+    RecordEpisodes(EnvFactory(s), scene, agent::MakeDecider("pursuit", s.model()), 3000, flown,
+                   recorded, folder_);
     return ReadAll(FileText(folder_ + "/recording.stgv"));
   }
 
@@ -97,7 +100,8 @@ TEST_F(RecorderTest, FliesWhatTheEvaluationFlies) {
   const Scenario s = Short("medium");
   EvaluationOptions options;
   options.episodes = 6;
-  const auto metrics = Evaluate(s, agent::MakeDecider("pursuit", s.model()), options, nullptr);
+  const auto metrics =
+      Evaluate(EnvFactory(s), agent::MakeDecider("pursuit", s.model()), options, nullptr);
   std::size_t episode = 0;
   for (const Read& read : Record(s, 6, 6)) {
     if (read.header["kind"] != "summary") continue;
@@ -204,7 +208,8 @@ TEST_F(RecorderTest, RangesAreNearTheDistanceWhereOneIsMeasured) {
 TEST_F(RecorderTest, FolderThatCannotBeMadeIsTheUsersError) {
   const Scenario s = Short("medium");
   EXPECT_THROW(
-      RecordEpisodes(s, agent::MakeDecider("pursuit", s.model()), 0, 1, 1, "/dev/null/folder"),
+      RecordEpisodes(EnvFactory(s), SceneOf(s.judge(), s.channel),
+                     agent::MakeDecider("pursuit", s.model()), 0, 1, 1, "/dev/null/folder"),
       UserError);
 }
 

@@ -9,13 +9,14 @@
 
 #include "auv_common/config/loader.hpp"
 #include "stg_env/record/scene.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 int main() {
   try {
     const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
     const auto scenario =
         stg::config::LoadText<stg::Scenario>(text, "the scenario", stg::config::Unread::kPassOver);
-    std::cout << stg::env::SceneOf(scenario).dump() << "\n";
+    std::cout << stg::env::SceneOf(scenario.judge(), scenario.channel).dump() << "\n";
     return 0;
   } catch (const std::exception& e) {
     std::cerr << "view_scene: " << e.what() << "\n";

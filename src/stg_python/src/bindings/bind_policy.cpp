@@ -123,7 +123,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
     env::EvaluationOptions options;
     options.episodes = episodes;
     options.seed = seed;
-    summary = task::Summarise(env::Evaluate(scenario, controller, options, &pool));
+    summary = task::Summarise(env::Evaluate(env::EnvFactory(scenario), controller, options, &pool));
   }
   py::dict all;
   for (std::size_t k = 0; k < summary.names.size(); ++k) {

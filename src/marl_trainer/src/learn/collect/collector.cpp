@@ -6,19 +6,19 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/stopwatch.hpp"
 #include "stg_env/env/decide.hpp"
-#include "stg_env/env/vector_env.hpp"
+#include "stg_env/task/critic_state.hpp"
 
 namespace stg::learn {
 
-Problem ProblemOf(const Scenario& scenario) {
-  const env::VectorEnv env(scenario, env::VectorEnvOptions());
+Problem ProblemOf(const RunConfig& run, const dynamics::WorldConfig& world,
+                  const agent::AgentConfig& agent) {
   Problem problem;
-  problem.agents = env.agents();
-  problem.observation_size = env.observation_size();
-  problem.state_size = env.state_size();
-  problem.action_size = env.action_size();
-  problem.action_scale = scenario.world.control.action_scale;
-  problem.workspace_half_extent_m = scenario.world.workspace.half_extent_m;
+  problem.agents = run.agents;
+  problem.observation_size = agent.observation_size();
+  problem.state_size = task::CriticStateSize(run, world);
+  problem.action_size = world.control.action_size();
+  problem.action_scale = world.control.action_scale;
+  problem.workspace_half_extent_m = world.workspace.half_extent_m;
   return problem;
 }
 
@@ -31,18 +31,18 @@ std::string PastName(int first_env) { return "actions_" + std::to_string(first_e
 /// The environments of one shard, and memory for one step.
 class Collector::Unit {
  public:
-  Unit(const std::vector<Scenario>& mix, const TrainConfig& config,
-       const ImitationConfig* imitation, const Shard& shard)
+  Unit(const env::EnvFactory& make_env, const TrainConfig& config, const ImitationConfig* imitation,
+       const Shard& shard)
       : seed_(TrainingSeed(config.seed)),
         shard_(shard),
-        env_(mix, EnvOptions(config, shard)),
+        env_(make_env.Make(EnvOptions(config, shard))),
         now_(env_.MakeMemory()),
         next_(env_.MakeMemory()) {
     const auto rows = static_cast<std::size_t>(shard.envs * env_.agents());
     actions_.resize(rows * static_cast<std::size_t>(env_.action_size()));
     log_prob_.resize(rows);
     if (imitation != nullptr && !imitation->controller.empty()) {
-      teacher_ = agent::MakeDecider(imitation->controller, mix.front().model());
+      teacher_ = agent::MakeDecider(imitation->controller, make_env.model());
       teacher_->privileged = imitation->privileged;
       teacher_actions_.resize(actions_.size());
       taught_.resize(actions_.size());
@@ -149,7 +149,7 @@ void Collector::Unit::AskTeacher() {
                  [](double a) { return static_cast<float>(a); });
 }
 
-Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config,
+Collector::Collector(const env::EnvFactory& make_env, const TrainConfig& config,
                      const ImitationConfig* imitation, const Team& team)
     : envs_(config.envs), horizon_(config.horizon), team_(team) {
   const GroupShare share = team.share();
@@ -159,7 +159,7 @@ Collector::Collector(const std::vector<Scenario>& mix, const TrainConfig& config
                   "must be " + std::to_string(GroupShare::kBlock) + " for each rank at least");
   }
   for (const Shard& shard : ShardsOf(share, share.first, share.count, config.envs)) {
-    units_.push_back(std::make_unique<Unit>(mix, config, imitation, shard));
+    units_.push_back(std::make_unique<Unit>(make_env, config, imitation, shard));
   }
   for (const Shard& shard : ShardsOf(share, 0, share.groups, config.envs)) {
     places_.insert(PastName(shard.first_env));

@@ -103,7 +103,7 @@ RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainSetup& set
     : scenario_(scenario),
       setup_(Fit(setup, scenario.run, start.get())),
       options_(options),
-      problem_(ProblemOf(scenario)),
+      problem_(ProblemOf(scenario.run, scenario.world, scenario.agent)),
       pool_(options.workers),
       algorithm_(setup_.own->Make(setup_.common, problem_, &pool_)),
       folder_(options.out, options.log) {
@@ -216,7 +216,9 @@ RecordedTrainer::Progress RecordedTrainer::Update(const std::vector<RecordedEpis
 
 agent::Policy RecordedTrainer::MakePolicy() const {
   const std::string id = scenario_.run.name + "-recorded-" + std::to_string(state_.env_steps);
-  agent::PolicyMetadata m = MetadataOf(scenario_, id, state_.env_steps, setup_.common.seed);
+  agent::PolicyMetadata m =
+      MetadataOf(scenario_.agent.observation, scenario_.world.control, ScenarioHash(scenario_), id,
+                 state_.env_steps, setup_.common.seed);
   std::vector<agent::Policy> policies = algorithm_->Policies(m);
   if (policies.size() != 1) {
     throw UserError(setup_.algorithm +

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 std::string MixFile(std::size_t k) { return "train_on_" + std::to_string(k) + ".yaml"; }
 
-void WriteScenario(const fs::path& file, const Scenario& scenario) {
-  WriteDurably(ToYaml(scenario), file.string(), "the scenario");
+void WriteScenario(const fs::path& file, const std::string& yaml) {
+  WriteDurably(yaml, file.string(), "the scenario");
 }
 
 }  // namespace
@@ -36,8 +36,8 @@ bool RunFolder::HoldsRun() const {
   return false;
 }
 
-void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
-                           const std::vector<Scenario>& mix) const {
+void RunFolder::WriteSetup(const nlohmann::ordered_json& config, const std::string& scenario,
+                           const std::vector<std::string>& mix) const {
   const fs::path folder(path_);
   WriteDurably(config.dump(2) + "\n", (folder / "config.json").string(), "the configuration");
   WriteScenario(folder / "scenario.yaml", scenario);
@@ -105,13 +105,15 @@ void RequireSameRun(const TrainState& state, const nlohmann::ordered_json& ours,
   }
 }
 
-agent::PolicyMetadata MetadataOf(const Scenario& scenario, const std::string& id,
+agent::PolicyMetadata MetadataOf(const agent::ObservationConfig& observation,
+                                 const dynamics::ControlConfig& control,
+                                 const std::string& scenario_hash, const std::string& id,
                                  std::int64_t training_step, std::uint64_t seed) {
   agent::PolicyMetadata m;
   m.id = id;
-  m.observation_layout = agent::ObservationLayout(scenario.agent.observation);
-  m.action_interface = agent::ActionInterfaceName(scenario.world.control.interface);
-  m.scenario_hash = ScenarioHash(scenario);
+  m.observation_layout = agent::ObservationLayout(observation);
+  m.action_interface = agent::ActionInterfaceName(control.interface);
+  m.scenario_hash = scenario_hash;
   m.training_step = training_step;
   m.seed = seed;
   return m;

@@ -97,11 +97,11 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
       mix_(Mix(scenario, options.mix, setup)),
       setup_(setup),
       options_(options),
-      problem_(ProblemOf(train_scenario_)),
+      problem_(ProblemOf(train_scenario_.run, train_scenario_.world, train_scenario_.agent)),
       pool_(options.workers),
       team_(&pool_, options.ranks),
       algorithm_(AtStart(setup_, problem_, options_, team_)),
-      collector_(mix_, setup_.common, setup_.own->Imitation(), team_),
+      collector_(env::EnvFactory(mix_), setup_.common, setup_.own->Imitation(), team_),
       folder_(options.out, options.log) {
   if (leads()) folder_.Lock();
   UseOneBlasThread();
@@ -116,7 +116,9 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
   // Before anybody writes, all have seen what was there.
   team_.ranks->GatherBytes({});
   if (!leads()) return;
-  folder_.WriteSetup(ToJson(setup_), scenario_, options.mix);
+  std::vector<std::string> mix;
+  for (const Scenario& s : options.mix) mix.push_back(ToYaml(s));
+  folder_.WriteSetup(ToJson(setup_), ToYaml(scenario_), mix);
   log_ = std::make_unique<TrainLog>(options_.out, algorithm_->Columns(),
                                     options_.resume ? state_.env_steps : -1, setup_.common.steps,
                                     options_.log);
@@ -235,8 +237,8 @@ void Trainer::Iterate(TrainRecord* record) {
 void Trainer::RunValidation(TrainRecord* record) {
   const Stopwatch watch;
   const auto fly = [this](const Scenario& scenario) {
-    return task::Summarise(
-        Validate(scenario, setup_.common.validation_episodes, algorithm_.get(), team_));
+    return task::Summarise(Validate(env::EnvFactory(scenario), setup_.common.validation_episodes,
+                                    algorithm_.get(), team_));
   };
   last_validation_ = fly(train_scenario_);
   // The same flights: a reward has no effect on them.
@@ -286,7 +288,9 @@ void Trainer::SavePolicy(const std::string& name) const {
   const TrainConfig& config = setup_.common;
   const std::string id = scenario_.run.name + "-" + config.variant + "-" + config.preset + "-seed" +
                          std::to_string(config.seed) + "-" + std::to_string(state_.env_steps);
-  agent::PolicyMetadata m = MetadataOf(train_scenario_, id, state_.env_steps, config.seed);
+  agent::PolicyMetadata m =
+      MetadataOf(train_scenario_.agent.observation, train_scenario_.world.control,
+                 ScenarioHash(train_scenario_), id, state_.env_steps, config.seed);
   for (const char* metric : {"return", "scenario_return", "tail_distance", "tracking_error",
                              "lost_rate", "tail_colliding_pairs"}) {
     if (last_validation_.names.empty()) break;

@@ -12,7 +12,7 @@ constexpr int kBlock = 16;  // environments whose actions one pass through the n
 
 }  // namespace
 
-std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
+std::vector<task::EpisodeMetrics> Validate(const env::EnvFactory& make_env, int episodes,
                                            Algorithm* algorithm, const Team& team) {
   const env::ActFactory make_act = [algorithm](const env::VectorEnv& env,
                                                int worker) -> env::ActFunction {
@@ -41,7 +41,7 @@ std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episode
   options.episodes = first(team.ranks->rank() + 1) - begin;
   options.seed += static_cast<std::uint64_t>(begin);
   std::vector<task::EpisodeMetrics> own;
-  if (options.episodes > 0) own = env::Evaluate(scenario, make_act, options, team.pool);
+  if (options.episodes > 0) own = env::Evaluate(make_env, make_act, options, team.pool);
   return team.ranks->Gather(own);
 }
 

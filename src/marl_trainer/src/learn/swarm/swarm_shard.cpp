@@ -29,8 +29,8 @@ env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int
 }
 
 /// Decisions that a command lasts.
-int DecisionsOf(const Scenario& s) {
-  return static_cast<int>(std::lround(agent::kCommandPeriod_s / s.run.decision_dt_s()));
+int DecisionsOf(const RunConfig& run) {
+  return static_cast<int>(std::lround(agent::kCommandPeriod_s / run.decision_dt_s()));
 }
 
 }  // namespace
@@ -51,21 +51,22 @@ SwarmRollout::SwarmRollout()
       finals(RowSizes(SwarmCriticSpec())),
       next(RowSizes(SwarmCriticSpec())) {}
 
-SwarmShard::SwarmShard(const Scenario& scenario, const SwarmConfig& config, int first_env, int envs,
-                       int total_envs)
+SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& config, int first_env,
+                       int envs, int total_envs)
     : config_(config),
       first_env_(first_env),
-      env_(scenario, ShardOptions(config, first_env, envs, total_envs)),
+      env_(make_env.Make(ShardOptions(config, first_env, envs, total_envs))),
       memory_(env_.MakeMemory()),
       entities_(static_cast<std::size_t>(envs * env_.agents())),
       now_(RowSizes(agent::EntityGraphSpec(1))),
       last_(RowSizes(SwarmCriticSpec())) {
+  const Scenario& scenario = env_.scenario();
   if (scenario.mode != InformationMode::kAcoustic) {
     throw UserError("scenario '" + scenario.run.name +
                     "': entities are what an AUV finds out by itself, so mode must be acoustic");
   }
   const int blocks = std::max(1, total_envs / env::kMixBlock);
-  if (config.episode_steps % (blocks * DecisionsOf(scenario)) != 0) {
+  if (config.episode_steps % (blocks * DecisionsOf(scenario.run)) != 0) {
     throw UserError("episode_steps: " + std::to_string(config.episode_steps) +
                     " decisions are no whole commands for " + std::to_string(blocks) +
                     " blocks of environments");
@@ -134,7 +135,7 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
 }
 
 void SwarmShard::FlyOn(int step, SwarmRollout* out) {
-  const int n = env_.agents(), size = env_.action_size(), period = DecisionsOf(env_.scenario());
+  const int n = env_.agents(), size = env_.action_size(), period = DecisionsOf(env_.scenario().run);
   std::fill(sums_.begin(), sums_.end(), 0.0F);
   for (int d = 0; d < period; ++d) {
     for (int e = 0; e < env_.envs(); ++e) {

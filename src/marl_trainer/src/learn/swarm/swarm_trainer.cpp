@@ -51,9 +51,9 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
   }
   if (!there && options.resume) throw UserError(options.out + ": holds no training to resume");
   for (int k = 0; k < count; ++k) {
-    shards_.push_back(std::make_unique<SwarmShard>(mixture_[static_cast<std::size_t>(k)].scenario,
-                                                   config, k * kShardEnvs, kShardEnvs,
-                                                   config.envs));
+    shards_.push_back(std::make_unique<SwarmShard>(
+        env::EnvFactory(mixture_[static_cast<std::size_t>(k)].scenario), config, k * kShardEnvs,
+        kShardEnvs, config.envs));
   }
   rollouts_.resize(shards_.size());
   if (there) {
@@ -165,7 +165,8 @@ void SwarmTrainer::Validate() {
     table_ += "\n";
   }
   for (const SwarmTask& task : validation_) {
-    const task::MetricSummary s = task::Summarise(env::Evaluate(task.scenario, factory, o, &pool_));
+    const task::MetricSummary s =
+        task::Summarise(env::Evaluate(env::EnvFactory(task.scenario), factory, o, &pool_));
     sum += s.Mean("band_share") / static_cast<double>(validation_.size());
     std::string line = std::to_string(steps_) + "," + Number(seconds_) + "," + task.name;
     for (const std::string& c : columns) line += "," + Number(s.Mean(c));

@@ -38,7 +38,7 @@ TEST_F(TrainerTest, TheBestPolicyIsChosenByTheTrainingsOwnReward) {
   // The two returns are of the last policy by the two rewards, flown here once more.
   WorkerPool pool(1);
   const auto fly = [&](const Scenario& s) {
-    return task::Summarise(Validate(s, 4, &trainer.algorithm(), &pool));
+    return task::Summarise(Validate(env::EnvFactory(s), 4, &trainer.algorithm(), &pool));
   };
   const auto by_own = fly(env::VariantScenario(scenario, "tau6"));
   const auto by_scenario = fly(env::EvaluationScenario(scenario, "tau6"));

@@ -25,13 +25,13 @@ struct EvaluationOptions {
   int block = kMixBlock;
 };
 
-/// Runs whole episodes on the threads of `pool`; null: on this one. The result does not depend on
-/// the number of threads.
+/// Runs whole episodes in environments of `make_env` on the threads of `pool`; null: on this one.
+/// The result does not depend on the number of threads.
 /// @param progress called with the number of finished episodes; may be empty.
-std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario, const ActFactory& make_act,
+std::vector<task::EpisodeMetrics> Evaluate(const EnvFactory& make_env, const ActFactory& make_act,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress = {});
-std::vector<task::EpisodeMetrics> Evaluate(const Scenario& scenario,
+std::vector<task::EpisodeMetrics> Evaluate(const EnvFactory& make_env,
                                            const agent::Decider& controller,
                                            const EvaluationOptions& options, WorkerPool* pool,
                                            const std::function<void(int)>& progress = {});

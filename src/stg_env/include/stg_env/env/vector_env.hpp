@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "stg_agent/agent/agent_view.hpp"
@@ -143,6 +144,21 @@ class VectorEnv {
   std::vector<task::EpisodeMetrics> finished_;  // [envs]
   std::vector<Pack> wanted_;                    // [slices, agents, action_size]
   std::vector<float> rows_;                     // [lanes], scratch of Finish
+};
+
+/// Makes environments for code that flies them and need not know what their scenario says.
+class EnvFactory {
+ public:
+  /// @param mix scenarios as VectorEnv takes them; not empty
+  explicit EnvFactory(std::vector<Scenario> mix) : mix_(std::move(mix)) {}
+  explicit EnvFactory(const Scenario& scenario) : EnvFactory(std::vector<Scenario>{scenario}) {}
+
+  VectorEnv Make(const VectorEnvOptions& options) const { return {mix_, options}; }
+  /// What agents of the first scenario know.
+  agent::AgentModel model() const { return mix_.front().model(); }
+
+ private:
+  std::vector<Scenario> mix_;
 };
 
 }  // namespace stg::env

@@ -10,7 +10,7 @@
 #include "marl_trainer/learn/collect/imitation.hpp"
 #include "marl_trainer/learn/comm/team.hpp"
 #include "marl_trainer/learn/train_config.hpp"
-#include "stg_env/scenario/scenario.hpp"
+#include "stg_env/env/vector_env.hpp"
 #include "stg_env/task/metrics.hpp"
 
 namespace stg::learn {
@@ -23,18 +23,20 @@ struct CollectionReport {
   double env_seconds = 0.0, inference_seconds = 0.0;
 };
 
-/// Sizes that an algorithm needs of a scenario.
-Problem ProblemOf(const Scenario& scenario);
+/// Sizes that an algorithm needs.
+Problem ProblemOf(const RunConfig& run, const dynamics::WorldConfig& world,
+                  const agent::AgentConfig& agent);
 
 /// Brings environments and algorithm together: the one collection loop. The environments are cut
 /// into fixed shards that a worker steps through a whole collection without waiting for others, so
 /// results depend neither on the number of workers nor on that of ranks.
 class Collector {
  public:
-  /// @param mix scenarios that the environments cycle through, see env::VectorEnv; of one layout.
+  /// @param make_env of the scenarios that the environments cycle through; its agents know what
+  /// the controller to imitate knows.
   /// @param imitation whose controller to ask; null: none
   /// @param team whose ranks have a share of the environments each.
-  Collector(const std::vector<Scenario>& mix, const TrainConfig& config,
+  Collector(const env::EnvFactory& make_env, const TrainConfig& config,
             const ImitationConfig* imitation, const Team& team);
   ~Collector();
 

@@ -30,9 +30,9 @@ class RunFolder {
   bool HoldsRun() const;
 
   /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml; UserError when that
-  /// fails.
-  void WriteSetup(const nlohmann::ordered_json& config, const Scenario& scenario,
-                  const std::vector<Scenario>& mix) const;
+  /// fails. @param scenario, mix as ToYaml writes them
+  void WriteSetup(const nlohmann::ordered_json& config, const std::string& scenario,
+                  const std::vector<std::string>& mix) const;
 
   std::optional<TrainState> Newest() const { return LoadNewestCheckpoint(path_, log_); }
   /// Writes a checkpoint and removes all but the newest `keep`.
@@ -65,7 +65,10 @@ void RequireSameRun(const TrainState& theirs, const nlohmann::ordered_json& ours
                     const std::string& scenario, const std::string& where);
 
 /// What every exported policy tells about itself.
-agent::PolicyMetadata MetadataOf(const Scenario& scenario, const std::string& id,
+/// @param scenario_hash see ScenarioHash
+agent::PolicyMetadata MetadataOf(const agent::ObservationConfig& observation,
+                                 const dynamics::ControlConfig& control,
+                                 const std::string& scenario_hash, const std::string& id,
                                  std::int64_t training_step, std::uint64_t seed);
 
 }  // namespace stg::learn

@@ -4,7 +4,7 @@
 
 #include "marl_trainer/learn/algorithm.hpp"
 #include "marl_trainer/learn/comm/team.hpp"
-#include "stg_env/scenario/scenario.hpp"
+#include "stg_env/env/vector_env.hpp"
 #include "stg_env/task/metrics.hpp"
 
 namespace stg::learn {
@@ -13,7 +13,7 @@ namespace stg::learn {
 /// (seeds kValidationSeed + r, in the scenario's own stage).
 /// @param team whose ranks fly a share of them each
 /// @return one entry per episode, in order.
-std::vector<task::EpisodeMetrics> Validate(const Scenario& scenario, int episodes,
+std::vector<task::EpisodeMetrics> Validate(const env::EnvFactory& make_env, int episodes,
                                            Algorithm* algorithm, const Team& team);
 
 }  // namespace stg::learn

@@ -47,7 +47,7 @@ double ShareCovered(const std::vector<int>& inside);
 class SwarmShard {
  public:
   /// @param first_env index of the first environment among all, @param total_envs of all
-  SwarmShard(const Scenario& scenario, const SwarmConfig& config, int first_env, int envs,
+  SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& config, int first_env, int envs,
              int total_envs);
 
   /// Starts the k-th episode of every environment; their first ones are cut to different lengths.
