@@ -24,16 +24,16 @@ ModemChannel::ModemChannel(const ChannelConfig& config, const RunConfig& run,
       freshness_s_(config.modem.freshness_s),
       addresses_(modems.addresses),
       table_(run.agents),
-      sequences_(static_cast<std::size_t>(run.agents)),
-      given_(sequences_.size()),
-      outgoing_(sequences_.size()),
-      received_(sequences_.size()),
-      health_(sequences_.size()) {
-  if (modems.ports.size() != sequences_.size()) {
+      sequences_(static_cast<std::size_t>(run.agents) * static_cast<std::size_t>(run.agents)),
+      given_(static_cast<std::size_t>(run.agents)),
+      outgoing_(given_.size()),
+      received_(given_.size()),
+      health_(given_.size()) {
+  if (modems.ports.size() != given_.size()) {
     throw UserError("parameter ports: " + std::to_string(modems.ports.size()) + " modems for " +
                     std::to_string(run.agents) + " agents");
   }
-  for (int i = 0; addresses_.size() < sequences_.size(); ++i) addresses_.push_back(i + 1);
+  for (int i = 0; addresses_.size() < given_.size(); ++i) addresses_.push_back(i + 1);
   for (std::size_t i = 0; i < modems.ports.size(); ++i) {
     DriverOptions options;
     options.address = addresses_[i];
@@ -127,7 +127,8 @@ void ModemChannel::Deliver(int receiver, TimeNs /*until*/, std::vector<Reception
     r.source = source;
     r.receiver = receiver;
     r.destination = heard.destination == kToAll ? kToAll : receiver;
-    r.sequence = sequences_[static_cast<std::size_t>(source)]++;
+    // Counted by link: a gap in it would be taken for a loss.
+    r.sequence = sequences_[static_cast<std::size_t>(source) * given_.size() + node]++;
     // It is given out in this step, and no step is given what has not arrived by its end.
     r.arrival = std::clamp<TimeNs>(heard.arrival - offset_, 0, stepped_);
     const TimeNs airtime = static_cast<TimeNs>(heard.airtime_s * 1e9);

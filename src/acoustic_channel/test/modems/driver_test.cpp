@@ -1,4 +1,9 @@
+#include <unistd.h>
+
+#include <fstream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "acoustic_channel/driver/micromodem_driver.hpp"
 #include "acoustic_channel/driver/modem_channel.hpp"
@@ -185,6 +190,57 @@ TEST(MicromodemDriver, AModemOfTheFirstGenerationGetsCycles) {
   EXPECT_EQ(pair.wires[1].received[0].payload, AnyBytes());
   ASSERT_EQ(pair.wires[0].ended.size(), 1u);
   EXPECT_NEAR(pair.wires[0].ended[0].second, 3.2, 2e-3);
+}
+
+/// Nobody knows what a modem did not hear: no receiver may take what others heard for a loss.
+TEST(ModemChannel, EveryReceiverCountsThePacketsThatItHears) {
+  const std::string path = testing::TempDir() + "/channel_" + std::to_string(getpid()) + ".yaml";
+  std::ofstream file(path);
+  file << "vehicles:\n";
+  for (const char* place : {"0.0", "30.0", "60.0"}) {
+    file << "  - {name: v" << place[0] << ", position_m: [" << place
+         << ", 0.0, -20.0], modem: {tcp: 0, interpreter: net}}\n";
+  }
+  file << "channel:\n  model: physical\n  access: aloha\n  physical:\n    modem:\n"
+          "      profile: evologics_s2c\n      queue: fifo\n";
+  file.close();
+  const ModemFile modems = LoadModemFile(path);
+  ModemServer server(modems, "");
+  ModemChannelConfig config;
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = server.port(i)->name();
+    config.ports.push_back("tcp://127.0.0.1" + name.substr(name.rfind(':')));
+  }
+  ModemChannel channel(modems.network.channel, modems.network.run, config);
+  channel.Reset(1, 0);
+  const TimeNs start = SteadyNow();
+  const auto wait = [&](const auto& until) {
+    while (!until() && SteadyNow() < start + 30 * kSecond) {
+      server.Serve(server.Now() + 2'000'000);
+    }
+  };
+  wait([&] {
+    return channel.health(0).ready && channel.health(1).ready && channel.health(2).ready;
+  });
+  std::vector<std::uint32_t> heard[3];
+  const std::uint8_t byte = 7;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    Transmission packet;
+    packet.source = 0;
+    packet.destination = kToAll;
+    packet.tag = k;
+    packet.payload = {&byte, 1};
+    channel.Step(SteadyNow() - start, k, {}, {}, {packet});
+    wait([&] {
+      for (const int node : {1, 2}) {
+        std::vector<Reception> out;
+        channel.Deliver(node, 0, &out);
+        for (const Reception& r : out) heard[node].push_back(r.sequence);
+      }
+      return heard[1].size() > k && heard[2].size() > k;
+    });
+  }
+  for (const int node : {1, 2}) EXPECT_EQ(heard[node], (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
 TEST(DriverOptions, AnUnknownProtocolIsRefused) {

@@ -77,7 +77,7 @@ class ModemChannel : public Channel {
   std::vector<int> addresses_;
   std::vector<std::unique_ptr<ModemPort>> ports_;  ///< of the thread
   LinkTable table_;
-  std::vector<std::uint32_t> sequences_;      ///< [nodes], of packets received from each
+  std::vector<std::uint32_t> sequences_;      ///< [source * nodes + receiver], of packets received
   std::vector<std::vector<Incoming>> given_;  ///< [nodes], what Deliver handed out last
   TimeNs offset_ = 0;                         ///< of the channel's time, to the steady clock's
   TimeNs stepped_ = 0;
