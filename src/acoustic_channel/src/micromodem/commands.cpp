@@ -45,7 +45,8 @@ std::optional<TimeNs> UtcOf(int year, int month, int day, int hour, int minute, 
 void Micromodem::SetDefaults() {
   settings_ = {{"ASD", "0"}, {"BND", "3"},  {"BW0", "5000"},  {"CST", "1"}, {"CTO", "10"},
                {"DQF", "1"}, {"DTO", "10"}, {"FC0", "25000"}, {"MOD", "0"}, {"PTO", "14"},
-               {"REV", "1"}, {"RXA", "1"},  {"RXD", "1"},     {"RXP", "1"}, {"XST", "1"}};
+               {"REV", "1"}, {"RXA", "1"},  {"RXD", "1"},     {"RXP", "1"}, {"SNV", "0"},
+               {"TOA", "0"}, {"XST", "1"}};
   settings_["SRC"] = std::to_string(options_.address);
 }
 
@@ -106,6 +107,7 @@ bool Micromodem::ObeyClock(const Fields& fields, TimeNs t) {
       Error(t, "NMEA", 4, "no such time");
       return false;
     }
+    pps_ = false;
     clock_offset_ += *utc - Utc(t);
     clock_set_ = true;
     return true;
@@ -130,16 +132,32 @@ bool Micromodem::ObeyClock(const Fields& fields, TimeNs t) {
     const int read = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%12lfZ%n", &year, &month, &day,
                                  &hour, &minute, &second, &end);
     const bool whole = read == 6 && static_cast<std::size_t>(end) == text.size();
-    if (!set(whole ? UtcOf(year, month, day, hour, minute, second) : std::nullopt)) return true;
-    Say({"CATMS", "0", FormatUtc(Utc(t), "%Y-%m-%dT%H:%M:%SZ")});
+    const auto mode = fields.size() == 3 ? NumberIn(fields[2], 0, 1) : std::nullopt;
+    const auto utc = whole ? UtcOf(year, month, day, hour, minute, second) : std::nullopt;
+    if (!mode) {
+      Error(t, "NMEA", 3, "CCTMS needs a time and the mode 0 or 1");
+    } else if (set(utc)) {
+      const TimeNs time = utc.value_or(0);
+      if (*mode == 1) FollowPps(time, t);
+      Say({"CATMS", "0", FormatUtc(time, "%Y-%m-%dT%H:%M:%SZ")});
+    }
     return true;
   }
   if (name == "CCTMQ") {
     Say({"CATMQ", FormatUtc(Utc(t), "%Y-%m-%dT%H:%M:%SZ"), clock_set_ ? "USER_CMD" : "NONE",
-         "NONE"});
+         pps_ ? "EXT" : "NONE"});
     return true;
   }
   return false;
+}
+
+/// The clock shows `utc` at the next tick, and ticks with UTC from now on, however the vehicle's
+/// own clock runs.
+void Micromodem::FollowPps(TimeNs utc, TimeNs t) {
+  const TimeNs now = world_->utc_start() + t;
+  const TimeNs tick = now - now % kSecondNs + kSecondNs;
+  pps_ = true;
+  clock_offset_ = utc - utc % kSecondNs - tick;
 }
 
 bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {
@@ -187,7 +205,7 @@ bool Micromodem::CommandCycle(const Fields& fields, TimeNs t) {
     AskForFrame(t);
   } else {
     Enter(State::kCycleTx, t + kSendingTimeout);
-    Transmit(h, std::string(1, '\0'), 0);
+    Transmit(h, std::string(1, '\0'), 0, t);
   }
   return true;
 }
@@ -207,6 +225,7 @@ bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
   const auto destination = NumberIn(fields[2], 0, kHighestAddress);
   const auto ack = NumberIn(fields[3], 0, 1);
   if (!source || !destination || !ack) return refuse("a field that does not fit");
+  if (*destination == setting("SRC")) return refuse("to itself");
   std::optional<std::string> bytes;
   if (text) {
     bytes = Join(Fields(fields.begin() + 4, fields.end()));  // a text may have commas
@@ -249,7 +268,7 @@ bool Micromodem::CommandPing(const Fields& fields, TimeNs t) {
   ping_.open = true;
   ping_.destination = h.destination;
   Enter(State::kPacketTx, t + kSendingTimeout);
-  Transmit(h, std::string(1, '\0'), 0);
+  Transmit(h, std::string(1, '\0'), 0, t);
   return true;
 }
 
@@ -270,7 +289,7 @@ bool Micromodem::CommandMini(const Fields& fields, TimeNs t) {
   h.source = setting("SRC");
   h.destination = *destination;
   Enter(State::kPacketTx, t + kSendingTimeout);
-  Transmit(h, *bytes, 0);
+  Transmit(h, *bytes, 0, t);
   return true;
 }
 
@@ -295,7 +314,7 @@ bool Micromodem::CommandFlexible(const Fields& fields, TimeNs t) {
   h.frame_bytes = static_cast<int>(bytes->size());
   h.acks = *ack != 0 && *destination != options_.broadcast ? 1 : 0;
   Enter(State::kPacketTx, t + kSendingTimeout);
-  Transmit(h, *bytes, bytes->size());
+  Transmit(h, *bytes, bytes->size(), t);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #include "acoustic_channel/access/medium_access.hpp"
 
@@ -32,6 +33,7 @@ Micromodem::Micromodem(const ModemOptions& options, ModemSurroundings* world)
     : options_(options), world_(world), modes_(world->profile()) {
   world_->SetWaveforms({"micromodem_fsk", "micromodem_psk"});
   SetDefaults();
+  for (const auto& [key, value] : options_.settings) settings_[key] = value;
 }
 
 void Micromodem::Start(TimeNs t) {
@@ -44,6 +46,7 @@ void Micromodem::Reboot(TimeNs t) {
   cycle_ = {};
   ping_ = {};
   answers_.clear();
+  synchronous_.reset();
   world_->SetAddress(setting("SRC"));
   // What was given to the water and has not left does not leave; its tags are the last few.
   for (std::uint32_t tag = tag_ > 8 ? tag_ - 8 : 0; tag <= tag_; ++tag) world_->TakeBack(tag);
@@ -81,7 +84,22 @@ void Micromodem::Enter(State state, TimeNs until) {
 }
 
 TimeNs Micromodem::Utc(TimeNs t) const {
+  if (pps_) return world_->utc_start() + t + clock_offset_;
   return world_->utc_start() + std::llround(world_->ClockS(t) * 1e9) + clock_offset_;
+}
+
+TimeNs Micromodem::NextSecond(TimeNs t) const {
+  const TimeNs target = Utc(t) - Utc(t) % kSecondNs + kSecondNs;
+  TimeNs guess = t + target - Utc(t);
+  for (int k = 0; k < 2; ++k) guess += target - Utc(guess);
+  return std::max(t, guess);
+}
+
+int Micromodem::clock_mode() const {
+  constexpr int kUserCommand = 2, kExternal = 3;
+  // Newer firmware tells where the time comes from, and above these two bits the tick.
+  if (second_generation()) return (clock_set_ ? kUserCommand : 0) + (pps_ ? kExternal << 2 : 0);
+  return clock_set_ ? 1 : 0;
 }
 
 int Micromodem::setting(const std::string& key) const {
@@ -97,6 +115,7 @@ bool Micromodem::second_generation() const {
 TimeNs Micromodem::next() const {
   TimeNs first = std::min(deadline_, revision_);
   if (!answers_.empty()) first = std::min(first, answers_.front().due);
+  if (synchronous_) first = std::min(first, synchronous_->due);
   return first;
 }
 
@@ -109,7 +128,11 @@ void Micromodem::Tick(TimeNs t) {
   while (!answers_.empty() && t >= answers_.front().due) {
     const Header header = answers_.front().header;
     answers_.pop_front();
-    Transmit(header, std::string(1, '\0'), 0);
+    TransmitNow(header, std::string(1, '\0'), 0);
+  }
+  if (synchronous_ && t >= synchronous_->due) {
+    const Synchronous packet = *std::exchange(synchronous_, std::nullopt);
+    TransmitNow(packet.header, packet.payload, packet.air_bytes);
   }
   if (t < deadline_) return;
   switch (state_) {

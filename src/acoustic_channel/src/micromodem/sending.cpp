@@ -64,10 +64,17 @@ void Micromodem::SendFrames(TimeNs t) {
   if (header.uneven) payload += lengths;
   const std::size_t air_bytes = frames.size() * modes_.rate(header.rate).frame_bytes;
   Enter(State::kDataTx, t + kSendingTimeout);
-  Transmit(header, payload, air_bytes);
+  Transmit(header, payload, air_bytes, t);
 }
 
-void Micromodem::Transmit(const Header& header, const std::string& payload, std::size_t air_bytes) {
+void Micromodem::Transmit(const Header& header, const std::string& payload, std::size_t air_bytes,
+                          TimeNs t) {
+  if (setting("SNV") != 1) return TransmitNow(header, payload, air_bytes);
+  synchronous_ = {NextSecond(t), header, payload, air_bytes};
+}
+
+void Micromodem::TransmitNow(const Header& header, const std::string& payload,
+                             std::size_t air_bytes) {
   const bool data = !Mini(header);
   Transmission packet;
   packet.kind = KindOf(header.type);

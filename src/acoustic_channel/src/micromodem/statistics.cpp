@@ -30,8 +30,11 @@ std::string Whole(double value) { return std::to_string(std::lround(value)); }
 }  // namespace
 
 void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
-  if (setting("CST") == 0) return;
   const PacketFate& fate = event.end.fate;
+  if (setting("TOA") == 1 && fate.reason == DropReason::kNone) {
+    Say({"CATOA", FormatUtc(Utc(fate.begin), "%H%M%S", 4), std::to_string(clock_mode())});
+  }
+  if (setting("CST") == 0) return;
   const bool lost = fate.reason != DropReason::kNone;
   const int mode = fate.reason == DropReason::kHalfDuplex ? 2 : lost ? 1 : 0;
   const bool data = header.type == PacketType::kData || header.type == PacketType::kFlexible;
@@ -47,7 +50,7 @@ void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
   const std::string rest[] = {
       std::to_string(mode),
       newer ? FormatUtc(begin, "%Y%m%d%H%M%S", 6) : FormatUtc(begin, "%H%M%S", 4),
-      clock_set_ ? "2" : "0",
+      std::to_string(clock_mode()),
       "0",  // peak, power and ratio of the detector: not modelled
       "0",
       "0",
@@ -92,7 +95,7 @@ void Micromodem::TellTransmission(const Header& header, const PacketInfo& packet
   const std::string rest[] = {
       FormatUtc(begin, "%Y%m%d"),
       FormatUtc(begin, "%H%M%S", 4),
-      clock_set_ ? "2" : "0",
+      std::to_string(clock_mode()),
       std::to_string(mode),
       "0",  // length of the probe: it is part of the airtime
       Whole(sound.bandwidth_khz * 1e3),

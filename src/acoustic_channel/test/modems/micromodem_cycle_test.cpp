@@ -94,6 +94,26 @@ TEST_F(Cycles, APingMeasuresTheOneWayTime) {
   EXPECT_NEAR(bench.When(0, Seal("CAMPR,2,1,1.0000")), 13.85, 1e-9);
 }
 
+/// One-way ranging: what leaves at a full second of a common clock tells its travel time by the
+/// fraction of the second at which it arrives.
+TEST_F(Cycles, SynchronousPacketsLeaveAtFullSeconds) {
+  for (const int node : {0, 1}) {
+    bench.Ask(node, 9.3, "$CCTMS,2023-11-14T22:13:30Z,1\r\n");
+    bench.Ask(node, 9.3, "$CCCFG,SNV,1\r\n$CCCFG,TOA,1\r\n");
+  }
+  bench.medium->SetDelay(0, 1, 0.4);
+  bench.Ask(0, 10.25, "$CCMUC,1,2,0123\r\n");
+  bench.water->Advance(Ns(20.0));
+  ASSERT_EQ(bench.log.sent.size(), 1u);
+  EXPECT_NEAR(bench.log.sent[0].transmit * 1e-9, 11.0, 1e-6);
+  EXPECT_TRUE(Told(1, Seal("CATOA,221331.4000,14")));  // time by command, tick from outside
+  EXPECT_EQ(Names(1).substr(Names(1).find("RXP")), "RXP MUA TOA CST");
+  // A ping, whose answer comes after the turnaround as ever.
+  bench.Ask(0, 20.5, "$CCMPC,1,2\r\n");
+  bench.water->Advance(Ns(30.0));
+  EXPECT_TRUE(Told(0, Seal("CAMPR,2,1,0.4000")));
+}
+
 TEST_F(Cycles, WithoutAnAnswerAPingIsSilentAndTheModemFree) {
   bench.medium->SetLevel(0, 1, -100.0);
   bench.Ask(0, 10.0, "$CCMPC,1,2\r\n");

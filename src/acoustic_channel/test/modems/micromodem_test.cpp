@@ -87,6 +87,18 @@ TEST(Micromodem, TheClockIsTheHostsOnceItIsSet) {
   EXPECT_EQ(bench.Ask(0, 8.0, "$CCTMQ,0\r\n"), Seal("CATMQ,2024-03-01T00:00:00Z,USER_CMD,NONE"));
 }
 
+TEST(Micromodem, WithATickItsClockIsThatOfUtc) {
+  ModemBench bench(1);
+  bench.StartMicromodems();
+  // From the full second after 7.4 s on, whatever the fraction was before.
+  EXPECT_EQ(bench.Ask(0, 7.4, "$CCTMS,2024-02-29T23:59:59Z,1\r\n"),
+            Seal("CATMS,0,2024-02-29T23:59:59Z"));
+  EXPECT_EQ(bench.Ask(0, 7.99, "$CCTMQ,0\r\n"), Seal("CATMQ,2024-02-29T23:59:58Z,USER_CMD,EXT"));
+  EXPECT_EQ(bench.Ask(0, 8.01, "$CCTMQ,0\r\n"), Seal("CATMQ,2024-02-29T23:59:59Z,USER_CMD,EXT"));
+  EXPECT_NE(bench.Ask(0, 9.0, "$CCTMS,2024-02-29T23:59:59Z,2\r\n").find("CAERR"),
+            std::string::npos);
+}
+
 TEST(Micromodem, TheFirstGenerationKnowsLess) {
   ModemBench bench(1);
   bench.StartMicromodems("0.94.0.0");
@@ -132,6 +144,10 @@ TEST(Micromodem, ADataRequestEndsWhenTheHostIsSilent) {
             Seal("CACYC,0,1,2,1,0,2") + Seal("CADRQ,221330,1,2,0,64,1"));
   EXPECT_EQ(bench.Ask(0, 11.0, "$CCCYC,0,1,2,1,0,2\r\n"),
             Seal("CAERR,221331,BUSY,6,at work on something else"));
+  // What cannot be a frame leaves the request open.
+  for (const char* frame : {"1,1,0,AA", "1,2,0,A", "1,2,2,AA", "1,2,0"}) {
+    EXPECT_EQ(bench.Ask(0, 11.0, "$CCTXD," + std::string(frame) + "\r\n").rfind("$CAERR", 0), 0u);
+  }
   bench.water->Advance(Ns(13.0));
   EXPECT_NEAR(bench.When(0, Seal("CAERR,221332,DATA_TIMEOUT,1")), 12.0, 1e-9);
   EXPECT_NE(bench.hosts.all[0].find("$CAXST,6,20231114,221332.0000,0,4,"), std::string::npos);

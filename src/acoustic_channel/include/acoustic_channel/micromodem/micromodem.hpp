@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acoustic_channel/engine/modem_engine.hpp"
@@ -22,6 +23,8 @@ struct ModemOptions {
   int address = 1;                     ///< SRC at power on, 1 to 127
   int broadcast = 0;                   ///< the address of all
   std::string firmware = "2.0.35490";  ///< 2 and above: a Micromodem-2, which knows more commands
+  /// Names and values that it has when it is switched on.
+  std::vector<std::pair<std::string, std::string>> settings{};
 };
 
 /// An emulated WHOI Micromodem: cycles at the rates 0 to 6 with polls, acknowledgements and data
@@ -64,6 +67,13 @@ class Micromodem : public ModemEngine {
     TimeNs due = 0;
     Header header;
   };
+  /// A packet that leaves at a full second (SNV).
+  struct Synchronous {
+    TimeNs due = 0;
+    Header header;
+    std::string payload;
+    std::size_t air_bytes = 0;
+  };
   struct Ping {
     bool open = false;
     int destination = 0;
@@ -76,6 +86,10 @@ class Micromodem : public ModemEngine {
   void Enter(State state, TimeNs until);
   void Reboot(TimeNs t);
   TimeNs Utc(TimeNs t) const;
+  /// When the modem's clock shows its next full second.
+  TimeNs NextSecond(TimeNs t) const;
+  /// How good that clock is, as the statistics of this firmware tell it.
+  int clock_mode() const;
   int setting(const std::string& key) const;
   bool second_generation() const;
 
@@ -84,6 +98,7 @@ class Micromodem : public ModemEngine {
   bool ObeySending(const std::vector<std::string>& fields, TimeNs t);
   bool ObeySetting(const std::vector<std::string>& fields, TimeNs t);
   bool ObeyClock(const std::vector<std::string>& fields, TimeNs t);
+  void FollowPps(TimeNs utc, TimeNs t);
   void SetDefaults();
   bool CommandCycle(const std::vector<std::string>& fields, TimeNs t);
   bool CommandFrame(const std::vector<std::string>& fields, bool text, TimeNs t);
@@ -94,7 +109,9 @@ class Micromodem : public ModemEngine {
   // sending.cpp
   void AskForFrame(TimeNs t);
   void SendFrames(TimeNs t);
-  void Transmit(const Header& header, const std::string& payload, std::size_t air_bytes);
+  /// At once, or with SNV at the next full second.
+  void Transmit(const Header& header, const std::string& payload, std::size_t air_bytes, TimeNs t);
+  void TransmitNow(const Header& header, const std::string& payload, std::size_t air_bytes);
   void OnSent(const PacketInfo& packet, TimeNs t);
   void OnSendEnd(const PacketInfo& packet, TimeNs t);
 
@@ -120,12 +137,14 @@ class Micromodem : public ModemEngine {
   std::map<std::string, std::string> settings_;
   TimeNs clock_offset_ = 0;  ///< of the modem's UTC, as the host set it
   bool clock_set_ = false;
+  bool pps_ = false;  ///< a second is one of UTC's, as with a line that ticks (CCTMS,time,1)
   State state_ = State::kBoot;
   TimeNs deadline_ = 0;  ///< of the state; kNever: it has none
   TimeNs revision_ = 0;  ///< when the next CAREV is due
   Cycle cycle_;
   Ping ping_;
   std::deque<Answer> answers_;
+  std::optional<Synchronous> synchronous_;
   std::uint32_t tag_ = 0;
   int flexible_id_ = 0;
 };
