@@ -5,6 +5,7 @@
 
 #include "acoustic_channel/driver/modem_driver.hpp"
 #include "acoustic_channel/modem/modem_profile.hpp"
+#include "acoustic_channel/s2c/settings.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 
@@ -46,6 +47,32 @@ void TakeText(const std::string& file, const std::string& prefix, const std::str
   *map = Without(*map, key);
 }
 
+/// The settings of a modem: names of the protocol's, so no table knows them.
+void TakeSettings(const std::string& file, const std::string& prefix, YamlTree* map,
+                  ModemPlace* place) {
+  const YamlTree::Entry* entry = FindEntry(*map, "settings");
+  if (entry == nullptr) return;
+  if (entry->value.kind != YamlTree::Kind::kMap) {
+    Fail(file, entry->line, prefix + "settings", "expected a map of names and values");
+  }
+  s2c::Settings known;
+  for (const YamlTree::Entry& one : entry->value.entries) {
+    const std::string key = prefix + "settings." + one.key, &value = one.value.scalar;
+    if (one.value.kind != YamlTree::Kind::kScalar || value.empty() || value.size() > 64) {
+      Fail(file, one.line, key, "expected a value");
+    }
+    if (one.key == (place->protocol == "s2c" ? "AL" : "SRC")) {
+      Fail(file, one.line, key, "is the key 'address' of the modem");
+    }
+    const bool sound = place->protocol == "s2c"
+                           ? known.Set(one.key, value) == s2c::Settings::Result::kOk
+                           : (one.key + value).find_first_of(",*$\r\n") == std::string::npos;
+    if (!sound) Fail(file, one.line, key, "the modem has no such setting, or not this value");
+    place->settings.emplace_back(one.key, value);
+  }
+  *map = Without(*map, "settings");
+}
+
 ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& prefix) {
   ModemPlace place;
   if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
@@ -60,10 +87,12 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
     const YamlTree::Entry* entry = FindEntry(map, key);
     if (entry != nullptr) Fail(file, entry->line, prefix + "." + key, why);
   };
-  for (const char* key : {"interpreter", "defer", "rssi_offset_db"}) {
+  for (const char* key : {"interpreter", "defer", "rssi_offset_db", "clients"}) {
     if (!s2c) refuse(key, "is a key of the protocol s2c");
   }
   if (janus) refuse("broadcast", "is a key of the protocols s2c and micromodem");
+  if (janus) refuse("settings", "is a key of the protocols s2c and micromodem");
+  TakeSettings(file, prefix + ".", &map, &place);
   if (janus && !place.firmware.empty()) {
     Fail(file, map.line, prefix + ".firmware", "is a key of the protocols s2c and micromodem");
   }
@@ -72,6 +101,8 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   t.Add("protocol", config::Name(&place.protocol, ModemProtocols()), config::kNone, "-", "");
   t.Add("tcp", &place.tcp, config::Within(0, 65535), "-", "");
   t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
+  t.Add("serial_baud", &place.serial_baud, config::Within(0, 1e7), "-", "");
+  t.Add("clients", &place.clients, config::Within(1, 16), "-", "");
   t.Add("interpreter", config::Name(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
   t.Add("address", &place.address, config::Within(1, s2c || janus ? 254 : 127), "-", "");
   t.Add("broadcast", &place.broadcast, config::Within(-1, s2c ? 255 : 127), "-", "");
@@ -83,6 +114,12 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   if (place.firmware.empty()) place.firmware = s2c ? "1.9" : "2.0.35490";
   const int ports = (place.tcp >= 0) + !place.pty.empty() + !place.serial.empty();
   if (ports != 1) Fail(file, map.line, prefix, "needs one of tcp, pty and serial");
+  if (place.clients > 1 && place.tcp < 0) {
+    Fail(file, map.line, prefix + ".clients", "only a TCP port has more than one");
+  }
+  if (place.serial_baud > 0 && !place.serial.empty()) {
+    Fail(file, map.line, prefix + ".serial_baud", "a serial device has its own: baud");
+  }
   return place;
 }
 

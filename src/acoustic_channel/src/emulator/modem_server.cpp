@@ -18,7 +18,7 @@ TimeNs UtcNow() {
 }
 
 std::unique_ptr<BytePort> OpenPort(const ModemPlace& place, const std::string& listen) {
-  if (place.tcp >= 0) return MakeTcpServer(listen, place.tcp);
+  if (place.tcp >= 0) return MakeTcpServer(listen, place.tcp, place.clients);
   if (!place.serial.empty()) return MakeSerial(place.serial, place.baud);
   return MakePty(place.pty);
 }
@@ -31,6 +31,7 @@ std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundin
     options.address = place.address;
     options.broadcast = place.broadcast;
     options.firmware = place.firmware;
+    options.settings = place.settings;
     return std::make_unique<micromodem::Micromodem>(options, world);
   }
   if (place.protocol == "janus") {
@@ -45,6 +46,7 @@ std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundin
   options.defer = place.defer;
   options.rssi_offset_db = place.rssi_offset_db;
   options.firmware = place.firmware;
+  options.settings = place.settings;
   return std::make_unique<s2c::S2cModem>(options, world);
 }
 
@@ -63,6 +65,8 @@ ModemServer::ModemServer(const ModemFile& file, const std::string& command_log)
     if (!v.modem) continue;
     places_[i].port = OpenPort(*v.modem, file.listen);
     places_[i].listener = ListenerOf(node);
+    places_[i].net = v.modem->interpreter == "net";
+    places_[i].serial_baud = v.modem->serial_baud;
     ports_.push_back(places_[i].port.get());
     water_.Attach(node, v.modem->address,
                   [&](ModemSurroundings* world) { return MakeEngine(*v.modem, world); });
@@ -92,14 +96,56 @@ PortListener ModemServer::ListenerOf(int node) {
     Log(node, "disconnect", nullptr, 0);
     water_.Disconnect(node, time());
   };
+  listener.refused = [this, node] {
+    say(places_[static_cast<std::size_t>(node)].name + ": one more host was refused");
+  };
+  ListenToGuests(node, &listener);
   listener.read = [this, node, time](const char* bytes, std::size_t size) {
     bytes_read_ += size;
+    if (!places_[static_cast<std::size_t>(node)].power) return;
     const TimeNs t = time();
     water_.Advance(t);
     Log(node, "read", bytes, size);
     water_.Read(node, t, {reinterpret_cast<const std::uint8_t*>(bytes), size});
   };
   return listener;
+}
+
+/// They come to S2C modems alone.
+void ModemServer::ListenToGuests(int node, PortListener* listener) {
+  Place& place = places_[static_cast<std::size_t>(node)];
+  listener->guest_came = [this, &place](int guest) {
+    say(place.name + ": one more host reads along");
+    place.guests.emplace(guest, s2c::Bystander(place.net));
+  };
+  listener->guest_left = [&place](int guest) { place.guests.erase(guest); };
+  listener->guest_read = [this, &place](int guest, const char* bytes, std::size_t size) {
+    bytes_read_ += size;
+    const auto found = place.guests.find(guest);
+    if (found == place.guests.end()) return;
+    s2c::Bystander& bystander = found->second;
+    place.port->WriteToGuest(guest,
+                             bystander.Read({reinterpret_cast<const std::uint8_t*>(bytes), size}));
+    if (!bystander.takes_control()) return;
+    const std::string words = (place.net ? "AT@CTRL\n" : "+++AT@CTRL\n") + bystander.TakeRest();
+    bystander = s2c::Bystander(place.net);  // from now on of the host that was obeyed
+    place.port->GiveControlTo(guest, place.listener);
+    place.listener.read(words.data(), words.size());
+  };
+}
+
+void ModemServer::SetPresent(int node, bool present) {
+  const TimeNs t = std::max(Now(), water_.now());
+  if (water_.network().present(node) == present) return;
+  water_.SetPresent(node, t, present);
+  Place& place = places_[static_cast<std::size_t>(node)];
+  if (!place.port || place.power == present) return;
+  say(place.name + (present ? ": its modem is back" : ": is silent, its modem has no power"));
+  Log(node, present ? "power" : "no power", nullptr, 0);
+  place.power = present;
+  place.late.clear();
+  place.port->SetOpen(present);
+  water_.Restart(node, t);
 }
 
 void ModemServer::OpenGateway(int node, const GatewayPlace& gateway) {
@@ -139,19 +185,45 @@ void ModemServer::Serve(TimeNs until) {
   for (const Place& place : places_) {
     if (place.gateway) wake = std::min(wake, place.gateway->next());
   }
+  for (const Place& place : places_) {
+    if (!place.late.empty()) wake = std::min(wake, place.late.front().due);
+  }
   WaitForPorts(ports_, wake);
   water_.Advance(std::max(Now(), water_.now()));
   for (std::size_t i = 0; i < places_.size(); ++i) {
     if (places_[i].gateway) PassOn(static_cast<int>(i));
   }
+  WriteLate(SteadyNow());
   for (const Place& place : places_) {
     if (place.port) place.port->Serve(SteadyNow(), place.listener);
   }
 }
 
 void ModemServer::Write(int node, const std::string& bytes) {
-  BytePort* port = places_[static_cast<std::size_t>(node)].port.get();
-  if (port != nullptr) port->Write(bytes);
+  Place& place = places_[static_cast<std::size_t>(node)];
+  if (!place.port || !place.power) return;
+  if (place.serial_baud == 0) return place.port->Write(bytes);
+  // A byte is ten bits on the line: a start, eight, a stop.
+  const auto bits = static_cast<TimeNs>(10 * bytes.size());
+  place.line_free =
+      std::max(place.line_free, SteadyNow()) + bits * 1'000'000'000 / place.serial_baud;
+  place.late.push_back({place.line_free, bytes});
+}
+
+void ModemServer::WriteLate(TimeNs now) {
+  for (Place& place : places_) {
+    while (!place.late.empty() && place.late.front().due <= now) {
+      place.port->Write(place.late.front().bytes);
+      place.late.pop_front();
+    }
+  }
+}
+
+void ModemServer::Announce(int node, const std::string& notification) {
+  const Place& place = places_[static_cast<std::size_t>(node)];
+  for (const auto& [guest, bystander] : place.guests) {
+    place.port->WriteToGuest(guest, bystander.Told(notification));
+  }
 }
 
 void ModemServer::HangUp(int node) {

@@ -39,6 +39,9 @@ class ModemWater::Surroundings : public ModemSurroundings {
   Surroundings(ModemWater* water, int node) : water_(water), node_(node) {}
 
   void Write(const std::string& bytes) override { water_->hosts_->Write(node_, bytes); }
+  void Announce(const std::string& notification) override {
+    water_->hosts_->Announce(node_, notification);
+  }
   void HangUp() override { water_->hosts_->HangUp(node_); }
   void Send(Transmission packet) override {
     packet.source = node_;
@@ -137,6 +140,12 @@ void ModemWater::SetPresent(int node, TimeNs t, bool present) {
   Advance(t);
   if (network_.present(node) == present) return;
   network_.SetPresent(node, t, present);
+  Dispatch();
+}
+
+void ModemWater::Restart(int node, TimeNs t) {
+  Advance(t);
+  At(node).engine->Start(t);
   Dispatch();
 }
 

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <chrono>
 #include <ctime>
+#include <utility>
 
 #include "acoustic_channel/access/medium_access.hpp"
 
@@ -68,6 +69,13 @@ void BytePort::Close(const PortListener& listener) {
   out_.clear();
   hang_up_ = false;
   listener.disconnected();
+}
+
+void BytePort::Exchange(BytePort* other) {
+  std::swap(stream_, other->stream_);
+  std::swap(out_, other->out_);
+  std::swap(stalled_, other->stalled_);
+  std::swap(hang_up_, other->hang_up_);
 }
 
 void BytePort::Watch(std::vector<pollfd>* watched) const {

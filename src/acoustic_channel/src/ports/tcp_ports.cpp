@@ -27,55 +27,143 @@ void SendAtOnce(int stream) {
   throw UserError(name + ": " + std::strerror(errno));
 }
 
+/// A client beside the first one.
+class Guest : public BytePort {
+ public:
+  Guest(int number, int stream) : BytePort("guest"), number_(number) { Open(stream); }
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
 class TcpServer : public BytePort {
  public:
-  TcpServer(const std::string& address, int port) : BytePort("tcp " + address) {
+  TcpServer(const std::string& address, int port, int clients)
+      : BytePort("tcp " + address), most_guests_(static_cast<std::size_t>(clients) - 1) {
     name_ += ":" + std::to_string(port);
-    sockaddr_in place{};
-    place.sin_family = AF_INET;
-    place.sin_port = htons(static_cast<std::uint16_t>(port));
-    if (inet_pton(AF_INET, address.c_str(), &place.sin_addr) != 1) {
+    place_.sin_family = AF_INET;
+    place_.sin_port = htons(static_cast<std::uint16_t>(port));
+    if (inet_pton(AF_INET, address.c_str(), &place_.sin_addr) != 1) {
       throw UserError("listen: '" + address + "' is no IPv4 address");
     }
-    listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    const int on = 1;
-    setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-    if (bind(listener_, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0 ||
-        listen(listener_, 4) != 0) {
-      const int error = errno;
-      close(listener_);
-      errno = error;
-      Fail(name_);
-    }
-    socklen_t size = sizeof(place);
-    getsockname(listener_, reinterpret_cast<sockaddr*>(&place), &size);
-    name_ = "tcp " + address + ":" + std::to_string(ntohs(place.sin_port));
+    if (!Listen()) Fail(name_);
+    name_ = "tcp " + address + ":" + std::to_string(ntohs(place_.sin_port));
   }
-  ~TcpServer() override { close(listener_); }
+  ~TcpServer() override {
+    if (listener_ >= 0) close(listener_);
+  }
 
   void Watch(std::vector<pollfd>* watched) const override {
-    watched->push_back({listener_, POLLIN, 0});
+    if (listener_ >= 0) watched->push_back({listener_, POLLIN, 0});
     BytePort::Watch(watched);
+    for (const auto& guest : guests_) guest->Watch(watched);
+  }
+  TimeNs next() const override {
+    TimeNs first = BytePort::next();
+    if (wants_listener()) first = std::min(first, retry_);
+    for (const auto& guest : guests_) first = std::min(first, guest->next());
+    return first;
   }
   void Serve(TimeNs now, const PortListener& listener) override {
     // A client that has gone makes room for the next.
     BytePort::Serve(now, listener);
+    ServeGuests(now, listener);
+    if (wants_listener() && now >= retry_ && !Listen()) retry_ = now + kFirstWait;
+    if (!open_ || listener_ < 0) return;
     for (;;) {
       const int client = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
       if (client < 0) return;
-      if (connected()) {
-        close(client);  // a port has one client
-        continue;
-      }
       SendAtOnce(client);
-      Open(client);
+      Welcome(client, now, listener);
+    }
+  }
+
+  void SetOpen(bool open) override {
+    open_ = open;
+    if (open) return;
+    if (listener_ >= 0) close(listener_);
+    listener_ = -1;
+    HangUp();
+  }
+  void HangUp() override {
+    BytePort::HangUp();
+    for (const auto& guest : guests_) guest->HangUp();
+  }
+  void WriteToGuest(int number, const std::string& bytes) override {
+    for (const auto& guest : guests_) {
+      if (guest->number() == number) guest->Write(bytes);
+    }
+  }
+  void GiveControlTo(int number, const PortListener& listener) override {
+    for (const auto& guest : guests_) {
+      if (guest->number() != number) continue;
+      if (connected()) listener.disconnected();
+      Exchange(guest.get());
       listener.connected();
-      BytePort::Serve(now, listener);
+      return;
     }
   }
 
  private:
+  bool wants_listener() const { return open_ && listener_ < 0; }
+  /// False: the address cannot be had now, errno says why.
+  bool Listen() {
+    listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    const int on = 1;
+    setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+    if (bind(listener_, reinterpret_cast<sockaddr*>(&place_), sizeof(place_)) != 0 ||
+        listen(listener_, 4) != 0) {
+      const int error = errno;
+      close(listener_);
+      listener_ = -1;
+      errno = error;
+      return false;
+    }
+    socklen_t size = sizeof(place_);
+    getsockname(listener_, reinterpret_cast<sockaddr*>(&place_), &size);
+    return true;
+  }
+  void Welcome(int client, TimeNs now, const PortListener& listener) {
+    if (!connected()) {
+      Open(client);
+      listener.connected();
+      BytePort::Serve(now, listener);
+    } else if (guests_.size() < most_guests_) {
+      guests_.push_back(std::make_unique<Guest>(++last_guest_, client));
+      listener.guest_came(last_guest_);
+    } else {
+      close(client);
+      listener.refused();
+    }
+  }
+  void ServeGuests(TimeNs now, const PortListener& listener) {
+    // One of them may become the client meanwhile, which changes what its number stands for.
+    for (std::size_t k = 0; k < guests_.size(); ++k) {
+      const int number = guests_[k]->number();
+      PortListener of_guest;
+      of_guest.read = [&](const char* bytes, std::size_t size) {
+        listener.guest_read(number, bytes, size);
+      };
+      of_guest.disconnected = [&] { listener.guest_left(number); };
+      guests_[k]->Serve(now, of_guest);
+    }
+    const auto gone = [](const std::unique_ptr<Guest>& guest) { return !guest->connected(); };
+    guests_.erase(std::remove_if(guests_.begin(), guests_.end(), gone), guests_.end());
+    if (connected() || guests_.empty()) return;
+    listener.guest_left(guests_.front()->number());
+    Exchange(guests_.front().get());
+    guests_.erase(guests_.begin());
+    listener.connected();
+  }
+
+  sockaddr_in place_{};
+  std::size_t most_guests_;
+  bool open_ = true;
   int listener_ = -1;
+  TimeNs retry_ = 0;
+  std::vector<std::unique_ptr<Guest>> guests_;
+  int last_guest_ = 0;
 };
 
 class TcpClient : public BytePort {
@@ -143,8 +231,8 @@ class TcpClient : public BytePort {
 
 }  // namespace
 
-std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port) {
-  return std::make_unique<TcpServer>(address, port);
+std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port, int clients) {
+  return std::make_unique<TcpServer>(address, port, clients);
 }
 std::unique_ptr<BytePort> MakeTcpClient(const std::string& host, int port) {
   return std::make_unique<TcpClient>(host, port);

@@ -83,12 +83,12 @@ void S2cModem::Change(char group, const std::string& name, const std::string& va
 void S2cModem::Query(const std::string& name, const std::string& command, TimeNs t) {
   if (name == "MODE") return Answer(command, options_.net ? "NET" : "AT");
   if (name == "S") {
-    return options_.net ? AnswerLines(command, Status() + "\r\n") : Answer(command, Status());
+    return options_.net ? AnswerLines(command, Status() + "\n") : Answer(command, Status());
   }
   if (name == "P") {
     std::string lines;
     for (int k = 0; k < 8; ++k) {
-      lines += k == 0 ? "0 " + Fixed(measured_.delay_level_db, 0) + "\r\n" : "0 0\r\n";
+      lines += k == 0 ? "0 " + Fixed(measured_.delay_level_db, 0) + "\n" : "0 0\n";
     }
     return AnswerLines(command, lines);
   }
@@ -105,8 +105,8 @@ void S2cModem::Query(const std::string& name, const std::string& command, TimeNs
   if (name == "BV") return Answer(command, "11.9");
   if (name == "PC") {
     return AnswerLines(command, "Sent: " + std::to_string(sent_count_) +
-                                    "\r\nReceived: " + std::to_string(received_count_) +
-                                    "\r\nFailed: " + std::to_string(failed_count_) + "\r\n");
+                                    "\nReceived: " + std::to_string(received_count_) +
+                                    "\nFailed: " + std::to_string(failed_count_) + "\n");
   }
   if (!settings_.knows(name)) return Answer(command, "ERROR UNKNOWN COMMAND");
   Answer(command, (settings_.changed(name) ? "[*]" : "") + std::to_string(settings_.at(name)));
@@ -163,7 +163,8 @@ void S2cModem::Control(const std::string& text, TimeNs t) {
   } else if (text == "I0") {
     Answer(text, options_.firmware);
   } else if (text == "I1") {
-    Answer(text, "phy:" + options_.firmware + " mac:" + options_.firmware + " emulated");
+    // dune takes the number of the one from the first zero on, that of the other behind the "v".
+    Answer(text, "phy: emulated 0.1, mac: emulated v" + options_.firmware);
   } else if (text == "I7") {
     Answer(text, "EM" + std::to_string(options_.address));
   } else if (text == "P") {

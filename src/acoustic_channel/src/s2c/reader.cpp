@@ -27,6 +27,22 @@ std::size_t FindEnd(const std::string& s, std::size_t from) {
 
 }  // namespace
 
+std::string Framed(Reader::Mode mode, const std::string& name, const std::string& text) {
+  if (mode == Reader::Mode::kPlain) return text + "\r\n";
+  return "+++AT" + name + ":" + std::to_string(text.size()) + ":" + text + "\r\n";
+}
+
+std::string NameOf(const std::string& text) {
+  constexpr std::size_t kLongest = 16;
+  std::size_t end = 0;
+  const auto allowed = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string("?!@&*").find(c) != std::string::npos;
+  };
+  while (end < text.size() && end < kLongest && allowed(text[end])) ++end;
+  return text.substr(0, end);
+}
+
 std::optional<std::uint32_t> WholeNumber(const std::string& text) {
   if (text.empty() || text.size() > 10) return {};
   std::uint64_t value = 0;
@@ -175,6 +191,13 @@ bool Reader::OnSilence() {
 
 void Reader::GiveUp() {
   if (inside_message_) Reset();
+}
+
+std::string Reader::TakeRest() {
+  std::string rest;
+  rest.swap(buffer_);
+  Reset();
+  return rest;
 }
 
 }  // namespace stg::acoustics::s2c

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "acoustic_channel/access/medium_access.hpp"
 
@@ -13,18 +14,6 @@ constexpr TimeNs kGuard = 1'000'000'000;     ///< silence around a lonely "+++"
 constexpr TimeNs kPatience = 5'000'000'000;  ///< with a message that does not go on
 constexpr TimeNs kAckPatience = 1'000'000'000;
 
-/// What an answer calls a command; nothing in it could be taken for another field.
-std::string NameOf(const std::string& text) {
-  constexpr std::size_t kLongest = 16;
-  std::size_t end = 0;
-  const auto allowed = [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string("?!@&*").find(c) != std::string::npos;
-  };
-  while (end < text.size() && end < kLongest && allowed(text[end])) ++end;
-  return text.substr(0, end);
-}
-
 }  // namespace
 
 S2cModem::S2cModem(const ModemOptions& options, ModemSurroundings* world)
@@ -32,6 +21,7 @@ S2cModem::S2cModem(const ModemOptions& options, ModemSurroundings* world)
       world_(world),
       connection_([this](const std::string& text) { Notify(text); }),
       burst_mode_(BurstMode(world->profile())) {
+  for (const auto& [name, value] : options.settings) settings_.Set(name, value);
   settings_.Set("AL", std::to_string(options.address));
   settings_.Store();
 }
@@ -43,7 +33,10 @@ void S2cModem::Start(TimeNs t) {
   SetMode(options_.net ? Reader::Mode::kPlain : Reader::Mode::kData);
   reader_.Reset();
   state_ = State::kListen;
-  DropMessages(false);
+  sending_ = receiving_ = false;
+  // A host that is still there hears that its messages have ended.
+  if (message_ && message_->step >= Message::Step::kSending) GiveUp("FAILED");
+  DropMessages(true);
   acks_.clear();
   if (burst_tag_ != 0) world_->TakeBack(burst_tag_);
   burst_tag_ = 0;
@@ -53,7 +46,9 @@ void S2cModem::Start(TimeNs t) {
 }
 
 void S2cModem::Reboot(TimeNs t) {
+  const bool connected = std::exchange(connected_, false);  // nothing more is said
   Start(t);
+  connected_ = connected;
   world_->HangUp();
 }
 
@@ -100,19 +95,19 @@ void S2cModem::Obey(const Item& item, TimeNs t) {
 }
 
 void S2cModem::Answer(const std::string& name, const std::string& text) {
-  if (reader_.mode() == Reader::Mode::kPlain) {
-    world_->Write(text + "\r\n");
-  } else {
-    world_->Write("+++AT" + name + ":" + std::to_string(text.size()) + ":" + text + "\r\n");
-  }
+  world_->Write(Framed(reader_.mode(), name, text));
 }
 
 void S2cModem::AnswerLines(const std::string& name, const std::string& lines) {
-  Answer(name, lines);  // their own last end of line makes the empty line
+  // Each ends with a line feed alone, and only the whole with carriage return and line feed: EviNS
+  // looks for both at the end, and dune takes what comes before for one line.
+  Answer(name, lines);
 }
 
 void S2cModem::Notify(const std::string& text) {
-  if (connected_) Answer("", text);
+  if (!connected_) return;
+  Answer("", text);
+  world_->Announce(text);
 }
 
 std::uint32_t S2cModem::ClockUs(TimeNs t) const {

@@ -102,7 +102,7 @@ std::string Settings::List() const {
   for (const Known& k : kKnown) {
     if (k.shown == nullptr) continue;
     text += std::string(k.shown) + ": " + (changed(k.name) ? "[*]" : "") +
-            std::to_string(at(k.name)) + "\r\n";
+            std::to_string(at(k.name)) + "\n";
   }
   return text;
 }

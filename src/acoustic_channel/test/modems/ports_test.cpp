@@ -8,6 +8,7 @@
 #include <array>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "acoustic_channel/emulator/modem_server.hpp"
 #include "auv_common/error.hpp"
@@ -30,16 +31,21 @@ std::string FileWith(const std::string& alpha, const std::string& beta,
   return path;
 }
 
+sockaddr_in PlaceOf(const BytePort& port) {
+  const int number = std::stoi(port.name().substr(port.name().rfind(':') + 1));
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_port = htons(static_cast<std::uint16_t>(number));
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return place;
+}
+
 /// A client of one port.
 struct Client {
   explicit Client(const BytePort& port) {
-    const int number = std::stoi(port.name().substr(port.name().rfind(':') + 1));
-    sockaddr_in place{};
-    place.sin_family = AF_INET;
-    place.sin_port = htons(static_cast<std::uint16_t>(number));
-    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const sockaddr_in place = PlaceOf(port);
     stream = socket(AF_INET, SOCK_STREAM, 0);
-    EXPECT_EQ(connect(stream, reinterpret_cast<sockaddr*>(&place), sizeof(place)), 0);
+    EXPECT_EQ(connect(stream, reinterpret_cast<const sockaddr*>(&place), sizeof(place)), 0);
     fcntl(stream, F_SETFL, O_NONBLOCK);
   }
   ~Client() { close(stream); }
@@ -83,6 +89,73 @@ TEST(ModemPorts, ASecondClientIsRefusedAndTheFirstGoesOn) {
   EXPECT_TRUE(second.gone);
   first.Say("AT?RT\n");
   EXPECT_TRUE(first.Hears(&server, "5000\r\n"));
+}
+
+TEST(ModemPorts, OneOfManyClientsIsObeyedAndAllAreTold) {
+  ModemServer server(LoadModemFile(FileWith(kNet + ", clients: 2", kNet)), "");
+  std::vector<std::string> log;
+  server.say = [&](const std::string& what) { log.push_back(what); };
+  Client first(*server.port(0)), beta(*server.port(1));
+  first.Say("AT?AL\n");
+  EXPECT_TRUE(first.Hears(&server, "1\r\n"));
+  Client second(*server.port(0));
+  second.Say("AT!L2\n");
+  EXPECT_TRUE(second.Hears(&server, "ERROR NO CONTROL\r\n"));
+  Client third(*server.port(0));
+  EXPECT_FALSE(third.Hears(&server, "anything"));
+  EXPECT_EQ(log.back(), "alpha: one more host was refused");
+
+  beta.Say("AT*SENDIM,5,1,noack,hello\n");
+  EXPECT_TRUE(first.Hears(&server, "RECVIM,5,2,1,noack,"));
+  EXPECT_TRUE(second.Hears(&server, "RECVIM,5,2,1,noack,"));
+  EXPECT_EQ(second.heard.find("1\r\n"), std::string::npos) << "an answer to another host";
+
+  // What stands behind the command that takes control is the modem's to answer.
+  second.Say("AT@CTRL\nAT?RT\n");
+  EXPECT_TRUE(second.Hears(&server, "OK\r\n5000\r\n"));
+  first.heard.clear();
+  first.Say("AT?L\n");
+  EXPECT_TRUE(first.Hears(&server, "ERROR NO CONTROL\r\n"));
+  close(second.stream);
+  second.stream = -1;
+  for (int k = 0; k < 50; ++k) server.Serve(server.Now() + 1'000'000);
+  first.Say("AT?L\n");
+  EXPECT_TRUE(first.Hears(&server, "0\r\n"));
+}
+
+TEST(ModemPorts, AModemWithoutPowerHasNoPort) {
+  ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
+  Client before(*server.port(0));
+  before.Say("AT!RT900\n");
+  EXPECT_TRUE(before.Hears(&server, "[*]OK\r\n"));
+  server.SetPresent(0, false);
+  EXPECT_FALSE(before.Hears(&server, "anything"));
+  EXPECT_TRUE(before.gone);
+  const sockaddr_in place = PlaceOf(*server.port(0));
+  const int refused = socket(AF_INET, SOCK_STREAM, 0);
+  EXPECT_NE(connect(refused, reinterpret_cast<const sockaddr*>(&place), sizeof(place)), 0);
+  close(refused);
+  server.SetPresent(0, true);
+  for (int k = 0; k < 5; ++k) server.Serve(server.Now() + 1'000'000);
+  Client after(*server.port(0));
+  after.Say("AT?RT\n");
+  EXPECT_TRUE(after.Hears(&server, "5000\r\n")) << "it was not stored";
+}
+
+TEST(ModemPorts, ASlowLineTakesItsTime) {
+  ModemServer server(LoadModemFile(FileWith(kNet + ", serial_baud: 300", kNet)), "");
+  Client client(*server.port(0));
+  const TimeNs start = SteadyNow();
+  client.Say("AT?MODE\nAT?AL\n");
+  EXPECT_TRUE(client.Hears(&server, "NET\r\n1\r\n"));
+  EXPECT_GE(SteadyNow() - start, 8 * 10 * 1'000'000'000LL / 300);  // eight bytes of ten bits
+}
+
+TEST(ModemPorts, SettingsOfTheFileAreStored) {
+  ModemServer server(LoadModemFile(FileWith(kNet + ", settings: {L: 2, RT: 3000}", kNet)), "");
+  Client client(*server.port(0));
+  client.Say("AT?L\nAT?RT\nAT!RT5000\nAT?RT\n");
+  EXPECT_TRUE(client.Hears(&server, "2\r\n3000\r\n[*]OK\r\n[*]5000\r\n"));
 }
 
 TEST(ModemPorts, AClientThatVanishesMakesRoomForTheNext) {
@@ -238,6 +311,12 @@ TEST(ModemPorts, FilesThatCannotWorkAreRefused) {
   refused("protocol: s2c, tcp: 9201", "protocol: s2c, tcp: 9201");
   refused("protocol: s2c, tcp: 0, address: 2", kNet);
   refused("protocol: s2c, tcp: 0, colour: red", kNet);
+  refused(kNet + ", settings: {L: 4}", kNet);
+  refused(kNet + ", settings: {QQ: 1}", kNet);
+  refused(kNet + ", settings: {AL: 3}", kNet);
+  refused(kNet + ", clients: 0", kNet);
+  refused("protocol: s2c, pty: /tmp/none, clients: 2", kNet);
+  refused("protocol: s2c, serial: /dev/none, serial_baud: 9600", kNet);
 }
 
 }  // namespace

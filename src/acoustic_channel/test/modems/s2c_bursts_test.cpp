@@ -31,9 +31,9 @@ struct Bursts : testing::Test {
 
 TEST_F(Bursts, ABurstEstablishesTheConnectionItNeeds) {
   bench.StartS2c();
-  EXPECT_EQ(State(0, 0.5), "INITIATION LISTEN\r\n\r\n");
+  EXPECT_EQ(State(0, 0.5), "INITIATION LISTEN\n\r\n");
   EXPECT_EQ(bench.Ask(0, 1.0, Burst("hello", 2)), "OK\r\n");
-  EXPECT_EQ(State(0, 1.5), "INITIATION ESTABLISH\r\n\r\n");
+  EXPECT_EQ(State(0, 1.5), "INITIATION ESTABLISH\n\r\n");
   bench.water->Advance(Ns(10.0));
   const double called = 1.0 + 0.1625 + 1.0, answered = called + 0.02 + 0.1625 + 1.0;
   EXPECT_NEAR(bench.When(1, "RADDR,1\r\n"), called, 1e-9);
@@ -42,8 +42,8 @@ TEST_F(Bursts, ABurstEstablishesTheConnectionItNeeds) {
   const double heard = answered + 0.1515 + 40.0 / 6900.0 + 1.0;
   EXPECT_NEAR(bench.When(1, "RECV,5,1,2,6900,-130,508,1000000,0.0000,hello\r\n"), heard, 1e-8);
   EXPECT_NEAR(bench.When(0, "DELIVERED,1,2\r\n"), heard + 0.02 + 0.1625 + 1.0, 1e-8);
-  EXPECT_EQ(State(0, 10.0), "ONLINE LOCAL\r\n\r\n");
-  EXPECT_EQ(State(1, 10.0), "ONLINE LOCAL\r\n\r\n");
+  EXPECT_EQ(State(0, 10.0), "ONLINE LOCAL\n\r\n");
+  EXPECT_EQ(State(1, 10.0), "ONLINE LOCAL\n\r\n");
   EXPECT_EQ(bench.Ask(0, 10.0, "AT?T\n"), "1000000\r\n");
 }
 
@@ -75,10 +75,10 @@ TEST_F(Bursts, WhereNobodyAnswersAllDataFailsAndTheModemBacksOff) {
   EXPECT_NEAR(bench.When(0, "FAILED,1,2\r\n"), failed, 1e-9);
   EXPECT_NEAR(bench.When(0, "FAILED,2,2\r\n"), failed, 1e-9);
   EXPECT_NEAR(bench.When(0, "DROPCNT,10\r\n"), failed, 1e-9);
-  EXPECT_EQ(State(0, failed + 0.1), "BACKOFF\r\n\r\n");
+  EXPECT_EQ(State(0, failed + 0.1), "BACKOFF\n\r\n");
   EXPECT_EQ(bench.Ask(0, failed + 0.2, "AT*SENDIM,2,2,ack,hi\n"), "BUSY BACKOFF STATE\r\n");
   EXPECT_EQ(bench.Ask(0, failed + 0.2, "AT*SENDIM,2,2,force,hi\n"), "OK\r\n");
-  EXPECT_EQ(State(0, failed + 2.1), "INITIATION LISTEN\r\n\r\n");
+  EXPECT_EQ(State(0, failed + 2.1), "INITIATION LISTEN\n\r\n");
 }
 
 TEST_F(Bursts, ARepeatedBurstIsTakenOnce) {
@@ -101,13 +101,13 @@ TEST_F(Bursts, BothEndsOrOneHangUp) {
   Connect();
   EXPECT_EQ(bench.Ask(0, 10.0, "ATH0\n"), "OK\r\n");
   bench.water->Advance(Ns(13.0));
-  EXPECT_EQ(State(0, 13.0), "INITIATION LISTEN\r\n\r\n");
-  EXPECT_EQ(State(1, 13.0), "INITIATION LISTEN\r\n\r\n");
+  EXPECT_EQ(State(0, 13.0), "INITIATION LISTEN\n\r\n");
+  EXPECT_EQ(State(1, 13.0), "INITIATION LISTEN\n\r\n");
   EXPECT_EQ(bench.Ask(1, 14.0, "ATD1\n"), "INITIATION ESTABLISH\r\n");
-  EXPECT_EQ(State(1, 20.0), "ONLINE LOCAL\r\n\r\n");
+  EXPECT_EQ(State(1, 20.0), "ONLINE LOCAL\n\r\n");
   EXPECT_EQ(bench.Ask(1, 20.0, "ATH1\n"), "OK\r\n");
-  EXPECT_EQ(State(0, 25.0), "ONLINE LOCAL\r\n\r\n");
-  EXPECT_EQ(State(1, 25.0), "INITIATION LISTEN\r\n\r\n");
+  EXPECT_EQ(State(0, 25.0), "ONLINE LOCAL\n\r\n");
+  EXPECT_EQ(State(1, 25.0), "INITIATION LISTEN\n\r\n");
 }
 
 TEST_F(Bursts, AnIdleConnectionClosesWhereItIsTold) {
@@ -115,8 +115,8 @@ TEST_F(Bursts, AnIdleConnectionClosesWhereItIsTold) {
   bench.Ask(0, 10.0, "AT!KO5\n");
   bench.Ask(0, 10.0, Burst("more", 2));
   bench.water->Advance(Ns(25.0));
-  EXPECT_EQ(State(0, 25.0), "INITIATION LISTEN\r\n\r\n");
-  EXPECT_EQ(State(1, 25.0), "INITIATION LISTEN\r\n\r\n");
+  EXPECT_EQ(State(0, 25.0), "INITIATION LISTEN\n\r\n");
+  EXPECT_EQ(State(1, 25.0), "INITIATION LISTEN\n\r\n");
 }
 
 TEST_F(Bursts, WhatDoesNotFitTheBufferIsRefused) {

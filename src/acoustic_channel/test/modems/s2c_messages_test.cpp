@@ -43,6 +43,20 @@ TEST_F(Messages, AnAcknowledgedMessageTakesItsTime) {
   EXPECT_EQ(bench.log.sent[1].kind, PacketKind::kAck);
 }
 
+TEST_F(Messages, ANewEpisodeEndsThem) {
+  Start();
+  bench.Ask(0, 10.0, Im("hello", 2, "ack"));
+  bench.Ask(1, 10.0, "AT*SENDIMS,2,1,20000000,hi\n");
+  bench.water->Advance(Ns(10.1));
+  bench.water->Reset(1, 1);  // in the middle of the sound
+  EXPECT_NEAR(bench.When(0, "FAILEDIM,2\r\n"), 0.0, 1e-9);
+  EXPECT_NEAR(bench.When(1, "CANCELEDIMS,1\r\n"), 0.0, 1e-9);
+  EXPECT_EQ(bench.Ask(0, 1.0, "AT?S\n"), "INITIATION LISTEN\n\r\n");
+  bench.Ask(0, 1.0, Im("again", 2, "ack"));
+  bench.water->Advance(Ns(6.0));
+  EXPECT_EQ(bench.hosts.all[0].substr(bench.hosts.all[0].size() - 15), "DELIVEREDIM,2\r\n");
+}
+
 TEST_F(Messages, AnyBytesPassUnchanged) {
   Start();
   std::string payload;

@@ -1,3 +1,5 @@
+#include <cstdio>
+
 #include "modem_fixture.hpp"
 
 /// What one modem answers its host.
@@ -9,9 +11,30 @@ TEST(S2cModem, TheNetInterpreterAnswersPlainLines) {
   bench.StartS2c();
   EXPECT_EQ(bench.Ask(0, 0.1, "AT?MODE\n"), "NET\r\n");
   EXPECT_EQ(bench.Ask(0, 0.2, "AT?AL\r"), "1\r\n");
-  EXPECT_EQ(bench.Ask(0, 0.3, "\nAT?S\n"), "INITIATION LISTEN\r\n\r\n");
+  EXPECT_EQ(bench.Ask(0, 0.3, "\nAT?S\n"), "INITIATION LISTEN\n\r\n");
   EXPECT_EQ(bench.Ask(0, 0.4, "+++AT?MODE\n"), "ERROR WRONG FORMAT\r\n");
   EXPECT_EQ(bench.Ask(0, 0.5, "hello\n"), "ERROR WRONG FORMAT\r\n");
+}
+
+TEST(S2cModem, AnswersOfManyLinesEndOnlyOnceWithACarriageReturn) {
+  ModemBench bench(1);
+  bench.StartS2c();
+  const std::string paths = bench.Ask(0, 0.1, "AT?P\n");
+  EXPECT_EQ(paths, "0 0\n0 0\n0 0\n0 0\n0 0\n0 0\n0 0\n0 0\n\r\n");
+  const std::string all = bench.Ask(0, 0.2, "AT&V\n");
+  EXPECT_EQ(all.find('\r'), all.size() - 2);
+  EXPECT_EQ(all.rfind("Source Level: 0\n", 0), 0u);
+}
+
+/// As dune's driver reads them; a version that it cannot read stops it.
+TEST(S2cModem, VersionsAreReadAsDuneDoes) {
+  ModemBench bench(1);
+  bench.StartS2c();
+  const std::string answer = bench.Ask(0, 0.1, "ATI1\n");
+  char phy[64] = {}, mac[64] = {};
+  ASSERT_EQ(std::sscanf(answer.c_str(), "phy:%*[^0]%63[^,], mac:%*[^v]v%63s", phy, mac), 2);
+  EXPECT_STREQ(phy, "0.1");
+  EXPECT_STREQ(mac, "1.9");
 }
 
 TEST(S2cModem, TheAtInterpreterCountsItsBytes) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acoustic_channel/channel_config.hpp"
@@ -11,13 +12,16 @@ namespace stg::acoustics {
 
 /// The modem of one vehicle and where its host finds it.
 struct ModemPlace {
-  std::string protocol = "s2c";    ///< of ModemProtocols()
-  int tcp = -1;                    ///< port to listen on, 0: any; -1: none
-  std::string pty;                 ///< symbolic link to make to a pseudo terminal
-  std::string serial;              ///< device
-  int baud = 19200;                ///< of `serial`
-  int address = 0;                 ///< 0: the id and one
-  int broadcast = -1;              ///< -1: 255 of s2c, 0 of micromodem
+  std::string protocol = "s2c";  ///< of ModemProtocols()
+  int tcp = -1;                  ///< port to listen on, 0: any; -1: none
+  std::string pty;               ///< symbolic link to make to a pseudo terminal
+  std::string serial;            ///< device
+  int baud = 19200;              ///< of `serial`
+  int serial_baud = 0;           ///< what the modem writes takes its time on such a line; 0: none
+  int clients = 1;               ///< of `tcp` and s2c: one is obeyed, the others read along
+  std::vector<std::pair<std::string, std::string>> settings{};  ///< stored at power on
+  int address = 0;                                              ///< 0: the id and one
+  int broadcast = -1;                                           ///< -1: 255 of s2c, 0 of micromodem
   std::string firmware;            ///< empty: 1.9 of s2c, 2.0.35490 of micromodem
   std::string interpreter = "at";  ///< of s2c: at or net
   bool defer = true;               ///< of s2c, as the next one

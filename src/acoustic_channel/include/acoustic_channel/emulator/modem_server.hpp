@@ -1,7 +1,9 @@
 #pragma once
 
+#include <deque>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "acoustic_channel/emulator/modem_file.hpp"
 #include "acoustic_channel/emulator/modem_water.hpp"
 #include "acoustic_channel/ports/byte_port.hpp"
+#include "acoustic_channel/s2c/bystander.hpp"
 
 namespace stg::acoustics {
 
@@ -26,6 +29,9 @@ class ModemServer : private ModemHosts {
   /// Waits for bytes, the next event of the water, or `until` (time of the network), and does what
   /// is due.
   void Serve(TimeNs until);
+  /// Whether a vehicle is in the water. The modem of one that has left it has no power: its TCP
+  /// port is closed, a line says nothing, and it starts anew when the vehicle is back.
+  void SetPresent(int node, bool present);
   /// Time of the network now: since the server was made.
   TimeNs Now() const { return SteadyNow() - start_; }
 
@@ -41,15 +47,29 @@ class ModemServer : private ModemHosts {
   std::function<void(const std::string&)> say = [](const std::string&) {};
 
  private:
+  /// Bytes on a slow line, by the steady clock.
+  struct Late {
+    TimeNs due;
+    std::string bytes;
+  };
   struct Place {
     std::unique_ptr<BytePort> port;
     PortListener listener;
     std::string name;
     std::unique_ptr<ModemPort> gateway;
+    bool power = true;
+    bool net = false;                        ///< the interpreter of S2C
+    std::map<int, s2c::Bystander> guests{};  ///< by their numbers at the port
+    int serial_baud = 0;                     ///< of the line that the port stands for; 0: none
+    std::deque<Late> late{};
+    TimeNs line_free = 0;
   };
   void Write(int node, const std::string& bytes) override;
   void HangUp(int node) override;
   void OnSharedAddress(int node, int address) override;
+  void Announce(int node, const std::string& notification) override;
+  void ListenToGuests(int node, PortListener* listener);
+  void WriteLate(TimeNs now);
   PortListener ListenerOf(int node);
   void OpenGateway(int node, const GatewayPlace& gateway);
   /// Both ways.

@@ -18,6 +18,8 @@ class ModemHosts {
   virtual ~ModemHosts() = default;
   virtual void Write(int node, const std::string& bytes) = 0;
   virtual void HangUp(int node) = 0;
+  /// For programs that read along; see ModemSurroundings.
+  virtual void Announce(int /*node*/, const std::string& /*notification*/) {}
   /// Two modems share an address; it is allowed.
   virtual void OnSharedAddress(int /*node*/, int /*address*/) {}
 };
@@ -55,6 +57,8 @@ class ModemWater : private PacketObserver {
   void Offer(const Transmission& packet, TimeNs t);
   void Move(int node, TimeNs t, const NodeMotion& motion);
   void SetPresent(int node, TimeNs t, bool present);
+  /// The modem of a node loses its power for a moment.
+  void Restart(int node, TimeNs t);
 
   /// When something will happen without another word from outside.
   TimeNs next() const;

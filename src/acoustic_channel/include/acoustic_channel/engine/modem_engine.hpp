@@ -34,6 +34,8 @@ class ModemSurroundings {
 
   /// The host is given these bytes.
   virtual void Write(const std::string& bytes) = 0;
+  /// Programs that read along beside the host hear of it, too: no answer, and not yet framed.
+  virtual void Announce(const std::string& /*notification*/) {}
   /// The connection to the host is closed, where it is one.
   virtual void HangUp() = 0;
 

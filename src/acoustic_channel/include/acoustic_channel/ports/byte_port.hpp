@@ -20,6 +20,13 @@ struct PortListener {
   std::function<void()> connected;
   std::function<void()> disconnected;
   std::function<void(const char* bytes, std::size_t size)> read;
+  /// One more client than the port takes was turned away.
+  std::function<void()> refused = [] {};
+  /// Of clients beside the first one: they read along (see MakeTcpServer).
+  std::function<void(int guest)> guest_came = [](int) {};
+  std::function<void(int guest)> guest_left = [](int) {};
+  std::function<void(int guest, const char* bytes, std::size_t size)> guest_read =
+      [](int, const char*, std::size_t) {};
 };
 
 /// One stream at a time. What the other side does not read is kept up to 256 KiB, then dropped and
@@ -38,8 +45,15 @@ class BytePort {
   /// Earliest time at which Serve is wanted without an event.
   virtual TimeNs next() const;
   void Write(const std::string& bytes);
-  /// Closes the connection, where it is one; the port waits for another.
-  void HangUp() { hang_up_ = true; }
+  /// Closes the connections, where there are some; the port waits for others.
+  virtual void HangUp() { hang_up_ = true; }
+  /// False: no client can connect, and connected ones are hung up.
+  virtual void SetOpen(bool /*open*/) {}
+
+  // Guests; a port that takes none has no use for these.
+  virtual void WriteToGuest(int /*guest*/, const std::string& /*bytes*/) {}
+  /// The guest becomes the client that is obeyed, and the one that was a guest of this number.
+  virtual void GiveControlTo(int /*guest*/, const PortListener& /*listener*/) {}
 
   bool connected() const { return stream_ >= 0; }
   std::uint64_t dropped() const { return dropped_; }
@@ -54,6 +68,8 @@ class BytePort {
   void Close(const PortListener& listener);
   void ReadSome(const PortListener& listener);
   void WriteSome(TimeNs now, const PortListener& listener);
+  /// Exchanges the connections of two ports, with what waits to be written.
+  void Exchange(BytePort* other);
 
   std::string name_;
   int stream_ = -1;
@@ -65,9 +81,10 @@ class BytePort {
   std::uint64_t dropped_ = 0;
 };
 
-/// Listens on an address; one client at a time, a second one is refused and counted. Throws
-/// UserError where the port cannot be had. Port 0: any that is free.
-std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port);
+/// Listens on an address. The first client is the one that `read` and Write are about; up to
+/// `clients` - 1 more are guests, the oldest of which takes its place when it goes. All others are
+/// refused. Throws UserError where the port cannot be had. Port 0: any that is free.
+std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port, int clients = 1);
 /// Connects, and again after 1, 2, 4, ... up to 30 s.
 std::unique_ptr<BytePort> MakeTcpClient(const std::string& host, int port);
 /// A pseudo terminal, raw, without echo, mode 0600; `link` becomes a symbolic link to it and is

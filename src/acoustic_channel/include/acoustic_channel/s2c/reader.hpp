@@ -54,6 +54,8 @@ class Reader {
   bool OnSilence();
   /// The host has left a message unfinished for seconds: the message is given up.
   void GiveUp();
+  /// Bytes that were fed and not yet cut into items; they are forgotten here.
+  std::string TakeRest();
 
  private:
   std::optional<Item> NextData();
@@ -70,6 +72,11 @@ class Reader {
   bool swallow_newline_ = false;  ///< the second half of "\r\n"
   bool inside_message_ = false;
 };
+
+/// An answer or notification (of which the name is empty) as the interpreters write it.
+std::string Framed(Reader::Mode mode, const std::string& name, const std::string& text);
+/// What an answer calls a command; nothing in it could be taken for another field.
+std::string NameOf(const std::string& text);
 
 /// A whole number without sign, all of `text`; nothing: it is none, or above 2^32 - 1.
 std::optional<std::uint32_t> WholeNumber(const std::string& text);

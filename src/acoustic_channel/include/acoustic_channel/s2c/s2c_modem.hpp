@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "acoustic_channel/engine/modem_engine.hpp"
 #include "acoustic_channel/s2c/connection.hpp"
@@ -21,6 +23,8 @@ struct ModemOptions {
   bool defer = true;    ///< an instant message waits for the end of a reception; else it ends it
   double rssi_offset_db = -190.0;  ///< from a level re 1 uPa to dB re 1 V
   std::string firmware = "1.9";
+  /// Names and values that are stored at power on.
+  std::vector<std::pair<std::string, std::string>> settings{};
 };
 
 /// The mode of bursts of a modem with a profile.

@@ -104,7 +104,7 @@ void ModemsNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mes
   }
   const TimeNs t = server_.Now();
   members_[static_cast<std::size_t>(vehicle)].heard = t;
-  server_.water().SetPresent(vehicle, t, true);
+  server_.SetPresent(vehicle, true);
   server_.water().Move(vehicle, t,
                        {VectorOf(message->pose.pose.position),
                         WorldVelocity(message->pose.pose, message->twist.twist)});
@@ -135,9 +135,7 @@ void ModemsNode::Tell() {
   const TimeNs now = server_.Now();
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const bool silent = now - members_[i].heard > silent_after_;
-    if (!file_.vehicles[i].moored && silent) {
-      server_.water().SetPresent(static_cast<int>(i), now, false);
-    }
+    if (!file_.vehicles[i].moored && silent) server_.SetPresent(static_cast<int>(i), false);
   }
   PublishReceptions();
   auv_msgs::PacketEvents& events = reports_.message();
