@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "auv_common/names.hpp"
@@ -82,6 +83,9 @@ Int ToInteger(const YamlTree& node) {
   const bool digits = !s.empty() &&
                       s.find_first_not_of("0123456789", s[0] == '-' ? 1 : 0) == std::string::npos &&
                       s != "-";
+  if (digits && s[0] == '-' && std::is_unsigned_v<Int>) {
+    throw Refusal{KindName(node) + " is out of range: expected a whole number from 0"};
+  }
   if (digits && (result.ec != std::errc() || result.ptr != s.data() + s.size())) {
     throw Refusal{KindName(node) + " is out of range"};
   }

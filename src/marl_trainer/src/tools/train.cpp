@@ -14,7 +14,6 @@
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
-#include "seed_check.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace {
@@ -52,10 +51,9 @@ void Declare(const stg::config::Field& option, CLI::App* app) {
     const auto message = stg::config::ParseText(option, text);
     if (message) throw CLI::ValidationError("--" + option.path, *message);
   };
-  auto* added = app->add_option_function<std::string>("--" + option.path, take, option.meaning)
-                    ->type_name(stg::config::FormatRange(option))
-                    ->default_str(stg::config::FormatValue(option.value));
-  if (option.path == "seed") added->check(stg::learn::SeedCheck());
+  app->add_option_function<std::string>("--" + option.path, take, option.meaning)
+      ->type_name(stg::config::FormatRange(option))
+      ->default_str(stg::config::FormatValue(option.value));
 }
 
 int Train(int argc, char** argv, stg::learn::Communicator* ranks) {

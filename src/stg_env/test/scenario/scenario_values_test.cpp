@@ -19,7 +19,7 @@ TEST_F(ScenarioInput, WrongTypesAreRefused) {
   ExpectRefused("dt_s", "dt_s: {a: 1}", "time.dt_s", "found a map");
   ExpectRefused("agents", "agents: 4.5", "agents", "expected an integer, found '4.5'");
   ExpectRefused("agents", "agents: true", "agents", "expected an integer");
-  ExpectRefused("seed", "seed: -1", "seed", "out of range");
+  ExpectRefused("seed", "seed: -1", "seed", "out of range: expected a whole number from 0");
   ExpectRefused("seed", "seed: 18446744073709551616", "seed", "out of range");
   ExpectRefused("restoring", "restoring: yes", "vehicle.fully_actuated.restoring",
                 "expected true or false");
