@@ -74,9 +74,11 @@ void Table::Differ(const std::string& section, const std::vector<std::string>& k
   differences_ = section + ".";
   const std::size_t count = fields_.size();
   for (const std::string& key : keys) {
+    const std::string inside = key + ".";
     for (std::size_t k = 0; k < count; ++k) {
-      const Field of = fields_[k];
-      if (of.path != key && of.path.rfind(key + ".", 0) != 0) continue;
+      const std::string& path = fields_[k].path;
+      if (path != key && path.compare(0, inside.size(), inside) != 0) continue;
+      const Field of = fields_[k];  // a copy: the fields move when one is added
       Section(section + "." + Parent(of.path));
       AddOptional(Leaf(of.path), DifferenceRef{differences, std::make_shared<const Field>(of)}, "",
                   of.limits, of.unit, "the agents' value of " + of.path);

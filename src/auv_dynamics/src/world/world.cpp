@@ -10,8 +10,17 @@
 namespace stg::dynamics {
 namespace {
 
+/// As ValidateOrThrow of a WorldScenario, without the keys of what agents believe: every
+/// environment of an evaluation comes here.
 const WorldConfig& Valid(const WorldConfig& config, const RunConfig& run) {
-  config::ValidateOrThrow(WorldScenario{run, config, {}});
+  WorldConfig world = config;  // a table refers to what can be changed
+  RunConfig steps = run;
+  config::Table table;
+  Describe(&steps, &table);
+  Describe(&world, &table);
+  auto violation = config::FindBadValue(table);
+  if (!violation) violation = FindConflict(WorldScenario{run, config, {}});
+  if (violation) config::ThrowViolation("scenario", *violation);
   return config;
 }
 
