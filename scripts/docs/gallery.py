@@ -35,23 +35,24 @@ LOSS = "[...document.querySelectorAll('.event')].filter(b => b.textContent.inclu
 # name: run, place in the page, width, height, script that runs first, title, what one sees
 PICTURES = {
     "view_field20": ("field20", "t=200&theme=dark&tab=network", 1280, 720, "", "Twenty over a ridge",
-        "Twenty torpedoes over the bathymetry of the paper's Fig. 6. Colours are phases: those that look for the target (blue), close in (yellow) and hold it "
-        "(green). On the right: when each AUV spoke, in time slots, one after the other."),
+        "Twenty torpedoes over the bathymetry of the paper's Fig. 6. Colours are phases: AUVs search for the target (blue), approach it (yellow) and "
+        "stay at their distance (green). On the right: the transmissions of each AUV, in time slots, one after the other."),
     "view_search": ("search", "t=700&theme=dark&tab=story&camera=above", 1280, 720, "", "A search",
-        "Four AUVs that were launched in one place sweep the water around an old datum. The large circle is what they believe of the target, red that they "
-        "have lost it, or never had it."),
+        "Four AUVs that were launched in one place sweep the water around an old datum. The large circle is their estimate of the target; red means "
+        "that they have lost the target, or have not found it yet."),
     "view_hunt": ("hunt", "t=1500&theme=light&tab=plots&camera=target", 1280, 720, "", "A target that flees",
-        "A target nearly as fast as its hunters; the policy over entities keeps a ring around it. The chips above the plots choose an AUV."),
+        "The target is nearly as fast as the AUVs; the policy over entities keeps a ring around it. The buttons above the plots choose an AUV."),
     "view_many": ("many", "t=400&theme=light&tab=table&camera=region", 1280, 720, "", "Several targets",
-        "Eight AUVs and three targets. A broken line leads from each AUV to the target that it follows, which stands in the table, too."),
+        "Eight AUVs and three targets. A broken line leads from each AUV to the target that it follows; the table contains this target, too."),
     "view_medium": ("medium", "t=3.2&theme=light&tab=plots", 1280, 720, "", "The paper's box",
-        "Four AUVs in 2 m of water close in to 15 mm. The time's line runs through all plots."),
+        "Four AUVs in a box of 2 m approach to 15 mm. A vertical line marks the time in all plots."),
     "view_loss": ("loss", "theme=light", 1280, 720, LOSS, "A loss, and why",
-        "An event tells its reasons. [The tutorial](tutorials/lost_target.md) reads them within a minute."),
+        "The page shows the reasons of an event. [The tutorial](tutorials/lost_target.md) explains how to read them within a minute."),
     "view_loss_network": ("loss", "theme=light", 1280, 720, LOSS + "STG.app.show('network')", "The network at the same moment",
-        "Bars are transmissions, filled as far as receivers heard them; marks are receivers that missed one, in the colour of the reason."),
+        "Bars are transmissions; the filled part is the share of receivers that received them. Marks are receivers that missed a "
+        "transmission, in the colour of the reason."),
     "view_network": ("network", "theme=dark&tab=network", 1280, 720, "", "A network alone",
-        "A folder of `simulate`: a buoy, moored nodes and vehicles that share the water, without any AUV of ours."),
+        "The results of `simulate`: a buoy, moored nodes and vehicles share the water, without any agent."),
     "view_training": ("training", "theme=light", 1280, 720, "", "A training", "The curves of a training's folder."),
     "view_phone": ("field20", "t=300&theme=dark&tab=plots&auv=3", 390, 780, "", "On a telephone", "The same page, 390 pixels wide."),
 }  # fmt: skip
@@ -62,8 +63,8 @@ FILMS = {
 FRAMES_PER_S = 15
 INTRO = """\
 # Gallery
-The page of the view, as `./stg report` makes it of a recorded run and `./stg run ... view:=web` shows it live. [The view](view.md) says how to
-read it. `scripts/docs/gallery.py` flies these runs and makes all pictures, videos and this page anew.
+These pictures show the page of the view, as `./stg report` makes it from a recorded run and `./stg run ... view:=web` shows it live.
+[The view](view.md) explains it. `scripts/docs/gallery.py` simulates these runs again and makes all pictures, videos and this page.
 """
 
 
