@@ -105,9 +105,9 @@ function(stg_test target)
   set_tests_properties(${test} PROPERTIES LABELS "${labels}")
 endfunction()
 
-# stg_plain_python(TARGET FOLDER MODULE FILE ...): without catkin, puts the files of python/MODULE
-# beside the extension TARGET in FOLDER/MODULE, as links, and installs both.
-function(stg_plain_python target folder module)
+# stg_plain_python(TARGETS FOLDER MODULE FILE ...): without catkin, puts the files of python/MODULE
+# beside the extensions TARGETS in FOLDER/MODULE, as links, and installs all of them.
+function(stg_plain_python targets folder module)
   set(destination ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages/${module})
   file(MAKE_DIRECTORY ${folder}/${module})
   foreach(file IN LISTS ARGN)
@@ -115,7 +115,7 @@ function(stg_plain_python target folder module)
     file(CREATE_LINK ${source} ${folder}/${module}/${file} SYMBOLIC)
     install(FILES ${source} DESTINATION ${destination})
   endforeach()
-  install(TARGETS ${target} LIBRARY DESTINATION ${destination})
+  install(TARGETS ${targets} LIBRARY DESTINATION ${destination})
 endfunction()
 
 # stg_node_target(TARGET [LIBRARY ...]): a library or program with ROS in it, on top of libraries of

@@ -10,13 +10,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char *best_set(void) {
-#ifdef __x86_64__
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("x86-64-v3")) return "x86-64-v3";
-#endif
-  return "baseline";
-}
+#include "../cmake/x86_64_v3.h"
+
+static const char *best_set(void) { return stg_has_x86_64_v3() ? "x86-64-v3" : "baseline"; }
 
 /* Writes the path of the program to `target`, whether there is one or not. */
 static void locate(char *target, const char *set, const char *program) {

@@ -99,6 +99,10 @@ def gather(folder, engines):
         own = package if name == "baseline" else package / f"_{name.replace('-', '_')}"
         rpath = f"$ORIGIN:$ORIGIN/{'../' * len(own.relative_to(folder).parts)}{NAME}.libs"
         place(engine, own / engine.name, rpath)
+        if name == "baseline":
+            # What asks the processor which engine it runs lies beside each; every processor runs this one.
+            for asker in engine.parent.glob("_processor.*.so"):
+                place(asker, own / asker.name, rpath)
         for library, path in libraries_of(engine).items():
             if OURS.match(library):
                 place(path, own / library, rpath)

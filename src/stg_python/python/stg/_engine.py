@@ -10,19 +10,6 @@ import os
 import pathlib
 import sys
 
-# What a processor must have, by the names of /proc/cpuinfo.
-NEEDS = {"x86-64-v3": {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"}}
-
-
-def _processor():
-    """Returns the set of what this machine's processors have."""
-    try:
-        text = pathlib.Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
-    except OSError:
-        return set()
-    flags = [line.split(":", 1)[1].split() for line in text.splitlines() if line.startswith("flags")]
-    return set.intersection(*map(set, flags)) if flags else set()
-
 
 def _file(name):
     """Returns the engine of an instruction set, or None."""
@@ -43,11 +30,12 @@ def _load(file):
 def choose():
     """Makes the engine to use the module stg._core; to be called before all else imports that."""
     wanted = os.environ.get("STG_INSTRUCTION_SET", "")
-    for name, needs in NEEDS.items():
-        file = _file(name)
-        if file and wanted in ("", name) and needs <= _processor():
+    file = _file("x86-64-v3")
+    if file and wanted in ("", "x86-64-v3"):
+        from stg import _processor  # pylint: disable=import-outside-toplevel
+
+        if _processor.X86_64_V3:
             _load(file)
-            break
     from stg import _core  # pylint: disable=import-outside-toplevel
 
     if wanted not in ("", _core.INSTRUCTION_SET):
