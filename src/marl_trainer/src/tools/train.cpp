@@ -9,9 +9,9 @@
 
 #include "auv_common/command_line.hpp"
 #include "auv_common/config/files.hpp"
-#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/stop_signals.hpp"
+#include "declared_options.hpp"
 #include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -43,17 +43,6 @@ std::string Argument(int argc, char** argv, const std::string& option,
 
 bool HasFlag(int argc, char** argv, const std::string& flag) {
   return std::find(argv + 1, argv + argc, flag) != argv + argc;
-}
-
-/// Declares one option of the table.
-void Declare(const stg::config::Field& option, CLI::App* app) {
-  const auto take = [&option](const std::string& text) {
-    const auto message = stg::config::ParseText(option, text);
-    if (message) throw CLI::ValidationError("--" + option.path, *message);
-  };
-  app->add_option_function<std::string>("--" + option.path, take, option.meaning)
-      ->type_name(stg::config::FormatRange(option))
-      ->default_str(stg::config::FormatValue(option.value));
 }
 
 int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
@@ -101,7 +90,7 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   const stg::config::Table table = setup.Options();
-  for (const stg::config::Field& option : table.fields()) Declare(option, &app);
+  stg::learn::DeclareOptions(table, &app);
   stg::AddPluginOption(&app);
   try {
     app.parse(argc, argv);

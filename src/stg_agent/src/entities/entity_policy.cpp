@@ -8,35 +8,42 @@
 
 namespace stg::agent {
 
+namespace {
+
+/// Place of a name in a list; throws UserError, "`what` 'name': none of ...", if it is not there.
+std::size_t PlaceOf(const std::string& name, const std::vector<std::string>& names,
+                    const std::string& what) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw UserError(what + " '" + name + "': none of " + JoinNames(names));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+}  // namespace
+
+const std::vector<std::string>& EntityActionNames() {
+  static const std::vector<std::string> names = {"guidance", "law5", "course3"};
+  return names;
+}
+
 std::string EntityActionName(EntityAction action) {
-  switch (action) {
-    case EntityAction::kGuidance:
-      return "guidance";
-    case EntityAction::kLaw5:
-      return "law5";
-    case EntityAction::kCourse3:
-      break;
-  }
-  return "course3";
+  return EntityActionNames()[static_cast<std::size_t>(action)];
 }
 
 EntityAction EntityActionNamed(const std::string& name) {
-  for (const EntityAction action :
-       {EntityAction::kGuidance, EntityAction::kLaw5, EntityAction::kCourse3}) {
-    if (name == EntityActionName(action)) return action;
-  }
-  throw UserError("action '" + name + "': none of guidance, law5, course3");
+  return static_cast<EntityAction>(PlaceOf(name, EntityActionNames(), "action"));
+}
+
+const std::vector<std::string>& EntityNetworkNames() {
+  static const std::vector<std::string> names = {"pool", "graph"};
+  return names;
 }
 
 std::string EntityNetworkName(EntityNetwork network) {
-  return network == EntityNetwork::kGraph ? "graph" : "pool";
+  return EntityNetworkNames()[static_cast<std::size_t>(network)];
 }
 
 EntityNetwork EntityNetworkNamed(const std::string& name) {
-  for (const EntityNetwork network : {EntityNetwork::kPool, EntityNetwork::kGraph}) {
-    if (name == EntityNetworkName(network)) return network;
-  }
-  throw UserError("network '" + name + "': none of pool, graph");
+  return static_cast<EntityNetwork>(PlaceOf(name, EntityNetworkNames(), "network"));
 }
 
 PoolSpec EntityActorSpec(int outputs) {

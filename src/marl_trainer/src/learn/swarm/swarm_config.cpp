@@ -1,6 +1,8 @@
 #include "marl_trainer/learn/swarm/swarm_config.hpp"
 
 #include "auv_common/error.hpp"
+#include "marl_trainer/learn/options.hpp"
+#include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 
 namespace stg::learn {
 namespace {
@@ -50,13 +52,67 @@ Waters WatersAt(int place, bool free_assignment) {
 
 }  // namespace
 
+void SwarmConfig::Describe(config::Table* t) {
+  t->Add("seed", &seed, config::kNone, "-", "of networks, episodes and exploration");
+  t->Add("steps", &steps, {1, 1e12}, "-", "decisions of a swarm, of 1 s in the field");
+  t->Add("action", config::Enum(&action, agent::EntityActionNames()), config::kNone, "-",
+         "law5: the policy guides the law that the situation asks for; guidance: always "
+         "encircle; course3: it steers by itself");
+  t->Add("network", config::Enum(&network, agent::EntityNetworkNames()), config::kNone, "-",
+         "pool: means and maxima over rows; graph: attention and messages over the task graph, "
+         "which also chooses which target to follow");
+  t->Add("without", config::Name(&without, BlindNames()), config::kNone, "-",
+         "what the policy cannot see");
+  t->Add("free-assignment", &free_assignment, config::kNone, "-",
+         "a quarter of the waters has two targets, which the AUVs choose; network graph");
+  t->Add("envs", &envs, {8, 4096}, "-", "environments, eight for each kind of waters");
+  t->Add("horizon", &horizon, {1, 10000}, "-", "commands of 5 s between two updates");
+  t->Add("segment", &segment, {1, 100000}, "-", "updates between two checkpoints");
+  t->Add("episode-steps", &episode_steps, {1, 1e6}, "-", "decisions of a training episode");
+  t->Add("gamma", &gamma, config::kFraction, "-", "discount per command");
+  t->Add("lambda", &lambda, config::kFraction, "-", "GAE's lambda");
+  t->Add("own-reward", &own_reward, config::kFraction, "-",
+         "share of an AUV's own reward; the rest is its team's mean");
+  t->Add("band", &band, {0, 100}, "-", "reward of a decision inside the band");
+  t->Add("shaping", &shaping, {0, 100}, "-", "weight of the shaping by the distance to the band");
+  t->Add("epochs", &epochs, {1, 1000}, "-", "passes over the collected rows per update");
+  t->Add("minibatch", &minibatch, {1, 1e9}, "-", "rows of AUVs per gradient step");
+  t->Add("learning-rate", &learning_rate, {1e-8, 1}, "-", "Adam's learning rate at the start");
+  t->Add("last-learning-rate", &last_learning_rate, {0, 1}, "-", "at the end (linear)");
+  t->Add("clip", &clip, {1e-3, 10}, "-", "PPO's clip of the probability ratio");
+  t->Add("target-kl", &target_kl, {0, 100}, "-", "KL divergence that ends an update early");
+  t->Add("grad-clip", &gradient_norm, {1e-6, 1e6}, "-", "largest gradient norm");
+  t->Add("adam-eps", &adam_eps, {1e-12, 1}, "-", "Adam's epsilon");
+  t->Add("log-std", &log_std, {-20, 2}, "-",
+         "log sigma of the exploration at the start, also after --start-from");
+  t->Add("min-log-std", &least_log_std, {-20, 2}, "-", "lower bound of log sigma");
+  t->Add("max-log-std", &most_log_std, {-20, 2}, "-", "upper bound of log sigma");
+  t->Add("entropy", &entropy, {0, 10}, "-",
+         "weight of the entropy of the choices of a target, at the start");
+  t->Add("last-entropy", &last_entropy, {0, 10}, "-", "at the end");
+  t->Add("value-memory", &value_memory, {1, 1e12}, "-",
+         "rows that the moments of the returns remember");
+  t->Add("validation-interval", &validation_interval, {1, 100000}, "-",
+         "checkpoints between two validations");
+  t->Add("validation-episodes", &validation_episodes, {1, 10000}, "-",
+         "held-out episodes of each validation task");
+}
+
+void SwarmConfig::ValidateOrThrow() const {
+  SwarmConfig copy(*this);  // a table refers to what can be changed
+  config::Table table;
+  copy.Describe(&table);
+  RequireRanges(table);
+  RequireOption(!free_assignment || network == agent::EntityNetwork::kGraph, "free-assignment",
+                std::string("the network '") + agent::EntityNetworkName(network) +
+                    "' does not choose a target; --network graph does");
+  RequireOption(least_log_std <= log_std && log_std <= most_log_std, "log-std",
+                "is not between --min-log-std and --max-log-std");
+}
+
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count) {
-  if (config.free_assignment && config.network != agent::EntityNetwork::kGraph) {
-    throw UserError(std::string("--free-assignment: the network '") +
-                    agent::EntityNetworkName(config.network) +
-                    "' does not choose a target; --network graph does");
-  }
+  config.ValidateOrThrow();
   std::vector<SwarmTask> mixture;
   for (int k = 0; k < count; ++k) {
     const Waters waters = WatersAt(k % kWatersCount, config.free_assignment);

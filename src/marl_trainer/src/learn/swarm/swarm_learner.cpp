@@ -22,7 +22,7 @@ SwarmLearner::SwarmLearner(const SwarmConfig& config)
       actor_adam_(actor_numbers_.size()),
       critic_adam_(critic_numbers_.size()) {
   actor_.Initialise(config.seed, 0, actor_numbers_.data());
-  if (!config.without.empty()) blind_ = Blinded(config.network, size_, config.without);
+  if (config.without != "nothing") blind_ = Blinded(config.network, size_, config.without);
   KeepBlind(&actor_numbers_);
   InitialisePool(critic_.blocks(), 1.0, config.seed, 1, critic_numbers_.data());
   std::fill(actor_numbers_.end() - size_, actor_numbers_.end(), static_cast<float>(config.log_std));

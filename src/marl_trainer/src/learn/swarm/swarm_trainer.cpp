@@ -12,6 +12,7 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/learn/options.hpp"
 #include "marl_trainer/learn/stopwatch.hpp"
 #include "stg_agent/entities/entity_pilot.hpp"
 #include "stg_env/env/evaluation.hpp"
@@ -77,20 +78,13 @@ std::string SwarmTrainer::ConfigText() const {
   for (const SwarmTask& task : mixture_) {
     waters.push_back({{"name", task.name}, {"scenario_hash", ScenarioHash(task.scenario)}});
   }
-  return nlohmann::ordered_json{{"seed", config_.seed},
-                                {"action", agent::EntityActionName(config_.action)},
-                                {"network", agent::EntityNetworkName(config_.network)},
-                                {"without", config_.without},
-                                {"free_assignment", config_.free_assignment},
-                                {"steps", config_.steps},
-                                {"envs", config_.envs},
-                                {"horizon", config_.horizon},
-                                {"episode_steps", config_.episode_steps},
-                                {"gamma", config_.gamma},
-                                {"learning_rate", config_.learning_rate},
-                                {"waters", waters}}
-             .dump(2) +
-         "\n";
+  SwarmConfig copy(config_);  // a table refers to what can be changed
+  config::Table table;
+  copy.Describe(&table);
+  nlohmann::ordered_json json;
+  DumpOptions(table, &json);
+  json["waters"] = waters;
+  return json.dump(2) + "\n";
 }
 
 agent::PolicyMetadata SwarmTrainer::Metadata() const {

@@ -20,7 +20,8 @@ enum class EntityAction {
 inline constexpr int CommandSize(EntityAction action) {
   return action == EntityAction::kCourse3 ? 3 : 5;
 }
-/// "guidance", "law5" or "course3".
+/// "guidance", "law5" and "course3", in their order.
+const std::vector<std::string>& EntityActionNames();
 std::string EntityActionName(EntityAction action);
 /// Throws UserError for another name.
 EntityAction EntityActionNamed(const std::string& name);
@@ -30,7 +31,8 @@ enum class EntityNetwork {
   kPool,  ///< PoolNetwork, which reads no edges and follows the target that it follows
   kGraph  ///< GraphNetwork, which chooses a target to follow, or to search
 };
-/// "pool" or "graph".
+/// "pool" and "graph", in their order.
+const std::vector<std::string>& EntityNetworkNames();
 std::string EntityNetworkName(EntityNetwork network);
 /// Throws UserError for another name.
 EntityNetwork EntityNetworkNamed(const std::string& name);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "auv_common/config/field.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
@@ -16,8 +17,8 @@ struct SwarmConfig {
   std::int64_t steps = 6'000'000;  ///< decisions of a swarm, 1 s each in the field
   agent::EntityAction action = agent::EntityAction::kLaw5;
   agent::EntityNetwork network = agent::EntityNetwork::kPool;
-  std::string without;           ///< what the actor cannot see (Blinded); empty: nothing
-  bool free_assignment = false;  ///< some waters have targets that the AUVs choose freely
+  std::string without = "nothing";  ///< what the actor cannot see (Blinded)
+  bool free_assignment = false;     ///< some waters have targets that the AUVs choose freely
 
   int envs = 128;
   int horizon = 40;         ///< policy steps of one collection
@@ -43,6 +44,11 @@ struct SwarmConfig {
   int validation_interval = 2;  ///< segments
   int validation_episodes = 32;
   std::uint64_t validation_seed = 900'000;
+
+  /// The options of a training with swarms: command line and config.json read this one table.
+  void Describe(config::Table* table);
+  /// Throws UserError that names the option.
+  void ValidateOrThrow() const;
 };
 
 /// One kind of waters in the mixture that a training flies.
@@ -53,7 +59,7 @@ struct SwarmTask {
 
 /// The mixture of the field for `count` shards: sizes of 1 to 8 AUVs, one or two targets, stresses,
 /// search and hunt, and the reward of training in place of the scenario's. Throws UserError for
-/// free_assignment with a network that does not choose.
+/// options that do not fit.
 /// @param folder of the shipped scenarios
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count);

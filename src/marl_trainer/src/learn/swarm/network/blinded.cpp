@@ -85,17 +85,20 @@ void NoSearch(const Seen& s, Marks* marks) {
   marks->Columns(*s.trunk, s.search, s.search + agent::kSearchNumbers - 1);
 }
 
+void Nothing(const Seen&, Marks*) {}
+
 constexpr struct {
   const char* name;
   void (*blind)(const Seen&, Marks*);
-} kBlind[] = {{"neighbours", NoNeighbours}, {"graph", NoGraph}, {"edges", NoEdges},  {"age", NoAge},
-              {"covariance", NoCovariance}, {"links", NoLinks}, {"search", NoSearch}};
+} kBlind[] = {
+    {"nothing", Nothing}, {"neighbours", NoNeighbours}, {"graph", NoGraph}, {"edges", NoEdges},
+    {"age", NoAge},       {"covariance", NoCovariance}, {"links", NoLinks}, {"search", NoSearch}};
 
 }  // namespace
 
-std::string BlindNames() {
-  std::string names;
-  for (const auto& b : kBlind) names += (names.empty() ? "" : ", ") + std::string(b.name);
+std::vector<std::string> BlindNames() {
+  std::vector<std::string> names;
+  for (const auto& b : kBlind) names.emplace_back(b.name);
   return names;
 }
 
@@ -103,7 +106,7 @@ std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::
   const auto* found = std::find_if(std::begin(kBlind), std::end(kBlind),
                                    [&without](const auto& b) { return without == b.name; });
   if (found == std::end(kBlind)) {
-    throw UserError("without '" + without + "': none of " + BlindNames());
+    throw UserError("without '" + without + "': none of " + JoinNames(BlindNames()));
   }
   Marks marks(agent::EntityParameters(network, outputs));
   if (network == agent::EntityNetwork::kGraph) {

@@ -51,9 +51,9 @@ int LogShares(const ActorWorkspace& w, int row, std::vector<float>* log_shares);
 ///
 /// @param without `neighbours` (the rows of neighbours and edges; the six numbers of Eq. 18 stay),
 ///   `graph` (these six numbers, phases and qualities too), `edges`, `age`, `covariance`, `links`
-///   (link quality) or `search`; another name throws UserError
+///   (link quality), `search` or `nothing`; another name throws UserError
 std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::string& without);
-/// The names that Blinded takes, with commas.
-std::string BlindNames();
+/// The names that Blinded takes; `nothing` is the first.
+std::vector<std::string> BlindNames();
 
 }  // namespace stg::learn
