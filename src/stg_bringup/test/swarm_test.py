@@ -5,8 +5,11 @@ import unittest
 
 import rospy
 import rostest
-from auv_msgs.msg import LinkStates
-from graph_listener import Latest, SummaryOf
+from auv_msgs.msg import AcousticReception, LinkStates, PacketEvent, PacketEvents, SwarmState
+from graph_listener import Latest, SummaryOf, wait_for
+
+
+AGENTS = 20
 
 
 class Swarm(unittest.TestCase):
@@ -14,6 +17,10 @@ class Swarm(unittest.TestCase):
 
     def test_twenty_auvs_fly_a_whole_episode(self):
         summary = SummaryOf(0)
+        shown, received, heard = [], [], []
+        rospy.Subscriber("/swarm_state_display", SwarmState, shown.append, queue_size=100)
+        rospy.Subscriber("/acoustic_channel/packets", PacketEvents, received.append, queue_size=100)
+        rospy.Subscriber("/auv_3/acoustic/rx", AcousticReception, heard.append, queue_size=1000)
         links = Latest("/acoustic_channel/links", LinkStates)
         message = summary.wait(55.0)
         self.assertTrue(message.complete)
@@ -23,7 +30,21 @@ class Swarm(unittest.TestCase):
         # As `evaluate` flies it, which the graph repeats bit for bit.
         self.assertAlmostEqual(message.tail_distance, 0.0202, delta=0.0005)
         self.assertAlmostEqual(message.tracking_error, 0.0061, delta=0.0005)
-        self.assertEqual(len(links.wait().links), 20 * 19)
+        self.assertEqual(len(links.wait().links), AGENTS * (AGENTS - 1))
+        # Displays get few messages, but the ends of an episode and each packet.
+        wait_for(lambda: any(m.episode == 1 for m in shown), 5.0, "the next episode")
+        first = [m for m in shown if m.episode == 0]
+        steps = [m.step for m in first]
+        self.assertEqual([steps[0], steps[-1]], [0, 100])
+        self.assertEqual(steps, sorted(set(steps)))
+        end = first[-1].header.stamp
+        delivered = {(e.source, e.sequence) for m in received for e in m.events
+                     if (e.kind, e.receiver) == (PacketEvent.DELIVERED, 3)}  # fmt: skip
+        # From when on both topics are connected.
+        begin = rospy.Time.from_sec(received[0].header.stamp.to_sec() + 1.0)
+        told = {(p.source, p.sequence) for m in heard if begin < m.header.stamp <= end for p in m.packets}
+        self.assertGreater(len(told), 100)
+        self.assertLessEqual(told, delivered)
 
 
 if __name__ == "__main__":

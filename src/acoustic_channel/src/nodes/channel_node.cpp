@@ -49,6 +49,7 @@ ChannelNode::ChannelNode(const MakeChannel& make)
   done_ = node.advertise<std_msgs::Header>(topics::kChannelDone, kQueue, true);
   links_ = node.advertise<auv_msgs::LinkStates>(topics::kLinks, kQueue, true);
   packets_ = node.advertise<auv_msgs::PacketEvents>(topics::kPackets, kQueue);
+  reports_.message().header.frame_id = frames::kWorld;
   for (int i = 0; i < scenario_.run.agents; ++i) {
     Auv& auv = auvs_[static_cast<std::size_t>(i)];
     auv.reception = node.advertise<auv_msgs::AcousticReception>(
@@ -68,8 +69,10 @@ void ChannelNode::Spin() {
 
 double ChannelNode::Work() {
   CloseIfDue();
+  PublishPackets(false);
   health_.Tick();
-  return std::clamp(barrier_.deadline_s() - WallSeconds(), 0.0, 0.2);
+  const double wait_s = reports_.message().events.empty() ? 0.2 : display_period_s_;
+  return std::clamp(barrier_.deadline_s() - WallSeconds(), 0.0, wait_s);
 }
 
 void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
@@ -110,6 +113,7 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   SetNodeTime(message->header.stamp);
   gave_up_ = false;
   if (verdict == Verdict::kNewRun || verdict == Verdict::kNewEpisode) {
+    PublishPackets(true);
     channel_->Reset(message->seed, 0);
   }
   start_ = tracker_.start();
@@ -221,15 +225,19 @@ void ChannelNode::Close() {
   done.frame_id = frames::kWorld;
   done_.publish(done);
   steps_.Add();
-  PublishPackets();
-  PublishLinks(now);
+  reports_.message().header.stamp = done.stamp;
+  // What an episode came to is no matter of the wall clock.
+  const bool last = step_ + 1 == static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
+  PublishPackets(last);
+  PublishLinks(now, last);
 }
 
-void ChannelNode::PublishPackets() {
+/// A run in lockstep makes many steps between two looks of any observer.
+void ChannelNode::PublishPackets(bool now) {
   auv_msgs::PacketEvents& m = reports_.message();
-  if (m.events.empty()) return;
-  m.header.stamp = TimeOf(barrier_.stamp());
-  m.header.frame_id = frames::kWorld;
+  const double wall_s = WallSeconds();
+  if (m.events.empty() || (!now && wall_s - packets_sent_s_ < display_period_s_)) return;
+  packets_sent_s_ = wall_s;
   packets_.publish(m);
   reports_.Clear();
 }
@@ -245,10 +253,8 @@ void ChannelNode::PublishWindow(int i, TimeNs until) {
   auvs_[static_cast<std::size_t>(i)].reception.publish(m);
 }
 
-void ChannelNode::PublishLinks(TimeNs now) {
+void ChannelNode::PublishLinks(TimeNs now, bool last) {
   const ros::WallTime wall = ros::WallTime::now();
-  // What an episode came to is no matter of the wall clock.
-  const bool last = step_ + 1 == static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
   if (!last && (wall - links_sent_).toSec() < display_period_s_) return;
   links_sent_ = wall;
   auto& m = links_message_;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "auv_common/nodes/parameters.hpp"
+#include "auv_common/nodes/poll_loop.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 
@@ -76,6 +77,7 @@ void WorldPublisher::Advertise() {
   }
   // roscpp sends in the order of these lines: agents are served first.
   swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
+  display_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmStateDisplay, kSentQueue, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
   for (int k = 0; k < scenario_.world.target.count; ++k) {
     nav_msgs::Odometry& message = target_messages_[static_cast<std::size_t>(k)];
@@ -218,7 +220,17 @@ void WorldPublisher::SetDetections(const dynamics::World& world, TimeNs now, int
   }
 }
 
-void WorldPublisher::PublishSwarm() { swarm_.publish(swarm_message_); }
+void WorldPublisher::PublishSwarm() {
+  swarm_.publish(swarm_message_);
+  const double wall_s = WallSeconds();
+  // Where an episode begins and ends is no matter of the wall clock.
+  const bool end =
+      swarm_message_.step == 0 ||
+      swarm_message_.step == static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
+  if (!end && wall_s - display_sent_s_ < display_period_s_) return;
+  display_sent_s_ = wall_s;
+  display_.publish(swarm_message_);
+}
 
 void WorldPublisher::PublishViews(const dynamics::World& world, TimeNs start) {
   const TimeNs now = start + world.time(0);

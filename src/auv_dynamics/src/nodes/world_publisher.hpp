@@ -19,8 +19,9 @@ namespace stg::nodes {
 /// Puts the state of lane 0 of a world on topics.
 class WorldPublisher {
  public:
-  /// @param display_rate_hz largest rate of transforms per second of wall time, and a tenth of the
-  ///                        largest rate of /clock: no step waits for either
+  /// @param display_rate_hz largest rate of transforms and of the state for displays per second of
+  ///                        wall time, and a tenth of the largest rate of /clock: no step waits for
+  ///                        them
   WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz);
 
   /// What acted on the AUVs in the step that ends at the next PublishSensors: wrenches, and which
@@ -40,7 +41,8 @@ class WorldPublisher {
   void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
                       std::uint32_t step);
 
-  /// The true state of all of them at the decision of the last PublishSensors.
+  /// The true state of all of them at the decision of the last PublishSensors; now and then for
+  /// displays as well.
   void PublishSwarm();
 
   /// What only observers need of the same decision: targets, transforms, the clock.
@@ -68,11 +70,12 @@ class WorldPublisher {
   double display_period_s_;
   std::uint64_t run_;  ///< id of this run
   ros::WallTime clock_sent_, frames_sent_;
+  double display_sent_s_ = 0.0;  ///< wall time
   std::vector<AuvTopics> auvs_;
   std::vector<OnDemand<nav_msgs::Odometry>> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;
   auv_msgs::SwarmState swarm_message_;
-  ros::Publisher swarm_, clock_, scenario_topic_;
+  ros::Publisher swarm_, display_, clock_, scenario_topic_;
   tf2_ros::TransformBroadcaster frames_;
   tf2_ros::StaticTransformBroadcaster static_frames_;
   std::vector<geometry_msgs::TransformStamped> transforms_;

@@ -18,6 +18,7 @@ from stg_view.from_bag import Collector, scene_of
 from stg_view.raw_packets import packets_message
 from stg_view.recording import Recording, encode
 
+DISPLAY_HZ = 20.0  # of the states that a world sends to displays
 NAP_S = 0.04  # between two looks at what came
 EARLY = 0.8  # share of the pause after which a state is taken: what comes at the rate itself is not to be missed
 MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser is sent
@@ -72,8 +73,10 @@ class Ears:
         self.wanted = False
         self.asking = threading.Lock()
         # A name that is subscribed to as AnyMsg is decoded when it is wanted, not when it comes.
+        self.every = self.newest_of("/swarm_state", self.hear_state)
+        if rate_hz <= DISPLAY_HZ:
+            self.display = self.newest_of("/swarm_state_display", self.hear_display)
         self.always = [
-            self.newest_of("/swarm_state", self.hear_state),
             rospy.Subscriber("/acoustic_channel/packets", rospy.AnyMsg, self.hear_packets, buff_size=AT_ONCE, tcp_nodelay=True),
             rospy.Subscriber("/episode_summary", auv_msgs.msg.EpisodeSummary, self.hear_summary, queue_size=200),
             rospy.Subscriber("/scenario", std_msgs.msg.String, self.hear_scenario, queue_size=200),
@@ -112,6 +115,13 @@ class Ears:
         """Keeps a message and sends it to the browsers."""
         self.kept.add(kind, data)
         self.send(data)
+
+    def hear_display(self, raw):
+        """A world sends few states to displays, which are enough; a bag that is played has no such topic."""
+        if self.every is not None:
+            self.every.unregister()
+            self.every = None
+        self.hear_state(raw)
 
     def hear_state(self, raw):
         """Decodes one state now and then, by the wall clock: lockstep has many more."""

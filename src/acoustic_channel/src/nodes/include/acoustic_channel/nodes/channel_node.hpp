@@ -60,8 +60,10 @@ class ChannelNode {
   void Close();
   /// What AUV i received up to a time of the episode [ns]: all of received_.
   void PublishWindow(int i, TimeNs until);
-  void PublishPackets();
-  void PublishLinks(TimeNs now);
+  /// At once, or when the last message is old enough.
+  void PublishPackets(bool now);
+  /// @param last of the episode
+  void PublishLinks(TimeNs now, bool last);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   acoustics::NetworkConfig scenario_;
@@ -74,6 +76,7 @@ class ChannelNode {
   TimeNs start_ = -1;     ///< clock time of the episode's step 0 [ns]
   std::uint32_t step_ = 0;
   ros::WallTime links_sent_;
+  double packets_sent_s_ = 0.0;  ///< wall time
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_, velocities_;
   std::vector<acoustics::Transmission> offered_;
