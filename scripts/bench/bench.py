@@ -48,7 +48,7 @@ def parse(argv):
     """Reads the command line."""
     parser = argparse.ArgumentParser(prog="./stg bench", description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--seconds", type=positive, default=3.0, help="of each environment bench (%(default)s)"
+        "--seconds", type=positive, default=3.0, help="duration of each environment benchmark (%(default)s)"
     )
     parser.add_argument(
         "--seeds", default="0,1,2,3,4", help="seeds of the trainings (%(default)s); '' for none"

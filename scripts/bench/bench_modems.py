@@ -26,7 +26,7 @@ def parse():
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--modems", type=int, default=16)
-    parser.add_argument("--rate", type=float, default=160.0, help="questions a second, to all together")
+    parser.add_argument("--rate", type=float, default=160.0, help="commands a second to all modems together")
     parser.add_argument("--seconds", type=float, default=25.0)
     parser.add_argument("--port", type=int, default=9401, help="of the first modem")
     parser.add_argument("--master", type=int, default=11868, help="port of the ROS master")

@@ -121,7 +121,7 @@ def take_pictures(names, folder):
 def main():
     """Makes what was asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", help="pictures and videos, as they are called in docs/images; page: the page alone")
+    parser.add_argument("names", nargs="*", help="names of pictures and videos in docs/images; page: only the page")
     parser.add_argument("--keep", type=pathlib.Path, help="folder that keeps runs and pages for the next call")
     options = parser.parse_args()
     wanted = set(options.names or [*PICTURES, *FILMS, "page"])

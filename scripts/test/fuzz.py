@@ -33,9 +33,9 @@ def parse(argv):
     parser.add_argument("target", nargs="?", metavar="TARGET",
                         help=f"one of {', '.join(TARGETS)}; default: all")  # fmt: skip
     parser.add_argument("seconds", nargs="?", type=int, default=SECONDS, metavar="SECONDS",
-                        help=f"for each target ({SECONDS})")  # fmt: skip
+                        help=f"time for each target ({SECONDS})")  # fmt: skip
     parser.add_argument("--runs", type=int, default=0, metavar="N",
-                        help="end a target after so many inputs, too")  # fmt: skip
+                        help="also end a target after N inputs")  # fmt: skip
     parser.add_argument("--build", type=pathlib.Path, required=True,
                         help=argparse.SUPPRESS)  # fmt: skip
     options = parser.parse_args(argv)

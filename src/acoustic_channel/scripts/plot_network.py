@@ -297,7 +297,7 @@ def main():
         nargs=2,
         type=float,
         metavar=("START", "END"),
-        help="of the senders' picture [s]; default: the first sixty airtimes",
+        help="time window of the picture of the senders [s]; default: the first sixty airtimes",
     )
     arguments = parser.parse_args()
     if arguments.window and not arguments.window[1] > arguments.window[0]:

@@ -29,7 +29,7 @@ class Refusals(unittest.TestCase):
                             program=shutil.which("roslaunch"))
         self.addCleanup(stop, process)
         output = process.communicate(timeout=60)[0]
-        self.assertIn("the launch ends, as this node refuses its configuration", output)
+        self.assertIn("this node refuses its configuration, so the launch ends", output)
         self.assertIn("of the shipped scenarios it fits scenario:= ", output)
         self.assertRegex(output, "it fits scenario:= .*medium")
         self.assertLess(output.count("observation layout"), 9, "each agent at most twice")

@@ -271,10 +271,10 @@ def parse_arguments(arguments):
     parser.add_argument("bag", help="recorded run")
     parser.add_argument("-o", "--out", help="output folder (default: the bag's name + _report)")
     parser.add_argument("--episode", type=int, help="draw this episode only (default: all)")
-    parser.add_argument("--max-figures", type=int, default=10, help="draw at most so many")
+    parser.add_argument("--max-figures", type=int, default=10, help="largest number of figures")
     parser.add_argument("--no-figures", action="store_true", help="write the CSV files only")
     parser.add_argument(
-        "--salvage", action="store_true", help="read what is whole of a truncated bag"
+        "--salvage", action="store_true", help="read the complete part of a truncated bag"
     )
     options = parser.parse_args(arguments)
     if options.max_figures < 0:

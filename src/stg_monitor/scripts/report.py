@@ -28,7 +28,7 @@ def parse_arguments(arguments):
     parser.add_argument("run", metavar="RUN", help="bag, folder, packet log or recording")
     parser.add_argument("--out", "-o", metavar="FILE", help="page to write (default: RUN.html)")
     parser.add_argument("--title", help="title of the page (default: the name of RUN)")
-    parser.add_argument("--salvage", action="store_true", help="read what is whole of a damaged bag")
+    parser.add_argument("--salvage", action="store_true", help="read the undamaged part of a damaged bag")
     parser.add_argument("--video", metavar="FILE", help="write a video (.mp4, .webm or .gif), too")
     parser.add_argument("--video-seconds", type=float, default=12.0, help="its length (default: 12)")
     parser.add_argument("--video-size", default="1280x720", help="its size (default: 1280x720)")

@@ -62,7 +62,7 @@ FleetChannel::Word FleetChannel::Offer(const Transmission& packet) {
   auto& queue = waiting_[static_cast<std::size_t>(packet.source)];
   if (queue.size() >= kMostWaiting) {
     throw UserError("packet: " + std::to_string(kMostWaiting) +
-                    " of its vehicle wait already for their steps");
+                    " packets of this vehicle are already waiting for their steps");
   }
   if (first_ < 0 || packet.stamp < first_) first_ = packet.stamp;
   const auto later =

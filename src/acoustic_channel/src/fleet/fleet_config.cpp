@@ -28,7 +28,7 @@ NetworkConfig LoadFleetNetwork(const std::string& file, const std::vector<std::s
                                int vehicles) {
   // What a default would be is nothing that a fleet at sea could guess.
   if (!config::FindScalar(file, "channel.model")) {
-    throw UserError(file + ": channel.model: missing key, it says how packets travel");
+    throw UserError(file + ": channel.model: missing key; it chooses the propagation model");
   }
   const bool scenario = config::FindScalar(file, "name").has_value();
   config::Source source{file, {}, overrides};

@@ -223,10 +223,10 @@ int main(int argc, char** argv) {
   std::string path, folder;
   bool quiet = false, summary_only = false;
   app.add_option("file", path, "YAML file: duration_s, seed, channel, nodes, traffic")->required();
-  app.add_option("--out", folder, "folder for the results, made if need be")->required();
-  app.add_flag("--quiet", quiet, "print nothing but the summary");
+  app.add_option("--out", folder, "folder for the results, created if necessary")->required();
+  app.add_flag("--quiet", quiet, "print only the summary");
   app.add_flag("--summary-only", summary_only,
-               "do not write packets.csv, and remove one that is there");
+               "do not write packets.csv, and remove an existing one");
   stg::AddPluginOption(&app);
   const std::atomic<int>& stop = stg::HeedStopSignals();
   return stg::RunProgram("simulate", &app, argc, argv,

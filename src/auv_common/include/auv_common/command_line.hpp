@@ -24,7 +24,7 @@ inline void AddPluginOption(CLI::App* app) {
              }
            }
          },
-         "shared library whose controllers, reward terms, ... can then be chosen; repeatable; the "
+         "shared library with more controllers, reward terms, ... to choose from; repeatable; the "
          "key `plugins` of a scenario does the same")
       ->type_name("LIB")
       ->expected(1)

@@ -111,7 +111,7 @@ void Loader::ApplyOverride(const std::string& text) {
 
 void Loader::ApplyBase(const std::string& path, const YamlTree::Entry& entry) {
   if (open_.size() >= kMaxBases) {
-    throw UserError(Where(path, entry.line) + "base: too many bases on top of each other");
+    throw UserError(Where(path, entry.line) + "base: too many nested base files");
   }
   const std::string base = BaseOf(path, entry);
   std::error_code error;

@@ -134,7 +134,7 @@ void RequirePluginsOf(const YamlTree& map, const std::string& origin) {
     if (std::count(loaded.begin(), loaded.end(), item.scalar) > 0) continue;
     throw UserError(
         origin + ":" + std::to_string(entry->line) + ": plugins: " + item.scalar +
-        ": is not loaded; a text does not load libraries: if you trust this one, name it "
+        ": is not loaded; received data cannot load libraries: if you trust this one, name it "
         "in STG_PLUGINS, by --plugin or by stg.load_plugin");
   }
 }

@@ -38,7 +38,7 @@ YamlTree MergedFile(const std::string& path, std::size_t depth = 0) {
   YamlTree merged;
   const YamlTree::Entry* base = FindEntry(&root, "base");
   if (base != nullptr) {
-    if (depth >= kMaxBases) throw UserError(path + ": too many bases on top of each other");
+    if (depth >= kMaxBases) throw UserError(path + ": too many nested base files");
     merged = MergedFile(BaseOf(path, *base), depth + 1);
   }
   Merge(root, &merged);

@@ -68,7 +68,7 @@ void EndLaunchOfRefused() {
   if (wanted == nullptr || std::string(wanted) != "1" || !IsRoslaunch(parent)) return;
   AwaitLaunched(parent);
   if (StoppedBySignal() || getppid() != parent) return;  // it ends already
-  ROS_FATAL("the launch ends, as this node refuses its configuration");
+  ROS_FATAL("this node refuses its configuration, so the launch ends");
   kill(parent, SIGINT);
 }
 

@@ -14,8 +14,9 @@ constexpr std::uint32_t kInstrumentQueue = 20;
 
 const dynamics::WorldScenario& InOpenWater(const dynamics::WorldScenario& scenario) {
   if (scenario.world.sea.open) return scenario;
-  throw UserError("parameter instruments: scenario '" + scenario.run.name +
-                  "' has no open water (sea.open), so neither depth nor place");
+  throw UserError(
+      "parameter instruments: scenario '" + scenario.run.name +
+      "' has no open water (sea.open), so there is no depth and no geographic position");
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ bool WorldNode::ListenersReady(double now) {
   if (now <= pacer_.deadline_s()) return false;
   if (awaited_) {
     ROS_WARN(
-        "world: %s is still connecting (%d connections), and is waited for no longer: "
+        "world: %s is still connecting (%d connections); the run starts without waiting for it: "
         "it may miss the start of the run",
         awaited_->node().c_str(), awaited_->connections());
   }

@@ -52,10 +52,10 @@ void Print(const char* what, const MotionError& e) {
 /// unusable input.
 int main(int argc, char** argv) {
   CLI::App app(
-      "Flies recorded motions of a torpedo-shaped vehicle with vehicle.model torpedo and compares "
-      "every column: speeds, rates and attitude by their range over the file, positions by the "
-      "distance run. Each motion starts from rest at the origin under one command; frames are NED "
-      "and FRD, units SI and radians where the header does not say otherwise.");
+      "Simulates recorded motions of a torpedo-shaped vehicle with vehicle.model torpedo and "
+      "compares every column: speeds, rates and attitude by their range over the file, positions "
+      "by the distance run. Each motion starts from rest at the origin under one command; frames "
+      "are NED and FRD, units SI and radians unless the header says otherwise.");
   std::string file, scenario;
   std::vector<std::string> overrides;
   double tolerance = 0.01, dt_s = 0.02;
@@ -68,14 +68,14 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--dt", dt_s, "largest physics step [s]")->capture_default_str();
   app.add_option("--integrator", integrator,
-                 "semi_implicit, as the public model that the shipped motions are from, or rk4")
+                 "semi_implicit, as in the public model of the shipped motions, or rk4")
       ->capture_default_str()
       ->check(CLI::IsMember({"semi_implicit", "rk4"}));
   app.add_option("--scenario", scenario,
-                 "take the torpedo of this scenario, a name or a file; else the REMUS 100");
-  app.add_option("--set", overrides, "key=value over the scenario, e.g. vehicle.substeps=2");
+                 "use the torpedo of this scenario (name or file); default: the REMUS 100");
+  app.add_option("--set", overrides, "changed scenario key, e.g. vehicle.substeps=2");
   app.add_flag("--advance-over-ground", over_ground,
-               "propeller inflow from the speed over ground, as the public model has it");
+               "propeller inflow from the speed over ground, as in the public model");
   stg::AddPluginOption(&app);
   return stg::RunProgram("check_vehicle", &app, argc, argv, [&] {
     stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
@@ -90,8 +90,8 @@ int main(int argc, char** argv) {
       const std::string& model = vehicle.model_of(0);
       const auto flown = stg::dynamics::Vehicles().Make(model, vehicle.kinds, vehicle);
       if (dynamic_cast<const stg::dynamics::Torpedo*>(flown.get()) == nullptr) {
-        throw stg::UserError("--scenario: '" + scenario + "' flies " + model +
-                             ", and recorded motions are of a torpedo (--set "
+        throw stg::UserError("--scenario: '" + scenario + "' has the model " + model +
+                             ", but recorded motions are those of a torpedo (--set "
                              "vehicle.model=torpedo)");
       }
     } else if (!overrides.empty()) {

@@ -42,13 +42,13 @@ void Show(const Bathymetry& grid, int columns) {
 /// input.
 int main(int argc, char** argv) {
   CLI::App app(
-      "Shows a NetCDF bathymetry (GEBCO, ETOPO and their like) and crops a region of it. A crop is "
-      "written as GEBCO writes its own: elevation(lat, lon) in whole metres.");
+      "Shows a NetCDF bathymetry (such as GEBCO or ETOPO) and crops a region of it. A crop is "
+      "written in GEBCO's format: elevation(lat, lon) in whole metres.");
   std::string file, out;
   std::vector<double> region;
   int columns = 72;
   app.add_option("file", file, "NetCDF file")->required();
-  app.add_option("--region", region, "SOUTH NORTH WEST EAST in degrees; else the whole file")
+  app.add_option("--region", region, "SOUTH NORTH WEST EAST in degrees; default: the whole file")
       ->expected(4);
   app.add_option("--out", out, "write the region to this file");
   app.add_option("--columns", columns, "width of the map in letters")

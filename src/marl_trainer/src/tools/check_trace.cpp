@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
   std::string scenario = "medium_release";
   double tolerance = 1e-5;
   app.add_option("folder", folders, "folder with config.yaml and steps.csv")->required();
-  app.add_option("--scenario", scenario, "settings that the trace's config does not state")
+  app.add_option("--scenario", scenario,
+                 "scenario of the settings that are not in the trace's config.yaml")
       ->capture_default_str();
   app.add_option("--tolerance", tolerance, "largest absolute error allowed")->capture_default_str();
   return stg::RunProgram("check_trace", &app, argc, argv, [&] {

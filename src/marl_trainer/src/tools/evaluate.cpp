@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
   app.add_option("--csv", csv, "write one row per episode to this file");
   app.add_option("--record", record,
                  "folder for a recording of the first episodes, which ./stg report shows");
-  app.add_option("--record-episodes", record_episodes, "how many of them")
+  app.add_option("--record-episodes", record_episodes, "number of recorded episodes")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_flag("--privileged", privileged,

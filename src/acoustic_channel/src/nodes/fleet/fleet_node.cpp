@@ -144,7 +144,7 @@ double FleetNode::Work() {
   if (now_ == 0 && WallSeconds() > clock_deadline_s_) {
     throw UserError(
         "parameter /use_sim_time is true, but no node has published /clock: start the simulator "
-        "first, or, where another run has left the parameter, `rosparam delete /use_sim_time`");
+        "first; if an earlier run has left the parameter, `rosparam delete /use_sim_time`");
   }
   if (now_ > 0) {
     JudgeAgain();
@@ -164,7 +164,7 @@ void FleetNode::WatchClock(TimeNs now) {
   const bool back = now < now_ - kStepBack;
   const bool forward = fleet_.begun() && now > now_ + kStepForward;
   if (now_ > 0 && (back || forward)) {
-    ROS_WARN("the clock went from %.3f to %.3f s: the channel starts anew", Seconds(now_),
+    ROS_WARN("the clock went from %.3f to %.3f s: the channel restarts", Seconds(now_),
              Seconds(now));
     StartAnew();
     settled_ = now;

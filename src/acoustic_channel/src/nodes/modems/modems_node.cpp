@@ -57,10 +57,10 @@ ModemsNode::ModemsNode()
     }
   }
   if (file_.listen != "127.0.0.1") {
-    ROS_WARN("modems listen on %s: their protocols know no passwords", file_.listen.c_str());
+    ROS_WARN("modems listen on %s: their protocols have no passwords", file_.listen.c_str());
   }
   if (ros::Time::isSimTime()) {
-    ROS_WARN("modems keep wall time: the simulated clock must run at the same rate");
+    ROS_WARN("modems run in wall time: the simulated clock must run at the same rate");
   }
 }
 

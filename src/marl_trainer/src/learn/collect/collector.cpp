@@ -234,7 +234,7 @@ void Collector::Load(const Archive& archive) {
     const std::vector<float>& past = archive.Floats(PastName(unit->shard().first_env));
     if (past.size() % unit->decision_size() != 0) {
       throw UserError("the actions of environments " + std::to_string(unit->shard().first_env) +
-                      " and on are no whole decisions");
+                      " and later are not whole decisions");
     }
   }
   team_.pool->Run(static_cast<int>(units_.size()), [&](int u, int) {

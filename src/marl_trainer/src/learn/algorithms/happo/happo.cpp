@@ -128,7 +128,7 @@ void Happo::Load(const Archive& archive) {
   Trained critic = critic_;
   for (std::size_t i = 0; i < actors.size(); ++i) actors[i].Load(ActorName(i), archive);
   if (archive.Has(ActorName(actors.size()))) {
-    throw UserError("actors of more AUVs than " + std::to_string(actors.size()));
+    throw UserError("there are actors for more than " + std::to_string(actors.size()) + " AUVs");
   }
   critic.Load("critic", archive);
   rollouts_.normalisers().Load(archive);
