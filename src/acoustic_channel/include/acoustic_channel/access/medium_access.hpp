@@ -10,28 +10,28 @@
 #include "auv_common/config/run_config.hpp"
 #include "auv_common/registry.hpp"
 
-/// Medium access: when a modem lets go of the packet that waits in it.
+/// Medium access: the time at which a waiting packet leaves its modem.
 namespace stg::acoustics {
 
 struct ChannelConfig;
 
 inline constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 
-/// What a modem knows when it asks its rule.
+/// Knowledge of a modem when it asks its rule.
 struct Attempt {
-  std::uint32_t sequence = 0;  ///< of the packet that waits, as it will leave
-  std::uint32_t tries = 0;     ///< times that this packet found the medium busy
-  TimeNs last_end = kNever;    ///< its last transmission ended; kNever: there was none
+  std::uint32_t sequence = 0;  ///< number that the waiting packet will have
+  std::uint32_t tries = 0;     ///< how often this packet found the medium busy
+  TimeNs last_end = kNever;    ///< end of its last transmission; kNever: there was none
 };
 
-/// What a modem needs for the longest packet of the network; nothing on ideal channels.
+/// Time that a modem needs for the longest packet of the network; zero on ideal channels.
 struct PacketTime {
   TimeNs airtime = 0, turnaround = 0;
 };
 
 /// The rule by which the modems of a network share the water, in continuous time. Times count from
-/// the start of the episode. What a rule draws must depend on seed, episode and its arguments only,
-/// so that calls in any order give the same answer. Nothing is allocated.
+/// the start of the episode. The draws of a rule must depend only on seed, episode and its
+/// arguments, so that calls in any order give the same answer. A rule allocates nothing.
 class MediumAccess {
  public:
   virtual ~MediumAccess() = default;
@@ -40,32 +40,32 @@ class MediumAccess {
   virtual void Reset(std::uint64_t /*seed*/, std::uint32_t /*episode*/) {}
 
   /// Earliest time, not before `from`, at which a packet that waits in the modem of `node` may
-  /// begin to leave. Asked again with a `from` up to that time, it answers the same.
+  /// begin to leave. A second call with a `from` up to that time returns the same.
   virtual TimeNs Next(int node, TimeNs from, const Attempt& attempt) const = 0;
 
-  /// True: a modem that hears a carrier at that time does not begin, counts one more try and asks
-  /// again from there. On ideal channels no modem hears any.
+  /// True: a modem that detects a carrier at that time does not begin, counts one more try and
+  /// calls Next again from that time on. On ideal channels there are no carriers.
   virtual bool listens() const { return false; }
 
-  /// True: the answer of Next depends on the attempt, so that only the modem can know it.
+  /// True: the answer of Next depends on the attempt, so only the modem can know it.
   virtual bool adapts() const { return listens(); }
 
-  /// Why the rule cannot work with the section, the clock of the run and such packets; nothing: it
-  /// can.
+  /// The reason why the rule cannot work with the section, the clock of the run and such packets;
+  /// nothing: it can.
   virtual std::optional<config::Violation> FindConflict(const PacketTime& /*packet*/) const {
     return {};
   }
 };
 
-/// All rules, by the name that `channel.access` takes.
+/// All rules, by their names for `channel.access`.
 using MediumAccessRegistry = Registry<MediumAccess, const ChannelConfig&, const RunConfig&>;
 MediumAccessRegistry& MediumAccesses();
 
 /// The rule that the section names, for the nodes and the clock of the run. Throws UserError.
 std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, const RunConfig& run);
 
-/// When packets that are offered at decisions can leave, as anybody may know it: the modem, and an
-/// agent that would not make a packet in vain.
+/// The times at which packets that are offered at decisions can leave. Modems and agents compute
+/// the same times, so an agent need not make a packet that cannot leave.
 class Turns {
  public:
   /// Throws UserError for an unknown rule.
@@ -79,8 +79,8 @@ class Turns {
     if (t < m.from || t > m.start) Ask(node, t);
     return m.start - t < period_ ? m.start : kNever;
   }
-  /// A packet offered at t may leave in this step. False: the next one replaces it, and it need not
-  /// be made. Of a rule that adapts only the modem knows: always true.
+  /// True: a packet that is offered at t may leave in this step. False: the next packet would
+  /// replace it, so it need not be made. Always true for rules that adapt: only the modem knows.
   bool Due(int node, TimeNs t) { return adapts_ || Start(node, t) != kNever; }
 
  private:

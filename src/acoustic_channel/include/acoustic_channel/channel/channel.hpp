@@ -19,38 +19,39 @@ namespace stg::acoustics {
 /// environment; not thread-safe.
 ///
 /// Use, for every decision step k at t_k: Step(t_k, ...), then Deliver(i, t_{k+1}) for every
-/// node i before Step(t_{k+1}, ...). A packet's fate towards one receiver is open until the
-/// Deliver call that covers its arrival (or never comes): a model in which packets interfere
-/// decides there, when all packets that could interfere are known. Statistics therefore count
-/// deliveries when Deliver hands them out, with their time of arrival.
+/// node i before Step(t_{k+1}, ...). The fate of a packet at one receiver may be undecided until
+/// the Deliver call that covers its arrival: a model with interference decides there, when all
+/// packets that could interfere are known. Statistics therefore count deliveries when Deliver
+/// returns them, with their time of arrival.
 class Channel {
  public:
   virtual ~Channel() = default;
 
-  /// Starts an episode: nothing waits or is in flight, statistics empty. The first Step starts the
-  /// clock of the statistics.
+  /// Starts an episode: no packet waits or is under way, and the statistics are empty. The first
+  /// Step starts the clock of the statistics.
   virtual void Reset(std::uint64_t seed, std::uint32_t episode) = 0;
 
-  /// Reports of all packets from now on go there; null: there are none, which costs nothing.
+  /// Sends reports of all packets from now on to the observer. Null: no reports, at no cost.
   virtual void Observe(PacketObserver* observer) = 0;
-  /// From the next Step on. An absent node neither sends nor hears. All are present after Reset.
+  /// Takes effect at the next Step. An absent node neither sends nor receives. After Reset all
+  /// nodes are present.
   virtual void SetPresent(int node, bool present) = 0;
-  /// True: Step also takes packets with stamps after the last time of Deliver and up to t, any
-  /// number of a node. False: at most one of a node, with stamp t.
+  /// True: Step takes any number of packets per node, with stamps after the last time of Deliver
+  /// and up to t. False: at most one packet per node, with stamp t.
   virtual bool continuous() const { return false; }
 
   virtual int nodes() const = 0;
   /// Longest payload of a packet [bytes].
   virtual std::size_t max_payload() const = 0;
 
-  /// False: a packet offered by `node` at step t would only be replaced by the one of the next
-  /// step, and need not be made.
+  /// False: the packet of the next step would replace a packet that `node` offers at step t, so it
+  /// need not be made.
   virtual bool Due(int node, TimeNs t) = 0;
 
   /// Closes decision step `step` at time t: true positions [m] and velocities [m/s] at t, world
   /// axes, and the packets offered at t in any order, at most one per node. They leave when medium
-  /// access lets them. Packets are as CheckOrThrow wants them; non-finite positions or velocities
-  /// throw std::invalid_argument.
+  /// access lets them. Packets must satisfy CheckOrThrow; non-finite positions or velocities throw
+  /// std::invalid_argument.
   virtual void Step(TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>& p_W,
                     const std::vector<Vec3<double>>& v_W,
                     const std::vector<Transmission>& offered) = 0;
@@ -79,7 +80,7 @@ class Channel {
 
 /// The channel that the section names, between the nodes of the run. Throws UserError for a
 /// propagation model or medium access that does not exist.
-/// @param line_of_sight for models that know shadows; empty: all lines are free
+/// @param line_of_sight for models with shadows; empty: all lines are free
 std::unique_ptr<Channel> MakeChannel(const ChannelConfig& config, const RunConfig& run,
                                      LineOfSight line_of_sight = {});
 

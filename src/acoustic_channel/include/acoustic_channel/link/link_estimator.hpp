@@ -9,12 +9,12 @@ namespace stg::acoustics {
 
 struct ChannelConfig;
 
-/// What a node thinks of its links, from what it knows: how far away the other one is, how old the
-/// news of it is, and what it received so far. Comes with the propagation model, so that a channel
-/// and its users mean the same by the quality of a link.
+/// A node's estimate of its links, from its own knowledge: the distance to the other node, the age
+/// of the newest information, and the receptions so far. The propagation model makes it, so that
+/// the channel and its users compute the same quality of a link.
 ///
-/// One object serves one node, or the same node in kLanes environments, of which `lane` names one;
-/// a single node is lane 0.
+/// One object serves one node, or the same node in kLanes environments; then `lane` selects the
+/// environment. A single node is lane 0.
 class LinkEstimator {
  public:
   virtual ~LinkEstimator() = default;
@@ -27,16 +27,16 @@ class LinkEstimator {
   double Quality(double d, double age_s) const { return Quality(d, age_s, 1.0); }
   Pack Quality(const Pack& d, const Pack& age_s) const { return Quality(d, age_s, Pack(1.0)); }
 
-  /// What receptions say of the link from node `source`: one number for each lane, [kLanes]. All
-  /// are 1 for a model that knows its constants beforehand.
+  /// Value learnt from receptions of the link from node `source`: one number for each lane,
+  /// [kLanes]. All are 1 for a model with known constants.
   virtual const double* Learnt(int source) const;
 
   /// Information older than this is not current [s].
   virtual double freshness_s() const = 0;
 
-  /// Starts an episode in one lane: what was learnt there is forgotten.
+  /// Starts an episode in one lane: resets the learnt values of this lane.
   virtual void Reset(int /*lane*/) {}
-  /// A packet came in: a model whose constants are not known beforehand may learn from it. Those
+  /// Called for each received packet: a model with unknown constants may learn from it. The packets
   /// of one source come in order of arrival.
   virtual void Learn(int /*lane*/, const Reception& /*reception*/) {}
 };

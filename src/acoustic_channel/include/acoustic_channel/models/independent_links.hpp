@@ -13,7 +13,7 @@
 
 namespace stg::acoustics {
 
-/// A channel whose every link is independent of all others, so that a packet's fate is known
+/// A channel whose links are independent of each other, so that the fate of a packet is known
 /// when it is sent. Cost: one evaluation of the formula and one draw per packet and receiver.
 ///
 /// Formula has, for T = double and T = Pack with the same result bit for bit,
@@ -21,7 +21,7 @@ namespace stg::acoustics {
 ///   LinkValues<T> At(const T& d, const T& age_s) const;        loss, and quality at that age
 /// and
 ///   bool Reaches(double d) const;     false: nothing arrives at this distance
-///   bool ages() const;                the quality depends on the age, and is 0 without any news
+///   bool ages() const;                the quality depends on the age; it is 0 at first
 ///   double freshness_s() const;       see LinkEstimator
 template <class Formula>
 class IndependentLinks : public Channel {
@@ -137,7 +137,7 @@ class IndependentLinks : public Channel {
     s.delay_s = formula_.DelayS(s.distance_m);
     const bool reaches = formula_.Reaches(s.distance_m);
     s.loss_probability = reaches ? link.loss : 1.0;
-    // Without any information its freshness is none, whatever the age convention says.
+    // Before the first packet there is no freshness, although the age counts from the start.
     const bool informed = !formula_.ages() || s.delivered > 0;
     s.quality = reaches && informed ? link.quality : 0.0;
     return s;
@@ -178,7 +178,7 @@ class IndependentLinks : public Channel {
     if (!(finite == 0.0)) throw std::invalid_argument("Channel::Step: not a finite state");
   }
 
-  /// Nodes that a packet is for: [first, last), less the source.
+  /// Receivers of a packet: [first, last) without the source.
   int FirstReceiver(const Transmission& packet) const {
     return packet.destination == kToAll ? 0 : packet.destination;
   }

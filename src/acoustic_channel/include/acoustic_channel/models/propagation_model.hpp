@@ -8,11 +8,11 @@
 #include "acoustic_channel/link/link_estimator.hpp"
 #include "auv_common/registry.hpp"
 
-/// Propagation models: how packets travel, and what a link is worth.
+/// Propagation models: how packets travel, and the quality of links.
 namespace stg::acoustics {
 
-/// A model as the section `channel` describes it. Makes the two things that must agree: the
-/// channel, which knows the truth, and the estimate that a node makes of a link from what it knows.
+/// A model that the section `channel` describes. It makes two objects that must agree: the channel,
+/// which knows the true states, and the estimator with which a node rates its links.
 class PropagationModel {
  public:
   virtual ~PropagationModel() = default;
@@ -21,22 +21,22 @@ class PropagationModel {
   virtual std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& config,
                                                            int nodes) const = 0;
 
-  /// True: nodes have modems, which know when they are busy, hear carriers and take frames of a
-  /// certain length. False: packets leave at decisions and take no time.
+  /// True: nodes have modems, which can be busy, detect carriers and have frames of a limited
+  /// length. False: packets leave at decisions and have no airtime.
   virtual bool has_modems() const { return false; }
-  /// What the longest packet takes; see MediumAccess::FindConflict.
+  /// Airtime and turnaround of the longest packet; see MediumAccess::FindConflict.
   virtual PacketTime packet_time(const ChannelConfig&, int /*nodes*/) const { return {}; }
   /// Longest payload of a packet [bytes].
   virtual std::size_t max_payload(const ChannelConfig&, int /*nodes*/) const {
     return kLargestFrame;
   }
-  /// Why the model cannot work with the section; nothing: it can.
+  /// The reason why the model cannot work with the section; nothing: it can.
   virtual std::optional<config::Violation> FindConflict(const ChannelConfig&, int /*nodes*/) const {
     return {};
   }
 };
 
-/// All models, by the name that `channel.model` takes.
+/// All models, by their names for `channel.model`.
 using PropagationModelRegistry = Registry<PropagationModel, const ChannelConfig&>;
 PropagationModelRegistry& PropagationModels();
 

@@ -6,7 +6,7 @@
 #include "auv_common/numbers/vector.hpp"
 #include "auv_common/time.hpp"
 
-/// The water as a network of modems needs it.
+/// Interface of the water for a network of modems.
 namespace stg::acoustics {
 
 /// A node at some time; world axes.
@@ -21,23 +21,23 @@ struct PacketKey {
   TimeNs transmit = 0;
 };
 
-/// What arrives of a packet. Levels in dB re 1 uPa in the sender's band.
+/// A packet at a receiver. Levels are in dB re 1 uPa in the sender's band.
 struct Hearing {
   double distance_m = 0.0, travel_time_s = 0.0;
   double level_db = 0.0;         ///< with all draws
   double steady_level_db = 0.0;  ///< without the draws of fading
-  double clear_level_db = 0.0;   ///< also without what a blocked line takes
+  double clear_level_db = 0.0;   ///< also without the loss of a blocked line
 };
 
-/// Noise at a receiver in its band, the same until `until`.
+/// Noise at a receiver in its band, constant until `until`.
 struct NoiseSpan {
   double level_db = 0.0;
   double quiet_level_db = 0.0;  ///< without a burst
   TimeNs until = 0;
 };
 
-/// Sound and noise. Draws depend on seed, episode and the arguments; Hear is called in order of
-/// transmission time.
+/// Sound and noise. Draws depend on seed, episode and the arguments only. Hear is called in the
+/// order of transmission times.
 class Medium {
  public:
   virtual ~Medium() = default;
@@ -46,7 +46,7 @@ class Medium {
   virtual Hearing Hear(const PacketKey& key, const NodeMotion& source, const NodeMotion& receiver,
                        const ModemProfile& sender) = 0;
   virtual NoiseSpan Noise(int node, TimeNs t, double speed_mps, const ModemProfile& receiver) = 0;
-  /// What to expect of a link, without draws.
+  /// Expected values of a link, without draws.
   virtual Hearing Expect(const NodeMotion& source, const NodeMotion& receiver,
                          const ModemProfile& sender) const = 0;
   /// [m/s], for ranging.

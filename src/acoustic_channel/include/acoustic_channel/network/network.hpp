@@ -16,22 +16,22 @@
 namespace stg::acoustics {
 
 /// Modems and the water between them in continuous time, as a queue of events. Times count from the
-/// start of the episode [ns]. No thread may call it while another does.
+/// start of the episode [ns]. Only one thread at a time may call it.
 ///
-/// What a call says of time t takes effect at t, and in Advance. Within one time, positions come
-/// before packets, packets before starts of transmissions, ends of receptions before begins; then
-/// the source and the receiver decide: the order of calls does not.
+/// A call for time t takes effect at t, in Advance. At the same time, positions come before
+/// packets, packets before starts of transmissions, and ends of receptions before begins; then
+/// source and receiver define the order. The order of calls has no influence.
 ///
-/// A node moves on a straight line at its last velocity from its last Move; a caller that no longer
-/// hears from a vehicle and does not believe that moves it with velocity zero.
+/// After its last Move a node continues in a straight line at its last velocity. A caller that gets
+/// no more positions of a vehicle may call Move with velocity zero instead.
 ///
-/// Allocates only while more is under way than ever before.
+/// Allocates only when the number of packets under way exceeds its earlier maximum.
 class Network {
  public:
   /// Throws UserError for a name in the section that does not exist.
-  /// @param run its number of agents is that of the nodes; the clock matters to `periodic` only
+  /// @param run its number of agents is the number of nodes; only `periodic` uses the clock
   Network(const ChannelConfig& config, const RunConfig& run, std::unique_ptr<Medium> medium);
-  /// With the water that the section describes.
+  /// The same, with the water that the section describes.
   /// @param line_of_sight empty: all lines are free
   Network(const ChannelConfig& config, const RunConfig& run, LineOfSight line_of_sight = {});
   ~Network();
@@ -42,7 +42,7 @@ class Network {
   void Observe(PacketObserver* observer);
 
   int nodes() const;
-  /// Everything up to and including this time has happened. Starts before 0.
+  /// All events up to and including this time have happened. Starts before 0.
   TimeNs now() const;
   std::size_t max_payload() const;
   const ModemProfile& profile(int node) const;
@@ -51,32 +51,33 @@ class Network {
   /// Counts and ages begin here instead of at 0.
   void StartStatistics(TimeNs t);
 
-  // At any time from now() on. Earlier: std::invalid_argument, also for what is not finite.
+  // Times must be now() or later. Earlier times, and values that are not finite, throw
+  // std::invalid_argument.
   void Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<double>& v_W);
-  /// As Channel::CheckOrThrow wants it; at its stamp.
+  /// Offers a packet at its stamp. It must satisfy Channel::CheckOrThrow.
   void Offer(const Transmission& packet);
-  /// Takes a packet back that still waits in the modem of `source`: it is discarded (kQueue) now.
-  /// False: there is none with this tag.
+  /// Discards (kQueue) a packet that still waits in the modem of `source`. False: no packet with
+  /// this tag waits there.
   bool Cancel(int source, std::uint32_t tag);
-  /// Waveforms that a node's front end decodes besides that of its profile, in its band.
+  /// More waveforms in its band that a node can decode, besides that of its profile.
   void SetWaveforms(int node, std::vector<std::string> waveforms);
-  /// An absent node neither sends nor hears; what waits in its modem and what it was receiving is
-  /// lost. Sound that is in the water goes on.
+  /// An absent node neither sends nor receives. Packets that wait in its modem and packets that it
+  /// was receiving are lost. Sound that is already in the water continues.
   void SetPresent(int node, TimeNs t, bool present);
-  /// Asks a node how far away it is: request, turnaround, reply. The answer goes to the observer.
-  /// One at a time of a source: another one before the answer or the end of `timeout` replaces it.
+  /// Measures the range to a node: request, turnaround, reply. The observer gets the result. A
+  /// source has one ping at a time: a new ping before the answer or the timeout replaces it.
   void Ping(int source, int destination, TimeNs t, TimeNs timeout, std::uint32_t tag);
 
-  /// When something will happen next; kNever: nothing is under way.
+  /// Time of the next event; kNever: there is none.
   TimeNs next() const;
-  /// Lets everything up to and including t happen.
+  /// Processes all events up to and including t.
   void Advance(TimeNs t);
 
-  /// Appends what node `receiver` received by `until` and was not given before, oldest first. A
-  /// payload is valid until the next Recycle. A caller without receptions calls Forget instead.
+  /// Appends the new receptions of node `receiver` up to `until`, oldest first. A payload is valid
+  /// until the next Recycle. A caller that needs no receptions calls Forget instead.
   void Take(int receiver, TimeNs until, std::vector<Reception>* out);
   void Forget();
-  /// Payloads handed out by Take are given back.
+  /// Releases the payloads that Take returned.
   void Recycle();
 
   NodeMotion Motion(int node, TimeNs t) const;
@@ -84,9 +85,9 @@ class Network {
   bool transmitting(int node) const;
   /// Electric energy that a modem has used by t >= now() [J]: transmitting, receiving, idle.
   double EnergyJ(int node, TimeNs t) const;
-  /// What a node's clock shows at true time t [s].
+  /// Time on a node's clock at true time t [s].
   double ClockS(int node, TimeNs t) const;
-  /// What to expect of a link now.
+  /// Expected values of a link at time t.
   Hearing Expect(int source, int destination, TimeNs t) const;
   /// At a node now [m/s].
   double SoundSpeed(int node) const;

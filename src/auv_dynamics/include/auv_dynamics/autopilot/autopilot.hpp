@@ -10,15 +10,15 @@
 
 namespace stg::dynamics {
 
-/// Turns a velocity command into commands of a vehicle's actuators, from the vehicle's own
-/// navigation alone. It holds constants only: the state (integrals, estimates) is the caller's, so
-/// one object serves a whole swarm. The same formula runs on one vehicle (T = double, a node) and
-/// on the same vehicle of kLanes worlds (T = Pack), bit for bit.
+/// Converts a velocity command into commands to a vehicle's actuators, with the vehicle's own
+/// navigation as the only other input. It holds only constants; the caller holds the state
+/// (integrals, estimates), so one object serves a whole swarm. The same formula gives the same bits
+/// for one vehicle (T = double, a node) and for the same vehicle of kLanes worlds (T = Pack).
 class Autopilot {
  public:
   virtual ~Autopilot() = default;
 
-  /// Numbers of its state; they are zero when an episode starts.
+  /// Size of its state; all numbers are zero when an episode starts.
   virtual int state_size() const = 0;
 
   /// @param v_des_W desired velocity over ground, world axes [m/s], finite
@@ -31,9 +31,9 @@ class Autopilot {
                      Pack* command) const = 0;
 };
 
-/// By the name of the vehicle (`vehicle.model`) that each steers. A vehicle without one is
-/// commanded by force and moment, Eqs. 24 to 26. A new one is a new file and one line in
-/// src/autopilot/autopilots.cpp; one of another program is added with Add.
+/// Autopilots by the name of the vehicle (`vehicle.model`) that they steer. A vehicle without an
+/// autopilot is commanded by force and moment, Eqs. 24 to 26. To add an autopilot, write a new file
+/// and one line in src/autopilot/autopilots.cpp; another program calls Add.
 using AutopilotRegistry = Registry<const Autopilot, const VehicleConfig&, const AutopilotConfig&>;
 AutopilotRegistry& Autopilots();
 

@@ -19,36 +19,35 @@ struct Axis {
 };
 using Space = std::vector<Axis>;
 
-/// Velocity in world axes, each within the largest of the section: the action space of vehicles
-/// that a velocity command steers.
+/// The action space of vehicles that a velocity command steers: velocity in world axes, each
+/// component within the largest value of the section.
 Space VelocityActions(const VehicleConfig& config);
 
-/// What acts on a vehicle during one step besides its own actuators.
+/// External influences on a vehicle during one step.
 struct Surroundings {
   const Vec3<Pack>& v_WC;           ///< current, world axes [m/s]
-  const Vec3<Pack>& contact_W;      ///< force of other vehicles that touch it, world axes [N]
+  const Vec3<Pack>& contact_W;      ///< force of other vehicles in contact, world axes [N]
   const Wrench<Pack>& disturbance;  ///< w of Eq. 3, body axes [N, N m]
 };
 
-/// What moves a vehicle: one kind of vehicle, its constants and its equations. It holds no state,
-/// so one object serves a whole swarm in all lanes; the state is the caller's.
+/// Motion model of one kind of vehicle: its constants and its equations. It holds no state, so one
+/// object serves a whole swarm in all lanes; the caller holds the state.
 class Vehicle {
  public:
   virtual ~Vehicle() = default;
 
-  /// What its actuators take: order, units and limits of a command. Fixed for the life of the
-  /// object.
+  /// Order, units and limits of a command to the actuators. Fixed for the life of the object.
   virtual const Space& actuators() const = 0;
 
-  /// What its controller (control/) takes for it, each component in [-1, 1] of its
-  /// limits; empty for a vehicle without one.
+  /// The action space of its controller (control/), each component in [-1, 1] of its limits; empty
+  /// for a vehicle without a controller.
   virtual const Space& actions() const = 0;
 
-  /// State of the actuators and of whatever else VehicleState does not hold (shaft speed, fin
-  /// angles), as a number of packs. They are zero when an episode starts.
+  /// Number of packs for the state that is not in VehicleState, such as that of the actuators
+  /// (shaft speed, fin angles). They are zero when an episode starts.
   virtual int internal_size() const { return 0; }
 
-  /// One physics step under a command that is held over it.
+  /// One physics step with a constant command.
   ///
   /// @param command  [actuators().size()], any finite values: limits are applied here
   /// @param dt       length of the step [s], positive
@@ -63,9 +62,8 @@ class Vehicle {
   }
 };
 
-/// What `vehicle.model` may name. A new kind is a new file and one line in
-/// src/vehicle/vehicles.cpp; a kind of another program is added with Add before it loads a
-/// scenario.
+/// The names for `vehicle.model`. To add a kind, write a new file and one line in
+/// src/vehicle/vehicles.cpp; another program calls Add before it loads a scenario.
 using VehicleRegistry = Registry<const Vehicle, const VehicleConfig&>;
 VehicleRegistry& Vehicles();
 

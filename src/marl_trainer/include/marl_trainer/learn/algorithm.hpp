@@ -11,36 +11,37 @@
 
 namespace stg::learn {
 
-/// What an algorithm controls: equal AUVs that each see an observation, and a critic's state of
-/// the whole swarm.
+/// The learning problem: identical AUVs with one observation each, and a state of the whole swarm
+/// for a critic.
 struct Problem {
   int agents = 1;
   int observation_size = 1;
   int state_size = 1;
   int action_size = 1;
   double action_scale = 1.0;             ///< actions of a policy lie in +-action_scale
-  double workspace_half_extent_m = 0.0;  ///< [m], for units that see walls; 0: none
+  double workspace_half_extent_m = 0.0;  ///< [m], for units for the distance to walls; 0: none
 };
 
-/// Environments that one worker steps through a collection on its own.
+/// A group of environments that one worker steps during a collection.
 struct Shard {
-  static constexpr int kEnvs = 16;  ///< of a full one
+  static constexpr int kEnvs = 16;  ///< of a full shard
 
   int first_env = 0;  ///< index of its first environment among all
   int envs = 0;
   int group = 0;  ///< GroupShare's; a shard is in one group
 };
 
-/// The shards of `count` groups from `first` on, among `envs` environments of all: cut where groups
-/// end, and where full shards do.
+/// The shards of `count` groups from `first` on; `envs` is the number of all environments. A shard
+/// ends where its group ends, or when it is full.
 std::vector<Shard> ShardsOf(const GroupShare& share, int first, int count, int envs);
 
-/// One collection: every environment makes `steps` decisions. Episodes go on in the next one.
+/// One collection: every environment makes `steps` decisions. Episodes continue in the next
+/// collection.
 struct Collection {
   std::uint32_t number = 0;
   int steps = 0;
   std::vector<Shard> shards;
-  bool taught = false;  ///< transitions bring a teacher's actions
+  bool taught = false;  ///< transitions contain the actions of a teacher
 };
 
 /// Keys of the counter-based draws of one decision: an AUV's draw depends on them and on its index
@@ -56,21 +57,21 @@ struct Decision {
   int envs = 0;
   const float* observations = nullptr;  ///< [envs, agents, observation_size], raw
   const DrawKeys* explore = nullptr;    ///< null: the deterministic policy
-  int worker = 0;                       ///< whose scratch memory to use
+  int worker = 0;                       ///< selects the scratch memory
 };
 
 /// Where a decision is written.
 struct Actions {
   float* actions = nullptr;  ///< [envs, agents, action_size]; the environment clips to +-1
-  /// [envs, agents], natural log of the density of an explored action; algorithms without one
-  /// leave it, and the caller may not want it (null).
+  /// [envs, agents], natural log of the density of an explored action. Algorithms without a density
+  /// do not write it. Null: the caller does not need it.
   float* log_prob = nullptr;
 };
 
 /// One step of the environments of a shard. A null pointer: unknown.
 struct Transition {
   int shard = 0, step = 0, envs = 0;    ///< step in the collection
-  const float* observations = nullptr;  ///< [envs, agents, observation_size], decided on
+  const float* observations = nullptr;  ///< [envs, agents, observation_size], input of the decision
   const float* states = nullptr;        ///< [envs, state_size], before the step
   const float* actions = nullptr;       ///< [envs, agents, action_size], before clipping
   const float* log_prob = nullptr;      ///< [envs, agents], of these actions when they were drawn
@@ -80,7 +81,7 @@ struct Transition {
   /// [envs], 1 where the episode ended. It always ends by truncation: bootstrap with the final
   /// state, never mask it.
   const std::uint8_t* truncated = nullptr;
-  /// As observations and states, of the decision to come; where truncated, of the next episode.
+  /// Observations and states of the next decision; where truncated, of the next episode.
   const float* next_observations = nullptr;
   const float* next_states = nullptr;
   /// Of the episode that ended; rows are valid where truncated.
@@ -88,9 +89,9 @@ struct Transition {
   const float* final_states = nullptr;
 };
 
-/// What an update gets to know besides the transitions.
+/// Input of an update besides the transitions.
 struct UpdateContext {
-  double progress = 0.0;   ///< share of the run's steps that are made, in [0, 1]
+  double progress = 0.0;   ///< share of the run's steps that are done, in [0, 1]
   double imitation = 0.0;  ///< share of the actor's loss that is imitation, in [0, 1]
 };
 
@@ -101,40 +102,41 @@ struct ReportColumn {
   int decimals = 3;   ///< in the progress line
 };
 
-/// What an update did: the numbers of Algorithm::Columns, in that order.
+/// Result of an update: the numbers of Algorithm::Columns, in that order.
 struct UpdateReport {
   std::vector<double> values;
   double flops = 0.0;  ///< floating-point operations in matrix products
 };
 
-/// How many numbers of a network are trained; targets, which only follow, do not count.
+/// Number of trained parameters of a network, without target networks.
 struct NetworkSize {
   std::string name;
   std::size_t parameters = 0;
 };
 
-/// A learning algorithm. Collection, evaluation, logging, checkpoints and export know this
-/// interface only.
+/// A learning algorithm. Collection, evaluation, logging, checkpoints and export use only this
+/// interface.
 ///
 ///   Begin, { Act, Observe } for every step of every shard, Update, Begin, ...
 ///
-/// Act may run concurrently for different workers, Observe for different shards; a shard's steps
-/// come in order, and nothing else runs meanwhile. Recorded episodes come through Observe alone.
-/// Results must depend neither on the number of workers nor on which one does what. Among several
-/// ranks each observes environments of its own, and all end up with the same state.
+/// Act may run concurrently for different workers, and Observe for different shards. The steps of a
+/// shard come in order; no other function runs at the same time. For recorded episodes only Observe
+/// is called. Results must not depend on the number of workers or on the distribution of the work.
+/// With several ranks, each rank observes environments of its own, and all have the same state
+/// after an update.
 class Algorithm {
  public:
   virtual ~Algorithm() = default;
 
-  /// Gets ready for the transitions of a collection.
+  /// Prepares for the transitions of a collection.
   virtual void Begin(const Collection& collection) = 0;
   virtual void Act(const Decision& decision, const Actions& out) = 0;
   virtual void Observe(const Transition& transition) = 0;
-  /// Learns from what it observed since Begin, and whatever it keeps.
+  /// Learns from the transitions since Begin, and from older data that the algorithm keeps.
   virtual UpdateReport Update(const UpdateContext& context) = 0;
 
-  /// Everything that an uninterrupted run would have and a fresh object has not, weights,
-  /// optimiser, normalisers, replayed transitions; called between Update and Begin.
+  /// Stores everything that a resumed run needs: weights, optimiser, normalisers, replayed
+  /// transitions. Called between Update and Begin.
   virtual void Save(Archive* archive) const = 0;
   /// Throws UserError for the archive of another algorithm or of other sizes.
   virtual void Load(const Archive& archive) = 0;
@@ -143,11 +145,11 @@ class Algorithm {
   /// Takes the actor and its normaliser from a policy file of the same shape. Throws UserError.
   virtual void StartFrom(const agent::Policy& policy);
 
-  /// What the AUVs are to fly with: one policy for all or one for each.
+  /// The policies of the AUVs: one for all, or one for each.
   virtual std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const = 0;
   virtual std::vector<ReportColumn> Columns() const = 0;
-  /// Every network that is trained, each once however many AUVs share it; none where the algorithm
-  /// does not tell.
+  /// All trained networks; a network that several AUVs share is listed once. Empty: the algorithm
+  /// does not report them.
   virtual std::vector<NetworkSize> Sizes() const { return {}; }
 };
 
