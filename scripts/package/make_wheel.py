@@ -100,8 +100,11 @@ def gather(folder, engines):
         rpath = f"$ORIGIN:$ORIGIN/{'../' * len(own.relative_to(folder).parts)}{NAME}.libs"
         place(engine, own / engine.name, rpath)
         if name == "baseline":
-            # What asks the processor which engine it runs lies beside each; every processor runs this one.
-            for asker in engine.parent.glob("_processor.*.so"):
+            # A module beside the engine asks the processor which engine it can run; every processor runs this one.
+            askers = list(engine.parent.glob("_processor.*.so"))
+            if not askers and len(engines) > 1:
+                raise SystemExit(f"make_wheel: {engine.parent} holds no _processor.*.so, which chooses among engines")
+            for asker in askers:
                 place(asker, own / asker.name, rpath)
         for library, path in libraries_of(engine).items():
             if OURS.match(library):
