@@ -5,6 +5,7 @@
 
 #include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/config/value.hpp"
+#include "stations/auv_pings.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/packet/packet.hpp"
 
@@ -125,6 +126,7 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
   if (auto violation = FindFilterConflict(model)) return violation;
   if (auto violation = FindLocalizationConflict(model)) return violation;
   if (auto violation = FindFreeConflict(model)) return violation;
+  if (auto violation = FindPingConflict(model, s.world.sensing)) return violation;
   if (s.agent.observation.quality_medium > s.agent.observation.quality_high) {
     return config::Violation{{"observation.quality_medium", "observation.quality_high"},
                              "medium quality cannot begin above high quality"};

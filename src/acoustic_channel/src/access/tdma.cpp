@@ -47,7 +47,7 @@ std::optional<config::Violation> Tdma::FindConflict(const PacketTime& packet) co
 }
 
 std::unique_ptr<MediumAccess> MakeTdma(const ChannelConfig& config, const RunConfig& run) {
-  return std::make_unique<Tdma>(config.slots, run.agents);
+  return std::make_unique<Tdma>(config.slots, run.agents - run.transponders);
 }
 
 }  // namespace stg::acoustics

@@ -20,6 +20,7 @@ bool Finite(const Vec3<double>& v) { return (v.x + v.y + v.z) * 0.0 == 0.0; }
 Network::Impl::Impl(const ChannelConfig& config, const RunConfig& run,
                     std::unique_ptr<Medium> medium)
     : count_(run.agents),
+      talkers_(run.agents - run.transponders),
       max_payload_(LongestPayload(config.modem, run.agents)),
       config_(config.modem),
       medium_(std::move(medium)),
@@ -155,7 +156,7 @@ void Network::Impl::SetPresent(int node, TimeNs t, bool present) {
 }
 
 double Network::Impl::EnergyJ(const Node& n, TimeNs t) const {
-  const TimeNs sent = n.sent_ns + (n.sending != kNone ? t - n.send_begin : 0);
+  const TimeNs sent = Sent(n, t);
   const TimeNs received = n.received_ns + (n.locked != kNone ? t - n.lock_begin : 0);
   const TimeNs present = n.present_ns + (n.present ? t - n.present_since : 0);
   const TimeNs idle = std::max<TimeNs>(0, present - sent - received);
@@ -264,6 +265,7 @@ NodeMotion Network::Motion(int node, TimeNs t) const { return impl_->Motion(impl
 bool Network::present(int node) const { return impl_->At(node).present; }
 bool Network::transmitting(int node) const { return impl_->At(node).sending != Impl::kNone; }
 double Network::EnergyJ(int node, TimeNs t) const { return impl_->EnergyJ(impl_->At(node), t); }
+double Network::SentS(int node, TimeNs t) const { return Seconds(impl_->Sent(impl_->At(node), t)); }
 double Network::ClockS(int node, TimeNs t) const {
   return Seconds(t) + impl_->ClockError(impl_->At(node), t);
 }

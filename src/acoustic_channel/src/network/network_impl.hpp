@@ -50,6 +50,7 @@ class Network::Impl {
     bool open = false;
     PingResult result;
     TimeNs transmit = 0;
+    double request_error_s = 0.0;  ///< with which the other modem took the time of the request
   };
 
   struct Delivered {
@@ -101,6 +102,9 @@ class Network::Impl {
   void SetMotion(int node, TimeNs t, const NodeMotion& motion);
   void SetPresent(int node, TimeNs t, bool present);
   double EnergyJ(const Node& n, TimeNs t) const;
+  TimeNs Sent(const Node& n, TimeNs t) const {
+    return n.sent_ns + (n.sending != kNone ? t - n.send_begin : 0);
+  }
   double ClockError(const Node& n, TimeNs t) const {
     return n.clock_offset_s + n.clock_rate * Seconds(t);
   }
@@ -123,6 +127,8 @@ class Network::Impl {
   void Answer(const Arrival& request, TimeNs t);
   void Reply(int node, int packet, TimeNs t);
   void TakeReply(const Arrival& reply, TimeNs t);
+  /// Adds what a receiver makes of a travel time beside the truth.
+  void AddTimingError(const Packet& packet, int receiver, double* travel_time_s) const;
 
   // receiving.cpp
   void Begin(int arrival, TimeNs t);
@@ -141,7 +147,7 @@ class Network::Impl {
   const ModemProfile& SenderOf(const Arrival& a) const { return *packets_[a.packet].info.mode; }
   bool Understands(const Node& n, const ModemProfile& sender) const;
   bool IsFor(const Packet& p, int receiver) const {
-    return p.info.destination == kToAll || p.info.destination == receiver;
+    return p.info.destination == receiver || (p.info.destination == kToAll && receiver < talkers_);
   }
   /// Closes an arrival; tells of it where it was for this node.
   void Drop(Arrival* a, DropReason reason, double noise_db, double sinr_db, double loss);
@@ -151,7 +157,7 @@ class Network::Impl {
   void EndLock(const Arrival& a, const PacketFate& fate, bool read, TimeNs t);
   PacketFate FateOf(const Arrival& a) const;
 
-  int count_;
+  int count_, talkers_;  ///< nodes, and those of them that are no transponders
   std::size_t max_payload_;
   ModemConfig config_;
   std::unique_ptr<Medium> medium_;

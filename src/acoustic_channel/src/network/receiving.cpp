@@ -250,6 +250,16 @@ void Network::Impl::Drop(Arrival* a, DropReason reason, double noise_db, double 
   Tell(p, fate);
 }
 
+void Network::Impl::AddTimingError(const Packet& p, int receiver, double* travel_time_s) const {
+  if (config_.timing_std_s <= 0.0 && config_.late_probability <= 0.0) return;
+  Random random(seed_, Stream::kTiming, episode_, p.draw_sequence,
+                static_cast<std::uint32_t>(p.info.source * count_ + receiver));
+  *travel_time_s += config_.timing_std_s * random.Normal();
+  const bool late = random.Uniform() < config_.late_probability;
+  const double by_s = config_.late_max_s * random.Uniform();
+  if (late) *travel_time_s += by_s;
+}
+
 void Network::Impl::Deliver(const Packet& p, const Arrival& a, double loss, double sinr_db) {
   const Node& source = At(p.info.source);
   Node& n = At(a.receiver);
@@ -267,14 +277,7 @@ void Network::Impl::Deliver(const Packet& p, const Arrival& a, double loss, doub
   r.distance_m = a.hearing.distance_m;
   r.travel_time_s =
       a.hearing.travel_time_s + ClockError(n, a.begin) - ClockError(source, p.info.transmit);
-  if (config_.timing_std_s > 0.0 || config_.late_probability > 0.0) {
-    Random random(seed_, Stream::kTiming, episode_, p.draw_sequence,
-                  static_cast<std::uint32_t>(p.info.source * count_ + a.receiver));
-    r.travel_time_s += config_.timing_std_s * random.Normal();
-    const bool late = random.Uniform() < config_.late_probability;
-    const double by_s = config_.late_max_s * random.Uniform();
-    if (late) r.travel_time_s += by_s;
-  }
+  AddTimingError(p, a.receiver, &r.travel_time_s);
   r.loss_probability = loss;
   const double age_s = Seconds(a.end - p.info.generation);
   r.link_quality = (1.0 - loss) * std::exp(-age_s / config_.freshness_s);

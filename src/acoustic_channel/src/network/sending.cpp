@@ -97,7 +97,7 @@ void Network::Impl::Discard(int packet, DropReason reason, TimeNs t) {
   const PacketInfo& info = packets_[packet].info;
   if (info.kind == PacketKind::kData && info.destination != kToNobody) {
     const bool all = info.destination == kToAll;
-    for (int j = all ? 0 : info.destination; j < (all ? count_ : info.destination + 1); ++j) {
+    for (int j = all ? 0 : info.destination; j < (all ? talkers_ : info.destination + 1); ++j) {
       if (j != info.source) table_.Drop(info.source, j, reason);
     }
   }
@@ -276,6 +276,8 @@ void Network::Impl::Answer(const Arrival& request, TimeNs t) {
   const std::uint8_t nothing = 0;
   reply.payload = {&nothing, 1};
   const std::uint32_t number = asked.ping;
+  Ping& ping = At(asked.info.source).ping;
+  if (ping.number == number) AddTimingError(asked, request.receiver, &ping.request_error_s);
   const int packet = MakePacket(reply, PacketKind::kReply);
   packets_[packet].ping = number;
   events_.Push(reply.stamp, EventKind::kReply, reply.source, 0, packet);
@@ -300,10 +302,12 @@ void Network::Impl::TakeReply(const Arrival& reply, TimeNs t) {
   if (!ping.open || ping.number != p.ping) return;
   const ModemProfile& other = At(p.info.source).profile;
   const double watched_s = Seconds(t - ping.transmit) * (1.0 + n.clock_rate);
-  ping.result.round_trip_s =
-      watched_s - n.profile.airtime_s(1) - other.airtime_s(1) - other.turnaround_s;
+  ping.result.round_trip_s = watched_s - n.profile.airtime_s(1) - other.airtime_s(1) -
+                             other.turnaround_s + ping.request_error_s;
+  AddTimingError(p, reply.receiver, &ping.result.round_trip_s);
   ping.result.range_m = 0.5 * ping.result.round_trip_s * medium_->SoundSpeed(Motion(n, t).p_W);
   ping.result.true_range_m = reply.hearing.distance_m;
+  ping.result.middle = ping.transmit + (p.info.transmit - ping.transmit) / 2;
   EndPing(reply.receiver, t, true);
 }
 

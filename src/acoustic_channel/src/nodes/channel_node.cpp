@@ -41,8 +41,8 @@ ChannelNode::ChannelNode(const MakeChannel& make)
       tracker_(period_, scenario_.run.time.episode_steps),
       barrier_(scenario_.run.agents, period_),
       auvs_(static_cast<std::size_t>(scenario_.run.agents)),
-      positions_(auvs_.size()),
-      velocities_(auvs_.size()),
+      positions_(static_cast<std::size_t>(channel_->bodies())),
+      velocities_(positions_.size()),
       reports_(IndicesOf(scenario_.run.agents)),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
@@ -80,14 +80,21 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     refused_swarm_.Add(Refusals::kFrame);
     return;
   }
-  if (message->poses.size() != auvs_.size() || message->velocities.size() != auvs_.size()) {
+  const std::size_t targets = positions_.size() - auvs_.size();
+  if (message->poses.size() != auvs_.size() || message->velocities.size() != auvs_.size() ||
+      (targets > 0 && (message->target_positions.size() != targets ||
+                       message->target_velocities.size() != targets))) {
     refused_swarm_.Add(Refusals::kMalformed);
     return;
   }
   const auto finite_pose = [](const auto& pose) { return FinitePose(pose); };
   const auto finite_vector = [](const auto& vector) { return FiniteVector(vector); };
   if (!std::all_of(message->poses.begin(), message->poses.end(), finite_pose) ||
-      !std::all_of(message->velocities.begin(), message->velocities.end(), finite_vector)) {
+      !std::all_of(message->velocities.begin(), message->velocities.end(), finite_vector) ||
+      !std::all_of(message->target_positions.begin(), message->target_positions.end(),
+                   finite_vector) ||
+      !std::all_of(message->target_velocities.begin(), message->target_velocities.end(),
+                   finite_vector)) {
     refused_swarm_.Add(Refusals::kNotFinite);
     return;
   }
@@ -121,6 +128,10 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
     velocities_[i] = VectorOf(message->velocities[i]);
+  }
+  for (std::size_t k = 0; k < targets; ++k) {
+    positions_[auvs_.size() + k] = VectorOf(message->target_positions[k]);
+    velocities_[auvs_.size() + k] = VectorOf(message->target_velocities[k]);
   }
   if (verdict == Verdict::kNewRun && message->step == 0) Greet();
   AskForTransmissions();

@@ -20,7 +20,8 @@ class RelativeSensor : public TargetSensor {
   MeasurementKind kind() const override { return kind_; }
 
   bool Sense(const Look& look, Detection* out) const override {
-    if (!LooksNow(config_, look)) return false;
+    // What modems range is no business of the world.
+    if (config_.pings() || !LooksNow(config_, look)) return false;
     Measured m;
     if (!Measure(look, &m) && !FalseAlarm(look, &m)) return false;
     out->kind = kind_;
@@ -48,15 +49,12 @@ class RelativeSensor : public TargetSensor {
     if (Blind(config_, look)) return false;
     Random random = look.clock.Draw(Stream::kMeasurement, look.pair);
     const double share = range / config_.range_m;
-    const double probability = config_.detection_probability *
-                               (1.0 - (1.0 - options_.probability_at_range) * share * share);
-    if (random.Uniform() >= probability) return false;
+    if (random.Uniform() >= options_.chance(config_.detection_probability, share)) return false;
     if (random.Uniform() < options_.outlier_probability) {
       *m = Anywhere(&random);
       return true;
     }
-    const double range_std = options_.range_std_m + options_.range_std_share * range;
-    m->range_m = std::abs(range + range_std * random.Normal());
+    m->range_m = std::abs(range + options_.range_std(range) * random.Normal());
     m->azimuth_rad = std::atan2(r.y, r.x) + bearing_std_ * random.Normal();
     m->elevation_rad = std::asin(Clip(r.z / range, -1.0, 1.0)) + bearing_std_ * random.Normal();
     return true;
@@ -86,7 +84,7 @@ class RelativeSensor : public TargetSensor {
     out->ambiguous = false;
     if (has_range) {
       out->range_m = m.range_m;
-      out->range_std_m = options_.range_std_m + options_.range_std_share * m.range_m;
+      out->range_std_m = options_.range_std(m.range_m);
     }
     if (!has_bearing) return;
     out->azimuth_rad = WrapAngle(m.azimuth_rad + look.observer.heading_error_rad);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "auv_common/config/run_config.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 
 namespace stg::dynamics {
@@ -51,6 +52,10 @@ void Describe(SensingConfig* c, config::Table* t) {
          "acoustic mode: standard deviation of each component of the initial datum");
   t->AddOptional("period_s", &c->period_s, "0.0", NonNegative(1e5), "s",
                  "time between two looks, whole decisions; 0: every decision");
+  t->AddOptional("ranging", config::Enum(&c->ranging, {"free", "ping"}), "free", kNone, "-",
+                 "what a range of the sensor `range` costs: nothing, or a ping of the AUV's modem, "
+                 "which takes its turn on the water and its energy and is answered by the target's "
+                 "transponder");
   const auto sensor = [c] { return std::vector<std::string>{c->sensor}; };
   t->Thing({"target sensor", {"position"}, "sensing.sensor", sensor}, "sensing.position", c,
            [](SensingConfig* o, config::Table* table) {
@@ -69,10 +74,23 @@ void Describe(SensingConfig* c, config::Table* t) {
 }
 
 std::optional<config::Violation> FindConflict(const SensingConfig& c, double decision_dt_s) {
-  const double looks = c.period_s / decision_dt_s;
-  if (std::abs(looks - std::round(looks)) > 1e-6) {
+  if (!IsWholeDecisions(c.period_s, decision_dt_s)) {
     return config::Violation{{"sensing.period_s", "time.decision_steps"},
                              "the period must be a whole number of decisions"};
+  }
+  if (!c.pings()) return {};
+  if (TargetSensors().Make(c.sensor, c.sensors, c)->kind() != MeasurementKind::kRange) {
+    return config::Violation{{"sensing.ranging", "sensing.sensor"},
+                             "a ping measures a range and nothing else"};
+  }
+  const RelativeOptions o = c.relative();
+  if (c.dropout_rate_hz > 0.0 || o.outlier_probability > 0.0 || o.false_alarm_probability > 0.0 ||
+      o.field_of_view_deg < 360.0) {
+    return config::Violation{
+        {"sensing.ranging", "sensing.dropout_rate_hz", "sensing.range.outlier_probability",
+         "sensing.range.false_alarm_probability", "sensing.range.field_of_view_deg"},
+        "a ping is heard in all directions; it is lost or late as packets are, see "
+        "channel.physical.modem.late_probability"};
   }
   return {};
 }

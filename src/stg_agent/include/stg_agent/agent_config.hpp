@@ -75,6 +75,8 @@ struct AgentModel {
   int members() const { return run.agents + stations.count(); }  ///< of the acoustic network
   /// Agents correct what they know of each other's positions.
   bool locates() const;
+  /// By ranges from pings.
+  bool pings_members() const { return locates() && localization.by == RangesBy::kPing; }
   int observation_size() const { return ObservationSpec(observation).size(); }
   /// Targets that each AUV keeps a belief of.
   int beliefs() const { return task.free() ? target.count : 1; }

@@ -42,11 +42,13 @@ LanedAgent<T>::LanedAgent(const SharedConstants& constants, int id)
   }
   inboxes_.reserve(static_cast<std::size_t>(kLanesOf<T>));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) inboxes_.emplace_back(constants, id);
+  answers_.resize(inboxes_.size(), PingAnswers(constants->model));
 }
 
 template <class T>
 void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& cue) {
   At(lane).Reset(episode, cue);
+  answers_[static_cast<std::size_t>(lane)].Clear();
   SetLane(&present_, lane, 1.0);
   links_->Reset(lane);
   neighbours_.Clear(lane);
@@ -73,6 +75,14 @@ void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
 template <class T>
 void LanedAgent<T>::Receive(int lane, const acoustics::Reception& reception) {
   if (!present(lane)) return;
+  if (reception.payload.size == 0) {
+    if (reception.source < model().members()) {
+      At(lane).HearAnswer(reception);
+    } else {
+      answers_[static_cast<std::size_t>(lane)].Keep(reception);
+    }
+    return;
+  }
   if (reception.source < model().run.agents) links_->Learn(lane, reception);
   const std::optional<NeighbourState> state = At(lane).Receive(reception);
   if (state) neighbours_.Update(lane, *state);
@@ -108,8 +118,11 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
     Attend(lane, OfLane(nav.stamp, lane));
-    At(lane).Advance(OfLane(nav.stamp, lane), neighbours(lane),
-                     {Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane)});
+    const OwnReckoning own{Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane)};
+    answers_[static_cast<std::size_t>(lane)].Give(
+        OfLane(nav.stamp, lane), own, Lane(nav.heading_std_rad, lane),
+        [this, lane](const dynamics::Detection& detection) { Detect(lane, detection); });
+    At(lane).Advance(OfLane(nav.stamp, lane), neighbours(lane), own);
     neighbours_.MarkRead(lane);
     EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
     memory.now = OfLane(nav.stamp, lane);

@@ -34,6 +34,13 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
          "standard deviation of the share by which all ranges are too long");
   t->Add("gate_sigma", &c->gate_sigma, Positive(1e3), "-",
          "ranges farther off than so many standard deviations are set aside");
+  t->AddOptional(
+      "by", config::Enum(&c->by, {"one_way", "ping"}), "one_way", kNone, "-",
+      "ranges are from the travel times of packets, by the clocks of both modems, or from pings of "
+      "the AUVs, by the clock of the one that pings alone");
+  t->AddOptional("ping_period_s", &c->ping_period_s, "30.0", Positive(1e5), "s",
+                 "time between two pings of an AUV, whole decisions; it pings the other AUVs and "
+                 "the stations in turn");
 }
 
 }  // namespace
@@ -41,13 +48,17 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
 void Describe(LocalizationConfig* c, config::Table* t) {
   t->Section("localization");
   t->AddOptional("kind", config::Name(&c->kind, Localizers().Names()), "uncorrected", kNone, "-",
-                 "how AUVs correct their reckoned positions: not at all, or by ranges from the "
-                 "travel times of packets");
+                 "how AUVs correct their reckoned positions: not at all, or by ranges to each "
+                 "other and to stations");
   t->Thing({"localizer",
             {"ranges"},
             "localization.kind",
             [c] { return std::vector<std::string>{c->kind}; }},
            "localization.ranges", c, DescribeRanges);
+  t->Own("localization.ranges.ping_period_s",
+         {"source of ranges", {"ping"}, "localization.ranges.by", [c] {
+            return std::vector<std::string>{c->by == RangesBy::kPing ? "ping" : "one_way"};
+          }});
 }
 
 }  // namespace stg::agent

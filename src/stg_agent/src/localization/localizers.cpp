@@ -10,6 +10,7 @@ class Uncorrected : public Localizer {
  public:
   void Reset() override {}
   void Hear(const NeighbourState&, const acoustics::Reception&) override {}
+  void HearAnswer(const acoustics::Reception&) override {}
   void Advance(TimeNs, const OwnReckoning&) override {}
   PlaneError own() const override { return {}; }
   PlaneError relative(int, TimeNs) const override { return {}; }

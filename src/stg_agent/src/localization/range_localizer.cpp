@@ -5,7 +5,9 @@
 
 #include "acoustic_channel/water/sound_speed.hpp"
 #include "localizers.hpp"
+#include "ping_ranges.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
+#include "stg_agent/localization/own_way.hpp"
 #include "told_ways.hpp"
 
 namespace stg::agent {
@@ -14,8 +16,6 @@ namespace {
 constexpr std::size_t kMostPending = 128;
 constexpr std::size_t kMostTaken = 256;  ///< identities of readings that are in already
 constexpr TimeNs kOldest = 60'000'000'000;
-constexpr double kOwnWay_s = 20.0;
-constexpr int kMostOwnWay = 256;
 /// The own log finds no bottom where the own deviation grows by more than this share of the
 /// current's; judged only once it has grown to the other one, as it grows slowly at first.
 constexpr double kDriftShare = 0.5, kGrown = 1.3;
@@ -61,9 +61,10 @@ class RangeLocalizer : public Localizer {
         filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self),
         ways_(static_cast<std::size_t>(s.run.agents + s.stations.count())),
         newest_(ways_.size()),
-        own_way_(static_cast<std::size_t>(
-            std::clamp(static_cast<int>(kOwnWay_s / s.run.decision_dt_s()), 4, kMostOwnWay))),
-        taken_(kMostTaken) {
+        own_way_(s.run),
+        taken_(kMostTaken),
+        pings_(s.pings_members()),
+        by_ping_(self) {
     pending_.reserve(kMostPending);
   }
 
@@ -73,8 +74,9 @@ class RangeLocalizer : public Localizer {
     std::fill(newest_.begin(), newest_.end(), ToldRange());
     std::fill(taken_.begin(), taken_.end(), Taken());
     pending_.clear();
+    by_ping_.Clear();
     next_taken_ = 0;
-    own_count_ = 0;
+    own_way_.Clear();
     own_ = OwnReckoning();
     adrift_ = true;
     start_std_m_ = -1.0;
@@ -82,7 +84,8 @@ class RangeLocalizer : public Localizer {
 
   void Hear(const NeighbourState& packet, const acoustics::Reception& reception) override {
     const int id = packet.source;
-    if (id == self_ || pending_.size() == kMostPending || reception.travel_time_s <= 0.0) return;
+    if (id == self_ || pending_.size() == kMostPending) return;
+    if (!pings_ && reception.travel_time_s <= 0.0) return;
     Letter letter;
     letter.id = id;
     letter.adrift = packet.adrift;
@@ -91,6 +94,12 @@ class RangeLocalizer : public Localizer {
     letter.ranges = packet.ranges;
     letter.range = packet.range;
     pending_.push_back(letter);
+  }
+
+  void HearAnswer(const acoustics::Reception& r) override {
+    const int members = static_cast<int>(ways_.size());
+    if (!pings_ || r.source < 0 || r.source >= members || r.source == self_) return;
+    by_ping_.AddOwn(r);
   }
 
   void Advance(TimeNs now, const OwnReckoning& own) override {
@@ -106,6 +115,13 @@ class RangeLocalizer : public Localizer {
     });
     for (const Letter& letter : pending_) Read(now, letter);
     pending_.clear();
+    by_ping_.Give(now - kOldest, own_way_, ways_, sound_, surface_z_m_,
+                  [this, now](const RangeReading& z) {
+                    if (z.receiver == self_) {
+                      newest_[static_cast<std::size_t>(z.source)] = {z.source, z.at, z.range_m};
+                    }
+                    Take(now, z);
+                  });
   }
 
   PlaneError own() const override { return filter_.Error(self_, filter_.now()); }
@@ -149,10 +165,8 @@ class RangeLocalizer : public Localizer {
     int ranges = 0;
     std::array<ToldRange, kToldRanges> range;
   };
-  struct Place {
-    TimeNs at = 0;
-    Vec3<double> p;
-  };
+
+  const ToldWay& Way(int id) const { return ways_[static_cast<std::size_t>(id)]; }
 
   void FollowOwn(TimeNs now, const OwnReckoning& own) {
     if (start_std_m_ < 0.0) {
@@ -169,21 +183,7 @@ class RangeLocalizer : public Localizer {
     }
     if (self_ >= auvs_) adrift_ = false;
     own_ = own;
-    own_way_[own_count_++ % own_way_.size()] = {now, own.p_WB};
-  }
-
-  /// Where this AUV took itself to be at a time.
-  bool OwnAt(TimeNs t, Vec3<double>* p) const {
-    const std::size_t kept = std::min(own_count_, own_way_.size());
-    for (std::size_t k = 0; k + 1 < kept; ++k) {
-      const Place& b = own_way_[(own_count_ - 1 - k) % own_way_.size()];
-      const Place& a = own_way_[(own_count_ - 2 - k) % own_way_.size()];
-      if (t < a.at || t > b.at) continue;
-      const double s = Seconds(t - a.at) / Seconds(b.at - a.at);
-      *p = a.p * (1.0 - s) + b.p * s;
-      return true;
-    }
-    return false;
+    own_way_.Add(now, own.p_WB);
   }
 
   void Read(TimeNs now, const Letter& letter) {
@@ -197,8 +197,10 @@ class RangeLocalizer : public Localizer {
     RangeReading z;
     z.receiver = self_;
     z.source = letter.id;
-    if (way.AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) && OwnAt(z.at, &z.p_receiver)) {
-      z.range_m = letter.travel_time_s / Slowness(z.p_receiver, z.p_source);
+    if (!pings_ && way.AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) &&
+        own_way_.At(z.at, &z.p_receiver)) {
+      z.range_m =
+          letter.travel_time_s / SlownessBetween(sound_, surface_z_m_, z.p_receiver, z.p_source);
       newest_[static_cast<std::size_t>(letter.id)] = {letter.id, z.at, z.range_m};
       Take(now, z);
     }
@@ -208,6 +210,11 @@ class RangeLocalizer : public Localizer {
       z.receiver = letter.id;
       z.source = told.source;
       z.range_m = told.range_m;
+      if (pings_) {
+        z.at = told.stamp;
+        by_ping_.AddTold(z);
+        continue;
+      }
       const bool source_known = told.source == self_
                                     ? OwnPacketAt(told.stamp, &z.at, &z.p_source)
                                     : ways_[static_cast<std::size_t>(told.source)].AtPacket(
@@ -219,7 +226,7 @@ class RangeLocalizer : public Localizer {
   /// The own packets are not heard; within the age's resolution it is known when one left.
   bool OwnPacketAt(TimeNs stamp, TimeNs* at, Vec3<double>* p) const {
     *at = stamp;
-    return OwnAt(stamp, p);
+    return own_way_.At(stamp, p);
   }
 
   void Take(TimeNs now, const RangeReading& z) {
@@ -233,11 +240,6 @@ class RangeLocalizer : public Localizer {
     }
     taken_[next_taken_++ % taken_.size()] = {z.receiver, z.source, z.at};
     filter_.Take(z);
-  }
-
-  double Slowness(const Vec3<double>& a, const Vec3<double>& b) const {
-    return sound_.MeanSlowness(std::max(0.0, surface_z_m_ - a.z),
-                               std::max(0.0, surface_z_m_ - b.z));
   }
 
   /// Adds one of the newest readings of members first .. first + count - 1.
@@ -272,10 +274,11 @@ class RangeLocalizer : public Localizer {
   std::vector<ToldWay> ways_;      // [members]
   std::vector<ToldRange> newest_;  // [members], own readings of their packets
   std::vector<Letter> pending_;
-  std::vector<Place> own_way_;  // a ring
-  std::size_t own_count_ = 0;
+  OwnWay own_way_;
   std::vector<Taken> taken_;  // a ring
   std::size_t next_taken_ = 0;
+  bool pings_;  // ranges are by pings
+  PingRanges by_ping_;
   OwnReckoning own_;
   bool adrift_ = true;
   double start_std_m_ = -1.0;  // below zero: no decision yet

@@ -13,6 +13,7 @@
 #include "auv_dynamics/nodes/autopilot_parameter.hpp"
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
+#include "run_model.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -25,7 +26,7 @@ constexpr double kStartPatience_s = 5.0;
 }  // namespace
 
 AgentNode::AgentNode()
-    : model_(LoadScenarioParameters<agent::AgentScenario>().model()),
+    : model_(ModelOfRun()),
       id_(IntegerParameter("id", 0, 0, model_.run.agents - 1)),
       body_frame_(frames::Body(id_)),
       agent_(model_, id_),

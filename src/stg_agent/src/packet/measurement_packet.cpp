@@ -365,7 +365,7 @@ void MeasurementPacket::SetDeviations(const NeighbourState& s, Detection* d) con
                            ? relative_.bearing_std_deg * kPi / 180.0
                            : 0.0;
   d->range_std_m = kind_ == MeasurementKind::kRange || kind_ == MeasurementKind::kRangeBearing
-                       ? relative_.range_std_m + relative_.range_std_share * d->range_m
+                       ? relative_.range_std(d->range_m)
                        : 0.0;
   d->std_m = kind_ == MeasurementKind::kPosition
                  ? sensing_.noise_std_m

@@ -8,12 +8,13 @@ namespace stg::agent {
 SearchMemory::SearchMemory(const AgentModel& model)
     : map_(model),
       period_(static_cast<TimeNs>(std::llround(model.sensing.period_s * 1e9))),
+      pings_(model.sensing.pings()),
       heard_(static_cast<std::size_t>(model.run.agents)) {}
 
 void SearchMemory::Start(const dynamics::Cue& cue) {
   cue_ = cue;
   map_.Start(cue);
-  detected_ = false;
+  detected_ = asked_ = answered_ = false;
   now_ = 0;
   plan = SearchPlan();
   for (Heard& heard : heard_) heard = Heard();
@@ -31,12 +32,23 @@ void SearchMemory::Update(TimeNs now, const Vec3<double>& p_WB, const NeighbourT
   for (const int id : neighbours.known()) {
     Hear(neighbours.state(id), &heard_[static_cast<std::size_t>(id)]);
   }
-  if (detected_) {
-    map_.Find(detection_);
-    detected_ = false;
-  } else if (period_ <= 0 || now % period_ == 0) {
+  const bool found = detected_;
+  if (found) map_.Find(detection_);
+  detected_ = false;
+  if (pings_) answered_ = answered_ || found;
+  const bool looks = period_ <= 0 || now % period_ == 0;
+  if (looks && (pings_ || !found)) LookInVain(p_WB);
+}
+
+void SearchMemory::LookInVain(const Vec3<double>& p_WB) {
+  if (!pings_) {
     map_.LookInVain(p_WB);
+    return;
   }
+  if (asked_ && !answered_) map_.LookInVain(p_asked_);
+  asked_ = true;
+  answered_ = false;
+  p_asked_ = p_WB;
 }
 
 void SearchMemory::Hear(const NeighbourState& packet, Heard* heard) {

@@ -1,7 +1,10 @@
 #include "stg_agent/stations/station_channel.hpp"
 
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "auv_pings.hpp"
 
 namespace stg::agent {
 namespace {
@@ -10,12 +13,13 @@ using acoustics::Channel;
 using acoustics::PacketFate;
 using acoustics::PacketInfo;
 
-/// Passes on what is between AUVs alone: observers know no other members.
+/// Passes on what is between AUVs alone: observers know no other members. AuvPings learns of all
+/// requests that leave, and of all results.
 class AuvPackets : public acoustics::PacketObserver {
  public:
-  explicit AuvPackets(int auvs) : auvs_(auvs) {}
+  AuvPackets(int auvs, AuvPings* pings) : auvs_(auvs), pings_(pings) {}
   void Pass(acoustics::PacketObserver* to) { to_ = to; }
-  bool passes() const { return to_ != nullptr; }
+  bool listens() const { return to_ != nullptr || pings_ != nullptr; }
 
   void OnQueued(const PacketInfo& p) override {
     if (Of(p)) to_->OnQueued(p);
@@ -24,6 +28,7 @@ class AuvPackets : public acoustics::PacketObserver {
     if (Of(p)) to_->OnDiscarded(p, reason, t);
   }
   void OnSent(const PacketInfo& p) override {
+    if (pings_ != nullptr) pings_->OnSent(p);
     if (Of(p)) to_->OnSent(p);
   }
   void OnSendEnd(const PacketInfo& p) override {
@@ -39,43 +44,60 @@ class AuvPackets : public acoustics::PacketObserver {
     if (Of(p) && fate.receiver < auvs_) to_->OnFate(p, fate);
   }
   void OnPing(const acoustics::PingResult& ping) override {
-    if (ping.source < auvs_ && ping.destination < auvs_) to_->OnPing(ping);
+    if (pings_ != nullptr) pings_->OnPing(ping);
+    if (to_ != nullptr && ping.source < auvs_ && ping.destination >= 0 &&
+        ping.destination < auvs_) {
+      to_->OnPing(ping);
+    }
   }
 
  private:
-  bool Of(const PacketInfo& p) const { return p.source < auvs_; }
+  bool Of(const PacketInfo& p) const {
+    if (to_ == nullptr || p.source >= auvs_) return false;
+    return p.kind == acoustics::PacketKind::kData || (p.destination >= 0 && p.destination < auvs_);
+  }
 
   int auvs_;
+  AuvPings* pings_;
   acoustics::PacketObserver* to_ = nullptr;
 };
 
 class StationChannel : public Channel {
  public:
-  StationChannel(const AgentModel& model, std::unique_ptr<Channel> water, StationObserver* observer)
+  /// @param targets that carry transponders; 0: none is pinged
+  StationChannel(const AgentModel& model, const dynamics::SensingConfig& sensing, int targets,
+                 std::unique_ptr<Channel> water, StationObserver* observer)
       : auvs_(model.run.agents),
+        targets_(targets),
+        members_(model.members()),
         water_(std::move(water)),
         observer_(observer),
-        packets_observer_(auvs_) {
+        pings_(targets > 0 || model.pings_members() ? std::make_unique<AuvPings>(model, sensing)
+                                                    : nullptr),
+        packets_observer_(auvs_, pings_.get()) {
     const auto constants = std::make_shared<const AgentConstants>(model);
     for (int k = 0; k < model.stations.count(); ++k) stations_.emplace_back(constants, k);
-    const auto members = static_cast<std::size_t>(model.members());
+    const auto members = static_cast<std::size_t>(members_ + targets_);
     positions_.resize(members);
     velocities_.resize(members);
     packets_.resize(stations_.size());
     offered_.reserve(members);
     received_.reserve(8 * members);
+    if (packets_observer_.listens()) water_->Observe(&packets_observer_);
   }
 
   void Reset(std::uint64_t seed, std::uint32_t episode) override {
     water_->Reset(seed, episode);
     for (Station& s : stations_) s.Reset(seed, episode);
+    if (pings_ != nullptr) pings_->Reset(seed, episode);
   }
   void Observe(acoustics::PacketObserver* observer) override {
     packets_observer_.Pass(observer);
-    water_->Observe(packets_observer_.passes() ? &packets_observer_ : nullptr);
+    water_->Observe(packets_observer_.listens() ? &packets_observer_ : nullptr);
   }
   void SetPresent(int node, bool present) override { water_->SetPresent(node, present); }
   int nodes() const override { return auvs_; }
+  int bodies() const override { return auvs_ + targets_; }
   std::size_t max_payload() const override { return water_->max_payload(); }
   bool Due(int node, TimeNs t) override { return water_->Due(node, t); }
 
@@ -86,6 +108,10 @@ class StationChannel : public Channel {
     for (int i = 0; i < auvs_; ++i) {
       positions_[At(i)] = p_W[At(i)];
       velocities_[At(i)] = v_W[At(i)];
+    }
+    for (int k = 0; k < targets_; ++k) {
+      positions_[At(members_ + k)] = p_W[At(auvs_ + k)];
+      velocities_[At(members_ + k)] = v_W[At(auvs_ + k)];
     }
     for (std::size_t k = 0; k < stations_.size(); ++k) {
       Station& station = stations_[k];
@@ -105,24 +131,32 @@ class StationChannel : public Channel {
       packet.stamp = packet.generation = t;
       packet.payload = acoustics::ViewOf(packets_[k]);
     }
+    if (pings_ != nullptr) pings_->Ask(t, step, positions_, water_.get());
     water_->Step(t, step, positions_, velocities_, offered_);
   }
 
   void Deliver(int receiver, TimeNs until, std::vector<acoustics::Reception>* out) override {
+    const std::size_t before = out->size();
     water_->Deliver(receiver, until, out);
+    if (pings_ != nullptr) pings_->Take(receiver, until, before, out);
   }
   acoustics::LinkStatistics Link(int source, int destination, TimeNs now) const override {
     return water_->Link(source, destination, now);
   }
   const acoustics::ChannelTotals& totals() const override { return water_->totals(); }
   double EnergyJ(int node, TimeNs now) const override { return water_->EnergyJ(node, now); }
+  double SentS(int node, TimeNs now) const override { return water_->SentS(node, now); }
+  acoustics::PingTotals pings() const override {
+    return pings_ != nullptr ? pings_->totals() : acoustics::PingTotals();
+  }
 
  private:
   static std::size_t At(int i) { return static_cast<std::size_t>(i); }
 
-  int auvs_;
+  int auvs_, targets_, members_;
   std::unique_ptr<Channel> water_;
   StationObserver* observer_;
+  std::unique_ptr<AuvPings> pings_;  // null: nothing is pinged
   AuvPackets packets_observer_;
   std::vector<Station> stations_;
   std::vector<Packet> packets_;  // [stations]
@@ -135,12 +169,14 @@ class StationChannel : public Channel {
 
 std::unique_ptr<Channel> MakeStationChannel(const AgentModel& model,
                                             const acoustics::ChannelConfig& channel,
+                                            const dynamics::SensingConfig& sensing,
                                             const acoustics::LineOfSight& line_of_sight,
                                             StationObserver* observer) {
-  auto water =
-      acoustics::MakeChannel(channel, NetworkRun(model.run, model.stations), line_of_sight);
-  if (model.stations.count() == 0) return water;
-  return std::make_unique<StationChannel>(model, std::move(water), observer);
+  const int targets = sensing.pings() ? model.target.count : 0;
+  auto water = acoustics::MakeChannel(channel, NetworkRun(model.run, model.stations, targets),
+                                      line_of_sight);
+  if (model.stations.count() + targets == 0 && !model.pings_members()) return water;
+  return std::make_unique<StationChannel>(model, sensing, targets, std::move(water), observer);
 }
 
 }  // namespace stg::agent

@@ -25,9 +25,10 @@ void Describe(StationsConfig* c, config::Table* t) {
                  "correlation time of that error");
 }
 
-RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations) {
+RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations, int transponders) {
   RunConfig network = run;
-  network.agents += stations.count();
+  network.agents += stations.count() + transponders;
+  network.transponders = transponders;
   return network;
 }
 

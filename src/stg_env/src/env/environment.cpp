@@ -17,7 +17,7 @@ std::unique_ptr<InformationSource> MakeSource(InformationMode mode, const agent:
     return std::make_unique<TruthSource>(model, channel.range_m);
   }
   const auto shadows = dynamics::ShadowsOf(world.sea, world.workspace.half_extent_m);
-  return std::make_unique<AcousticSource>(model, channel, shadows);
+  return std::make_unique<AcousticSource>(model, channel, world.sensing, shadows);
 }
 
 }  // namespace

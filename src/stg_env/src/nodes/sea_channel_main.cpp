@@ -12,7 +12,7 @@ std::unique_ptr<acoustics::Channel> MakeSea(const acoustics::NetworkConfig&,
                                             StationReports* reports) {
   const auto scenario = LoadScenarioParameters<agent::AgentScenario>();
   const dynamics::WorldConfig& world = scenario.world;
-  return agent::MakeStationChannel(scenario.model(), scenario.channel,
+  return agent::MakeStationChannel(scenario.model(), scenario.channel, world.sensing,
                                    dynamics::ShadowsOf(world.sea, world.workspace.half_extent_m),
                                    reports);
 }

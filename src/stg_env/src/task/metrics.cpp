@@ -30,6 +30,11 @@ std::vector<std::pair<std::string, double>> FieldMetrics::Items() const {
   if (navigation) {
     for (const auto& item : navigation->Items()) items.push_back(item);
   }
+  if (pings) {
+    items.emplace_back("pings", pings->pings);
+    items.emplace_back("ping_loss", pings->loss);
+    items.emplace_back("airtime_share", pings->airtime_share);
+  }
   return items;
 }
 

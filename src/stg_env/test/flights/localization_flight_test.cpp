@@ -59,6 +59,26 @@ TEST(LocalizationFlight, BeaconsOnTheEdgeAreTakenForWhereTheyAre) {
   ExpectLocated(Fly("beacons", {"stations.beacons=[[1900, 1900, -100], [-1900, -1900, -100]]"}));
 }
 
+// The clocks of craft_ping are off by a second. Pings do not notice; the travel times of packets
+// do.
+TEST(LocalizationFlight, PingsNeedNoCommonClock) {
+  const task::MetricSummary pings = Fly("craft_ping");
+  ExpectLocated(pings);
+  EXPECT_LT(pings.Mean("relative_rmse"), 4.0);
+  EXPECT_GT(pings.Mean("pings"), 25.0);
+  EXPECT_GT(Fly("craft_ping", {"localization.ranges.by=one_way"}).Mean("navigation_nees"), 20.0);
+}
+
+// Nothing is heard of clocks: the same flights, whatever they show, but for the last bits of half a
+// nanosecond.
+TEST(LocalizationFlight, ADriftingClockMovesARangeByLessThanAMillimetre) {
+  const task::MetricSummary drifting = Fly("craft_ping");
+  const task::MetricSummary right =
+      Fly("craft_ping", {"channel.physical.modem.clock_offset_std_s=0.0",
+                         "channel.physical.modem.clock_drift_std_ppm=0.0"});
+  EXPECT_NEAR(drifting.Mean("navigation_rmse"), right.Mean("navigation_rmse"), 0.05);
+}
+
 TEST(LocalizationFlight, LateSoundsAreSetAside) {
   EXPECT_LT(Fly("craft_late_sound").Mean("navigation_rmse_tail"), 10.0);
 }
@@ -77,6 +97,14 @@ TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
   EXPECT_NE(error({"track.measurements.observers=rates"}).find("observers"), std::string::npos);
   EXPECT_NE(error({"localization.kind=uncorrected"}).find("localization.kind"), std::string::npos);
   EXPECT_NE(error({"agents=28", "stations.crafts=[[0,0],[1,1],[2,2],[3,3]]"}).find("31 AUVs"),
+            std::string::npos);
+  // Keys of what was not chosen.
+  EXPECT_NE(error({"localization.ranges.ping_period_s=20.0"}).find("localization.ranges.by"),
+            std::string::npos);
+  // Periods between decisions, and of less than a turn and the way there and back.
+  const std::string by = "localization.ranges.by=ping";
+  EXPECT_NE(error({by, "localization.ranges.ping_period_s=20.5"}).find("whole"), std::string::npos);
+  EXPECT_NE(error({by, "localization.ranges.ping_period_s=9.0"}).find("ping_period_s"),
             std::string::npos);
   // A station without anybody who makes use of it.
   EXPECT_THROW(Shipped("field", "nominal", {"stations.crafts=[[0,0]]"}), UserError);

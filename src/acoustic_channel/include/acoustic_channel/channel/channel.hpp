@@ -41,6 +41,9 @@ class Channel {
   virtual bool continuous() const { return false; }
 
   virtual int nodes() const = 0;
+  /// Positions and velocities that Step takes: those of the nodes, and after them those of what
+  /// answers the nodes' pings.
+  virtual int bodies() const { return nodes(); }
   /// Longest payload of a packet [bytes].
   virtual std::size_t max_payload() const = 0;
 
@@ -71,6 +74,10 @@ class Channel {
   virtual void Ping(int source, int destination, TimeNs t, TimeNs timeout, std::uint32_t tag);
   /// Electric energy that a node's modem has used [J]; 0 of models that do not count it.
   virtual double EnergyJ(int /*node*/, TimeNs /*now*/) const { return 0.0; }
+  /// Time for which it has sent [s], likewise.
+  virtual double SentS(int /*node*/, TimeNs /*now*/) const { return 0.0; }
+  /// Pings by which nodes range by themselves, of this episode.
+  virtual PingTotals pings() const { return {}; }
 
   /// For packets from outside: throws UserError when the source or the destination does not exist,
   /// the payload is empty or longer than max_payload(), or the packet was generated after it was

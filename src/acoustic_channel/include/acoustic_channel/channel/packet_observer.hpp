@@ -54,6 +54,7 @@ struct PingResult {
   bool answered = false;
   bool replaced = false;        ///< given up because its source pings anew
   TimeNs asked = 0, ended = 0;  ///< offered; answered or given up
+  TimeNs middle = 0;            ///< between when the request left and the reply did
   double round_trip_s = 0.0;    ///< by the source's clock, without turnaround and airtimes
   double range_m = 0.0;         ///< from it and the sound speed at the source
   double true_range_m = 0.0;    ///< when the reply left

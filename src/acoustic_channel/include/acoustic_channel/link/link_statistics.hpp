@@ -58,6 +58,12 @@ struct ChannelTotals {
   DropCounts drops{};  ///< by reason
 };
 
+/// Pings by which nodes range by themselves.
+struct PingTotals {
+  std::uint64_t sent = 0;      ///< requests that left
+  std::uint64_t answered = 0;  ///< whose answer came
+};
+
 /// Accounts for the events of all links; costs nothing between events.
 class LinkTable {
  public:

@@ -31,6 +31,7 @@ class PhysicalChannel : public Channel {
   const ChannelTotals& totals() const override { return network_.totals(); }
   void Ping(int source, int destination, TimeNs t, TimeNs timeout, std::uint32_t tag) override;
   double EnergyJ(int node, TimeNs now) const override { return network_.EnergyJ(node, now); }
+  double SentS(int node, TimeNs now) const override { return network_.SentS(node, now); }
 
  private:
   Network network_;

@@ -56,6 +56,10 @@ struct Transmission {
 };
 
 /// A packet as one receiver's modem gives it. Every number is finite.
+///
+/// One without payload is the answer to a ping, of a channel whose nodes range by themselves:
+/// `source` is the node that answered, `transmit` when the request left, `generation` the time that
+/// the range is of, travel_time_s half the round trip.
 struct Reception {
   int source = 0, receiver = 0;
   int destination = kToAll;       ///< as addressed by the sender
@@ -74,7 +78,7 @@ struct Reception {
   double doppler_mps = 0.0;     ///< closing speed at transmission, positive closing
   std::uint32_t tag = 0;        ///< Transmission::tag; not on the air
   std::uint64_t header = 0;     ///< Transmission::header
-  ByteView payload;             ///< valid until the channel's next Step or Reset
+  ByteView payload;             ///< valid until the channel's next Step or Reset; may be empty
 };
 
 }  // namespace stg::acoustics

@@ -29,7 +29,8 @@ namespace stg::acoustics {
 class Network {
  public:
   /// Throws UserError for a name in the section that does not exist.
-  /// @param run its number of agents is the number of nodes; only `periodic` uses the clock
+  /// @param run its number of agents is the number of nodes, of which the last `transponders` get
+  /// no packets for all and have no turn of medium access; only `periodic` uses the clock
   Network(const ChannelConfig& config, const RunConfig& run, std::unique_ptr<Medium> medium);
   /// The same, with the water that the section describes.
   /// @param line_of_sight empty: all lines are free
@@ -85,6 +86,8 @@ class Network {
   bool transmitting(int node) const;
   /// Electric energy that a modem has used by t >= now() [J]: transmitting, receiving, idle.
   double EnergyJ(int node, TimeNs t) const;
+  /// Time for which a modem has sent by t >= now() [s].
+  double SentS(int node, TimeNs t) const;
   /// Time on a node's clock at true time t [s].
   double ClockS(int node, TimeNs t) const;
   /// Expected values of a link at time t.

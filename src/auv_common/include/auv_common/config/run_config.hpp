@@ -24,6 +24,9 @@ struct RunConfig {
   std::string name = "medium";
   std::uint64_t seed = 0;
   int agents = 4;
+  /// Where `agents` counts the nodes of an acoustic network: how many of them, the last ones, only
+  /// answer pings. It is no key.
+  int transponders = 0;
   TimeConfig time;
 
   double decision_dt_s() const { return time.dt_s * time.decision_steps; }
@@ -31,6 +34,12 @@ struct RunConfig {
   TimeNs step_period() const { return static_cast<TimeNs>(std::llround(time.dt_s * 1e9)); }
   TimeNs decision_period() const { return step_period() * time.decision_steps; }
 };
+
+/// A period of something that happens at decisions.
+inline bool IsWholeDecisions(double period_s, double decision_dt_s) {
+  const double count = period_s / decision_dt_s;
+  return std::abs(count - std::round(count)) <= 1e-6;
+}
 
 /// Keys, units and ranges of the section `time`.
 void Describe(TimeConfig* c, config::Table* t);

@@ -38,6 +38,7 @@ enum class Stream : std::uint32_t {
   kFalseAlarm = 53,
   kStation = 54,
   kCurrent = 55,
+  kPing = 56,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

@@ -19,8 +19,21 @@ struct RelativeOptions {
   double false_alarm_probability = 0.0;       ///< that a look without a detection tells of one
   double field_of_view_deg = 360.0;           ///< full angle around the bow
   bool ambiguous = false;                     ///< a bearing cannot tell port from starboard
+
+  /// Chance of a detection at a share of the detection range.
+  double chance(double detection_probability, double share) const {
+    return detection_probability * (1.0 - (1.0 - probability_at_range) * share * share);
+  }
+  /// Standard deviation of a range [m].
+  double range_std(double range_m) const { return range_std_m + range_std_share * range_m; }
 };
 void Describe(RelativeOptions* o, config::Table* t);
+
+/// What a range to a target costs.
+enum class Ranging {
+  kFree,  ///< nothing: the sensor has water of its own
+  kPing   ///< a ping of the AUV's modem, which the target's transponder answers
+};
 
 /// The agents' own target sensor.
 struct SensingConfig {
@@ -33,7 +46,9 @@ struct SensingConfig {
   double cue_std_m = 0.05;             ///< uncertainty of the initial datum, per component
   double period_s = 0.0;               ///< between two looks; 0: every decision
   config::OptionsByName sensors = {};  ///< options of each, but of position
+  Ranging ranging = Ranging::kFree;
 
+  bool pings() const { return ranging == Ranging::kPing; }
   RelativeOptions relative() const { return sensors.Get<RelativeOptions>(sensor); }
 };
 

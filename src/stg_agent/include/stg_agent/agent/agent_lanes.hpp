@@ -7,6 +7,7 @@
 #include "stg_agent/agent/mind.hpp"
 #include "stg_agent/graph/neighbourhood.hpp"
 #include "stg_agent/inbox/inbox.hpp"
+#include "stg_agent/inbox/ping_answers.hpp"
 
 namespace stg::agent {
 
@@ -72,7 +73,8 @@ class LanedAgent {
   void Attend(int lane, TimeNs now);
 
   SharedConstants constants_;
-  std::vector<Inbox> inboxes_;  // [lanes]
+  std::vector<Inbox> inboxes_;        // [lanes]
+  std::vector<PingAnswers> answers_;  // [lanes]
   std::unique_ptr<acoustics::LinkEstimator> links_;
   Neighbourhood<T> neighbours_;
   Mind<T> mind_;

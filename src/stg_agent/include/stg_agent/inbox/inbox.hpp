@@ -44,6 +44,11 @@ class Inbox {
   /// decode is counted and holds none.
   std::optional<NeighbourState> Receive(const acoustics::Reception& reception);
 
+  /// Takes the answer to an own ping of another member of the network.
+  void HearAnswer(const acoustics::Reception& answer) {
+    if (localizer_ != nullptr) localizer_->HearAnswer(answer);
+  }
+
   /// Follows another target from the next Advance on. A target without a belief is ignored.
   void Follow(int target);
 

@@ -6,6 +6,12 @@
 
 namespace stg::agent {
 
+/// What the ranges between members of the network are taken from.
+enum class RangesBy {
+  kOneWay,  ///< travel times of packets, which take all clocks for right
+  kPing     ///< request and answer, for which the own clock alone counts
+};
+
 /// How an AUV finds out where it and its neighbours are, beside its own reckoning.
 struct LocalizationConfig {
   std::string kind = "uncorrected";  ///< name in the registry of localizers
@@ -21,6 +27,8 @@ struct LocalizationConfig {
   double late_max_m = 100.0;       ///< by which these are too long, at most
   double sound_speed_std = 0.001;  ///< of the share by which all ranges are too long
   double gate_sigma = 4.0;         ///< ranges farther off than this are set aside
+  RangesBy by = RangesBy::kOneWay;
+  double ping_period_s = 30.0;  ///< between two pings of an AUV, of the other members in turn
 };
 
 /// Keys, units and ranges of the section, which a file may leave out.

@@ -39,6 +39,8 @@ class Localizer {
   virtual void Reset() = 0;
   /// A packet of another member, as it was sent, and how it came.
   virtual void Hear(const NeighbourState& packet, const acoustics::Reception& reception) = 0;
+  /// An answer to an own ping of another member, as it came.
+  virtual void HearAnswer(const acoustics::Reception& answer) = 0;
   virtual void Advance(TimeNs now, const OwnReckoning& own) = 0;
 
   /// Error of the own reckoned position at the last Advance.

@@ -42,12 +42,17 @@ class SearchMemory {
     TimeNs generation = -1, sighting = -1;  ///< newest that the map took
   };
   void Hear(const NeighbourState& packet, Heard* heard);
+  /// A look is due. What a ping finds is known only when the next one is.
+  void LookInVain(const Vec3<double>& p_WB);
 
   SearchMap map_;
   TimeNs period_;  // between two own looks; 0: every update
   dynamics::Cue cue_;
   dynamics::Detection detection_;
   bool detected_ = false;
+  // Of looks that are pings: where the last one was asked for, and whether it was answered.
+  bool pings_, asked_ = false, answered_ = false;
+  Vec3<double> p_asked_;
   TimeNs now_ = 0;
   std::vector<Heard> heard_;  // [agents]
 };

@@ -26,7 +26,8 @@ struct StationsConfig {
 /// Keys, units and ranges of the section, which a file may leave out.
 void Describe(StationsConfig* c, config::Table* t);
 
-/// The clocks and nodes of the acoustic network: the AUVs, then the stations.
-RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations);
+/// The clocks and nodes of the acoustic network: the AUVs, then the stations, then the transponders
+/// of targets that are pinged.
+RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations, int transponders = 0);
 
 }  // namespace stg::agent

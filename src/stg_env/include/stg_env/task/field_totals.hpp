@@ -76,7 +76,7 @@ class FieldTotals {
       age = T(0.0), band = T(0.0), lost = T(0.0), losses = T(0.0), recovered = T(0.0),
       recovered_steps = T(0.0), spread = T(0.0), near_pairs = T(0.0), groundings = T(0.0),
       collisions = T(0.0), received = T(0.0), missed = T(0.0), modem_energy = T(0.0),
-      propulsion = T(0.0);
+      propulsion = T(0.0), airtime = T(0.0), pings = T(0.0), ping_answers = T(0.0);
     T min_altitude = T(1e9), min_clearance = T(1e9);
   };
 

@@ -37,6 +37,13 @@ struct SearchMetrics {
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
+/// Of AUVs that range by pings (sensing.ranging, localization.ranges.by).
+struct PingMetrics {
+  double pings = 0.0;          ///< that left, per AUV
+  double loss = 0.0;           ///< share of them without an answer
+  double airtime_share = 0.0;  ///< of the time in which an AUV's modem sends, packets included
+};
+
 /// Metrics of one episode in open water, beside the others; of the whole episode.
 struct FieldMetrics {
   double estimate_rmse = 0.0;    ///< of the position in the world, depth included [m]
@@ -46,6 +53,7 @@ struct FieldMetrics {
   EstimateMetrics estimates;
   SearchMetrics search;
   std::optional<NavigationMetrics> navigation;  ///< of AUVs with a localizer
+  std::optional<PingMetrics> pings;             ///< of AUVs that ping, in environments
   double band_share = 0.0;                      ///< share of AUV decisions inside [d_l, d_u]
   double worst_band_share = 0.0;                ///< of the AUV that was inside least
   double time_lost = 0.0;                       ///< mean over AUVs [s]

@@ -43,6 +43,10 @@ struct FieldState {
   T received = T(0.0);         ///< packets that it received, and that were lost on the way to it,
   T missed = T(0.0);           ///< mean over the AUVs
   T modem_energy_j = T(0.0);   ///< electric, of its modem
+  T airtime_s = T(0.0);        ///< for which its modem has sent
+  T pings = T(-1.0);           ///< by which AUVs range, that left, mean over the AUVs; below 0:
+                               ///< they are not counted
+  T ping_answers = T(0.0);     ///< those of them that were answered
 };
 
 /// Where targets are chosen freely (task.assignment): which target each AUV follows, and where it

@@ -8,6 +8,7 @@ namespace stg::env {
 
 AcousticSource::AcousticSource(const agent::AgentModel& model,
                                const acoustics::ChannelConfig& channel,
+                               const dynamics::SensingConfig& sensing,
                                const acoustics::LineOfSight& line_of_sight)
     : count_(model.run.agents),
       targets_(model.target),
@@ -18,13 +19,13 @@ AcousticSource::AcousticSource(const agent::AgentModel& model,
   agents_.reserve(n);
   for (int i = 0; i < count_; ++i) agents_.emplace_back(constants, i);
   for (int lane = 0; lane < kLanes; ++lane) {
-    channels_.push_back(agent::MakeStationChannel(model, channel, line_of_sight));
+    channels_.push_back(agent::MakeStationChannel(model, channel, sensing, line_of_sight));
   }
   packets_.resize(n);
   offered_.reserve(n);
   received_.reserve(8 * n);
-  positions_.resize(n);
-  velocities_.resize(n);
+  positions_.resize(static_cast<std::size_t>(channels_.front()->bodies()));
+  velocities_.resize(positions_.size());
 }
 
 void AcousticSource::Start(const dynamics::World& world, const LaneSet& lanes) {
@@ -94,6 +95,11 @@ void AcousticSource::Send(const dynamics::World& world) {
       t.stamp = t.generation = now;
       t.payload = acoustics::ViewOf(packets_[u]);
     }
+    for (int k = 0; count_ + k < channel.bodies(); ++k) {
+      const auto u = static_cast<std::size_t>(count_ + k);
+      positions_[u] = Lane(world.target(k).p_WT, lane);
+      velocities_[u] = Lane(world.target(k).v_WT, lane);
+    }
     const auto decision = world.step(lane) / decision_steps_;
     channel.Step(now, decision, positions_, velocities_, offered_);
   }
@@ -161,6 +167,10 @@ void AcousticSource::Tell(const dynamics::World& world, int i, task::FieldState<
     TellNavigation(world, i, lane, f);
     const acoustics::Channel& channel = *channels_[static_cast<std::size_t>(lane)];
     SetLane(&f->modem_energy_j, lane, channel.EnergyJ(i, now));
+    SetLane(&f->airtime_s, lane, channel.SentS(i, now));
+    const acoustics::PingTotals pings = channel.pings();
+    SetLane(&f->pings, lane, static_cast<double>(pings.sent) / count_);
+    SetLane(&f->ping_answers, lane, static_cast<double>(pings.answered) / count_);
     const acoustics::ChannelTotals& totals = channel.totals();
     SetLane(&f->received, lane, static_cast<double>(totals.delivered) / count_);
     SetLane(&f->missed, lane, static_cast<double>(totals.dropped) / count_);

@@ -15,6 +15,7 @@ class AcousticSource : public InformationSource {
  public:
   /// @param model what the agents know; its clocks and number of AUVs are those of the world
   AcousticSource(const agent::AgentModel& model, const acoustics::ChannelConfig& channel,
+                 const dynamics::SensingConfig& sensing,
                  const acoustics::LineOfSight& line_of_sight);
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;

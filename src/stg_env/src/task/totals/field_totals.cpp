@@ -58,10 +58,28 @@ template <class T>
 void FieldTotals<T>::Start(const Mask<T>& lanes) {
   const auto restart = [&](T* value, double first) { *value = Select(lanes, T(first), *value); };
   Sums& s = sums_;
-  for (T* sum :
-       {&s.present, &s.square, &s.nees, &s.judged, &s.known, &s.age, &s.band, &s.lost, &s.losses,
-        &s.recovered, &s.recovered_steps, &s.spread, &s.near_pairs, &s.groundings, &s.collisions,
-        &s.received, &s.missed, &s.modem_energy, &s.propulsion}) {
+  for (T* sum : {&s.present,
+                 &s.square,
+                 &s.nees,
+                 &s.judged,
+                 &s.known,
+                 &s.age,
+                 &s.band,
+                 &s.lost,
+                 &s.losses,
+                 &s.recovered,
+                 &s.recovered_steps,
+                 &s.spread,
+                 &s.near_pairs,
+                 &s.groundings,
+                 &s.collisions,
+                 &s.received,
+                 &s.missed,
+                 &s.modem_energy,
+                 &s.propulsion,
+                 &s.airtime,
+                 &s.pings,
+                 &s.ping_answers}) {
     restart(sum, 0.0);
   }
   restart(&s.min_altitude, 1e9);
@@ -83,8 +101,8 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
   const T zero(0.0), one(1.0);
   const config::Interval& band = scenario_.reward.band_m;
   Sums& s = sums_;
-  s.groundings = s.collisions = s.received = s.missed = s.modem_energy =
-      zero;  // counted by their owners
+  s.groundings = s.collisions = s.received = s.missed = s.modem_energy = s.airtime = s.pings =
+      s.ping_answers = zero;  // counted by their owners
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const FieldState<T>& f = (*swarm.field)[i];
     const Tracking<T>& k = tracking[i];
@@ -116,6 +134,9 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
     s.received += f.received;
     s.missed += f.missed;
     s.modem_energy += f.modem_energy_j;
+    s.airtime += f.airtime_s;
+    s.pings += f.pings;
+    s.ping_answers += f.ping_answers;
     if (turns_propeller_[i]) {
       const dynamics::TorpedoConfig& torpedo = scenario_.world.vehicle.torpedo;
       const T rpm = swarm.tau[i][0] * T(torpedo.max_propeller_rpm);
@@ -168,6 +189,13 @@ FieldMetrics FieldTotals<T>::Metrics(int lane, double steps) const {
   m.packet_loss = at(s.missed) / std::max(1.0, at(s.received) + at(s.missed));
   m.modem_energy = at(s.modem_energy) / agents;
   m.propulsion_energy = at(s.propulsion) * dt_s / agents;
+  const bool members = m.navigation && scenario_.agent.localization.by == agent::RangesBy::kPing;
+  if ((scenario_.world.sensing.pings() || members) && at(s.pings) >= 0.0) {
+    PingMetrics& p = m.pings.emplace();
+    p.pings = at(s.pings) / agents;
+    p.loss = 1.0 - at(s.ping_answers) / std::max(1.0, at(s.pings));
+    p.airtime_share = at(s.airtime) / agents / (steps * dt_s);
+  }
   return m;
 }
 

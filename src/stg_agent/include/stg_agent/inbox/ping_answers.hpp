@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "acoustic_channel/modem/packet.hpp"
+#include "acoustic_channel/water/sound_speed.hpp"
+#include "auv_dynamics/measurements.hpp"
+#include "stg_agent/agent_config.hpp"
+#include "stg_agent/localization/localizer.hpp"
+#include "stg_agent/localization/own_way.hpp"
+
+namespace stg::agent {
+
+/// Answers to an AUV's own pings of targets, until the next decision, when they become detections:
+/// a ping is of a time between two decisions, and where the AUV was then is known at the second.
+class PingAnswers {
+ public:
+  explicit PingAnswers(const AgentModel& model);
+
+  void Clear();
+  /// One that makes no sense is forgotten.
+  void Keep(const acoustics::Reception& reception);
+  /// Where it is at a decision; calls detect(const Detection&) of each answer, oldest first.
+  template <class Detect>
+  void Give(TimeNs now, const OwnReckoning& own, double heading_std_rad, Detect&& detect) {
+    if (!pings_) return;
+    way_.Add(now, own.p_WB);
+    dynamics::Detection detection;
+    for (const Answer& answer : answers_) {
+      if (Read(answer, own, heading_std_rad, &detection)) detect(detection);
+    }
+    answers_.clear();
+  }
+
+ private:
+  struct Answer {
+    int target = 0;
+    TimeNs at = 0;
+    double travel_time_s = 0.0;
+  };
+  bool Read(const Answer& answer, const OwnReckoning& own, double heading_std_rad,
+            dynamics::Detection* detection) const;
+
+  bool pings_;
+  int first_target_, targets_;
+  double reach_m_;
+  dynamics::RelativeOptions options_;
+  acoustics::SoundSpeedProfile sound_;
+  double surface_z_m_;
+  OwnWay way_;
+  std::vector<Answer> answers_;
+};
+
+}  // namespace stg::agent

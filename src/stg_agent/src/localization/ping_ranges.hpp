@@ -1,0 +1,89 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "acoustic_channel/modem/packet.hpp"
+#include "acoustic_channel/water/sound_speed.hpp"
+#include "stg_agent/localization/joint_filter.hpp"
+#include "stg_agent/localization/own_way.hpp"
+#include "told_ways.hpp"
+
+namespace stg::agent {
+
+/// Mean of 1/c [s/m] over the depths between two positions.
+inline double SlownessBetween(const acoustics::SoundSpeedProfile& sound, double surface_z_m,
+                              const Vec3<double>& a, const Vec3<double>& b) {
+  return sound.MeanSlowness(std::max(0.0, surface_z_m - a.z), std::max(0.0, surface_z_m - b.z));
+}
+
+/// Ranges by pings, own ones and those from packets of others, until it is known where both members
+/// were: the others once a packet of a later time has come, this one at its next decision.
+class PingRanges {
+ public:
+  explicit PingRanges(int self) : self_(self) { waiting_.reserve(kMost); }
+
+  void Clear() { waiting_.clear(); }
+  /// An answer to an own ping; one that makes no sense is forgotten.
+  void AddOwn(const acoustics::Reception& answer) {
+    const double way_s = answer.travel_time_s;
+    if (!std::isfinite(way_s) || way_s <= 0.0 || waiting_.size() == kMost) return;
+    Waiting w;
+    w.z.receiver = self_;
+    w.z.source = answer.source;
+    w.z.at = answer.generation;
+    w.travel_time_s = way_s;
+    waiting_.push_back(w);
+  }
+  /// One that a packet of another member holds.
+  void AddTold(const RangeReading& z) {
+    if (waiting_.size() < kMost) waiting_.push_back({z, 0.0, false});
+  }
+
+  /// Calls take(const RangeReading&) of each that is complete, and forgets those that are older
+  /// than `oldest`.
+  /// @param ways of all members
+  template <class Take>
+  void Give(TimeNs oldest, const OwnWay& own, const std::vector<ToldWay>& ways,
+            const acoustics::SoundSpeedProfile& sound, double surface_z_m, Take&& take) {
+    std::size_t kept = 0;
+    for (Waiting& w : waiting_) {
+      RangeReading& z = w.z;
+      const bool asked = z.receiver == self_, was_asked = z.source == self_;
+      if ((asked || was_asked) && !w.placed) {
+        w.placed = own.At(z.at, asked ? &z.p_receiver : &z.p_source);
+        if (!w.placed) continue;
+      }
+      const auto way = [&ways](int id) -> const ToldWay& {
+        return ways[static_cast<std::size_t>(id)];
+      };
+      const bool here = asked || way(z.receiver).Between(z.at, &z.p_receiver);
+      const bool there = was_asked || way(z.source).Between(z.at, &z.p_source);
+      if (here && there) {
+        if (asked) {
+          z.range_m =
+              w.travel_time_s / SlownessBetween(sound, surface_z_m, z.p_receiver, z.p_source);
+        }
+        take(z);
+      } else if (z.at >= oldest) {
+        waiting_[kept++] = w;
+      }
+    }
+    waiting_.resize(kept);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  struct Waiting {
+    RangeReading z;
+    double travel_time_s = 0.0;  ///< of an own ping
+    bool placed = false;         ///< the own position is in z
+  };
+
+  int self_;
+  std::vector<Waiting> waiting_;
+};
+
+}  // namespace stg::agent
