@@ -1,5 +1,8 @@
 #include "stg_agent/stations/stations_config.hpp"
 
+#include <string>
+#include <vector>
+
 namespace stg::agent {
 
 using config::kNone;
@@ -23,6 +26,16 @@ void Describe(StationsConfig* c, config::Table* t) {
                  "standard deviation of each horizontal component of a craft's position");
   t->AddOptional("gps_memory_s", &c->gps_memory_s, "600.0", Positive(1e6), "s",
                  "correlation time of that error");
+  const auto owner = [](const char* name, const std::vector<std::vector<double>>* rows) {
+    const std::string key = std::string("stations.") + name;
+    return config::Owner{"stations", {name}, key, [name, rows] {
+                           return std::vector<std::string>{rows->empty() ? "none" : name};
+                         }};
+  };
+  t->Own("stations.survey_std_m", owner("beacons", &c->beacons));
+  for (const char* key : {"craft_speed_mps", "craft_circle_m", "gps_std_m", "gps_memory_s"}) {
+    t->Own(std::string("stations.") + key, owner("crafts", &c->crafts));
+  }
 }
 
 RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations, int transponders) {

@@ -101,6 +101,7 @@ TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
   // Keys of what was not chosen.
   EXPECT_NE(error({"localization.ranges.ping_period_s=20.0"}).find("localization.ranges.by"),
             std::string::npos);
+  EXPECT_NE(error({"stations.gps_std_m=1.0"}).find("stations.crafts"), std::string::npos);
   // Periods between decisions, and of less than a turn and the way there and back.
   const std::string by = "localization.ranges.by=ping";
   EXPECT_NE(error({by, "localization.ranges.ping_period_s=20.5"}).find("whole"), std::string::npos);
