@@ -1,13 +1,17 @@
+// Long because: the states and the rows that readings make of them stand together.
 #include "stg_agent/localization/joint_filter.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "auv_common/numbers/attitude.hpp"
+
 namespace stg::agent {
 namespace {
 
 constexpr int kMostJointStates = 128;
+constexpr double kLeastLevel_m = 5.0;  ///< nearer in the plane a bearing says nothing
 
 double Squared(double x) { return x * x; }
 
@@ -227,16 +231,66 @@ double JointFilter::Column(const Row& row, double* column) const {
   return sum;
 }
 
+void JointFilter::Offset(int to, int from, const Vec3<double>& told, double age_s,
+                         double (&offset)[2]) const {
+  for (int axis = 0; axis < 2; ++axis) {
+    Row error;
+    AddError(to, axis, 1.0, age_s, &error);
+    AddError(from, axis, -1.0, age_s, &error);
+    offset[axis] = (axis == 0 ? told.x : told.y) - Mean(error);
+  }
+}
+
+double JointFilter::Wander(double age_s) const {
+  return (Squared(config_.current_std_mps) / config_.current_memory_s +
+          Squared(config_.shear_std_mps) / config_.shear_memory_s) *
+         2.0 * age_s * age_s * age_s / 3.0;
+}
+
+void JointFilter::Update(const double* column, double gain, double less) {
+  for (int r = 0; r < n_; ++r) {
+    const double f = column[r];
+    x_[static_cast<std::size_t>(r)] += gain * f;
+    for (int c = 0; c <= r; ++c) {
+      const double p = P(r, c) - less * f * column[c];
+      P(r, c) = p;
+      P(c, r) = p;
+    }
+  }
+}
+
+bool JointFilter::Take(const BearingReading& z) {
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  double offset[2];
+  Offset(z.source, z.receiver, z.p_source - z.p_receiver, age_s, offset);
+  const double level = std::hypot(offset[0], offset[1]);
+  if (level < kLeastLevel_m) return false;  // overhead there is no bearing
+  const double along[2] = {offset[0] / level, offset[1] / level};
+  const double across[2] = {-along[1], along[0]};
+  Row row, line;
+  for (int axis = 0; axis < 2; ++axis) {
+    AddError(z.source, axis, -across[axis] / level, age_s, &row);
+    AddError(z.receiver, axis, across[axis] / level, age_s, &row);
+    AddError(z.source, axis, -along[axis] / level, age_s, &line);
+    AddError(z.receiver, axis, along[axis] / level, age_s, &line);
+  }
+  std::array<double, kMostJointStates> column;
+  const double lengthwise = Column(line, column.data());
+  const double sidewise = Column(row, column.data());
+  // To second order a bearing bends with the distance.
+  const double noise = Squared(z.std_rad) + Wander(age_s) / Squared(level) + lengthwise * sidewise;
+  const double S = sidewise + noise;
+  const double innovation = WrapAngle(z.azimuth_rad - std::atan2(offset[1], offset[0]));
+  nis_ = innovation * innovation / S;
+  if (nis_ > Squared(config_.gate_sigma)) return false;
+  Update(column.data(), innovation / S, 1.0 / S);
+  return true;
+}
+
 bool JointFilter::Take(const RangeReading& z) {
   const double age_s = std::max(0.0, Seconds(now_ - z.at));
   double offset[2];
-  for (int axis = 0; axis < 2; ++axis) {
-    Row error;
-    AddError(z.receiver, axis, 1.0, age_s, &error);
-    AddError(z.source, axis, -1.0, age_s, &error);
-    const double told = axis == 0 ? z.p_receiver.x - z.p_source.x : z.p_receiver.y - z.p_source.y;
-    offset[axis] = told - Mean(error);
-  }
+  Offset(z.receiver, z.source, z.p_receiver - z.p_source, age_s, offset);
   const double dz = z.p_receiver.z - z.p_source.z;
   const double level = std::max(std::hypot(offset[0], offset[1]), 1e-3);
   const double range = std::hypot(level, dz);
@@ -254,10 +308,7 @@ bool JointFilter::Take(const RangeReading& z) {
   std::array<double, kMostJointStates> column;
   const double curved = Column(bend, column.data()) / range;
   // What the currents did since then is not in the row.
-  const double wander = (Squared(config_.current_std_mps) / config_.current_memory_s +
-                         Squared(config_.shear_std_mps) / config_.shear_memory_s) *
-                        2.0 * age_s * age_s * age_s / 3.0;
-  const double noise = Squared(config_.range_std_m) + wander + 0.5 * curved * curved;
+  const double noise = Squared(config_.range_std_m) + Wander(age_s) + 0.5 * curved * curved;
   const double S = Column(row, column.data()) + noise;
   const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range;
   const double innovation = z.range_m - expected - 0.5 * curved;
@@ -268,17 +319,7 @@ bool JointFilter::Take(const RangeReading& z) {
                        std::sqrt(2.0 * 3.14159265358979323846 * S);
   const double late = innovation > 0.0 ? config_.late_share / config_.late_max_m : 0.0;
   const double truth = first / (first + late);
-  const double gain = truth * innovation / S;
-  const double less = (truth - truth * (1.0 - truth) * nis_) / S;
-  for (int r = 0; r < n_; ++r) {
-    const double f = column[static_cast<std::size_t>(r)];
-    x_[static_cast<std::size_t>(r)] += gain * f;
-    for (int c = 0; c <= r; ++c) {
-      const double p = P(r, c) - less * f * column[static_cast<std::size_t>(c)];
-      P(r, c) = p;
-      P(c, r) = p;
-    }
-  }
+  Update(column.data(), truth * innovation / S, (truth - truth * (1.0 - truth) * nis_) / S);
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "acoustic_channel/water/sound_speed.hpp"
+#include "auv_common/numbers/attitude.hpp"
 #include "localizers.hpp"
 #include "ping_ranges.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
@@ -64,7 +65,8 @@ class RangeLocalizer : public Localizer {
         own_way_(s.run),
         taken_(kMostTaken),
         pings_(s.pings_members()),
-        by_ping_(self) {
+        by_ping_(self),
+        bearing_std_rad_(s.stations.usbl_std_deg * kPi / 180.0) {
     pending_.reserve(kMostPending);
   }
 
@@ -93,6 +95,8 @@ class RangeLocalizer : public Localizer {
     letter.travel_time_s = reception.travel_time_s;
     letter.ranges = packet.ranges;
     letter.range = packet.range;
+    letter.has_bearing = packet.has_bearing;
+    letter.bearing = packet.bearing;
     pending_.push_back(letter);
   }
 
@@ -164,6 +168,8 @@ class RangeLocalizer : public Localizer {
     double travel_time_s = 0.0;
     int ranges = 0;
     std::array<ToldRange, kToldRanges> range;
+    bool has_bearing = false;
+    ToldBearing bearing;
   };
 
   const ToldWay& Way(int id) const { return ways_[static_cast<std::size_t>(id)]; }
@@ -204,6 +210,7 @@ class RangeLocalizer : public Localizer {
       newest_[static_cast<std::size_t>(letter.id)] = {letter.id, z.at, z.range_m};
       Take(now, z);
     }
+    if (letter.has_bearing) ReadBearing(now, letter);
     for (int k = 0; k < letter.ranges; ++k) {
       const ToldRange& told = letter.range[static_cast<std::size_t>(k)];
       if (told.source == letter.id) continue;
@@ -221,6 +228,21 @@ class RangeLocalizer : public Localizer {
                                           told.stamp, tolerance_, &z.at, &z.p_source);
       if (source_known && way.Between(z.at, &z.p_receiver)) Take(now, z);
     }
+  }
+
+  /// A station says at which bearing it heard a packet.
+  void ReadBearing(TimeNs now, const Letter& letter) {
+    BearingReading z;
+    z.receiver = letter.id;
+    z.source = letter.bearing.source;
+    z.azimuth_rad = letter.bearing.azimuth_rad;
+    z.std_rad = bearing_std_rad_;
+    const bool known = z.source == self_ ? OwnPacketAt(letter.bearing.stamp, &z.at, &z.p_source)
+                                         : Way(z.source).AtPacket(letter.bearing.stamp, tolerance_,
+                                                                  &z.at, &z.p_source);
+    if (!known || !Way(z.receiver).Between(z.at, &z.p_receiver)) return;
+    if (now - z.at > kOldest || !filter_.knows(z.source)) return;
+    filter_.Take(z);
   }
 
   /// The own packets are not heard; within the age's resolution it is known when one left.
@@ -279,6 +301,7 @@ class RangeLocalizer : public Localizer {
   std::size_t next_taken_ = 0;
   bool pings_;  // ranges are by pings
   PingRanges by_ping_;
+  double bearing_std_rad_;
   OwnReckoning own_;
   bool adrift_ = true;
   double start_std_m_ = -1.0;  // below zero: no decision yet

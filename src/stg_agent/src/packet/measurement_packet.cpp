@@ -22,8 +22,8 @@ namespace {
 constexpr double kPlaceMargin = 1.25;
 // Of version 5.
 constexpr int kLocatedDeviationBits = kDeviationBits - 1;
-constexpr std::uint64_t kRangesCode = 31, kNoSource = 31;
-constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14;
+constexpr std::uint64_t kRangesCode = 31, kBearingCode = 29, kNoSource = 31;
+constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14, kToldAzimuthBits = 14;
 static_assert(1 + kTargetBits + kToldRanges * (kToldSourceBits + kToldAgeBits + kToldRangeBits) ==
                   kSightingBits,
               "two ranges take the room of a measurement");
@@ -93,6 +93,7 @@ MeasurementPacket::MeasurementPacket(const AgentModel& s)
   elevation_ = Quantiser::Signed(2.0, kElevationBits);
   fine_azimuth_ = Quantiser::Signed(kPi, kFineAzimuthBits);
   fine_elevation_ = Quantiser::Signed(2.0, kFineElevationBits);
+  told_azimuth_ = Quantiser::Signed(kPi, kToldAzimuthBits);
   told_range_ = Quantiser::Unsigned(kLeastRange_m, kMostRange_m, kToldRangeBits);
   deviation_ = Logarithm::Of(1e-5 * half, half, located_ ? kLocatedDeviationBits : kDeviationBits);
   error_ = Logarithm::Of(1e-4 * half, 2.0 * std::sqrt(3.0) * half, kErrorBits);
@@ -134,6 +135,7 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
     }
   }
   if (located_ && s.ranges > 0 && !ambiguous_) WriteToldRanges(s, &w);
+  if (located_ && s.has_bearing && s.sightings == 0) WriteToldBearing(s, &w);
   w.at = saturated_bit;
   w.Bits(w.saturated ? 1 : 0, 1);
   w.at = kCrcFirst;
@@ -166,6 +168,38 @@ Vec3<double> MeasurementPacket::ReadPlace(const Vec3<double>& near, Reader* r) c
   return {x, y, r->Number(position_, kPlaceBits)};
 }
 
+TimeNs MeasurementPacket::ToldAge(const NeighbourState& s, TimeNs stamp, Writer* w) const {
+  const TimeNs steps = (s.generation - stamp + age_step_ / 2) / age_step_;
+  constexpr TimeNs kMost = (1 << kToldAgeBits) - 1;
+  w->saturated |= steps > kMost;
+  return std::min(steps, kMost);
+}
+
+void MeasurementPacket::WriteToldBearing(const NeighbourState& s, Writer* w) const {
+  const ToldBearing& told = s.bearing;
+  if (told.source < 0 || told.source >= members_ || told.stamp > s.generation ||
+      !std::isfinite(told.azimuth_rad)) {
+    throw std::invalid_argument("PacketCodec::Encode: value without a code");
+  }
+  w->at = kFirstSighting;
+  w->Bits(1, 1);
+  w->Bits(kBearingCode, kTargetBits);
+  w->Bits(static_cast<std::uint64_t>(told.source), kToldSourceBits);
+  w->Bits(static_cast<std::uint64_t>(ToldAge(s, told.stamp, w)), kToldAgeBits);
+  w->Number(told_azimuth_, WrapAngle(told.azimuth_rad), kToldAzimuthBits);
+}
+
+void MeasurementPacket::ReadToldBearing(Reader* r, NeighbourState* s) const {
+  const auto source = static_cast<int>(r->Bits(kToldSourceBits));
+  const TimeNs age = static_cast<TimeNs>(r->Bits(kToldAgeBits)) * age_step_;
+  const double azimuth = r->Number(told_azimuth_, kToldAzimuthBits);
+  if (source >= members_)
+    RefusePacket("source " + std::to_string(source) + " of a bearing does not exist");
+  if (s->generation - age < 0) RefusePacket("measured before the start");
+  s->has_bearing = true;
+  s->bearing = {source, s->generation - age, azimuth};
+}
+
 void MeasurementPacket::WriteToldRanges(const NeighbourState& s, Writer* w) const {
   w->at = kFirstSighting + (kSightings - 1) * kSightingBits;
   w->Bits(1, 1);
@@ -181,11 +215,8 @@ void MeasurementPacket::WriteToldRanges(const NeighbourState& s, Writer* w) cons
         !std::isfinite(told.range_m)) {
       throw std::invalid_argument("PacketCodec::Encode: value without a code");
     }
-    const TimeNs steps = (s.generation - told.stamp + age_step_ / 2) / age_step_;
-    constexpr TimeNs kMost = (1 << kToldAgeBits) - 1;
-    w->saturated |= steps > kMost;
     w->Bits(static_cast<std::uint64_t>(told.source), kToldSourceBits);
-    w->Bits(static_cast<std::uint64_t>(std::min(steps, kMost)), kToldAgeBits);
+    w->Bits(static_cast<std::uint64_t>(ToldAge(s, told.stamp, w)), kToldAgeBits);
     w->Number(told_range_, told.range_m, kToldRangeBits);
   }
 }
@@ -302,6 +333,11 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
         Get(r.words, {r.at, kTargetBits}) == kRangesCode) {
       r.at += kTargetBits;
       ReadToldRanges(&r, &s);
+      continue;
+    }
+    if (located_ && k == 0 && Get(r.words, {r.at, kTargetBits}) == kBearingCode) {
+      r.at += kTargetBits;
+      ReadToldBearing(&r, &s);
       continue;
     }
     ReadSighting(s, &r, &s.sighting[static_cast<std::size_t>(s.sightings++)]);

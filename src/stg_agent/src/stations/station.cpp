@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "auv_common/error.hpp"
+#include "auv_common/numbers/attitude.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace stg::agent {
@@ -65,7 +66,7 @@ void Station::Err(std::uint32_t step, bool start) {
              Vec3<double>{x, y, 0.0} * (s.stations.gps_std_m * std::sqrt(1.0 - kept * kept));
 }
 
-void Station::Receive(const acoustics::Reception& reception) {
+void Station::Receive(const acoustics::Reception& reception, const Vec3<double>& r_W) {
   if (localizer_ == nullptr) return;
   const acoustics::ByteView& bytes = reception.payload;
   const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
@@ -76,7 +77,16 @@ void Station::Receive(const acoustics::Reception& reception) {
     localizer_->Hear(state, reception);
     if (source >= constants_->model.run.agents) return;
     Heard& heard = heard_[static_cast<std::size_t>(source)];
-    if (state.generation > heard.stamp) heard = {state.generation, state.p_W, state.v_W};
+    if (state.generation <= heard.stamp) return;
+    heard.stamp = state.generation;
+    heard.p_W = state.p_W;
+    heard.v_W = state.v_W;
+    if (constants_->model.stations.usbl_std_deg <= 0.0) return;
+    Random random(seed_, Stream::kBearing, episode_, reception.sequence,
+                  static_cast<std::uint32_t>(source * constants_->model.members() + member_));
+    const double std_rad = constants_->model.stations.usbl_std_deg * kPi / 180.0;
+    heard.bearing = {source, reception.transmit,
+                     WrapAngle(std::atan2(r_W.y, r_W.x) + std_rad * random.Normal())};
   } catch (const UserError&) {
     // What comes from the water may be damaged.
   }
@@ -116,7 +126,20 @@ Vec3<double> Station::Wanted(TimeNs now) const {
   return way * (s.craft_speed_mps / std::max(Norm(way), 1e-6));
 }
 
-Packet Station::MakePacket() const {
+void Station::TellBearing(NeighbourState* state) {
+  constexpr TimeNs kNew = 30'000'000'000;
+  Heard* next = nullptr;
+  for (Heard& h : heard_) {
+    if (h.stamp < 0 || h.bearing.stamp <= h.told || now_ - h.bearing.stamp > kNew) continue;
+    if (next == nullptr || h.told < next->told) next = &h;
+  }
+  if (next == nullptr) return;
+  state->has_bearing = true;
+  state->bearing = next->bearing;
+  next->told = now_;
+}
+
+Packet Station::MakePacket() {
   NeighbourState state;
   state.source = member_;
   state.generation = now_;
@@ -125,6 +148,7 @@ Packet Station::MakePacket() const {
   const StationsConfig& s = constants_->model.stations;
   state.position_std_m = craft_ ? s.gps_std_m : s.survey_std_m;
   if (localizer_ != nullptr) localizer_->Tell(&state);
+  if (craft_ && s.usbl_std_deg > 0.0) TellBearing(&state);
   return constants_->codec.Encode(state);
 }
 

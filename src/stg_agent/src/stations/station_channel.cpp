@@ -118,7 +118,11 @@ class StationChannel : public Channel {
       if (step > 0) {
         received_.clear();
         water_->Deliver(station.member(), t, &received_);
-        for (const acoustics::Reception& r : received_) station.Receive(r);
+        for (const acoustics::Reception& r : received_) {
+          const Vec3<double> sender =
+              positions_[At(r.source)] - velocities_[At(r.source)] * Seconds(t - r.transmit);
+          station.Receive(r, sender - station.At(r.transmit));
+        }
       }
       station.Advance(t, step);
       positions_[At(station.member())] = station.p_W();

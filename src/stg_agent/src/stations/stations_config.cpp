@@ -26,6 +26,9 @@ void Describe(StationsConfig* c, config::Table* t) {
                  "standard deviation of each horizontal component of a craft's position");
   t->AddOptional("gps_memory_s", &c->gps_memory_s, "600.0", Positive(1e6), "s",
                  "correlation time of that error");
+  t->AddOptional("usbl_std_deg", &c->usbl_std_deg, "0.0", Within(0.0, 60.0), "deg",
+                 "standard deviation of the bearing at which a craft hears a packet, by an "
+                 "ultra-short baseline and its compass; its packets tell the AUVs; 0: it has none");
   const auto owner = [](const char* name, const std::vector<std::vector<double>>* rows) {
     const std::string key = std::string("stations.") + name;
     return config::Owner{"stations", {name}, key, [name, rows] {
@@ -33,7 +36,8 @@ void Describe(StationsConfig* c, config::Table* t) {
                          }};
   };
   t->Own("stations.survey_std_m", owner("beacons", &c->beacons));
-  for (const char* key : {"craft_speed_mps", "craft_circle_m", "gps_std_m", "gps_memory_s"}) {
+  for (const char* key :
+       {"craft_speed_mps", "craft_circle_m", "gps_std_m", "gps_memory_s", "usbl_std_deg"}) {
     t->Own(std::string("stations.") + key, owner("crafts", &c->crafts));
   }
 }

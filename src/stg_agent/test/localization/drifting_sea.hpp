@@ -14,6 +14,8 @@ namespace stg::agent {
 struct DriftOptions {
   int auvs = 4;
   bool craft = false;
+  double craft_std_m = 2.0;   ///< of the position that it tells
+  double usbl_std_deg = 0.0;  ///< of the bearings at which it hears AUVs; 0: none
   int beacons = 0;
   double seconds = 3600.0;
   double slot_s = 1.25;
@@ -42,7 +44,7 @@ struct DriftResult {
 class DriftingSea {
  public:
   DriftingSea(const LocalizationConfig& config, const DriftOptions& o) : c_(config), o_(o) {
-    if (o.craft) anchors_.push_back({2.0, 600.0});
+    if (o.craft) anchors_.push_back({o.craft_std_m, 600.0});
     for (int k = 0; k < o.beacons; ++k) anchors_.push_back({1.0, 0.0});
   }
 
@@ -98,6 +100,7 @@ class DriftingSea {
           ++r.aside;
         }
       }
+      if (o_.usbl_std_deg > 0.0 && source < o_.auvs) HearBearing(source, t, e, g, &filter);
     }
     r.nis /= std::max(1, r.ranges);
     r.own = filter.Error(0, filter.now());
@@ -114,6 +117,21 @@ class DriftingSea {
   }
 
  private:
+  /// At the craft.
+  void HearBearing(int source, double t, const std::vector<double>& e, const std::vector<double>& g,
+                   JointFilter* filter) {
+    if (std::uniform_real_distribution<double>()(random_) < o_.loss) return;
+    BearingReading z;
+    z.receiver = o_.auvs;
+    z.source = source;
+    z.at = filter->now();
+    z.p_receiver = Told(z.receiver, t, e, g);
+    z.p_source = Told(source, t, e, g);
+    z.std_rad = o_.usbl_std_deg * kTurn / 180.0;
+    const Vec3<double> way = True(source, t) - True(z.receiver, t);
+    z.azimuth_rad = std::atan2(way.y, way.x) + z.std_rad * Normal();
+    filter->Take(z);
+  }
   double Normal() { return std::normal_distribution<double>()(random_); }
   void Renew(double std, double memory_s, double dt, double* x) {
     const double kept = std::exp(-dt / memory_s);

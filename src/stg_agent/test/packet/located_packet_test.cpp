@@ -76,6 +76,28 @@ TEST(LocatedPacket, CarriesTwoRangesBesideASighting) {
   }
 }
 
+TEST(LocatedPacket, AStationTellsABearingBesideTwoRanges) {
+  const AgentModel model = Model("ranges");
+  const PacketCodec codec(model, PacketLayout::kMeasurements);
+  NeighbourState s = Example();
+  s.source = 4;
+  s.has_bearing = true;
+  constexpr double kStep_rad = 2.0 * 3.14159265358979323846 / 16383.0;
+  for (const double azimuth : {-3.1, -0.5, 0.0, 1.25, 3.1}) {
+    s.bearing = {3, 44'000'000'000, azimuth};
+    const Packet packet = codec.Encode(s);
+    const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+    ASSERT_TRUE(told.has_bearing);
+    EXPECT_EQ(told.bearing.source, 3);
+    EXPECT_NEAR(static_cast<double>(told.bearing.stamp - s.bearing.stamp), 0.0, 0.0626e9);
+    EXPECT_NEAR(told.bearing.azimuth_rad, azimuth, 0.51 * kStep_rad);
+    EXPECT_EQ(told.sightings, 0);
+    EXPECT_EQ(told.ranges, 2);
+  }
+  s.bearing.source = 5;
+  EXPECT_THROW(codec.Encode(s), std::invalid_argument);
+}
+
 TEST(LocatedPacket, AStationSpeaksTheSameLayoutAndOthersDoNot) {
   const AgentModel model = Model("ranges");
   const PacketCodec codec(model, PacketLayout::kMeasurements);

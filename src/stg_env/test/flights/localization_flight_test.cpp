@@ -52,6 +52,13 @@ TEST(LocalizationFlight, ACraftHoldsTheSwarmInTheWorld) {
   EXPECT_GT(m.Mean("band_share"), 0.75);
 }
 
+TEST(LocalizationFlight, BearingsFromTheCraftPlaceTheSwarmBetter) {
+  const task::MetricSummary both = Fly("craft_usbl");
+  ExpectLocated(both);
+  const task::MetricSummary ranges = Fly("craft_usbl", {"stations.usbl_std_deg=0.0"});
+  EXPECT_LT(both.Mean("navigation_rmse_tail"), ranges.Mean("navigation_rmse_tail"));
+}
+
 TEST(LocalizationFlight, TwoBeaconsDoSoToo) { ExpectLocated(Fly("beacons")); }
 
 // Packets hold positions modulo 5 km, and an AUV can be 2.5 km from a beacon along one axis.

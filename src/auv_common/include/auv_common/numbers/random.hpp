@@ -39,6 +39,7 @@ enum class Stream : std::uint32_t {
   kStation = 54,
   kCurrent = 55,
   kPing = 56,
+  kBearing = 57,
 };
 
 /// Draws of one (seed, stream, episode, step, index) key, in order.

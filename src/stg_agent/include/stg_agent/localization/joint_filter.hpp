@@ -25,6 +25,15 @@ struct RangeReading {
   double range_m = 0.0;
 };
 
+/// A bearing at which the sound of a packet came in, with positions likewise.
+struct BearingReading {
+  int receiver = 0, source = 0;  ///< members of the network
+  TimeNs at = 0;
+  Vec3<double> p_receiver, p_source;  ///< [m]
+  double azimuth_rad = 0.0;           ///< of the source from the receiver, from east anticlockwise
+  double std_rad = 0.0;
+};
+
 /// One Kalman filter over the errors of all reckoned positions that an AUV knows of.
 ///
 /// States: of each AUV the error e of its reckoned position and the velocity w by which its water
@@ -59,6 +68,7 @@ class JointFilter {
 
   /// Takes a reading, not of the future, between members that it knows. False: it was set aside.
   bool Take(const RangeReading& reading);
+  bool Take(const BearingReading& reading);
 
   /// Error of a reported position, at a time up to now.
   PlaneError Error(int id, TimeNs at) const;
@@ -100,6 +110,12 @@ class JointFilter {
   double Mean(const Row& row) const;
   double Column(const Row& row, double* column) const;
   PlaneError Spread(const Row& east, const Row& north) const;
+  /// Reported offset of two members less what their errors make of it [m]: by axis.
+  void Offset(int to, int from, const Vec3<double>& told, double age_s, double (&offset)[2]) const;
+  /// What the currents may have done in some time, of two members [m^2].
+  double Wander(double age_s) const;
+  /// x += gain * column, P -= less * column column^T.
+  void Update(const double* column, double gain, double less);
 
   LocalizationConfig config_;
   double start_variance_;

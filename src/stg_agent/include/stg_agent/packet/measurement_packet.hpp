@@ -93,6 +93,9 @@ class MeasurementPacket {
   void SetDeviations(const NeighbourState& s, dynamics::Detection* d) const;
   void WritePlace(const Vec3<double>& p, Writer* w) const;
   Vec3<double> ReadPlace(const Vec3<double>& near, Reader* r) const;
+  TimeNs ToldAge(const NeighbourState& s, TimeNs stamp, Writer* w) const;
+  void WriteToldBearing(const NeighbourState& s, Writer* w) const;
+  void ReadToldBearing(Reader* r, NeighbourState* s) const;
   void WriteToldRanges(const NeighbourState& s, Writer* w) const;
   void ReadToldRanges(Reader* r, NeighbourState* s) const;
 
@@ -108,7 +111,7 @@ class MeasurementPacket {
   double heading_variance_, heading_walk_;  // [rad^2], [rad^2/s]
   TimeNs age_step_;
   Quantiser position_, velocity_, unit_, offset_, rise_, range_, azimuth_, elevation_;
-  Quantiser fine_azimuth_, fine_elevation_, told_range_;
+  Quantiser fine_azimuth_, fine_elevation_, told_azimuth_, told_range_;
   Logarithm deviation_, error_;
 };
 

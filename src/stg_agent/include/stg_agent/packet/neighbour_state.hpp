@@ -33,6 +33,13 @@ struct ToldRange {
   double range_m = 0.0;  ///< by its travel time
 };
 
+/// A bearing at which a station heard an AUV.
+struct ToldBearing {
+  int source = 0;            ///< AUV whose packet it heard
+  TimeNs stamp = 0;          ///< when that began to leave
+  double azimuth_rad = 0.0;  ///< from the station, from east anticlockwise
+};
+
 /// State of one AUV and its target estimate, as its neighbours learn it. World axes (ENU).
 struct NeighbourState {
   int source = 0;               ///< index of the AUV, 0-based
@@ -61,6 +68,8 @@ struct NeighbourState {
   bool adrift = false;  ///< its log measures against the water
   int ranges = 0;       ///< how many of the following mean something
   std::array<ToldRange, kToldRanges> range;
+  bool has_bearing = false;  ///< of a station, which has no measurements of targets
+  ToldBearing bearing;
   bool saturated = false;  ///< set by Encode when a value did not fit and was clipped
 };
 

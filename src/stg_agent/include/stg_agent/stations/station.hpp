@@ -25,23 +25,30 @@ class Station {
 
   void Reset(std::uint64_t seed, std::uint32_t episode);
   /// Bytes that its modem heard; what does not decode is ignored.
-  void Receive(const acoustics::Reception& reception);
+  /// @param r_W true way to the sender when the packet left [m]
+  void Receive(const acoustics::Reception& reception, const Vec3<double>& r_W);
   /// To the next decision. @param step its number in the episode
   void Advance(TimeNs now, std::uint32_t step);
 
   const Vec3<double>& p_W() const { return p_W_; }  ///< true position [m]
   const Vec3<double>& v_W() const { return v_W_; }  ///< true velocity [m/s]
+  /// True position near the last Advance [m].
+  Vec3<double> At(TimeNs t) const { return p_W_ + v_W_ * Seconds(t - now_); }
   Vec3<double> told_W() const { return p_W_ + error_W_; }
   bool craft() const { return craft_; }
   int member() const { return member_; }
-  Packet MakePacket() const;
+  Packet MakePacket();
 
  private:
   struct Heard {
     TimeNs stamp = -1;  ///< never
     Vec3<double> p_W, v_W;
+    ToldBearing bearing;
+    TimeNs told = -1;  ///< the bearing, by a packet; -1: never
   };
   void Err(std::uint32_t step, bool start);
+  /// Adds the newest bearing of the AUV whose last one left the longest ago.
+  void TellBearing(NeighbourState* state);
   /// Velocity that it wants.
   Vec3<double> Wanted(TimeNs now) const;
 

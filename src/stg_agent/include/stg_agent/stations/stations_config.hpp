@@ -18,6 +18,7 @@ struct StationsConfig {
   double craft_circle_m = 300.0;  ///< radius of the circle around the AUVs that they heard
   double gps_std_m = 2.0;         ///< of each horizontal component of a craft's position
   double gps_memory_s = 600.0;    ///< correlation time of that error
+  double usbl_std_deg = 0.0;  ///< of the bearing at which a craft hears an AUV; 0: it has no USBL
 
   int count() const { return static_cast<int>(beacons.size() + crafts.size()); }
   bool is_craft(int station) const { return station >= static_cast<int>(beacons.size()); }
