@@ -54,5 +54,8 @@ def included(include, source):
     file's own folder."""
     beside = source / include.file.parent / include.header
     if beside.is_file():
-        return logical(beside.resolve().relative_to(source.resolve()))
+        file, inside = beside.resolve(), source.resolve()
+        if inside not in file.parents:
+            return pathlib.PurePosixPath(file.relative_to(inside.parent))  # such as cmake/x.h
+        return logical(file.relative_to(inside))
     return pathlib.PurePosixPath(include.header)
