@@ -137,7 +137,7 @@ TEST_F(MotionFile, ToolRefusesWhatItCannotCompareWith) {
   }
   const std::string scenarios = STG_SHIPPED_TERRAIN "/../scenarios/";
   EXPECT_EQ(Run(shipped + " --scenario '" + scenarios + "medium.yaml'"), 2);
-  EXPECT_NE(err_.find("flies fully_actuated"), std::string::npos) << err_;
+  EXPECT_NE(err_.find("has the model fully_actuated"), std::string::npos) << err_;
   EXPECT_EQ(Run(shipped + " --scenario '" + scenarios + "field.yaml'"), 0) << err_;
 }
 
