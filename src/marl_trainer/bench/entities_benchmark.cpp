@@ -6,6 +6,7 @@
 #include "learn/draw.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/swarm/network/pool_batch.hpp"
+#include "oracle/torch_blocks.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
 /// The network `pool` by its kernels and by libtorch, one thread: what docs/adr/009 quotes.
@@ -39,24 +40,16 @@ std::vector<float> Parameters(const agent::PoolSpec& spec) {
   return Draw(agent::PoolBlocks(spec).size, 0.1F, 1);
 }
 
-torch::Tensor Tensor(const float* data, int rows, int cols) {
-  return torch::from_blob(const_cast<float*>(data), {rows, cols}, torch::kFloat).clone();
-}
-
 /// The same network on the same packed rows: whole matrices, and sums and maxima over segments.
-class TorchPool {
+class TorchPool : TorchBlocks<agent::PoolBlocks> {
  public:
   TorchPool(const agent::PoolSpec& spec, const std::vector<float>& p, const PackedRows& x)
-      : b_(spec), auvs_(x.rows()) {
-    for (const agent::PoolBlock& block : b_.all()) {
-      weights_.push_back(
-          Tensor(p.data() + block.offset, block.rows, block.cols).requires_grad_(true));
-    }
-    self_ = Tensor(x.self(), auvs_, spec.self);
-    search_ = Tensor(x.search(0), auvs_, spec.search);
+      : TorchBlocks(spec, p), auvs_(x.rows()) {
+    self_ = TensorOf(x.self(), {auvs_, spec.self});
+    search_ = TensorOf(x.search(0), {auvs_, spec.search});
     for (int s = 0; s < spec.sets_count(); ++s) {
       const int count = x.offset(s, auvs_);
-      rows_.push_back(Tensor(x.set(s), count, spec.sets[static_cast<std::size_t>(s)]));
+      rows_.push_back(TensorOf(x.set(s), {count, spec.sets[static_cast<std::size_t>(s)]}));
       std::vector<std::int64_t> owner;
       for (int r = 0; r < auvs_; ++r) {
         owner.insert(owner.end(), static_cast<std::size_t>(x.offset(s, r + 1) - x.offset(s, r)), r);
@@ -88,21 +81,9 @@ class TorchPool {
   }
 
  private:
-  torch::Tensor At(const agent::PoolBlock& block) const {
-    const auto all = b_.all();
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all[k].offset == block.offset) return weights_[k];
-    }
-    return {};
-  }
-  torch::Tensor Dense(const torch::Tensor& x, const agent::PoolBlocks::Layer& l) const {
-    return torch::addmm(At(l.bias).t(), x, At(l.weight).t());
-  }
-
-  agent::PoolBlocks b_;
   int auvs_;
   torch::Tensor self_, search_;
-  std::vector<torch::Tensor> rows_, owner_, weights_;
+  std::vector<torch::Tensor> rows_, owner_;
 };
 
 void Report(benchmark::State& state, int auvs) {
@@ -138,6 +119,13 @@ void TorchStep(benchmark::State& state) {
   const PackedRows x =
       Rows(spec, auvs, static_cast<int>(state.range(1)), static_cast<int>(state.range(2)));
   TorchPool pool(spec, Parameters(spec), x);
+  const PoolBatch kernels(spec);
+  PoolBatch::Workspace w;
+  kernels.Forward(Parameters(spec).data(), x, &w);
+  const torch::Tensor ours = TensorOf(w.output(), {auvs, spec.outputs});
+  if ((pool.Forward() - ours).abs().max().item<float>() > 1e-4F) {
+    state.SkipWithError("this is another network than that of the kernels");
+  }
   const torch::Tensor d = torch::ones({auvs, spec.outputs});
   for (auto _ : state) pool.Backward((pool.Forward() * d).sum());
   Report(state, auvs);

@@ -5,6 +5,7 @@
 
 #include "learn/draw.hpp"
 #include "marl_trainer/learn/swarm/network/graph_batch.hpp"
+#include "oracle/torch_blocks.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
 /// The network over the task graph against libtorch's automatic differentiation, and against the
@@ -66,30 +67,12 @@ std::vector<DrawnRows> DrawMany(const agent::GraphSpec& spec, int auvs) {
   return many;
 }
 
-torch::Tensor Tensor(const float* data, at::IntArrayRef shape) {
-  return torch::from_blob(const_cast<float*>(data), shape, torch::kFloat).clone();
-}
-
 /// The network in libtorch's words, one AUV at a time.
-struct TorchGraph {
-  TorchGraph(const agent::GraphSpec& spec, const std::vector<float>& p) : spec_(spec), b_(spec) {
-    for (const agent::PoolBlock& block : b_.all()) {
-      weights_.push_back(
-          Tensor(p.data() + block.offset, {block.rows, block.cols}).requires_grad_(true));
-    }
-  }
-  torch::Tensor At(const agent::PoolBlock& block) const {
-    const auto all = b_.all();
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all[k].offset == block.offset) return weights_[k];
-    }
-    return {};
-  }
-  torch::Tensor Dense(const torch::Tensor& x, const agent::PoolBlocks::Layer& l) const {
-    return torch::matmul(x, At(l.weight).t()) + At(l.bias).t();
-  }
+struct TorchGraph : TorchBlocks<agent::GraphBlocks> {
+  TorchGraph(const agent::GraphSpec& spec, const std::vector<float>& p)
+      : TorchBlocks(spec, p), spec_(spec) {}
   torch::Tensor Embed(const agent::PoolRows& rows, const agent::PoolBlocks::Set& set) const {
-    const torch::Tensor x = Tensor(rows.rows, {rows.count, rows.stride});
+    const torch::Tensor x = TensorOf(rows.rows, {rows.count, rows.stride});
     return torch::relu(Dense(torch::relu(Dense(x, set.first)), set.second));
   }
   torch::Tensor Attend(int s, const torch::Tensor& self, const torch::Tensor& rows,
@@ -113,7 +96,7 @@ struct TorchGraph {
     const int width = spec_.width, targets = x.sets[0].count, neighbours = x.sets[1].count;
     const torch::Tensor t = Embed(x.sets[0], b_.sets[0]), n = Embed(x.sets[1], b_.sets[1]),
                         o = Embed(x.sets[2], b_.sets[2]);
-    const torch::Tensor edges = Tensor(x.edges, {targets, neighbours, spec_.edges});
+    const torch::Tensor edges = TensorOf(x.edges, {targets, neighbours, spec_.edges});
     const torch::Tensor base = Dense(t, b_.edge_target).unsqueeze(1);
     const torch::Tensor from = torch::matmul(n, At(b_.edge_neighbour).t()).unsqueeze(0);
     const torch::Tensor m = torch::relu(torch::cat(
@@ -129,18 +112,18 @@ struct TorchGraph {
     const torch::Tensor all_t = with_nobody(told, 0), all_n = with_nobody(n, 1),
                         all_o = with_nobody(o, 2);
     const torch::Tensor quality =
-        Tensor(x.sets[1].rows, {neighbours, spec_.neighbours}).select(1, spec_.quality);
+        TensorOf(x.sets[1].rows, {neighbours, spec_.neighbours}).select(1, spec_.quality);
     const torch::Tensor prior =
         torch::cat({torch::log(quality + 0.01), torch::zeros({1})}).unsqueeze(0);
-    const torch::Tensor self = torch::relu(Dense(Tensor(x.self, {1, spec_.self}), b_.self));
+    const torch::Tensor self = torch::relu(Dense(TensorOf(x.self, {1, spec_.self}), b_.self));
     const torch::Tensor joined =
-        torch::cat({self, Tensor(x.search, {1, spec_.search}), Attend(0, self, all_t, {}),
+        torch::cat({self, TensorOf(x.search, {1, spec_.search}), Attend(0, self, all_t, {}),
                     Attend(1, self, all_n, prior), Attend(2, self, all_o, {}),
                     std::get<0>(all_t.max(0, true)), std::get<0>(all_n.max(0, true))},
                    1);
     const torch::Tensor y = torch::relu(Dense(torch::relu(Dense(joined, b_.trunk1)), b_.trunk2));
     const torch::Tensor follows =
-        torch::cat({Tensor(x.sets[0].rows, {targets, spec_.targets}).select(1, spec_.follows),
+        torch::cat({TensorOf(x.sets[0].rows, {targets, spec_.targets}).select(1, spec_.follows),
                     torch::zeros({1})});
     const torch::Tensor choices =
         torch::matmul(all_t, torch::matmul(At(b_.pointer), y.t())).view({-1}) +
@@ -153,8 +136,6 @@ struct TorchGraph {
   }
 
   agent::GraphSpec spec_;
-  agent::GraphBlocks b_;
-  std::vector<torch::Tensor> weights_;
 };
 
 TEST(GraphBatch, OutputsAndGradientsAreLibtorchs) {
@@ -189,8 +170,8 @@ TEST(GraphBatch, OutputsAndGradientsAreLibtorchs) {
                       1e-4 * std::max(1.0, std::abs(v)));
         }
       }
-      loss = loss + (theirs * Tensor(d_choices.data() + at, {count})).sum() +
-             (out * Tensor(d_out.data() + at * spec.outputs, {count, spec.outputs})).sum();
+      loss = loss + (theirs * TensorOf(d_choices.data() + at, {count})).sum() +
+             (out * TensorOf(d_out.data() + at * spec.outputs, {count, spec.outputs})).sum();
       at += count;
     }
     EXPECT_EQ(at, choices);

@@ -5,6 +5,7 @@
 
 #include "learn/draw.hpp"
 #include "marl_trainer/learn/swarm/network/pool_batch.hpp"
+#include "oracle/torch_blocks.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
 /// The network over sets against libtorch's automatic differentiation, and against the agent's.
@@ -44,34 +45,16 @@ PackedRows DrawRows(const agent::PoolSpec& spec, int rows) {
   return packed;
 }
 
-torch::Tensor Tensor(const float* data, int rows, int cols) {
-  return torch::from_blob(const_cast<float*>(data), {rows, cols}, torch::kFloat).clone();
-}
-
 /// The network in libtorch's words.
-struct TorchPool {
-  TorchPool(const agent::PoolSpec& spec, const std::vector<float>& p) : spec_(spec), b_(spec) {
-    for (const agent::PoolBlock& block : b_.all()) {
-      weights_.push_back(
-          Tensor(p.data() + block.offset, block.rows, block.cols).requires_grad_(true));
-    }
-  }
-  torch::Tensor At(const agent::PoolBlock& block) const {
-    const auto all = b_.all();
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all[k].offset == block.offset) return weights_[k];
-    }
-    return {};
-  }
-  torch::Tensor Dense(const torch::Tensor& x, const agent::PoolBlocks::Layer& l) const {
-    return torch::matmul(x, At(l.weight).t()) + At(l.bias).t();
-  }
+struct TorchPool : TorchBlocks<agent::PoolBlocks> {
+  TorchPool(const agent::PoolSpec& spec, const std::vector<float>& p)
+      : TorchBlocks(spec, p), spec_(spec) {}
   torch::Tensor Forward(const PackedRows& x) const {
     std::vector<torch::Tensor> out;
     for (int r = 0; r < x.rows(); ++r) {
       std::vector<torch::Tensor> joined = {
-          torch::relu(Dense(Tensor(x.self() + r * spec_.self, 1, spec_.self), b_.self)),
-          Tensor(x.search(r), 1, spec_.search)};
+          torch::relu(Dense(TensorOf(x.self() + r * spec_.self, {1, spec_.self}), b_.self)),
+          TensorOf(x.search(r), {1, spec_.search})};
       for (int s = 0; s < spec_.sets_count(); ++s) {
         const auto& set = b_.sets[static_cast<std::size_t>(s)];
         const int size = spec_.sets[static_cast<std::size_t>(s)], begin = x.offset(s, r),
@@ -79,7 +62,7 @@ struct TorchPool {
         torch::Tensor all = At(set.nobody).t();
         if (count > 0) {
           const torch::Tensor h = torch::relu(
-              Dense(torch::relu(Dense(Tensor(x.set(s) + begin * size, count, size), set.first)),
+              Dense(torch::relu(Dense(TensorOf(x.set(s) + begin * size, {count, size}), set.first)),
                     set.second));
           all = torch::cat({h, all}, 0);
         }
@@ -94,8 +77,6 @@ struct TorchPool {
   }
 
   agent::PoolSpec spec_;
-  agent::PoolBlocks b_;
-  std::vector<torch::Tensor> weights_;
 };
 
 TEST(PoolBatch, OutputsAndGradientsAreLibtorchs) {
@@ -119,7 +100,7 @@ TEST(PoolBatch, OutputsAndGradientsAreLibtorchs) {
       EXPECT_NEAR(w.output()[k], theirs, 1e-4 * std::max(1.0, std::abs(theirs)));
     }
     EXPECT_GT(most, 0.1);
-    (y * Tensor(d.data(), rows, spec.outputs)).sum().backward();
+    (y * TensorOf(d.data(), {rows, spec.outputs})).sum().backward();
     const auto blocks = reference.b_.all();
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       const torch::Tensor g = reference.weights_[b].grad().contiguous();

@@ -25,6 +25,16 @@ inline constexpr int kSightingBits = 62;
 /// Where targets are chosen freely: the target that the sender follows, and that of each
 /// measurement, as one more than its index; 0: none.
 inline constexpr int kNameBits = 4, kManyBits = 2, kFreeRangeBits = 12, kEarlierBits = 9;
+/// Where agents locate each other: in the place of measurements of targets, told ranges and a told
+/// bearing, each named by a code that is no target.
+inline constexpr int kLocatedDeviationBits = kDeviationBits - 1;
+inline constexpr std::uint64_t kRangesCode = 31, kBearingCode = 29, kNoSource = 31;
+inline constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14,
+                     kToldAzimuthBits = 14;
+inline constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
+static_assert(1 + kTargetBits + kToldRanges * (kToldSourceBits + kToldAgeBits + kToldRangeBits) ==
+                  kSightingBits,
+              "two ranges take the room of a measurement");
 static_assert(kFirstSighting + kSightings * kSightingBits <= kCrcFirst, "both measurements fit");
 
 [[noreturn]] inline void RefusePacket(const std::string& why) { throw UserError("packet: " + why); }

@@ -1,4 +1,3 @@
-// Long because: what writes a field and what reads it stand together.
 #include "stg_agent/packet/measurement_packet.hpp"
 
 #include <algorithm>
@@ -20,14 +19,6 @@ using dynamics::MeasurementKind;
 namespace {
 
 constexpr double kPlaceMargin = 1.25;
-// Of version 5.
-constexpr int kLocatedDeviationBits = kDeviationBits - 1;
-constexpr std::uint64_t kRangesCode = 31, kBearingCode = 29, kNoSource = 31;
-constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14, kToldAzimuthBits = 14;
-static_assert(1 + kTargetBits + kToldRanges * (kToldSourceBits + kToldAgeBits + kToldRangeBits) ==
-                  kSightingBits,
-              "two ranges take the room of a measurement");
-constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
 
 double Length(const std::array<double, 3>& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -166,74 +157,6 @@ Vec3<double> MeasurementPacket::ReadPlace(const Vec3<double>& near, Reader* r) c
   };
   const double x = nearest(near.x), y = nearest(near.y);
   return {x, y, r->Number(position_, kPlaceBits)};
-}
-
-TimeNs MeasurementPacket::ToldAge(const NeighbourState& s, TimeNs stamp, Writer* w) const {
-  const TimeNs steps = (s.generation - stamp + age_step_ / 2) / age_step_;
-  constexpr TimeNs kMost = (1 << kToldAgeBits) - 1;
-  w->saturated |= steps > kMost;
-  return std::min(steps, kMost);
-}
-
-void MeasurementPacket::WriteToldBearing(const NeighbourState& s, Writer* w) const {
-  const ToldBearing& told = s.bearing;
-  if (told.source < 0 || told.source >= members_ || told.stamp > s.generation ||
-      !std::isfinite(told.azimuth_rad)) {
-    throw std::invalid_argument("PacketCodec::Encode: value without a code");
-  }
-  w->at = kFirstSighting;
-  w->Bits(1, 1);
-  w->Bits(kBearingCode, kTargetBits);
-  w->Bits(static_cast<std::uint64_t>(told.source), kToldSourceBits);
-  w->Bits(static_cast<std::uint64_t>(ToldAge(s, told.stamp, w)), kToldAgeBits);
-  w->Number(told_azimuth_, WrapAngle(told.azimuth_rad), kToldAzimuthBits);
-}
-
-void MeasurementPacket::ReadToldBearing(Reader* r, NeighbourState* s) const {
-  const auto source = static_cast<int>(r->Bits(kToldSourceBits));
-  const TimeNs age = static_cast<TimeNs>(r->Bits(kToldAgeBits)) * age_step_;
-  const double azimuth = r->Number(told_azimuth_, kToldAzimuthBits);
-  if (source >= members_)
-    RefusePacket("source " + std::to_string(source) + " of a bearing does not exist");
-  if (s->generation - age < 0) RefusePacket("measured before the start");
-  s->has_bearing = true;
-  s->bearing = {source, s->generation - age, azimuth};
-}
-
-void MeasurementPacket::WriteToldRanges(const NeighbourState& s, Writer* w) const {
-  w->at = kFirstSighting + (kSightings - 1) * kSightingBits;
-  w->Bits(1, 1);
-  w->Bits(kRangesCode, kTargetBits);
-  for (int k = 0; k < kToldRanges; ++k) {
-    const ToldRange& told = s.range[static_cast<std::size_t>(k)];
-    if (k >= s.ranges) {
-      w->Bits(kNoSource, kToldSourceBits);
-      w->at += kToldAgeBits + kToldRangeBits;
-      continue;
-    }
-    if (told.source < 0 || told.source >= members_ || told.stamp > s.generation ||
-        !std::isfinite(told.range_m)) {
-      throw std::invalid_argument("PacketCodec::Encode: value without a code");
-    }
-    w->Bits(static_cast<std::uint64_t>(told.source), kToldSourceBits);
-    w->Bits(static_cast<std::uint64_t>(ToldAge(s, told.stamp, w)), kToldAgeBits);
-    w->Number(told_range_, told.range_m, kToldRangeBits);
-  }
-}
-
-void MeasurementPacket::ReadToldRanges(Reader* r, NeighbourState* s) const {
-  for (int k = 0; k < kToldRanges; ++k) {
-    const std::uint64_t source = r->Bits(kToldSourceBits);
-    const TimeNs age = static_cast<TimeNs>(r->Bits(kToldAgeBits)) * age_step_;
-    const double range = r->Number(told_range_, kToldRangeBits);
-    if (source == kNoSource) continue;
-    if (static_cast<int>(source) >= members_) {
-      RefusePacket("source " + std::to_string(source) + " of a range does not exist");
-    }
-    if (s->generation - age < 0) RefusePacket("measured before the start");
-    s->range[static_cast<std::size_t>(s->ranges++)] = {static_cast<int>(source),
-                                                       s->generation - age, range};
-  }
 }
 
 void MeasurementPacket::RequireCode(const NeighbourState& s, const Detection& d) const {
