@@ -76,7 +76,7 @@ def measure_page(page, seconds):
 
 
 def publish(seconds):
-    """Plays a swarm that circles, as /swarm_state, in a process of its own."""
+    """Plays a swarm that circles, as /swarm_display, in a process of its own."""
     import math
 
     import auv_msgs.msg
@@ -84,7 +84,7 @@ def publish(seconds):
     from geometry_msgs.msg import Point, Pose
 
     rospy.init_node("bench_view_swarm")
-    states = rospy.Publisher("/swarm_state", auv_msgs.msg.SwarmState, queue_size=10)
+    states = rospy.Publisher("/swarm_display", auv_msgs.msg.SwarmDisplay, queue_size=10)
     for k in range(int(seconds * RATE_HZ)):
         state = auv_msgs.msg.SwarmState(step=k, target_positions=[Point()], fresh=[True] * AGENTS)
         state.header.stamp = rospy.Time.from_sec(1.0 + k / RATE_HZ)
@@ -92,7 +92,7 @@ def publish(seconds):
             angle, pose = 0.01 * k + 2 * math.pi * i / AGENTS, Pose()
             pose.position.x, pose.position.y, pose.orientation.w = 90 * math.cos(angle), 90 * math.sin(angle), 1.0
             state.poses.append(pose)
-        states.publish(state)
+        states.publish(auv_msgs.msg.SwarmDisplay(header=state.header, state=state))
         time.sleep(1.0 / RATE_HZ)
 
 

@@ -5,7 +5,7 @@ import unittest
 
 import rospy
 import rostest
-from auv_msgs.msg import AcousticReception, LinkStates, PacketEvent, PacketEvents, SwarmState
+from auv_msgs.msg import AcousticReception, LinkStates, PacketEvent, PacketEvents, SwarmDisplay
 from graph_listener import Latest, SummaryOf, wait_for
 
 
@@ -18,7 +18,7 @@ class Swarm(unittest.TestCase):
     def test_twenty_auvs_fly_a_whole_episode(self):
         summary = SummaryOf(0)
         shown, received, heard = [], [], []
-        rospy.Subscriber("/swarm_state_display", SwarmState, shown.append, queue_size=100)
+        rospy.Subscriber("/swarm_display", SwarmDisplay, shown.append, queue_size=100)
         rospy.Subscriber("/acoustic_channel/packets", PacketEvents, received.append, queue_size=100)
         rospy.Subscriber("/auv_3/acoustic/rx", AcousticReception, heard.append, queue_size=1000)
         links = Latest("/acoustic_channel/links", LinkStates)
@@ -32,11 +32,13 @@ class Swarm(unittest.TestCase):
         self.assertAlmostEqual(message.tracking_error, 0.0061, delta=0.0005)
         self.assertEqual(len(links.wait().links), AGENTS * (AGENTS - 1))
         # Displays get few messages, but the ends of an episode and each packet.
-        wait_for(lambda: any(m.episode == 1 for m in shown), 5.0, "the next episode")
-        first = [m for m in shown if m.episode == 0]
-        steps = [m.step for m in first]
+        wait_for(lambda: any(m.state.episode == 1 for m in shown), 5.0, "the next episode")
+        first = [m for m in shown if m.state.episode == 0]
+        steps = [m.state.step for m in first]
         self.assertEqual([steps[0], steps[-1]], [0, 100])
         self.assertEqual(steps, sorted(set(steps)))
+        self.assertTrue(all(task.step == m.state.step for m in first for task in m.tasks))
+        self.assertTrue(any(m.agents == tuple(range(AGENTS)) for m in first))
         end = first[-1].header.stamp
         delivered = {(e.source, e.sequence) for m in received for e in m.events
                      if (e.kind, e.receiver) == (PacketEvent.DELIVERED, 3)}  # fmt: skip

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """Serves the live view of a run to browsers on the loopback.
 
-It only listens. Without a browser it keeps positions, at most rate_hz a second of wall time, and
-packets; the rest is asked for and decoded only while there is one (stg_view/listening.py). A browser
-that comes late is sent all that was kept first. ssh -L 8300:127.0.0.1:8300 HOST brings the page to
-another machine.
+It only listens, and keeps at most rate_hz steps a second of wall time, and packets
+(stg_view/listening.py). A browser that comes late is sent all that was kept first.
+ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 """
 
 import stg_common.quiet_start  # first: until here Ctrl-C is blocked, see graph.launch
@@ -15,7 +14,7 @@ import threading
 import rospy
 from aiohttp import WSMsgType, web
 import stg_common.program
-from stg_view.listening import Ears
+from stg_view.listening import Listener
 from stg_view.page import PageError, live_page
 from stg_view.recording import encode
 
@@ -32,7 +31,7 @@ class Server:
         self.sockets = {}
         self.page = live_page("live run").encode()
         self.port = port
-        self.ears = Ears(rate_hz, self.send, self.later)
+        self.listener = Listener(rate_hz, self.send, self.later, lambda: bool(self.sockets))
         self.failure = None
         self.ready = threading.Event()
         threading.Thread(target=self.serve, daemon=True).start()
@@ -64,10 +63,9 @@ class Server:
         socket = web.WebSocketResponse(heartbeat=20.0, compress=False)
         await socket.prepare(request)
         queue = asyncio.Queue(400)
-        with self.ears.lock:
-            history = b"".join([encode("meta", meta={"sent_s": 0}), self.ears.kept.all()])
+        with self.listener.lock:
+            history = encode("meta", meta={"sent_s": 0}) + self.listener.history()
             self.sockets[socket] = queue
-        self.loop.run_in_executor(None, self.ears.watch, True)
         writer = self.loop.create_task(write(socket, history, queue))
         try:
             async for message in socket:
@@ -76,8 +74,6 @@ class Server:
         finally:
             writer.cancel()
             self.sockets.pop(socket, None)
-            if not self.sockets:
-                self.loop.run_in_executor(None, self.ears.watch, False)
         return socket
 
     def later(self, seconds, action):

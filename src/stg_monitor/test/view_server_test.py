@@ -2,32 +2,47 @@
 """A browser that comes late is sent the tracks from the start, then what comes; no other site is."""
 
 import asyncio
-import collections
 import io
 import time
 import unittest
 
 import aiohttp
 import auv_msgs.msg
+import rosgraph
+import rosnode
 import rospy
 import rostest
-from geometry_msgs.msg import Point, Pose
+from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
 
-from stg_view.listening import Ears
+from stg_view.listening import Listener
 from stg_view.recording import MAGIC, messages
 
 URL, BEFORE, AFTER = "http://127.0.0.1:8317", 20, 10
 DEADLINE_S = 30.0
 
 
-def state_at(t):
+def stamp_at(step):
+    """The time of a step of `medium`."""
+    return rospy.Time(10, 0) + rospy.Duration(0, 100_000_000 * step)
+
+
+def state_at(step):
     """A state of two AUVs."""
-    state = auv_msgs.msg.SwarmState(episode=3, step=t, seed=8)
-    state.header.stamp = rospy.Time(10 + t)
+    state = auv_msgs.msg.SwarmState(run=1, step=step, seed=8)
+    state.header.stamp, state.header.frame_id = stamp_at(step), "world"
     pose = Pose()
-    pose.position.x, pose.orientation.w = float(t), 1.0
-    state.poses, state.target_positions, state.fresh = [pose, pose], [Point()], [True, True]
+    pose.position.x, pose.orientation.w = 0.001 * step, 1.0
+    state.poses, state.twists, state.velocities = [pose] * 2, [Twist()] * 2, [Vector3()] * 2
+    state.wrenches, state.fresh = [Wrench()] * 2, [True] * 2
+    state.target_positions, state.target_velocities = [Point()], [Vector3()]
     return state
+
+
+def task_at(step):
+    """What an AUV believes at that step."""
+    task = auv_msgs.msg.TaskState(target_known=True, step=step, policy_id="test", action=[0.0] * 3)
+    task.header.stamp, task.header.frame_id, task.target_position.x = stamp_at(step), "world", 100.0 + step
+    return task
 
 
 def raw(message):
@@ -37,29 +52,45 @@ def raw(message):
     return rospy.AnyMsg().deserialize(data.getvalue())
 
 
+def is_served():
+    """Whether the server is connected with the metrics."""
+    try:
+        uri = rosgraph.Master("/view_server_test").lookupNode("/view_server")
+    except rosgraph.MasterException:
+        return False
+    connections = rosnode.ServerProxy(uri).getBusInfo("/view_server_test")[2]
+    return any(topic == "/swarm_display" and connected for *_, topic, connected in [c[:6] for c in connections])
+
+
 class ViewServerTest(unittest.TestCase):
-    """Publishes states and listens to the websocket."""
+    """Plays a run, and reads the websocket."""
 
     @classmethod
     def setUpClass(cls):
         cls.states = rospy.Publisher("/swarm_state", auv_msgs.msg.SwarmState, queue_size=100)
+        cls.tasks = [rospy.Publisher(f"/auv_{i}/task_state", auv_msgs.msg.TaskState, queue_size=100) for i in range(2)]
+        own = [cls.states, *cls.tasks]
         end = time.monotonic() + DEADLINE_S
-        while cls.states.get_num_connections() == 0 and time.monotonic() < end:
+        while not (all(one.get_num_connections() for one in own) and is_served()) and time.monotonic() < end:
             time.sleep(0.05)
-        cls.t = 0
+        cls.step = 0
         cls.publish(BEFORE)
 
     @classmethod
-    def publish(cls, count):
-        """Publishes so many states, slower than the server's rate."""
+    def publish(cls, count, silent=None):
+        """Publishes so many steps, slower than the server's rate; one AUV may be silent."""
         for _ in range(count):
-            cls.states.publish(state_at(cls.t))
-            cls.t += 1
+            cls.states.publish(state_at(cls.step))
+            for i, publisher in enumerate(cls.tasks):
+                if i != silent:
+                    publisher.publish(task_at(cls.step))
+            cls.step += 1
             time.sleep(0.05)
 
     async def steps_until(self, wanted, during=None):
-        """Times of all steps that a new browser is sent until there are as many as wanted, and all kinds."""
-        found, kinds = [], []
+        """Numbers and estimates (x of each AUV) of all steps that a new browser is sent until there are
+        as many as wanted, and all kinds of messages."""
+        found, estimates, kinds = [], [], []
         async with aiohttp.ClientSession() as session, session.ws_connect(f"{URL}/stream") as socket:
             if during:
                 asyncio.get_running_loop().run_in_executor(None, during)
@@ -68,51 +99,47 @@ class ViewServerTest(unittest.TestCase):
                 for header, columns in messages(MAGIC + message.data):
                     kinds.append(header["kind"])
                     if header["kind"] == "steps":
-                        found += columns["t"].ravel().tolist()
-        return found, kinds
+                        found += [round((t - 10.0) / 0.1) for t in columns["t"].ravel().tolist()]
+                        estimates += columns["estimate"].reshape(-1, 2, 3)[:, :, 0].tolist()
+        return found, estimates, kinds
 
     def test_late_browser_sees_the_start_then_what_comes(self):
-        found, kinds = asyncio.run(self.steps_until(self.t))
-        self.assertEqual([10.0 + k for k in range(self.t)], found)
+        found, estimates, kinds = asyncio.run(self.steps_until(self.step))
+        self.assertEqual(list(range(self.step)), found)
+        self.assertEqual([[100.0 + k] * 2 for k in found], estimates)
         self.assertIn("episode", kinds)
-        before = self.t
-        found, _ = asyncio.run(self.steps_until(before + AFTER, lambda: self.publish(AFTER)))
-        self.assertEqual([10.0 + k for k in range(before + AFTER)], found)
+        before = self.step
+        found, estimates, _ = asyncio.run(self.steps_until(before + AFTER, lambda: self.publish(AFTER)))
+        self.assertEqual(list(range(before + AFTER)), found)
+        self.assertEqual([[100.0 + k] * 2 for k in found], estimates)
+        # The display does not wait for an AUV that is silent, whose last words stay.
+        before = self.step
+        found, estimates, _ = asyncio.run(self.steps_until(before + 5, lambda: self.publish(5, silent=1)))
+        self.assertEqual(list(range(before + 5)), found)
+        self.assertEqual([[100.0 + k, 99.0 + before] for k in found[before:]], estimates[before:])
 
-    def test_a_step_shows_what_was_said_at_its_time(self):
-        """One AUV already speaks of the next state, the other one answers late, and then not at all."""
-        sent, timers = [], []
-        ears = Ears(1e9, sent.append, lambda _, action: timers.append(action))
-        ears.more = [None]  # somebody looks
-        kept = {}
-        for topic in ("/auv_0/task_state", "/auv_1/task_state"):
-            kept[topic] = collections.deque()
-            ears.answers[topic] = (auv_msgs.msg.TaskState, kept[topic])
+    def test_a_detection_is_shown_once_and_not_before_its_time(self):
+        sent = []
+        listener = Listener(1e9, sent.append, lambda _, action: None, lambda: True)
+        early = 1000  # what the metrics sent last comes to a new subscriber
 
-        def say(i, t):
-            task = auv_msgs.msg.TaskState(target_known=True, episode=3)
-            task.header.stamp = rospy.Time(10 + t)
-            task.target_position.x = 100.0 + t
-            ears.hear_answer(kept[f"/auv_{i}/task_state"], raw(task))
+        def show(step):
+            display = auv_msgs.msg.SwarmDisplay(state=state_at(early + step))
+            display.header = display.state.header
+            listener.hear_display(raw(display))
 
-        def estimates():
-            steps = [columns for data in sent for header, columns in messages(MAGIC + data) if header["kind"] == "steps"]
-            return [row[::3].tolist() for columns in steps for row in columns["estimate"]]
+        def detect(step):
+            message = auv_msgs.msg.SwarmDetections(agents=[1], detections=[auv_msgs.msg.TargetDetection()])
+            message.header.stamp = message.detections[0].header.stamp = stamp_at(early + step)
+            listener.detections.append(raw(message))
 
-        say(1, 0)
-        ears.hear_state(raw(state_at(0)))
-        self.assertEqual([], estimates())  # AUV 0 has not answered
-        say(0, 0)
-        self.assertEqual([[100.0, 100.0]], estimates())
-        say(0, 1)
-        say(0, 2)
-        ears.hear_state(raw(state_at(1)))
-        self.assertEqual(1, len(estimates()))
-        timers[-1]()  # AUV 1 does not answer in time: its last word counts
-        self.assertEqual([101.0, 100.0], estimates()[1])
-        say(1, 2)
-        ears.hear_state(raw(state_at(2)))
-        self.assertEqual([102.0, 102.0], estimates()[2])
+        detect(1)
+        detect(3)
+        for step in (0, 2, 4, 6):
+            show(step)
+        rows = [columns for data in sent for header, columns in messages(MAGIC + data) if header["kind"] == "steps"]
+        found = [c["detected"].ravel().tolist() for c in rows if c["t"].ravel()[0] > 100.0]
+        self.assertEqual([[0, 0], [0, 1], [0, 1], [0, 0]], found)
 
     def test_only_this_machine_is_answered(self):
         async def status(**headers):

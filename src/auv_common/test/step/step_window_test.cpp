@@ -60,6 +60,16 @@ TEST_F(StepWindowTest, AStepIsTakenWhenItIsComplete) {
   EXPECT_EQ(window_.size(), 0u);
 }
 
+TEST_F(StepWindowTest, AnOpenStepCanBeLookedAt) {
+  EXPECT_EQ(window_.Open(5 * kTick), nullptr);
+  Say(0, 5 * kTick);
+  ASSERT_NE(window_.Open(5 * kTick), nullptr);
+  EXPECT_EQ(*window_.Open(5 * kTick), (Voices{0}));
+  Say(1, 5 * kTick);
+  ASSERT_TRUE(Take());
+  EXPECT_EQ(window_.Open(5 * kTick), nullptr);
+}
+
 TEST_F(StepWindowTest, StepsOutOfOrderAreTakenInOrder) {
   SayAll(3 * kTick);
   Say(0, 1 * kTick);

@@ -77,8 +77,9 @@ void WorldPublisher::Advertise() {
   }
   // roscpp sends in the order of these lines: agents are served first.
   swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
-  display_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmStateDisplay, kSentQueue, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
+  detections_.Advertise(topics::kSwarmDetections, kSentQueue,
+                        [this](auto* message) { return SetNewDetections(message); });
   for (int k = 0; k < scenario_.world.target.count; ++k) {
     nav_msgs::Odometry& message = target_messages_[static_cast<std::size_t>(k)];
     message.header.frame_id = frames::kWorld;
@@ -220,17 +221,7 @@ void WorldPublisher::SetDetections(const dynamics::World& world, TimeNs now, int
   }
 }
 
-void WorldPublisher::PublishSwarm() {
-  swarm_.publish(swarm_message_);
-  const double wall_s = WallSeconds();
-  // Where an episode begins and ends is no matter of the wall clock.
-  const bool end =
-      swarm_message_.step == 0 ||
-      swarm_message_.step == static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
-  if (!end && wall_s - display_sent_s_ < display_period_s_) return;
-  display_sent_s_ = wall_s;
-  display_.publish(swarm_message_);
-}
+void WorldPublisher::PublishSwarm() { swarm_.publish(swarm_message_); }
 
 void WorldPublisher::PublishViews(const dynamics::World& world, TimeNs start) {
   const TimeNs now = start + world.time(0);
@@ -241,8 +232,29 @@ void WorldPublisher::PublishViews(const dynamics::World& world, TimeNs start) {
     SetVector(Lane(world.target(k).v_WT, 0), &m.twist.twist.linear);
     targets_[static_cast<std::size_t>(k)].Publish();
   }
+  PublishDetections(now);
   PublishFrames(now);
   PublishClock(now);
+}
+
+void WorldPublisher::PublishDetections(TimeNs now) {
+  const ros::WallTime wall = ros::WallTime::now();
+  if ((wall - detections_sent_).toSec() < display_period_s_) return;
+  detections_sent_ = wall;
+  detections_.Publish();
+  detections_until_ = TimeOf(now);
+}
+
+bool WorldPublisher::SetNewDetections(auv_msgs::SwarmDetections* message) const {
+  message->header = swarm_message_.header;
+  message->agents.clear();
+  message->detections.clear();
+  for (std::size_t i = 0; i < auvs_.size(); ++i) {
+    if (auvs_[i].last_detection.header.stamp <= detections_until_) continue;
+    message->agents.push_back(static_cast<std::uint32_t>(i));
+    message->detections.push_back(auvs_[i].last_detection);
+  }
+  return !message->agents.empty();
 }
 
 void WorldPublisher::PublishFrames(TimeNs now) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <auv_msgs/SensorFrame.h>
+#include <auv_msgs/SwarmDetections.h>
 #include <auv_msgs/SwarmState.h>
 #include <auv_msgs/TargetDetection.h>
 #include <nav_msgs/Odometry.h>
@@ -19,7 +20,7 @@ namespace stg::nodes {
 /// Puts the state of lane 0 of a world on topics.
 class WorldPublisher {
  public:
-  /// @param display_rate_hz largest rate of transforms and of the state for displays per second of
+  /// @param display_rate_hz largest rate of transforms and of detections for displays per second of
   ///                        wall time, and a tenth of the largest rate of /clock: no step waits for
   ///                        them
   WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz);
@@ -41,11 +42,10 @@ class WorldPublisher {
   void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
                       std::uint32_t step);
 
-  /// The true state of all of them at the decision of the last PublishSensors; now and then for
-  /// displays as well.
+  /// The true state of all of them at the decision of the last PublishSensors.
   void PublishSwarm();
 
-  /// What only observers need of the same decision: targets, transforms, the clock.
+  /// What only observers need of the same decision: targets, detections, transforms, the clock.
   void PublishViews(const dynamics::World& world, TimeNs start);
 
  private:
@@ -63,19 +63,22 @@ class WorldPublisher {
   void SetDetections(const dynamics::World& world, TimeNs now, int i,
                      auv_msgs::SensorFrame* m) const;
   void PublishClock(TimeNs now);
+  void PublishDetections(TimeNs now);
+  bool SetNewDetections(auv_msgs::SwarmDetections* message) const;
   void PublishFrames(TimeNs now);
   void SendWorldNed();
 
   dynamics::WorldScenario scenario_;
   double display_period_s_;
   std::uint64_t run_;  ///< id of this run
-  ros::WallTime clock_sent_, frames_sent_;
-  double display_sent_s_ = 0.0;  ///< wall time
+  ros::WallTime clock_sent_, frames_sent_, detections_sent_;
+  ros::Time detections_until_;  ///< stamp of the newest detection that displays were sent
   std::vector<AuvTopics> auvs_;
   std::vector<OnDemand<nav_msgs::Odometry>> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;
   auv_msgs::SwarmState swarm_message_;
-  ros::Publisher swarm_, display_, clock_, scenario_topic_;
+  OnDemand<auv_msgs::SwarmDetections> detections_;
+  ros::Publisher swarm_, clock_, scenario_topic_;
   tf2_ros::TransformBroadcaster frames_;
   tf2_ros::StaticTransformBroadcaster static_frames_;
   std::vector<geometry_msgs::TransformStamped> transforms_;

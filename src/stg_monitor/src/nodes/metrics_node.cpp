@@ -49,6 +49,8 @@ MetricsNode::MetricsNode()
       judge_(scenario_.judge()),
       table_(scenario_.run, scenario_.agent.observation.link_available,
              IntegerParameter("episodes", 0, 0, 1'000'000'000)),
+      display_(NumberParameter("display_rate", 20.0, 0.01, 1e6),
+               static_cast<std::uint32_t>(scenario_.run.time.episode_steps)),
       file_name_(TextParameter("summary_file", "")),
       health_("metrics", "simulation", [this](auto& status) { Report(status); }) {
   if (!file_name_.empty() && !std::ofstream(file_name_, std::ios::app)) {
@@ -118,15 +120,19 @@ bool MetricsNode::Follow(const auv_msgs::SwarmState& m) {
     case StepTracker::Verdict::kNewRun:
       if (in_run) {
         frames_.Clear();
+        display_.Clear();
         links_.clear();
       }
       break;
     case StepTracker::Verdict::kRepeated:
+      frames_.Reach(stamp);
+      return true;
     case StepTracker::Verdict::kNext:
     case StepTracker::Verdict::kNewEpisode:
       break;
   }
   frames_.Reach(stamp);
+  display_.Choose(m, WallSeconds());
   return true;
 }
 
@@ -177,6 +183,7 @@ void MetricsNode::Spin() {
 
 double MetricsNode::Work() {
   JudgeFrames();
+  SendOverdue();
   if (show_table_) table_.Tick(judge_, now_s_);
   health_.Tick();
   return 0.1;
@@ -184,6 +191,7 @@ double MetricsNode::Work() {
 
 void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
   table_.SetLinks(*message);
+  newest_links_ = message;
   const TimeNs end = NsOf(message->header.stamp) + period_;
   // Not into a frame: patience with it would begin before the world has come to its step.
   if (Near(end) && links_.size() < kMaxFrames) links_[end] = message;
@@ -231,8 +239,17 @@ void MetricsNode::JudgeFrames() {
     if (frame.truth && !file_name_.empty() && !file_.is_open()) OpenSummary(frame.truth->episode);
     if (frame.truth) SetNodeTime(frame.truth->header.stamp);
     if (frame.truth) now_s_ = Seconds(period_) * frame.truth->step;
-    Publish(judge_.Judge(frame));
+    const EpisodeJudge::Verdict verdict = judge_.Judge(frame);
+    display_.Send(frame, verdict.has_report ? &verdict.report : nullptr, newest_links_.get());
+    Publish(verdict);
   }
+}
+
+/// What a display shows need not wait as long as what is counted.
+void MetricsNode::SendOverdue() {
+  const TimeNs stamp = display_.Overdue(WallSeconds());
+  const SwarmFrame* frame = stamp < 0 ? nullptr : frames_.Open(stamp);
+  if (frame != nullptr) display_.Send(*frame, nullptr, newest_links_.get());
 }
 
 void MetricsNode::Publish(const EpisodeJudge::Verdict& verdict) {

@@ -10,6 +10,7 @@
 #include "auv_common/nodes/health.hpp"
 #include "auv_common/step/step_tracker.hpp"
 #include "auv_common/step/step_window.hpp"
+#include "display.hpp"
 #include "live_table.hpp"
 #include "stg_env/scenario/scenario.hpp"
 #include "swarm_frame.hpp"
@@ -41,6 +42,7 @@ class MetricsNode {
   auv_msgs::LinkStates::ConstPtr TakeLinks(TimeNs stamp);
   bool AwaitsLinks(const SwarmFrame& frame);
   void JudgeFrames();
+  void SendOverdue();
   void Publish(const EpisodeJudge::Verdict& verdict);
   void OpenSummary(std::uint32_t episode);
   void WriteSummary(const EpisodeJudge::Verdict& verdict);
@@ -55,6 +57,8 @@ class MetricsNode {
   StepWindow<SwarmFrame> frames_;
   EpisodeJudge judge_;
   LiveTable table_;
+  Display display_;
+  auv_msgs::LinkStates::ConstPtr newest_links_;
   double now_s_ = 0.0;
   std::map<TimeNs, auv_msgs::LinkStates::ConstPtr> links_;  ///< by the step they lead to
   TimeNs awaited_ = -1;           ///< stamp of the frame whose links were awaited last

@@ -56,6 +56,13 @@ class StepWindow {
     return &found->second.frame;
   }
 
+  /// The frame of a step that is open, valid until the next call of At, Take or Clear. Null: it is
+  /// not open.
+  const Frame* Open(TimeNs stamp) const {
+    const auto found = steps_.find(stamp);
+    return found == steps_.end() ? nullptr : &found->second.frame;
+  }
+
   /// The run has come to the step at `stamp`: to be said of what is trusted alone.
   void Reach(TimeNs stamp) {
     reached_ = has_reached_ ? std::max(reached_, stamp) : stamp;

@@ -10,7 +10,6 @@ inline std::string Auv(int i) { return "/auv_" + std::to_string(i); }
 inline std::string AuvTopic(int i, const char* name) { return Auv(i) + "/" + name; }
 
 inline constexpr char kSwarmState[] = "/swarm_state";
-inline constexpr char kSwarmStateDisplay[] = "/swarm_state_display";
 inline constexpr char kChannelDone[] = "/acoustic_channel/done";
 
 }  // namespace stg::topics

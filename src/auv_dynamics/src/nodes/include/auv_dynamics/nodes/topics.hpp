@@ -25,6 +25,8 @@ inline constexpr char kClock[] = "/clock";
 inline constexpr char kScenario[] = "/scenario";
 inline constexpr char kReset[] = "/reset";
 inline constexpr char kPause[] = "/pause";
+inline constexpr char kSwarmDetections[] = "/swarm_detections";
+inline constexpr char kSwarmDisplay[] = "/swarm_display";
 inline constexpr char kStepReport[] = "/step_report";
 inline constexpr char kEpisodeSummary[] = "/episode_summary";
 

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <auv_msgs/LinkStates.h>
+#include <auv_msgs/StepReport.h>
+#include <auv_msgs/SwarmDisplay.h>
+#include <ros/publisher.h>
+
+#include <map>
+
+#include "auv_common/time.hpp"
+#include "swarm_frame.hpp"
+
+namespace stg::nodes {
+
+/// Sends a few steps of a run to displays: a run in lockstep makes many more than anybody can look
+/// at. The first and the last step of an episode are always sent.
+///
+/// A step is chosen when the world tells of it, and sent when all AUVs have told of it, too, or
+/// after kPatience_s. Times `now_s` are wall time in seconds.
+class Display {
+ public:
+  static constexpr double kPatience_s = 0.1;
+
+  /// @param rate_hz largest rate of messages [Hz of wall time]
+  /// @param last_step number of the last step of an episode
+  Display(double rate_hz, std::uint32_t last_step);
+
+  /// Chooses the step of this state, if the last one was chosen long enough ago.
+  void Choose(const auv_msgs::SwarmState& state, double now_s);
+
+  /// The oldest chosen step, if it has waited too long; -1: none.
+  TimeNs Overdue(double now_s) const;
+
+  /// Sends a frame if it was chosen. @param report, links null: there is none
+  void Send(const SwarmFrame& frame, const auv_msgs::StepReport* report,
+            const auv_msgs::LinkStates* links);
+
+  /// Forgets what was chosen: another run begins.
+  void Clear() { chosen_.clear(); }
+
+ private:
+  double period_s_;
+  std::uint32_t last_step_;
+  std::map<TimeNs, double> chosen_;  ///< stamps of steps, and when they were chosen
+  double chosen_s_ = 0.0;            ///< when the last one was
+  auv_msgs::SwarmDisplay message_;
+  ros::Publisher publisher_;
+};
+
+}  // namespace stg::nodes
