@@ -8,11 +8,11 @@ namespace stg::acoustics {
 void Describe(ChannelConfig* c, config::Table* t) {
   t->Section("channel");
   t->Add("model", config::Name(&c->model, PropagationModels().Names()), config::kNone, "-",
-         "propagation model: range is Eq. 5, extended Eq. 6, physical a network of modems");
+         "propagation model: range (Eq. 5), extended (Eq. 6), physical (a network of modems)");
   t->Add("access", config::Name(&c->access, MediumAccesses().Names()), config::kNone, "-",
-         "medium access: when a packet that waits in a modem leaves it");
+         "medium access: the rule that decides when a modem sends a waiting packet");
   t->Add("range_m", &c->range_m, config::Positive(1e6), "m",
-         "R_c of Eq. 5: of the model range, and of links between true states");
+         "communication range R_c of Eq. 5, for the model range and for links in the mode truth");
   const auto describe = [](auto* options, config::Table* table) { Describe(options, table); };
   const auto model = [c] { return std::vector<std::string>{c->model}; };
   const auto of_model = [&](const char* name) {

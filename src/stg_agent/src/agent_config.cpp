@@ -16,14 +16,14 @@ void Describe(TaskConfig* c, config::Table* t) {
   t->Add("desired_distance_m", &c->desired_distance_m, config::NonNegative(1e4), "m",
          "desired distance d* from the target");
   t->Add("lost_distance_m", &c->lost_distance_m, config::Positive(1e5), "m",
-         "farther from the target than this, it counts as lost");
+         "a target farther away than this counts as lost");
   t->AddOptional("lost_error_m", &c->lost_error_m, "0.0", config::NonNegative(1e5), "m",
-                 "in open water a target whose own estimate is off by more counts as lost, too; 0: "
-                 "no matter how far off");
+                 "in open water a target also counts as lost where the AUV's own estimate is off "
+                 "by more than this; 0: no such limit");
   t->AddOptional(
       "assignment", config::Enum(&c->assignment, {"modulo", "free"}), "modulo", config::kNone, "-",
-      "which target an AUV follows: target i modulo their number, or the one that it "
-      "chooses; with free it keeps a belief of every target and shares what it measures of all");
+      "target that an AUV follows. modulo: AUV i follows target i modulo their number; free: the "
+      "AUV chooses, estimates every target and shares its measurements of all");
   t->Moved("reward.desired_distance_m", "task.desired_distance_m");
   t->Moved("reward.lost_distance_m", "task.lost_distance_m");
 }
@@ -47,10 +47,11 @@ void Describe(FleetConfig* c, config::Table* t) {
   t->Section("fleet");
   t->AddOptional(
       "leave", config::RowsRef{&c->leave, 2}, "[]", config::Within(0.0, 1e9), "s, -",
-      "when which AUV leaves the swarm: rows of a time from the start of the episode "
-      "and an index; it falls silent, senses nothing, and its command is to stand still");
+      "AUVs that leave the swarm: rows of a time from the start of the episode and an AUV's index. "
+      "An AUV that has left sends nothing, senses nothing, and is commanded to stand still");
   t->AddOptional("join", config::RowsRef{&c->join, 2}, "[]", config::Within(0.0, 1e9), "s, -",
-                 "when which AUV that has left joins again, where it is, knowing nothing");
+                 "AUVs that join again after they left: rows of a time and an AUV's index. An AUV "
+                 "joins at the place where it is, without any knowledge");
 }
 
 namespace {

@@ -10,12 +10,13 @@ namespace stg::acoustics {
 
 void Describe(ContentionConfig* c, config::Table* t) {
   t->Add("rest_s", &c->rest_s, config::NonNegative(1e4), "s",
-         "mean of the random rest after a transmission; 0: none");
+         "mean of the random pause after a transmission; 0: no pause");
 }
 
 void DescribeBackoff(ContentionConfig* c, config::Table* t) {
   t->Add("backoff_s", &c->backoff_s, config::Within(1e-3, 1e4), "s",
-         "longest first wait of a modem that hears a carrier; it doubles up to 32 times this");
+         "largest first random wait of a modem that hears a transmission; the limit doubles with "
+         "each further wait, up to 32 times this value");
 }
 
 void Aloha::Reset(std::uint64_t seed, std::uint32_t episode) {

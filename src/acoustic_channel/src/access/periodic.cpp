@@ -9,7 +9,8 @@ namespace stg::acoustics {
 
 void Describe(PeriodicConfig* c, config::Table* t) {
   t->Add("transmit_period_s", &c->transmit_period_s, config::Positive(1e4), "s",
-         "every AUV sends one packet per period, staggered; at least one decision");
+         "each AUV sends one packet per period, at a time of its own in the period; at least one "
+         "decision");
 }
 
 Periodic::Periodic(const PeriodicConfig& config, const RunConfig& run)

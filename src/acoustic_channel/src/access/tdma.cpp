@@ -11,12 +11,12 @@ void Describe(SlotsConfig* c, config::Table* t) {
   t->Add("length_s", &c->length_s, config::Within(1e-3, 1e4), "s",
          "length of a slot: airtime and guard");
   t->Add("guard_s", &c->guard_s, config::NonNegative(1e4), "s",
-         "end of a slot in which no modem sends: the way to the farthest node");
+         "last part of a slot, in which no modem sends: travel time to the farthest node");
 }
 
 void DescribeDraw(SlotsConfig* c, config::Table* t) {
   t->Add("send_probability", &c->send_probability, config::Within(1e-6, 1.0), "-",
-         "chance that a packet that waits leaves in a slot");
+         "probability that a waiting packet is sent in a slot");
 }
 
 std::optional<config::Violation> FindSlotConflict(const SlotsConfig& config, TimeNs airtime) {

@@ -150,29 +150,31 @@ void Describe(ModemConfig* c, config::Table* t) {
   t->Add("profile", config::Name(&c->profile, ModemProfiles().Names()), config::kNone, "-",
          "modem of every node");
   t->Add("profiles", config::NamesRef{&c->profiles, ModemProfiles().Names()}, config::kNone, "-",
-         "modems of a mixed fleet, one a node; empty: all are alike");
+         "modem of each node of a mixed fleet; empty: every node has the modem of the key profile");
   t->Add("packet_bytes", &c->packet_bytes, config::Within(0.0, 2048.0), "bytes",
-         "longest payload of the network, which a slot must hold; 0: what the modems take");
+         "longest payload in the network, which must fit into a slot; 0: the longest payload of "
+         "the modems");
   t->AddOptional("queue", config::Enum(&c->queue, {"newest", "fifo"}), "newest", config::kNone, "-",
-                 "a packet replaces the one that waits, or waits behind it");
+                 "newest: a new packet replaces the waiting one; fifo: it waits behind the others");
   t->Add("queue_length", &c->queue_length, config::Within(1.0, 1000.0), "packets",
-         "fifo: how many may wait; one more is refused");
+         "fifo: largest number of waiting packets; a modem refuses any more");
   t->Add("clock_offset_std_s", &c->clock_offset_std_s, config::NonNegative(1e3), "s",
          "standard deviation of a modem's clock at the start of an episode");
   t->Add("clock_drift_std_ppm", &c->clock_drift_std_ppm, config::NonNegative(1e3), "1e-6",
          "standard deviation of the rate of a modem's clock");
   t->AddOptional("timing_std_s", &c->timing_std_s, "0.0", config::NonNegative(10), "s",
                  "standard deviation of a travel time that a modem measures");
-  t->AddOptional("late_probability", &c->late_probability, "0.0", config::kFraction, "-",
-                 "probability that a modem takes the travel time of a later sound for that of the "
-                 "first");
+  t->AddOptional(
+      "late_probability", &c->late_probability, "0.0", config::kFraction, "-",
+      "probability that a modem measures the travel time of a later arrival, not of the first");
   t->AddOptional("late_max_s", &c->late_max_s, "0.1", config::NonNegative(10), "s",
-                 "by which that sound came later, at most");
+                 "largest delay of such a later arrival after the first");
   t->Add("freshness_s", &c->freshness_s, config::Positive(1e5), "s",
          "decay time of link quality with the age of the information");
-  t->AddOptional("source_level_offset_db", &c->source_level_offset_db, "0.0",
-                 config::Within(-60.0, 60.0), "dB",
-                 "added to the source level of every profile; the energy of sending stays");
+  t->AddOptional(
+      "source_level_offset_db", &c->source_level_offset_db, "0.0", config::Within(-60.0, 60.0),
+      "dB",
+      "added to the source level of every profile; the energy of a transmission does not change");
 }
 
 TimeNs ModemProfile::airtime(std::size_t bytes) const {

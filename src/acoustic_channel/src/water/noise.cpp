@@ -12,15 +12,16 @@ void Describe(NoiseConfig* c, config::Table* t) {
   t->Add("shipping", &c->shipping, config::kFraction, "-", "activity of distant ships");
   t->Add("wind_mps", &c->wind_mps, config::NonNegative(60.0), "m/s", "wind over the surface");
   t->Add("site_db", &c->site_db, config::Within(-100.0, 200.0), "dB re 1 uPa^2/Hz",
-         "flat noise of the site, its power added to the formulas'");
+         "noise of the site with a flat spectrum; its power is added to that of the formulas");
   t->Add("own_db", &c->own_db, config::Within(-100.0, 200.0), "dB re 1 uPa^2/Hz",
-         "a vehicle's own noise at its receiver at 1 kHz and 1 m/s; falls 6 dB an octave");
+         "a vehicle's own noise at its receiver at 1 kHz and 1 m/s; it falls by 6 dB per octave");
   t->Add("own_slope_db", &c->own_slope_db, config::NonNegative(200.0), "dB/decade",
          "growth of a vehicle's own noise with its speed");
   t->Add("burst_db", &c->burst_db, config::NonNegative(100.0), "dB",
-         "by which a burst raises ambient and site noise");
+         "level by which a burst raises the noise of the sea and of the site");
   t->Add("burst_every_s", &c->burst_every_s, config::NonNegative(1e6), "s",
-         "mean time from the end of a burst at a receiver to the next; 0: no bursts");
+         "mean time between two bursts at a receiver, from the end of one to the start of the "
+         "next; 0: no bursts");
   t->Add("burst_length_s", &c->burst_length_s, config::Within(1e-3, 1e6), "s",
          "mean length of a burst");
 }

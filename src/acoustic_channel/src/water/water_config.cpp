@@ -5,9 +5,9 @@ namespace stg::acoustics {
 void Describe(WaterConfig* c, config::Table* t) {
   t->Section("water");
   t->Add("surface_z_m", &c->surface_z_m, config::Within(-1e4, 1e4), "m, world",
-         "height of the water's surface; depths count from here");
+         "height of the water's surface, from which depths are measured");
   t->Add("depth_m", &c->depth_m, config::Positive(1e6), "m",
-         "depth of the flat bottom that reflects sound with more than one of propagation.paths");
+         "depth of the flat bottom, which reflects sound where propagation.paths is above 1");
   t->Add("temperature_c", &c->temperature_c, config::Within(-2.0, 30.0), "deg C",
          "of the water, for sound speed and for absorption by francois_garrison");
   t->Add("salinity_psu", &c->salinity_psu, config::Within(25.0, 40.0), "psu",

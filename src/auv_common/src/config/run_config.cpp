@@ -14,14 +14,14 @@ void Describe(TimeConfig* c, config::Table* t) {
   t->Add("episode_steps", &c->episode_steps, config::Within(1, 1e6), "decisions",
          "episode length T");
   t->Add("tail_steps", &c->tail_steps, config::Within(1, 1e6), "decisions",
-         "last decisions of an episode that count for tail metrics");
+         "number of decisions at the end of an episode that the tail metrics use");
 }
 
 void DescribeTop(RunConfig* c, config::Table* t) {
   t->Section("");
   t->Add("name", &c->name, config::kNone, "-", "label of the scenario in results");
   t->Add("seed", &c->seed, config::kNone, "-",
-         "seed of all random numbers unless a program is given one");
+         "seed of all random numbers, unless the command line gives another");
   t->Add("agents", &c->agents, config::Within(1, 255), "-", "number of AUVs N");
 }
 

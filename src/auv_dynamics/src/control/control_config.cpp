@@ -12,7 +12,8 @@ void Describe(ControlConfig* c, config::Table* t) {
   t->Add("interface", config::Enum(&c->interface, {"velocity3", "tau6"}), config::kNone, "-",
          "action: desired world velocity (3), or body force and moment (6)");
   t->Add("action_scale", &c->action_scale, config::Within(0.0, 1.0), "-",
-         "the policy's mean is this times its tanh; 0.18 in the paper's force interface");
+         "the policy's mean action is this value times the tanh of its output; 0.18 in the paper's "
+         "force interface");
   t->Add("max_delta", &c->max_delta, config::NonNegative(2), "-",
          "velocity3: largest change of an action per decision; 0: no limit");
   t->Add("smoothing", &c->smoothing, config::Within(0.0, 0.999), "-",
@@ -24,7 +25,7 @@ void Describe(ControlConfig* c, config::Table* t) {
   t->Add("rate_gain", &c->rate_gain, config::NonNegative(1e3), "-",
          "K_omega of Eq. 25, as a share of the largest moment at the largest rate");
   t->Add("heading", config::Enum(&c->heading, {"free", "along_velocity"}), config::kNone, "-",
-         "yaw: only damped, or the bow points along the commanded velocity");
+         "free: yaw is only damped; along_velocity: the bow points along the commanded velocity");
   t->Add("heading_gain", &c->heading_gain, config::NonNegative(1e3), "1/rad",
          "along_velocity: gain, as a share of the largest moment");
   Describe(&c->autopilot, t);

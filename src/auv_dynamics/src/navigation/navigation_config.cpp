@@ -18,20 +18,22 @@ void DescribeDeadReckoning(NavigationConfig* c, config::Table* t) {
   t->Add("dvl_noise_mps", &c->dvl_noise_mps, NonNegative(10), "m/s",
          "noise of each horizontal component of a ping");
   t->Add("dvl_altitude_m", &c->dvl_altitude_m, NonNegative(12000), "m",
-         "higher above the bottom the log measures velocity through the water");
+         "above this altitude the Doppler log does not reach the bottom and measures velocity "
+         "through the water");
   t->Add("heading_std_deg", &c->heading_std_deg, NonNegative(45), "deg",
          "standard deviation of the heading's constant error, drawn per episode");
   t->Add("gyro_walk_deg_per_sqrt_h", &c->gyro_walk_deg_per_sqrt_h, NonNegative(60), "deg/sqrt(h)",
          "random walk of the heading");
   t->Add("depth_std_m", &c->depth_std_m, NonNegative(100), "m", "noise of the depth from pressure");
   t->Add("gps_depth_m", &c->gps_depth_m, NonNegative(100), "m",
-         "shallower than this every ping comes with a fix; 0: never");
+         "above this depth GPS gives a position with each ping; 0: never");
   t->Add("gps_std_m", &c->gps_std_m, Positive(1e4), "m, world ENU",
-         "standard deviation of each horizontal component of a fix");
+         "standard deviation of each horizontal component of a GPS position");
   t->Add("start_std_m", &c->start_std_m, NonNegative(1e4), "m, world ENU",
          "standard deviation of each horizontal component at the start of an episode");
   t->Add("current_std_mps", &c->current_std_mps, NonNegative(10), "m/s, world ENU",
-         "current that the stated deviation reckons with while the log has no bottom");
+         "standard deviation of the unknown current, which the stated uncertainty includes while "
+         "the log does not reach the bottom");
 }
 
 }  // namespace

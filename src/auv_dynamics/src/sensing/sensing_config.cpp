@@ -23,17 +23,17 @@ void Describe(RelativeOptions* o, config::Table* t) {
     t->Add("bearing_std_deg", &o->bearing_std_deg, Positive(60), "deg",
            "standard deviation of azimuth and elevation");
     t->Add("ambiguous", &o->ambiguous, kNone, "-",
-           "a bearing cannot tell port from starboard, as that of a line array");
+           "bearings do not distinguish port from starboard, as with a line array");
   }
   t->Add("probability_at_range", &o->probability_at_range, kFraction, "-",
-         "share of the detection probability that is left at the detection range, falling with the "
-         "square of the range");
+         "share of the detection probability that remains at the detection range; the probability "
+         "falls with the square of the range");
   t->Add("outlier_probability", &o->outlier_probability, kFraction, "-",
-         "chance that a detection is drawn from anywhere in range");
+         "probability that a detection is drawn from anywhere within range");
   t->Add("false_alarm_probability", &o->false_alarm_probability, kFraction, "-",
-         "chance that a look without a detection reports one");
+         "probability of a false detection in a look that detects nothing");
   t->Add("field_of_view_deg", &o->field_of_view_deg, Positive(360), "deg, body",
-         "full angle of the cone around the bow that is seen");
+         "full angle of the cone around the bow in which the sensor detects");
 }
 
 void Describe(SensingConfig* c, config::Table* t) {
@@ -43,7 +43,7 @@ void Describe(SensingConfig* c, config::Table* t) {
   t->Add("range_m", &c->range_m, config::Positive(1e5), "m",
          "R_s: detection range, and scale of the confidence of Eq. 13");
   t->Add("detection_probability", &c->detection_probability, config::kFraction, "-",
-         "chance of a detection per decision within range");
+         "probability of a detection per decision within range");
   t->Add("dropout_rate_hz", &c->dropout_rate_hz, config::NonNegative(1e3), "Hz",
          "rate at which a sensor goes blind; 0: never");
   t->Add("dropout_duration_s", &c->dropout_duration_s, config::Positive(1e5), "s",
@@ -53,9 +53,8 @@ void Describe(SensingConfig* c, config::Table* t) {
   t->AddOptional("period_s", &c->period_s, "0.0", NonNegative(1e5), "s",
                  "time between two looks, whole decisions; 0: every decision");
   t->AddOptional("ranging", config::Enum(&c->ranging, {"free", "ping"}), "free", kNone, "-",
-                 "what a range of the sensor `range` costs: nothing, or a ping of the AUV's modem, "
-                 "which takes its turn on the water and its energy and is answered by the target's "
-                 "transponder");
+                 "cost of a range of the sensor `range`. free: none; ping: the AUV's modem pings "
+                 "the target's transponder, which takes time on the channel and energy");
   const auto sensor = [c] { return std::vector<std::string>{c->sensor}; };
   t->Thing({"target sensor", {"position"}, "sensing.sensor", sensor}, "sensing.position", c,
            [](SensingConfig* o, config::Table* table) {

@@ -9,7 +9,7 @@ struct RandomWaypointOptions {
 
 void Describe(RandomWaypointOptions* o, config::Table* t) {
   t->Add("radius_m", &o->radius_m, config::Positive(1e4), "m",
-         "distance at which a waypoint counts as reached");
+         "distance within which a waypoint counts as reached");
 }
 
 /// Whether `to`, relative to a target of velocity v, lies inside the circle of

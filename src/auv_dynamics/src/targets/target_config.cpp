@@ -15,9 +15,10 @@ void Describe(TargetConfig* c, config::Table* t) {
          "number of targets; AUV i is tasked with target i modulo this");
   t->Add("motion", config::Name(&c->motion, TargetMotions().Names()), config::kNone, "-",
          "motion of the targets");
-  t->Add("max_speed_mps", &c->max_speed_mps, config::Positive(10), "m/s", "no target is faster");
+  t->Add("max_speed_mps", &c->max_speed_mps, config::Positive(10), "m/s",
+         "largest speed of a target");
   t->Add("max_turn_rate_radps", &c->max_turn_rate_radps, config::Positive(10), "rad/s",
-         "no target turns faster, walls apart");
+         "largest turn rate of a target, except at walls");
   TargetMotions().Describe(
       "target", "target.motion", [c] { return std::vector<std::string>{c->motion}; }, &c->motions,
       t);

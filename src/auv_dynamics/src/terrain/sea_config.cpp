@@ -13,8 +13,8 @@ void Describe(SeaConfig* c, config::Table* t) {
                  "open water: a surface at z = 0 and a bottom instead of the walls");
   t->AddOptional("terrain", config::NameOrFileRef{&c->terrain, ".nc"}, "flat", kNone,
                  "name or FILE.nc",
-                 "bottom of open water: flat, or a bathymetry: a FILE.nc, or a NAME whose file "
-                 "NAME.nc is in a folder of $STG_TERRAINS or shipped");
+                 "bottom of open water: flat, or a bathymetry: a FILE.nc, or the NAME of a file "
+                 "NAME.nc that is shipped or in a folder of $STG_TERRAINS");
   t->AddOptional("bottom_m", &c->bottom_m, "120.0", Positive(12000), "m",
                  "depth of the flat bottom");
   t->AddOptional("latitude_deg", &c->latitude_deg, "0.0", Within(-90, 90), "deg, WGS 84",

@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   app.add_option("file", file,
                  "CSV: rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r")
       ->required();
-  app.add_option("--tolerance", tolerance, "largest share of range or distance allowed")
+  app.add_option("--tolerance", tolerance, "largest allowed error, as a share of range or distance")
       ->capture_default_str();
   app.add_option("--dt", dt_s, "largest physics step [s]")->capture_default_str();
   app.add_option("--integrator", integrator,
@@ -73,7 +73,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"semi_implicit", "rk4"}));
   app.add_option("--scenario", scenario,
                  "use the torpedo of this scenario (name or file); default: the REMUS 100");
-  app.add_option("--set", overrides, "changed scenario key, e.g. vehicle.substeps=2");
+  app.add_option("--set", overrides,
+                 "scenario override key.path=value, for example vehicle.substeps=2");
   app.add_flag("--advance-over-ground", over_ground,
                "propeller inflow from the speed over ground, as in the public model");
   stg::AddPluginOption(&app);

@@ -15,11 +15,11 @@ void Describe(TorpedoConfig* c, config::Table* t) {
   t->Add("length_m", &c->length_m, Positive(100), "m", "length L of the hull, a spheroid");
   t->Add("diameter_m", &c->diameter_m, Positive(20), "m", "diameter D, shorter than the hull");
   t->Add("water_density_kgpm3", &c->water_density_kgpm3, Positive(2000), "kg/m^3",
-         "density of the water; the vehicle weighs what it displaces");
+         "density of the water; the vehicle is neutrally buoyant");
   t->Add("cg_below_m", &c->cg_below_m, Positive(10), "m",
          "centre of gravity below the centre of buoyancy");
   t->Add("drag_coefficient", &c->drag_coefficient, NonNegative(100), "-",
-         "C_d on the frontal area");
+         "drag coefficient C_d of the frontal area");
   t->Add("surge_time_s", &c->surge_time_s, Positive(1e6), "s",
          "time constant of linear damping at rest, surge");
   t->Add("sway_time_s", &c->sway_time_s, Positive(1e6), "s",
@@ -52,16 +52,16 @@ void Describe(TorpedoConfig* c, config::Table* t) {
   t->Add("propeller_inflow", &c->propeller_inflow, kFraction, "-",
          "advance speed as a share of the speed through the water");
   t->Add("thrust_deduction", &c->thrust_deduction, kFraction, "-",
-         "share of the thrust that the hull takes back");
+         "share of the thrust that is lost because the propeller raises the hull's drag");
   t->Add("torque_share", &c->torque_share, kFraction, "-",
-         "share of the propeller's torque that rolls the hull");
+         "share of the propeller's torque that acts on the hull");
   t->Add("advance_over_ground", &c->advance_over_ground, kNone, "-",
-         "advance speed from the speed over ground, as the public model has it");
+         "the advance speed is computed from the speed over ground, as in the public model");
 }
 
 void Describe(KinematicConfig* c, config::Table* t) {
   t->Add("min_speed_mps", &c->min_speed_mps, NonNegative(100), "m/s",
-         "it cannot be slower; 0: it can stop");
+         "smallest speed; 0: the vehicle can stop");
   t->Add("speed_lag_s", &c->speed_lag_s, Positive(1e3), "s", "time constant of the speed");
   t->Add("turn_lag_s", &c->turn_lag_s, Positive(1e3), "s", "time constant of the turn rate");
   t->Add("climb_lag_s", &c->climb_lag_s, Positive(1e3), "s", "time constant of the climb rate");

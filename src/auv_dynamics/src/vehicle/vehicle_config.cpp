@@ -55,7 +55,7 @@ void DescribeFullyActuated(VehicleConfig* c, config::Table* t) {
   t->Add("added_mass_coriolis", config::Enum(&c->added_mass_coriolis, {"full", "no_munk", "off"}),
          config::kNone, "-", "added-mass part of C(nu): whole, without the Munk moment, or none");
   t->Add("reversed_coriolis", &c->reversed_coriolis, config::kNone, "-",
-         "C(nu) nu enters with the wrong sign, an error of the release that its traces hold");
+         "C(nu) nu has the wrong sign, an error of the release that its traces contain");
   t->Add("restoring", &c->restoring, config::kNone, "-",
          "weight, buoyancy and righting moment act");
   t->Add("float32_tau", &c->float32_tau, config::kNone, "-",
@@ -68,11 +68,10 @@ void Describe(VehicleConfig* c, config::Table* t) {
   const std::string axes = "surge sway heave roll pitch yaw";
   t->Section("vehicle");
   t->Add("model", config::Name(&c->model, Vehicles().Names()), config::kNone, "-",
-         "what moves an AUV: its equations, actuators and action space");
-  t->AddOptional(
-      "models", config::NamesRef{&c->models, Vehicles().Names()}, "[]", kNone, "-",
-      "kinds of a mixed fleet: AUV i is the i-th of them, from the first again when they "
-      "are used up; empty: all are `model`");
+         "vehicle model: equations, actuators and action space of an AUV");
+  t->AddOptional("models", config::NamesRef{&c->models, Vehicles().Names()}, "[]", kNone, "-",
+                 "vehicle models of a mixed fleet, which the AUVs take in turn: AUV i has entry i "
+                 "modulo their number; empty: every AUV has `model`");
   t->Add("profile", &c->profile, config::kNone, "-", "label of this set of vehicle constants");
   t->Add("max_velocity_mps", config::Numbers(&c->max_velocity_mps), config::Positive(100),
          "m/s, body", "largest u v w; scales actions and observations");

@@ -13,9 +13,9 @@ void Describe(ResetConfig* c, config::Table* t) {
          "reset stage of evaluation and of training without a curriculum");
   t->AddOptional(
       "deploy", config::Enum(&c->deploy, {"around", "point", "area"}), "around", config::kNone, "-",
-      "AUVs start around their targets; or on a line, reset.min_separation_m apart, whose "
-      "middle is reset.stages.*.auv_distance_m from the first target; or anywhere within "
-      "reset.start_half_extent_m. The last two need sea.open");
+      "around: AUVs start around their targets; point: on a line, reset.min_separation_m apart, "
+      "whose middle is reset.stages.*.auv_distance_m from the first target; area: anywhere within "
+      "reset.start_half_extent_m. point and area need sea.open");
   t->Add("curriculum", &c->curriculum, config::kNone, "-",
          "training draws the stage from the number of resets: easy, medium, then hard");
   const auto training = [c] {

@@ -18,22 +18,25 @@ void Describe(CurrentConfig* c, config::Table* t) {
   t->AddOptional("layer_depth_m", Numbers(&c->layer_depth_m), "[0.0, 50.0, 100.0, 200.0]",
                  NonNegative(12000), "m", "depths of the layers' velocities, increasing");
   t->AddOptional("layer_east_mps", Numbers(&c->layer_east_mps), "[0.0, 0.0, 0.0, 0.0]",
-                 Within(-10, 10), "m/s", "current to the east that is added at these depths");
+                 Within(-10, 10), "m/s", "eastward current at these depths, added to velocity_mps");
   t->AddOptional("layer_north_mps", Numbers(&c->layer_north_mps), "[0.0, 0.0, 0.0, 0.0]",
-                 Within(-10, 10), "m/s", "current to the north that is added at these depths");
+                 Within(-10, 10), "m/s",
+                 "northward current at these depths, added to velocity_mps");
   t->AddOptional("tide_mps", Numbers(&c->tide_mps), "[0.0, 0.0]", Within(-10, 10),
-                 "m/s, east and north", "amplitude of a tidal current that is added");
+                 "m/s, east and north", "amplitude of a tidal current, added to the others");
   t->AddOptional("tide_period_s", &c->tide_period_s, "44714.2", Positive(1e8), "s",
                  "period of the tide");
   t->AddOptional("tide_phase_rad", &c->tide_phase_rad, "0.0", NonNegative(6.3), "rad",
-                 "phase of the tide when an episode starts");
+                 "phase of the tide at the start of an episode");
   t->AddOptional("random_mps", &c->random_mps, "[0.0, 0.0]", NonNegative(10), "m/s",
-                 "[low, high] speed at each of the layers' depths, drawn per episode, of a current "
-                 "that is added; its first direction is drawn, too");
-  t->AddOptional("random_turn_deg", &c->random_turn_deg, "28.6", NonNegative(180), "deg",
-                 "standard deviation of the turn of that current from one depth to the next");
-  t->AddOptional("random_tide_mps", &c->random_tide_mps, "0.0", NonNegative(10), "m/s",
-                 "amplitude of a tide that is added; its direction and phase are drawn");
+                 "[low, high] speed of an additional current, drawn per episode for each of the "
+                 "layers' depths; its direction at the first depth is drawn, too");
+  t->AddOptional(
+      "random_turn_deg", &c->random_turn_deg, "28.6", NonNegative(180), "deg",
+      "standard deviation of the turn of this additional current from one depth to the next");
+  t->AddOptional(
+      "random_tide_mps", &c->random_tide_mps, "0.0", NonNegative(10), "m/s",
+      "amplitude of an additional tidal current; its direction and phase are drawn per episode");
   const config::Owner drawn{
       "current", {"drawn per episode"}, "current.random_mps", [c] {
         return std::vector<std::string>{c->random() ? "drawn per episode" : "given"};
@@ -74,13 +77,13 @@ void Describe(WorkspaceConfig* c, config::Table* t) {
   t->Add("half_extent_m", &c->half_extent_m, config::Positive(1e5), "m, world ENU",
          "walls at +- this value on each axis");
   t->Add("restitution", &c->restitution, config::kFraction, "-",
-         "kept share of the velocity component normal to a wall");
+         "share of the velocity normal to a wall that remains after contact");
   t->Add("tangential", &c->tangential, config::kFraction, "-",
-         "kept share of the velocity components along a wall");
+         "share of the velocity along a wall that remains after contact");
   t->Add("body_velocity", &c->body_velocity, config::kFraction, "-",
-         "kept share of the body velocity at a wall");
+         "share of the body velocity that remains after contact with a wall");
   t->Add("body_rate", &c->body_rate, config::kFraction, "-",
-         "kept share of the body rates at a wall");
+         "share of the body rates that remains after contact with a wall");
 }
 
 }  // namespace stg::dynamics

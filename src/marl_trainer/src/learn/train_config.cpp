@@ -14,10 +14,11 @@ void TrainConfig::Describe(config::Table* table) {
   table->Add("envs", &envs, {1, 65536}, "-", "parallel environments");
   table->Add("horizon", &horizon, {1, 100000}, "-",
              "decisions of each environment between two updates");
-  table->Add("stagger", &stagger, config::kNone, "-", "spread the ends of the first episodes");
+  table->Add("stagger", &stagger, config::kNone, "-",
+             "the first episodes end at different times, so that episodes do not all end together");
   table->Add("start-from", config::TextRef{&start_from}, config::kNone, "-",
-             "folder of a finished run whose networks and normalisers to start from; steps, "
-             "optimiser and exploration start anew; empty: untrained networks");
+             "folder of a finished run; the training starts with its networks and normalisers, but "
+             "with new steps, optimiser and exploration; empty: untrained networks");
   table->Add("validation-interval", &validation_interval, {1, 1e12}, "-",
              "environment steps between validations");
   table->Add("validation-episodes", &validation_episodes, {1, 10000}, "-",

@@ -11,13 +11,14 @@
 /// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
 /// on unusable input.
 int main(int argc, char** argv) {
-  CLI::App app("Replays a trace of the release's simulator in ours and compares every column");
+  CLI::App app(
+      "Replays a trace of the release's simulator in this simulator and compares every column");
   std::vector<std::string> folders;
   std::string scenario = "medium_release";
   double tolerance = 1e-5;
   app.add_option("folder", folders, "folder with config.yaml and steps.csv")->required();
   app.add_option("--scenario", scenario,
-                 "scenario of the settings that are not in the trace's config.yaml")
+                 "scenario that gives the settings missing in the trace's config.yaml")
       ->capture_default_str();
   app.add_option("--tolerance", tolerance, "largest absolute error allowed")->capture_default_str();
   return stg::RunProgram("check_trace", &app, argc, argv, [&] {

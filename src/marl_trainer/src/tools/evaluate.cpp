@@ -96,7 +96,7 @@ class Constants {
       const auto& owners = constant.owners;
       if (std::find(owners.begin(), owners.end(), name) == owners.end()) {
         throw stg::UserError("--" + key + ": belongs to " + stg::JoinNames(owners) +
-                             "; this evaluation flies '" + policy + "'");
+                             ", but this evaluation flies '" + policy + "'");
       }
       text += (text.find(':') == std::string::npos ? ":" : ",") + key + "=" + constant.value;
     }
@@ -134,9 +134,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option(
          "--variant", variant,
-         "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of "
-         "the policy; the return is by the scenario's reward, training_return by that of the "
-         "variant")
+         "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of the "
+         "policy; return uses the scenario's reward, training_return that of the variant")
       ->capture_default_str();
   app.add_option("--episodes", episodes, "number of episodes")
       ->check(CLI::Range(1, 1000000))
@@ -144,7 +143,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed,
                  "episode e is drawn from seed + e; from " +
                      std::to_string(stg::env::kReportingSeeds.first) +
-                     " on, what nothing was chosen by")
+                     " on, seeds that no training and no choice used")
       ->check(stg::learn::SeedCheck())
       ->capture_default_str();
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
@@ -156,7 +155,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_flag("--privileged", privileged,
-               "a built-in controller reads true states in acoustic mode, too");
+               "a built-in controller reads true states, also in acoustic mode");
   Constants constants(&app);
   stg::AddPluginOption(&app);
   return stg::RunProgram("evaluate", &app, argc, argv, [&] {

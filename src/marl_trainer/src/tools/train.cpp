@@ -75,15 +75,15 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
                  "one of " + stg::JoinNames(stg::learn::Algorithms().Names()))
       ->capture_default_str();
   app.add_option("--preset", setup.common.preset,
-                 "fast (ours) or paper (Table S2); the defaults of the options below")
+                 "defaults of the options below: fast (of this project) or paper (Table S2)")
       ->capture_default_str();
   app.add_option("--variant", setup.common.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
       ->capture_default_str();
   app.add_option("--out", out, "folder for checkpoints, policies and logs")->required();
   app.add_flag("--resume", resume,
-               "go on from the folder's newest good checkpoint, with what the folder says of "
-               "scenario, options and seed");
-  app.add_option("--workers", workers, "threads; results do not depend on them")
+               "continue from the folder's newest intact checkpoint, with the folder's scenario, "
+               "options and seed");
+  app.add_option("--workers", workers, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_option("--set", overrides, "scenario override key.path=value, repeatable")
@@ -122,11 +122,11 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   stg::learn::Trainer trainer(scenario, setup, options);
   if (trainer.Run()) {
     if (Leads(*ranks) && !std::cout.flush()) {
-      throw stg::UserError("all is saved, but standard output cannot be written");
+      throw stg::UserError("the training is saved, but standard output cannot be written");
     }
     return 0;
   }
-  lines << "stopped at " << trainer.state().env_steps << " steps and saved; --resume goes on"
+  lines << "stopped at " << trainer.state().env_steps << " steps and saved; --resume continues"
         << std::endl;
   return stg::kStopped;
 }

@@ -20,10 +20,10 @@ int main(int argc, char** argv) {
   app.add_option("--scenario", scenario, "shipped name or file, in open water")
       ->capture_default_str();
   app.add_option("--out", options.out, "folder for checkpoint, policies and logs")->required();
-  app.add_flag("--resume", options.resume, "go on from the folder's checkpoint");
+  app.add_flag("--resume", options.resume, "continue from the folder's checkpoint");
   app.add_option("--start-from", options.start_from,
-                 "folder of another training whose networks and moments this one begins with");
-  app.add_option("--workers", options.workers, "threads; results do not depend on them")
+                 "folder of another training; this one starts with its networks and moments");
+  app.add_option("--workers", options.workers, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   stg::config::Table table;
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
         stg::learn::FieldMixture(folder, scenario, config, config.envs / 8),
         stg::learn::FieldValidation(folder, scenario), config, options);
     if (trainer.Run()) return 0;
-    std::cout << "stopped and saved; --resume goes on" << std::endl;
+    std::cout << "stopped and saved; --resume continues" << std::endl;
     return stg::kStopped;
   });
 }

@@ -117,16 +117,18 @@ int Assign::Choose(const AgentView& agent) const {
 
 void Describe(AssignOptions* o, config::Table* t) {
   t->Add("load", &o->load_s, NonNegative(1e5), "s",
-         "what each AUV beyond the least number at a target costs more");
+         "added cost of a target for each AUV beyond the number `least`");
   t->Add("hysteresis", &o->hysteresis_s, NonNegative(1e5), "s",
-         "another target must be better by this, and so long a choice stays");
-  t->Add("least", &o->least, config::Within(1, 16), "AUVs", "that every target should have");
-  t->Add("period", &o->period_s, NonNegative(1e5), "s", "between two choices");
+         "an AUV changes its target only where another costs less by this much, and not before "
+         "this time since its last change");
+  t->Add("least", &o->least, config::Within(1, 16), "AUVs",
+         "number of AUVs that each target should have");
+  t->Add("period", &o->period_s, NonNegative(1e5), "s", "time between two choices of a target");
   t->Add("silent", &o->silent_frames, NonNegative(1e3), "frames",
-         "an AUV that is silent for so long is taken to be gone");
-  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
+         "an AUV that has been silent for so many frames counts as gone");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "largest speed over ground");
   t->Add("form", &o->form, config::Within(0.0, 1.0), "-",
-         "0: circles the target that it follows; 1: keeps a place at it");
+         "0: the AUV circles its target; 1: it keeps a place in a formation around it");
 }
 
 std::unique_ptr<Controller> MakeAssign(const AssignOptions& options) {

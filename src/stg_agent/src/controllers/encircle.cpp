@@ -173,46 +173,48 @@ template Level<Pack> Encircle::Miss(const Level<Pack>&, const Level<Pack>&, cons
 
 void Describe(EncircleOptions* o, config::Table* t) {
   t->Add("cruise", &o->cruise_mps, NonNegative(100), "m/s",
-         "speed over ground on the side of the circle that runs back");
-  t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "speed over ground, at least");
+         "speed over ground where the AUV circles against the target's course");
+  t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "smallest speed over ground");
   t->Add("fast", &o->fast_mps, NonNegative(100), "m/s",
-         "speed over ground on the way to the circle, and at most");
+         "largest speed over ground, and the speed on the way to the circle");
   t->Add("inward", &o->inward_gain, NonNegative(1e3), "-",
-         "how steeply the way to the circle points at it");
+         "how steeply the way to the circle points inward");
   t->Add("lead", &o->lead_s, NonNegative(1e3), "s",
-         "the vehicle is taken to be where it will be then");
+         "the law uses the vehicle's position after this time");
   t->Add("spread", &o->spread_gain, NonNegative(1e3), "1/rad",
-         "change of speed off the middle of the gap");
-  t->Add("spread-limit", &o->spread_limit, kFraction, "-", "largest such change");
+         "relative change of speed per angle off the middle between the AUVs ahead and behind");
+  t->Add("spread-limit", &o->spread_limit, kFraction, "-",
+         "largest relative change of speed by `spread`");
   t->Add("clearance", &o->clearance_m, NonNegative(1e4), "m",
-         "others are to be missed by this, in the plane");
+         "horizontal distance at which the AUV passes other AUVs");
   t->Add("doubt", &o->doubt_mps, NonNegative(100), "m/s",
-         "and by this times the age of what they said");
+         "added to `clearance` per second of age of the other AUV's last packet");
   t->Add("mate-clearance", &o->mate_clearance_m, NonNegative(1e4), "m",
-         "the same of others on the own circle");
+         "the same distance for AUVs on the same circle");
   t->Add("horizon", &o->horizon_s, NonNegative(1e4), "s",
-         "closest approaches later than this do not matter");
+         "closest approaches later than this are ignored");
   t->Add("layer", &o->layer_m, NonNegative(1e4), "m",
-         "others this much above or below do not matter");
-  t->Add("depth-gain", &o->depth_gain_ps, NonNegative(1e3), "1/s", "climb rate per missing depth");
-  t->Add("climb", &o->climb_mps, NonNegative(100), "m/s", "largest climb rate that is asked for");
+         "AUVs and obstacles farther above or below than this are ignored");
+  t->Add("depth-gain", &o->depth_gain_ps, NonNegative(1e3), "1/s", "climb rate per error of depth");
+  t->Add("climb", &o->climb_mps, NonNegative(100), "m/s", "largest commanded climb rate");
   t->Add("ring", &o->ring, config::Within(0.0, 0.9), "-",
-         "large teams: two circles, this share inside and outside of d*");
-  t->Add("ring-team", &o->ring_team, NonNegative(1e4), "AUVs", "teams larger than this are large");
+         "large teams: two circles, smaller and larger than d* by this share");
+  t->Add("ring-team", &o->ring_team, NonNegative(1e4), "AUVs",
+         "teams of more AUVs than this are large");
   t->Add("smallest-circle", &o->smallest_circle, kFraction, "-",
-         "share of d* that the circle keeps far below or above the target");
+         "smallest radius of the circle far above or below the target, as a share of d*");
   t->Add("dodge", &o->dodge, NonNegative(100), "-",
-         "speed aside of an AUV in the way, as a share of the own speed");
+         "largest sideways speed to avoid an AUV, as a share of the AUV's own speed");
   t->Add("on-circle", &o->on_circle, NonNegative(10), "-",
-         "closer to the circle than this share of d*, the AUV is on it");
+         "the AUV is on the circle when it is closer to it than this share of d*");
   t->Add("mate-on-circle", &o->mate_on_circle, NonNegative(10), "-",
-         "the same of other AUVs, where there is one circle");
+         "the same share for other AUVs, where there is one circle");
   t->Add("keep-off", &o->keep_off_m, NonNegative(1e4), "m",
-         "distance that is kept from obstacles, in the plane");
+         "horizontal distance that the AUV keeps from obstacles");
   t->Add("keep-off-doubt", &o->keep_off_doubt, NonNegative(10), "-",
-         "standard deviations of the own position that are kept off beside");
+         "added to `keep-off`: so many standard deviations of the AUV's own position");
   t->Add("hurry-from", &o->hurry_from, NonNegative(10), "-",
-         "farther outside than this share of d*, the AUV begins to hurry");
+         "the AUV speeds up when it is farther outside the circle than this share of d*");
 }
 
 std::unique_ptr<Controller> MakeEncircle(const EncircleOptions& options) {

@@ -133,22 +133,24 @@ void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T
 
 void Describe(FormationOptions* o, config::Table* t) {
   t->Add("slots", config::Enum(&o->slots, {"free", "course"}), kNone, "-",
-         "bearings of the ring: those nearest to the AUVs, or symmetric to the target's course");
-  t->Add("radius", &o->radius, config::Within(0.1, 10.0), "-", "of the ring, as a share of d*");
+         "bearings of the places in the ring. free: those nearest to the AUVs; course: symmetric "
+         "to the target's course");
+  t->Add("radius", &o->radius, config::Within(0.1, 10.0), "-",
+         "radius of the ring, as a share of d*");
   t->Add("gain", &o->gain_ps, NonNegative(100), "1/s",
-         "speed towards the own place per missing length");
-  t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "speed over ground, at least");
-  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
+         "speed towards the AUV's place per distance from it");
+  t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "smallest speed over ground");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "largest speed over ground");
   t->Add("weave-below", &o->weave_below_mps, NonNegative(100), "m/s",
-         "a target slower than this is circled");
+         "the AUVs circle a target that is slower than this");
   t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
-         "others farther from the target have no place in the ring");
+         "AUVs farther from the target than this have no place in the ring");
   t->Add("lead", &o->lead_s, NonNegative(1e3), "s",
-         "the vehicle is taken to be where it will be then");
+         "the law uses the vehicle's position after this time");
   t->Add("clearance", &o->clearance_m, NonNegative(1e4), "m",
-         "others are to be missed by this, in the plane");
+         "horizontal distance at which the AUV passes other AUVs");
   t->Add("doubt", &o->doubt_mps, NonNegative(100), "m/s",
-         "and by this times the age of what they said");
+         "added to `clearance` per second of age of the other AUV's last packet");
 }
 
 template void Formation::Act(const ControllerInput<double>& in, const Guidance<double>& guidance,

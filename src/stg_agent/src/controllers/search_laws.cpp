@@ -124,17 +124,18 @@ class MapLaw final : public SearchLaw {
 
 void DescribeFound(FoundOptions* o, config::Table* t) {
   t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
-         "without an observation for so long, the search begins again");
-  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "speed over ground, at most");
-  t->Add(
-      "form", &o->form, config::kFraction, "-",
-      "a target that is found is circled (0, encircle), or a place is kept at it (1, formation)");
+         "the search begins again after this time without an observation");
+  t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "largest speed over ground");
+  t->Add("form", &o->form, config::kFraction, "-",
+         "after the target is found, 0: the AUV circles it, as encircle; 1: it keeps a place, as "
+         "formation");
   t->Add("certain", &o->certain_m, NonNegative(1e5), "m",
-         "a target whose estimate is less certain is closed in on by the map; 0: never");
+         "the AUV approaches the target by the map while the estimate's standard deviation is "
+         "above this; 0: never");
   t->Add("close-reach", &o->close_reach_m, config::Positive(1e5), "m",
-         "how far the map's mass counts then");
+         "distance over which the map's mass counts during that approach");
   t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
-         "form=1: others farther from the target have no place in the ring");
+         "form=1: AUVs farther from the target than this have no place in the ring");
 }
 
 SearchLaw::SearchLaw(const FoundOptions& found)
@@ -244,16 +245,20 @@ Level<double> SearchLaw::WayToMass(const AgentView& agent, SearchMemory* search)
 
 void Describe(SearchMapOptions* o, config::Table* t) {
   DescribeFound(o, t);
-  t->Add("horizon", &o->horizon_s, NonNegative(1e5), "s", "the mass swept in this time counts");
+  t->Add("horizon", &o->horizon_s, NonNegative(1e5), "s",
+         "a course is worth the map's mass that it sweeps in this time");
   t->Add("swath", &o->swath, NonNegative(10), "-",
          "half width of the sweep, as a share of the detection range");
-  t->Add("pull", &o->pull, NonNegative(100), "-", "weight of the mass in a direction");
-  t->Add("pull-range", &o->pull_m, config::Positive(1e5), "m", "how far that reaches");
-  t->Add("replan", &o->replan_s, NonNegative(1e5), "s", "between two choices of a course");
-  t->Add("keep", &o->keep, NonNegative(100), "-", "the old course is worth this times as much");
+  t->Add("pull", &o->pull, NonNegative(100), "-",
+         "weight of the map's mass in the direction of a course");
+  t->Add("pull-range", &o->pull_m, config::Positive(1e5), "m",
+         "distance over which that mass counts");
+  t->Add("replan", &o->replan_s, NonNegative(1e5), "s", "time between two choices of a course");
+  t->Add("keep", &o->keep, NonNegative(100), "-", "factor on the worth of the present course");
   t->Add("senior", &o->senior_s, NonNegative(1e5), "s",
-         "AUVs of a lower number are taken to fly on for so long");
-  t->Add("courses", &o->courses, config::Within(4, kCourses), "-", "courses to choose from");
+         "AUVs of a lower index are assumed to keep their course for this time");
+  t->Add("courses", &o->courses, config::Within(4, kCourses), "-",
+         "number of courses to choose from");
 }
 
 std::unique_ptr<SearchLaw> MakeSearchMap(const SearchMapOptions& options) {

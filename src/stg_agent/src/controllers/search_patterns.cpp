@@ -10,9 +10,9 @@ namespace {
 void DescribePattern(PatternOptions* o, config::Table* t) {
   DescribeFound(o, t);
   t->Add("spacing", &o->spacing, config::Positive(10), "-",
-         "between two tracks, as a share of the detection range");
+         "distance between two tracks, as a share of the detection range");
   t->Add("reached", &o->reached_m, config::Positive(1e4), "m",
-         "a waypoint is reached at this distance");
+         "distance within which a waypoint counts as reached");
 }
 
 /// Flies to one waypoint after the other.

@@ -8,19 +8,19 @@ namespace {
 
 void DescribeMeasurements(TrackConfig* c, config::Table* t) {
   t->Add("velocity_std_mps", &c->velocity_std_mps, config::NonNegative(100), "m/s",
-         "standard deviation of each component of the target's velocity; 0: "
-         "target.max_speed_mps over the root of 2");
+         "standard deviation of each component of the target's velocity; 0: target.max_speed_mps / "
+         "sqrt(2)");
   t->Add("velocity_memory_s", &c->velocity_memory_s, config::Positive(1e5), "s",
          "correlation time of the target's velocity");
   t->Add("memory_s", &c->memory_s, config::Positive(1e5), "s",
-         "oldest measurement that is still taken");
+         "largest age of a measurement that the filter uses");
   t->Add("share_spacing_s", &c->share_spacing_s, config::NonNegative(1e5), "s",
          "least time between the two measurements in one packet");
   t->Add("observers", config::Enum(&c->observers, {"steps", "rates", "located"}), config::kNone,
          "-",
-         "errors of observers' positions grow by independent steps; or at "
-         "lasting rates while their logs find no bottom; or are those that localization.kind "
-         "leaves");
+         "errors of the observers' positions. steps: they grow by independent steps; rates: they "
+         "grow at lasting rates while the logs do not reach the bottom; located: localization.kind "
+         "states them");
   t->Add("shear_std_mps", &c->shear_std_mps, config::NonNegative(10), "m/s",
          "rates: standard deviation of each component of the current that an AUV does not "
          "share with the others");
@@ -39,17 +39,19 @@ void Describe(TrackConfig* c, config::Table* t) {
   t->Add("initial_speed_std_mps", &c->initial_speed_std_mps, config::Positive(100), "m/s",
          "standard deviation of each velocity component of a new track");
   t->Add("gate_sigma", &c->gate_sigma, config::Positive(1e3), "-",
-         "own detections farther off are set aside, three in a row restart the track");
+         "the filter rejects own detections farther off than so many standard deviations; three in "
+         "a row restart the track");
   t->Add("lost_std_m", &c->lost_std_m, config::Positive(1e4), "m",
-         "a track whose position is no better than this counts as lost");
+         "a track counts as lost when the standard deviation of its position is above this");
   t->Add("neighbour_max_age_s", &c->neighbour_max_age_s, config::Positive(1e5), "s",
-         "a neighbour is forgotten after this silence");
+         "an AUV forgets a neighbour that has been silent for this time");
   t->AddOptional("search_cell_m", &c->search_cell_m, "0.0", config::NonNegative(1e4), "m",
-                 "side of the 32 x 32 cells of each agent's map of where its target may be, around "
-                 "the datum; 0: it keeps none");
-  t->AddOptional(
-      "filter", config::Name(&c->filter, TargetFilters().Names()), "kalman", config::kNone, "-",
-      "target filter: of positions and shared estimates, or of measurements of any kind");
+                 "side of a cell of each agent's search map, 32 x 32 cells around the datum that "
+                 "give the probability of its target; 0: no map");
+  t->AddOptional("filter", config::Name(&c->filter, TargetFilters().Names()), "kalman",
+                 config::kNone, "-",
+                 "target filter. kalman: uses positions and shared estimates; measurements: uses "
+                 "measurements of any kind");
   t->Thing({"target filter",
             {"measurements"},
             "track.filter",

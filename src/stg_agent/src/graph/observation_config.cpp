@@ -9,15 +9,14 @@ void Describe(ObservationConfig* c, config::Table* t) {
          "include the 9 semantic numbers of Eqs. 15-16");
   t->Add("graph", &c->graph, config::kNone, "-", "include the 6 task-graph numbers of Eq. 18");
   t->AddOptional("links", &c->links, "true", config::kNone, "-",
-                 "the link numbers of Eq. 18; false: they read 0, as an ablation wants it");
+                 "the link numbers of Eq. 18; false: they read 0, for an ablation");
   t->AddOptional("roles", &c->roles, "true", config::kNone, "-",
-                 "advantage and role of Eqs. 18-19; false: they read 0, as an ablation wants it");
+                 "advantage and role of Eqs. 18-19; false: they read 0, for an ablation");
   t->Add("order", config::Enum(&c->order, {"nearest", "index"}), config::kNone, "-",
-         "which three neighbours are shown: the nearest, or the first by index");
-  t->Add(
-      "release_bookkeeping", &c->release_bookkeeping, config::kNone, "-",
-      "truth mode, as the release: shown progress and first P are 0, mean error counts the current "
-      "one twice, lost steps read one too many");
+         "the three neighbours in the observation: the nearest, or the first by index");
+  t->Add("release_bookkeeping", &c->release_bookkeeping, config::kNone, "-",
+         "truth mode, errors of the release: observed progress and first P are 0, the mean error "
+         "counts the current one twice, lost steps are one too many");
   t->Add("distance_scale_m", &c->distance_scale_m, config::Positive(1e5), "m",
          "target distance that reads 1");
   t->Add("error_scale_m", &c->error_scale_m, config::Positive(1e5), "m",
@@ -31,15 +30,15 @@ void Describe(ObservationConfig* c, config::Table* t) {
   t->Add("lost_scale_steps", &c->lost_scale_steps, config::Positive(1e6), "decisions",
          "consecutive lost decisions that read 1");
   t->Add("near_range_m", &c->near_range_m, config::NonNegative(1e5), "m",
-         "closer to the target than this, an approach counts as stable");
+         "an approach closer to the target than this counts as stable");
   t->Add("quality_high", &c->quality_high, config::kFraction, "-",
-         "confidence from here on is high");
+         "a confidence of this value or more is high");
   t->Add("quality_medium", &c->quality_medium, config::kFraction, "-",
-         "confidence from here on is medium, below it low");
+         "a confidence of this value or more is medium, a smaller one is low");
   t->Add("link_available", &c->link_available, config::kFraction, "-",
-         "a link quality above this makes an effective neighbour");
+         "a neighbour is effective when its link quality is above this");
   t->Add("role_confidence", &c->role_confidence, config::kFraction, "-",
-         "confidence from which an AUV with an advantage takes the tracking role");
+         "smallest confidence with which an AUV with an advantage takes the tracking role");
   const config::Owner graph{"task graph", {"true"}, "observation.graph", [c] {
                               return std::vector<std::string>{c->graph ? "true" : "false"};
                             }};

@@ -17,27 +17,27 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
   t->Add("current_memory_s", &c->current_memory_s, Positive(1e7), "s",
          "correlation time of that current");
   t->Add("shear_std_mps", &c->shear_std_mps, NonNegative(10), "m/s, world ENU",
-         "standard deviation of each component by which an AUV's own current differs from that");
+         "standard deviation of each component of the difference between an AUV's own current and "
+         "the shared one");
   t->Add("shear_memory_s", &c->shear_memory_s, Positive(1e7), "s",
          "correlation time of this difference");
   t->Add("shear_depth_m", &c->shear_depth_m, Positive(1e5), "m",
-         "change of depth over which it is forgotten");
+         "change of depth over which this difference loses its correlation");
   t->Add("reckoning_std_m", &c->reckoning_std_m, Positive(1e3), "m",
-         "standard deviation of what the log and the heading add to each component of the reckoned "
-         "position in a second");
+         "standard deviation of the error that log and heading add to each component of the "
+         "reckoned position per second");
   t->Add("range_std_m", &c->range_std_m, Positive(1e4), "m",
          "standard deviation of a range from a travel time");
   t->Add("late_share", &c->late_share, kFraction, "-",
-         "share of ranges that are not of the first sound, and so too long");
-  t->Add("late_max_m", &c->late_max_m, Positive(1e5), "m", "by which these are too long, at most");
+         "share of ranges that are of a later arrival, not of the first, and so too long");
+  t->Add("late_max_m", &c->late_max_m, Positive(1e5), "m", "largest error of such a range");
   t->Add("sound_speed_std", &c->sound_speed_std, NonNegative(0.1), "-",
-         "standard deviation of the share by which all ranges are too long");
+         "standard deviation of the relative error of the sound speed, which all ranges share");
   t->Add("gate_sigma", &c->gate_sigma, Positive(1e3), "-",
-         "ranges farther off than so many standard deviations are set aside");
-  t->AddOptional(
-      "by", config::Enum(&c->by, {"one_way", "ping"}), "one_way", kNone, "-",
-      "ranges are from the travel times of packets, by the clocks of both modems, or from pings of "
-      "the AUVs, by the clock of the one that pings alone");
+         "the localizer rejects ranges farther off than so many standard deviations");
+  t->AddOptional("by", config::Enum(&c->by, {"one_way", "ping"}), "one_way", kNone, "-",
+                 "source of the ranges. one_way: travel times of packets, by the clocks of both "
+                 "modems; ping: pings of the AUVs, by the clock of the pinging modem alone");
   t->AddOptional("ping_period_s", &c->ping_period_s, "30.0", Positive(1e5), "s",
                  "time between two pings of an AUV, whole decisions; it pings the other AUVs and "
                  "the stations in turn");
@@ -48,8 +48,8 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
 void Describe(LocalizationConfig* c, config::Table* t) {
   t->Section("localization");
   t->AddOptional("kind", config::Name(&c->kind, Localizers().Names()), "uncorrected", kNone, "-",
-                 "how AUVs correct their reckoned positions: not at all, or by ranges to each "
-                 "other and to stations");
+                 "correction of the AUVs' reckoned positions. uncorrected: none; ranges: by ranges "
+                 "to each other and to stations");
   t->Thing({"localizer",
             {"ranges"},
             "localization.kind",

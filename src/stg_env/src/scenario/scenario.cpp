@@ -10,7 +10,7 @@ void Scenario::ValidateOrThrow() const { config::ValidateOrThrow(*this); }
 void Describe(Scenario* s, config::Table* t) {
   DescribeTop(&s->run, t);
   t->Add("mode", config::Enum(&s->mode, {"truth", "acoustic"}), config::kNone, "-",
-         "what agents know: true states, or own sensors and received packets");
+         "what agents know. truth: true states; acoustic: own sensors and received packets");
   Describe(&s->run.time, t);
   Describe(&s->world, t);
   Describe(&s->channel, t);

@@ -15,12 +15,12 @@ struct ObstacleOptions {
 
 void Describe(SeabedOptions* o, config::Table* t) {
   t->Add("margin_m", &o->margin_m, config::Positive(1e4), "m",
-         "altitude above the bottom from which on nothing is subtracted");
+         "altitude above the bottom above which the term is 0");
 }
 
 void Describe(ObstacleOptions* o, config::Table* t) {
   t->Add("margin_m", &o->margin_m, config::Positive(1e4), "m",
-         "distance to the nearest obstacle from which on nothing is subtracted");
+         "distance to the nearest obstacle beyond which the term is 0");
 }
 
 /// Minus the share of a margin that is missing to something to be kept clear of: 0 from the margin

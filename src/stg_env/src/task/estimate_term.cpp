@@ -11,9 +11,9 @@ struct EstimateOptions {
 
 void Describe(EstimateOptions* o, config::Table* t) {
   t->Add("good_m", &o->good_m, config::NonNegative(1e5), "m",
-         "an estimate that is off by no more earns all");
+         "an estimate with an error up to this earns the whole term");
   t->Add("fall_m", &o->fall_m, config::Positive(1e5), "m",
-         "farther off than that by this much it earns nothing");
+         "the reward falls to 0 over this further error");
 }
 
 /// What the own estimate of the target is worth: 1 where it is off by `good_m` or less, falling to

@@ -13,7 +13,8 @@ using config::Positive;
 void Describe(RewardConfig* c, config::Table* t) {
   t->Section("reward");
   t->Add("kind", config::Enum(&c->kind, {"paper", "release", "release_raw"}), config::kNone, "-",
-         "Eqs. 28-36, the release's reward, or that of its raw baselines");
+         "paper: Eqs. 28-36; release: the release's reward; release_raw: that of the release's raw "
+         "baselines");
   t->Section("reward.weights");
   RewardWeights* w = &c->weights;
   t->Add("tracking", &w->tracking, config::NonNegative(1e3), "-", "weight of the tracking term");
@@ -31,7 +32,7 @@ void Describe(RewardConfig* c, config::Table* t) {
   t->Section("reward");
   t->Add("band_m", &c->band_m, config::Positive(1e4), "m", "[d_l, d_u]: tracking band");
   t->Add("error_max_m", &c->error_max_m, config::Positive(1e5), "m",
-         "e_max: error that earns nothing");
+         "e_max: an error of this size or more earns nothing");
   t->Add("w_band", &c->w_band, config::NonNegative(1e3), "-", "Eq. 30: weight of the band term");
   t->Add("w_progress", &c->w_progress, config::NonNegative(1e3), "-", "Eq. 30: weight of progress");
   t->Add("w_closing", &c->w_closing, config::NonNegative(1e3), "-",
@@ -41,7 +42,7 @@ void Describe(RewardConfig* c, config::Table* t) {
   t->Add("w_too_close", &c->w_too_close, config::NonNegative(1e3), "-",
          "Eq. 30: weight of the penalty inside d_l");
   t->Add("separation_distance_m", &c->separation_distance_m, config::Positive(1e4), "m",
-         "separation penalty: none beyond this distance of two AUVs");
+         "the separation penalty is 0 where two AUVs are farther apart than this");
   t->Add("total_limit", &c->total_limit, config::Positive(1e6), "-",
          "an agent's total reward is clipped to +- this value");
   for (const std::string& name : RewardTermsByName().Names()) {

@@ -160,11 +160,12 @@ py::dict Task(const BoundAgent& a) {
 
 void BindAgent(py::module_& module) {
   using agent::NeighbourState;
-  py::class_<NeighbourState>(module, "NeighbourState",
-                             "What one AUV tells its neighbours. World axes (ENU), times in [ns].")
+  py::class_<NeighbourState>(
+      module, "NeighbourState",
+      "State that an AUV sends to its neighbours. World axes (ENU), times in [ns].")
       .def(py::init<>())
       .def_readwrite("source", &NeighbourState::source, "Index of the AUV, from 0.")
-      .def_readwrite("generation", &NeighbourState::generation, "Time at which it was true [ns].")
+      .def_readwrite("generation", &NeighbourState::generation, "Time of this state [ns].")
       .def_property("p_W", Get(&NeighbourState::p_W), Set(&NeighbourState::p_W), "Position [m].")
       .def_property("v_W", Get(&NeighbourState::v_W), Set(&NeighbourState::v_W),
                     "Velocity over ground [m/s].")
@@ -172,9 +173,9 @@ void BindAgent(py::module_& module) {
       .def_readwrite("tracking_error", &NeighbourState::tracking_error, "Eq. 12 [m].")
       .def_readwrite("phase", &NeighbourState::phase, "0 search, 1 approach, 2 stable, 3 lost.")
       .def_readwrite("link_quality", &NeighbourState::link_quality,
-                     "Mean quality of the links it receives on, [0, 1].")
+                     "Mean quality of the links on which the AUV receives, [0, 1].")
       .def_readwrite("has_target", &NeighbourState::has_target,
-                     "False: what follows means nothing.")
+                     "False: the AUV has no target estimate, and the fields below have no meaning.")
       .def_readwrite("target", &NeighbourState::target, "Index of the target.")
       .def_readwrite("target_stamp", &NeighbourState::target_stamp,
                      "Time of the target estimate [ns].")
@@ -184,7 +185,8 @@ void BindAgent(py::module_& module) {
                     "Estimated target velocity [m/s].")
       .def_readwrite("target_std", &NeighbourState::target_std,
                      "Standard deviation of each component of p_WT [m].")
-      .def_readonly("saturated", &NeighbourState::saturated, "A value did not fit; set by encode.");
+      .def_readonly("saturated", &NeighbourState::saturated,
+                    "True: a value was out of range and is clipped; set by encode.");
 
   py::class_<agent::PacketCodec>(module, "PacketCodec", "The 32-byte packet of the agents.")
       .def(py::init([](const Scenario& s) { return agent::PacketCodec(s.model()); }),
@@ -194,8 +196,8 @@ void BindAgent(py::module_& module) {
           [](const agent::PacketCodec& c, const NeighbourState& s) { return Bytes(c.Encode(s)); },
           py::arg("state"), "32 bytes; raises ValueError for numbers that are not finite.")
       .def("decode", &Decode, py::arg("data"), py::arg("now"),
-           "What `data` says to somebody whose clock shows `now` [ns]; raises UserError when "
-           "damaged.");
+           "State in `data`, for a receiver whose clock is at `now` [ns]; raises UserError for "
+           "damaged data.");
 
   py::class_<agent::TargetTrack>(
       module, "TargetTrack",
@@ -208,7 +210,8 @@ void BindAgent(py::module_& module) {
           [](agent::TargetTrack& t, const Triple& p_WT, double std_m, TimeNs stamp) {
             t.Start(VectorOf(p_WT), std_m, stamp);
           },
-          py::arg("p_WT"), py::arg("std_m"), py::arg("stamp"), "Starts from a datum.")
+          py::arg("p_WT"), py::arg("std_m"), py::arg("stamp"),
+          "Starts the track at a position [m] with a standard deviation [m] per component.")
       .def("predict", &agent::TargetTrack::Predict, py::arg("time"),
            "Carries the estimate forward; an earlier time changes nothing.")
       .def(
@@ -216,7 +219,8 @@ void BindAgent(py::module_& module) {
           [](agent::TargetTrack& t, TimeNs stamp, const Triple& p_WT, double std_m) {
             t.Detect(DetectionOf(stamp, p_WT, std_m, 0));
           },
-          py::arg("stamp"), py::arg("p_WT"), py::arg("std_m"), "Takes an own detection.")
+          py::arg("stamp"), py::arg("p_WT"), py::arg("std_m"),
+          "Updates the track with an own detection.")
       .def(
           "fuse",
           [](agent::TargetTrack& t, TimeNs stamp, const Triple& p_WT, const Triple& v_WT,
@@ -224,17 +228,18 @@ void BindAgent(py::module_& module) {
             t.Fuse({stamp, VectorOf(p_WT), VectorOf(v_WT), std_m});
           },
           py::arg("stamp"), py::arg("p_WT"), py::arg("v_WT"), py::arg("std_m"),
-          "Takes an estimate that another AUV shared.")
+          "Updates the track with an estimate that another AUV shared.")
       .def_property_readonly("started", &agent::TargetTrack::started)
       .def_property_readonly(
           "estimate", [](const agent::TargetTrack& t) { return EstimateOf(t.estimate()); },
           "{stamp [ns], p_WT [m], v_WT [m/s], position_std_m}.");
 
-  py::class_<BoundAgent>(module, "Agent", "The mind of one AUV, as the C++ node runs it.")
+  py::class_<BoundAgent>(module, "Agent", "The agent of one AUV, as the C++ node runs it.")
       .def(py::init<const Scenario&, int>(), py::arg("scenario"), py::arg("id"))
       .def("reset", &Reset, py::arg("seed") = 0, py::arg("episode") = 0,
            py::arg("cue") = py::none(), py::arg("cue_std_m") = 0.0,
-           "Forgets everything. `cue`: where the target was said to be at time 0 [m].")
+           "Starts an episode without any knowledge. `cue`: assumed position of the target at time "
+           "0 [m].")
       .def(
           "detect",
           [](BoundAgent& a, TimeNs stamp, const Triple& p_WT, double std_m, int target) {
@@ -245,8 +250,8 @@ void BindAgent(py::module_& module) {
       .def(
           "follow", [](BoundAgent& a, int target) { a.mind.view().Follow(target); },
           py::arg("target"),
-          "Follows another target from the next observe on, where targets are chosen freely\n"
-          "(task.assignment); else nothing happens.")
+          "Follows another target from the next observe on. It needs task.assignment free;\n"
+          "otherwise nothing happens.")
       .def(
           "add_cue",
           [](BoundAgent& a, int target, const Triple& p_WT, double std_m) {
@@ -257,10 +262,10 @@ void BindAgent(py::module_& module) {
             a.mind.AddCue(cue);
           },
           py::arg("target"), py::arg("p_WT"), py::arg("std_m"),
-          "Where another target was said to be at time 0 [m], after reset.")
+          "Assumed position of another target at time 0 [m]; call it after reset.")
       .def_property_readonly(
           "present", [](const BoundAgent& a) { return a.mind.present(); },
-          "False: it has left the swarm, as of the last observe.")
+          "False: the AUV has left the swarm, at the time of the last observe.")
       .def("receive", &Receive, py::arg("data"), py::arg("arrival"),
            "A packet from the modem; one that does not decode is counted and ignored.")
       .def("observe", &Observe, py::arg("stamp"), py::arg("p_WB"), py::arg("q_WB"),
@@ -270,19 +275,20 @@ void BindAgent(py::module_& module) {
       .def("act", &Act, py::arg("action"),
            "Executes an action, once after each observe: {cmd_vel (world) [m/s], force [N] and\n"
            "moment [N m] (body)}.")
-      .def("task", &Task, "What it believes, by the names of the fields of auv_msgs/TaskState.")
+      .def("task", &Task,
+           "The agent's estimates, by the names of the fields of auv_msgs/TaskState.")
       .def(
           "make_packet", [](const BoundAgent& a) { return Bytes(a.mind.MakePacket()); },
-          "What it offers to its modem: 32 bytes.")
+          "The packet that the agent gives to its modem: 32 bytes.")
       .def(
           "packet_due", [](BoundAgent& a, TimeNs stamp) { return a.turns.Due(a.mind.id(), stamp); },
-          py::arg("stamp"), "Whether medium access lets a packet of this AUV leave in this step.")
+          py::arg("stamp"), "Whether medium access allows a packet of this AUV in this step.")
       .def_property_readonly("id", [](const BoundAgent& a) { return a.mind.id(); })
       .def_property_readonly("target", [](const BoundAgent& a) { return a.mind.target(); })
       .def_property_readonly("lost", [](const BoundAgent& a) { return a.mind.lost(); })
       .def_property_readonly(
           "neighbours", [](const BoundAgent& a) { return a.mind.neighbours().known(); },
-          "Indices of the neighbours it has heard of lately.")
+          "Indices of the neighbours from which the agent received lately.")
       .def_property_readonly("track",
                              [](const BoundAgent& a) { return EstimateOf(a.mind.estimate()); });
 }

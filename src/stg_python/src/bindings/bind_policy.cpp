@@ -137,7 +137,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
 
 void BindPolicy(py::module_& module) {
   py::class_<Policy>(module, "Policy",
-                     "A deterministic policy that agents fly:\n"
+                     "A deterministic policy that agents use:\n"
                      "x = clip((observation - input_mean) / input_std, +-input_clip), then\n"
                      "x = activation(W x + b) for every hidden layer, then\n"
                      "action = action_scale tanh(W x + b).")
@@ -149,7 +149,8 @@ void BindPolicy(py::module_& module) {
            py::arg("metrics") = std::map<std::string, std::string>())
       .def_static("load", &Policy::LoadOnnx, py::arg("path"), py::call_guard<WithoutGil>(),
                   "Reads an ONNX file; raises UserError for anything but a policy.")
-      .def("save", &Policy::SaveOnnx, py::arg("path"), "Writes an ONNX file, whole or not at all.")
+      .def("save", &Policy::SaveOnnx, py::arg("path"),
+           "Writes an ONNX file; if writing fails, an existing file is left unchanged.")
       .def("mean", &Mean, py::arg("observations"),
            "Mean actions [..., action_size] of observations [..., observation_size].")
       .def(

@@ -115,7 +115,8 @@ void BindScenario(py::module_& module) {
           [](const std::string& text) {
             return config::LoadText<Scenario>(text, "text", config::Unread::kPassOver);
           },
-          py::arg("text"), "The scenario of a whole file given as text, as a node's `/scenario`.")
+          py::arg("text"),
+          "Reads a whole scenario file from text, such as the ROS parameter `/scenario`.")
       .def(
           "to_yaml", [](const Scenario& s) { return ToYaml(s); }, "Every key with its value.")
       .def("values", &Values, "{\"key.path\": value} of every key.")
@@ -128,7 +129,7 @@ void BindScenario(py::module_& module) {
       .def("bottom", &Bottom, py::arg("points") = 65,
            "Heights [points, points] of the bottom of open water, world z [m], on a grid from "
            "-half_extent_m to half_extent_m: rows from south to north, columns from west to east.\n"
-           "Raises UserError where there is no open water, or no bathymetry to be had.")
+           "Raises UserError where there is no open water, or where the bathymetry cannot be read.")
       .def("__repr__",
            [](const Scenario& s) {
              return "<stg.Scenario '" + s.run.name + "', " + std::to_string(s.run.agents) +

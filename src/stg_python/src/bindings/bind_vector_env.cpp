@@ -7,7 +7,8 @@ namespace stg::python {
 
 void BindVectorEnv(py::module_& module) {
   module.attr("MIX_BLOCK") = env::kMixBlock;
-  py::class_<BoundEnv>(module, "VectorEnv", "Environments on arrays of the caller's; see stg.")
+  py::class_<BoundEnv>(module, "VectorEnv",
+                       "Environments that write to arrays of the caller; see the package stg.")
       .def(py::init([](const std::vector<Scenario>& mix, int envs, int workers, std::uint64_t seed,
                        bool curriculum, bool stagger) {
              env::VectorEnvOptions options;
@@ -34,18 +35,19 @@ void BindVectorEnv(py::module_& module) {
       .def("decide", &BoundEnv::Decide, py::arg("name"), py::arg("privileged") = false,
            "Actions of a policy file or built-in controller.")
       .def("close", &BoundEnv::Close, "Frees everything; later calls raise RuntimeError.")
-      .def("metrics", &BoundEnv::Metrics, py::arg("env"), "Of the episode that ended last.")
-      .def("snapshot", &BoundEnv::Snapshot, py::arg("env"), "The truth, for drawing.")
+      .def("metrics", &BoundEnv::Metrics, py::arg("env"), "Metrics of the episode that ended last.")
+      .def("snapshot", &BoundEnv::Snapshot, py::arg("env"), "The true states, for drawing.")
       .def("entities", &BoundEnv::Entities, py::arg("env"), py::arg("agent"),
-           "What one AUV knows, as rows: the layout stg-2:entities.")
+           "An AUV's knowledge, as rows: the layout stg-2:entities.")
       .def("follow", &BoundEnv::Follow, py::arg("env"), py::arg("agent"), py::arg("target"),
            "An AUV follows another target from the next decision on.")
       .def("followed", &BoundEnv::followed, py::arg("env"), py::arg("agent"),
-           "The target that an AUV is tasked with, or follows.")
+           "The target that an AUV follows.")
       .def("scenario", &BoundEnv::scenario, py::arg("env"), py::return_value_policy::copy)
-      .def("seed", &BoundEnv::seed, py::arg("env"), "World seed of the episode under way.")
-      .def("round", &BoundEnv::round, py::arg("env"), "k of the episode under way.")
-      .def("episode_step", &BoundEnv::step, py::arg("env"), "Decisions made in it.")
+      .def("seed", &BoundEnv::seed, py::arg("env"), "World seed of the present episode.")
+      .def("round", &BoundEnv::round, py::arg("env"), "k of the present episode.")
+      .def("episode_step", &BoundEnv::step, py::arg("env"),
+           "Number of decisions made in the present episode.")
       .def_property_readonly("workers", &BoundEnv::workers);
 }
 

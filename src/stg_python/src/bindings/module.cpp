@@ -4,7 +4,7 @@
 namespace py = pybind11;
 
 PYBIND11_MODULE(_core, module) {
-  module.doc() = "The C++ engine of the package stg; its public face is the package itself.";
+  module.doc() = "The C++ engine of the package stg; use it through the package stg only.";
   module.attr("__version__") = STG_VERSION;
   module.attr("INSTRUCTION_SET") = STG_INSTRUCTION_SET;
   py::register_exception<stg::UserError>(module, "UserError", PyExc_ValueError).doc() =

@@ -6,19 +6,19 @@ namespace stg::learn {
 
 void ImitationConfig::Describe(config::Table* table) {
   table->Add("imitate", config::TextRef{&controller}, config::kNone, "-",
-             "built-in controller whose actions the policy first learns, with constants if need "
-             "be, as in pursuit_separated:gain=2,cap=0.5; empty: none");
-  table->Add("imitation-steps", &steps, {0, 1e12}, "-",
-             "environment steps of imitation: in full for the first half, then fading into the "
-             "return");
+             "built-in controller whose actions the policy imitates at first, with its constants "
+             "if needed, for example pursuit_separated:gain=2,cap=0.5; empty: none");
+  table->Add(
+      "imitation-steps", &steps, {0, 1e12}, "-",
+      "environment steps of imitation: with full weight in the first half, then falling to 0");
   table->Add("imitation-share", &share, {0, 1}, "-",
-             "share of the actor's loss that is imitation where it is in full");
-  table->Add("imitation-focus", &focus, {0, 4}, "-",
-             "misses weigh by the size of the teacher's action, in sigmas, to minus this power: 0 "
-             "all alike, 2 little more than the hold");
+             "share of imitation in the actor's loss while it has full weight");
+  table->Add(
+      "imitation-focus", &focus, {0, 4}, "-",
+      "an error is weighted by the size of the teacher's action (in sigmas) to the power of minus "
+      "this value; 0: all errors count equally; 2: mainly those of small actions count");
   table->Add("privileged-teacher", &privileged, config::kNone, "-",
-             "the controller to imitate reads true states, as the critic does; the policy never "
-             "does");
+             "the imitated controller reads true states, as the critic does; the policy does not");
 }
 
 void ImitationConfig::ValidateOrThrow() const {

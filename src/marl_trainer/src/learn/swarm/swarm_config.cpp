@@ -53,18 +53,20 @@ Waters WatersAt(int place, bool free_assignment) {
 }  // namespace
 
 void SwarmConfig::Describe(config::Table* t) {
-  t->Add("seed", &seed, config::kNone, "-", "of networks, episodes and exploration");
-  t->Add("steps", &steps, {1, 1e12}, "-", "decisions of a swarm, of 1 s in the field");
+  t->Add("seed", &seed, config::kNone, "-", "seed of networks, episodes and exploration");
+  t->Add("steps", &steps, {1, 1e12}, "-",
+         "number of decisions of a swarm; a decision is 1 s in the field scenarios");
   t->Add("action", config::Enum(&action, agent::EntityActionNames()), config::kNone, "-",
-         "law5: the policy guides the law that the situation asks for; guidance: always "
-         "encircle; course3: it steers by itself");
+         "law5: the policy guides a law, which depends on the situation; guidance: it guides the "
+         "law encircle; course3: it commands course, speed and climb rate itself");
   t->Add("network", config::Enum(&network, agent::EntityNetworkNames()), config::kNone, "-",
-         "pool: means and maxima over rows; graph: attention and messages over the task graph, "
-         "which also chooses which target to follow");
+         "pool: means and maxima over rows; graph: attention and messages over the task graph; it "
+         "also chooses the target to follow");
   t->Add("without", config::Name(&without, BlindNames()), config::kNone, "-",
-         "what the policy cannot see");
-  t->Add("free-assignment", &free_assignment, config::kNone, "-",
-         "a quarter of the waters has two targets, which the AUVs choose; network graph");
+         "input that is withheld from the policy");
+  t->Add(
+      "free-assignment", &free_assignment, config::kNone, "-",
+      "with --network graph: a quarter of the waters has two targets, among which the AUVs choose");
   t->Add("envs", &envs, {8, 4096}, "-", "environments, eight for each kind of waters");
   t->Add("horizon", &horizon, {1, 10000}, "-", "commands of 5 s between two updates");
   t->Add("segment", &segment, {1, 100000}, "-", "updates between two checkpoints");
@@ -72,15 +74,16 @@ void SwarmConfig::Describe(config::Table* t) {
   t->Add("gamma", &gamma, config::kFraction, "-", "discount per command");
   t->Add("lambda", &lambda, config::kFraction, "-", "GAE's lambda");
   t->Add("own-reward", &own_reward, config::kFraction, "-",
-         "share of an AUV's own reward; the rest is its team's mean");
+         "share of an AUV's own reward in what it learns from; the rest is the mean of its team");
   t->Add("band", &band, {0, 100}, "-", "reward of a decision inside the band");
   t->Add("shaping", &shaping, {0, 100}, "-", "weight of the shaping by the distance to the band");
   t->Add("epochs", &epochs, {1, 1000}, "-", "passes over the collected rows per update");
   t->Add("minibatch", &minibatch, {1, 1e9}, "-", "rows of AUVs per gradient step");
   t->Add("learning-rate", &learning_rate, {1e-8, 1}, "-", "Adam's learning rate at the start");
-  t->Add("last-learning-rate", &last_learning_rate, {0, 1}, "-", "at the end (linear)");
+  t->Add("last-learning-rate", &last_learning_rate, {0, 1}, "-",
+         "learning rate at the end (linear)");
   t->Add("clip", &clip, {1e-3, 10}, "-", "PPO's clip of the probability ratio");
-  t->Add("target-kl", &target_kl, {0, 100}, "-", "KL divergence that ends an update early");
+  t->Add("target-kl", &target_kl, {0, 100}, "-", "KL divergence at which an update ends early");
   t->Add("grad-clip", &gradient_norm, {1e-6, 1e6}, "-", "largest gradient norm");
   t->Add("adam-eps", &adam_eps, {1e-12, 1}, "-", "Adam's epsilon");
   t->Add("log-std", &log_std, {-20, 2}, "-",
@@ -89,9 +92,9 @@ void SwarmConfig::Describe(config::Table* t) {
   t->Add("max-log-std", &most_log_std, {-20, 2}, "-", "upper bound of log sigma");
   t->Add("entropy", &entropy, {0, 10}, "-",
          "weight of the entropy of the choices of a target, at the start");
-  t->Add("last-entropy", &last_entropy, {0, 10}, "-", "at the end");
+  t->Add("last-entropy", &last_entropy, {0, 10}, "-", "weight of this entropy at the end");
   t->Add("value-memory", &value_memory, {1, 1e12}, "-",
-         "rows that the moments of the returns remember");
+         "number of rows over which the moments of the returns are averaged");
   t->Add("validation-interval", &validation_interval, {1, 100000}, "-",
          "checkpoints between two validations");
   t->Add("validation-episodes", &validation_episodes, {1, 10000}, "-",
@@ -107,7 +110,7 @@ void SwarmConfig::ValidateOrThrow() const {
                 std::string("the network '") + agent::EntityNetworkName(network) +
                     "' does not choose a target; --network graph does");
   RequireOption(least_log_std <= log_std && log_std <= most_log_std, "log-std",
-                "is not between --min-log-std and --max-log-std");
+                "must be between --min-log-std and --max-log-std");
 }
 
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,

@@ -9,7 +9,8 @@ namespace stg::learn {
 void HappoConfig::Describe(config::Table* t) {
   PpoConfig::Describe(t);
   t->Add("sequential", &sequential, config::kNone, "-",
-         "each AUV's update knows those before it; off: MAPPO with an actor for each AUV");
+         "each AUV's update takes the earlier updates of other AUVs into account; off: MAPPO with "
+         "an actor for each AUV");
 }
 
 void HappoConfig::ApplyRecordings(const TrainConfig&) {

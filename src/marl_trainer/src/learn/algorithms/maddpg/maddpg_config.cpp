@@ -7,10 +7,10 @@ namespace stg::learn {
 void MaddpgConfig::Describe(config::Table* t) {
   ReplayConfig::Describe(t);
   DescribeCritics(t);
-  noise.Describe("noise", 10.0, "exploration noise, in shares of the action's scale,", t);
+  noise.Describe("noise", 10.0, "exploration noise, as a share of the action's scale,", t);
   t->Add("others", config::Enum(&others, {"buffer", "policy"}), config::kNone, "-",
-         "actions of the other AUVs in the actor's loss: buffer (as they were, Lowe et al.) or "
-         "policy (as they would be now)");
+         "actions of the other AUVs in the actor's loss: buffer (the recorded actions, Lowe et "
+         "al.) or policy (those of the present policy)");
 }
 
 void MaddpgConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {

@@ -9,15 +9,17 @@ namespace stg::learn {
 
 void MadqnConfig::Describe(config::Table* t) {
   ReplayConfig::Describe(t);
-  t->Add("bins", &bins, {2, 65}, "-", "values that each action dimension can take");
+  t->Add("bins", &bins, {2, 65}, "-", "number of values that each action dimension can take");
   t->Add("bin-power", &bin_power, {0.1, 10}, "-",
-         "how they lie in [-1, 1]: x^power of evenly spaced x; above 1, finer around zero");
+         "spacing of the bins in [-1, 1]: x^power of evenly spaced x; above 1, the bins are finer "
+         "around zero");
   t->Add("heads", config::Enum(&heads, {"separate", "joint", "book"}), config::kNone, "-",
-         "separate: a value for each bin of each dimension; joint: one for each of the "
-         "bins^dimensions combinations; book: one for each of the bins^3 combinations of three "
-         "dimensions, which the other three repeat, the release's codebook of forces and moments");
+         "outputs of the network. separate: a value for each bin of each dimension; joint: a value "
+         "for each of the bins^dimensions combinations; book: a value for each of the bins^3 "
+         "combinations of the first three dimensions, which the other three repeat (the release's "
+         "codebook of forces and moments)");
   t->Add("reward", config::Enum(&reward, {"team", "own"}), config::kNone, "-",
-         "what an AUV learns from: team (the mean over AUVs) or own (its share of it)");
+         "reward from which an AUV learns: team (the mean over AUVs) or own (its own part)");
   epsilon.Describe("epsilon", 1.0, "share of random choices", t);
 }
 

@@ -9,8 +9,8 @@ namespace stg::learn {
 void MappoConfig::Describe(config::Table* t) {
   PpoConfig::Describe(t);
   t->Add("wall-units", &wall_units, {0, 1e3}, "-",
-         "with --start-from and relu: 24 units of the actor's first layer start anew as hinges on "
-         "the target's room to each wall, at 1/2, 1, 2 and 4 times this margin [m]; 0: none");
+         "with --start-from and relu: 24 units of the actor's first layer restart as hinges on the "
+         "target's distance to each wall, at 1/2, 1, 2 and 4 times this margin [m]; 0: none");
 }
 
 void MappoConfig::ValidateOrThrow(const TrainConfig& common) const {

@@ -8,10 +8,11 @@ void MasacConfig::Describe(config::Table* t) {
   ReplayConfig::Describe(t);
   DescribeCritics(t);
   t->Add("initial-alpha", &initial_alpha, {1e-9, 1e3}, "-",
-         "weight of the entropy at the start, against rewards of deviation 1 - gamma");
-  t->Add("alpha-lr", &alpha_lr, {0, 1}, "-", "Adam's learning rate of its logarithm; 0: fixed");
+         "weight of the entropy at the start, for rewards with the standard deviation 1 - gamma");
+  t->Add("alpha-lr", &alpha_lr, {0, 1}, "-",
+         "Adam's learning rate of the logarithm of this weight; 0: the weight is fixed");
   t->Add("target-entropy", &target_entropy, {-20, 1}, "-",
-         "entropy that it aims at, of each AUV and action dimension in [-1, 1]");
+         "entropy that the weight is adjusted to, per AUV and action dimension in [-1, 1]");
   t->Add("min-log-std", &min_log_std, {-20, 2}, "-", "lower bound of log sigma before the squash");
   t->Add("max-log-std", &max_log_std, {-20, 2}, "-", "upper bound of log sigma before the squash");
 }
@@ -25,7 +26,7 @@ void MasacConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 
 void MasacConfig::ValidateOrThrow(const TrainConfig& common) const {
   ReplayConfig::ValidateOrThrow(common);
-  RequireOption(min_log_std < max_log_std, "max-log-std", "is not above --min-log-std");
+  RequireOption(min_log_std < max_log_std, "max-log-std", "must be above --min-log-std");
 }
 
 std::unique_ptr<Algorithm> MasacConfig::Make(const TrainConfig& common, const Problem& problem,

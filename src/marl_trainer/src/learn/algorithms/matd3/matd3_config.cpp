@@ -16,9 +16,9 @@ void Matd3Config::ApplyPreset(const std::string& preset, TrainConfig* common) {
 void Matd3Config::Describe(config::Table* t) {
   MaddpgConfig::Describe(t);
   t->Add("policy-delay", &policy_delay, {1, 1000}, "-",
-         "steps of the critics for each of the actor and the targets");
+         "number of critic updates for each update of the actor and the target networks");
   t->Add("target-noise", &target_noise, {0, 10}, "-",
-         "noise of the target's actions, in shares of the action's scale");
+         "noise of the target policy's actions, as a share of the action's scale");
   t->Add("target-noise-clip", &target_noise_clip, {0, 10}, "-", "its bound");
 }
 

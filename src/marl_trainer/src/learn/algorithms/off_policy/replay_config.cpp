@@ -7,21 +7,26 @@ namespace stg::learn {
 
 void ReplayConfig::Describe(config::Table* t) {
   t->Add("replay", &replay, {1, 1e9}, "-",
-         "environment steps that are remembered; a checkpoint holds them all");
+         "environment steps in the replay buffer; a checkpoint contains all of them");
   t->Add("warmup", &warmup, {0, 1e9}, "-",
-         "environment steps of random actions before anything learns");
-  t->Add("batch", &batch, {1, 1e6}, "-", "remembered environment steps per gradient step");
-  t->Add("replayed", &replayed, {0, 1000}, "-", "samples that are replayed per environment step");
-  t->Add("n-step", &n_step, {1, 100}, "-", "steps of a sample before the value of what follows");
+         "environment steps with random actions before the first update");
+  t->Add("batch", &batch, {1, 1e6}, "-",
+         "environment steps from the replay buffer per gradient step");
+  t->Add("replayed", &replayed, {0, 1000}, "-",
+         "number of samples drawn from the replay buffer per environment step");
+  t->Add("n-step", &n_step, {1, 100}, "-",
+         "rewards of a sample before the bootstrapped value (n-step return)");
   t->Add("gamma", &gamma, {0, 0.9999}, "-", "discount per decision");
-  t->Add("tau", &tau, {1e-6, 1}, "-", "how far the target networks move at each gradient step");
+  t->Add("tau", &tau, {1e-6, 1}, "-",
+         "share by which the target networks move at each gradient step");
   t->Add("actor-hidden", Widths(&actor_hidden), {1, 4096}, "-",
-         "widths of the hidden layers of what decides on an observation");
+         "widths of the hidden layers of the network that decides (actor or Q-network)");
   t->Add("activation", config::Enum(&activation, {"tanh", "relu"}), config::kNone, "-",
-         "of the hidden layers: tanh or relu");
-  t->Add("lr", &lr, {1e-8, 1}, "-", "Adam's learning rate of what decides, at the start");
+         "activation of the hidden layers: tanh or relu");
+  t->Add("lr", &lr, {1e-8, 1}, "-",
+         "Adam's learning rate of the network that decides, at the start");
   t->Add("lr-final", &lr_final, {0, 1}, "-",
-         "share of the learning rates left at the end (linear)");
+         "learning rates at the end, as a share of those at the start (linear)");
   t->Add("adam-eps", &adam_eps, {1e-12, 1}, "-", "Adam's epsilon");
   t->Add("grad-clip", &grad_clip, {1e-6, 1e6}, "-", "largest gradient norm");
   t->Add("observation-clip", &observation_clip, {0.1, 1e6}, "-",
@@ -31,11 +36,12 @@ void ReplayConfig::Describe(config::Table* t) {
 
 void ReplayConfig::DescribeCritics(config::Table* t) {
   t->Add("critic-hidden", Widths(&critic_hidden), {1, 4096}, "-",
-         "widths of the hidden layers of the critics of state and joint action");
+         "widths of the hidden layers of the critics");
   t->Add("layer-norm", &layer_norm, config::kNone, "-",
-         "whether the critics normalise their hidden layers");
+         "the critics normalise their hidden layers");
   t->Add("action-gain", &action_gain, {1e-3, 1e3}, "-",
-         "the critics see actions of [-1, 1] times this: above 1, they tell fine actions apart");
+         "factor on the critics' input of actions in [-1, 1]; above 1, the critics distinguish "
+         "small actions better");
   t->Add("critic-lr", &critic_lr, {1e-8, 1}, "-",
          "Adam's learning rate of the critics at the start");
 }
@@ -63,8 +69,9 @@ void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
 
 void ReplayConfig::ValidateOrThrow(const TrainConfig& common) const {
   const std::int64_t collection = static_cast<std::int64_t>(common.envs) * common.horizon;
-  RequireOption(replay >= collection, "replay",
-                "is less than one collection, envs times horizon: " + std::to_string(collection));
+  RequireOption(
+      replay >= collection, "replay",
+      "must be at least one collection, envs times horizon: " + std::to_string(collection));
 }
 
 }  // namespace stg::learn

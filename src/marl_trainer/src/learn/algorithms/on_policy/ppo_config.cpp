@@ -15,12 +15,12 @@ void PpoConfig::Describe(config::Table* t) {
   t->Add("critic-hidden", Widths(&critic_hidden), {1, 4096}, "-",
          "widths of the critic's hidden layers");
   t->Add("activation", config::Enum(&activation, {"tanh", "relu"}), config::kNone, "-",
-         "of the hidden layers: tanh or relu");
+         "activation of the hidden layers: tanh or relu");
   t->Add("lr", &lr, {1e-8, 1}, "-", "Adam's learning rate of the actor at the start");
   t->Add("critic-lr", &critic_lr, {1e-8, 1}, "-",
          "Adam's learning rate of the critic at the start");
   t->Add("lr-final", &lr_final, {0, 1}, "-",
-         "share of the learning rates left at the end (linear)");
+         "learning rates at the end, as a share of those at the start (linear)");
   t->Add("adam-eps", &adam_eps, {1e-12, 1}, "-", "Adam's epsilon");
   t->Add("gamma", &gamma, {0, 1}, "-", "discount per decision");
   t->Add("lambda", &lambda, {0, 1}, "-", "GAE's lambda");
@@ -39,8 +39,8 @@ void PpoConfig::Describe(config::Table* t) {
          "bound of normalised observations and states");
   t->Add("std-floor", &std_floor, {1e-6, 1}, "-", "smallest standard deviation of the normalisers");
   t->Add("std-scale", &std_scale, {1e-3, 1e3}, "-",
-         "the actor's inputs are divided by this much of their standard deviation: below 1, the "
-         "neighbourhood of the target is seen larger and distant offsets are clipped");
+         "the actor's inputs are divided by their standard deviation times this value; below 1, "
+         "offsets near the target become larger inputs and distant offsets are clipped");
   imitation.Describe(t);
 }
 
@@ -69,9 +69,9 @@ void PpoConfig::ValidateOrThrow(const TrainConfig& common) const {
   const std::int64_t samples = static_cast<std::int64_t>(common.envs) * common.horizon;
   RequireOption(samples % minibatch == 0, "minibatch",
                 "must divide envs times horizon, " + std::to_string(samples));
-  RequireOption(min_log_std <= max_log_std, "max-log-std", "is below --min-log-std");
+  RequireOption(min_log_std <= max_log_std, "max-log-std", "must not be below --min-log-std");
   RequireOption(min_log_std <= initial_log_std && initial_log_std <= max_log_std, "initial-log-std",
-                "is not between --min-log-std and --max-log-std");
+                "must be between --min-log-std and --max-log-std");
 }
 
 void PpoConfig::ApplyRecordings(const TrainConfig& common) {
