@@ -50,7 +50,7 @@ std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunC
   const auto access = MakeMediumAccess(c, run);
   if (access->adapts() && !model->has_modems()) {
     return config::Violation{{"channel.access", "channel.model"},
-                             "this medium access needs modems, which the model has not"};
+                             "this medium access needs a model with modems, such as physical"};
   }
   return access->FindConflict(model->packet_time(c, run.agents));
 }

@@ -163,8 +163,8 @@ TEST(PacketCheck, RefusesWhatNoModemTakes) {
   EXPECT_EQ(Refusal(*channel, p), "");
   for (const int destination : {3, -2, 2, 1'000'000}) {
     p.destination = destination;
-    EXPECT_EQ(Refusal(*channel, p),
-              "packet: destination " + std::to_string(destination) + " is none of source 2");
+    EXPECT_EQ(Refusal(*channel, p), "packet: destination " + std::to_string(destination) +
+                                        " is neither another node nor all nodes, for source 2");
   }
   p = good;
   for (const int source : {-1, 3}) {
@@ -181,7 +181,8 @@ TEST(PacketCheck, RefusesWhatNoModemTakes) {
   EXPECT_EQ(Refusal(*channel, p), "packet: 0 bytes of payload, a frame takes 1 to 2048");
   p = good;
   p.generation = p.stamp + 1;
-  EXPECT_EQ(Refusal(*channel, p), "packet: generated after it was offered");
+  EXPECT_EQ(Refusal(*channel, p),
+            "packet: its generation time is later than the time at which it is offered");
 }
 
 TEST(Doppler, IsTheClosingSpeedAlongTheLine) {

@@ -56,7 +56,7 @@ class Train(unittest.TestCase):
         output, _ = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, output)
         before = self.steps()
-        self.assertIn(f"stopped at {before[-1]} steps and saved; --resume goes on", output)
+        self.assertIn(f"stopped at {before[-1]} steps and saved; --resume continues", output)
         self.assertTrue((self.run_folder / "policy_last.onnx").exists())
 
         status, output = self.train("--resume", "--steps", str(before[-1] + 1000))
@@ -216,7 +216,7 @@ class Train(unittest.TestCase):
         (self.run_folder / "config.json").write_text("[]", encoding="utf-8")
         status, output = self.train("--resume")
         self.assertEqual(status, 2, output)
-        self.assertIn("config.json: no configuration of a training", output)
+        self.assertIn("config.json: not the configuration of a training", output)
 
     def test_another_configuration_is_refused_by_name_and_nothing_is_lost(self):
         status, output = self.train("--steps", "300")
@@ -229,7 +229,7 @@ class Train(unittest.TestCase):
         before = contents()
         for options, reason in (
                 (("--resume", "--gamma", "0.8"), "--gamma is 0.8"),
-                (("--resume", "--set", "reward.weights.separation=0.3"), "the scenario is not"),
+                (("--resume", "--set", "reward.weights.separation=0.3"), "the scenario differs from"),
                 ((), "holds another run"),
                 (("--resume", "--lr", "-1"), "--lr")):
             status, output = self.train("--steps", "600", *options)

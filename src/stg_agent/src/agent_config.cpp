@@ -61,14 +61,14 @@ std::optional<config::Violation> FindConflict(const FleetConfig& c, int agents) 
     for (const std::vector<double>& row : *rows) {
       if (row[1] >= agents || row[1] != std::floor(row[1])) {
         return config::Violation{{rows == &c.leave ? "fleet.leave" : "fleet.join", "agents"},
-                                 "a row is a time from 0 and the index of an AUV"};
+                                 "a row must be a time from 0 and the index of an AUV"};
       }
     }
   }
   for (const std::vector<double>& row : c.join) {
     if (c.present(static_cast<int>(row[1]), std::nextafter(row[0], -1.0))) {
       return config::Violation{{"fleet.join", "fleet.leave"},
-                               "an AUV joins that has not left before"};
+                               "an AUV can only join after it has left"};
     }
   }
   return {};
@@ -79,17 +79,18 @@ std::optional<config::Violation> FindFreeConflict(const AgentModel& model) {
   if (!model.task.free()) return {};
   if (model.target.count > kMostFreeTargets) {
     return config::Violation{{"task.assignment", "target.count"},
-                             "a packet can tell of " + std::to_string(kMostFreeTargets) +
-                                 " targets that are chosen freely"};
+                             "with the assignment free, a packet can describe at most " +
+                                 std::to_string(kMostFreeTargets) + " targets"};
   }
   if (model.track.search_cell_m > 0.0) {
-    return config::Violation{{"task.assignment", "track.search_cell_m"},
-                             "the search map is of one target, which is not chosen freely"};
+    return config::Violation{
+        {"task.assignment", "track.search_cell_m"},
+        "the search map is for the assignment modulo only, as it holds one target"};
   }
   if (model.locates()) {
-    return config::Violation{{"task.assignment", "localization.kind"},
-                             "packets with ranges have no room for what an AUV measures of targets "
-                             "that are chosen freely"};
+    return config::Violation{
+        {"task.assignment", "localization.kind"},
+        "packets with ranges have no room for the measurements that the assignment free sends"};
   }
   return {};
 }

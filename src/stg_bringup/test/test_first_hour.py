@@ -161,8 +161,7 @@ class Evaluate(unittest.TestCase):
             training.send_signal(signal.SIGINT)
             output = training.stdout.read()
         self.assertEqual(training.returncode, 130, output)
-        self.assertIn("no policy_best yet: none was validated before 1000000000 steps; "
-                      "policy_last is what was learned", output)
+        self.assertIn("no policy_best yet, because the first validation is at 1000000000 steps; policy_last is the newest policy", output)
         self.assertTrue((self.folder / "o" / "policy_last.onnx").exists())
 
     def test_a_blank_terrain_is_told(self):

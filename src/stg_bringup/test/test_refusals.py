@@ -42,8 +42,7 @@ class Refusals(unittest.TestCase):
         self.addCleanup(stop, process)
         output = process.communicate(timeout=60)[0]
         self.assertEqual(process.returncode, 0, output)
-        self.assertEqual(output.count("no policy is shipped for a scenario named 'mine': "
-                                      "'pursuit_separated' flies"), 1, output)
+        self.assertEqual(output.count("no policy is shipped for a scenario named 'mine', so the controller 'pursuit_separated' decides"), 1, output)
 
     def test_an_agent_that_nobody_starts_is_named_while_it_is_waited_for(self):
         process, _ = launch(self.folder, "medium.launch", "table:=false", "external:=[2]",

@@ -165,7 +165,7 @@ class TrainOnline(unittest.TestCase):
         code, text, _ = self.train("mixed", self.damaged(), self.bags / "good.bag")
         self.assertEqual(code, 0, text)
         self.assertIn(
-            "2 episodes used, 4 dropped (1 steps missing, 1 NaN or infinity, 1 foreign policy, "
+            "2 episodes used, 4 dropped (1 steps missing, 1 NaN or infinity, 1 another policy, "
             "1 wrong log probability), 3 bags unreadable",
             text,
         )

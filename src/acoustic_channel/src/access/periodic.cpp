@@ -23,7 +23,8 @@ std::optional<config::Violation> Periodic::FindConflict(const PacketTime& /*pack
   if (transmit_period_s_ >= decision_s_ * (1.0 - 1e-9)) return {};
   return config::Violation{
       {"channel.periodic.transmit_period_s", "time.dt_s", "time.decision_steps"},
-      "an AUV sends at most one packet per decision"};
+      "an AUV sends at most one packet per decision, so the period cannot be shorter than a "
+      "decision"};
 }
 
 TimeNs Periodic::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {

@@ -41,9 +41,10 @@ std::optional<config::Violation> Tdma::FindConflict(const PacketTime& packet) co
   if (auto violation = FindSlotConflict(config_, packet.airtime)) return violation;
   const TimeNs busy = packet.airtime + packet.turnaround;
   if (busy <= frame_) return {};
-  return config::Violation{{"channel.slots.length_s", "channel.physical.modem.profile"},
-                           "a modem is busy for " + std::to_string(Seconds(busy)) +
-                               " s with a packet, a round of slots is shorter"};
+  return config::Violation{
+      {"channel.slots.length_s", "channel.physical.modem.profile"},
+      "a modem is busy for " + std::to_string(Seconds(busy)) +
+          " s with a packet, but a round of slots is shorter; use longer slots"};
 }
 
 std::unique_ptr<MediumAccess> MakeTdma(const ChannelConfig& config, const RunConfig& run) {

@@ -45,7 +45,7 @@ void ModemPort::OnSendEnd(std::uint32_t tag, double airtime_s) {
   events_.push_back({Event::Kind::kSendEnd, tag, SteadyNow(), airtime_s, ""});
 }
 void ModemPort::OnDropped(std::uint32_t tag) {
-  events_.push_back({Event::Kind::kDropped, tag, SteadyNow(), 0.0, "a newer one replaces it"});
+  events_.push_back({Event::Kind::kDropped, tag, SteadyNow(), 0.0, "a newer packet replaces it"});
 }
 void ModemPort::OnRefused(std::uint32_t tag, const std::string& why) {
   events_.push_back({Event::Kind::kRefused, tag, SteadyNow(), 0.0, why});

@@ -41,7 +41,7 @@ void TakeText(const std::string& file, const std::string& prefix, const std::str
   const YamlTree::Entry* entry = FindEntry(*map, key);
   if (entry == nullptr) return;
   if (entry->value.kind != YamlTree::Kind::kScalar || entry->value.scalar.empty()) {
-    Fail(file, entry->line, prefix + key, "expected a text");
+    Fail(file, entry->line, prefix + key, "expected text");
   }
   *text = entry->value.scalar;
   *map = Without(*map, key);
@@ -62,12 +62,14 @@ void TakeSettings(const std::string& file, const std::string& prefix, YamlTree* 
       Fail(file, one.line, key, "expected a value");
     }
     if (one.key == (place->protocol == "s2c" ? "AL" : "SRC")) {
-      Fail(file, one.line, key, "is the key 'address' of the modem");
+      Fail(file, one.line, key,
+           "this setting is the address; set the key 'address' of the modem instead");
     }
     const bool sound = place->protocol == "s2c"
                            ? known.Set(one.key, value) == s2c::Settings::Result::kOk
                            : (one.key + value).find_first_of(",*$\r\n") == std::string::npos;
-    if (!sound) Fail(file, one.line, key, "the modem has no such setting, or not this value");
+    if (!sound)
+      Fail(file, one.line, key, "the modem has no such setting, or does not accept this value");
     place->settings.emplace_back(one.key, value);
   }
   *map = Without(*map, "settings");
@@ -88,13 +90,14 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
     if (entry != nullptr) Fail(file, entry->line, prefix + "." + key, why);
   };
   for (const char* key : {"interpreter", "defer", "rssi_offset_db", "clients"}) {
-    if (!s2c) refuse(key, "is a key of the protocol s2c");
+    if (!s2c) refuse(key, "only the protocol s2c has this key");
   }
-  if (janus) refuse("broadcast", "is a key of the protocols s2c and micromodem");
-  if (janus) refuse("settings", "is a key of the protocols s2c and micromodem");
+  if (janus) refuse("broadcast", "only the protocols s2c and micromodem have this key");
+  if (janus) refuse("settings", "only the protocols s2c and micromodem have this key");
   TakeSettings(file, prefix + ".", &map, &place);
   if (janus && !place.firmware.empty()) {
-    Fail(file, map.line, prefix + ".firmware", "is a key of the protocols s2c and micromodem");
+    Fail(file, map.line, prefix + ".firmware",
+         "only the protocols s2c and micromodem have this key");
   }
   config::Table t;
   t.Section(prefix);
@@ -113,12 +116,12 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   if (place.broadcast < 0) place.broadcast = s2c ? 255 : 0;
   if (place.firmware.empty()) place.firmware = s2c ? "1.9" : "2.0.35490";
   const int ports = (place.tcp >= 0) + !place.pty.empty() + !place.serial.empty();
-  if (ports != 1) Fail(file, map.line, prefix, "needs one of tcp, pty and serial");
+  if (ports != 1) Fail(file, map.line, prefix, "needs exactly one of tcp, pty and serial");
   if (place.clients > 1 && place.tcp < 0) {
-    Fail(file, map.line, prefix + ".clients", "only a TCP port has more than one");
+    Fail(file, map.line, prefix + ".clients", "only a TCP port accepts more than one client");
   }
   if (place.serial_baud > 0 && !place.serial.empty()) {
-    Fail(file, map.line, prefix + ".serial_baud", "a serial device has its own: baud");
+    Fail(file, map.line, prefix + ".serial_baud", "for a serial device, set baud instead");
   }
   return place;
 }
@@ -154,14 +157,15 @@ ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index
   loader.ApplyPart(rest, prefix + ".", file);
   if (v.name.empty()) Fail(file, map.line, prefix + ".name", "missing key");
   v.moored = FindEntry(map, "position_m") != nullptr;
-  if (v.moored && !v.odom.empty()) Fail(file, map.line, prefix + ".odom", "not beside position_m");
+  if (v.moored && !v.odom.empty())
+    Fail(file, map.line, prefix + ".odom", "cannot be combined with position_m");
   if (v.odom.empty()) v.odom = "/" + v.name + "/odom";
   if (const YamlTree::Entry* modem = FindEntry(map, "modem")) {
     v.modem = ReadPlace(file, modem->value, prefix + ".modem");
     if (v.modem->address == 0) v.modem->address = v.id + 1;
   }
   if (const YamlTree::Entry* gateway = FindEntry(map, "gateway")) {
-    if (v.modem) Fail(file, gateway->line, prefix + ".gateway", "not beside modem");
+    if (v.modem) Fail(file, gateway->line, prefix + ".gateway", "cannot be combined with modem");
     v.gateway = ReadGateway(file, gateway->value, prefix + ".gateway");
     if (v.gateway->address == 0) v.gateway->address = v.id + 1;
   }

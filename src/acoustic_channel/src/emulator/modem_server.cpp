@@ -87,17 +87,18 @@ PortListener ModemServer::ListenerOf(int node) {
   const auto time = [this] { return std::max(Now(), water_.now()); };
   listener.connected = [this, node, time] {
     const Place& place = places_[static_cast<std::size_t>(node)];
-    say(place.name + ": a host at " + place.port->name());
+    say(place.name + ": a host has connected to " + place.port->name());
     Log(node, "connect", nullptr, 0);
     water_.Connect(node, time());
   };
   listener.disconnected = [this, node, time] {
-    say(places_[static_cast<std::size_t>(node)].name + ": its host has gone");
+    say(places_[static_cast<std::size_t>(node)].name + ": its host has disconnected");
     Log(node, "disconnect", nullptr, 0);
     water_.Disconnect(node, time());
   };
   listener.refused = [this, node] {
-    say(places_[static_cast<std::size_t>(node)].name + ": one more host was refused");
+    say(places_[static_cast<std::size_t>(node)].name +
+        ": another host was refused; this modem accepts no more hosts");
   };
   ListenToGuests(node, &listener);
   listener.read = [this, node, time](const char* bytes, std::size_t size) {
@@ -115,7 +116,7 @@ PortListener ModemServer::ListenerOf(int node) {
 void ModemServer::ListenToGuests(int node, PortListener* listener) {
   Place& place = places_[static_cast<std::size_t>(node)];
   listener->guest_came = [this, &place](int guest) {
-    say(place.name + ": one more host reads along");
+    say(place.name + ": another host has connected; it can only read");
     place.guests.emplace(guest, s2c::Bystander(place.net));
   };
   listener->guest_left = [&place](int guest) { place.guests.erase(guest); };
@@ -140,7 +141,7 @@ void ModemServer::SetPresent(int node, bool present) {
   water_.SetPresent(node, t, present);
   Place& place = places_[static_cast<std::size_t>(node)];
   if (!place.port || place.power == present) return;
-  say(place.name + (present ? ": its modem is back" : ": is silent, its modem has no power"));
+  say(place.name + (present ? ": its modem has power again" : ": its modem has no power"));
   Log(node, present ? "power" : "no power", nullptr, 0);
   place.power = present;
   place.late.clear();
@@ -232,8 +233,8 @@ void ModemServer::HangUp(int node) {
 }
 
 void ModemServer::OnSharedAddress(int node, int address) {
-  say(places_[static_cast<std::size_t>(node)].name + ": the address " + std::to_string(address) +
-      " is also another modem's");
+  say(places_[static_cast<std::size_t>(node)].name + ": its address " + std::to_string(address) +
+      " is also the address of another modem");
 }
 
 void ModemServer::Log(int node, const char* what, const char* bytes, std::size_t size) {

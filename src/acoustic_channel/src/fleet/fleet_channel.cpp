@@ -135,7 +135,7 @@ void FleetChannel::Close() {
 void FleetChannel::Ask(TimeNs now) {
   for (const Asked& a : asked_) {
     if (!present(a.source)) {
-      listener_->OnPingRefused(a.tag, "no odometry: the vehicle that asks is not there");
+      listener_->OnPingRefused(a.tag, "the vehicle that asks is not present: it has no odometry");
       continue;
     }
     try {

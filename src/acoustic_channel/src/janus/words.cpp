@@ -69,22 +69,23 @@ Packet JanusModem::PacketOf(const Words& words) const {
   const auto number = [&](const char* name, int most, int otherwise) {
     if (!has(name)) return otherwise;
     const auto value = NumberIn(words.at(name), 0, most);
-    if (!value) throw Refusal{std::string(name) + " is 0 to " + std::to_string(most)};
+    if (!value) throw Refusal{std::string(name) + " must be 0 to " + std::to_string(most)};
     return *value;
   };
-  if (has("cargo") && has("text")) throw Refusal{"cargo and text"};
+  if (has("cargo") && has("text")) throw Refusal{"cargo and text cannot be combined"};
   std::string cargo;
   if (has("text")) cargo = words.at("text");
   if (has("cargo")) {
     const auto bytes = FromHex(words.at("cargo"));
-    if (!bytes) throw Refusal{"cargo is no hexadecimal digits in pairs"};
+    if (!bytes) throw Refusal{"cargo must be pairs of hexadecimal digits"};
     cargo = *bytes;
   }
   if (has("packet")) {
     if (words.size() > (cargo.empty() ? 1u : 2u))
-      throw Refusal{"packet stands alone or with cargo"};
+      throw Refusal{"packet can be combined with cargo only"};
     const auto bytes = FromHex(words.at("packet"));
-    if (!bytes || bytes->size() != kBaselineBytes) throw Refusal{"packet is 16 digits"};
+    if (!bytes || bytes->size() != kBaselineBytes)
+      throw Refusal{"packet must be 16 hexadecimal digits"};
     std::array<std::uint8_t, kBaselineBytes> baseline{};
     std::copy(bytes->begin(), bytes->end(), baseline.begin());
     auto packet = Decode(baseline);
@@ -93,7 +94,7 @@ Packet JanusModem::PacketOf(const Words& words) const {
         TellsCargo(*packet) ? DecodeReference(packet->app_type, packet->app_data).cargo_bytes : 0;
     // Two bytes less than stated: without the checksum.
     if (packet->app_type == 1 && told == cargo.size() + kChecksumBytes) AddChecksum(&cargo);
-    if (told != cargo.size()) throw Refusal{"packet tells of another length of cargo"};
+    if (told != cargo.size()) throw Refusal{"packet states another length of cargo"};
     packet->cargo = cargo;
     return *packet;
   }
@@ -112,7 +113,7 @@ Packet JanusModem::PacketOf(const Words& words) const {
     const auto read = std::from_chars(digits.data(), end, p.app_data, 16);
     const bool fits =
         read.ec == std::errc() && read.ptr == end && p.app_data >> p.app_data_bits() == 0;
-    if (!fits) throw Refusal{"data has " + std::to_string(p.app_data_bits()) + " bits"};
+    if (!fits) throw Refusal{"data must fit into " + std::to_string(p.app_data_bits()) + " bits"};
   }
   SetReference(words, &p);
   const double cargo_s = kCargoByte_s * static_cast<double>(p.cargo.size() + 1);
@@ -128,12 +129,13 @@ void JanusModem::SetReference(const Words& words, Packet* p) const {
     const auto found = words.find(name);
     if (found == words.end()) return otherwise;
     const auto value = NumberIn(found->second, 0, most);
-    if (!value) throw Refusal{std::string(name) + " is 0 to " + std::to_string(most)};
-    if (words.count("data") > 0) throw Refusal{std::string(name) + " is a part of data"};
+    if (!value) throw Refusal{std::string(name) + " must be 0 to " + std::to_string(most)};
+    if (words.count("data") > 0)
+      throw Refusal{std::string(name) + " is part of data: give one of the two"};
     const bool of_type_0 = std::string(name) == "set";
     const bool of_type_1 = !of_type_0 && std::string(name) != "station";
     if (!TellsCargo(*p) || (of_type_0 && p->app_type != 0) || (of_type_1 && p->app_type != 1)) {
-      throw Refusal{std::string(name) + " is no word of this class and type"};
+      throw Refusal{std::string(name) + " does not belong to this class and type"};
     }
     return *value;
   };
@@ -144,12 +146,12 @@ void JanusModem::SetReference(const Words& words, Packet* p) const {
   d.ack_request = number("ack", 1, 0) != 0;
   if (!TellsCargo(*p)) {
     if (!p->cargo.empty())
-      throw Refusal{"cargo needs class 16 and type 0 or 1, which tell its length"};
+      throw Refusal{"cargo needs class 16 and type 0 or 1, which state its length"};
     return;
   }
   if (words.count("data") > 0) {
     if (DecodeReference(p->app_type, p->app_data).cargo_bytes != p->cargo.size()) {
-      throw Refusal{"data tells of another length of cargo"};
+      throw Refusal{"data states another length of cargo"};
     }
     return;
   }
@@ -163,20 +165,22 @@ void JanusModem::SetReference(const Words& words, Packet* p) const {
   }
   d.cargo_bytes = p->cargo.size();
   p->app_data = EncodeReference(p->app_type, d);
-  if (p->app_data >> p->app_data_bits() != 0) throw Refusal{"a schedule leaves no room"};
+  if (p->app_data >> p->app_data_bits() != 0)
+    throw Refusal{"a schedule leaves no bits for this data"};
 }
 
 void JanusModem::SetSchedule(const Words& words, Packet* p) {
   const auto reserve = words.find("reserve"), repeat = words.find("repeat");
   if (reserve == words.end() && repeat == words.end()) return;
-  if (reserve != words.end() && repeat != words.end()) throw Refusal{"reserve and repeat"};
+  if (reserve != words.end() && repeat != words.end())
+    throw Refusal{"reserve and repeat cannot be combined"};
   p->schedule = reserve != words.end() ? Packet::Schedule::kReservation : Packet::Schedule::kRepeat;
   const std::string& text = reserve != words.end() ? reserve->second : repeat->second;
   double time_s = 0.0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), time_s);
   const bool whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
   const auto index = whole ? ScheduleIndex(p->schedule, time_s) : std::nullopt;
-  if (!index) throw Refusal{"a time outside of the standard's series"};
+  if (!index) throw Refusal{"the standard has no such time of a schedule"};
   p->schedule_index = *index;
 }
 

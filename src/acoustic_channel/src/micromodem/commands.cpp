@@ -69,7 +69,7 @@ bool Micromodem::ObeySetting(const Fields& fields, TimeNs t) {
       world_->SetAddress(setting("SRC"));
       Say({"CACFG", "ALL", "0"});
     } else if (fields[1] == "SRC" && !NumberIn(fields[2], 1, kHighestAddress)) {
-      Error(t, "NMEA", 4, "SRC is 1 to 127");
+      Error(t, "NMEA", 4, "SRC must be 1 to 127");
     } else if (settings_.size() >= 200 && settings_.count(fields[1]) == 0) {
       Error(t, "NMEA", 5, "too many settings");
     } else {
@@ -104,7 +104,7 @@ bool Micromodem::ObeyClock(const Fields& fields, TimeNs t) {
   const std::string& name = fields[0];
   const auto set = [&](const std::optional<TimeNs>& utc) {
     if (!utc) {
-      Error(t, "NMEA", 4, "no such time");
+      Error(t, "NMEA", 4, "not a valid time");
       return false;
     }
     pps_ = false;
@@ -167,7 +167,7 @@ bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {
                      (name == "CCTDP" && second_generation());
   if (!sends) return false;
   if (state_ != State::kIdle) {
-    Error(t, "BUSY", 6, "at work on something else");
+    Error(t, "BUSY", 6, "busy with another command");
     return true;
   }
   bool sound = false;
@@ -175,7 +175,7 @@ bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {
   if (name == "CCMPC") sound = CommandPing(fields, t);
   if (name == "CCMUC") sound = CommandMini(fields, t);
   if (name == "CCTDP") sound = CommandFlexible(fields, t);
-  if (!sound) Error(t, "NMEA", 3, name + " with fields that do not fit");
+  if (!sound) Error(t, "NMEA", 3, name + " with invalid fields");
   return true;
 }
 
@@ -224,7 +224,7 @@ bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
   const auto source = NumberIn(fields[1], 0, kHighestAddress);
   const auto destination = NumberIn(fields[2], 0, kHighestAddress);
   const auto ack = NumberIn(fields[3], 0, 1);
-  if (!source || !destination || !ack) return refuse("a field that does not fit");
+  if (!source || !destination || !ack) return refuse("a field is invalid");
   if (*destination == setting("SRC")) return refuse("to itself");
   std::optional<std::string> bytes;
   if (text) {
@@ -233,8 +233,8 @@ bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
     bytes = FromHex(fields[4]);
   }
   const std::size_t most = modes_.rate(cycle_.header.rate).frame_bytes;
-  if (!bytes) return refuse("no hexadecimal digits in pairs");
-  if (bytes->size() > most) return refuse("more bytes than a frame");
+  if (!bytes) return refuse("not pairs of hexadecimal digits");
+  if (bytes->size() > most) return refuse("more bytes than a frame holds");
   Say({text ? "CATXA" : "CATXD", fields[1], fields[2], fields[3], std::to_string(bytes->size())});
   if (bytes->empty()) {
     SendFrames(t);

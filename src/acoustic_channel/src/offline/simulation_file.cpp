@@ -119,7 +119,7 @@ SimulatedNode ReadNode(const std::string& file, const YamlTree& map, std::size_t
   reader.Read({"track"});
   reader.Require("id");
   if (const YamlTree::Entry* track = reader.Find("track")) {
-    reader.Refuse({"position_m", "velocity_mps"}, "not beside a track");
+    reader.Refuse({"position_m", "velocity_mps"}, "cannot be combined with a track");
     if (track->value.kind != YamlTree::Kind::kScalar || track->value.scalar.empty()) {
       reader.Fail("track", "expected the name of a CSV file");
     }
@@ -136,7 +136,7 @@ SimulatedNode ReadNode(const std::string& file, const YamlTree& map, std::size_t
     node.track = Track::Line({p[0], p[1], p[2]}, {v[0], v[1], v[2]});
   }
   if (reader.Has("leaves_s") && node.leaves_s <= node.joins_s) {
-    reader.Fail("leaves_s", "not after joins_s");
+    reader.Fail("leaves_s", "must be later than joins_s");
   }
   return node;
 }
@@ -179,12 +179,12 @@ TrafficSpec ReadFlow(const std::string& file, const YamlTree& map, std::size_t i
   flow.source = node("source", source);
   if (reader.Has("destination")) {
     flow.destination = node("destination", destination);
-    if (flow.destination == flow.source) reader.Fail("destination", "is the source itself");
+    if (flow.destination == flow.source) reader.Fail("destination", "must differ from the source");
   }
   flow.bytes = static_cast<std::size_t>(bytes);
   if (flow.bytes > max_payload) {
     reader.Fail("bytes",
-                "more than a packet of this channel takes, " + std::to_string(max_payload));
+                "more than the longest packet of this channel, " + std::to_string(max_payload));
   }
   const std::string other = "belongs to another kind of traffic";
   switch (flow.kind) {
@@ -232,7 +232,7 @@ void RequireInWater(const std::string& file, const Reader& reader, const Simulat
 
 void ReadNodes(const std::string& file, const Reader& reader, SimulationFile* simulation) {
   const auto& items = reader.List("nodes");
-  if (items.size() < 2) reader.Fail("nodes", "a network needs two nodes");
+  if (items.size() < 2) reader.Fail("nodes", "a network needs at least two nodes");
   if (items.size() > kMaxNodes) {
     reader.Fail("nodes", "more than " + std::to_string(kMaxNodes) + " nodes");
   }

@@ -67,7 +67,7 @@ Track Track::Load(const std::string& file) {
       throw UserError(where + "expected four finite numbers, found " + config::Quoted(row));
     }
     if (!points.empty() && v[0] <= points.back().t_s) {
-      throw UserError(where + "t: times must ascend");
+      throw UserError(where + "t: each time must be later than the one before");
     }
     if (std::abs(v[0]) > kLongest_s) throw UserError(where + "t: beyond +-1e8 s");
     const Vec3<double> p{v[1], v[2], v[3]};

@@ -45,7 +45,7 @@ class TcpServer : public BytePort {
     place_.sin_family = AF_INET;
     place_.sin_port = htons(static_cast<std::uint16_t>(port));
     if (inet_pton(AF_INET, address.c_str(), &place_.sin_addr) != 1) {
-      throw UserError("listen: '" + address + "' is no IPv4 address");
+      throw UserError("listen: '" + address + "' is not an IPv4 address");
     }
     if (!Listen()) Fail(name_);
     name_ = "tcp " + address + ":" + std::to_string(ntohs(place_.sin_port));

@@ -32,7 +32,7 @@ speed_t SpeedOf(int baud) {
     case 115200:
       return B115200;
     default:
-      throw UserError("baud: " + std::to_string(baud) + " is no rate of a serial line");
+      throw UserError("baud: " + std::to_string(baud) + " is not a standard rate of a serial port");
   }
 }
 

@@ -143,7 +143,7 @@ TEST(Micromodem, ADataRequestEndsWhenTheHostIsSilent) {
   EXPECT_EQ(bench.Ask(0, 10.0, "$CCCYC,0,1,2,1,0,2\r\n"),
             Seal("CACYC,0,1,2,1,0,2") + Seal("CADRQ,221330,1,2,0,64,1"));
   EXPECT_EQ(bench.Ask(0, 11.0, "$CCCYC,0,1,2,1,0,2\r\n"),
-            Seal("CAERR,221331,BUSY,6,at work on something else"));
+            Seal("CAERR,221331,BUSY,6,busy with another command"));
   // What cannot be a frame leaves the request open.
   for (const char* frame : {"1,1,0,AA", "1,2,0,A", "1,2,2,AA", "1,2,0"}) {
     EXPECT_EQ(bench.Ask(0, 11.0, "$CCTXD," + std::string(frame) + "\r\n").rfind("$CAERR", 0), 0u);

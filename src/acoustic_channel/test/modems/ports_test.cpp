@@ -103,7 +103,7 @@ TEST(ModemPorts, OneOfManyClientsIsObeyedAndAllAreTold) {
   EXPECT_TRUE(second.Hears(&server, "ERROR NO CONTROL\r\n"));
   Client third(*server.port(0));
   EXPECT_FALSE(third.Hears(&server, "anything"));
-  EXPECT_EQ(log.back(), "alpha: one more host was refused");
+  EXPECT_EQ(log.back(), "alpha: another host was refused; this modem accepts no more hosts");
 
   beta.Say("AT*SENDIM,5,1,noack,hello\n");
   EXPECT_TRUE(first.Hears(&server, "RECVIM,5,2,1,noack,"));

@@ -110,7 +110,7 @@ class BagReplay(unittest.TestCase):
 
         status, output = self.end_of("full", {"preexec_fn": little_room})
         self.assertEqual(status, 4, output)
-        self.assertRegex(output, "not all packets are in .*/full.csv")
+        self.assertRegex(output, "packets are missing in .*/full.csv")
 
     def test_nothing_is_emptied_before_the_bag_is_known_to_be_there(self):
         log = pathlib.Path(self.folder.name) / "before.csv"
@@ -124,7 +124,7 @@ class BagReplay(unittest.TestCase):
         for same in (self.bag, link):
             status, output = self.end_of("same", packet_log=str(same))
             self.assertEqual(status, 2, output)
-            self.assertIn("is the bag that is read", output)
+            self.assertIn("is the bag of the parameter bag", output)
         self.assertEqual(self.bag.read_bytes(), bag)
 
     def test_a_pipe_is_neither_log_nor_bag(self):
@@ -159,7 +159,7 @@ class BagReplay(unittest.TestCase):
         for place, value, reason in (
                 (entry_offset, b"\xff\xff\xff\x0f", "an index entry points at no message"),
                 (count, b"\xff\xff\x00\x00", "another size than stated"),
-                (field_length, b"\x00\x00\x0f\x00", "a field ends behind its header")):
+                (field_length, b"\x00\x00\x0f\x00", "a field reaches past the end of its header")):
             content = bytes(whole[:place]) + value + bytes(whole[place + len(value):])
             damaged.write_bytes(content)
             status, output = self.end_of("index", bag=str(damaged))

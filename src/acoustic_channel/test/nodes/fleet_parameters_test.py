@@ -30,16 +30,16 @@ class FleetParameters(unittest.TestCase):
 
     def test_lists_of_vehicles_that_do_not_fit(self):
         for vehicles, why in (
-                ([], "names no vehicle"),
+                ([], "must name at least one vehicle"),
                 (7, "must be a list"),
-                (["alpha", "alpha"], "a second vehicle 'alpha'"),
-                (["alpha", {"name": "beta", "id": 0}], "a second vehicle with id 0"),
-                (["alpha", "beta=/alpha/odom"], "a second vehicle with odometry /alpha/odom"),
+                (["alpha", "alpha"], "another vehicle has the name 'alpha'"),
+                (["alpha", {"name": "beta", "id": 0}], "another vehicle has the id 0"),
+                (["alpha", "beta=/alpha/odom"], "another vehicle has the odometry topic /alpha/odom"),
                 (["alpha", {"name": "beta", "colour": "red"}], "unknown key 'colour'"),
                 (["alpha", {"name": "beta", "id": 300}], "id must be from 0 to 254"),
                 (["alpha", {"name": "beta", "id": "one"}], "id must be a whole number"),
-                (["alpha", {"id": 3}], "is no name of a vehicle"),
-                (["alpha", "be ta"], "is no name of a vehicle"),
+                (["alpha", {"id": 3}], "is not a valid name of a vehicle"),
+                (["alpha", "be ta"], "is not a valid name of a vehicle"),
                 (["alpha", 3], "entry 1")):
             with self.subTest(why):
                 self.assertIn(why, self.refusal(vehicles=vehicles))

@@ -142,8 +142,8 @@ class Fleet(unittest.TestCase):
                 ("empty", "bytes of payload", {"data": b""}),
                 ("unknown destination", "7 does not exist", {"data": b"x", "destination": 7}),
                 ("for itself", "destination", {"data": b"x", "destination": 10}),
-                ("far future", "the clock says", {"data": b"x", "stamp": self.world.now() + year}),
-                ("far past", "the clock says", {"data": b"x", "stamp": rospy.Time(1)})):
+                ("far future", "the clock is at", {"data": b"x", "stamp": self.world.now() + year}),
+                ("far past", "the clock is at", {"data": b"x", "stamp": rospy.Time(1)})):
             with self.subTest(what):
                 number = self.alpha.say(**packet)
                 (refusal,) = wait_for(lambda number=number: self.alpha.fate(number), 20.0, what)
@@ -161,14 +161,14 @@ class Fleet(unittest.TestCase):
                 message.pose.pose.position.y = math.nan
             elif what == "huge":
                 message.twist.twist.linear.x = 1e200
-            elif what == "no rotation":
+            elif what == "not a rotation":
                 message.pose.pose.orientation.w = 0.0
             else:
                 message.header.stamp += rospy.Duration(1e6)
             return message
 
         for what, reason in (("nan", "not finite"), ("huge", "not finite"),
-                             ("no rotation", "not finite"), ("future", "stale")):
+                             ("not a rotation", "not finite"), ("future", "stale")):
             with self.subTest(what):
                 key = f"refused odom: {reason}"
                 before = self.diagnostics.number(key)

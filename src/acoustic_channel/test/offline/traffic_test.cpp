@@ -120,7 +120,7 @@ TEST_F(TrackFile, BadRowsAreRefusedWithTheirLine) {
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2\n").find(":2: expected four"), std::string::npos);
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2,3,4\n").find(":2: expected four"), std::string::npos);
   EXPECT_NE(Refusal("t,x,y,z\n0,1,2,3m\n").find(":2: expected four"), std::string::npos);
-  EXPECT_NE(Refusal("t,x,y,z\n5,1,2,3\n5,1,2,3\n").find(":3: t: times must ascend"),
+  EXPECT_NE(Refusal("t,x,y,z\n5,1,2,3\n5,1,2,3\n").find(":3: t: each time must be later"),
             std::string::npos);
   EXPECT_NE(Refusal("t,x,y,z\n").find("no points"), std::string::npos);
 }

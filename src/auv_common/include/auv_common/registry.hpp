@@ -80,7 +80,8 @@ class Registry {
   /// Throws std::logic_error for a name that is taken or cannot stand in a file (see IsName), and
   /// for an empty factory: bugs of the program, not of its input.
   void Add(Entry entry) {
-    if (!IsName(entry.name)) throw std::logic_error(kind_ + ": '" + entry.name + "' is no name");
+    if (!IsName(entry.name))
+      throw std::logic_error(kind_ + ": '" + entry.name + "' is not a valid name");
     if (Has(entry.name)) {
       throw std::logic_error(kind_ + ": '" + entry.name + "' is registered twice");
     }
@@ -98,7 +99,8 @@ class Registry {
     const Entry& entry = Need(name);
     const config::Options* own = options.Find(name);
     auto made = entry.make(own == nullptr ? entry.defaults : *own, std::forward<Args>(args)...);
-    if (made == nullptr) throw std::logic_error(kind_ + ": '" + name + "' made nothing");
+    if (made == nullptr)
+      throw std::logic_error(kind_ + ": '" + name + "': its factory returned nothing");
     return made;
   }
   /// The same with default options.

@@ -118,7 +118,7 @@ void Loader::ApplyBase(const std::string& path, const YamlTree::Entry& entry) {
   const std::string canonical = fs::weakly_canonical(base, error).string();
   if (std::find(open_.begin(), open_.end(), canonical) != open_.end()) {
     throw UserError(Where(path, entry.line) + "base: " + Quoted(entry.value.scalar) +
-                    " leads back to itself");
+                    " is based on this file, directly or through others");
   }
   if (error || !fs::is_regular_file(base, error)) {
     throw UserError(Where(path, entry.line) + "base: " + base + " is not a file" +

@@ -95,7 +95,7 @@ void LoadPlugin(const std::string& library, const std::string& where) {
   };
   const auto built_for = Find<const char*()>(handle, "stg_plugin_built_for");
   const auto add = Find<void()>(handle, "stg_plugin_register");
-  if (built_for == nullptr || add == nullptr) refuse("adds nothing; it has no block STG_PLUGIN");
+  if (built_for == nullptr || add == nullptr) refuse("is not a plugin: it has no block STG_PLUGIN");
   if (built_for() != BuiltFor()) {
     refuse(std::string("was built for version ") + built_for() + ", this program is version " +
            BuiltFor());
@@ -132,10 +132,9 @@ void RequirePluginsOf(const YamlTree& map, const std::string& origin) {
   const std::vector<std::string> loaded = LoadedPlugins();
   for (const YamlTree& item : entry->value.items) {
     if (std::count(loaded.begin(), loaded.end(), item.scalar) > 0) continue;
-    throw UserError(
-        origin + ":" + std::to_string(entry->line) + ": plugins: " + item.scalar +
-        ": is not loaded; received data cannot load libraries: if you trust this one, name it "
-        "in STG_PLUGINS, by --plugin or by stg.load_plugin");
+    throw UserError(origin + ":" + std::to_string(entry->line) + ": plugins: " + item.scalar +
+                    ": is not loaded, because received data cannot load libraries; if you trust "
+                    "this one, name it in STG_PLUGINS, by --plugin or by stg.load_plugin");
   }
 }
 

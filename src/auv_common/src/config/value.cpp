@@ -64,7 +64,7 @@ double ToDouble(const YamlTree& node) {
                        s.find("INF") != std::string::npos || s.find("NAN") != std::string::npos;
   if (special && s.size() <= 5) throw Refusal{"must be a finite number, found " + KindName(node)};
   if (result.ec == std::errc::result_out_of_range) {
-    throw Refusal{"no representable number: " + KindName(node)};
+    throw Refusal{"the number is too large or too small: " + KindName(node)};
   }
   if (result.ec != std::errc() || result.ptr != s.data() + s.size() || !std::isfinite(value)) {
     throw Refusal{"expected a number, found " + KindName(node)};
@@ -237,7 +237,7 @@ std::optional<std::string> CheckValue(const Field& field) {
                [](std::uint64_t*) -> Result { return {}; }, [](bool*) -> Result { return {}; },
                [&](std::string* v) -> Result {
                  if (IsName(*v)) return {};
-                 return Quoted(*v) + " is no name (" + FormatRange(field) + ", 64 at most)";
+                 return Quoted(*v) + " is not a name (" + FormatRange(field) + ", 64 at most)";
                },
                [&](const NameOrFileRef& v) -> Result {
                  if (IsName(*v.text) || IsFile(*v.text, v.extension)) return {};
@@ -245,7 +245,7 @@ std::optional<std::string> CheckValue(const Field& field) {
                    return Quoted(*v.text) + " is blank, neither a name nor a path to a " +
                           v.extension + " file";
                  }
-                 return Quoted(*v.text) + " is no name (" + FormatRange(field) + ", 64 at most)";
+                 return Quoted(*v.text) + " is not a name (" + FormatRange(field) + ", 64 at most)";
                },
                [&](const EnumRef& v) -> Result {
                  if (v.get() >= 0 && static_cast<std::size_t>(v.get()) < v.names.size()) return {};

@@ -40,10 +40,10 @@ std::vector<std::string> TextsParameter(const std::string& name, Reach reach) {
   XmlRpc::XmlRpcValue value;
   if (!Find(name, reach, &value)) return {};
   if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return Words(value);
-  if (value.getType() != XmlRpc::XmlRpcValue::TypeArray) Refuse(name, "a list of texts");
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeArray) Refuse(name, "a list of strings");
   std::vector<std::string> list;
   for (int i = 0; i < value.size(); ++i) {
-    if (value[i].getType() != XmlRpc::XmlRpcValue::TypeString) Refuse(name, "a list of texts");
+    if (value[i].getType() != XmlRpc::XmlRpcValue::TypeString) Refuse(name, "a list of strings");
     list.push_back(value[i]);
   }
   return list;

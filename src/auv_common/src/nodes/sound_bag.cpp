@@ -42,7 +42,7 @@ Fields FieldsOf(const Bytes& header, std::uint64_t at) {
     const std::size_t left = header.size() - place;
     const std::size_t length = left < kLengthBytes ? left : NumberAt(&header[place]);
     if (length > left - std::min<std::size_t>(left, kLengthBytes)) {
-      Damaged(at, "a field ends behind its header");
+      Damaged(at, "a field reaches past the end of its header");
     }
     const std::string text(reinterpret_cast<const char*>(&header[place]) + kLengthBytes, length);
     const std::size_t equals = text.find('=');
@@ -78,7 +78,7 @@ std::uint8_t Operation(const Fields& fields, std::uint64_t at) {
   return static_cast<std::uint8_t>(Field(fields, rosbag::OP_FIELD_NAME, 1, at)[0]);
 }
 
-/// Reads a file record by record; throws where a record ends behind the file.
+/// Reads a file record by record; throws where a record reaches past the end of the file.
 class Records {
  public:
   explicit Records(const std::string& path) : in_(path, std::ios::binary) {
@@ -99,7 +99,7 @@ class Records {
     std::uint8_t length[kLengthBytes];
     Read(length, kLengthBytes);
     const std::uint32_t size = NumberAt(length);
-    if (size > left_) Damaged(at_, "a record ends behind the file");
+    if (size > left_) Damaged(at_, "a record reaches past the end of the file");
     Bytes bytes(size);
     Read(bytes.data(), size);
     return bytes;
@@ -120,17 +120,17 @@ Bytes Unpacked(Bytes data, const Fields& fields, std::uint64_t at) {
   const std::string packing = Field(fields, rosbag::COMPRESSION_FIELD_NAME, 0, at);
   const std::uint32_t size = NumberField(fields, rosbag::SIZE_FIELD_NAME, at);
   if (packing == rosbag::COMPRESSION_NONE) {
-    if (size != data.size()) Damaged(at, "a chunk is not as long as it says");
+    if (size != data.size()) Damaged(at, "a chunk has another length than it states");
     return data;
   }
-  if (size > kMostChunkBytes) Damaged(at, "a chunk says that it holds more than 1 GiB");
+  if (size > kMostChunkBytes) Damaged(at, "a chunk states more than 1 GiB of content");
   rosbag::CompressionType type;
   if (packing == rosbag::COMPRESSION_LZ4) {
     type = rosbag::compression::LZ4;
   } else if (packing == rosbag::COMPRESSION_BZ2) {
     type = rosbag::compression::BZ2;
   } else {
-    Damaged(at, "a chunk is packed in an unknown way");
+    Damaged(at, "a chunk is compressed in an unknown way");
   }
   Bytes whole(size);
   rosbag::ChunkedFile none;
@@ -148,7 +148,7 @@ std::vector<std::uint32_t> MessagesIn(const Bytes& chunk, std::uint64_t at) {
     if (size - place < kLengthBytes) Damaged(at, "a record in this chunk is cut off");
     const std::uint32_t length = NumberAt(&chunk[place]);
     place += kLengthBytes;
-    if (length > size - place) Damaged(at, "a record in this chunk ends behind it");
+    if (length > size - place) Damaged(at, "a record in this chunk reaches past its end");
     const std::uint32_t begin = place;
     place += length;
     return std::pair(begin, length);

@@ -73,7 +73,7 @@ WorldNode::WorldNode()
 void WorldNode::Spin() {
   PollLoop([this] { return Work(); }, RealtimePriorityParameter());
   if (!StoppedBySignal()) Warn();
-  if (summary_lost_) throw LostOutput("world: the last episode's summary did not come");
+  if (summary_lost_) throw LostOutput("world: the summary of the last episode did not arrive");
   if (!done_ && !StoppedBySignal()) {
     const std::string asked = episodes_ > 0 ? " of " + std::to_string(episodes_) : "";
     throw LostOutput("world: another node or program ended this one after " +

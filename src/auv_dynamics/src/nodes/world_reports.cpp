@@ -18,10 +18,10 @@ void WorldNode::WarnOfLoss(int party) {
   if (!losses_.Due()) return;
   Warn();
   const std::string step = std::to_string(step_);
-  warning_ = party == Channel()
-                 ? "world: acoustic channel did not close step " + step + ", going on without it"
-                 : "world: no command of AUV " + std::to_string(party) + " for step " + step +
-                       ", holding its last command";
+  warning_ = party == Channel() ? "world: acoustic channel did not close step " + step +
+                                      ", the run goes on without it"
+                                : "world: no command of AUV " + std::to_string(party) +
+                                      " for step " + step + ", the world holds its last command";
   warning_ += losses_.more();
   warned_s_ = WallSeconds();
 }

@@ -47,7 +47,7 @@ Cells Parse(const std::string& file, int number, const std::string& line) {
     const bool last = k + 1 == kCells;
     if (last ? next != end : next == end || *next != ',') {
       Refuse(file, number,
-             last ? "more than the columns of the header"
+             last ? "more cells than the header has columns"
                   : "after column " + CellName(k) + ": expected a comma");
     }
     at = last ? next : next + 1;
@@ -56,7 +56,7 @@ Cells Parse(const std::string& file, int number, const std::string& line) {
     }
   }
   if (cells[kCommandCells] < 0.0) {
-    Refuse(file, number, "column t: before the command");
+    Refuse(file, number, "column t: a time before the command is not allowed");
   }
   return cells;
 }
@@ -148,7 +148,7 @@ std::vector<RecordedMotion> LoadMotions(const std::string& file) {
     std::copy(cells.end() - kMotionColumns, cells.end(), row.state.begin());
     motions.back().rows.push_back(row);
   }
-  if (motions.empty()) throw UserError(file + ": holds no motion");
+  if (motions.empty()) throw UserError(file + ": contains no motion");
   return motions;
 }
 

@@ -80,7 +80,7 @@ std::optional<config::Violation> FindConflict(const SensingConfig& c, double dec
   if (!c.pings()) return {};
   if (TargetSensors().Make(c.sensor, c.sensors, c)->kind() != MeasurementKind::kRange) {
     return config::Violation{{"sensing.ranging", "sensing.sensor"},
-                             "a ping measures a range and nothing else"};
+                             "a ping measures only a range, so the sensor must measure ranges"};
   }
   const RelativeOptions o = c.relative();
   if (c.dropout_rate_hz > 0.0 || o.outlier_probability > 0.0 || o.false_alarm_probability > 0.0 ||
@@ -88,8 +88,8 @@ std::optional<config::Violation> FindConflict(const SensingConfig& c, double dec
     return config::Violation{
         {"sensing.ranging", "sensing.dropout_rate_hz", "sensing.range.outlier_probability",
          "sensing.range.false_alarm_probability", "sensing.range.field_of_view_deg"},
-        "a ping is heard in all directions; it is lost or late as packets are, see "
-        "channel.physical.modem.late_probability"};
+        "these keys have no effect on a ping: it is heard in all directions, and is lost or late "
+        "as packets are (channel.physical.modem.late_probability)"};
   }
   return {};
 }

@@ -40,7 +40,9 @@ Bathymetry::Bathymetry(std::vector<double> latitudes, std::vector<double> longit
       elevation_(std::move(elevation_m)) {
   if (latitudes_.size() < 2 || longitudes_.size() < 2 ||
       elevation_.size() != latitudes_.size() * longitudes_.size()) {
-    throw UserError("bathymetry: a grid has at least two points each way, and an elevation each");
+    throw UserError(
+        "bathymetry: a grid needs at least two points along each axis and one elevation for each "
+        "point");
   }
 }
 

@@ -64,7 +64,7 @@ Axis1 ReadAxis(const NetcdfFile& file, const std::vector<Variable>& variables, i
   if (axis.descending) std::reverse(axis.values.begin(), axis.values.end());
   const double most = axis.latitude ? 90.0 : 540.0;
   if (axis.values.front() < -most - 0.01 || axis.values.back() > most + 0.01) {
-    file.Refuse("the values of " + d.name + " are no " +
+    file.Refuse("the values of " + d.name + " are not " +
                 (axis.latitude ? "latitudes" : "longitudes") + " in degrees");
   }
   return axis;
@@ -79,8 +79,8 @@ const Variable& FindElevation(const NetcdfFile& file, const std::vector<Variable
     if (v.dimensions.size() == 2 && v.numeric) flat.push_back(&v);
   }
   if (flat.empty()) {
-    file.Refuse("no variable over latitude and longitude" +
-                (names.empty() ? ": it has none at all" : ", only " + names));
+    file.Refuse("there is no variable over latitude and longitude" +
+                (names.empty() ? "; it has no variables" : "; its variables are " + names));
   }
   for (const char* name : {"elevation", "z", "topo", "ROSE", "Band1", "altitude"}) {
     for (const Variable* v : flat) {
@@ -97,7 +97,7 @@ struct Span {
 };
 Span SpanOf(const NetcdfFile& file, const std::vector<double>& axis, double lo, double hi,
             const char* what) {
-  if (!(lo < hi)) file.Refuse(std::string("the region asked for has no ") + what);
+  if (!(lo < hi)) file.Refuse(std::string("the region has no extent in ") + what);
   const double slack = 1e-9 * (axis.back() - axis.front());
   if (lo < axis.front() - slack || hi > axis.back() + slack) {
     file.Refuse("covers " + std::string(what) + " " + std::to_string(axis.front()) + " to " +
@@ -156,7 +156,7 @@ void Unpack(const NetcdfFile& file, const Variable& variable, std::vector<float>
     const double metres = (down ? -1.0 : 1.0) * (value * scale + offset);
     if (!(metres >= kLowest_m && metres <= kHighest_m)) {
       file.Refuse(variable.name + " holds " + std::to_string(metres) +
-                  " m, which is nowhere on Earth");
+                  " m, an elevation that does not exist on Earth");
     }
     value = static_cast<float>(metres);
   }

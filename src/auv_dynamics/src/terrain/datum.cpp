@@ -10,8 +10,8 @@ namespace stg::dynamics {
 
 Datum::Datum(double latitude_deg, double longitude_deg) {
   if (!(std::abs(latitude_deg) <= 90.0) || !(std::abs(longitude_deg) <= 540.0)) {
-    throw UserError("datum: no place on the Earth: latitude " + std::to_string(latitude_deg) +
-                    ", longitude " + std::to_string(longitude_deg));
+    throw UserError("datum: this is not a place on Earth: latitude " +
+                    std::to_string(latitude_deg) + ", longitude " + std::to_string(longitude_deg));
   }
   frame_ = std::make_unique<const GeographicLib::LocalCartesian>(latitude_deg, longitude_deg, 0.0);
 }

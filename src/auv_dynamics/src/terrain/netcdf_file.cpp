@@ -20,8 +20,8 @@ NetcdfFile::NetcdfFile(const std::string& path) : netcdf_(NetcdfLibrary::Get()),
   if (std::filesystem::file_size(path) == 0) throw UserError(path + ": is empty");
   const auto least = SmallestClassicSize(path);
   if (least && std::filesystem::file_size(path) < *least) {
-    Refuse("damaged: " + std::to_string(std::filesystem::file_size(path)) + " bytes of at least " +
-           std::to_string(*least));
+    Refuse("damaged: " + std::to_string(std::filesystem::file_size(path)) +
+           " bytes instead of at least " + std::to_string(*least));
   }
   Check(netcdf_.open(path.c_str(), NC_NOWRITE, &id_), "not a readable NetCDF file");
 }
@@ -88,7 +88,7 @@ std::optional<double> NetcdfFile::Number(const Variable& variable, const char* a
   std::size_t length = 0;
   if (netcdf_.inq_att(id_, variable.id, attribute, &type, &length) != NC_NOERR) return {};
   if (type == NC_CHAR || type == NC_STRING || length != 1) {
-    Refuse("attribute " + std::string(attribute) + " of " + variable.name + " is no number");
+    Refuse("attribute " + std::string(attribute) + " of " + variable.name + " is not a number");
   }
   double value = 0.0;
   Check(netcdf_.get_att_double(id_, variable.id, attribute, &value), "an attribute cannot be read");

@@ -94,7 +94,8 @@ Terrain::Terrain(double depth_m) : depth_(depth_m), highest_(-depth_m) {
 
 Terrain::Terrain(const Bathymetry& grid, const Datum& datum, double half_size_m)
     : half_size_(half_size_m) {
-  if (!(half_size_m > 0.0)) throw UserError("terrain: the region has no size");
+  if (!(half_size_m > 0.0))
+    throw UserError("terrain: the half size of the region must be positive");
   const double cell_deg = grid.latitudes()[1] - grid.latitudes()[0];
   const double wanted = std::max(1.0, 0.5 * cell_deg * kMetresPerDegree);
   const double cells = std::ceil(2.0 * half_size_m / wanted);

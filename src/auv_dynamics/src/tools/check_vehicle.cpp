@@ -42,7 +42,7 @@ void Print(const char* what, const MotionError& e) {
                 stg::dynamics::NameOf(static_cast<stg::dynamics::MotionColumn>(c)),
                 column.max_abs_error, column.hi - column.lo, 1e2 * column.share(), column.line);
   }
-  std::printf("  position off by at most %.4f %% of the distance run (line %d)\n",
+  std::printf("  position error at most %.4f %% of the distance run (line %d)\n",
               1e2 * e.position_share, e.position_line);
 }
 

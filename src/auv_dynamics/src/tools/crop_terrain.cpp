@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     if (!out.empty()) {
       std::error_code error;  // of an output that is not there yet
       if (std::filesystem::equivalent(out, file, error)) {
-        throw stg::UserError(out + ": is the file that is read");
+        throw stg::UserError(out + ": is the input file; write to another file");
       }
       const std::string name = file.substr(file.find_last_of('/') + 1);
       grid.Save(out, "cropped from " + name + " by crop_terrain");

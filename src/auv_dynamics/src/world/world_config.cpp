@@ -44,7 +44,7 @@ std::optional<Violation> CheckStage(const WorldConfig& s, int agents, int index)
                     (s.reset.curriculum || static_cast<int>(s.reset.stage) == index);
   if (used && !StartsFit(s.reset, stage, agents)) {
     return Violation{{"agents", path + "auv_distance_m", "reset.min_separation_m"},
-                     "so many AUVs do not fit around a target with this separation"};
+                     "so many AUVs do not fit around a target at this separation"};
   }
   return {};
 }
@@ -128,15 +128,14 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunCon
   if (auto violation = FindConflict(s.sensing, run.decision_dt_s())) return violation;
   for (const std::string& model : s.vehicle.models) {
     if (Autopilots().Has(model) == Autopilots().Has(s.vehicle.models[0])) continue;
-    return Violation{
-        {"vehicle.models"},
-        "vehicles that autopilots steer fly with their like, not with those that force "
-        "and moment command"};
+    return Violation{{"vehicle.models"},
+                     "vehicles that an autopilot steers and vehicles that take force and moment "
+                     "cannot be in one fleet"};
   }
   if (Autopilots().Has(s.vehicle.model_of(0))) {
     if (s.control.interface != ActionInterface::kVelocity3) {
       return Violation{{"control.interface", "vehicle.model"},
-                       "these vehicles are steered by a velocity command: velocity3"};
+                       "these vehicles take velocity commands only: set velocity3"};
     }
     if (run.time.decision_steps % s.control.autopilot.period_steps != 0) {
       return Violation{{"control.autopilot.period_steps", "time.decision_steps"},

@@ -235,7 +235,7 @@ TEST_F(GridFile, SaysWhatIsWrongWithAFile) {
   l = Layout();
   for (const double nowhere : {20000.0, 9500.0, -13000.0}) {
     l.value = [nowhere](int, int) { return nowhere; };
-    says(Refusal(l), "nowhere on Earth");
+    says(Refusal(l), "does not exist on Earth");
   }
   for (const char* units : {"feet", "ft", "km", "cm", "fathoms"}) {
     l = Layout();
@@ -267,12 +267,12 @@ TEST_F(GridFile, RefusesOnesOfOtherDimensionsOrWithoutElevations) {
     Ok(nc_close(nc));
   };
   write(3, 1);
-  EXPECT_NE(Refusal().find("no variable over latitude and longitude, only field0"),
+  EXPECT_NE(Refusal().find("no variable over latitude and longitude; its variables are field0"),
             std::string::npos);
   write(1, 1);
   EXPECT_NE(Refusal().find("no variable"), std::string::npos);
   write(0, 0);
-  EXPECT_NE(Refusal().find("it has none at all"), std::string::npos);
+  EXPECT_NE(Refusal().find("it has no variables"), std::string::npos);
   write(2, 2);
   EXPECT_NE(Refusal().find("several variables could be elevations"), std::string::npos);
 }

@@ -272,11 +272,11 @@ TEST_F(SeaOverAFile, TakesAFileByItsPathWhateverItsName) {
   EXPECT_NE(Refusal(s).find("no file " + folder_), std::string::npos) << Refusal(s);
   for (const std::string bad : {"two words.nc", ".nc", "x.nc\n", "../passwd", "-x.nc"}) {
     s.world.sea.terrain = bad;
-    EXPECT_NE(Refusal(s).find("is no name"), std::string::npos) << bad;
+    EXPECT_NE(Refusal(s).find("is not a name"), std::string::npos) << bad;
   }
   s = Slope(10.1);
   s.run.name = file;  // other texts are names only
-  EXPECT_NE(Refusal(s).find("is no name"), std::string::npos);
+  EXPECT_NE(Refusal(s).find("is not a name"), std::string::npos);
 }
 
 TEST_F(SeaOverAFile, SaysWhatIsWrong) {

@@ -81,9 +81,9 @@ TEST_F(MotionFile, MayBeginWithAByteOrderMark) {
 }
 
 TEST_F(MotionFile, SaysWhatIsWrongAndWhere) {
-  EXPECT_NE(Refusal("").find("holds no motion"), std::string::npos);
+  EXPECT_NE(Refusal("").find("contains no motion"), std::string::npos);
   EXPECT_NE(Refusal("a,b\n").find(":1: expected the header"), std::string::npos);
-  EXPECT_NE(Refusal(kTitle).find("holds no motion"), std::string::npos);
+  EXPECT_NE(Refusal(kTitle).find("contains no motion"), std::string::npos);
   const std::string title = kTitle;
   EXPECT_NE(Refusal(title + "0,0,0,0,0,1,0,0\n").find(":2: after column y: expected a comma"),
             std::string::npos);
@@ -91,7 +91,7 @@ TEST_F(MotionFile, SaysWhatIsWrongAndWhere) {
                 .find(":3: column y: expected a finite number"),
             std::string::npos);
   EXPECT_NE(
-      Refusal(title + "0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0,0\n").find("more than the columns"),
+      Refusal(title + "0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0,0\n").find("more cells than the header"),
       std::string::npos);
   EXPECT_NE(Refusal(title + "0,0,0,0,0,-1,0,0,0,0,0,0,0,0,0,0,0,0\n").find("column t"),
             std::string::npos);

@@ -14,7 +14,9 @@ namespace {
 /// whole number or list of them.
 template <class F>
 void WithValue(const config::Field& option, const F& f) {
-  const auto none = [&option] { throw std::logic_error(option.path + " is of no option's kind"); };
+  const auto none = [&option] {
+    throw std::logic_error(option.path + " has a type that options do not support");
+  };
   std::visit(config::Overload{[&](const config::EnumRef& v) {
                                 std::string name = v.names.at(static_cast<std::size_t>(v.get()));
                                 f(&name);

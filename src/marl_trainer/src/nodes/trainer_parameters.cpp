@@ -36,7 +36,7 @@ std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
       return "[" + list + "]";
     }
     default:
-      throw UserError("parameter " + name + ": is no value of an option");
+      throw UserError("parameter " + name + ": must be a number, true or false, text or a list");
   }
 }
 

@@ -206,8 +206,8 @@ TEST_F(ArchiveTest, CountsAreCounts) {
   archive.PutInteger("less", -1);
   EXPECT_EQ(archive.Count("all"), 1LL << 53);
   EXPECT_EQ(RefusalOf([&] { archive.Count("more"); }),
-            "'more' is 9007199254740993, which is no count");
-  EXPECT_EQ(RefusalOf([&] { archive.Count("less"); }), "'less' is -1, which is no count");
+            "'more' is 9007199254740993, which is not a count");
+  EXPECT_EQ(RefusalOf([&] { archive.Count("less"); }), "'less' is -1, which is not a count");
 }
 
 TEST_F(ArchiveTest, ATrainingOfNegativeStepsIsRefused) {
@@ -220,7 +220,7 @@ TEST_F(ArchiveTest, ATrainingOfNegativeStepsIsRefused) {
   EXPECT_EQ(refusal([](TrainState*) {}), "accepted");
   EXPECT_NE(refusal([](TrainState* s) {
               s->env_steps = -4000000000;
-            }).find("'env_steps' is -4000000000, which is no count"),
+            }).find("'env_steps' is -4000000000, which is not a count"),
             std::string::npos);
   EXPECT_NE(refusal([](TrainState* s) { s->collections = -1; }).find("'collections'"),
             std::string::npos);
@@ -244,7 +244,7 @@ TEST_F(ArchiveTest, MomentsThatWouldBecomeNaNAreRefused) {
   steps.Put("a_first", std::vector<float>{1.0F});
   steps.Put("a_second", std::vector<float>{1.0F});
   steps.PutInteger("a_steps", -1);
-  EXPECT_NE(RefusalOf([&] { state.Load("a", steps); }).find("no count"), std::string::npos);
+  EXPECT_NE(RefusalOf([&] { state.Load("a", steps); }).find("not a count"), std::string::npos);
 
   RunningMoments moments(1);
   EXPECT_EQ(RefusalOf([&] { moments.Load({2.0, -5.0, 1.0}); }), "accepted");

@@ -166,7 +166,8 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance, bo
                     double* action) const {
   SearchMemory* search = agent.search();
   if (search == nullptr) {
-    throw UserError("a controller that searches needs the agents' map: set track.search_cell_m");
+    throw UserError(
+        "this controller needs the agents' search map: set track.search_cell_m above 0");
   }
   NeighbourSight<double> nearest[kNearestKnown];
   const int count = agent.Nearest(kNearestKnown, nearest);

@@ -118,9 +118,9 @@ class EntityReader {
     Require(model_.metadata_props_size() <= 1000, "has too much metadata");
     for (const auto& entry : model_.metadata_props()) {
       Require(entry.value().size() <= 65536 && IsText(entry.key()) && IsText(entry.value()),
-              "metadata that is no text");
+              "metadata that is not text");
       Require(properties_.emplace(entry.key(), entry.value()).second,
-              "metadata '" + entry.key() + "' is there twice");
+              "metadata '" + entry.key() + "' is given twice");
     }
     EntityPolicy::Parameters p;
     Require(Property("stg.observation_layout") == kEntityLayout, "is of another layout");

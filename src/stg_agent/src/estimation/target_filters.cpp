@@ -25,7 +25,7 @@ std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
       dynamics::TargetSensors().Make(model.sensing.sensor, model.sensing.sensors, model.sensing);
   if (filter->Takes(sensor->kind(), model.sensing.relative().ambiguous)) return {};
   return config::Violation{{"track.filter", "sensing.sensor"},
-                           "this filter has no use for what this sensor measures"};
+                           "this filter cannot use the measurements of this sensor"};
 }
 
 std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
@@ -33,34 +33,34 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
   if (!s.locates()) {
     if (s.stations.count() > 0) {
       return config::Violation{{"stations.beacons", "stations.crafts", "localization.kind"},
-                               "no localizer is there to make use of stations"};
+                               "only a localizer uses stations: set localization.kind"};
     }
     if (!located) return {};
     return config::Violation{{"track.measurements.observers", "localization.kind"},
-                             "no localizer leaves errors to reckon with"};
+                             "'located' needs a localizer: set localization.kind"};
   }
   if (s.track.filter != "measurements" || !located) {
-    return config::Violation{{"localization.kind", "track.filter", "track.measurements.observers"},
-                             "what a localizer finds is used by the filter 'measurements' with "
-                             "'observers: located'"};
+    return config::Violation{
+        {"localization.kind", "track.filter", "track.measurements.observers"},
+        "a localizer needs the filter 'measurements' with 'observers: located'"};
   }
   if (s.navigation.kind != "dead_reckoning" || s.navigation.gps_depth_m > 0.0) {
     return config::Violation{
         {"localization.kind", "navigation.kind", "navigation.dead_reckoning.gps_depth_m"},
-        "the positions must be those of a reckoning that no fix corrects: 'dead_reckoning' with "
+        "a localizer needs positions that GPS does not correct: 'dead_reckoning' with "
         "'gps_depth_m: 0'"};
   }
   const auto water =
       acoustics::PropagationModels().Make(s.channel.model, s.channel.models, s.channel);
   if (!water->has_modems()) {
     return config::Violation{{"localization.kind", "channel.model"},
-                             "only modems measure travel times"};
+                             "only modems measure travel times: set channel.model to physical"};
   }
   constexpr int kMostMembers = 31, kMostTargets = 16;  // that a packet names
   if (s.run.agents + s.stations.count() > kMostMembers || s.target.count > kMostTargets) {
     return config::Violation{
         {"localization.kind", "agents", "stations.beacons", "stations.crafts", "target.count"},
-        "packets with ranges name up to 31 AUVs and stations, and 16 targets"};
+        "packets with ranges can name at most 31 AUVs and stations, and 16 targets"};
   }
   return acoustics::FindConflict(s.channel, NetworkRun(s.run, s.stations));
 }

@@ -174,7 +174,7 @@ bool AgentNode::OnLoadPolicy(auv_msgs::LoadPolicy::Request& request,
   } catch (const std::exception& error) {
     response.success = false;
     response.message = error.what();
-    ROS_ERROR("agent %d: keeps its policy: %s", id_, error.what());
+    ROS_ERROR("agent %d: refuses a new policy and keeps its own: %s", id_, error.what());
   }
   response.policy_id = decider_.IdOf(id_);
   return true;

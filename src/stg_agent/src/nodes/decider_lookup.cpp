@@ -29,8 +29,8 @@ std::string Resolve(const std::string& name, const agent::AgentModel& model, int
   // The user of a scenario derived from a shipped one may think that the latter's policy flies.
   if (agent == 0 && !fs::exists(ShippedScenario(model.run.name), ignored)) {
     ROS_WARN(
-        "no policy is shipped for a scenario named '%s': '%s' flies; policy:=FILE.onnx "
-        "names another one",
+        "no policy is shipped for a scenario named '%s', so the controller '%s' decides; "
+        "policy:=FILE.onnx chooses a policy",
         model.run.name.c_str(), agent::DefaultController().c_str());
   }
   return agent::DefaultController();

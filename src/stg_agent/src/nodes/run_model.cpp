@@ -12,11 +12,10 @@ agent::AgentModel ModelOfRun() {
   const bool over_modems = ros::param::has("/acoustic_channel/ports");
   if (over_modems && (model.sensing.pings() || model.pings_members())) {
     throw UserError(
-        "sensing.ranging, localization.ranges.by: over modems (argument 'modems') AUVs do not "
-        "ping");
+        "sensing.ranging, localization.ranges.by: with the argument 'modems' AUVs cannot ping");
   }
   if (over_modems && model.stations.count() > 0) {
-    throw UserError("stations: over modems (argument 'modems') there are none");
+    throw UserError("stations: a run with the argument 'modems' cannot have stations");
   }
   return model;
 }

@@ -54,7 +54,8 @@ void Validate(const Policy::Parameters& p) {
   Eigen::Index actions = inputs;
   if (p.choices.size() > 0) {
     RequireWidth(p.choices.rows(), "the choices");
-    Require(inputs % p.choices.rows() == 0, "the last layer does not value every choice");
+    Require(inputs % p.choices.rows() == 0,
+            "the last layer does not have one output for each choice");
     Require(p.choices.allFinite() && p.choices.cwiseAbs().maxCoeff() <= 1.0F,
             "a choice is not in [-1, 1]");
     actions = inputs / p.choices.rows() * p.choices.cols();

@@ -249,9 +249,9 @@ class Reader {
     Require(model_.metadata_props_size() <= 1000, "has too much metadata");
     for (const auto& entry : model_.metadata_props()) {
       Require(entry.value().size() <= 65536, "has too much metadata");
-      Require(IsText(entry.key()) && IsText(entry.value()), "metadata that is no text");
+      Require(IsText(entry.key()) && IsText(entry.value()), "metadata that is not text");
       Require(properties_.emplace(entry.key(), entry.value()).second,
-              "metadata '" + entry.key() + "' is there twice");
+              "metadata '" + entry.key() + "' is given twice");
     }
     PolicyMetadata& m = p_.metadata;
     m.id = Property("stg.id");

@@ -164,7 +164,8 @@ std::optional<config::Violation> FindPingConflict(const AgentModel& s,
   const auto water =
       acoustics::PropagationModels().Make(s.channel.model, s.channel.models, s.channel);
   if (!water->has_modems()) {
-    return config::Violation{{"sensing.ranging", "channel.model"}, "only modems ping"};
+    return config::Violation{{"sensing.ranging", "channel.model"},
+                             "only modems can ping: set channel.model to physical"};
   }
   const double dt_s = s.run.decision_dt_s(), member_period_s = s.localization.ping_period_s;
   if (members && !IsWholeDecisions(member_period_s, dt_s)) {
@@ -187,7 +188,7 @@ std::optional<config::Violation> FindPingConflict(const AgentModel& s,
   }
   violation.keys.emplace_back("channel.access");
   violation.message = "a ping takes an AUV up to " + std::to_string(each_s) +
-                      " s, to its turn and to the answer; pings are due more often than that";
+                      " s, until its turn and the answer; the pings are due more often";
   return violation;
 }
 

@@ -135,7 +135,7 @@ TEST_F(PolicyRefusal, RefusesAFlippedBitAnywhereInTheMetadata) {
 TEST_F(PolicyRefusal, RefusesMetadataThatIsNoTextOrThereTwice) {
   for (const char* text : {"\xff", "\xc3", "\xed\xa0\x80", "\xc0\xaf", "a\x01", "a\nb", "\x7f"}) {
     ExpectRefused([&](onnx::ModelProto* m) { m->mutable_metadata_props(0)->set_value(text); },
-                  "no text");
+                  "not text");
   }
   ExpectRefused([](onnx::ModelProto* m) { *m->add_metadata_props() = m->metadata_props(0); },
                 "twice");

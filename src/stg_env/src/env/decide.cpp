@@ -45,8 +45,8 @@ void DecideSlice(const agent::Decider& c, const VectorEnv::Slice& slice, const f
   const int width = s.agent.observation_size();
   if (c.entities != nullptr && s.mode == InformationMode::kTruth) {
     throw UserError("policy '" + c.name +
-                    "' decides on what an AUV finds out by itself; the scenario '" + s.run.name +
-                    "' is of mode truth");
+                    "' uses only an AUV's own knowledge, so mode must be acoustic; the scenario '" +
+                    s.run.name + "' has the mode truth");
   }
   if (c.builtin != nullptr && (c.privileged || s.mode == InformationMode::kTruth)) {
     DecideTruly(*c.builtin, slice, actions);

@@ -137,7 +137,8 @@ void ReadSteps(const std::string& file, Trace* trace) {
       char* end = nullptr;
       row.push_back(std::strtod(cells[c].c_str(), &end));
       if (cells[c].empty() || *end != '\0' || !std::isfinite(row.back())) {
-        Fail(file, number, "column '" + trace->columns[c] + "': '" + cells[c] + "' is no number");
+        Fail(file, number,
+             "column '" + trace->columns[c] + "': '" + cells[c] + "' is not a number");
       }
     }
     trace->rows.push_back(std::move(row));

@@ -42,7 +42,9 @@ VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& o
   state_size_ = task::CriticStateSize(mix_.front().run, mix_.front().world);
   if (options_.total_envs == 0) options_.total_envs = options_.envs;
   if (options_.envs < 1 || options_.first_env < 0 || options_.total_envs < options_.envs) {
-    throw UserError("environments must be at least one, and no more than all together");
+    throw UserError(
+        "an environment object needs at least one environment, and total_envs must not be smaller "
+        "than envs");
   }
   slice_of_.resize(Size(options_.envs));
   for (int env = 0; env < options_.envs;) {

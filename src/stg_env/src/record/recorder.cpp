@@ -288,7 +288,7 @@ class Recorder {
 /// Closes what was written and has it take the place of the file of before.
 void Finish(std::ofstream* out, DurableFile* file) {
   out->close();
-  if (!*out) file->Fail("the disk took not all of it");
+  if (!*out) file->Fail("not all of it could be written; is the disk full?");
   file->Commit();
 }
 

@@ -40,12 +40,13 @@ std::optional<config::Violation> FindConflict(const Scenario& s) {
   }
   const bool truth = s.mode == InformationMode::kTruth;
   if (truth && s.agent.task.free()) {
-    return config::Violation{{"task.assignment", "mode"},
-                             "an AUV that knows the truth keeps no beliefs to choose among"};
+    return config::Violation{
+        {"task.assignment", "mode"},
+        "AUVs choose targets by their own estimates, which only the mode acoustic has"};
   }
   if (s.agent.fleet.changes() && (truth || !s.world.sea.open)) {
     return config::Violation{{"fleet.leave", "mode", "sea.open"},
-                             "members leave and join in open water, in the mode acoustic"};
+                             "AUVs can leave and join only in open water and in the mode acoustic"};
   }
   return FindConflict(s.judge());
 }

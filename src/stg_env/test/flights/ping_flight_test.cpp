@@ -214,7 +214,7 @@ TEST(PingFlight, WhatDoesNotGoTogetherIsRefusedByName) {
             std::string::npos);
   EXPECT_NE(error({"sensing.range.outlier_probability=0.1"}).find("outlier_probability"),
             std::string::npos);
-  EXPECT_NE(error({"channel.model=range"}).find("only modems ping"), std::string::npos);
+  EXPECT_NE(error({"channel.model=range"}).find("only modems can ping"), std::string::npos);
   // A round of slots is 5 s: each turn of an AUV would be a ping, and no packet would leave.
   EXPECT_NE(error({"sensing.period_s=5.0"}).find("sensing.period_s"), std::string::npos);
   EXPECT_EQ(error({"sensing.period_s=7.0"}), "");

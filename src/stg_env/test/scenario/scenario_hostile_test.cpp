@@ -123,7 +123,8 @@ TEST_F(HostileFile, DeepAndWideFilesAreRefused) {
 }
 
 TEST_F(HostileFile, BaseThatLeadsBackToItselfIsRefused) {
-  ExpectRefused(Write("self.yaml", "name: a\nbase: self.yaml\n"), ":2: base: ", "back to itself");
+  ExpectRefused(Write("self.yaml", "name: a\nbase: self.yaml\n"),
+                ":2: base: ", "is based on this file");
   Write("x.yaml", "base: y.yaml\n");
   const std::string y = Write("y.yaml", "\nbase: ./x.yaml\n");
   try {
@@ -131,7 +132,7 @@ TEST_F(HostileFile, BaseThatLeadsBackToItselfIsRefused) {
     ADD_FAILURE();
   } catch (const UserError& error) {
     const std::string message = error.what();
-    EXPECT_NE(message.find("y.yaml:2: base: './x.yaml' leads back to itself"), std::string::npos)
+    EXPECT_NE(message.find("y.yaml:2: base: './x.yaml' is based on this file"), std::string::npos)
         << message;
   }
 }

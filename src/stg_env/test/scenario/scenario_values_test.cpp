@@ -26,7 +26,7 @@ TEST_F(ScenarioInput, WrongTypesAreRefused) {
   ExpectRefused("restoring", "restoring: 1", "vehicle.fully_actuated.restoring",
                 "expected true or false");
   ExpectRefused("name", "name: [a]", "name", "expected a name");
-  ExpectRefused("name", "name: ../etc", "name", "no name");
+  ExpectRefused("name", "name: ../etc", "name", "not a name");
   ExpectRefused("max_tau", "max_tau: [1, 2, 3]", "vehicle.max_tau",
                 "expected a sequence of 6 numbers, found 3 items");
   ExpectRefused("max_tau", "max_tau: 3", "vehicle.max_tau", "expected a sequence of 6 numbers");

@@ -85,7 +85,8 @@ py::dict Parameters(const Policy& policy) {
 
 /// Mean actions [..., action_size] of observations [..., observation_size].
 py::array_t<float> Mean(const Policy& policy, const py::handle& object) {
-  if (!py::isinstance<py::array>(object)) throw py::type_error("observations: no numpy array");
+  if (!py::isinstance<py::array>(object))
+    throw py::type_error("observations: expected a numpy array");
   const auto given = py::reinterpret_borrow<py::array>(object);
   Shape shape(given.shape(), given.shape() + given.ndim());
   if (shape.empty() || shape.back() != policy.observation_size()) {

@@ -14,8 +14,8 @@ BoundEnv::Use::Use(const BoundEnv* env) : env_(*env) {
   env_.pool();
   if (env_.process_ != static_cast<int>(getpid())) {
     throw std::runtime_error(
-        "this environment belongs to the process that made it: its threads did not follow the "
-        "fork; make one in each process");
+        "this environment belongs to the process that made it: threads do not survive a fork; make "
+        "an environment in each process");
   }
   if (env_.busy_.test_and_set(std::memory_order_acquire)) {
     throw std::runtime_error("another thread is using this environment");

@@ -32,7 +32,8 @@ void BoundEnv::Follow(int env, int agent, int target) {
   RequireAgent(agent);
   const Scenario& s = place.envs.scenario(place.env);
   if (!s.agent.task.free()) {
-    throw py::value_error("follow: targets are not chosen here; set task.assignment to free");
+    throw py::value_error(
+        "follow: AUVs cannot choose targets in this scenario; set task.assignment to free");
   }
   if (target < 0 || target >= s.world.target.count) {
     throw py::index_error("target: " + std::to_string(target) + " is not in 0 to " +
@@ -52,7 +53,7 @@ py::dict BoundEnv::Entities(int env, int agent) const {
   const EnvPool::Place place = at(env);
   RequireAgent(agent);
   if (place.envs.scenario(place.env).mode != InformationMode::kAcoustic) {
-    throw py::value_error("entities are what an AUV finds out by itself: mode must be acoustic");
+    throw py::value_error("entities hold only an AUV's own knowledge, so mode must be acoustic");
   }
   agent::Entities e;
   agent::BuildEntities(place.envs.agent(place.env, agent), &e);

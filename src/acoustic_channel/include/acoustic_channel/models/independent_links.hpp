@@ -175,7 +175,8 @@ class IndependentLinks : public Channel {
       vy_[i] = v.y;
       vz_[i] = v.z;
     }
-    if (!(finite == 0.0)) throw std::invalid_argument("Channel::Step: not a finite state");
+    if (!(finite == 0.0))
+      throw std::invalid_argument("Channel::Step: the state of a node is not finite");
   }
 
   /// Receivers of a packet: [first, last) without the source.

@@ -26,7 +26,7 @@ int WholeParameter(const std::string& name, double otherwise, double lo, double 
 
 acoustics::ModemPort OpenModem(int id) {
   const std::string port = TextParameter("port", "");
-  if (port.empty()) throw UserError("parameter port: tcp://HOST:PORT or a serial device");
+  if (port.empty()) throw UserError("parameter port: must be tcp://HOST:PORT or a serial device");
   acoustics::DriverOptions options;
   const int address = WholeParameter("address", 0, 0, 254);
   options.address = address > 0 ? address : id + 1;
@@ -84,9 +84,9 @@ void DriverNode::OnPacket(const auv_msgs::AcousticPacket::ConstPtr& message) {
 void DriverNode::AskRanges() {
   for (const PingDesk::Question& question : desk_.TakeQuestions()) {
     if (question.source != static_cast<std::uint32_t>(id_)) {
-      desk_.Refuse(question.tag, "this modem is that of vehicle " + std::to_string(id_));
+      desk_.Refuse(question.tag, "this node drives the modem of vehicle " + std::to_string(id_));
     } else if (asks_) {
-      desk_.Refuse(question.tag, "a ping is under way");
+      desk_.Refuse(question.tag, "another ping is not finished yet");
     } else if (question.destination > 253 || question.destination == question.source) {
       desk_.Refuse(question.tag, "no such vehicle");
     } else {

@@ -61,7 +61,7 @@ void FleetNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mess
   const bool placed = twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position);
   if (!placed || (twist_ != TwistFrame::kNone && !FiniteVector(twist.linear))) {
     return RefuseOdometry(vehicle, Refusals::kNotFinite,
-                          "not finite, or an orientation that is no rotation");
+                          "a number is not finite, or the orientation is not a rotation");
   }
   const TimeNs stamp = NsOf(message->header.stamp);
   Judge(stamp, [this, vehicle, message, stamp](bool timely) {
@@ -79,7 +79,8 @@ void FleetNode::Place(int vehicle, const nav_msgs::Odometry& message) {
     motion.v_W = VectorOf(message.twist.twist.linear);
   }
   if (fleet_.Move(vehicle, NsOf(message.header.stamp), motion) == Word::kLate) {
-    return RefuseOdometry(vehicle, Refusals::kStale, "too late for its stamp");
+    return RefuseOdometry(vehicle, Refusals::kStale,
+                          "it came after the channel had passed its stamp");
   }
   ++odometry_;
   if (frames_.size() < kMostFrames) frames_.insert(message.header.frame_id.substr(0, kFrameText));
@@ -110,7 +111,7 @@ void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, Time
   if (packet.destination == kNobody) {
     return refuse("destination " + std::to_string(message.destination) + " does not exist");
   }
-  if (packet.destination == vehicle) return refuse("its destination is its sender");
+  if (packet.destination == vehicle) return refuse("its destination is its own sender");
   try {
     if (fleet_.Offer(packet) == Word::kLate) ++members_[static_cast<std::size_t>(vehicle)].late;
     ++packets_;
@@ -120,7 +121,7 @@ void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, Time
 }
 
 std::string FleetNode::FarFromTheClock(TimeNs stamp) const {
-  return "stamp " + std::to_string(Seconds(stamp)) + " s, the clock says " +
+  return "stamp " + std::to_string(Seconds(stamp)) + " s, but the clock is at " +
          std::to_string(Seconds(Clock())) + " s";
 }
 
@@ -157,7 +158,7 @@ void FleetNode::AskPings() {
     } else if (source == destination) {
       pings_.Refuse(q.tag, "vehicle " + std::to_string(q.source) + " cannot ping itself");
     } else if (!fleet_.heard_of(source) || !fleet_.heard_of(destination)) {
-      pings_.Refuse(q.tag, "no odometry yet of one of the two");
+      pings_.Refuse(q.tag, "one of the two vehicles has sent no odometry yet");
     } else {
       fleet_.Ping(source, destination, static_cast<TimeNs>(std::llround(q.timeout_s * 1e9)), q.tag);
     }

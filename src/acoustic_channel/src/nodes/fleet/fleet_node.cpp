@@ -29,7 +29,7 @@ TimeNs Nanoseconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9))
 
 acoustics::NetworkConfig NetworkParameters(const std::vector<Vehicle>& vehicles) {
   const std::string name = TextParameter("config", "");
-  if (name.empty()) throw UserError("parameter config: names no file with the section channel");
+  if (name.empty()) throw UserError("parameter config: must name a file with the section channel");
   const bool path = name.find('/') != std::string::npos || name.find(".yaml") != std::string::npos;
   const std::string file = path ? name : config::NamedSource(config::ScenarioFolder(), name).file;
   std::vector<std::string> overrides = TextsParameter("overrides");
@@ -134,7 +134,7 @@ void FleetNode::Spin() {
   Tell();
   files_.Flush();
   if (!files_.lost().empty()) {
-    throw LostOutput("acoustic channel: not all packets are in " + files_.lost() +
+    throw LostOutput("acoustic channel: packets are missing in " + files_.lost() +
                      ", which could not be written");
   }
 }
@@ -177,7 +177,7 @@ void FleetNode::StartAnew() {
   Tell();
   fleet_.Restart();
   frames_.clear();
-  pings_.RefuseAll("the clock went back or leapt: the channel has started anew");
+  pings_.RefuseAll("the clock went back or jumped ahead: the channel has restarted");
 }
 
 /// Closes what is settled at clock time `now`, and tells.

@@ -16,7 +16,8 @@ PacketFiles::PacketFiles(std::string path, const std::vector<int>& ids, const st
   if (path_.empty()) return;
   std::error_code ignored;  // of one that is not there yet
   if (!bag.empty() && std::filesystem::equivalent(path_, bag, ignored)) {
-    throw UserError("parameter packet_log: " + path_ + " is the bag that is read");
+    throw UserError("parameter packet_log: " + path_ +
+                    " is the bag of the parameter bag; name another file");
   }
   Open(1);
 }

@@ -19,7 +19,7 @@ constexpr int kLargestId = 254;
 }
 
 std::string TextOf(int place, const XmlRpcValue& value, const std::string& what) {
-  if (value.getType() != XmlRpcValue::TypeString) RefuseEntry(place, what + " must be a text");
+  if (value.getType() != XmlRpcValue::TypeString) RefuseEntry(place, what + " must be text");
   return XmlRpcValue(value);
 }
 
@@ -42,7 +42,7 @@ Vehicle FromMap(int place, XmlRpcValue& map) {
       if (value.getType() != XmlRpcValue::TypeInt) RefuseEntry(place, "id must be a whole number");
       v.id = static_cast<int>(value);
     } else {
-      RefuseEntry(place, "unknown key '" + key + "'; there are name, id, odom");
+      RefuseEntry(place, "unknown key '" + key + "'; the keys are name, id, odom");
     }
   }
   return v;
@@ -52,11 +52,11 @@ void Complete(int place, Vehicle* v) {
   while (!v->name.empty() && v->name.front() == '/') v->name.erase(0, 1);
   std::string error;
   if (v->name.empty() || !ros::names::validate("/" + v->name, error)) {
-    RefuseEntry(place, "'" + v->name + "' is no name of a vehicle");
+    RefuseEntry(place, "'" + v->name + "' is not a valid name of a vehicle");
   }
   if (v->odom.empty()) v->odom = v->Topic("odom");
   if (!ros::names::validate(v->odom, error)) {
-    RefuseEntry(place, "'" + v->odom + "' is no name of a topic");
+    RefuseEntry(place, "'" + v->odom + "' is not a valid name of a topic");
   }
   if (v->id < 0 || v->id > kLargestId) {
     RefuseEntry(place, "id must be from 0 to " + std::to_string(kLargestId));
@@ -68,9 +68,9 @@ void RefuseTwins(const std::vector<Vehicle>& vehicles) {
     for (std::size_t j = 0; j < i; ++j) {
       const Vehicle &a = vehicles[j], &b = vehicles[i];
       const int place = static_cast<int>(i);
-      if (a.name == b.name) RefuseEntry(place, "a second vehicle '" + b.name + "'");
-      if (a.id == b.id) RefuseEntry(place, "a second vehicle with id " + std::to_string(b.id));
-      if (a.odom == b.odom) RefuseEntry(place, "a second vehicle with odometry " + b.odom);
+      if (a.name == b.name) RefuseEntry(place, "another vehicle has the name '" + b.name + "'");
+      if (a.id == b.id) RefuseEntry(place, "another vehicle has the id " + std::to_string(b.id));
+      if (a.odom == b.odom) RefuseEntry(place, "another vehicle has the odometry topic " + b.odom);
     }
   }
 }
@@ -92,13 +92,13 @@ std::vector<Vehicle> VehicleListParameter() {
     for (int i = 0; i < value.size(); ++i) {
       const bool map = value[i].getType() == XmlRpcValue::TypeStruct;
       vehicles.push_back(map ? FromMap(i, value[i])
-                             : FromWord(TextOf(i, value[i], "what is no map of keys")));
+                             : FromWord(TextOf(i, value[i], "an entry that is not a map of keys")));
       if (!map) vehicles.back().id = i;
     }
   } else {
     throw UserError("parameter vehicles: must be a list of vehicles");
   }
-  if (vehicles.empty()) throw UserError("parameter vehicles: names no vehicle");
+  if (vehicles.empty()) throw UserError("parameter vehicles: must name at least one vehicle");
   for (std::size_t i = 0; i < vehicles.size(); ++i) Complete(static_cast<int>(i), &vehicles[i]);
   RefuseTwins(vehicles);
   return vehicles;

@@ -24,7 +24,8 @@ std::vector<int> IdsOf(const acoustics::ModemFile& file) {
 
 acoustics::ModemFile FileParameter() {
   const std::string name = TextParameter("config", "");
-  if (name.empty()) throw UserError("parameter config: names no file with vehicles and a channel");
+  if (name.empty())
+    throw UserError("parameter config: must name a file with vehicles and a channel");
   return acoustics::LoadModemFile(name);
 }
 

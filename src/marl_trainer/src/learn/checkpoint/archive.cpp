@@ -83,7 +83,7 @@ std::int64_t Archive::Integer(const std::string& name) const {
 std::int64_t Archive::Count(const std::string& name) const {
   const std::int64_t count = Integer(name);
   if (count < 0 || count > kMaxCount) {
-    throw UserError("'" + name + "' is " + std::to_string(count) + ", which is no count");
+    throw UserError("'" + name + "' is " + std::to_string(count) + ", which is not a count");
   }
   return count;
 }

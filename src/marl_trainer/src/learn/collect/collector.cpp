@@ -229,12 +229,13 @@ void Collector::Load(const Archive& archive) {
   if (archive.arrays().empty()) return;  // taken at a start
   std::set<std::string> theirs;
   for (const auto& array : archive.arrays()) theirs.insert(array.first);
-  if (theirs != places_) throw UserError("its environments are in other shards");
+  if (theirs != places_) throw UserError("its environments are divided into other shards");
   for (const auto& unit : units_) {
     const std::vector<float>& past = archive.Floats(PastName(unit->shard().first_env));
     if (past.size() % unit->decision_size() != 0) {
-      throw UserError("the actions of environments " + std::to_string(unit->shard().first_env) +
-                      " and later are not whole decisions");
+      throw UserError("the saved actions of environments " +
+                      std::to_string(unit->shard().first_env) +
+                      " and later do not make whole decisions");
     }
   }
   team_.pool->Run(static_cast<int>(units_.size()), [&](int u, int) {

@@ -23,7 +23,7 @@ void ImitationConfig::Describe(config::Table* table) {
 
 void ImitationConfig::ValidateOrThrow() const {
   RequireOption(controller.empty() == (steps == 0), "imitation-steps",
-                "goes with --imitate, and the other way round");
+                "--imitation-steps and --imitate must be given together");
 }
 
 double ImitationConfig::Weight(std::int64_t env_steps) const {

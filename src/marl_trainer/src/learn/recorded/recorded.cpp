@@ -52,15 +52,15 @@ const char* ToString(Flaw flaw) {
     case Flaw::kContradiction:
       return "contradictory steps";
     case Flaw::kObservation:
-      return "foreign observation layout";
+      return "another observation layout";
     case Flaw::kAction:
-      return "foreign action size";
+      return "another action size";
     case Flaw::kState:
-      return "foreign state size";
+      return "another state size";
     case Flaw::kNotFinite:
       return "NaN or infinity";
     case Flaw::kForeignPolicy:
-      return "foreign policy";
+      return "another policy";
     case Flaw::kLogProbability:
       return "wrong log probability";
     case Flaw::kCount:
@@ -181,7 +181,7 @@ Finding EpisodeChecker::Check(const RecordedEpisode& episode) const {
   const auto end = episode.rewards.find(last);
   const bool ended = end != episode.rewards.end() && end->second.truncated;
   // What follows the cut of a recording is not a gap in it.
-  if (!ended) return {Flaw::kUnfinished, "no end of the episode"};
+  if (!ended) return {Flaw::kUnfinished, "the end of the episode is missing"};
   for (std::uint32_t t = 0; t <= last; ++t) {
     const auto reward = episode.rewards.find(t);
     if (reward == episode.rewards.end()) return {Flaw::kNoReward, "step " + std::to_string(t)};

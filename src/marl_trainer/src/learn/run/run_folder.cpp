@@ -24,7 +24,7 @@ RunFolder::RunFolder(std::string path, std::ostream* log) : path_(std::move(path
   std::error_code error;
   fs::create_directories(path_, error);
   if (!error && fs::is_directory(path_, error)) fs::directory_iterator readable(path_, error);
-  if (error) throw UserError(path_ + ": cannot be the folder of a run: " + error.message());
+  if (error) throw UserError(path_ + ": cannot be used as the folder of a run: " + error.message());
 }
 
 bool RunFolder::HoldsRun() const {
@@ -68,7 +68,7 @@ RunSetup ReadRunSetup(const std::string& folder) {
   }
   const auto json =
       nlohmann::ordered_json::parse(config::ReadBoundedFile(file.string()), nullptr, false);
-  if (!json.is_object()) throw UserError(file.string() + ": no configuration of a training");
+  if (!json.is_object()) throw UserError(file.string() + ": not the configuration of a training");
   const auto setup = [&] {
     try {
       TrainSetup read = TrainSetupFromJson(json);
@@ -97,11 +97,11 @@ void RequireSameRun(const TrainState& state, const nlohmann::ordered_json& ours,
     const bool known = theirs.is_object() && theirs.contains(key);
     if (known && theirs[key] == value) continue;
     throw UserError(where + ": --" + key + " is " + value.dump() +
-                    ", the checkpoint was made with " +
+                    ", but the checkpoint was made with " +
                     (known ? theirs[key].dump() : "no such option"));
   }
   if (state.scenario != scenario) {
-    throw UserError(where + ": the scenario is not the checkpoint's");
+    throw UserError(where + ": the scenario differs from that of the checkpoint");
   }
 }
 

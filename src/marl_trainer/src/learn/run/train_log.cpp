@@ -210,7 +210,7 @@ void TrainLog::Conclude() const {
           << "\n  fly it  ./stg run medium scenario:=" << (folder / "scenario.yaml").string()
           << " policy:=" << policy << std::endl;
   if (lost >= kPoor) {
-    *lines_ << "  it is poor: a target is lost in " << std::lround(100.0 * lost)
+    *lines_ << "  it is a poor policy: a target is lost in " << std::lround(100.0 * lost)
             << " % of the last part of its episodes; evaluate a controller beside it, such as "
                "--policy encircle in open water, pursuit_separated elsewhere"
             << std::endl;

@@ -32,7 +32,9 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
         s.world.control.interface != base.world.control.interface ||
         agent::ObservationLayout(s.agent.observation) !=
             agent::ObservationLayout(base.agent.observation)) {
-      throw UserError("the scenarios to train in differ in swarm, episode or observation");
+      throw UserError(
+          "all scenarios of a training must have the same number of AUVs, episode length and "
+          "observation");
     }
   }
   return all;
@@ -63,8 +65,8 @@ std::unique_ptr<Algorithm> AtStart(const TrainSetup& setup, const Problem& probl
                     " ranks: their number must be a power of two");
   }
   if (size > most) {
-    throw UserError("--algorithm " + setup.algorithm + ": learns among " + std::to_string(most) +
-                    " ranks at most");
+    throw UserError("--algorithm " + setup.algorithm + ": trains with at most " +
+                    std::to_string(most) + " ranks");
   }
   std::unique_ptr<Algorithm> learner = setup.own->Make(setup.common, problem, team);
   const std::string& folder = setup.common.start_from;
@@ -133,7 +135,8 @@ void Trainer::Resume() {
   for (const std::int64_t steps :
        team_.ranks->Gather(std::vector<std::int64_t>{loaded->env_steps})) {
     if (steps != loaded->env_steps) {
-      throw UserError(where + ": the ranks see different checkpoints; the folder must be one");
+      throw UserError(where +
+                      ": the ranks see different checkpoints; all ranks must use the same folder");
     }
   }
   const std::string config = state_.config;
@@ -179,8 +182,8 @@ bool Trainer::Run() {
     if (stopped || finished || state_.env_steps >= next_checkpoint_) Save();
   }
   if (leads() && options_.log != nullptr && state_.best_return <= TrainState().best_return) {
-    *options_.log << "no policy_best yet: none was validated before " << next_validation_
-                  << " steps; policy_last is what was learned" << std::endl;
+    *options_.log << "there is no policy_best yet, because the first validation is at "
+                  << next_validation_ << " steps; policy_last is the newest policy" << std::endl;
   }
   if (leads()) {
     log_->Conclude();

@@ -62,13 +62,14 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
       last_(RowSizes(SwarmCriticSpec())) {
   const Scenario& scenario = env_.scenario();
   if (scenario.mode != InformationMode::kAcoustic) {
-    throw UserError("scenario '" + scenario.run.name +
-                    "': entities are what an AUV finds out by itself, so mode must be acoustic");
+    throw UserError(
+        "scenario '" + scenario.run.name +
+        "': an entity policy uses only an AUV's own knowledge, so mode must be acoustic");
   }
   const int blocks = std::max(1, total_envs / env::kMixBlock);
   if (config.episode_steps % (blocks * DecisionsOf(scenario.run)) != 0) {
     throw UserError("episode_steps: " + std::to_string(config.episode_steps) +
-                    " decisions are no whole commands for " + std::to_string(blocks) +
+                    " decisions are not a whole number of commands for " + std::to_string(blocks) +
                     " blocks of environments");
   }
   const auto rows = entities_.size();

@@ -41,14 +41,14 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
   UseOneBlasThread();
   const int count = static_cast<int>(mixture_.size());
   if (count * kShardEnvs != config.envs) {
-    throw UserError("envs: " + std::to_string(config.envs) + " are not " +
+    throw UserError("envs: " + std::to_string(config.envs) + " environments are not " +
                     std::to_string(kShardEnvs) + " for each of " + std::to_string(count) +
                     " kinds of waters");
   }
   std::filesystem::create_directories(options.out);
   const bool there = std::filesystem::exists(options.out + "/checkpoint.ckpt");
   if (there && !options.resume) {
-    throw UserError(options.out + ": holds a training; --resume goes on with it");
+    throw UserError(options.out + ": holds a training; --resume continues it");
   }
   if (!there && options.resume) throw UserError(options.out + ": holds no training to resume");
   for (int k = 0; k < count; ++k) {
@@ -195,7 +195,7 @@ void SwarmTrainer::LoadAll() {
   const std::string path = options_.out + "/checkpoint.ckpt";
   const Archive archive = ReadArchive(path);
   if (archive.Text("config") != ConfigText()) {
-    throw UserError(path + ": is of a training with other options, see config.json beside it");
+    throw UserError(path + ": belongs to a training with other options; see config.json beside it");
   }
   learner_.Load(archive.Part("learner"));
   steps_ = archive.Count("steps");

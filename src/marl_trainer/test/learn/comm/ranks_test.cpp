@@ -137,7 +137,7 @@ TEST_F(RanksTest, WhatCannotBeSharedIsRefused) {
       }
     });
   };
-  refused(TrainSetup("masac", "fast"), 32, "--algorithm masac: learns among 16 ranks at most");
+  refused(TrainSetup("masac", "fast"), 32, "--algorithm masac: trains with at most 16 ranks");
   refused(SetupOf("mappo"), 3, "power of two");
   TrainSetup few = SetupOf("mappo");
   few.common.envs = 8;

@@ -186,7 +186,7 @@ void ReplayLearner::Load(const Archive& archive) {
   const std::int64_t seen = archive.Count("seen");
   const std::int64_t steps = archive.Count("gradient_steps");
   const double due = archive.Number("due");
-  if (!(due >= 0.0 && due < 1.0)) throw UserError("'due' is no part of an update");
+  if (!(due >= 0.0 && due < 1.0)) throw UserError("'due' must be at least 0 and below 1");
   // What throws comes first.
   for (const Kept& kept : kept_) archive.Floats(kept.name, kept.numbers->size());
   for (const auto& [name, adam] : kept_adams_) adam->Load(name, archive);
