@@ -13,32 +13,32 @@
 
 namespace stg::agent {
 
-/// Which AUV follows which target: AUV i target i modulo their number, for good; or the one that it
-/// chooses, for which it keeps a belief of every target and takes every detection.
+/// How targets are assigned. kModulo: AUV i always follows target i modulo their number. kFree:
+/// each AUV chooses; it estimates every target and uses every detection.
 enum class Assignment { kModulo, kFree };
 
 /// What every AUV knows of its task.
 struct TaskConfig {
   double desired_distance_m = 0.015;  ///< d*
-  double lost_distance_m = 0.65;      ///< farther from the target than this, it counts as lost
-  double lost_error_m = 0.0;  ///< judged: so does a target whose estimate is off by more; 0: no
+  double lost_distance_m = 0.65;      ///< a target farther away counts as lost
+  double lost_error_m = 0.0;          ///< metrics: an estimate off by more counts as lost; 0: off
   Assignment assignment = Assignment::kModulo;
 
   bool free() const { return assignment == Assignment::kFree; }
 };
 
-/// Members that leave the swarm and join it again: rows of a time from the start of the episode [s]
-/// and the index of an AUV. One that has left is silent, hears and senses nothing, and its command
-/// is to stand still; one that joins knows what its navigation says and nothing else.
+/// AUVs that leave the swarm and join it again: rows of a time from the start of the episode [s]
+/// and the index of an AUV. An AUV that has left sends, receives and senses nothing, and is
+/// commanded to stand still. An AUV that joins has only the knowledge of its navigation.
 struct FleetConfig {
   std::vector<std::vector<double>> leave, join;
 
   bool changes() const { return !leave.empty(); }
-  /// The newest row of an AUV says whether it is there; of one without rows it is.
+  /// Whether an AUV is in the swarm: its latest row decides, and without rows it is.
   bool present(int agent, double time_s) const;
 };
 
-/// The agents' own sections: how they track, what they observe, what they are to do.
+/// The agents' own sections: tracking, observation and task.
 struct AgentConfig {
   TrackConfig track;
   ObservationConfig observation;
@@ -50,9 +50,9 @@ struct AgentConfig {
   int observation_size() const { return ObservationSpec(observation).size(); }
 };
 
-/// All that an AUV may know before it is in the water: how many there are, its vehicle, where it
-/// works, what it looks for and with what, the network. Apart from what is true, which it may
-/// differ from; current, disturbance, contact and where things start are not in it.
+/// All that an AUV may know before it starts: the number of AUVs, its vehicle, workspace, targets,
+/// sensor and network. It is separate from the true values and may differ from them. It contains no
+/// current, disturbance, contact or start positions.
 struct AgentModel {
   RunConfig run;
   dynamics::VehicleConfig vehicle;
@@ -67,18 +67,18 @@ struct AgentModel {
   ObservationConfig observation;
   TaskConfig task;
   FleetConfig fleet;
-  double max_current_mps = 0.0;  ///< of the uniform current; packets must hold speeds over ground
+  double max_current_mps = 0.0;  ///< largest current, for the range of speeds in packets
   LocalizationConfig localization = {};
-  StationsConfig stations = {};  ///< where beacons are charted, which craft there are
+  StationsConfig stations = {};  ///< charted beacons, and surface craft
 
   double wall_m() const { return dynamics::WallOf(workspace, sea); }
-  int members() const { return run.agents + stations.count(); }  ///< of the acoustic network
-  /// Agents correct what they know of each other's positions.
+  int members() const { return run.agents + stations.count(); }  ///< nodes of the acoustic network
+  /// Whether a localizer corrects the AUVs' positions.
   bool locates() const;
-  /// By ranges from pings.
+  /// Whether it does so by ranges from pings.
   bool pings_members() const { return locates() && localization.by == RangesBy::kPing; }
   int observation_size() const { return ObservationSpec(observation).size(); }
-  /// Targets that each AUV keeps a belief of.
+  /// Number of targets that each AUV estimates.
   int beliefs() const { return task.free() ? target.count : 1; }
 };
 
@@ -87,18 +87,17 @@ void Describe(TaskConfig* c, config::Table* t);
 void Describe(FleetConfig* c, config::Table* t);
 void Describe(AgentConfig* c, config::Table* t);
 
-/// Keys for which agents may have another value than the true one: dynamics::KeysOnBoard, and what
-/// they take links for.
+/// Keys for which agents may have another value than the true one: dynamics::KeysOnBoard, and the
+/// keys of their link estimate.
 const std::vector<std::string>& KeysOfModel();
 
-/// What the agents of a scenario know: its sections, but for what they believe otherwise.
-/// @param differences of KeysOfModel
+/// The model that the agents of a scenario have: its sections, changed by `differences`.
+/// @param differences values of keys of KeysOfModel
 AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
                    const acoustics::ChannelConfig& channel, const AgentConfig& agent,
                    const config::Differences& differences);
 
-/// What a program needs that runs an agent: the truth as the scenario says it, and the agents'
-/// sections.
+/// Sections that a program needs to run an agent: those of the true world, and the agents' own.
 struct AgentScenario {
   RunConfig run;
   dynamics::WorldConfig world;

@@ -13,7 +13,7 @@ inline Eigen::Map<const RowMajorMatrix> MatrixOf(const float* parameters, const 
   return {parameters + block.offset, block.rows, block.cols};
 }
 
-/// out = W x, added to what is there if asked.
+/// out = W x, or out += W x if `add`.
 inline void Product(const float* parameters, const PoolBlock& weight, const float* x, bool add,
                     float* out) {
   Eigen::Map<Eigen::VectorXf> y(out, weight.rows);

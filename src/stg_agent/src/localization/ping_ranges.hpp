@@ -19,14 +19,14 @@ inline double SlownessBetween(const acoustics::SoundSpeedProfile& sound, double 
   return sound.MeanSlowness(std::max(0.0, surface_z_m - a.z), std::max(0.0, surface_z_m - b.z));
 }
 
-/// Ranges by pings, own ones and those from packets of others, until it is known where both members
-/// were: the others once a packet of a later time has come, this one at its next decision.
+/// Keeps ranges by pings, own ones and those in packets, until the positions of both members at
+/// that time are known: those of others after a later packet, the own one at the next decision.
 class PingRanges {
  public:
   explicit PingRanges(int self) : self_(self) { waiting_.reserve(kMost); }
 
   void Clear() { waiting_.clear(); }
-  /// An answer to an own ping; one that makes no sense is forgotten.
+  /// Takes an answer to an own ping; an implausible one is dropped.
   void AddOwn(const acoustics::Reception& answer) {
     const double way_s = answer.travel_time_s;
     if (!std::isfinite(way_s) || way_s <= 0.0 || waiting_.size() == kMost) return;
@@ -37,13 +37,12 @@ class PingRanges {
     w.travel_time_s = way_s;
     waiting_.push_back(w);
   }
-  /// One that a packet of another member holds.
+  /// Takes a range from another member's packet.
   void AddTold(const RangeReading& z) {
     if (waiting_.size() < kMost) waiting_.push_back({z, 0.0, false});
   }
 
-  /// Calls take(const RangeReading&) of each that is complete, and forgets those that are older
-  /// than `oldest`.
+  /// Calls take(const RangeReading&) for each complete range, and drops ranges older than `oldest`.
   /// @param ways of all members
   template <class Take>
   void Give(TimeNs oldest, const OwnWay& own, const std::vector<ToldWay>& ways,

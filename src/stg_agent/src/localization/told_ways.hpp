@@ -8,14 +8,14 @@
 
 namespace stg::agent {
 
-/// Where one member of the network said to be, packet by packet: the last few of them.
+/// The last reported positions of one member of the network.
 class ToldWay {
  public:
   static constexpr TimeNs kLongestGap = 30'000'000'000;
 
   struct Point {
-    TimeNs generation = -1;  ///< when position and velocity were true
-    TimeNs transmit = -1;    ///< when the packet that reported them began to leave
+    TimeNs generation = -1;  ///< time of position and velocity
+    TimeNs transmit = -1;    ///< when the transmission of their packet began
     Vec3<double> p, v;
   };
 
@@ -23,7 +23,7 @@ class ToldWay {
   bool empty() const { return count_ == 0; }
   const Point& newest() const { return At(count_ - 1); }
 
-  /// False, and nothing changes, for one that is not newer than the newest.
+  /// Adds a point; returns false, without a change, if it is not newer than the newest.
   bool Add(const Point& point) {
     if (count_ > 0 && point.generation <= newest().generation) return false;
     if (count_ == kMost) {
@@ -35,8 +35,8 @@ class ToldWay {
     return true;
   }
 
-  /// Where it was when the packet left that began to leave nearest to a time, and that time; false:
-  /// that packet was not heard.
+  /// Position and time of the transmission that began nearest to a time; false: that packet was not
+  /// received.
   bool AtPacket(TimeNs near, TimeNs tolerance, TimeNs* transmit, Vec3<double>* p) const {
     for (int k = count_ - 1; k >= 0; --k) {
       const Point& point = At(k);
@@ -49,7 +49,7 @@ class ToldWay {
     return false;
   }
 
-  /// Where it was between two packets: the cubic through both positions with both velocities.
+  /// Position between two packets: the cubic through both positions with both velocities.
   bool Between(TimeNs t, Vec3<double>* p) const {
     for (int k = count_ - 1; k > 0; --k) {
       const Point &a = At(k - 1), &b = At(k);

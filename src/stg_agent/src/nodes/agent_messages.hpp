@@ -6,7 +6,8 @@
 
 namespace stg::nodes {
 
-/// What an agent knows and does after Observe and Act. Header, episode and step are the caller's.
+/// Writes an agent's knowledge and action after Observe and Act. The caller sets header, episode
+/// and step.
 void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
                   auv_msgs::TaskState* message);
 

@@ -26,14 +26,13 @@
 
 namespace stg::nodes {
 
-/// The mind of one AUV. Hears its own navigation, its own detections and its own modem, nothing
-/// else.
+/// Runs the agent of one AUV. It subscribes only to its own navigation, detections and modem.
 ///
-/// Decides step k when the sensors' frame of t_k is there and the modem's reception window that
-/// ends at t_k. A window that does not come within `patience` seconds is given up, and a silent
-/// modem is not waited for again before it has spoken. The first step of a run waits for the empty
-/// window with which the modem says that it is connected. Of several open steps only the newest is
-/// decided. What cannot be true of the run is refused, see StepTracker.
+/// It decides step k when it has the sensor frame of t_k and the modem's reception window that ends
+/// at t_k. It waits at most `patience` seconds for a window; after that it does not wait for the
+/// modem until it sends again. The first step of a run waits for the modem's empty window, which
+/// shows that it is connected. Of several open steps it decides only the newest. Inputs that
+/// contradict the run are refused, see StepTracker.
 class AgentNode {
  public:
   /// Throws UserError.
@@ -41,7 +40,7 @@ class AgentNode {
   void Spin();
 
  private:
-  /// What a step waits for that its sensors have opened.
+  /// Inputs for which a step waits after its sensor frame.
   enum Party { kModem, kParties };
 
   double Work();
@@ -56,9 +55,9 @@ class AgentNode {
   void ForgetRun();
   void StartEpisode(const auv_msgs::SensorFrame& frame);
   void Decide();
-  /// Publishes what the last decision commands.
+  /// Publishes the command of the last decision.
   void Command();
-  /// Publishes what else it has to say: packet, task state and record.
+  /// Publishes packet, task state and record of the last decision.
   void ReportDecision();
   /// The last decision as a message; false: there is none, or it is not reported yet.
   bool SetVelocity(geometry_msgs::TwistStamped* message) const;
@@ -70,7 +69,7 @@ class AgentNode {
   int id_;
   std::string body_frame_;
   agent::Agent agent_;
-  acoustics::Turns turns_;  ///< when the modem lets packets go
+  acoustics::Turns turns_;  ///< when the modem sends packets
   agent::Decider decider_;
   TimeNs period_;  ///< of decisions [ns]
   double patience_s_, report_delay_s_;
@@ -78,9 +77,9 @@ class AgentNode {
   bool commands_velocity_, commands_wrench_;
   agent::AgentOutput output_;  ///< of the last decision
   float log_probability_ = 0.0F;
-  auv_msgs::SensorFrame::ConstPtr decided_;  ///< what the last decision answers
-  bool unreported_ = false;                  ///< the last decision's report has not gone out
-  std::string policy_id_;                    ///< of what took it
+  auv_msgs::SensorFrame::ConstPtr decided_;  ///< sensor frame of the last decision
+  bool unreported_ = false;                  ///< the last decision is not reported yet
+  std::string policy_id_;                    ///< policy of the last decision
   ros::WallTime busy_, commanded_;
 
   auv_msgs::SensorFrame::ConstPtr frame_;  ///< of the open step; null: none is open

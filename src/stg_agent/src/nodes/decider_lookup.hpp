@@ -6,7 +6,7 @@
 
 namespace stg::nodes {
 
-/// What decides for one AUV of a graph.
+/// The Decider of one agent node.
 /// @param name a built-in controller, an ONNX file (see agent::PolicyFileOf), or "auto": the policy
 ///             shipped for the scenario's name where there is one, else pursuit_separated
 /// Throws UserError when the file is not a policy for this scenario.

@@ -11,25 +11,26 @@
 
 namespace stg::nodes {
 
-/// What one agent has to decide on: detections and reception windows, checked. There
-/// is room for a hundred of each, whatever their stamps; where it ends, the latest window goes, as
-/// it is needed last, if it is true at all.
+/// Checked input for an agent's next decisions: detections and reception windows. It keeps up to a
+/// hundred of each, with any stamps. When it is full, it drops the window with the latest stamp,
+/// because that one is needed last.
 class PendingInputs {
  public:
   /// @param id of the AUV. @param targets of the scenario
   PendingInputs(int id, int targets) : id_(id), targets_(targets) {}
 
-  /// A detection in the sensors' frame of clock time `now`; one of the future is refused.
+  /// Takes a detection from the sensor frame of clock time `now`; a later stamp is refused.
   void Keep(const auv_msgs::TargetDetection& message, TimeNs now);
-  /// A window of the AUV's own modem.
+  /// Takes a reception window of the AUV's own modem.
   void Keep(const auv_msgs::AcousticReception::ConstPtr& message);
 
-  /// Gives an agent all of the episode since clock time `start` up to `now`, receptions first.
+  /// Passes to an agent all input of the episode from clock time `start` to `now`, receptions
+  /// first.
   void Give(TimeNs start, TimeNs now, agent::Agent* agent);
-  /// Forgets all of it.
+  /// Drops all input.
   void Clear();
 
-  /// Windows that the node itself refuses count here, too.
+  /// Also counts windows that the node itself refuses.
   Refusals& refused_receptions() { return refused_receptions_; }
   void Report(diagnostic_updater::DiagnosticStatusWrapper* status);
 

@@ -4,8 +4,8 @@
 
 namespace stg::nodes {
 
-/// What the agents of this run know. Throws UserError where the scenario has what the run lacks:
-/// over modems there are no stations, and AUVs do not ping.
+/// The model of this run's agents. Throws UserError for stations or pings in a run with real
+/// modems.
 agent::AgentModel ModelOfRun();
 
 }  // namespace stg::nodes

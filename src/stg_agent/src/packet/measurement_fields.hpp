@@ -22,11 +22,11 @@ inline constexpr int kFirstSighting = 4 + kSourceBits + kGenerationBits + 3 * kP
                                       3 * kSpeedBits + kDeviationBits + kErrorBits + kUnitBits + 2 +
                                       kUnitBits + 1;
 inline constexpr int kSightingBits = 62;
-/// Where targets are chosen freely: the target that the sender follows, and that of each
-/// measurement, as one more than its index; 0: none.
+/// With task.assignment free: the target that the sender follows, and that of each measurement, as
+/// one more than its index; 0: none.
 inline constexpr int kNameBits = 4, kManyBits = 2, kFreeRangeBits = 12, kEarlierBits = 9;
-/// Where agents locate each other: in the place of measurements of targets, told ranges and a told
-/// bearing, each named by a code that is no target.
+/// With a localizer: ranges and a bearing replace measurements of targets. Their codes are not
+/// indices of targets.
 inline constexpr int kLocatedDeviationBits = kDeviationBits - 1;
 inline constexpr std::uint64_t kRangesCode = 31, kBearingCode = 29, kNoSource = 31;
 inline constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14,

@@ -4,13 +4,13 @@
 
 #include "stg_agent/policy/policy.hpp"
 
-/// What the writer and the reader of policy files share.
+/// Parts that the writer and the reader of policy files share.
 namespace stg::agent {
 
-/// FNV-1a over everything that a policy file says, hexadecimal, to tell a damaged file from a good
-/// one; "2:" before it tells it from the one below.
+/// FNV-1a of the whole content of a policy file, hexadecimal, to detect damage; the prefix "2:"
+/// distinguishes it from the checksum below.
 std::string PolicyChecksum(const Policy::Parameters& parameters);
-/// Over the numbers alone, as files have it that were written before the metadata was covered.
+/// FNV-1a of the numbers alone, for older files whose checksum does not cover the metadata.
 std::string NumbersChecksum(const Policy::Parameters& parameters);
 
 inline constexpr char kMetricPrefix[] = "stg.metric.";

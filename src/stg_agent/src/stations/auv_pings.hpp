@@ -10,26 +10,26 @@
 namespace stg::agent {
 
 /// The pings by which AUVs range each other and the stations (localization.ranges.by), and their
-/// targets (sensing.ranging). Each target that is pinged carries a transponder, which is a node of
-/// the network, after all others, and only answers. An AUV asks its modem for a ping. The request
-/// waits for the AUV's turn on the water, leaves before its packet, and may be lost. What the
-/// sensor's keys say of reach, chance and error of a look holds for the transponders: one that is
-/// too far off, or misses the look, stays silent.
+/// targets (sensing.ranging). Each such target has a transponder, which only answers; transponders
+/// are the last nodes of the network. An AUV asks its modem for a ping. The request waits for the
+/// AUV's turn on the channel, is sent before its packet, and may be lost. The sensor's keys for
+/// range, probability and error also apply to the transponders: one that is too far away, or misses
+/// the look, does not answer.
 ///
-/// Use, in every episode: Reset; then for every decision Ask, the Step of the channel, and Take
-/// after each Deliver. It observes the channel, to learn what becomes of the pings.
+/// Use in each episode: Reset; then, for each decision, Ask, the channel's Step, and Take after
+/// each Deliver. It observes the channel, to get the results of the pings.
 class AuvPings : public acoustics::PacketObserver {
  public:
-  /// @param sensing as it truly is
+  /// @param sensing true sensing
   AuvPings(const AgentModel& model, const dynamics::SensingConfig& sensing);
 
   void Reset(std::uint64_t seed, std::uint32_t episode);
-  /// Asks the AUVs' modems for what is due at decision `step`.
-  /// @param p_W positions of all nodes, as `water` takes them
+  /// Asks the AUVs' modems for the pings that are due at decision `step`.
+  /// @param p_W positions of all nodes, in the order of `water`
   void Ask(TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>& p_W,
            acoustics::Channel* water);
-  /// Adds answers that came to AUV `receiver` by `until`, each once, in order among the receptions
-  /// from `first` on.
+  /// Adds the answers that AUV `receiver` got by `until`, each once, in order of time among the
+  /// receptions from `first` on.
   void Take(int receiver, TimeNs until, std::size_t first, std::vector<acoustics::Reception>* out);
   const acoustics::PingTotals& totals() const { return totals_; }
 
@@ -38,18 +38,18 @@ class AuvPings : public acoustics::PacketObserver {
 
  private:
   struct Pinger {
-    bool look_due = false, member_due = false;  ///< a time has come that it has not asked at
+    bool look_due = false, member_due = false;  ///< a ping is due and not requested yet
     int last_member = -1;
-    bool waits = false;                ///< a request has not left yet
-    TimeNs sent = -1;                  ///< its last request left; -1: none did that has no answer
-    double error = 0.0;                ///< of the range that it asks for, in standard deviations
-    std::uint32_t asked = 0, tag = 0;  ///< how many, and that of the newest one
-    bool answered = false;             ///< the next one means something
+    bool waits = false;                ///< a request is not sent yet
+    TimeNs sent = -1;                  ///< when the open request was sent; -1: no open request
+    double error = 0.0;                ///< of the requested range, in standard deviations
+    std::uint32_t asked = 0, tag = 0;  ///< number of requests, and tag of the newest one
+    bool answered = false;             ///< the next field is valid
     acoustics::Reception answer;
   };
   int TargetOf(int auv) const;
   int NextMember(int auv) const;
-  /// Of a target: its node, or kToNobody where the transponder stays silent.
+  /// Node of a target's transponder, or kToNobody where it does not answer.
   int AskTarget(int auv, std::uint32_t step, const std::vector<Vec3<double>>& p_W);
 
   RunConfig run_;
@@ -67,8 +67,8 @@ class AuvPings : public acoustics::PacketObserver {
   acoustics::PingTotals totals_;
 };
 
-/// Why AUVs cannot ping as the sections say; nothing: they can.
-/// @param sensing as it truly is
+/// Why AUVs cannot ping with these sections; empty: they can.
+/// @param sensing true sensing
 std::optional<config::Violation> FindPingConflict(const AgentModel& model,
                                                   const dynamics::SensingConfig& sensing);
 

@@ -12,7 +12,7 @@
 
 namespace stg::env {
 
-/// The reverse of Scatter: columns of packs from one row per lane. Lanes beyond are 0.
+/// The reverse of Scatter: columns of packs from one row per lane. Lanes without a row are 0.
 template <class Number>
 inline void Gather(const Number* rows, std::size_t stride, int lanes, int size, Pack* columns) {
   int c = 0;
@@ -45,8 +45,8 @@ inline void Gather(const Number* rows, std::size_t stride, int lanes, int size, 
 
 /// Turns columns of packs into one float row per lane.
 /// @param columns [size]
-/// @param rows where the first lane's row begins; the next lane's begins `stride` numbers later
-/// @param lanes rows to write, the first lanes of the packs
+/// @param rows start of the first lane's row; the next lane's row starts `stride` numbers later
+/// @param lanes number of rows to write, for the first lanes of the packs
 inline void Scatter(const Pack* columns, int size, int lanes, float* rows, std::size_t stride) {
   int c = 0;
 #if defined(__AVX__) && !defined(__AVX512F__)

@@ -14,7 +14,7 @@
 
 namespace stg::nodes {
 
-/// Tells programs that look on where the beacons and the surface craft truly are, at each step:
+/// Publishes the true positions of beacons and surface craft at each step, for displays:
 /// /station_<k>/odom, in the frame `world`.
 class StationReports : public agent::StationObserver {
  public:

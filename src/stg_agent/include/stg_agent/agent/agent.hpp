@@ -13,18 +13,18 @@ namespace stg::agent {
 struct AgentOutput {
   /// velocity3: desired velocity, world axes [m/s]. tau6: zero.
   Vec3<double> cmd_vel_W;
-  /// tau / tau_max. tau6: the command itself. velocity3: what the velocity controller
-  /// makes of cmd_vel_W and the same NavState, bit for bit; a runner that has no
-  /// controller of its own may apply it through ScaleWrench. Zero where an autopilot steers.
+  /// tau / tau_max. tau6: the command itself. velocity3: the output of the velocity controller for
+  /// cmd_vel_W and the same NavState, bit for bit; a runner without a controller may apply it
+  /// through ScaleWrench. Zero where an autopilot steers.
   double fraction[dynamics::kWrenchSize] = {};
   /// Executed action in [-1, 1]: after rate limit and smoothing (velocity3), or clipped
-  /// (tau6). The first action_size() entries count.
+  /// (tau6). Only the first action_size() entries are used.
   double action[dynamics::kMaxActionSize] = {};
 };
 
-/// The mind of one AUV in the mode `acoustic`. It makes the observation from its own navigation,
+/// The agent of one AUV in the mode `acoustic`. It makes the observation from its own navigation,
 /// its own detections and received packets. It makes the command from the policy's action, and it
-/// writes the packet that it offers to its modem. It knows nothing else of the world.
+/// writes the packet for its modem. It has no other information about the world.
 ///
 /// For every decision, call Receive and Detect in any order, which does not change the result, then
 /// Observe, Act and MakePacket. It is deterministic and allocates nothing after construction.
@@ -35,7 +35,7 @@ struct AgentOutput {
 ///   observation.
 /// - Lost: position std above track.lost_std_m, or estimated distance above
 ///   task.lost_distance_m.
-/// - A neighbour that was not heard counts with link quality 0 in the mean link quality. No other
+/// - A neighbour without a received packet has quality 0 in the mean link quality. No other
 ///   average contains it.
 class Agent {
  public:
@@ -51,11 +51,12 @@ class Agent {
   /// Adds a cue of another target, after Reset.
   void AddCue(const dynamics::Cue& cue) { one_.AddCue(0, cue); }
 
-  /// Takes an own detection. The newest before the next Observe counts. A detection of a target
-  /// without a belief is ignored.
+  /// Takes an own detection. Observe uses the newest one. The agent ignores a detection of a target
+  /// that it does not estimate.
   void Detect(const dynamics::Detection& detection) { one_.Detect(0, detection); }
 
-  /// Takes a packet that the modem received. One that does not decode is counted and ignored.
+  /// Takes a packet that the modem received. A packet that cannot be decoded is counted and
+  /// ignored.
   void Receive(const acoustics::Reception& reception) { one_.Receive(0, reception); }
 
   /// Brings all knowledge to nav.stamp and writes the observation.
@@ -67,10 +68,10 @@ class Agent {
   /// @param action [action_size()], clipped to [-1, 1] inside. Non-finite values throw
   /// std::invalid_argument.
   AgentOutput Act(const float* action);
-  /// Own state and target estimate at the last Observe: what it offers to its modem.
+  /// The packet for the modem: own state and target estimate at the last Observe.
   Packet MakePacket() const { return one_.MakePacket(0); }
 
-  /// False: it has left the swarm, as of the last Observe, and offers no packet.
+  /// False: the AUV has left the swarm by the last Observe, and sends no packet.
   bool present() const { return one_.present(0); }
 
   int id() const { return one_.id(); }
@@ -85,10 +86,10 @@ class Agent {
   const NeighbourTable& neighbours() const { return one_.neighbours(0); }
   TargetEstimate estimate() const { return one_.inbox(0).estimate(); }
   TargetBelief belief() const { return one_.inbox(0).belief(); }
-  /// Target this agent is tasked with, or follows.
+  /// Index of the target that this agent follows.
   int target() const { return one_.inbox(0).target(); }
   bool lost() const { return knowledge().lost > 0.5; }
-  /// All that it knows.
+  /// All knowledge of the agent.
   AgentView view() const { return one_.view(0); }
 
  private:

@@ -13,8 +13,9 @@
 
 namespace stg::agent {
 
-/// Everything that one AUV knows and does, read-only: of an Agent, or of one lane of AgentLanes.
-/// Holds numbers of its own and refers to the agent, which must not change meanwhile.
+/// Read-only view of the knowledge and action of one AUV: of an Agent, or of one lane of
+/// LanedAgent. It copies some numbers and refers to the agent, which must not change while the view
+/// is used.
 class AgentView {
  public:
   using Action = std::array<double, dynamics::kMaxActionSize>;
@@ -34,7 +35,7 @@ class AgentView {
   const AgentModel& model() const { return model_; }
   int id() const { return inbox_.id(); }
   int target() const { return inbox_.target(); }
-  /// The targets that it keeps beliefs of: first_target() .. first_target() + beliefs() - 1.
+  /// The targets that the agent estimates: first_target() .. first_target() + beliefs() - 1.
   int first_target() const { return inbox_.first_target(); }
   int beliefs() const { return inbox_.beliefs(); }
   std::uint32_t episode() const { return inbox_.episode(); }
@@ -43,34 +44,34 @@ class AgentView {
   const Knowledge<double>& knowledge() const { return knowledge_; }
   bool lost() const { return knowledge_.lost > 0.5; }
   TaskView task() const { return TaskOf(model_.observation, knowledge_); }
-  /// Executed action of the last Act; action_size entries count.
+  /// Executed action of the last Act; only the first action_size entries are used.
   const Action& action() const { return action_; }
 
   /// The target in the frame of the own navigation.
   TargetEstimate estimate() const { return inbox_.estimate(); }
-  /// The same in the true world frame, with a whole covariance.
+  /// The same in the true world frame, with the full covariance.
   TargetBelief belief() const { return inbox_.belief(); }
-  /// The same of any target that it keeps a belief of.
+  /// The same for any target that the agent estimates.
   TargetEstimate estimate(int target) const { return inbox_.estimate(target); }
   TargetBelief belief(int target) const { return inbox_.belief(target); }
-  /// The neighbours' packets, as received.
+  /// The received packets of the neighbours.
   const NeighbourTable& neighbours() const { return neighbours_; }
-  /// A known neighbour as of the last Observe.
+  /// A known neighbour at the last Observe.
   NeighbourSight<double> sight(int id) const { return sights_.at(id); }
   /// Writes the `count` known neighbours nearest to this AUV, nearest first (ties: lower index
   /// first); returns how many there were.
   int Nearest(int count, NeighbourSight<double>* sights) const;
 
-  /// What it remembers for its entities, and the command that it flies by; a pilot writes the
-  /// latter, which is why it is not constant.
+  /// Memory for the entities, and the present command. It is not constant, because the entity pilot
+  /// writes the command.
   EntityMemory& memory() const { return *memory_; }
-  /// Follows another target from the next decision on, of those that it keeps beliefs of; others
-  /// are ignored. Where targets are not chosen freely (task.assignment) there is one.
+  /// Follows another target from the next decision on. A target that the agent does not estimate is
+  /// ignored; with task.assignment modulo it estimates only one.
   void Follow(int target) const { memory_->follow = target; }
-  /// Where it has searched; null: it keeps no map. A law writes its plan into it.
+  /// The search map, and the plan that a search law writes; null: there is no map.
   SearchMemory* search() const { return search_; }
 
-  /// Packets of this episode that did not decode.
+  /// Number of packets of this episode that could not be decoded.
   std::uint64_t refused_packets() const { return inbox_.refused_packets(); }
 
  private:

@@ -28,7 +28,7 @@ class ErrorWindow {
     SetLane(&count_, lane, 0.0);
   }
 
-  /// Takes the error of this decision; mean of it and those before it.
+  /// Adds the error of this decision; returns the mean over the window.
   T Add(const T& error) {
     if (mean_ != ErrorMean::kAgent) return AddInOrder(error);
     const T zero(0.0), one(1.0), length(static_cast<double>(errors_.size()));
@@ -44,7 +44,7 @@ class ErrorWindow {
     return sum / count_;
   }
 
-  /// Takes back the lanes outside the mask.
+  /// Restores the lanes outside the mask from `before`.
   void KeepOthers(const Mask<T>& lanes, const ErrorWindow& before) {
     for (std::size_t k = 0; k < errors_.size(); ++k) {
       errors_[k] = Select(lanes, errors_[k], before.errors_[k]);

@@ -14,14 +14,13 @@
 
 namespace stg::agent {
 
-/// What fills an AUV's knowledge: its agent, or the truth mode. The truth mode rounds one mean
+/// Source of an AUV's knowledge: its agent, or the truth mode. The truth mode rounds one mean
 /// differently (ErrorMean) and may follow the release (observation.release_bookkeeping).
 enum class Bookkeeping { kAgent, kTruth };
 
-/// Turns what came in into what the policy sees, by SetNavigation, SetTracking and SetNeighbours in
-/// this order, and the policy's action into a force, by Act. With T = double it is one AUV. With
-/// T = Pack it is the same AUV in kLanes environments, bit for bit, and each lane has its own
-/// clock.
+/// Computes the policy's input by SetNavigation, SetTracking and SetNeighbours, in this order, and
+/// the force of the policy's action by Act. T = double is one AUV. T = Pack is the same AUV in
+/// kLanes environments, bit for bit, and each lane has its own clock.
 template <class T>
 class Mind {
  public:
@@ -54,7 +53,7 @@ class Mind {
     k.position_std_m = nav.position_std_m;
   }
 
-  /// The same from the true state, exact.
+  /// The same from the true state.
   void SetNavigation(const dynamics::VehicleState<T>& state) { knowledge.SetNavigation(state); }
 
   /// Starts a decision; after SetNavigation.
@@ -74,7 +73,7 @@ class Mind {
     k.confidence = Select(lost, zero, seen);
     k.lost = Select(lost, one, zero);
     T lost_steps = k.lost_steps + one;
-    // The release counts a lost decision in the reward and once more for show.
+    // The release counts a lost decision in the reward, and once more in the observation.
     if (release_) lost_steps = Select(decisions_ == zero, lost_steps, Max(lost_steps, T(2.0)));
     k.lost_steps = Select(lost, lost_steps, zero);
     decisions_ += one;
@@ -96,9 +95,9 @@ class Mind {
     k.closest = n.closest;
   }
 
-  /// Executes an action (Eqs. 23-27): `action` and knowledge.tau become what is executed. Of a
-  /// vehicle that an autopilot steers tau stays zero: there is no force that the agent commands.
-  /// Returns the desired velocity, world axes [m/s]; zero for tau6.
+  /// Executes an action (Eqs. 23-27): `action` and knowledge.tau are then the executed ones. tau
+  /// stays zero for a vehicle with an autopilot, because the agent commands no force. Returns the
+  /// desired velocity, world axes [m/s]; zero for tau6.
   /// @param wanted [action_size], clipped to [-1, 1]
   Vec3<T> Act(const AgentModel& s, const T* wanted) {
     return Act(s, wanted, [this] { return RpyOf(knowledge.trig); });
@@ -115,7 +114,7 @@ class Mind {
                                    action.data(), k.tau);
   }
 
-  /// Takes back the lanes outside the mask.
+  /// Restores the lanes outside the mask from `before`.
   void KeepOthers(const Mask<T>& lanes, const Mind& before) {
     stg::KeepOthers(lanes, before.knowledge, &knowledge);
     for (std::size_t a = 0; a < action.size(); ++a) {
@@ -129,7 +128,7 @@ class Mind {
   const T& decisions() const { return decisions_; }
 
   Knowledge<T> knowledge{};
-  /// Executed by the last Act; action_size entries count.
+  /// Executed action of the last Act; only the first action_size entries are used.
   std::array<T, dynamics::kMaxActionSize> action{};
 
  private:

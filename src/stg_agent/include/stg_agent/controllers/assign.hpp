@@ -5,43 +5,41 @@
 #include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/formation.hpp"
 
-/// The controller `assign`: chooses which target to follow, and then circles it or keeps a place at
-/// it.
+/// The controller `assign`: chooses the target to follow, and circles it or keeps a place in a ring
+/// around it.
 namespace stg::agent {
 
 /// Constants of the law.
 struct AssignOptions {
-  double load_s = 100.0;       ///< what each AUV beyond `least` at a target costs more
-  double hysteresis_s = 60.0;  ///< another target must be better by this; so long it keeps one
-  int least = 2;               ///< AUVs that every target should have
-  double period_s = 5.0;       ///< between two choices
-  double silent_frames = 2.5;  ///< an AUV that is silent for so many is taken to be gone
-  double fast_mps = 2.3;       ///< over ground, at most
-  double form = 0.0;           ///< 0: circles as `encircle`; 1: keeps a place as `formation`
+  double load_s = 100.0;       ///< added cost of a target for each AUV beyond `least`
+  double hysteresis_s = 60.0;  ///< shortest time with a target, and gain of a change
+  int least = 2;               ///< number of AUVs that each target should have
+  double period_s = 5.0;       ///< time between two choices
+  double silent_frames = 2.5;  ///< an AUV that has been silent for so many counts as gone
+  double fast_mps = 2.3;       ///< largest speed over ground
+  double form = 0.0;           ///< 0: circle, as `encircle`; 1: keep a place, as `formation`
 };
 
 void Describe(AssignOptions* o, config::Table* t);
 
-/// Every AUV solves for the whole swarm, as far as it knows it: which one follows which target at
-/// the least cost, the sum over AUVs of the time to the target's circle, max(0, d - d*) / (v_max -
-/// v_T), and of a load. Every target has AUVs up to `least` before another one has more, and no
-/// more than the number of AUVs by that of targets, rounded up, and one. All AUVs start from the
-/// same packets, so that they come to the same result up to what got lost on the way; what others
-/// say that they follow, and what it follows itself, counts as cheaper by `hysteresis`. Solved by
-/// the Hungarian method.
+/// Each AUV assigns targets to all AUVs that it knows, at the least total cost. The cost of an AUV
+/// is its time to the target's circle, max(0, d - d*) / (v_max - v_T), plus a load; a target that
+/// an AUV follows already is cheaper by `hysteresis`. No target gets more than `least` AUVs before
+/// each target has so many. No target gets more than ceil(AUVs / targets) + 1. All AUVs use the
+/// same packets, so they find the same assignment, except where packets were lost. The Hungarian
+/// method solves it.
 ///
-/// Where targets are not chosen freely (task.assignment), and with true states, it follows the
-/// target that it is tasked with.
+/// With task.assignment modulo, and with true states, the AUV follows its assigned target.
 class Assign final : public Controller {
  public:
   explicit Assign(const AssignOptions& options);
 
   void Act(const ControllerInput<double>& input, double* action) const override;
   void Act(const ControllerInput<Pack>& input, Pack* action) const override;
-  /// Chooses when it is time to; the choice counts from the next decision on.
+  /// Chooses a target when `period` is over; the choice holds from the next decision on.
   void Act(const AgentView& agent, float* action) const override;
 
-  /// The target that the AUV should follow by what it knows now.
+  /// The target that the AUV should follow, from its present knowledge.
   int Choose(const AgentView& agent) const;
 
  private:

@@ -12,23 +12,24 @@
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/graph/neighbourhood.hpp"
 
-/// Built-in controllers: what a policy has to beat. Each one is a file of its own and a line in
-/// the registry (controllers/registry.cpp).
+/// Built-in controllers, with which policies are compared. Each one is a file of its own and a line
+/// in the registry (controllers/registry.cpp).
 namespace stg::agent {
 
 /// What a controller may read of one AUV (T = double), or of the same AUV in kLanes environments
-/// (T = Pack). Whether it is what the AUV found out by itself or the truth is the maker's affair.
+/// (T = Pack). The caller decides whether it contains the AUV's estimates or true states.
 template <class T>
 struct ControllerInput {
   const AgentModel& model;
   int id;
   const Knowledge<T>& knowledge;
-  const NeighbourSight<T>* neighbours;  ///< [neighbour_count], known ones, in the maker's order
+  const NeighbourSight<T>*
+      neighbours;  ///< [neighbour_count], the known ones, in the caller's order
   int neighbour_count;
 };
 
-/// A rule from what one AUV knows to its action. Has no memory of its own: one object serves all
-/// AUVs, and any number of threads.
+/// Computes an AUV's action from its knowledge. It has no memory of its own, so one object serves
+/// all AUVs and any number of threads.
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -38,8 +39,8 @@ class Controller {
   virtual void Act(const ControllerInput<Pack>& input, Pack* action) const = 0;
 
   /// The same from an agent's own knowledge after Observe, with its kNearestKnown nearest
-  /// neighbours, nearest first; rounded to float, as a policy's action is. A law that searches
-  /// reads more of the agent than a ControllerInput holds, and keeps its plan there.
+  /// neighbours, nearest first; rounded to float, as a policy's action is. A search law reads more
+  /// of the agent than a ControllerInput holds, and stores its plan in the agent.
   virtual void Act(const AgentView& agent, float* action) const;
 
   static constexpr int kNearestKnown = 16;
@@ -63,8 +64,8 @@ class ControllerOf final : public Controller {
   Law law_;
 };
 
-/// Writes the action that asks for a desired velocity v, in the scenario's interface: v / v_max, or
-/// the force that the velocity controller would use.
+/// Writes the action for a desired velocity v in the scenario's interface: v / v_max, or the force
+/// of the velocity controller.
 /// @param velocity [3] v / v_max, world axes, each in [-1, 1]
 template <class T>
 inline void AskForVelocity(const ControllerInput<T>& input, const T* velocity, T* action) {
@@ -75,11 +76,11 @@ inline void AskForVelocity(const ControllerInput<T>& input, const T* velocity, T
       action);
 }
 
-/// All controllers by name; a program may add its own at its start. A controller's options are its
-/// constants, which follow its name: "pursuit:gain=2,cap=0.5".
+/// All controllers by name; a program may add its own when it starts. A controller's options are
+/// its constants, which follow its name: "pursuit:gain=2,cap=0.5".
 using ControllerRegistry = Registry<Controller>;
 ControllerRegistry& Controllers();
-/// The name of the one that flies where neither policy nor controller is named.
+/// Name of the controller that is used where neither policy nor controller is named.
 std::string DefaultController();
 
 /// The controller of a name alone or with constants that differ from the tuned ones, as in
@@ -87,7 +88,7 @@ std::string DefaultController();
 /// an unknown constant, or one that is not a number in range.
 std::shared_ptr<const Controller> MakeController(const std::string& text);
 
-/// Throws UserError, with the controllers' names, for what is neither one of them nor has the
+/// Throws UserError, with the controllers' names, for text that is neither a controller nor has the
 /// ending of a policy file.
 void RequirePolicyFileName(const std::string& text);
 

@@ -12,34 +12,34 @@ namespace stg::agent {
 
 /// Constants of the law. Lengths and speeds are those of the sea.
 struct EncircleOptions {
-  double cruise_mps = 1.15;        ///< over ground, on the side of the circle that runs back
-  double slow_mps = 0.9;           ///< over ground, at least
-  double fast_mps = 2.1;           ///< over ground, on the way to the circle and at most
-  double inward_gain = 3.0;        ///< how steeply the way to the circle points at it
-  double lead_s = 4.0;             ///< the vehicle is taken to be where it will be then
-  double spread_gain = 0.5;        ///< change of speed per radian off the middle of the gap
-  double spread_limit = 0.35;      ///< largest such change
-  double clearance_m = 60.0;       ///< others are to be missed by this, in the plane
-  double doubt_mps = 0.5;          ///< and by this times the age of what they said
-  double mate_clearance_m = 40.0;  ///< the same of others on the own circle, which spread keeps off
-  double horizon_s = 45.0;         ///< closest approaches later than this do not matter
-  double layer_m = 20.0;           ///< others this much above or below do not matter
-  double depth_gain_ps = 0.06;     ///< climb rate per missing depth
-  double climb_mps = 0.25;         ///< largest climb rate that is asked for
-  double ring = 0.2;               ///< two circles, this share inside and outside of d*
-  double ring_team = 10.0;         ///< of teams larger than this
-  double smallest_circle = 0.5;    ///< share of d* that the circle keeps below or above the target
-  double dodge = 1.5;              ///< speed aside of an AUV in the way, as a share of the own
-  double on_circle = 0.5;          ///< closer to the circle than this share of d*: it is on it
-  double mate_on_circle = 0.6;     ///< the same of others, where there is one circle
-  double keep_off_m = 20.0;        ///< of obstacles, in the plane
-  double keep_off_doubt = 1.0;     ///< and so many standard deviations of the own position
-  double hurry_from = 0.3;         ///< farther outside than this share of d* it begins to hurry
+  double cruise_mps = 1.15;    ///< over ground, where the AUV circles against the target's course
+  double slow_mps = 0.9;       ///< smallest speed over ground
+  double fast_mps = 2.1;       ///< largest speed over ground, also on the way to the circle
+  double inward_gain = 3.0;    ///< how steeply the way to the circle points inward
+  double lead_s = 4.0;         ///< the law uses the vehicle's position after this time
+  double spread_gain = 0.5;    ///< relative change of speed per radian off the middle of the gap
+  double spread_limit = 0.35;  ///< largest relative change of speed
+  double clearance_m = 60.0;   ///< horizontal distance at which it passes other AUVs
+  double doubt_mps = 0.5;      ///< added to it per second of age of their packet
+  double mate_clearance_m = 40.0;  ///< the same for AUVs on the same circle
+  double horizon_s = 45.0;         ///< closest approaches later than this are ignored
+  double layer_m = 20.0;           ///< AUVs farther above or below than this are ignored
+  double depth_gain_ps = 0.06;     ///< climb rate per error of depth
+  double climb_mps = 0.25;         ///< largest commanded climb rate
+  double ring = 0.2;               ///< two circles, smaller and larger than d* by this share
+  double ring_team = 10.0;         ///< for teams of more AUVs than this
+  double smallest_circle = 0.5;    ///< smallest radius far below or above the target, share of d*
+  double dodge = 1.5;           ///< largest sideways speed to avoid an AUV, share of the own speed
+  double on_circle = 0.5;       ///< an AUV closer to the circle than this share of d* is on it
+  double mate_on_circle = 0.6;  ///< the same for other AUVs, where there is one circle
+  double keep_off_m = 20.0;     ///< horizontal distance to obstacles
+  double keep_off_doubt = 1.0;  ///< added to it: so many standard deviations of the own position
+  double hurry_from = 0.3;      ///< farther outside than this share of d* it speeds up
 };
 
 void Describe(EncircleOptions* o, config::Table* t);
 
-/// What a guide changes of the law; as it stands here: nothing.
+/// Changes of the law by a policy; the default values change nothing.
 template <class T>
 struct Guidance {
   T radius_m = T(0.0);   ///< added to the radius of the circle in the plane [m]
@@ -72,8 +72,8 @@ T Norm(const Level<T>& a) {
   return Sqrt(Dot(a, a));
 }
 
-/// Another vehicle now, carried along the own circle if its report shows it there, else dead
-/// reckoned. Relative to the target, in the plane.
+/// Present state of another AUV, predicted from its packet: along the own circle if the packet
+/// shows it there, otherwise straight on. Relative to the target, in the plane.
 template <class T>
 struct Circler {
   T on_circle;  ///< 1 or 0
@@ -82,8 +82,8 @@ struct Circler {
   T z;          ///< height in the world [m]
 };
 
-/// @param p_WT, v_T of the target now, as this AUV believes
-/// @param radius, reach of the own circle, and how far off it others count as on it [m]
+/// @param p_WT, v_T of the target now, as this AUV estimates
+/// @param radius, reach of the own circle, and within which distance of it others are on it [m]
 template <class T>
 Circler<T> CircleOn(const NeighbourSight<T>& n, const Vec3<T>& p_WT, const Level<T>& v_T,
                     const T& radius, const T& reach) {
@@ -114,10 +114,11 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
 
 /// A velocity that does not lead into a disc. A vehicle with the turning radius R_t that points at
 /// it by the angle a off the tangent comes nearer by 2 R_t (1 - cos a) while it turns away at half
-/// of its rate; the other half is for the curve of the edge. So at the distance g from the edge
-/// cos a = 1 - g / (2 R_t) is the steepest way in. Inside, the way leads out. A vehicle that is to
-/// pass on the other side first turns its back to the disc: the shorter turn leads into it.
-/// @param v wanted, own what the vehicle does now [m/s]
+/// of its rate; the other half is for the curve of the edge. So at the distance g from the edge the
+/// steepest allowed way in is cos a = 1 - g / (2 R_t). Inside the disc, the way leads out. A
+/// vehicle that wants to pass on the other side first turns away from the disc, because the shorter
+/// turn leads into it.
+/// @param v desired velocity, own present velocity of the vehicle [m/s]
 /// @param there centre of the disc from the vehicle, `radius` of the disc, `turn_m` R_t [m]
 template <class T>
 Level<T> TurnedOff(const Level<T>& v, const Level<T>& own, const Level<T>& there, const T& radius,
@@ -139,15 +140,15 @@ Level<T> TurnedOff(const Level<T>& v, const Level<T>& own, const Level<T>& there
           Select(crosses, -at.y * speed, Select(leads_in, turned.y, v.y))};
 }
 
-/// Circles the own estimate of the target anticlockwise at d* in the plane, each AUV at a depth of
-/// its own. On the circle it speeds up or slows down towards the middle between the one ahead and
-/// the one behind, as their packets and the time since tell; off it, it comes in on a spiral. It
-/// gives way to AUVs that would pass too closely at a like depth and to obstacles of its chart,
-/// which is the scenario. In a team that is too large for one circle every other AUV flies inside,
-/// the others outside of d*. Without open water it keeps to the target's depth.
+/// Each AUV circles its estimate of the target anticlockwise at d* in the plane, at a depth of its
+/// own. On the circle it moves towards the middle between the AUVs ahead and behind, whose
+/// positions it predicts from their packets. Off the circle it approaches on a spiral. It avoids
+/// AUVs that would pass too closely at a similar depth, and the obstacles of the scenario. In a
+/// team that is too large for one circle, every other AUV flies inside and the others outside of
+/// d*. In a closed basin it keeps the target's depth.
 ///
 /// Vehicles that need flow over their fins turn as tightly as their ground speed over the turn rate
-/// allows: on the side where the circle runs against the target's way the radius over ground is
+/// allows: where the circle runs against the target's course, the radius over ground is
 /// R (1 - v_T / u)^2 at the relative speed u, which is v_T + cruise, and never less than v_T +
 /// slow.
 struct Encircle {
@@ -157,7 +158,7 @@ struct Encircle {
   void Act(const ControllerInput<T>& in, T* action) const {
     Act(in, Guidance<T>(), action);
   }
-  /// The same law, guided.
+  /// The same law, changed by a guidance.
   template <class T>
   void Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T* action) const {
     const dynamics::VehicleConfig& vehicle = in.model.vehicle;
@@ -169,21 +170,21 @@ struct Encircle {
     AskForVelocity(in, velocity, action);
   }
 
-  // What laws that fly in a ring, too, have in common with it.
-  /// Height to fly at [m].
+  // Parts that other laws with a ring use, too.
+  /// Commanded height [m].
   template <class T>
   T Height(const ControllerInput<T>& in, const T& deeper_m) const;
-  /// Radius of the circle in the plane for a difference of height to the target [m].
+  /// Radius of the circle in the plane [m] at the height difference dz to the target [m].
   template <class T>
   T Radius(const ControllerInput<T>& in, const T& dz) const;
   /// Turns a velocity away from another vehicle or an obstacle that it would pass too closely.
   /// @param r, w position and velocity of the other relative to the own position and the ground
-  /// @param matters 0 where it does not; else 1
+  /// @param matters 1; 0: ignore the other
   template <class T>
   Level<T> Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
                 const T& matters) const;
-  /// A velocity in the plane that does not lead into what the chart shows: others give way, too,
-  /// obstacles do not, so this comes last.
+  /// A velocity in the plane that does not lead into an obstacle of the chart. This step is the
+  /// last, because other AUVs avoid a collision, too, and obstacles do not.
   template <class T>
   Level<T> ClearOfChart(const ControllerInput<T>& in, Level<T> v) const;
 

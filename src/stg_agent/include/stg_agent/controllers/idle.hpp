@@ -6,7 +6,7 @@
 
 namespace stg::agent {
 
-/// Asks for nothing: no velocity, or no force.
+/// Commands zero velocity, or zero force.
 struct Idle {
   template <class T>
   void Act(const ControllerInput<T>& input, T* action) const {

@@ -13,25 +13,25 @@ namespace stg::agent {
 struct PursuitOptions {
   double gain_per_s = 4.66;
   double standoff_m = 0.009;
-  double cap = 0.75;                  ///< of the maximum speed, each axis
+  double cap = 0.75;                  ///< share of the maximum speed, each axis
   double repulsion_gain_per_s = 0.0;  ///< 0: neighbours are ignored
   double repulsion_range_m = 0.03;    ///< neighbours closer than this repel
-  double tangential_range_m = 0.05;   ///< closer to the target repulsion only turns aside
-  /// Share of the target's velocity that is added. Above 1 it makes up for the speed that the
-  /// proportional velocity loop (Eq. 24) loses to drag.
+  double tangential_range_m = 0.05;   ///< closer to the target, repulsion only acts sideways
+  /// Share of the target's velocity that is added. A value above 1 compensates for the speed that
+  /// the proportional velocity loop (Eq. 24) loses to drag.
   double feedforward = 1.0;
-  /// Where gain (d - standoff) is more, the speed is approach_speed + approach_gain (d - standoff):
-  /// a stiff hold after an unhurried approach. Both 0: no such limit.
+  /// Upper limit of gain (d - standoff): approach_speed + approach_gain (d - standoff). It makes
+  /// the approach slow and keeps the hold stiff. Both 0: no such limit.
   double approach_speed_mps = 0.0;
   double approach_gain_per_s = 0.0;
-  /// A target closer to a wall than this is taken to stand that far from it: on the wall itself the
-  /// AUVs would have half a sphere to spread over, where four of them cannot but touch. 0: not so.
+  /// A target closer to a wall than this is treated as if it were at this distance. At the wall,
+  /// the AUVs would have only half a sphere to spread over, and four of them would touch. 0: off.
   double wall_margin_m = 0.0;
 };
 
 void Describe(PursuitOptions* o, config::Table* t);
 
-/// The same, tuned for AUVs that keep apart.
+/// The same, tuned so that AUVs keep apart.
 struct PursuitSeparatedOptions : PursuitOptions {
   PursuitSeparatedOptions() {
     gain_per_s = 3.0;
@@ -42,13 +42,13 @@ struct PursuitSeparatedOptions : PursuitOptions {
 
 /// Pursuit: v = gain (d - standoff) los + feedforward v_T, plus, from each neighbour closer than
 /// the repulsion range s0, gain_r (s0 - s) away from it. Within tangential_range_m of the target
-/// the part of the repulsion along the line of sight is left out: AUVs then spread over the
-/// sphere around the target and keep their distance to it. Capped per axis at the end.
-/// Writes the action v / v_max (Eq. 23 inverted), three numbers in [-cap, cap].
+/// the repulsion along the line of sight is left out, so that AUVs spread over the sphere around
+/// the target and keep their distance to it. The result is clipped per axis. Writes the action v /
+/// v_max (Eq. 23 inverted), three numbers in [-cap, cap].
 ///
 /// @param r_BT_W target position minus own [m], world axes
 /// @param v_WT   target velocity [m/s], world axes
-/// @param neighbours [count], of which the offset counts; a zero offset repels nothing
+/// @param neighbours [count], of which the offset is used; a zero offset has no effect
 template <class T>
 inline void PursuitAction(const PursuitOptions& o, const dynamics::VehicleConfig& vehicle,
                           const Vec3<T>& r_BT_W, const Vec3<T>& v_WT,
@@ -79,8 +79,8 @@ inline void PursuitAction(const PursuitOptions& o, const dynamics::VehicleConfig
   action[2] = Clip(v.z * T(1.0 / vmax[2]), T(-o.cap), T(o.cap));
 }
 
-/// Moves a target that is closer to a wall than the margin away from it, and takes the velocity
-/// towards or off that wall from it.
+/// Moves a target that is closer to a wall than the margin to the margin, and sets its velocity
+/// normal to that wall to zero.
 template <class T>
 inline void KeepFromWalls(double wall_m, double margin_m, const Vec3<T>& p_WB, Vec3<T>* r_BT_W,
                           Vec3<T>* v_WT) {
@@ -96,7 +96,7 @@ inline void KeepFromWalls(double wall_m, double margin_m, const Vec3<T>& p_WB, V
   keep(p_WB.z, &r_BT_W->z, &v_WT->z);
 }
 
-/// The same from an agent's knowledge, true or estimated, with the target kept off the walls.
+/// The same from an agent's knowledge, true or estimated, with KeepFromWalls applied to the target.
 template <class T>
 inline void PursuitAction(const PursuitOptions& o, const AgentModel& model, const Knowledge<T>& k,
                           const NeighbourSight<T>* neighbours, int count, T* action) {

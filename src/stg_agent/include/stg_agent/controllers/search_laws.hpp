@@ -5,38 +5,38 @@
 #include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/formation.hpp"
 
-/// Controllers that look for a target that no AUV sees, and circle it once it is found:
+/// Controllers that search for a target that no AUV detects, and circle it when it is found:
 /// `search_map`, `greedy_search`, `parallel_sweep`, `expanding_square`. They need the agents'
 /// search map (track.search_cell_m).
 namespace stg::agent {
 
-/// What all of them do with a target that is found.
+/// What all of them do after the target is found.
 struct FoundOptions {
-  double give_up_s = 120.0;  ///< without an observation for so long the search begins again
-  double fast_mps = 2.3;     ///< over ground, at most
-  double form = 0.0;  ///< 0: circles the target as `encircle`; 1: keeps a place as `formation`
-  /// An estimate that is off by more than this, as it states, is one of several: the AUV flies to
-  /// where the map says that the target is, instead of around the middle of them. 0: never.
+  double give_up_s = 120.0;  ///< the search begins again after this time without an observation
+  double fast_mps = 2.3;     ///< largest speed over ground
+  double form = 0.0;  ///< 0: circle the target, as `encircle`; 1: keep a place, as `formation`
+  /// With a standard deviation above this, an estimate may be the mean of several possible places.
+  /// The AUV then flies to the most probable place of the map, not around the mean. 0: never.
   double certain_m = 0.0;
-  double close_reach_m = 500.0;  ///< how far the mass counts then
-  double team_range_m = 600.0;   ///< form=1: others farther from the target have no place
+  double close_reach_m = 500.0;  ///< distance over which the map's mass counts then
+  double team_range_m = 600.0;   ///< form=1: AUVs farther from the target have no place
 };
 
 void DescribeFound(FoundOptions* o, config::Table* t);
 
 /// Constants of the search by the map.
 struct SearchMapOptions : FoundOptions {
-  double horizon_s = 480.0;  ///< the mass swept in this time counts
+  double horizon_s = 480.0;  ///< a course is worth the mass that it sweeps in this time
   double swath = 0.8;        ///< half width of the sweep, as a share of the detection range
-  double pull = 0.3;         ///< weight of the mass in a direction, near or far
-  double pull_m = 1200.0;    ///< how far that reaches
-  double replan_s = 20.0;    ///< between two choices of a course
-  double keep = 1.1;         ///< the old course is worth this times as much
-  double senior_s = 480.0;   ///< those senior are taken to fly on for so long
+  double pull = 0.3;         ///< weight of the mass in the direction of a course
+  double pull_m = 1200.0;    ///< distance over which that mass counts
+  double replan_s = 20.0;    ///< time between two choices of a course
+  double keep = 1.1;         ///< factor on the worth of the present course
+  double senior_s = 480.0;   ///< AUVs of a lower index are assumed to keep their course so long
   int courses = 16;
 };
 
-/// The same for what the next looks find.
+/// The same, tuned for what the next looks can find.
 struct GreedySearchOptions : SearchMapOptions {
   GreedySearchOptions() {
     horizon_s = 60.0;
@@ -47,7 +47,7 @@ struct GreedySearchOptions : SearchMapOptions {
 
 /// Constants of the patterns.
 struct PatternOptions : FoundOptions {
-  double spacing = 1.5;  ///< between two tracks, as a share of the detection range
+  double spacing = 1.5;  ///< distance between two tracks, as a share of the detection range
   double box = 1.25;  ///< parallel_sweep: half side of the box, as a share of the cue's deviation
   double reached_m = 60.0;
 };
@@ -58,8 +58,8 @@ void Describe(SearchMapOptions* o, config::Table* t);
 void Describe(ParallelSweepOptions* o, config::Table* t);
 void Describe(ExpandingSquareOptions* o, config::Table* t);
 
-/// A law that searches. From an agent's own knowledge it searches while the target is not observed;
-/// from true states, which leave nothing to search, it follows the target at once.
+/// A search law. With an agent's own knowledge it searches while the target is not observed. With
+/// true states it follows the target at once.
 class SearchLaw : public Controller {
  public:
   explicit SearchLaw(const FoundOptions& found);
@@ -68,21 +68,22 @@ class SearchLaw : public Controller {
   void Act(const ControllerInput<Pack>& input, Pack* action) const override;
   /// Throws UserError for an agent without a search map.
   void Act(const AgentView& agent, float* action) const override;
-  /// The same law, guided, not rounded: while it searches the phase turns its course.
-  /// @param searches it searches although the target is observed
+  /// The same law, changed by a guidance and not rounded; during a search, the phase turns the
+  /// course.
+  /// @param searches search even where the target is observed
   void Act(const AgentView& agent, const Guidance<double>& guidance, bool searches,
            double* action) const;
 
  protected:
-  /// Where to go now, relative to the own position [m].
+  /// Present goal, relative to the own position [m].
   virtual Level<double> Goal(const AgentView& agent, SearchMemory* search) const = 0;
 
  private:
   template <class T>
   void Follow(const ControllerInput<T>& input, const Guidance<T>& guidance, T* action) const;
-  /// Whether the AUV knows one place of its target.
+  /// Whether the target's estimate is certain enough (certain_m).
   bool Certain(const TargetBelief& belief) const;
-  /// The course to most of the mass that is near, relative to the own position.
+  /// A point in the direction of most of the near mass, relative to the own position [m].
   Level<double> WayToMass(const AgentView& agent, SearchMemory* search) const;
 
   FoundOptions found_;
@@ -90,18 +91,20 @@ class SearchLaw : public Controller {
   Formation form_;
 };
 
-/// The course, of 32 from `course` on, on which most of a map's mass lies nearby [rad]: a cell
-/// counts by the fourth power of the cosine of its angle off the course and fades with `reach_m`.
-/// @param keep the course that it counts from is worth this times as much
+/// The course [rad], out of 32 from `course` on, in whose direction most of the map's mass is near.
+/// The weight of a cell is the fourth power of the cosine of its angle off the course, times
+/// exp(-distance / reach_m).
+/// @param keep factor on the worth of `course`
 double CourseToMass(const SearchMap& map, const Vec3<double>& p_WB, double reach_m, double course,
                     double keep);
 
-/// Of an AUV the `leg`-th waypoint of its pattern, world axes [m].
-/// @param id, agents which of how many @param spacing_m between two tracks
+/// The `leg`-th waypoint of an AUV's pattern, world axes [m].
+/// @param id, agents index of the AUV, and number of AUVs @param spacing_m distance between two
+/// tracks
 Level<double> SquareWaypoint(const Level<double>& datum, double spacing_m, int id, int agents,
                              int leg);
-/// Tracks from south to north and back in one strip of the box, from west to east; after the last
-/// one again the first. @param half_m of the box's side @param turned begins in the north
+/// Tracks from south to north and back in one strip of the box, from west to east; the last one is
+/// followed by the first. @param half_m half side of the box @param turned begins in the north
 Level<double> SweepWaypoint(const Level<double>& datum, double half_m, double spacing_m, int id,
                             int agents, int leg, bool turned);
 

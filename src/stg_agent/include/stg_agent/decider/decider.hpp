@@ -11,30 +11,30 @@
 
 namespace stg::agent {
 
-/// What decides for the AUVs of a swarm, in nodes, environments and Python alike: a policy, or one
-/// for each AUV, a policy on entities, or a built-in controller. Exactly one of the three is there.
+/// Decides for the AUVs of a swarm, in nodes, environments and Python. It holds exactly one of: a
+/// policy or one policy for each AUV, a policy over entities, a built-in controller.
 struct Decider {
   std::string name;                                     ///< as the user gave it
-  std::vector<std::shared_ptr<const Policy>> policies;  ///< one for all AUVs, or one for each
+  std::vector<std::shared_ptr<const Policy>> policies;  ///< one for all AUVs, or one for each AUV
   std::shared_ptr<const EntityPolicy> entities;         ///< acoustic mode only
   std::shared_ptr<const Controller> builtin;
   bool privileged = false;  ///< a built-in controller reads true states where there are any
 
-  /// It decides on the observation, else on all that the agent knows.
+  /// True: it decides from the observation; false: from all that the agent knows.
   bool observes() const { return !policies.empty(); }
   /// The mean action of AUV `id`'s policy. @param observation [observation_size]
   void Act(int id, const float* observation, float* action) const;
-  /// What the controller or the policy on entities does.
+  /// The action of the controller or of the policy over entities.
   void Act(const AgentView& agent, float* action) const;
 
   /// Replaces the mean by a sample of the policy's Gaussian, a function of (seed, step, id) only;
-  /// returns its natural log density. Others have no spread: returns 0 and leaves the mean.
-  /// @param seed that of the episode: the same seed gives the same episode, whatever its number
+  /// returns its natural log density. Other deciders do not explore: returns 0 and keeps the mean.
+  /// @param seed seed of the episode; the same seed gives the same samples in any episode
   float Explore(std::uint64_t seed, std::uint32_t step, int id, float* action) const;
 
-  /// What AUV `id` flies: the controller's name, or the identity that the policy file states.
+  /// The controller's name, or the identity in the policy file of AUV `id`.
   const std::string& IdOf(int id) const;
-  /// Where that was read from; empty for a built-in controller.
+  /// The policy file of AUV `id`; empty for a built-in controller.
   std::string FileOf(int id) const;
   const Policy& PolicyOf(int id) const;
 };

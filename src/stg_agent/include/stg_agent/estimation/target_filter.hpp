@@ -20,84 +20,84 @@ struct Covariance3 {
   double SquaredNorm(const Vec3<double>& error) const;
 };
 
-/// What an AUV believes of its target, in the true world frame: errors of its own navigation are
-/// in the covariance. To be compared with the truth.
+/// An AUV's estimate of its target in the true world frame, for comparison with the truth: the
+/// covariance includes errors of its own navigation.
 struct TargetBelief {
-  TimeNs stamp = 0;        ///< time that it is of
-  TimeNs information = 0;  ///< time of the newest observation that it rests on; the start before
-  bool started = false;    ///< false: nothing else means anything
-  bool observed = false;   ///< it rests on an observation, not on the cue alone
+  TimeNs stamp = 0;        ///< time of the estimate
+  TimeNs information = 0;  ///< time of its newest observation; before the first one, of the start
+  bool started = false;    ///< false: the other fields have no meaning
+  bool observed = false;   ///< it contains an observation, not only the cue
   Vec3<double> p_WT, v_WT;
-  Covariance3 P_WT;  ///< of p_WT
+  Covariance3 P_WT;  ///< covariance of p_WT
 
   double position_std_m() const { return std::sqrt(P_WT.trace() / 3.0); }
 };
 
-/// Whether it is good enough to count as knowing where the target is.
+/// Whether the estimate is certain enough that the target is not lost.
 inline bool Known(const AgentModel& model, const TargetBelief& belief) {
   return belief.started && belief.position_std_m() <= model.track.lost_std_m;
 }
 
-/// How far the frame of the own navigation may be off.
+/// Uncertainty of the frame of the own navigation.
 struct OwnFrame {
-  double position_std_m = 0.0;  ///< as navigation states it; where no localizer knows better
-  /// Where a localizer does: the error of the own position, which is not in the former.
+  double position_std_m = 0.0;  ///< stated by the navigation, without a localizer
+  /// With a localizer: error of the own position, which position_std_m then leaves out.
   std::optional<PlaneError> error = {};
 };
 
-/// Follows one target for one AUV: from the cue, its own detections and what its neighbours share.
+/// Estimates one target for one AUV, from the cue, its own detections and the neighbours' packets.
 /// Deterministic; allocates nothing after construction.
 ///
-/// Use, in every episode: Clear, then Start or not; then for every decision Hear each packet when
-/// it arrives, in any order; Predict, Fuse the newest packet of each neighbour that has an unread
-/// one, by index, Detect the own detection if there is one, Settle.
+/// Use in each episode: Clear, then Start if there is a cue. Then, for each decision: Hear for each
+/// packet when it arrives, in any order; Predict; Fuse for the newest unread packet of each
+/// neighbour, by index; Detect for an own detection; Settle.
 class TargetFilter {
  public:
   virtual ~TargetFilter() = default;
 
-  /// What it can make use of.
+  /// Whether it can use such measurements.
   virtual bool Takes(dynamics::MeasurementKind kind, bool ambiguous) const = 0;
-  /// What packets say about the target.
+  /// Layout of its packets.
   virtual PacketLayout layout() const { return PacketLayout::kEstimate; }
 
   virtual void Clear() = 0;
-  /// A datum of the target, true at `stamp`.
+  /// Starts from a position of the target at the time `stamp`.
   virtual void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp) = 0;
-  /// Any packet about this target, late or out of order.
+  /// Takes any packet about this target, also a late one.
   virtual void Hear(const NeighbourState& packet) { (void)packet; }
   virtual void Predict(TimeNs now) = 0;
-  /// The newest packet of a neighbour, about this target.
+  /// Takes the newest packet of a neighbour about this target.
   virtual void Fuse(const NeighbourState& packet) { (void)packet; }
-  /// An own detection of this target, not of the future.
+  /// Takes an own detection of this target, with a stamp up to now.
   virtual void Detect(const dynamics::Detection& detection) = 0;
-  /// All of this decision is in.
+  /// Ends the input of a decision.
   virtual void Settle(TimeNs now, const OwnFrame& own) {
     (void)now;
     (void)own;
   }
 
-  /// In the frame of the own navigation: what own position and estimate differ by is what the
-  /// vehicle has to steer by.
+  /// In the frame of the own navigation, so that its difference to the own position is the offset
+  /// to steer by.
   virtual TargetEstimate estimate() const = 0;
   virtual TargetBelief belief() const = 0;
-  /// What a packet of this AUV says about the target; own index, time and motion stand in it
-  /// already.
-  /// @param lost the agent takes the target for lost
+  /// Writes the target into a packet of this AUV, which already contains own index, time and
+  /// motion.
+  /// @param lost the target counts as lost
   virtual void Tell(bool lost, NeighbourState* packet) const = 0;
 };
 
-/// What `track.filter` may name. A new one is a new file and one line in
-/// src/estimation/target_filters.cpp; one of another program is added with Add before it loads a
+/// Filters for `track.filter`. A new one is a new file and one line in
+/// src/estimation/target_filters.cpp; another program registers its own with Add before it loads a
 /// scenario.
 /// @param self index of the AUV
 using FilterRegistry = Registry<TargetFilter, const AgentModel&, const int&>;
 FilterRegistry& TargetFilters();
 
-/// The packets of a scenario's agents: its filter says what is in them.
+/// Layout of the packets of a scenario's agents, as its filter chooses it.
 PacketLayout LayoutOf(const AgentModel& model);
-/// A sensor that the filter cannot make use of.
+/// Refuses a sensor that the filter cannot use.
 std::optional<config::Violation> FindFilterConflict(const AgentModel& model);
-/// What a localizer, or a station, does not go together with.
+/// Refuses settings that contradict a localizer or stations.
 std::optional<config::Violation> FindLocalizationConflict(const AgentModel& model);
 
 }  // namespace stg::agent

@@ -38,17 +38,16 @@ struct SharedEstimate {
 /// velocity component flips, as the paper's target does.
 ///
 /// Own detections enter by the Kalman update with standard deviation max(stated,
-/// measurement_std_m). Shared estimates are correlated with the track (their source may
-/// have used ours) to an unknown degree, so they enter by covariance intersection, with
-/// the weight that minimises the determinant of the fused covariance; for 2x2 matrices
-/// that weight has a closed form. Packets carry no velocity deviation: it is taken as
-/// initial_speed_std_mps.
+/// measurement_std_m). The correlation of a shared estimate with the track is unknown, because its
+/// source may have used this AUV's packets. So shared estimates enter by covariance intersection,
+/// with the weight that minimises the determinant of the fused covariance; for 2x2 matrices that
+/// weight has a closed form. Packets contain no velocity deviation; initial_speed_std_mps stands
+/// for it.
 ///
-/// Gate: a detection farther than gate_sigma from its prediction is set aside; after
-/// kRestartAfter of them in a row the last two start the track afresh (the last one alone if
-/// no target is fast enough to have made both). A shared
-/// estimate outside the gate replaces the track when it is both newer than the track's
-/// information and more certain than the track, else it is ignored.
+/// Gate: a detection farther than gate_sigma from its prediction is rejected. After kRestartAfter
+/// rejections in a row, the last two detections restart the track (only the last one if no target
+/// is fast enough for both). A shared estimate outside the gate replaces the track if it is newer
+/// than the track's information and more certain than the track; otherwise it is ignored.
 class TargetTrack {
  public:
   static constexpr int kRestartAfter = 3;
@@ -59,15 +58,15 @@ class TargetTrack {
   /// Starts the track from a datum: velocity zero with initial_speed_std_mps.
   void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp);
   bool started() const { return started_; }
-  /// An observation has entered, own or a neighbour's: the track is more than its datum.
+  /// The track contains an observation, own or a neighbour's, not only its start.
   bool observed() const { return observed_; }
 
-  /// Carries the estimate to time t; earlier times change nothing.
+  /// Predicts the estimate to time t; an earlier time has no effect.
   void Predict(TimeNs t);
 
-  /// Takes an own detection. One newer than the track predicts it to the detection's
-  /// stamp; an older one is carried forward with the track's velocity, its noise grown by
-  /// that velocity's variance. Starts a track that has not been started.
+  /// Takes an own detection. For a newer one, the track is predicted to its stamp. An older one is
+  /// moved forward by the track's velocity, whose variance is added to its noise. Starts a track
+  /// that is not started.
   void Detect(const dynamics::Detection& detection);
 
   /// Takes a shared estimate of any age; the track keeps its time.
@@ -76,12 +75,13 @@ class TargetTrack {
   /// The present estimate, at the time of the last Predict or newer detection.
   const TargetEstimate& estimate() const { return now_; }
 
-  /// Time of the newest observation that entered, own or a neighbour's; the start before.
+  /// Time of the newest observation in the track, own or a neighbour's; before the first one, of
+  /// the start.
   TimeNs information_stamp() const { return shared_.stamp; }
-  /// What to tell neighbours: the estimate as of information_stamp(), never fresher than
-  /// what it rests on, so that two AUVs cannot keep a stale estimate young by exchanging it.
+  /// The estimate for packets, at the time information_stamp(): it is never newer than its
+  /// observations, so that two AUVs cannot keep an old estimate new by exchanging it.
   const SharedEstimate& shareable() const { return shared_; }
-  /// Detections in a row that the gate set aside.
+  /// Detections in a row that the gate rejected.
   int rejected_in_a_row() const { return rejected_; }
 
  private:

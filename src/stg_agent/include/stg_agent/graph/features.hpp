@@ -4,8 +4,8 @@
 
 #include "stg_agent/graph/knowledge.hpp"
 
-/// What a policy sees of the task: the tracking diagnostics of Eq. 14, phase and quality of
-/// Eqs. 15-16 and the task-graph summary of Eq. 18, from an AUV's knowledge.
+/// The task's part of an observation, from an AUV's knowledge: the tracking diagnostics of Eq. 14,
+/// phase and quality of Eqs. 15-16, and the task-graph summary of Eq. 18.
 namespace stg::agent {
 
 /// c of Eq. 13.
@@ -24,7 +24,7 @@ inline T Closing(const ObservationConfig& c, const T& closing_speed) {
   return Clip(closing_speed * T(1.0 / c.closing_scale_mps), T(-1.0), T(1.0));
 }
 
-/// Progress as the observation shows it.
+/// Progress in the observation.
 template <class T>
 inline T ShownProgress(const ObservationConfig& c, const Knowledge<T>& k) {
   return c.release_bookkeeping ? T(0.0) : Progress(c, k.previous_distance, k.distance);
@@ -75,9 +75,9 @@ inline void TrackingVector(const ObservationConfig& c, const Knowledge<T>& k,
   (*z)[kZLostSteps] = Clip(k.lost_steps * T(1.0 / c.lost_scale_steps), zero, one);
 }
 
-/// Graph summary of Eq. 18 as the policy sees it: effective-neighbour fraction,
-/// mean and best link quality, mean neighbour error, advantage (Eq. 19), role. What an ablation
-/// leaves out reads 0.
+/// Graph summary of Eq. 18 in the observation: effective-neighbour fraction,
+/// mean and best link quality, mean neighbour error, advantage (Eq. 19), role. Numbers that an
+/// ablation leaves out are 0.
 template <class T>
 inline void GraphSummary(const ObservationConfig& c, const Knowledge<T>& k,
                          T (*graph)[kGraphNumbers]) {
@@ -94,7 +94,7 @@ inline void GraphSummary(const ObservationConfig& c, const Knowledge<T>& k,
   (*graph)[kGraphRole] = c.roles ? Select(advantage > zero, confident, zero) : zero;
 }
 
-/// The phase and the quality that the one-hot vectors of one AUV show.
+/// Phase and quality of one AUV, as in the one-hot vectors.
 inline int PhaseOf(const ObservationConfig& c, const Knowledge<double>& k) {
   double phase[kPhases];
   PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);

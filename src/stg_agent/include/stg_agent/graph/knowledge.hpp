@@ -6,12 +6,11 @@
 #include "stg_agent/graph/observation_spec.hpp"
 #include "stg_agent/graph/tracking.hpp"
 
-/// What one AUV knows when it decides, from either source: an agent by its own means, or the
-/// truth mode by looking at true states. T = double: one AUV. T = Pack: the same AUV of kLanes
-/// environments.
+/// What one AUV knows when it decides, from an agent's estimates or from true states (truth mode).
+/// T = double: one AUV. T = Pack: the same AUV of kLanes environments.
 namespace stg::agent {
 
-/// What one AUV knows at a decision: how it stands to its target, and the following. Lengths [m],
+/// Knowledge of one AUV at a decision: Tracking of its target, and the following. Lengths [m],
 /// world axes unless named.
 template <class T>
 struct Knowledge : Tracking<T> {

@@ -7,19 +7,19 @@
 
 namespace stg::agent {
 
-/// The newest packet of each neighbour of one AUV, as received. Fixed capacity (the swarm);
-/// allocates nothing after construction.
+/// The newest received packet of each neighbour of one AUV. Fixed capacity (the swarm); allocates
+/// nothing after construction.
 ///
-/// The content depends on the set of packets received, not on their order: of each AUV the newest
-/// generation stays.
+/// The content depends on the set of packets received, not on their order: the packet with the
+/// newest generation time of each AUV is kept.
 class NeighbourTable {
  public:
   NeighbourTable(const AgentModel& model, int self);
 
   void Clear();
 
-  /// Takes a packet's content. False, and nothing changes, for an own packet, a
-  /// source outside the swarm, or a state no newer than the one known.
+  /// Takes a packet's content. Returns false, without a change, for an own packet, a source outside
+  /// the swarm, or a state that is not newer than the stored one.
   bool Update(const NeighbourState& state);
 
   /// Forgets neighbours silent for more than track.neighbour_max_age_s at time `now`.
@@ -27,22 +27,22 @@ class NeighbourTable {
 
   /// Indices of the known neighbours, ascending.
   const std::vector<int>& known() const { return known_; }
-  /// Any AUV of the swarm; false for oneself and for those not heard of.
+  /// Whether an AUV of the swarm is known; false for this AUV itself.
   bool knows(int id) const { return slot(id).known; }
-  /// Of an AUV that is known: its state, true at state.generation.
+  /// State of a known AUV at the time state.generation.
   const NeighbourState& state(int id) const { return slot(id).state; }
 
-  /// Some neighbour's target estimate is unread.
+  /// Whether a target estimate of any neighbour is unread.
   bool unread() const { return unread_; }
-  /// The target estimate of this neighbour is unread.
+  /// Whether the target estimate of this neighbour is unread.
   bool unread(int id) const { return slot(id).unread_target; }
-  /// The track has taken all target estimates.
+  /// Marks all target estimates as read.
   void MarkRead();
 
  private:
   struct Slot {
     NeighbourState state;
-    bool known = false;  ///< false: nothing else means anything
+    bool known = false;  ///< false: the other fields have no meaning
     bool unread_target = false;
   };
   const Slot& slot(int id) const { return slots_[static_cast<std::size_t>(id)]; }

@@ -2,11 +2,11 @@
 
 #include "stg_agent/graph/neighbourhood.hpp"
 
-/// What of its neighbours enters an AUV's knowledge: the nearest ones, and the means of Eq. 18.
+/// The part of an AUV's knowledge about its neighbours: the nearest ones, and the means of Eq. 18.
 namespace stg::agent {
 
-/// The kNeighbourSlots nearest of the neighbours offered one by one, nearest first; of two at
-/// the same distance the one offered first.
+/// The kNeighbourSlots nearest of the offered neighbours, nearest first; at equal distances, the
+/// one that was offered first comes first.
 template <class T>
 struct NearestSlots {
   Vec3<T> offset[kNeighbourSlots];  ///< zero where there is none
@@ -27,11 +27,10 @@ struct NearestSlots {
   }
 };
 
-/// What of an AUV's neighbours its knowledge takes, whether an agent put it together from what it
-/// has heard (SeeNeighbours) or the truth mode from true states.
+/// An AUV's neighbours, from received packets (SeeNeighbours) or from true states (truth mode).
 template <class T>
 struct NeighbourView {
-  Vec3<T> offset[kNeighbourSlots];  ///< as they are to be shown; zero where there is none
+  Vec3<T> offset[kNeighbourSlots];  ///< in the order of the observation; zero where there is none
   T effective = T(0.0);             ///< number of effective neighbours
   T quality = T(0.0);               ///< sum of the link qualities
   T best = T(0.0);                  ///< largest link quality
@@ -39,10 +38,10 @@ struct NeighbourView {
   T closest = T(0.0);               ///< 1: none of them is closer to the target, else 0
 };
 
-/// All neighbours that AUV `self` knows of, seen by one whose target is at p_WT [m], in the order
-/// of their indices.
+/// The view of the known neighbours of AUV `self`, whose target is at p_WT [m], in the order of
+/// their indices.
 /// @param sights [agents]
-/// @param own how the AUV itself stands to its target; its error counts where no other is known
+/// @param own tracking of the AUV itself; its error is the mean error where no neighbour is known
 template <class T>
 NeighbourView<T> SeeNeighbours(const AgentModel& s, int self,
                                const std::vector<NeighbourSight<T>>& sights, const Vec3<T>& p_WT,
@@ -51,7 +50,7 @@ NeighbourView<T> SeeNeighbours(const AgentModel& s, int self,
   const bool by_distance = s.observation.order == NeighbourOrder::kNearest;
   NeighbourView<T> view;
   NearestSlots<T> nearest;
-  T count = zero, error = zero, closest_sq = farthest;  // the latter to the target [m^2]
+  T count = zero, error = zero, closest_sq = farthest;  // closest_sq: to the target [m^2]
   int slot = 0;
   for (int j = 0; j < static_cast<int>(sights.size()); ++j) {
     if (j == self) continue;

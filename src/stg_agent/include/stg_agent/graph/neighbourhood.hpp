@@ -9,7 +9,7 @@
 #include "stg_agent/graph/neighbour_table.hpp"
 
 /// The neighbours of one AUV (T = double), or of the same AUV in kLanes environments (T = Pack):
-/// what each one last reported, and the same carried forward to now, as a decision sees it.
+/// the newest report of each one, and its prediction for the present decision.
 namespace stg::agent {
 
 /// Dead reckoning p + v age inside the walls [m].
@@ -21,22 +21,22 @@ Vec3<T> DeadReckon(const Vec3<T>& p_W, const Vec3<T>& v_W, const T& age_s, doubl
 /// One neighbour. World axes.
 template <class T>
 struct NeighbourSight {
-  T known = T(0.0);  ///< 0: nothing else means anything; else 1
-  // As it reported.
-  Vec3<T> p_W, v_W;  ///< [m], [m/s], true at generation_ns
+  T known = T(0.0);  ///< 1; 0: the other fields have no meaning
+  // From the report.
+  Vec3<T> p_W, v_W;  ///< [m], [m/s], at the time generation_ns
   T generation_ns = T(0.0), tracking_error = T(0.0);
-  // Now.
+  // Predicted to the present.
   T age_s = T(0.0);         ///< of the report, not negative
   Vec3<T> p_WN;             ///< dead-reckoned position p + v age, inside the walls [m]
   Vec3<T> r_BN_W;           ///< p_WN minus own position [m]
   T distance_m = T(0.0);    ///< length of r_BN_W
   T link_quality = T(0.0);  ///< at this distance and age
 
-  /// Known in some lane.
+  /// Whether it is known in any lane.
   bool heard() const { return Any(known > T(0.5)); }
 };
 
-/// One lane of sights, [agents]. Valid as long as the Neighbourhood it comes from.
+/// One lane of sights, [agents]. It refers to the Neighbourhood from which it comes.
 class SightReader {
  public:
   SightReader(const std::vector<NeighbourSight<double>>& sights, int) : one_(sights.data()) {}
@@ -53,9 +53,9 @@ class SightReader {
   int lane_ = 0;
 };
 
-/// The one store of neighbours. Each lane has a table of the packets' contents; the sights hold
-/// what a decision needs of all tables, side by side, and no caller writes to either alone. Fixed
-/// capacity (the swarm); allocates nothing after construction.
+/// Stores all neighbours of an AUV. Each lane has a table of the packets' contents; the sights hold
+/// what a decision needs of all tables, side by side. Both always change together. Fixed capacity
+/// (the swarm); allocates nothing after construction.
 template <class T>
 class Neighbourhood {
  public:
@@ -66,23 +66,24 @@ class Neighbourhood {
 
   /// Forgets all neighbours in a lane.
   void Clear(int lane);
-  /// A packet's content in a lane; see NeighbourTable::Update.
+  /// Takes a packet's content in a lane; see NeighbourTable::Update.
   bool Update(int lane, const NeighbourState& state);
   /// Forgets neighbours silent for too long at time `now`.
   void Forget(int lane, TimeNs now);
 
-  /// Ages all reports to a time; true where one is older than track.neighbour_max_age_s.
+  /// Sets the ages of all reports at a time; true where one is older than
+  /// track.neighbour_max_age_s.
   Mask<T> Age(const T& now_ns);
-  /// Carries all reports forward by their age, seen from own position p_WB [m].
+  /// Predicts all neighbours by the ages of their reports, relative to the own position p_WB [m].
   void Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimator& links);
-  /// Takes back the sights of the lanes outside the mask.
+  /// Restores the sights of the lanes outside the mask from `before`.
   void KeepOthers(const Mask<T>& lanes, const Sights& before);
 
   /// [agents]; the own one is never known.
   const Sights& sights() const { return sights_; }
   /// The packets' contents of one lane.
   const NeighbourTable& table(int lane) const { return tables_[static_cast<std::size_t>(lane)]; }
-  /// The target estimates of a lane have been taken.
+  /// Marks the target estimates of a lane as read.
   void MarkRead(int lane) { tables_[static_cast<std::size_t>(lane)].MarkRead(); }
 
  private:

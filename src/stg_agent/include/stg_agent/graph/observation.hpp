@@ -6,19 +6,19 @@
 #include "stg_agent/graph/features.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 
-/// The policy input of Eq. 20: raw physical state and the features of features.hpp, from what one
-/// AUV knows. One template serves the truth mode (T = Pack, knowledge from true states) and an
+/// The policy input of Eq. 20: raw physical state and the features of features.hpp, from an AUV's
+/// knowledge. One template serves the truth mode (T = Pack, knowledge from true states) and an
 /// agent (own knowledge only).
 namespace stg::agent {
 
-/// Where own position and target offset begin, both by the half extent of the workspace.
+/// First index of the own position and of the target offset, both in half extents of the workspace.
 inline constexpr int kOwnPositionIndex =
     ObservationSpec(ObservationConfig()).offset(Block::kPosition);
 inline constexpr int kTargetOffsetIndex =
     ObservationSpec(ObservationConfig()).offset(Block::kTargetOffset);
 
 /// Writes the observation through put(index, value), index 0 .. observation_size() - 1 in
-/// ascending order; ObservationSpec says where each block stands.
+/// ascending order; ObservationSpec gives the place of each block.
 template <class T, class Put>
 inline void BuildObservation(const AgentModel& model, const Knowledge<T>& k, Put&& put) {
   const ObservationConfig& c = model.observation;

@@ -4,7 +4,7 @@
 
 namespace stg::agent {
 
-/// Which neighbours fill the slots of the observation, and in which order.
+/// Choice and order of the neighbours in the observation.
 enum class NeighbourOrder { kNearest, kIndex };
 
 /// Constants of the observation that the paper leaves open (release's values).
@@ -15,9 +15,9 @@ struct ObservationConfig {
   bool links = true;     ///< false: the 3 link numbers of Eq. 18 read 0, an ablation
   bool roles = true;     ///< false: advantage and role of Eqs. 18-19 read 0, an ablation
   NeighbourOrder order = NeighbourOrder::kNearest;
-  /// Truth mode only. As the release: the progress shown is always 0 (d(t-1) is
-  /// overwritten first), so is the first P of an episode; mean_k(e) counts the
-  /// current error twice; lost steps read one too many.
+  /// Truth mode only: errors of the release. The observed progress is always 0 (d(t-1) is
+  /// overwritten first), and so is the first P of an episode; mean_k(e) counts the current error
+  /// twice; lost steps are one too many.
   bool release_bookkeeping = false;
   double distance_scale_m = 1.2;
   double error_scale_m = 0.8;

@@ -4,14 +4,15 @@
 
 #include "stg_agent/graph/observation_config.hpp"
 
-/// The one description of the policy input: which numbers it has and where they stand. All code
-/// that writes, sizes, names or reads observations asks this.
+/// The layout of the policy input: its numbers and their places. All code that writes, sizes, names
+/// or reads observations uses it.
 namespace stg::agent {
 
-/// Neighbours that the observation shows.
+/// Number of neighbours in the observation.
 inline constexpr int kNeighbourSlots = 3;
 
-/// Phase of the task (Eq. 15) and quality of the observation (Eq. 16), both shown one-hot.
+/// Phase of the task (Eq. 15) and quality of the observation (Eq. 16), both one-hot in the
+/// observation.
 enum Phase { kSearch, kApproach, kStable, kLost, kPhases };
 enum Quality { kHigh, kMedium, kLow, kUnavailable, kQualities };
 
@@ -61,7 +62,7 @@ enum class Block {
   kGraph,
 };
 
-/// One block: its name, its size, and what its numbers are.
+/// One block: its name, size and content.
 struct BlockDescription {
   const char* name;
   int size;
@@ -100,7 +101,7 @@ class ObservationSpec {
         roles_(c.roles),
         order_(c.order) {}
 
-  /// Numbers of a block; 0 when the scenario leaves it out.
+  /// Size of a block; 0 when the scenario leaves it out.
   constexpr int size(Block block) const {
     return has(block) ? kBlocks[static_cast<int>(block)].size : 0;
   }
@@ -110,11 +111,11 @@ class ObservationSpec {
     for (int b = 0; b < static_cast<int>(block); ++b) sum += size(static_cast<Block>(b));
     return sum;
   }
-  /// Numbers of an observation.
+  /// Size of an observation.
   constexpr int size() const { return offset(static_cast<Block>(kBlockCount)); }
 
-  /// Identifies the layout, e.g. "stg-1:raw+tracking+semantic+graph:nearest": observations of
-  /// equal names mean the same, number by number. Policy files carry it.
+  /// Identifies the layout, e.g. "stg-1:raw+tracking+semantic+graph:nearest": observations with
+  /// equal names have the same numbers in the same places. Policy files contain it.
   std::string name() const;
 
   bool operator==(const ObservationSpec& o) const { return name() == o.name(); }
@@ -140,9 +141,9 @@ class ObservationSpec {
   NeighbourOrder order_;
 };
 
-/// Version of the layout that name() begins with, as recorded steps carry it.
+/// Version of the layout at the beginning of name(), also in recorded steps.
 inline constexpr int kLayoutVersion = 1;
-/// Numbers of the largest observation.
+/// Size of the largest observation.
 inline constexpr int kMaxObservationSize = ObservationSpec(ObservationConfig()).size();
 
 }  // namespace stg::agent

@@ -6,7 +6,7 @@
 
 namespace stg::agent {
 
-/// The semantic state of one decision, as the policy sees it (Eqs. 14-19).
+/// The semantic state of one decision, as in the observation (Eqs. 14-19).
 struct TaskView {
   std::array<double, kTrackingNumbers> z_track;
   int phase;    ///< Phase

@@ -8,7 +8,7 @@
 
 namespace stg::agent {
 
-/// What all agents of a swarm have in common, shared by them and never changed.
+/// Constants that all agents of a swarm share.
 struct AgentConstants {
   /// Throws UserError when the scenario does not fit the packet layout.
   explicit AgentConstants(const AgentModel& s) : model(s), codec(s, LayoutOf(s)) {}

@@ -12,16 +12,18 @@
 
 namespace stg::agent {
 
-/// Answers to an AUV's own pings of targets, until the next decision, when they become detections:
-/// a ping is of a time between two decisions, and where the AUV was then is known at the second.
+/// Keeps answers to an AUV's own pings of targets until the next decision, when they become
+/// detections. A ping happens between two decisions, and the AUV's position at that time is known
+/// at the second one.
 class PingAnswers {
  public:
   explicit PingAnswers(const AgentModel& model);
 
   void Clear();
-  /// One that makes no sense is forgotten.
+  /// Takes an answer; an implausible one is dropped.
   void Keep(const acoustics::Reception& reception);
-  /// Where it is at a decision; calls detect(const Detection&) of each answer, oldest first.
+  /// Takes the position at a decision, and calls detect(const Detection&) for each answer, oldest
+  /// first.
   template <class Detect>
   void Give(TimeNs now, const OwnReckoning& own, double heading_std_rad, Detect&& detect) {
     if (!pings_) return;

@@ -10,14 +10,14 @@
 
 namespace stg::agent {
 
-/// A member of the network that tells where it is: how good that is.
+/// Uncertainty of the position that a station sends.
 struct AnchorModel {
   double std_m = 1.0;     ///< of each horizontal component
   double memory_s = 0.0;  ///< correlation time of the error; 0: it is constant
 };
 
-/// A range by the travel time of one packet. Positions are those that the two reported for the
-/// moment in which the packet began to leave.
+/// A range from the travel time of one packet. The positions are those that both members reported
+/// for the time at which the packet began to leave.
 struct RangeReading {
   int receiver = 0, source = 0;  ///< members of the network
   TimeNs at = 0;
@@ -25,7 +25,7 @@ struct RangeReading {
   double range_m = 0.0;
 };
 
-/// A bearing at which the sound of a packet came in, with positions likewise.
+/// The bearing of a received packet, with positions as above.
 struct BearingReading {
   int receiver = 0, source = 0;  ///< members of the network
   TimeNs at = 0;
@@ -34,53 +34,53 @@ struct BearingReading {
   double std_rad = 0.0;
 };
 
-/// One Kalman filter over the errors of all reckoned positions that an AUV knows of.
+/// A Kalman filter of the errors of all reckoned positions that an AUV knows.
 ///
-/// States: of each AUV the error e of its reckoned position and the velocity w by which its water
+/// States: of each AUV the error e of its reckoned position and the velocity w by which its current
 /// differs from the common one; the common current C; the share kappa by which ranges are too long;
-/// of each station the error g of the position that it tells. Of an AUV whose log measures against
-/// the water de/dt = -(C + w) + noise; C, w and the errors of craft are Ornstein-Uhlenbeck
+/// for each station the error g of the position that it sends. For an AUV whose log measures
+/// against the water, de/dt = -(C + w) + noise; C, w and the errors of craft are Ornstein-Uhlenbeck
 /// processes, those of beacons constants.
 ///
-/// A range (1 + kappa) |p_j - p_l| that was taken some time ago sees the errors as they were then,
-/// e(t - a) = e + a (C + w): no old states are kept. Its bend across the line of sight is taken to
-/// second order. All that enters are raw readings and reported positions, each once; so ranges
-/// among AUVs alone leave the mean error, the mean current and their variances as they were.
+/// A range (1 + kappa) |p_j - p_l| of the age a depends on the errors at that time, e(t - a) = e +
+/// a (C + w), so no old states are stored. Its curvature across the line of sight is taken to
+/// second order. The filter uses only raw readings and reported positions, each once. So ranges
+/// among AUVs do not change the mean error, the mean current or their variances.
 class JointFilter {
  public:
   static constexpr int kMostObservers = 8;
 
-  /// @param auvs members 0 .. auvs - 1; the anchors follow @param self always keeps its states
+  /// @param auvs members 0 .. auvs - 1; the anchors follow @param self is never removed
   JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
               const std::vector<AnchorModel>& anchors, int self);
 
   void Clear();
-  /// Carries all states to a time, which is not before the last one.
+  /// Predicts all states to a time, which must not be before the last one.
   void Predict(TimeNs now);
-  /// The log of an AUV measures against the water, or against the bottom.
+  /// Sets whether the log of an AUV measures against the water (true) or the bottom.
   void SetAdrift(int id, bool adrift);
-  /// An AUV has come to another depth: other water.
+  /// Sets the depth of an AUV; with it changes the current.
   void SetDepth(int id, double depth_m);
-  /// Gives an AUV states if it has none; of more than kMostObservers the one heard longest ago
-  /// loses its own.
+  /// Adds an AUV that has no states yet. With more than kMostObservers, the AUV that was heard
+  /// longest ago is removed.
   void Admit(int id, TimeNs heard);
   bool knows(int id) const { return IsAnchor(id) || SlotOf(id) >= 0; }
 
-  /// Takes a reading, not of the future, between members that it knows. False: it was set aside.
+  /// Takes a reading with a stamp up to now, between known members. False: the gate rejected it.
   bool Take(const RangeReading& reading);
   bool Take(const BearingReading& reading);
 
   /// Error of a reported position, at a time up to now.
   PlaneError Error(int id, TimeNs at) const;
-  /// The first one's less the second one's.
+  /// Error of the first member minus that of the second.
   PlaneError Relative(int id, int than, TimeNs at) const;
-  /// Mean over the AUVs that it knows.
+  /// Mean error of the known AUVs.
   PlaneError MeanError() const;
-  /// Of C.
+  /// Estimate of the common current C [m/s].
   PlaneError Current() const;
 
   TimeNs now() const { return now_; }
-  /// Of the last Take: squared innovation by its variance, before the gate.
+  /// Squared innovation of the last Take, divided by its variance, before the gate.
   double last_nis() const { return nis_; }
 
  private:
@@ -110,9 +110,9 @@ class JointFilter {
   double Mean(const Row& row) const;
   double Column(const Row& row, double* column) const;
   PlaneError Spread(const Row& east, const Row& north) const;
-  /// Reported offset of two members less what their errors make of it [m]: by axis.
+  /// Reported offset of two members minus their errors [m], by axis.
   void Offset(int to, int from, const Vec3<double>& told, double age_s, double (&offset)[2]) const;
-  /// What the currents may have done in some time, of two members [m^2].
+  /// Variance that the currents of two members add in some time [m^2].
   double Wander(double age_s) const;
   /// x += gain * column, P -= less * column column^T.
   void Update(const double* column, double gain, double less);

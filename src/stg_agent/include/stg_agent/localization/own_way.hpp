@@ -9,7 +9,7 @@
 
 namespace stg::agent {
 
-/// Where an AUV took itself to be at its last decisions.
+/// Reckoned positions of an AUV at its last decisions.
 class OwnWay {
  public:
   explicit OwnWay(const RunConfig& run)
@@ -19,7 +19,8 @@ class OwnWay {
   void Clear() { count_ = 0; }
   void Add(TimeNs now, const Vec3<double>& p) { places_[count_++ % places_.size()] = {now, p}; }
 
-  /// On the line between two decisions; false: it is not between any two that are kept.
+  /// Position at a time, on the line between two decisions; false: the time is not between two
+  /// stored ones.
   bool At(TimeNs t, Vec3<double>* p) const {
     const std::size_t kept = std::min(count_, places_.size());
     for (std::size_t k = 0; k + 1 < kept; ++k) {

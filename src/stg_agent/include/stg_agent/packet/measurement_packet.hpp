@@ -9,21 +9,21 @@
 
 namespace stg::agent {
 
-/// The packet that carries measurements instead of an estimate.
+/// The packet with measurements instead of an estimate.
 ///
 /// Layout, least significant bit first: version 4, source 8, generation 18 (1 ms, modulo 262.144
 /// s), position 3 x 15, velocity 3 x 8, deviation of the position 6 (logarithmic, rounded up; 0 is
 /// exact), tracking error 7 (logarithmic), confidence 4, phase 2, link quality 4, saturated 1; two
 /// measurements of 62; one bit to spare; CRC-8 8. A measurement: there 1, target 5, age 10 (an
 /// eighth of a decision), then
-/// - range: where the observer was, against its position now, 9 + 9 + 7; range 14;
+/// - range: position of the observer then minus its position now, 9 + 9 + 7; range 14;
 /// - bearing: the same 25; azimuth 11; elevation 10;
 /// - position, range_bearing: the point 3 x 15, as the position.
-/// Of a sensor that cannot tell port from starboard there is one measurement in both places: the
-/// same 25, range 14, azimuth 14, elevation 12, mirrored azimuth 14.
+/// With a sensor that does not distinguish port from starboard, one measurement takes both places:
+/// the same 25, range 14, azimuth 14, elevation 12, mirrored azimuth 14.
 ///
-/// Where targets are chosen freely, version 3, the two measurements are replaced: the target that
-/// the sender follows 4 (one more than its index; 0: it does not tell); then
+/// With task.assignment free the version is 3, and these fields replace the two measurements: the
+/// target that the sender follows 4 (one more than its index; 0: not stated); then
 /// - range: looks 2, of which there is one with five ranges, or two with one range of the first and
 ///   two of the second, or two and one. Of a look age 10 (of the second 9: so much earlier), where
 ///   the observer was 9 + 9 + 7; of a range the target 4, as above, range 12;
@@ -31,17 +31,17 @@ namespace stg::agent {
 ///   cannot tell port from starboard one.
 ///
 /// Ranges follow the scenario: positions 1.25 workspace half extents, velocities the vehicle's
-/// limit plus the current, offsets what it can go in the largest age shared, deviation 1e-5 to 1
-/// half extents, tracking error 1e-4 to the workspace diagonal, range 1.25 times that of the
-/// sensor, azimuth a circle, elevation +-2 rad.
+/// limit plus the current, offsets the vehicle's way in the largest age, deviation 1e-5 to 1 half
+/// extents, tracking error 1e-4 to the workspace diagonal, range 1.25 times that of the sensor,
+/// azimuth a circle, elevation +-2 rad.
 ///
-/// Of agents that locate each other (localization.kind) the layout is version 5, which differs so:
-/// positions are those of the reckoning, which may have drifted out of the region, so that their
-/// horizontal components are sent modulo 2.5 half extents and taken for the nearest to where the
-/// receiver expects the sender; the deviation has 5 bits, and one says whether the log measures
-/// against the water; the second measurement may be two ranges of packets: there 1, target 31, two
-/// times source 5 (31: none), age 9 (an eighth of a decision), range 14 (-100 m to 4.9 km). Sources
-/// are the AUVs, then the stations, which send this layout too.
+/// With a localizer (localization.kind) the version is 5, with these differences. Reckoned
+/// positions may have drifted out of the region, so their horizontal components are sent modulo 2.5
+/// half extents; the receiver takes the position nearest to where it expects the sender. The
+/// deviation has 5 bits, and one bit states whether the log measures against the water. The second
+/// measurement may be two ranges of packets: there 1, target 31, two times source 5 (31: none), age
+/// 9 (an eighth of a decision), range 14 (-100 m to 4.9 km). Sources are the AUVs, then the
+/// stations, which send this layout too.
 class MeasurementPacket {
  public:
   explicit MeasurementPacket(const AgentModel& model);
@@ -51,20 +51,20 @@ class MeasurementPacket {
   NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now,
                         const Vec3<double>& near = {}) const;
 
-  /// Largest error of a decoded number: half the distance of two codes.
+  /// Largest error of a decoded number: half the distance between two codes.
   double position_error_m() const { return 0.5 * position_.resolution; }
   double offset_error_m() const { return 0.5 * offset_.resolution; }
   double range_error_m() const { return 0.5 * range_.resolution; }
   double azimuth_error_rad() const { return 0.5 * azimuth_.resolution; }
   double elevation_error_rad() const { return 0.5 * elevation_.resolution; }
   double told_range_error_m() const { return 0.5 * told_range_.resolution; }
-  /// Distance of two ages [ns].
+  /// Distance between two ages [ns].
   TimeNs age_step() const { return age_step_; }
 
  private:
   struct Writer;
   struct Reader;
-  /// Logarithmic with a zero.
+  /// Logarithmic codes, with one code for zero.
   struct Logarithm {
     double lo, inverse;
     int codes;
@@ -80,10 +80,10 @@ class MeasurementPacket {
   Vec3<double> ReadObserver(const NeighbourState& s, Reader* r) const;
   void WriteSighting(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
   void ReadSighting(const NeighbourState& s, Reader* r, dynamics::Detection* d) const;
-  /// Age and what was measured, without the target.
+  /// Age and measurement, without the target.
   void WriteMeasured(const NeighbourState& s, const dynamics::Detection& d, Writer* w) const;
   void ReadMeasured(const NeighbourState& s, int target, Reader* r, dynamics::Detection* d) const;
-  /// What follows the status where targets are chosen freely.
+  /// The fields after the status with task.assignment free.
   void WriteFree(const NeighbourState& s, Writer* w) const;
   void ReadFree(Reader* r, NeighbourState* s) const;
   void WriteLooks(const NeighbourState& s, Writer* w) const;
@@ -100,8 +100,8 @@ class MeasurementPacket {
   void ReadToldRanges(Reader* r, NeighbourState* s) const;
 
   int agents_, targets_;
-  bool free_;     ///< targets are chosen freely: version 3
-  bool located_;  ///< agents locate each other: version 5
+  bool free_;     ///< task.assignment is free: version 3
+  bool located_;  ///< there is a localizer: version 5
   std::uint64_t version_;
   int members_;  ///< AUVs and stations
   dynamics::MeasurementKind kind_;

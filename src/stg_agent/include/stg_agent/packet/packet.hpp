@@ -9,13 +9,13 @@
 #include "stg_agent/packet/neighbour_state.hpp"
 #include "stg_agent/packet/quantiser.hpp"
 
-/// What one AUV tells its neighbours, and its 32-byte form on the acoustic link.
+/// The 32-byte form of NeighbourState on the acoustic link.
 namespace stg::agent {
 
 /// A quantity sent as an integer code: values lo + code * resolution, code in [0, steps].
 ///
 /// bits = ceil(log2((hi - lo) / resolution + 1)). Symmetric fields use an even number of steps,
-/// so that zero is exact; their one spare code is refused by the decoder.
+/// so that zero is exact; the decoder refuses the spare code.
 struct PacketField {
   const char* name;
   int bits;
@@ -36,7 +36,7 @@ struct PacketField {
 /// Layout kMeasurements: see MeasurementPacket.
 ///
 /// The checksum (polynomial 0x1D) finds every damage of one or two bits and every burst of up to
-/// eight bits; other damage slips through once in 256 times.
+/// eight bits; it misses other damage once in 256 times.
 class PacketCodec {
  public:
   /// Throws UserError when the scenario does not fit the layout (more than 256 AUVs, 64 targets).
@@ -46,13 +46,14 @@ class PacketCodec {
   /// caller and throws std::invalid_argument. Allocates nothing otherwise.
   Packet Encode(const NeighbourState& state) const;
 
-  /// `now`: the receiver's clock; the generation time is the latest one not after it. Throws
-  /// UserError on a wrong size, version, checksum, index, unused code, or a packet of the future.
-  /// @param near where the sender may be: positions of agents that locate each other are sent
-  /// modulo the region, and are taken for the nearest ones to it
+  /// `now` is the receiver's clock; the generation time is the latest possible one up to `now`.
+  /// Throws UserError for a wrong size, version, checksum or index, an unused code, or a later
+  /// time.
+  /// @param near assumed position of the sender. With a localizer, positions are sent modulo the
+  /// region; the decoder takes the one nearest to `near`
   NeighbourState Decode(const std::uint8_t* data, std::size_t size, TimeNs now,
                         const Vec3<double>& near = {}) const;
-  /// The source that a packet names, if it is one.
+  /// The source in a packet's header.
   static int SourceOf(const std::uint8_t* data, std::size_t size);
 
   static constexpr int kFieldCount = 8;

@@ -6,7 +6,7 @@
 
 namespace stg::agent {
 
-/// Codes of a number within [lo, hi], equally far apart.
+/// Equally spaced codes of a number within [lo, hi].
 struct Quantiser {
   double lo = 0.0, hi = 1.0, middle = 0.5;
   double resolution = 1.0, inverse = 1.0;

@@ -10,7 +10,7 @@
 
 namespace stg::agent {
 
-/// Where a policy comes from and what it may be connected to.
+/// Origin and interfaces of a policy.
 struct PolicyMetadata {
   std::string id;                  ///< name for logs and recorded steps
   std::string observation_layout;  ///< ObservationLayout() of the training scenario

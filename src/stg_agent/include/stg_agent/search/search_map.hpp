@@ -5,18 +5,17 @@
 #include "auv_dynamics/measurements.hpp"
 #include "stg_agent/agent_config.hpp"
 
-/// Where a target may be that no AUV sees.
+/// Probability of the place of a target that no AUV detects.
 namespace stg::agent {
 
 /// Probability of the target's place in the plane, in 32 x 32 cells around its datum, or over the
-/// workspace where that is smaller: Bayes'
-/// filter on a grid (Bourgault et al. 2003). A look that finds nothing takes from the cells in its
-/// reach what it would have found there; a detection weighs all cells; time spreads them. World
-/// axes. Allocates nothing.
+/// workspace where that is smaller: a Bayes filter on a grid (Bourgault et al. 2003). A look
+/// without a detection lowers the probability of the cells in its range; a detection weights all
+/// cells; time spreads the probability. World axes. Allocates nothing.
 ///
-/// The target is taken for a walker without memory: in a time t it spreads by 2 s^2 m t, with
-/// s = track.measurements.velocity_std_mps and m = velocity_memory_s, and it stays inside the
-/// workspace.
+/// The target's motion is modelled as a random walk: in a time t its variance grows by 2 s^2 m t,
+/// with s = track.measurements.velocity_std_mps and m = velocity_memory_s. The target stays inside
+/// the workspace.
 class SearchMap {
  public:
   static constexpr int kSide = 32;
@@ -24,14 +23,14 @@ class SearchMap {
 
   explicit SearchMap(const AgentModel& model);
 
-  /// A Gaussian around a datum of time 0.
+  /// Starts with a Gaussian around a datum of time 0.
   void Start(const dynamics::Cue& cue);
-  /// Spreads it until `now`, in steps of kStep_s.
+  /// Spreads the map until `now`, in steps of kStep_s.
   void Advance(TimeNs now);
-  /// An observer at p_WO looked and found nothing.
+  /// Takes a look from p_WO without a detection.
   void LookInVain(const Vec3<double>& p_WO);
-  /// Somebody found the target: by a range, or where it measured it to be. A bearing alone changes
-  /// nothing.
+  /// Takes a detection of the target by any AUV: a range or a position. A bearing alone has no
+  /// effect.
   void Find(const dynamics::Detection& detection);
 
   /// Middle of the map and of a cell [m].
@@ -43,7 +42,7 @@ class SearchMap {
   double mass(int row, int column) const {
     return mass_[static_cast<std::size_t>(row * kSide + column)] / total_;
   }
-  /// Probability that a look from `range_m` finds the target.
+  /// Probability that a look from `range_m` detects the target.
   double DetectionProbability(double range_m) const;
 
  private:

@@ -7,28 +7,28 @@
 
 namespace stg::agent {
 
-/// What a law that searches remembers from decision to decision.
+/// The plan of a search law, kept between decisions.
 struct SearchPlan {
-  bool made = false;    ///< false: the next two mean nothing
-  TimeNs time = 0;      ///< when it was made
+  bool made = false;    ///< false: the next two have no meaning
+  TimeNs time = 0;      ///< time of the plan
   double course = 0.0;  ///< [rad], from east anticlockwise
-  int leg = 0;          ///< of a pattern of legs; -1: it closes in
+  int leg = 0;          ///< leg of a pattern; -1: the AUV approaches the target
   bool turned = false;  ///< the pattern starts at its other end
 };
 
-/// The search of one AUV: its datum, its map and its law's plan. The map takes the own looks, those
-/// that neighbours' packets tell of, and theirs in vain: a packet without a measurement says that
-/// its sender looked from where it was. Deterministic; the result does not depend on the order in
-/// which packets and detections come in between two updates.
+/// The search of one AUV: its datum, its map and its law's plan. The map takes the AUV's own looks
+/// and those in the neighbours' packets. A packet without a measurement means that its sender
+/// looked from its position and detected nothing. Deterministic; the result does not depend on the
+/// order of packets and detections between two updates.
 class SearchMemory {
  public:
   explicit SearchMemory(const AgentModel& model);
 
-  /// An episode begins; all else is forgotten.
+  /// Starts an episode.
   void Start(const dynamics::Cue& cue);
-  /// Own detection of the target; the newest before the next Update counts.
+  /// Takes an own detection of the target; Update uses the newest one.
   void Detect(const dynamics::Detection& detection);
-  /// Brings the map to `now`. @param p_WB own position then, as navigation states it [m]
+  /// Brings the map to `now`. @param p_WB own position at `now`, from the navigation [m]
   void Update(TimeNs now, const Vec3<double>& p_WB, const NeighbourTable& neighbours);
 
   const SearchMap& map() const { return map_; }
@@ -39,10 +39,10 @@ class SearchMemory {
 
  private:
   struct Heard {
-    TimeNs generation = -1, sighting = -1;  ///< newest that the map took
+    TimeNs generation = -1, sighting = -1;  ///< newest ones in the map
   };
   void Hear(const NeighbourState& packet, Heard* heard);
-  /// A look is due. What a ping finds is known only when the next one is.
+  /// Takes a due look. The result of a ping is known only when the next one is due.
   void LookInVain(const Vec3<double>& p_WB);
 
   SearchMap map_;
@@ -50,7 +50,7 @@ class SearchMemory {
   dynamics::Cue cue_;
   dynamics::Detection detection_;
   bool detected_ = false;
-  // Of looks that are pings: where the last one was asked for, and whether it was answered.
+  // For looks by pings: position at the last request, and whether there was an answer.
   bool pings_, asked_ = false, answered_ = false;
   Vec3<double> p_asked_;
   TimeNs now_ = 0;

@@ -7,20 +7,20 @@
 
 namespace stg::agent {
 
-/// Is called with where the stations are.
+/// Receives the positions of the stations.
 class StationObserver {
  public:
   virtual ~StationObserver() = default;
-  /// After each Step: where station `station` truly is then.
+  /// Called after each Step with the true state of a station.
   virtual void OnStation(int station, TimeNs t, const Station& state) = 0;
 };
 
-/// A channel between AUVs, in whose water the stations of the model live, too, and the transponders
-/// of targets that AUVs ping (sensing.ranging): the scenario's channel between all members of the
-/// network, of which the callers see the AUVs. Stations hear, move and send at each decision by
-/// themselves; so do modems ping. Step takes the motion of the targets after that of the AUVs, if
-/// bodies() is more than nodes(). Without stations and pings it is the scenario's channel.
-/// @param sensing as it truly is @param observer of the stations, or null; outlives the channel
+/// A channel between AUVs that also contains the model's stations and the transponders of targets
+/// that AUVs ping (sensing.ranging). Callers see only the AUVs of this network. Stations receive,
+/// move and send at each decision by themselves, and modems ping by themselves. If bodies() is more
+/// than nodes(), Step takes the motion of the targets after that of the AUVs. Without stations and
+/// pings it is the scenario's channel.
+/// @param sensing true sensing @param observer of the stations, or null; must outlive the channel
 std::unique_ptr<acoustics::Channel> MakeStationChannel(const AgentModel& model,
                                                        const acoustics::ChannelConfig& channel,
                                                        const dynamics::SensingConfig& sensing,

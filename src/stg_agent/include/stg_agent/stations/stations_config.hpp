@@ -8,17 +8,17 @@
 
 namespace stg::agent {
 
-/// Members of the acoustic network that are no AUVs and tell where they are: fixed beacons, and
-/// craft at the surface. In the network they come after the AUVs, the beacons first.
+/// Members of the acoustic network that send their own position: fixed beacons, and surface craft.
+/// Their indices in the network follow those of the AUVs, beacons first.
 struct StationsConfig {
   std::vector<std::vector<double>> beacons = {};  ///< rows of x, y, z as charted [m]
   double survey_std_m = 1.0;  ///< of each horizontal component of a charted position
-  std::vector<std::vector<double>> crafts = {};  ///< rows of x, y where they start [m]
+  std::vector<std::vector<double>> crafts = {};  ///< rows of x, y at the start [m]
   double craft_speed_mps = 1.5;
-  double craft_circle_m = 300.0;  ///< radius of the circle around the AUVs that they heard
+  double craft_circle_m = 300.0;  ///< radius of the circle around the AUVs that it heard
   double gps_std_m = 2.0;         ///< of each horizontal component of a craft's position
   double gps_memory_s = 600.0;    ///< correlation time of that error
-  double usbl_std_deg = 0.0;  ///< of the bearing at which a craft hears an AUV; 0: it has no USBL
+  double usbl_std_deg = 0.0;      ///< of the bearing of a received packet; 0: no USBL
 
   int count() const { return static_cast<int>(beacons.size() + crafts.size()); }
   bool is_craft(int station) const { return station >= static_cast<int>(beacons.size()); }

@@ -5,11 +5,11 @@
 
 namespace stg::env {
 
-/// Deterministic actions of every AUV of every environment, [envs, agents, action_size]. In truth
-/// mode a built-in controller reads true states, in acoustic mode each agent's own estimates unless
-/// it is privileged.
+/// Deterministic actions of every AUV of every environment, [envs, agents, action_size]. A built-in
+/// controller reads true states in truth mode. In acoustic mode it reads each agent's own
+/// estimates, unless it is privileged.
 /// @param observations [envs, agents, observation_size], as `env` wrote them
-/// Throws UserError for a policy on entities in truth mode.
+/// Throws UserError for a policy over entities in truth mode.
 void Decide(const agent::Decider& decider, const VectorEnv& env, const float* observations,
             double* actions);
 

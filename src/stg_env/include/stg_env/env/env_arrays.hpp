@@ -6,8 +6,9 @@
 
 namespace stg::env {
 
-/// What an environment writes: arrays that the caller owns, row-major, without gaps, in C's order
-/// of indices. A null pointer: not wanted. The same layout in every language.
+/// Output arrays of an environment. The caller owns them. They are row-major without gaps, in C's
+/// order of indices, and have the same layout in every language. A null pointer: the array is not
+/// written.
 struct EnvArrays {
   float* observations = nullptr;  ///< [envs, agents, observation_size], of the decision to come
   float* states = nullptr;        ///< [envs, state_size], true state of the swarm, for a critic
@@ -16,8 +17,8 @@ struct EnvArrays {
   /// [envs]: 1 where the step ended the episode (always by truncation); observations and states
   /// then belong to the next episode.
   std::uint8_t* truncated = nullptr;
-  /// As observations and states, of the episode that ended. Written where truncated; other rows
-  /// keep what they hold.
+  /// As observations and states, for the episode that ended. Written where truncated; other rows
+  /// keep their values.
   float* final_observations = nullptr;
   float* final_states = nullptr;
 };

@@ -12,16 +12,16 @@ namespace stg::env {
 /// [envs, agents, observation_size].
 using ActFunction =
     std::function<void(const VectorEnv& env, const float* observations, double* actions)>;
-/// Makes the ActFunction of one block of environments, which `worker` of the pool flies (0 without
-/// one): what it needs of memory is its own or that worker's.
+/// Makes the ActFunction of one block of environments, which `worker` of the pool runs (0 without a
+/// pool). The function may use only memory of its own or of that worker.
 using ActFactory = std::function<ActFunction(const VectorEnv& env, int worker)>;
 
-/// Which episodes an evaluation flies.
+/// The episodes of an evaluation.
 struct EvaluationOptions {
   int episodes = 30;
   std::uint64_t seed = 3000;  ///< episode e is drawn from world seed `seed` + e
-  /// Environments that fly together, a multiple of kMixBlock. Every block is full: what an
-  /// ActFunction computes for whole blocks does not depend on the number of episodes.
+  /// Environments that run together, a multiple of kMixBlock. Every block is full, so that results
+  /// of an ActFunction for whole blocks do not depend on the number of episodes.
   int block = kMixBlock;
 };
 

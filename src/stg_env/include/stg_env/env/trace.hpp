@@ -24,7 +24,7 @@ struct Trace {
 /// UserError with file, line and key or column.
 Trace LoadTrace(const std::string& folder, const Scenario& base);
 
-/// How far a replay is from its trace: absolute differences, each in the unit of its column.
+/// Absolute differences between a replay and its trace, each in the unit of its column.
 struct TraceError {
   double max_abs_error = 0.0;
   std::map<std::string, double> by_group;  ///< state, tau, target, observation, reward
@@ -36,7 +36,7 @@ struct TraceError {
   int steps = 0;
 };
 
-/// Replays the trace's actions in our simulator and compares every column.
+/// Replays the trace's actions in this simulator and compares every column.
 TraceError ReplayTrace(const Trace& trace, double tolerance);
 
 }  // namespace stg::env

@@ -12,9 +12,9 @@ namespace stg::env {
 /// - velocity3: raw observation, raw reward;
 /// - tau6: raw observation, force interface (scale 0.18, no smoothing or rate
 ///   limit), raw reward.
-/// The raw reward is the release's for its baselines. A training keeps the checkpoint that returns
-/// most by the reward it trains with. Returns by different rewards do not compare, so a
-/// comparison of variants flies them with the unchanged scenario's reward (EvaluationScenario).
+/// The raw reward is that of the release's baselines. A training keeps the checkpoint with the
+/// highest return of its own reward. Returns of different rewards cannot be compared, so a
+/// comparison of variants uses the reward of the unchanged scenario (EvaluationScenario).
 Scenario VariantScenario(const Scenario& scenario, const std::string& variant);
 /// VariantScenario with the reward of `scenario`.
 Scenario EvaluationScenario(const Scenario& scenario, const std::string& variant);

@@ -22,28 +22,27 @@ namespace stg::env {
 class Environment;
 struct LaneSet;
 
-/// Environments of a mix of scenarios take turns in blocks of this many: environment e flies
-/// scenario (e / kMixBlock) mod n. A constant of the seed rule, whatever the machine.
+/// In a mix of n scenarios, environment e has scenario (e / kMixBlock) mod n. This constant is part
+/// of the seed rule and the same on every machine.
 inline constexpr int kMixBlock = 4;
 
-/// Which environments a VectorEnv runs, and which episodes they draw.
+/// Number and seeds of a VectorEnv's environments.
 struct VectorEnvOptions {
-  /// The k-th episode of environment e (counted from 0, through all objects that share the
-  /// numbering) is global reset r = e + k * total_envs and is drawn from seed + r.
+  /// The k-th episode of environment e (both counted from 0, over all objects that share the
+  /// numbering) is global reset r = e + k * total_envs, and is drawn from seed + r.
   std::uint64_t seed = 0;
-  int envs = kMixBlock;  ///< environments of this object
-  int first_env = 0;     ///< index of its first one
-  int total_envs = 0;    ///< of all objects together; 0: `envs`
-  bool curriculum =
-      false;  ///< easy, medium, hard by r, where scenario.world.reset.curriculum says so
-  /// The first episodes of the blocks of kMixBlock are cut to lengths spread evenly over an
-  /// episode, so that not all environments end at the same time.
+  int envs = kMixBlock;     ///< environments of this object
+  int first_env = 0;        ///< index of its first one
+  int total_envs = 0;       ///< of all objects together; 0: `envs`
+  bool curriculum = false;  ///< easy, medium, hard by r, with scenario.world.reset.curriculum
+  /// The first episodes of the blocks of kMixBlock are shortened to lengths that are spread evenly
+  /// over an episode, so that not all environments end at the same time.
   bool stagger = false;
 };
 
 /// Any number of environments of one scenario, or of a mix of scenarios of one layout. Episodes
-/// end by truncation only and restart at once. Nothing depends on how many environments run
-/// together but speed. Not thread-safe: one object per worker.
+/// end by truncation only and restart at once. Only speed depends on the number of environments
+/// that run together. Not thread-safe: one object per worker.
 class VectorEnv {
  public:
   /// Throws UserError for an empty mix, scenarios whose arrays differ in size, or options out of
@@ -55,13 +54,14 @@ class VectorEnv {
 
   /// Starts the first episode of every environment. Writes observations and states.
   void Reset(const EnvArrays& out) { RestartAt(0, out); }
-  /// Episodes that start from now on are drawn from this seed; k of the seed rule goes on.
+  /// Episodes that start from now on are drawn from this seed; k of the seed rule continues.
   void Reseed(std::uint64_t seed) { options_.seed = seed; }
-  /// Starts the k-th episode of every environment (resuming a run); it is cut if `stagger` says so.
+  /// Starts the k-th episode of every environment (resuming a run); it is shortened as `stagger`
+  /// requires.
   void RestartAt(std::uint64_t k, const EnvArrays& out);
-  /// Starts an episode of one environment at once, drawn from `seed`. The others go on. The episode
-  /// after it is the one that would have followed the one given up. Writes this environment's rows
-  /// of observations and states.
+  /// Starts an episode of one environment at once, drawn from `seed`. The others continue. The next
+  /// episode is the one that would have followed the interrupted one. Writes this environment's
+  /// rows of observations and states.
   void ResetEnv(int env, std::uint64_t seed, const EnvArrays& out);
   /// Starts an episode of every environment from given world positions [m] and target velocities
   /// [m/s], AUVs at rest (golden traces, tests).
@@ -69,7 +69,7 @@ class VectorEnv {
              const std::vector<Vec3<double>>& v_WT, const EnvArrays& out);
   /// One decision of every AUV. Writes all arrays.
   /// @param actions [envs, agents, action_size], clipped to [-1, 1]. Non-finite ones throw
-  /// std::invalid_argument before anything has moved.
+  /// std::invalid_argument before any environment moves.
   void Step(const float* actions, const EnvArrays& out);
   void Step(const double* actions, const EnvArrays& out);
 
@@ -78,43 +78,43 @@ class VectorEnv {
   int action_size() const { return mix_.front().world.control.action_size(); }
   int observation_size() const { return observation_size_; }
   int state_size() const { return state_size_; }
-  /// The scenario that an environment of this object flies.
+  /// The scenario of an environment of this object.
   const Scenario& scenario(int env = 0) const;
   /// Arrays of the right sizes.
   EnvMemory MakeMemory() const { return {envs(), agents(), observation_size(), state_size()}; }
 
-  /// Of the episode that runs now: decisions made, k of the seed rule, world seed.
+  /// Of the present episode: number of decisions made, k of the seed rule, world seed.
   int step(int env) const;
   std::uint64_t round(int env) const { return round_[static_cast<std::size_t>(env)]; }
   std::uint64_t seed(int env) const;
-  /// Of the episode that ended last; valid while truncated.
+  /// Metrics of the episode that ended last; valid while truncated.
   const task::EpisodeMetrics& metrics(int env) const {
     return finished_[static_cast<std::size_t>(env)];
   }
 
-  /// The truth of one environment, for built-in controllers, tests and traces.
+  /// True states of one environment, for built-in controllers, tests and traces.
   dynamics::NavState nav(int env, int i) const;
-  /// What an AUV's own navigation believes.
+  /// State of an AUV by its own navigation.
   dynamics::NavState navigation(int env, int i) const;
   dynamics::VehicleState<double> vehicle(int env, int i) const;
-  /// What AUV i's own sensor sees of target k now; false: nothing. See World::Sense.
+  /// The present detection of target k by AUV i's own sensor; false: none. See World::Sense.
   bool Sense(int env, int i, int k, dynamics::Detection* detection) const;
   dynamics::TargetState<double> target(int env, int k) const;
   TimeNs time(int env) const;
   task::Tracking<double> tracking(int env, int i) const;
   task::RewardTerms<double> terms(int env, int i) const;
-  /// The target that an AUV is tasked with, or follows; and whether it is in the swarm.
+  /// The target that an AUV follows, and whether the AUV is in the swarm.
   int followed(int env, int i) const;
   bool present(int env, int i) const;
-  /// What an AUV decides on.
+  /// The knowledge from which an AUV decides.
   agent::Knowledge<double> knowledge(int env, int i) const;
-  /// Acoustic mode only: what an AUV's agent holds, and the network.
+  /// Acoustic mode only: an AUV's agent, and the network.
   agent::AgentView agent(int env, int i) const;
   const acoustics::Channel& channel(int env) const;
-  /// The observer gets the reports of all packets of one environment from now on; null: none does.
+  /// From now on, `observer` gets the reports of all packets of one environment; null: no observer.
   void ObservePackets(int env, acoustics::PacketObserver* observer);
 
-  /// The environments by SIMD register, for code that computes on registers, too.
+  /// The environments of each SIMD register, for code that also computes on registers.
   struct Slice {
     std::unique_ptr<Environment> lanes;
     int first, count;  ///< environments first .. first + count - 1 are its first lanes
@@ -146,7 +146,7 @@ class VectorEnv {
   std::vector<float> rows_;                     // [lanes], scratch of Finish
 };
 
-/// Makes environments for code that flies them and need not know what their scenario says.
+/// Makes environments for code that does not need their scenario.
 class EnvFactory {
  public:
   /// @param mix scenarios as VectorEnv takes them; not empty
@@ -154,7 +154,7 @@ class EnvFactory {
   explicit EnvFactory(const Scenario& scenario) : EnvFactory(std::vector<Scenario>{scenario}) {}
 
   VectorEnv Make(const VectorEnvOptions& options) const { return {mix_, options}; }
-  /// What agents of the first scenario know.
+  /// The agents' model of the first scenario.
   agent::AgentModel model() const { return mix_.front().model(); }
 
  private:

@@ -10,10 +10,10 @@ namespace stg::env {
 /// The first bytes of a recording; messages follow until the end of the file.
 inline constexpr char kRecordingMagic[] = "STGVIEW1";
 
-/// One message of a recording, which the browser's page eats from a file and from a websocket
-/// alike: two little-endian uint32 (bytes of header and body), the header, the body. The header is
-/// JSON, filled up with blanks to a multiple of 8 bytes: `kind`, what else the kind needs, `rows`
-/// and `columns` as [[name, type, width], ...]. The body has the columns one after the other, each
+/// One message of a recording, which the browser's page reads from a file or a websocket: two
+/// little-endian uint32 (bytes of header and body), the header, the body. The header is JSON,
+/// filled up with blanks to a multiple of 8 bytes: `kind`, further fields of the kind, `rows` and
+/// `columns` as [[name, type, width], ...]. The body has the columns one after the other, each
 /// [rows, width] little-endian numbers, filled up with zeros to a multiple of 8 bytes. Types: f8,
 /// f4, i4, u1. docs/recording.md lists the kinds.
 class Message {

@@ -8,15 +8,15 @@
 
 namespace stg::env {
 
-/// Flies episodes as Evaluate flies them, with the same results, and writes into `folder`, which is
-/// made if need be: `recording.stgv`, the messages of all episodes one after the other (see
-/// Message), and `packets.csv`, the log of the same packets (see acoustics::PacketLog). Times of an
-/// episode go on where those of the one before ended. The state after an episode's last decision is
-/// not part of it. Throws UserError for what cannot be written.
-/// @param scene what stands still, see SceneOf, and `condition`, which the page names
+/// Runs episodes as Evaluate does, with the same results, and writes into `folder`, which is
+/// created if necessary: `recording.stgv`, the messages of all episodes one after the other (see
+/// Message), and `packets.csv`, the log of the same packets (see acoustics::PacketLog). The times
+/// of an episode continue those of the previous one. The state after an episode's last decision is
+/// not recorded. Throws UserError if a file cannot be written.
+/// @param scene the fixed parts, see SceneOf, and `condition`, which the page shows
 /// @param seed of episode 0
-/// @param flown how many episodes the evaluation has
-/// @param recorded how many of them are recorded, the first ones
+/// @param flown number of episodes of the evaluation
+/// @param recorded number of recorded episodes, the first ones
 void RecordEpisodes(const EnvFactory& make_env, const nlohmann::json& scene,
                     const agent::Decider& controller, std::uint64_t seed, int flown, int recorded,
                     const std::string& folder);

@@ -7,9 +7,9 @@
 
 namespace stg::env {
 
-/// What stands still in a scenario and is drawn: its region, bands, ranges, bottom and obstacles,
-/// as the message `meta` of a recording has them (docs/recording.md). Lengths [m], world ENU.
-/// Without the bathymetry's file the bottom is left out.
+/// The fixed parts of a scenario's picture: region, bands, ranges, bottom and obstacles, as in the
+/// message `meta` of a recording (docs/recording.md). Lengths [m], world ENU. Without the file of
+/// the bathymetry, the bottom is left out.
 nlohmann::json SceneOf(const task::JudgeConfig& judge, const acoustics::ChannelConfig& channel);
 
 }  // namespace stg::env

@@ -8,11 +8,11 @@
 
 namespace stg {
 
-/// What agents decide on: everybody's true state (the release's way), or their own sensing and
-/// what the channel brings.
+/// The knowledge of agents: all true states, as in the release, or own sensing and received
+/// packets.
 enum class InformationMode { kTruth, kAcoustic };
 
-/// All of a scenario: everything a run depends on besides a seed and a policy.
+/// A whole scenario: everything that a run depends on, apart from seed and policy.
 struct Scenario {
   RunConfig run;
   InformationMode mode = InformationMode::kAcoustic;
@@ -21,13 +21,13 @@ struct Scenario {
   agent::AgentConfig agent;
   task::RewardConfig reward;
   task::CriticConfig critic;
-  config::Differences agent_model;  ///< of agent::KeysOfModel; empty: agents know what is true
+  config::Differences agent_model;  ///< of agent::KeysOfModel; empty: agents know the true values
 
-  /// What its agents know.
+  /// The agents' model.
   agent::AgentModel model() const {
     return agent::ModelOf(run, world, channel, agent, agent_model);
   }
-  /// What its task judges by.
+  /// The sections of its task.
   task::JudgeConfig judge() const { return {run, world, agent, reward, critic}; }
 
   /// Throws UserError naming the key when a value is out of range or two keys
@@ -44,7 +44,7 @@ std::optional<config::Violation> FindConflict(const Scenario& s);
 Scenario LoadScenario(const std::string& file, const std::vector<std::string>& overlays = {},
                       const std::vector<std::string>& overrides = {});
 
-/// As LoadScenario, by the names of config::NamedSource.
+/// The same from the names of config::NamedSource.
 Scenario LoadNamedScenario(const std::string& folder, const std::string& scenario,
                            const std::string& condition = "nominal",
                            const std::vector<std::string>& overrides = {});

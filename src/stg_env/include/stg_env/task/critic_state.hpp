@@ -4,15 +4,15 @@
 #include "stg_env/task/judge_config.hpp"
 #include "stg_env/task/swarm_state.hpp"
 
-/// The critic's state: the truth of the whole swarm as a row of numbers (docs/environment.md).
+/// The critic's state: the true state of the whole swarm as a row of numbers (docs/environment.md).
 namespace stg::task {
 
 /// Numbers of one AUV: offset, offset at the scale of the band, relative velocity, rates, force,
 /// then distance error, progress, lost and uprightness.
 inline constexpr int kVehicleNumbers = 5 * 3 + 4;
-/// More of one AUV in open water, of its own estimate, which decides whether its target is lost:
-/// whether there is one, its error at the scale of the band, its deviation in the plane and of
-/// depth, and its age.
+/// Further numbers of one AUV in open water, about its own estimate, which decides whether its
+/// target is lost: existence, error at the scale of the band, standard deviations in the plane and
+/// of depth, and age.
 inline constexpr int kEstimateNumbers = 1 + 3 + 3;
 /// Numbers of one target: position, velocity.
 inline constexpr int kTargetNumbers = 2 * 3;
@@ -46,7 +46,7 @@ int WriteEstimate(const FieldState<T>& f, const Vec3<T>& r_BT_W, const T& scale,
 template <class T, class Emit>
 void WriteCriticState(const JudgeConfig& s, const SwarmState<T>& swarm,
                       const std::vector<Tracking<T>>& tracking, Emit&& emit) {
-  // The band is small in the workspace: the critic sees the same offset at both scales.
+  // The band is small in the workspace, so the critic's state has the same offset at both scales.
   const T far(1.0 / s.critic.far_scale_m), near(1.0 / s.critic.near_scale_m);
   const auto& vm = s.world.vehicle.max_velocity_mps;
   const auto& wm = s.world.vehicle.max_rate_radps;

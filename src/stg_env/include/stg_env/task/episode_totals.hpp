@@ -10,7 +10,7 @@
 
 namespace stg::task {
 
-/// The sums behind EpisodeMetrics. Every lane counts its own decisions.
+/// Sums for EpisodeMetrics. Each lane counts its own decisions.
 template <class T>
 class EpisodeTotals {
  public:
@@ -18,12 +18,12 @@ class EpisodeTotals {
 
   /// Starts an episode of `episode_steps` decisions in some lanes.
   void Start(const Mask<T>& lanes, const T& episode_steps);
-  /// Adds a decision, judged. @param tracking, terms [agents]
+  /// Adds a decision with its rewards. @param tracking, terms [agents]
   void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
            const std::vector<RewardTerms<T>>& terms);
   /// Decisions since the start, as whole numbers.
   const T& steps() const { return steps_; }
-  /// Of the episode up to now, after at least one decision.
+  /// Metrics of the episode up to now, after at least one decision.
   EpisodeMetrics Metrics(int lane) const;
 
  private:
@@ -46,7 +46,7 @@ class EpisodeTotals {
   Sums sums_;
   FieldTotals<T> field_;
   bool in_field_ = false;   // the last decision had a field
-  std::vector<T> entered_;  // decision at which each AUV first was within d_u; -1: not yet
+  std::vector<T> entered_;  // first decision of each AUV within d_u; -1: not yet
 };
 
 extern template class EpisodeTotals<double>;

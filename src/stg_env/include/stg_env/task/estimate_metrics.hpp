@@ -6,10 +6,10 @@
 
 namespace stg::task {
 
-/// How far the AUVs' own estimates of their targets are off, where there are any [m]. "Own": the
-/// vector from the AUV to its target, which it steers by; its own navigation error is not in it.
-/// "World": the position in the world, with that error. Horizontal errors stand apart from vertical
-/// ones, as ranges hardly tell depths. The 95 % values are those of a histogram whose bins are 5 %
+/// Errors of the AUVs' own estimates of their targets, where there are estimates [m]. "Own": the
+/// vector from the AUV to its target, without the AUV's navigation error. "World": the position in
+/// the world, with that error. Horizontal and vertical errors are separate, because ranges contain
+/// little information about depths. The 95 % values are those of a histogram whose bins are 5 %
 /// wide.
 struct EstimateMetrics {
   double own_rmse = 0.0, own_rmse_tail = 0.0, own_95 = 0.0;        ///< horizontal
@@ -21,12 +21,12 @@ struct EstimateMetrics {
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
-/// How far AUVs with a localizer take themselves and each other to be from where they are,
-/// horizontal, east and north together [m].
+/// Horizontal errors of the positions that AUVs with a localizer estimate, east and north together
+/// [m].
 struct NavigationMetrics {
   double rmse = 0.0, rmse_tail = 0.0;  ///< of their own positions in the world
-  double nees = 0.0;           ///< mean normalised square of these errors; 2 where it is consistent
-  double relative_rmse = 0.0;  ///< of the others' positions against the own one
+  double nees = 0.0;  ///< mean normalised square of these errors; 2 where they are consistent
+  double relative_rmse = 0.0;  ///< of the others' positions relative to the own one
 
   std::vector<std::pair<std::string, double>> Items() const;
 };

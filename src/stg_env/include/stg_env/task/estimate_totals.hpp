@@ -11,15 +11,15 @@
 
 namespace stg::task {
 
-/// 1 where the AUV has no estimate of its target, or one whose position is off by more than
-/// task.lost_error_m: of the vector from the AUV to the target, or of the position in the world.
-/// Always 0 when that key is 0.
+/// 1 where the AUV has no estimate of its target, or an estimate with an error above
+/// task.lost_error_m: the error of the vector from the AUV to the target, or of the position in the
+/// world. Always 0 when that key is 0.
 template <class T>
 T OffInOwnFrame(const agent::TaskConfig& task, const FieldState<T>& field, const Vec3<T>& r_BT_W);
 template <class T>
 T OffInWorld(const agent::TaskConfig& task, const FieldState<T>& field, const Vec3<T>& p_WT);
 
-/// The sums behind EstimateMetrics. Every lane counts its own decisions.
+/// Sums for EstimateMetrics. Each lane counts its own decisions.
 template <class T>
 class EstimateTotals {
  public:
@@ -29,7 +29,7 @@ class EstimateTotals {
   /// Adds a decision. @param swarm with its field @param tail lanes in the tail of their episode
   void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
            const Mask<T>& tail);
-  /// Of the episode up to now.
+  /// Metrics of the episode up to now.
   EstimateMetrics Metrics(int lane) const;
 
  private:
@@ -49,14 +49,14 @@ class EstimateTotals {
 extern template class EstimateTotals<double>;
 extern template class EstimateTotals<Pack>;
 
-/// The sums behind NavigationMetrics. Every lane counts its own decisions.
+/// Sums for NavigationMetrics. Each lane counts its own decisions.
 template <class T>
 class NavigationTotals {
  public:
   void Start(const Mask<T>& lanes);
   /// Adds a decision. @param tail lanes in the tail of their episode
   void Add(const SwarmState<T>& swarm, const Mask<T>& tail);
-  /// Of the episode up to now; nothing where no AUV was seen to locate itself.
+  /// Metrics of the episode up to now; empty without a localizer.
   std::optional<NavigationMetrics> Metrics(int lane) const;
 
  private:

@@ -9,19 +9,19 @@
 
 namespace stg::task {
 
-/// How evenly the AUVs that are tasked with a target stand around it: one minus the length of the
-/// mean of their bearings as unit vectors in the plane (the circular variance of N. I. Fisher,
-/// Statistical analysis of circular data, 1993). 1: evenly, or balanced; 0: all on one side, or a
-/// single AUV.
+/// How evenly the AUVs of a target are distributed around it: one minus the length of the mean of
+/// their bearings as unit vectors in the plane (the circular variance of N. I. Fisher, Statistical
+/// analysis of circular data, 1993). 1: evenly, or balanced; 0: all on one side, or a single AUV.
 template <class T>
 T Spread(const SwarmState<T>& swarm, int target);
 
-/// Squared error of an estimate by its covariance, r^T P^-1 r; 0 where P is not positive definite.
+/// Squared error of an estimate, normalised by its covariance, r^T P^-1 r; 0 where P is not
+/// positive definite.
 /// @param covariance xx xy xz yy yz zz
 template <class T>
 T NormalisedSquare(const Vec3<T>& r, const T (&covariance)[6]);
 
-/// The sums behind SearchMetrics. Every lane counts its own decisions.
+/// Sums for SearchMetrics. Each lane counts its own decisions.
 template <class T>
 class SearchTotals {
  public:
@@ -30,7 +30,7 @@ class SearchTotals {
   void Start(const Mask<T>& lanes);
   /// Adds a decision. @param swarm with its field
   void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking);
-  /// Of the episode up to now. @param steps decisions of this lane
+  /// Metrics of the episode up to now. @param steps decisions of this lane
   SearchMetrics Metrics(int lane, double steps) const;
 
  private:
@@ -38,11 +38,11 @@ class SearchTotals {
     T detected = T(-1.0);          ///< decision of the first observation; -1: not yet
     T followed = T(0.0);           ///< decisions
     T way = T(0.0), net = T(0.0);  ///< in the whole windows up to now [m]
-    Vec3<T> p_WT, p_window;        ///< at the last decision, and where the window began
+    Vec3<T> p_WT, p_window;        ///< at the last decision, and at the start of the window
     T window_way = T(0.0);
     double wanted = 2.0;  ///< AUVs that follow it
   };
-  /// Of targets that are chosen freely.
+  /// With task.assignment free.
   void AddChoices(const SwarmState<T>& swarm);
   T InBand(const Tracking<T>& k) const;
   void Follow(const Vec3<T>& p_WT, OfTarget* target) const;
@@ -51,12 +51,12 @@ class SearchTotals {
   double window_;  // decisions
   T decisions_ = T(0.0), gathered_ = T(-1.0), info_spread_ = T(0.0);
   std::vector<OfTarget> targets_;
-  // Of targets that are chosen freely.
+  // With task.assignment free.
   T switches_ = T(0.0), judged_ = T(0.0), ospa_ = T(0.0), gospa_ = T(0.0);
   std::vector<T> chosen_;  // [agents] at the last decision
 };
 
-/// The sums behind FieldMetrics. Every lane counts its own decisions.
+/// Sums for FieldMetrics. Each lane counts its own decisions.
 template <class T>
 class FieldTotals {
  public:
@@ -67,7 +67,7 @@ class FieldTotals {
   /// @param swarm with its field @param tracking [agents] @param tail lanes in their tail
   void Add(const SwarmState<T>& swarm, const std::vector<Tracking<T>>& tracking,
            const Mask<T>& tail);
-  /// Of the episode up to now. @param steps decisions of this lane
+  /// Metrics of the episode up to now. @param steps decisions of this lane
   FieldMetrics Metrics(int lane, double steps) const;
 
  private:
@@ -85,10 +85,10 @@ class FieldTotals {
   EstimateTotals<T> estimates_;
   SearchTotals<T> search_;
   NavigationTotals<T> navigation_;
-  std::vector<T> spell_;               // [agents] decisions of the spell of loss that runs
+  std::vector<T> spell_;               // [agents] decisions of the present spell of loss
   std::vector<T> band_;                // [agents] decisions in the band
-  std::vector<T> there_;               // [agents] decisions for which it was there
-  std::vector<bool> turns_propeller_;  // [agents] whether tau tells the rpm of a propeller
+  std::vector<T> there_;               // [agents] decisions in which the AUV was present
+  std::vector<bool> turns_propeller_;  // [agents] whether tau contains the speed of a propeller
 };
 
 extern template class SearchTotals<double>;

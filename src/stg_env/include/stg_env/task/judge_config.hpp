@@ -7,7 +7,7 @@
 
 namespace stg::task {
 
-/// Lengths by which the critic's state is divided: those of the workspace and those of the band.
+/// Scales of the critic's state: the length of the workspace and that of the band.
 struct CriticConfig {
   double far_scale_m = 1.0;
   double near_scale_m = 0.05;
@@ -17,8 +17,7 @@ struct CriticConfig {
 /// Keys, units and ranges of the section `critic`, which a file may leave out.
 void Describe(CriticConfig* c, config::Table* t);
 
-/// What a task reads: what the AUVs are and are to do, the reward, and the
-/// scales of the critic's state.
+/// The sections that a task reads: vehicles, task, reward, and scales of the critic's state.
 struct JudgeConfig {
   RunConfig run;
   dynamics::WorldConfig world;

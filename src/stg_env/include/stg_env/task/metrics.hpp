@@ -9,27 +9,26 @@
 
 namespace stg::task {
 
-/// Of targets that are chosen freely (task.assignment).
+/// Metrics with task.assignment free.
 struct ChoiceMetrics {
   double switches = 0.0;  ///< changes to another target, per AUV
-  /// How far the set of positions that an AUV believes targets to be at is from that of the
-  /// targets, mean over AUVs and decisions (DistanceOfSets with a cutoff of 100 m) [m].
+  /// Distance between the set of an AUV's target estimates and the set of targets, mean over AUVs
+  /// and decisions (DistanceOfSets with a cutoff of 100 m) [m].
   double ospa = 0.0, gospa = 0.0;
 };
 
-/// How soon targets are found, how well they are surrounded, and how many of them are followed.
+/// Metrics of search: detection, surrounding and following of targets.
 struct SearchMetrics {
-  double found = 0.0;           ///< 1: some AUV had an observation of each target
+  double found = 0.0;           ///< 1: each target was observed by an AUV
   double time_to_detect = 0.0;  ///< until then, mean over targets; the episode length if never [s]
   double time_to_gather = 0.0;  ///< until all AUVs were in the band at once; the same if never [s]
-  /// Mean of 1 - |mean of e^{2 i theta}| over the AUVs' bearings from a target: 0 where all stand
-  /// on one line through it, whose ranges tell one axis only.
+  /// Mean of 1 - |mean of e^{2 i theta}| over the AUVs' bearings from a target: 0 where all are on
+  /// one line through it, because their ranges then determine one axis only.
   double info_spread = 0.0;
-  /// Share of targets and decisions with two AUVs in the band, or one where there are not two for
-  /// every target, and the best estimate of those that follow it off by less than 20 m in the
-  /// plane.
+  /// Share of targets and decisions with two AUVs in the band (one, if there are fewer than two for
+  /// each target) and with an error of the followers' best estimate below 20 m in the plane.
   double followed = 0.0;
-  double worst_followed = 0.0;  ///< the same of the target that was followed least
+  double worst_followed = 0.0;  ///< the same for the target with the lowest share
   /// Displacement of the targets over 600 s as a share of their way; 0 in shorter episodes.
   double target_net_speed = 0.0;
   std::optional<ChoiceMetrics> choices;
@@ -37,29 +36,28 @@ struct SearchMetrics {
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
-/// Of AUVs that range by pings (sensing.ranging, localization.ranges.by).
+/// Metrics of ranging by pings (sensing.ranging, localization.ranges.by).
 struct PingMetrics {
-  double pings = 0.0;          ///< that left, per AUV
+  double pings = 0.0;          ///< sent pings, per AUV
   double loss = 0.0;           ///< share of them without an answer
-  double airtime_share = 0.0;  ///< of the time in which an AUV's modem sends, packets included
+  double airtime_share = 0.0;  ///< share of the sending time of an AUV's modem, packets included
 };
 
-/// Metrics of one episode in open water, beside the others; of the whole episode.
+/// Further metrics of one whole episode in open water.
 struct FieldMetrics {
-  double estimate_rmse = 0.0;    ///< of the position in the world, depth included [m]
-  double nees = 0.0;             ///< mean normalised square of its error; 3 where it is consistent
+  double estimate_rmse = 0.0;    ///< error of the estimated position in the world, with depth [m]
+  double nees = 0.0;             ///< mean normalised squared error; 3 for a consistent estimate
   double estimate_known = 0.0;   ///< share of AUV decisions with an estimate
   double information_age = 0.0;  ///< mean age of the newest observation in the estimates [s]
   EstimateMetrics estimates;
   SearchMetrics search;
-  std::optional<NavigationMetrics> navigation;  ///< of AUVs with a localizer
-  std::optional<PingMetrics> pings;             ///< of AUVs that ping, in environments
+  std::optional<NavigationMetrics> navigation;  ///< with a localizer
+  std::optional<PingMetrics> pings;             ///< with pings, in environments only
   double band_share = 0.0;                      ///< share of AUV decisions inside [d_l, d_u]
-  double worst_band_share = 0.0;                ///< of the AUV that was inside least
+  double worst_band_share = 0.0;                ///< of the AUV with the lowest share
   double time_lost = 0.0;                       ///< mean over AUVs [s]
-  double time_to_reacquire =
-      0.0;                     ///< mean length of the spells of loss that ended [s]; 0: none did
-  double losses = 0.0;         ///< spells of loss, per AUV
+  double time_to_reacquire = 0.0;  ///< mean length of ended spells of loss [s]; 0: none
+  double losses = 0.0;             ///< spells of loss, per AUV
   double spread = 0.0;         ///< mean circular variance of the AUVs' bearings around their target
   double near_pairs = 0.0;     ///< pairs nearer than the separation distance, per decision
   double min_altitude = 0.0;   ///< [m]
@@ -67,16 +65,17 @@ struct FieldMetrics {
   double groundings = 0.0;     ///< of all AUVs
   double collisions = 0.0;     ///< with obstacles, of all AUVs
   double packets = 0.0;        ///< received, per AUV
-  double packet_loss = 0.0;    ///< share of those sent to each that was lost
+  double packet_loss = 0.0;    ///< share of the packets to each AUV that were lost
   double modem_energy = 0.0;   ///< per AUV [J]
-  /// Of the shaft of a torpedo, mechanical, per AUV [J]: by the shaft speed that is asked for and
-  /// the speed over ground, as the judge knows no current. 0 of vehicles without a propeller.
+  /// Mechanical energy of a torpedo's shaft, per AUV [J], from the commanded shaft speed and the
+  /// speed over ground, because the task does not know the current. 0 for vehicles without a
+  /// propeller.
   double propulsion_energy = 0.0;
 
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
-/// Metrics of one episode (Table S1 and what the paper leaves out). Tail: the
+/// Metrics of one episode (Table S1, and further ones). Tail: the
 /// last tail_steps decisions. Means over AUVs and decisions unless named.
 struct EpisodeMetrics {
   double episode_return = 0.0;         ///< sum over decisions and AUVs
@@ -91,9 +90,8 @@ struct EpisodeMetrics {
   double colliding_pairs = 0.0;        ///< pairs in contact, per decision
   double tail_colliding_pairs = 0.0;
   double min_separation = 0.0;  ///< smallest distance between two AUVs, whole episode [m]
-  double time_to_band =
-      0.0;  ///< first entry of d_u, mean over AUVs; the episode length when never [s]
-  double mean_error = 0.0;       ///< |d - d*| over the whole episode [m]
+  double time_to_band = 0.0;  ///< first time within d_u, mean over AUVs; never: episode length [s]
+  double mean_error = 0.0;    ///< |d - d*| over the whole episode [m]
   double whole_lost_rate = 0.0;  ///< lost over the whole episode
   double reward_track = 0.0, reward_observation = 0.0, reward_coordination = 0.0,
          reward_communication = 0.0, reward_semantic = 0.0, reward_separation = 0.0;
@@ -104,7 +102,7 @@ struct EpisodeMetrics {
   std::vector<std::pair<std::string, double>> Items() const;
 };
 
-/// Whether the metric of that name is of the tail alone, and nothing in an episode without one.
+/// Whether a metric uses the tail alone, so that an episode without a tail does not define it.
 bool OfTail(const std::string& metric);
 
 /// Mean and sample standard deviation of each metric over episodes.

@@ -22,7 +22,7 @@ struct RewardInput {
   T confidence = T(0.0);  ///< c, 0 when lost
   T lost = T(0.0);        ///< l, 0 or 1
   T crowding = T(0.0);    ///< sum over neighbours of SeparationPenalty
-  // What the cost is of, somebody else's arrays; only those that it reads need be set.
+  // Input of the cost: arrays of the caller. Only the arrays of the chosen kind are read.
   const T* tau = nullptr;  ///< release: tau / tau_max of this and the previous step [kWrenchSize]
   const T* previous_tau = nullptr;
   const T* action = nullptr;  ///< paper: executed action [action_size]
@@ -77,7 +77,7 @@ inline T ControlCost(const RewardConfig& c, int action_size, const RewardInput<T
               T(1.0));
 }
 
-/// Reward of one AUV; coordination and communication are shared by the swarm.
+/// Reward of one AUV. Coordination and communication are the same for the whole swarm.
 /// @param extra weighted sum of registered terms, added before the total is clipped; null: none
 template <class T>
 inline RewardTerms<T> Reward(const JudgeConfig& s, const RewardInput<T>& in, const T& coordination,

@@ -7,8 +7,8 @@
 
 namespace stg::task {
 
-/// The reward as the paper writes it (Eqs. 28-36), as the release computes it, and the release's
-/// for its baselines without a task graph.
+/// The paper's reward (Eqs. 28-36), the release's reward, and the release's reward for its
+/// baselines without a task graph.
 enum class RewardKind { kPaper, kRelease, kReleaseRaw };
 
 /// Weights of the terms of Eq. 36, and of our separation term.

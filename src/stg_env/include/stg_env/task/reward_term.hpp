@@ -7,7 +7,7 @@ namespace stg::task {
 
 struct JudgeConfig;
 
-/// What a reward term sees of one AUV after a decision.
+/// Input of a reward term: one AUV after a decision.
 template <class T>
 struct TermInput {
   const SwarmState<T>& swarm;
@@ -19,7 +19,7 @@ struct TermInput {
 
 /// A term that is added to the paper's reward, times its weight (`reward.terms.<name>`). It is
 /// evaluated for one swarm (double) and for kLanes swarms at once (Pack); write it once, as a
-/// template, see TermOf. It keeps no memory: what it may compare is in its input.
+/// template, see TermOf. It has no memory; all that it may compare is in its input.
 class RewardTerm {
  public:
   virtual ~RewardTerm() = default;

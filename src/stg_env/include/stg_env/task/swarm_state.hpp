@@ -9,48 +9,48 @@
 
 namespace stg::task {
 
-/// Of one AUV: tau / tau_max, or of other actuators the last command as shares of their limits, or
-/// an executed action (the first action_size numbers count).
+/// Numbers of one AUV: tau / tau_max; or for other actuators, the last command as shares of their
+/// limits; or an executed action (its first action_size numbers).
 template <class T>
 using Effort = std::array<T, dynamics::kWrenchSize>;
 template <class T>
 using Efforts = std::vector<Effort<T>>;
 static_assert(dynamics::kMaxActionSize <= dynamics::kWrenchSize, "an action is an Effort");
 
-/// Of one AUV in open water, beside its state: what it believes of its target, what is around it,
-/// what its modem did.
+/// Further state of one AUV in open water: its estimate of its target, its surroundings, and counts
+/// of its modem.
 template <class T>
 struct FieldState {
-  T present = T(1.0);  ///< 0: it has left the swarm (fleet.leave) and is judged no more
-  T known = T(0.0);    ///< 1: it has an estimate of its target; 0: the next four mean nothing
+  T present = T(1.0);  ///< 0: it has left the swarm (fleet.leave) and is not judged
+  T known = T(0.0);    ///< 1: it estimates its target; 0: the next four have no meaning
   Vec3<T> p_WT;        ///< its estimate of the target's position, world axes [m]
-  /// Its estimate of the vector from itself to the target, world axes [m]: what it steers by. An
-  /// error of its own navigation is in p_WT, but not in this.
+  /// Its estimate of the vector from itself to the target, world axes [m]: the offset by which it
+  /// steers. Errors of its own navigation are in p_WT, but not in this.
   Vec3<T> r_BT_W;
-  /// Covariance of it, xx xy xz yy yz zz [m^2], what its navigation may be off included; all zero
+  /// Covariance of p_WT, xx xy xz yy yz zz [m^2], with the uncertainty of its navigation; all zero
   /// where it knows the truth.
   T covariance[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
-  T age_s = T(0.0);  ///< of the newest observation in the estimate
-  // Of an AUV with a localizer: what is left of the errors of its position and of its neighbours'.
-  T located = T(0.0);        ///< 0: the next three mean nothing
+  T age_s = T(0.0);  ///< age of the newest observation in the estimate
+  // For an AUV with a localizer: the remaining errors of its position and its neighbours'
+  // positions.
+  T located = T(0.0);        ///< 0: the next three have no meaning
   Vec3<T> navigation_error;  ///< of its position in the world, horizontal [m]
   T navigation_covariance[3] = {T(0.0), T(0.0), T(0.0)};  ///< of it, xx xy yy [m^2]
-  T relative_square = T(0.0);  ///< mean square of the others' errors against the own one [m^2]
+  T relative_square = T(0.0);  ///< mean squared error of the others relative to the own one [m^2]
   T altitude_m = T(1e9);       ///< above the bottom
   T clearance_m = T(1e9);      ///< to the nearest obstacle
-  T groundings = T(0.0);       ///< of this episode up to now, as the next four
+  T groundings = T(0.0);       ///< in this episode up to now, as the following
   T collisions = T(0.0);       ///< with obstacles
-  T received = T(0.0);         ///< packets that it received, and that were lost on the way to it,
+  T received = T(0.0);         ///< packets that it received, and packets to it that were lost,
   T missed = T(0.0);           ///< mean over the AUVs
   T modem_energy_j = T(0.0);   ///< electric, of its modem
   T airtime_s = T(0.0);        ///< for which its modem has sent
-  T pings = T(-1.0);           ///< by which AUVs range, that left, mean over the AUVs; below 0:
+  T pings = T(-1.0);           ///< sent pings for ranging, mean over the AUVs; below 0:
                                ///< they are not counted
-  T ping_answers = T(0.0);     ///< those of them that were answered
+  T ping_answers = T(0.0);     ///< answered ones of them
 };
 
-/// Where targets are chosen freely (task.assignment): which target each AUV follows, and where it
-/// believes every target to be.
+/// With task.assignment free: the target that each AUV follows, and its estimates of all targets.
 template <class T>
 struct Following {
   Following(int agents, int targets)
@@ -61,13 +61,13 @@ struct Following {
 
   std::vector<T> target;                        ///< [agents], index of the target it follows
   std::vector<dynamics::TargetState<T>> state;  ///< [agents], true state of that target
-  std::vector<T> known;                         ///< [agents, targets], 1: it has a belief of it
-  std::vector<Vec3<T>> p_WT;                    ///< [agents, targets], which is this [m]
+  std::vector<T> known;       ///< [agents, targets], 1: the AUV estimates the target
+  std::vector<Vec3<T>> p_WT;  ///< [agents, targets], estimated position [m]
 };
 
-/// The true state of a swarm when a decision is due, and what the decision before led to it with:
-/// all that a task judges. A view; it does not say what moved the swarm. T = double: one swarm.
-/// T = Pack: kLanes swarms.
+/// The true state of a swarm when a decision is due, and the commands of the previous decision: the
+/// whole input of a task. It is a view, and does not depend on what moved the swarm. T = double:
+/// one swarm. T = Pack: kLanes swarms.
 template <class T>
 struct SwarmState {
   const std::vector<dynamics::VehicleState<T>>& vehicles;  ///< [agents]
@@ -75,11 +75,11 @@ struct SwarmState {
   const dynamics::Separations<T>& separations;
   const Efforts<T>& tau;     ///< [agents], tau / tau_max; zero when an episode starts
   const Efforts<T>& action;  ///< [agents], executed action in [-1, 1]; zero when an episode starts
-  /// Mean link quality of the swarm now, in [0, 1]: what the communication term rewards (Eq. 33).
+  /// Mean link quality of the swarm now, in [0, 1]: the communication term rewards it (Eq. 33).
   T link_quality = T(0.0);
-  /// [agents], of scenarios in open water; null: there is none.
+  /// [agents], for scenarios in open water; otherwise null.
   const std::vector<FieldState<T>>* field = nullptr;
-  /// Null: AUV i is tasked with target i modulo their number.
+  /// Null: AUV i follows target i modulo their number.
   const Following<T>* following = nullptr;
 
   /// The target that AUV i follows.
@@ -94,7 +94,7 @@ struct SwarmState {
   }
 };
 
-/// How one AUV stands to its target, truly. `lost`: farther than task.lost_distance_m, or
+/// True tracking of one AUV. `lost`: farther from the target than task.lost_distance_m, or
 /// OffInOwnFrame (estimate_totals.hpp).
 using agent::Tracking;
 

@@ -12,18 +12,18 @@
 
 namespace stg::task {
 
-/// Judges a swarm that anyone moves by its true states: reward of every AUV, metrics of the
-/// episode, the critic's state. T = double: one swarm. T = Pack: kLanes swarms, each with its own
-/// episode.
+/// Computes from a swarm's true states the reward of each AUV, the metrics of the episode and the
+/// critic's state. It does not depend on what moves the swarm. T = double: one swarm. T = Pack:
+/// kLanes swarms, each with its own episode.
 ///
-/// Use: Start when an episode begins, Step after every decision.
+/// Use: Start when an episode begins, and Step after each decision.
 template <class T>
 class Task {
  public:
   explicit Task(const JudgeConfig& scenario);
 
-  /// An episode of `episode_steps` decisions begins in some lanes; `swarm` is its first state.
-  /// Other lanes must stand as they stood at the last Start or Step.
+  /// Starts an episode of `episode_steps` decisions in some lanes; `swarm` is its first state. The
+  /// state of other lanes must be that of the last Start or Step.
   void Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& episode_steps);
   /// Judges the decision that led to `swarm`.
   void Step(const SwarmState<T>& swarm);
@@ -35,10 +35,10 @@ class Task {
   const Tracking<T>& tracking(int i) const { return tracking_[static_cast<std::size_t>(i)]; }
   /// Decisions of the episode.
   int steps(int lane) const { return static_cast<int>(Lane(totals_.steps(), lane)); }
-  /// Of the episode up to now, after at least one decision.
+  /// Metrics of the episode up to now, after at least one decision.
   EpisodeMetrics Metrics(int lane) const { return totals_.Metrics(lane); }
 
-  /// The critic's view of the state given last to Start or Step; see task::WriteCriticState.
+  /// The critic's state for the last state given to Start or Step; see task::WriteCriticState.
   template <class Emit>
   void WriteCriticState(const SwarmState<T>& swarm, Emit&& emit) const {
     task::WriteCriticState(scenario_, swarm, tracking_, std::forward<Emit>(emit));
@@ -52,16 +52,16 @@ class Task {
 
   /// @param starting lanes in which an episode starts; the others keep d(t-1). Null: a decision.
   void Measure(const SwarmState<T>& swarm, const Mask<T>* starting);
-  /// Coordination and communication, which the swarm shares.
+  /// Coordination and communication, which are the same for all AUVs.
   void ShareReward(const SwarmState<T>& swarm, T* coordination, T* communication) const;
-  /// Keeps what the next decision is compared with.
+  /// Stores the values with which the next decision is compared.
   void Remember(const SwarmState<T>& swarm);
   RewardInput<T> InputOf(const SwarmState<T>& swarm, int i) const;
 
   JudgeConfig scenario_;
-  std::vector<Weighted> extra_;  // registered terms of a weight that is not 0
+  std::vector<Weighted> extra_;  // registered terms with a weight above 0
   std::vector<Tracking<T>> tracking_;
-  std::vector<T> followed_;  // by each AUV at the last state, where targets are chosen freely
+  std::vector<T> followed_;  // target of each AUV at the last state, with task.assignment free
   std::vector<RewardTerms<T>> terms_;
   Efforts<T> previous_tau_, previous_action_;
   T team_reward_ = T(0.0);

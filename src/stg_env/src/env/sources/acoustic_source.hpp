@@ -9,11 +9,11 @@
 
 namespace stg::env {
 
-/// Each AUV knows its own navigation, its own detections, what the channel delivered to it, and the
-/// cue that it started with: the agents of the ROS graph and their channel, kLanes of each.
+/// Each AUV knows its own navigation, its own detections, its received packets and its cue. It runs
+/// the same agents and channel as the ROS graph, kLanes of each.
 class AcousticSource : public InformationSource {
  public:
-  /// @param model what the agents know; its clocks and number of AUVs are those of the world
+  /// @param model the agents' model, with the clocks and the number of AUVs of the world
   AcousticSource(const agent::AgentModel& model, const acoustics::ChannelConfig& channel,
                  const dynamics::SensingConfig& sensing,
                  const acoustics::LineOfSight& line_of_sight);
@@ -26,14 +26,14 @@ class AcousticSource : public InformationSource {
   const agent::Knowledge<Pack>& knowledge(int i) const override {
     return agents_[static_cast<std::size_t>(i)].knowledge();
   }
-  /// Mean over all ordered pairs of the link quality that the agents know; of an unheard neighbour
-  /// it is 0.
+  /// Mean link quality over all ordered pairs of AUVs, as the agents estimate it; 0 for a neighbour
+  /// without a received packet.
   Pack LinkQuality(const dynamics::World& world) const override;
   void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const override;
   void Choose(int i, task::Following<Pack>* following) const override;
 
   const agent::AgentLanes& agent(int i) const { return agents_[static_cast<std::size_t>(i)]; }
-  /// The observer gets the reports of all packets of one lane from now on; null: none does.
+  /// From now on, `observer` gets the reports of all packets of one lane; null: no observer.
   void ObservePackets(int lane, acoustics::PacketObserver* observer) {
     channels_[static_cast<std::size_t>(lane)]->Observe(observer);
   }
@@ -51,7 +51,7 @@ class AcousticSource : public InformationSource {
   std::uint32_t decision_steps_;
   std::vector<agent::AgentLanes> agents_;                      // [agent]
   std::vector<std::unique_ptr<acoustics::Channel>> channels_;  // [lane]
-  // Of one lane at a time: what is offered to the channel, and what it delivers.
+  // Packets to and from the channel, for one lane at a time.
   std::vector<agent::Packet> packets_;
   std::vector<acoustics::Transmission> offered_;
   std::vector<acoustics::Reception> received_;

@@ -38,36 +38,36 @@ struct LaneSet {
   }
 };
 
-/// Where the AUVs of kLanes environments have their knowledge from. The information modes of a
-/// scenario differ in this and in nothing else.
+/// Provides the knowledge of the AUVs of kLanes environments. It is the only difference between the
+/// information modes of a scenario.
 ///
-/// Use, in each lane: Start and Observe when an episode begins; then Act for every AUV and Send,
-/// the world moves, Observe.
+/// Use in each lane: Start and Observe when an episode begins. Then, for each decision: Act for
+/// every AUV, Send, a move of the world, Observe.
 class InformationSource {
  public:
   virtual ~InformationSource() = default;
 
-  /// An episode begins in these lanes of the world: all knowledge of the one before is gone.
+  /// Starts an episode in these lanes of the world, without knowledge from the previous one.
   virtual void Start(const dynamics::World& world, const LaneSet& lanes) = 0;
-  /// Brings the knowledge of these lanes to the present of the world; the others keep theirs.
+  /// Updates the knowledge of these lanes to the present state of the world; other lanes keep
+  /// theirs.
   virtual void Observe(const dynamics::World& world, const LaneSet& lanes) = 0;
   /// AUV i executes an action (Eqs. 23-27).
   /// @param wanted [action_size], finite; clipped to [-1, 1] inside
   /// @param action, tau executed action, and tau / tau_max
   virtual void Act(const dynamics::World& world, int i, const Pack* wanted,
                    task::Effort<Pack>* action, task::Effort<Pack>* tau) = 0;
-  /// After all have acted: what they have to say goes out.
+  /// Sends the AUVs' packets, after all AUVs have acted.
   virtual void Send(const dynamics::World& world) = 0;
 
-  /// What AUV i decides on.
+  /// The knowledge from which AUV i decides.
   virtual const agent::Knowledge<Pack>& knowledge(int i) const = 0;
   /// Mean link quality of the swarm now (Eq. 33).
   virtual Pack LinkQuality(const dynamics::World& world) const = 0;
-  /// What AUV i believes of its target, and what its modem did: those members of `state`, in every
-  /// lane.
+  /// Writes AUV i's estimate of its target and its modem's counts into `state`, in every lane.
   virtual void Tell(const dynamics::World& world, int i, task::FieldState<Pack>* state) const = 0;
-  /// Which target AUV i follows, and where it believes every target to be, in every lane; where
-  /// targets are chosen freely.
+  /// Writes the target that AUV i follows, and its estimates of all targets, in every lane; only
+  /// with task.assignment free.
   virtual void Choose(int i, task::Following<Pack>* following) const {
     (void)i;
     (void)following;

@@ -7,11 +7,11 @@
 
 namespace stg::env {
 
-/// All AUVs know the true states of all: the paper's formulas, as its release computes them. The
-/// same minds as the agents', with true states for inputs.
+/// All AUVs know all true states: the paper's formulas, as its release computes them. It uses the
+/// same class Mind as the agents, with true states as input.
 class TruthSource : public InformationSource {
  public:
-  /// @param range_m of links, in truth; the model may have another one
+  /// @param range_m true range of links; the model may have another one
   TruthSource(const agent::AgentModel& model, double range_m);
 
   void Start(const dynamics::World& world, const LaneSet& lanes) override;
@@ -27,7 +27,7 @@ class TruthSource : public InformationSource {
 
  private:
   void Think(const dynamics::World& world);
-  /// Quality and number of everybody's links into links_.
+  /// Writes quality and number of all AUVs' links to links_.
   void MeasureLinks(const dynamics::World& world);
   void Show(const dynamics::World& world, int i, Vec3<Pack>* slots) const;
 
@@ -35,7 +35,7 @@ class TruthSource : public InformationSource {
   double range_m_;
   bool exact_angles_;                              // the integrator keeps roll, pitch and yaw
   std::vector<agent::Mind<Pack>> minds_;           // [agent]
-  std::vector<agent::Mind<Pack>> before_;          // as minds_ before the present Observe
+  std::vector<agent::Mind<Pack>> before_;          // minds_ before the present Observe
   std::vector<agent::NeighbourView<Pack>> links_;  // [agent], of the present Think
 };
 
