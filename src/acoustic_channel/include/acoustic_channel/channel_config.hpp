@@ -14,8 +14,8 @@
 
 namespace stg::acoustics {
 
-/// The section `channel`: what it is made of, by name, and the keys of its parts, which stand
-/// beside their code.
+/// The section `channel`: the names of its parts, and their keys, which are described beside their
+/// code.
 struct ChannelConfig : RangeConfig, PeriodicConfig, ExtendedConfig, PhysicalConfig {
   std::string model = "extended";   ///< of PropagationModels()
   std::string access = "periodic";  ///< of MediumAccesses()
@@ -30,7 +30,7 @@ void Describe(ChannelConfig* c, config::Table* t);
 /// Contradictions between the section and the clocks of the run.
 std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunConfig& run);
 
-/// What a program needs that runs the network alone.
+/// Sections of a program that runs the network alone.
 struct NetworkConfig {
   RunConfig run;
   ChannelConfig channel;

@@ -7,7 +7,7 @@
 /// a ROS message unchanged (doubles and integer nanoseconds only).
 namespace stg::dynamics {
 
-/// What a vehicle's own navigation gives: body B (FLU) in world W (ENU). T = Pack: one vehicle of
+/// Output of a vehicle's own navigation: body B (FLU) in world W (ENU). T = Pack: one vehicle of
 /// each of kLanes worlds, which have clocks of their own.
 template <class T>
 struct Navigation {
@@ -16,13 +16,13 @@ struct Navigation {
   T q_WB[4] = {T(1.0), T(0.0), T(0.0), T(0.0)};  ///< orientation, w x y z, unit norm
   Vec3<T> v_WB_B;                                ///< velocity over ground in body axes [m/s]
   Vec3<T> w_WB_B;                                ///< body rates p, q, r [rad/s]
-  // What it states of its own errors; zero: it makes none.
+  // Stated deviations of its errors; zero: there are no errors.
   T position_std_m = T(0.0);   ///< of each horizontal component of p_WB
-  T heading_std_rad = T(0.0);  ///< of the turn about the vertical that q_WB is off by
+  T heading_std_rad = T(0.0);  ///< of the error of q_WB about the vertical
 };
 using NavState = Navigation<double>;
 
-/// What a detection measures.
+/// Kind of measurement of a detection.
 enum class MeasurementKind { kPosition, kRange, kBearing, kRangeBearing };
 
 /// One detection of a target by one vehicle's own sensor, in the frame of that vehicle's
@@ -30,30 +30,30 @@ enum class MeasurementKind { kPosition, kRange, kBearing, kRangeBearing };
 struct Detection {
   TimeNs stamp = 0;
   int target = 0;
-  Vec3<double> p_WT;   ///< measured target position in the world [m]; of what has a range and a
-                       ///< bearing where they meet, of a range or a bearing alone the observer
-  double std_m = 0.0;  ///< standard deviation of each component [m], of the worst one
+  Vec3<double> p_WT;   ///< measured target position in the world [m]: with range and bearing, their
+                       ///< point; with a range or a bearing alone, the observer's position
+  double std_m = 0.0;  ///< standard deviation of each component [m], the largest one
   MeasurementKind kind = MeasurementKind::kPosition;
-  Vec3<double> p_WO = {};           ///< where the observer believed to be [m]
-  double p_WO_std_m = 0.0;          ///< of each horizontal component, as its navigation states
-  double heading_std_rad = 0.0;     ///< of its heading, as its navigation states
+  Vec3<double> p_WO = {};           ///< navigated position of the observer [m]
+  double p_WO_std_m = 0.0;          ///< of each horizontal component, stated
+  double heading_std_rad = 0.0;     ///< of its heading, stated
   double range_m = 0.0;             ///< from the observer
   double range_std_m = 0.0;         ///< standard deviation of the range
   double azimuth_rad = 0.0;         ///< direction of the target, from east counter-clockwise
   double elevation_rad = 0.0;       ///< above the horizontal
   double bearing_std_rad = 0.0;     ///< standard deviation of azimuth and elevation
-  bool ambiguous = false;           ///< the target may as well lie at mirror_azimuth_rad
+  bool ambiguous = false;           ///< the target may also lie at mirror_azimuth_rad
   double mirror_azimuth_rad = 0.0;  ///< the azimuth mirrored at the observer's heading
 };
 
-/// Where a search starts: a datum of stated uncertainty.
+/// Start of a search: a position with a stated uncertainty.
 struct Cue {
   int target = 0;
   Vec3<double> p_WT;   ///< stated target position in the world [m]
   double std_m = 0.0;  ///< standard deviation of each component [m]
 };
 
-/// Numbers of a generalised force.
+/// Size of a generalised force.
 inline constexpr int kWrenchSize = 6;
 
 /// Generalised force tau = [X Y Z K M N] at the body origin, body axes [N, N m].

@@ -8,8 +8,8 @@
 namespace stg::acoustics {
 
 /// Pure ALOHA (N. Abramson 1970): a packet leaves at once; throughput G exp(-2 G) at load G. With a
-/// mean rest, a modem that has sent stays silent for an exponential time: a modem that always has
-/// a packet to send would otherwise hear none.
+/// mean rest, a modem stays silent for an exponential time after a transmission; otherwise a modem
+/// that always has a packet to send would receive none.
 class Aloha : public MediumAccess {
  public:
   explicit Aloha(const ContentionConfig& config) : config_(config) {}

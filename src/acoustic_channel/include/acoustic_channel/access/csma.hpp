@@ -7,9 +7,9 @@
 namespace stg::acoustics {
 
 /// Carrier sense, not persistent (L. Kleinrock and F. A. Tobagi 1975): as Aloha, but a modem
-/// listens first, and where it hears a carrier it waits for a time uniform in (0, backoff], with a
-/// bound that doubles at each try up to 32 times the first. What it hears is as old as the way of
-/// the sound: where that is longer than a packet, listening gains nothing.
+/// listens first. If it hears a carrier, it waits for a time uniform in (0, backoff], whose bound
+/// doubles at each try up to 32 times the first. A carrier is heard only after its travel time; if
+/// that is longer than a packet, listening has no benefit.
 class Csma : public Aloha {
  public:
   explicit Csma(const ContentionConfig& config) : Aloha(config) {}

@@ -16,9 +16,9 @@ struct Departure {
   TimeNs start;            ///< it begins to leave
 };
 
-/// The sending side of the modems of an ideal channel. What is offered to a modem waits there until
-/// medium access lets it leave; a newer packet replaces the one that waits, which is best for the
-/// age of what arrives. Allocates only while a modem's waiting payloads reach a new maximum size.
+/// The sending side of the modems of an ideal channel. A packet waits in its modem until medium
+/// access lets it leave; a newer packet replaces a waiting one, which keeps the age of information
+/// low. Allocates only while a modem's waiting payloads reach a new maximum size.
 class Outbox {
  public:
   /// Throws UserError for an unknown medium access.
@@ -29,14 +29,14 @@ class Outbox {
   /// See Turns::Due.
   bool Due(int node, TimeNs t) { return turns_.Due(node, t); }
 
-  /// Forgets what waits in a modem; calls discarded(const Transmission&) of it.
+  /// Drops the waiting packet of a modem, and calls discarded(const Transmission&).
   template <class Discarded>
   void Drop(int node, Discarded&& discarded);
 
-  /// One step of all modems.
+  /// Runs one step of all modems.
   /// @param offered at t, at most one per node, in any order
-  /// @param send (const Departure&), for what leaves before the next step
-  /// @param replaced (const Transmission&), for what never will
+  /// @param send (const Departure&), for each packet that leaves before the next step
+  /// @param replaced (const Transmission&), for each packet that never leaves
   template <class Send, class Replaced>
   void Step(TimeNs t, const std::vector<Transmission>& offered, Send&& send, Replaced&& replaced);
 
@@ -87,7 +87,7 @@ void Outbox::Step(TimeNs t, const std::vector<Transmission>& offered, Send&& sen
   }
   for (std::size_t i = 0; full_ > 0 && i < waiting_.size(); ++i) {
     Waiting& w = waiting_[i];
-    // One that was offered at t and still waits has no start in this step.
+    // A packet that was offered at t and still waits does not start in this step.
     const TimeNs start = w.full ? turns_.Start(static_cast<int>(i), t) : kNever;
     if (start == kNever) continue;
     send(Depart(w.packet, start));

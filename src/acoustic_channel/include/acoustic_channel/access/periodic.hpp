@@ -8,14 +8,13 @@
 namespace stg::acoustics {
 
 /// Staggered slots at decisions: node i sends at decisions k with k mod P = i mod P, where P is the
-/// transmit period in decisions, rounded, at least 1. k comes from the time, not from counting: a
-/// node that joins in the middle of an episode keeps to its slot. A modem that is busy then lets
-/// its slot pass.
+/// transmit period in decisions, rounded, at least 1. k follows from the time, so a node that joins
+/// during an episode has its usual slots. A busy modem skips its slot.
 class Periodic : public MediumAccess {
  public:
   Periodic(const PeriodicConfig& config, const RunConfig& run);
   TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
-  /// A period shorter than a decision cannot be kept.
+  /// Refuses a period that is shorter than a decision.
   std::optional<config::Violation> FindConflict(const PacketTime& packet) const override;
 
  private:

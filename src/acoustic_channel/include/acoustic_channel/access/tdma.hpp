@@ -14,7 +14,7 @@ class Tdma : public MediumAccess {
  public:
   Tdma(const SlotsConfig& config, int nodes);
   TimeNs Next(int node, TimeNs from, const Attempt& attempt) const override;
-  /// A slot shorter than the longest packet and the guard cannot hold it.
+  /// Refuses a slot that is shorter than the longest packet and the guard.
   std::optional<config::Violation> FindConflict(const PacketTime& packet) const override;
 
  private:
@@ -22,7 +22,7 @@ class Tdma : public MediumAccess {
   TimeNs slot_, frame_;
 };
 
-/// Why a slot cannot hold a packet of this airtime; nothing: it can.
+/// Why a slot cannot hold a packet of this airtime; empty: it can.
 std::optional<config::Violation> FindSlotConflict(const SlotsConfig& config, TimeNs airtime);
 
 std::unique_ptr<MediumAccess> MakeTdma(const ChannelConfig& config, const RunConfig& run);

@@ -9,7 +9,7 @@
 
 #include "acoustic_channel/modem/packet.hpp"
 
-/// The host's side of a modem: puts packets onto it and takes receptions off it.
+/// The host's side of a modem: sends packets to it and takes receptions from it.
 namespace stg::acoustics {
 
 /// A packet for a modem to send.
@@ -24,38 +24,38 @@ struct DriverReception {
   int source = 0;       ///< address
   int destination = 0;  ///< address, or kToAll
   std::string payload;
-  TimeNs arrival = 0;              ///< when its last bytes came over the port
-  double airtime_s = 0.0;          ///< 0: the modem does not say
-  double received_level_db = 0.0;  ///< re 1 uPa; this and the next two 0: the modem does not say
+  TimeNs arrival = 0;              ///< when its last bytes came through the port
+  double airtime_s = 0.0;          ///< 0: the modem does not state it
+  double received_level_db = 0.0;  ///< re 1 uPa; this and the next two 0: not stated
   double noise_level_db = 0.0, sinr_db = 0.0;
   double doppler_mps = 0.0;  ///< positive closing
 };
 
-/// What a driver talks to.
+/// Callbacks of a driver.
 class DriverWorld {
  public:
   virtual ~DriverWorld() = default;
   /// Bytes for the modem.
   virtual void Write(const std::string& bytes) = 0;
-  /// The modem does not answer: the connection is to be closed and opened again.
+  /// The modem does not answer: the port must close and reopen the connection.
   virtual void HangUp() = 0;
 
   virtual void OnReception(const DriverReception& reception) = 0;
   virtual void OnQueued(std::uint32_t /*tag*/) {}
   virtual void OnSent(std::uint32_t /*tag*/, TimeNs /*t*/) {}
-  /// Has left; `airtime_s` as the modem tells it.
+  /// A packet has left; `airtime_s` is the modem's statement.
   virtual void OnSendEnd(std::uint32_t /*tag*/, double /*airtime_s*/) {}
-  /// Replaced by a newer one before the modem took it, or lost with the connection.
+  /// A newer packet replaced it before the modem took it, or it was lost with the connection.
   virtual void OnDropped(std::uint32_t /*tag*/) {}
   virtual void OnRefused(std::uint32_t /*tag*/, const std::string& /*why*/) {}
   /// A ping has ended; `one_way_s` < 0: without answer.
   virtual void OnRange(int /*address*/, double /*one_way_s*/) {}
 };
 
-/// Protocol engines on the host's side: bytes and time in, bytes out, without ports and clocks of
-/// their own. One command is under way at a time, and one packet; of those that wait the newest
-/// stays. A modem that does not answer is asked three times, then the connection is made anew, and
-/// everything that was set is set again. Times never go back.
+/// Protocol engines on the host's side: bytes and time in, bytes out, without ports or clocks. They
+/// handle one command and one packet at a time; of the waiting packets they keep the newest. After
+/// three commands without an answer they request a new connection and repeat all settings. Times
+/// must not go back.
 class ModemDriver {
  public:
   /// @param world must live as long as this object
@@ -68,14 +68,14 @@ class ModemDriver {
   void Disconnect(TimeNs t);
   virtual void Read(TimeNs t, ByteView bytes) = 0;
   void Send(const DriverPacket& packet, TimeNs t);
-  /// Asks how far away a modem is; OnRange tells.
+  /// Requests the range to a modem; OnRange gets the result.
   void Ping(int address, TimeNs t);
   void Tick(TimeNs t);
   TimeNs next() const;
 
   /// The modem is set up and answers.
   bool ready() const { return ready_; }
-  /// What it says that it is; empty: it has not said.
+  /// The modem's description of itself; empty: not received yet.
   const std::string& firmware() const { return firmware_; }
   struct Counts {
     std::uint64_t sent = 0, received = 0, lost = 0, dropped = 0, refused = 0, connections = 0;
@@ -83,19 +83,19 @@ class ModemDriver {
   const Counts& counts() const { return counts_; }
 
  protected:
-  virtual void Reset() = 0;  ///< forgets what was read and what was under way
+  virtual void Reset() = 0;                               ///< drops all input, commands and packets
   virtual std::vector<std::string> Settings() const = 0;  ///< commands after a connection is made
   virtual std::string CommandFor(const DriverPacket& packet) const = 0;
   virtual std::string PingFor(int address) const = 0;
 
   // For what is read.
   void Ask(const std::string& command, TimeNs t);
-  /// The command under way, without its end of line; empty: none.
+  /// The unanswered command, without its end of line; empty: none.
   const std::string& asked() const { return asked_; }
-  /// It is answered: the next one may go.
+  /// The command is answered; sends the next one.
   void Answered(TimeNs t);
-  /// The packet under way was taken by the modem; is leaving; has left; was refused; is to be
-  /// offered again later.
+  /// The present packet: the modem took it; it is leaving; it has left; the modem refused it; the
+  /// driver offers it again later.
   void Taken(TimeNs t);
   void Leaving(TimeNs t);
   void Left(double airtime_s, TimeNs t);
@@ -108,7 +108,7 @@ class ModemDriver {
   DriverWorld* world_;
   std::string firmware_;
   Counts counts_;
-  int ping_ = 0;  ///< the address that was asked; 0: none
+  int ping_ = 0;  ///< the pinged address; 0: none
 
  private:
   void Go(TimeNs t);
@@ -122,12 +122,12 @@ class ModemDriver {
   std::optional<DriverPacket> waiting_, under_way_;
   bool taken_ = false;
   TimeNs again_ = 0;    ///< not before: the modem was busy
-  TimeNs give_up_ = 0;  ///< of the packet under way, or the ping
+  TimeNs give_up_ = 0;  ///< for the present packet or ping
 };
 
-/// What is chosen of a driver.
+/// Options of a driver.
 struct DriverOptions {
-  int address = 1;                 ///< the modem gets this one
+  int address = 1;                 ///< address that the modem gets
   int broadcast = -1;              ///< address of all; -1: 255 of s2c, 0 of micromodem
   double rssi_offset_db = -190.0;  ///< of s2c: from a level re 1 uPa to dB re 1 V
 };

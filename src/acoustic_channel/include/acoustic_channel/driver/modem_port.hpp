@@ -13,7 +13,7 @@ namespace stg::acoustics {
 /// A driver behind a real port. Times are those of SteadyNow().
 class ModemPort : private DriverWorld {
  public:
-  /// What the modem said about one packet.
+  /// An event of one packet at the modem.
   struct Event {
     enum class Kind { kQueued, kSent, kSendEnd, kDropped, kRefused };
     Kind kind = Kind::kQueued;
@@ -31,7 +31,7 @@ class ModemPort : private DriverWorld {
   ModemPort(const std::string& protocol, const DriverOptions& options, const std::string& where,
             int baud);
 
-  /// Waits for bytes of the ports, or `until`, and does what is due.
+  /// Waits for bytes of the ports, or `until`, and processes what is due.
   static void Serve(const std::vector<ModemPort*>& ports, TimeNs until);
 
   /// For a loop that waits for other streams as well: watch this one, then call Work at next().
@@ -43,7 +43,7 @@ class ModemPort : private DriverWorld {
   const ModemDriver& driver() const { return *driver_; }
   bool connected() const { return port_->connected(); }
   const std::string& name() const { return port_->name(); }
-  /// What has come since the last call.
+  /// Events and receptions since the last call.
   std::vector<DriverReception> TakeReceptions();
   std::vector<Event> TakeEvents();
   std::vector<Range> TakeRanges();

@@ -10,15 +10,15 @@
 
 namespace stg::acoustics {
 
-/// The modem of one vehicle and where its host finds it.
+/// The modem of one vehicle and the port for its host.
 struct ModemPlace {
   std::string protocol = "s2c";  ///< of ModemProtocols()
   int tcp = -1;                  ///< port to listen on, 0: any; -1: none
   std::string pty;               ///< symbolic link to make to a pseudo terminal
   std::string serial;            ///< device
   int baud = 19200;              ///< of `serial`
-  int serial_baud = 0;           ///< what the modem writes takes its time on such a line; 0: none
-  int clients = 1;               ///< of `tcp` and s2c: one is obeyed, the others read along
+  int serial_baud = 0;           ///< the output takes the time of such a line; 0: none
+  int clients = 1;               ///< of `tcp` and s2c: one client commands, the others read
   std::vector<std::pair<std::string, std::string>> settings{};  ///< stored at power on
   int address = 0;                                              ///< 0: the id and one
   int broadcast = -1;                                           ///< -1: 255 of s2c, 0 of micromodem
@@ -28,8 +28,8 @@ struct ModemPlace {
   double rssi_offset_db = -190.0;
 };
 
-/// A modem that exists, as a node of the simulated water: what the node hears it sends, what it
-/// hears the node sends.
+/// A real modem as a node of the simulated water: it sends what the node receives, and the node
+/// sends what it receives.
 struct GatewayPlace {
   std::string protocol = "s2c";  ///< of DriverProtocols()
   std::string port;              ///< tcp://HOST:PORT or a serial device
@@ -60,7 +60,8 @@ struct ModemFile {
 /// an id or a port.
 ModemFile LoadModemFile(const std::string& path);
 
-/// Names of protocols, and why a modem of one of them cannot have the profile; empty: it can.
+/// Names of protocols; and the reason why a modem with a protocol cannot have the profile (empty:
+/// it can).
 std::vector<std::string> ModemProtocols();
 std::string WhyNot(const std::string& protocol, const std::string& profile);
 

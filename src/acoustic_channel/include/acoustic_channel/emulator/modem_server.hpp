@@ -16,21 +16,21 @@
 
 namespace stg::acoustics {
 
-/// Emulated modems behind real ports, in real time: one thread waits for their bytes, puts a time
-/// on them as they come, and lets the water go on.
+/// Emulated modems behind real ports, in real time: one thread waits for their bytes, stamps them
+/// with the time of arrival, and advances the water.
 class ModemServer : private ModemHosts {
  public:
   /// Opens the ports. Throws UserError.
-  /// @param command_log CSV of everything that hosts did, with times, from which a run can be
+  /// @param command_log CSV file of all host input with times, from which a run can be
   ///        replayed; empty: none
   ModemServer(const ModemFile& file, const std::string& command_log);
 
   ModemWater& water() { return water_; }
-  /// Waits for bytes, the next event of the water, or `until` (time of the network), and does what
-  /// is due.
+  /// Waits for bytes, the next event of the water, or `until` (time of the network), and processes
+  /// what is due.
   void Serve(TimeNs until);
-  /// Whether a vehicle is in the water. The modem of one that has left it has no power: its TCP
-  /// port is closed, a line says nothing, and it starts anew when the vehicle is back.
+  /// Whether a vehicle is in the water. The modem of a vehicle outside the water has no power: its
+  /// TCP port is closed, its serial line is silent, and it restarts when the vehicle is back.
   void SetPresent(int node, bool present);
   /// Time of the network now: since the server was made.
   TimeNs Now() const { return SteadyNow() - start_; }
@@ -38,7 +38,7 @@ class ModemServer : private ModemHosts {
   const BytePort* port(int node) const {
     return places_[static_cast<std::size_t>(node)].port.get();
   }
-  /// Of a node that is a modem's gateway; null: it is none.
+  /// The driver of a gateway node; null: the node is not a gateway.
   const ModemPort* gateway(int node) const {
     return places_[static_cast<std::size_t>(node)].gateway.get();
   }
@@ -60,7 +60,7 @@ class ModemServer : private ModemHosts {
     bool power = true;
     bool net = false;                        ///< the interpreter of S2C
     std::map<int, s2c::Bystander> guests{};  ///< by their numbers at the port
-    int serial_baud = 0;                     ///< of the line that the port stands for; 0: none
+    int serial_baud = 0;                     ///< of the emulated line; 0: none
     std::deque<Late> late{};
     TimeNs line_free = 0;
   };
@@ -85,7 +85,7 @@ class ModemServer : private ModemHosts {
   std::vector<Reception> heard_;
 };
 
-/// The engine that a place asks for.
+/// The engine for a place.
 std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundings* world);
 
 }  // namespace stg::acoustics

@@ -12,24 +12,24 @@
 
 namespace stg::acoustics {
 
-/// What the emulated modems talk to.
+/// The hosts of the emulated modems.
 class ModemHosts {
  public:
   virtual ~ModemHosts() = default;
   virtual void Write(int node, const std::string& bytes) = 0;
   virtual void HangUp(int node) = 0;
-  /// For programs that read along; see ModemSurroundings.
+  /// For other clients that read along; see ModemSurroundings.
   virtual void Announce(int /*node*/, const std::string& /*notification*/) {}
   /// Two modems share an address; it is allowed.
   virtual void OnSharedAddress(int /*node*/, int /*address*/) {}
 };
 
-/// Emulated modems and ordinary vehicles in one water. Its owner says what hosts write
-/// and where vehicles are, and lets time pass. No thread, socket or clock of its own: the same
-/// words at the same times give the same answers, bit for bit. Times as in Network.
+/// Emulated modems and ordinary vehicles in one water. Its owner passes the hosts' bytes and the
+/// vehicles' motion, and advances the time. It has no thread, socket or clock: the same input at
+/// the same times gives the same output, bit for bit. Times as in Network.
 class ModemWater : private PacketObserver {
  public:
-  /// Makes the modem of a node, which talks to the surroundings as long as it lives.
+  /// Makes the modem of a node, which uses the surroundings during its life.
   using MakeEngine = std::function<std::unique_ptr<ModemEngine>(ModemSurroundings*)>;
 
   /// Throws UserError unless the section is a network that emulated modems can be in: the model
@@ -42,7 +42,7 @@ class ModemWater : private PacketObserver {
 
   /// Before the first Advance. A node without an engine is an ordinary vehicle.
   void Attach(int node, int address, const MakeEngine& make);
-  /// It gets all reports, too.
+  /// Adds an observer of all reports.
   void Observe(PacketObserver* observer) { observer_ = observer; }
   void SetUtcStart(TimeNs utc) { utc_start_ = utc; }
   /// Starts an episode: every modem is switched on at time 0.
@@ -60,7 +60,7 @@ class ModemWater : private PacketObserver {
   /// The modem of a node loses its power for a moment.
   void Restart(int node, TimeNs t);
 
-  /// When something will happen without another word from outside.
+  /// Time of the next event without further input.
   TimeNs next() const;
   void Advance(TimeNs t);
   TimeNs now() const { return network_.now(); }

@@ -8,17 +8,17 @@
 #include "acoustic_channel/modem/modem_profile.hpp"
 #include "acoustic_channel/modem/packet.hpp"
 
-/// A modem that speaks its own protocol, apart from sockets, threads and clocks.
+/// A modem with its own protocol, without sockets, threads and clocks.
 namespace stg::acoustics {
 
-/// What happens to a modem in the water.
+/// An event of a modem in the water.
 struct ModemEvent {
   enum class Kind {
-    kSent,          ///< a packet of its own begins to leave
-    kSendEnd,       ///< and has left
-    kDiscarded,     ///< or never leaves
+    kSent,          ///< its own transmission begins
+    kSendEnd,       ///< its own transmission has ended
+    kDiscarded,     ///< its packet never leaves
     kAcquired,      ///< the modem locks onto a packet, for any destination
-    kReceptionEnd,  ///< and lets go of it
+    kReceptionEnd,  ///< the reception has ended
   };
   Kind kind = Kind::kSent;
   TimeNs t = 0;
@@ -27,24 +27,24 @@ struct ModemEvent {
   std::vector<std::uint8_t> payload;  ///< of a packet that the modem could read
 };
 
-/// What a modem may do: talk to its host and to the water. Times are the network's.
+/// Connects a modem to its host and to the water. Times are those of the network.
 class ModemSurroundings {
  public:
   virtual ~ModemSurroundings() = default;
 
-  /// The host is given these bytes.
+  /// Sends bytes to the host.
   virtual void Write(const std::string& bytes) = 0;
-  /// Programs that read along beside the host hear of it, too: no answer, and not yet framed.
+  /// Sends a notification, without frame, to the other clients that read along.
   virtual void Announce(const std::string& /*notification*/) {}
-  /// The connection to the host is closed, where it is one.
+  /// Closes the connection to the host, if there is one.
   virtual void HangUp() = 0;
 
-  /// A packet leaves now, or as soon as the modem may send. Source and stamps are filled in here.
+  /// Sends a packet now, or as soon as the modem may send. Source and stamps are set here.
   virtual void Send(Transmission packet) = 0;
   /// See Network::Cancel.
   virtual bool TakeBack(std::uint32_t tag) = 0;
 
-  /// The address by which other modems call this one.
+  /// Sets the address of this modem.
   virtual void SetAddress(int address) = 0;
   /// The node with an address; kToNobody: there is none.
   virtual int NodeOf(int address) const = 0;
@@ -53,31 +53,31 @@ class ModemSurroundings {
   virtual const ModemProfile& profile() const = 0;
   /// Waveforms that the modem decodes besides that of its profile.
   virtual void SetWaveforms(std::vector<std::string> waveforms) = 0;
-  /// What the modem's own clock shows [s].
+  /// Time of the modem's own clock [s].
   virtual double ClockS(TimeNs t) const = 0;
   /// Coordinated universal time at network time 0 [ns since 1970].
   virtual TimeNs utc_start() const = 0;
-  /// Of the water at the modem [m/s].
+  /// Sound speed at the modem [m/s].
   virtual double SoundSpeed() const = 0;
 };
 
-/// A modem's firmware: bytes, events and time in, bytes and packets out. What comes out depends on
-/// what came in and its times, and on nothing else. Times never go back.
+/// A modem's firmware: bytes, events and time in, bytes and packets out. The output depends only on
+/// the input and its times. Times must not go back.
 class ModemEngine {
  public:
   virtual ~ModemEngine() = default;
 
-  /// The power comes on.
+  /// Switches the modem on.
   virtual void Start(TimeNs t) = 0;
-  /// A host connects, or goes: half a line dies with it.
+  /// A host connects or disconnects; an incomplete line is dropped.
   virtual void Connect(TimeNs t) = 0;
   virtual void Disconnect(TimeNs t) = 0;
-  /// Bytes of the host.
+  /// Takes bytes from the host.
   virtual void Read(TimeNs t, ByteView bytes) = 0;
   virtual void Handle(const ModemEvent& event) = 0;
-  /// To be called at next(), where nothing else happens before.
+  /// Must be called at next(), if there is no earlier event.
   virtual void Tick(TimeNs t) = 0;
-  /// When the modem wants to be called; kNever: it waits for others.
+  /// Time of the next call; kNever: none is needed.
   virtual TimeNs next() const = 0;
 };
 

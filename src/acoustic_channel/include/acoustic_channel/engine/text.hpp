@@ -3,14 +3,14 @@
 #include <optional>
 #include <string>
 
-/// Numbers and bytes as the protocols of modems write them.
+/// Numbers and bytes in the protocols of modems.
 namespace stg::acoustics {
 
 /// Upper case.
 std::string ToHex(const std::string& bytes);
-/// Nothing: an odd number of digits, or something else than a digit.
+/// Empty for an odd number of digits, or for a character that is not a digit.
 std::optional<std::string> FromHex(const std::string& digits);
-/// A whole number of the range, all of `text`.
+/// A whole number in the range; `text` must contain nothing else.
 std::optional<int> NumberIn(const std::string& text, int lowest, int highest);
 
 }  // namespace stg::acoustics

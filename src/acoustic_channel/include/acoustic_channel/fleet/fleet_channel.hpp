@@ -12,33 +12,33 @@
 
 namespace stg::acoustics {
 
-/// How long a fleet's channel waits for what may still come in, in the time of the stamps.
+/// How long a fleet's channel waits for input, in the time of the stamps.
 struct FleetPatience {
   double lag_s = 0.1;           ///< for anything
-  double odometry_s = 1.0;      ///< for the next word of a vehicle that is there
-  double silent_after_s = 3.0;  ///< a vehicle that has said nothing for this long is not there
-  /// False: the velocities that vehicles tell say nothing; differences of positions count.
+  double odometry_s = 1.0;      ///< for the next odometry of a present vehicle
+  double silent_after_s = 3.0;  ///< a vehicle without odometry for this time is absent
+  /// False: ignore the vehicles' velocities, and use differences of their positions.
   bool has_velocity = true;
 };
 
-/// A fleet's channel reports to it what happens. Times of packets count from the start of the run.
+/// Callbacks of a fleet's channel. Times of packets count from the start of the run.
 class FleetListener : public PacketObserver {
  public:
   /// A run begins; `start` is its time 0 in the time of the stamps [ns].
   virtual void OnBegin(TimeNs start) = 0;
-  /// What one vehicle received in a step, at least one packet, oldest first; payloads are valid
+  /// The packets that a vehicle received in a step, at least one, oldest first; payloads are valid
   /// during the call.
   virtual void OnReceptions(int vehicle, const std::vector<Reception>& received) = 0;
-  /// A packet that was taken by Offer never reached its modem, as its vehicle is not there.
+  /// A packet that Offer took did not reach its modem, because its vehicle is absent.
   virtual void OnAbsent(const Transmission& packet) = 0;
-  /// A ping that could not be asked.
+  /// A ping that could not be requested.
   virtual void OnPingRefused(std::uint32_t tag, const std::string& why) = 0;
 };
 
-/// A channel for vehicles that are not kept in step: motion and packets come in as they do, each
-/// with its stamp; a clock tells how late it is. Steps are closed on a fixed grid of stamps, each
-/// when all that counts for it is in. What comes out is a function of the stamps, and not of the
-/// order or the moment in which they came in, as long as they come within the patience.
+/// A channel for vehicles that are not synchronised: motion and packets come at any time, each with
+/// its stamp, and a clock gives the present time. Steps are closed on a fixed grid of stamps, each
+/// when all its input is complete. The output is a function of the stamps alone, not of the order
+/// or time of arrival, if all input comes within the patience.
 ///
 /// Stamps and clock in nanoseconds, from any common zero; nodes are vehicles, by index. Not
 /// thread-safe.
@@ -46,7 +46,7 @@ class FleetChannel {
  public:
   enum class Word {
     kCounts,
-    kRepeated,  ///< there is one of that stamp
+    kRepeated,  ///< there is one with that stamp already
     kLate,      ///< the steps around it are closed
   };
 
@@ -56,28 +56,28 @@ class FleetChannel {
   FleetChannel(const NetworkConfig& network, const FleetPatience& patience,
                FleetListener* listener);
 
-  /// Forgets everything: the next word begins a run. With the same words it is the same run.
+  /// Clears everything: the next input begins a run. The same input gives the same run.
   void Restart();
 
   /// Numbers must be finite.
   Word Move(int vehicle, TimeNs stamp, const Motion& motion);
-  /// Throws UserError that says why the modem would never take the packet, or that too many wait.
-  /// `kLate`: it is offered now instead. Where the model has no modems, one packet of a vehicle
-  /// leaves in a step: the newest, and the others of the step are discarded (kQueue).
+  /// Throws UserError with the reason if the modem would never take the packet, or if too many
+  /// packets wait. `kLate`: the packet is offered now. In a model without modems, one packet of a
+  /// vehicle leaves in a step, the newest; the others of the step are discarded (kQueue).
   Word Offer(const Transmission& packet);
-  /// See Channel::Ping; asked at the next step. The listener hears how it ends.
+  /// See Channel::Ping; requested at the next step. The listener gets the result.
   void Ping(int source, int destination, TimeNs timeout, std::uint32_t tag);
 
-  /// Closes all steps for which everything is in, or has been waited for, at the time `now`.
+  /// Closes all steps whose input is complete, or whose waiting time is over, at the time `now`.
   void Run(TimeNs now) { CloseUntil(Settled(now)); }
-  /// Nothing more will come in: closes the steps up to the newest word.
+  /// Ends the input: closes the steps up to the newest stamp.
   void Finish();
 
   /// A step has been closed in this run.
   bool begun() const { return begun_; }
-  /// Of the last closed step; meaningless before.
+  /// Time of the last closed step; undefined before.
   TimeNs closed() const { return closed_; }
-  /// Time 0 of the channel; meaningless before.
+  /// Time 0 of the channel; undefined before.
   TimeNs start() const { return start_; }
   bool present(int vehicle) const { return present_[static_cast<std::size_t>(vehicle)]; }
   bool heard_of(int vehicle) const { return track(vehicle).newest().has_value(); }
@@ -86,7 +86,7 @@ class FleetChannel {
 
  private:
   struct Offered {
-    Transmission packet;  ///< with the stamps of the outside
+    Transmission packet;  ///< with the stamps of the caller
     std::vector<std::uint8_t> bytes;
   };
   struct Asked {
@@ -113,7 +113,7 @@ class FleetChannel {
   std::vector<std::deque<Offered>> waiting_;  ///< [vehicles] for the step of their stamp
   std::vector<Asked> asked_;
   bool begun_ = false;
-  TimeNs first_ = -1;  ///< earliest word of a run that has not begun
+  TimeNs first_ = -1;  ///< earliest stamp of a run that has not begun
   TimeNs start_ = 0, closed_ = 0, next_ = 0;
   std::vector<bool> present_;
   std::vector<Vec3<double>> positions_, velocities_;

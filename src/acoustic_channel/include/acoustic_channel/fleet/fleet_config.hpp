@@ -8,11 +8,10 @@
 namespace stg::acoustics {
 
 /// The network of a fleet from a YAML file with the section `channel` and, if wanted, `seed` and
-/// `time`; keys left out have their defaults. A whole scenario will do, too: one that states its
-/// `name`, of which the other sections are left to their own readers. Throws UserError with file,
-/// line and key.
+/// `time`; keys left out have their defaults. It may also be a whole scenario, which states its
+/// `name`; other sections are then ignored. Throws UserError with file, line and key.
 /// @param overrides key.path=value, after the file
-/// @param vehicles whatever number of AUVs the file states
+/// @param vehicles number of vehicles, which replaces that of the file
 NetworkConfig LoadFleetNetwork(const std::string& file, const std::vector<std::string>& overrides,
                                int vehicles);
 

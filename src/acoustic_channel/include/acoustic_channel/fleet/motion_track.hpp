@@ -6,42 +6,42 @@
 #include "auv_common/numbers/vector.hpp"
 #include "auv_common/time.hpp"
 
-/// The channel for vehicles of anybody: their motion and packets as they come in, in whatever
-/// order.
+/// The channel for vehicles of any software: their motion and packets may come in any order.
 namespace stg::acoustics {
 
-/// Where a vehicle is and how it moves, world axes.
+/// Position and velocity of a vehicle, world axes.
 struct Motion {
   Vec3<double> p_W{0.0, 0.0, 0.0};  ///< [m]
   Vec3<double> v_W{0.0, 0.0, 0.0};  ///< [m/s]
 };
 
-/// The motion of one vehicle between and beyond the moments at which it reported it.
+/// The motion of one vehicle between and after its samples.
 ///
 /// Stamps may jitter, be rounded, repeat, or come out of order. Between two samples no more than
-/// `patience` apart, position and velocity are interpolated linearly. Otherwise the position goes
-/// on from the earlier one with its velocity: what comes too late to be waited for changes nothing.
-/// A vehicle is silent from `silent_after` past a sample until the next, and not there before the
-/// first: its motion is then nothing.
+/// `patience` apart, position and velocity are interpolated linearly. Otherwise the position
+/// continues from the earlier sample with its velocity, so that a sample that comes too late has no
+/// effect. A vehicle is silent from `silent_after` after a sample until the next one, and absent
+/// before the first one; its motion is then empty.
 class MotionTrack {
  public:
   struct Limits {
     TimeNs patience = 0, silent_after = 0;
-    /// False: velocities of the samples say nothing, differences of their positions count instead.
+    /// False: ignore the velocities of the samples, and use differences of their positions.
     bool has_velocity = true;
   };
   explicit MotionTrack(const Limits& limits);
 
-  /// A sample at any time, with finite numbers. False: there is one of that time, which counts.
+  /// Adds a sample at any time, with finite numbers. False: there is one of that time already,
+  /// which is kept.
   bool Add(TimeNs t, const Motion& motion);
 
-  /// Nothing: not there, or silent.
+  /// Empty: absent or silent.
   std::optional<Motion> At(TimeNs t) const;
 
-  /// Time of the newest sample, and of the newest up to and including t; nothing: there is none.
+  /// Time of the newest sample, and of the newest one up to and including t; empty: there is none.
   std::optional<TimeNs> newest() const;
   std::optional<TimeNs> NewestUntil(TimeNs t) const;
-  /// Times before t are not asked for again.
+  /// Drops samples that are not needed for times from t on.
   void ForgetBefore(TimeNs t);
   void Clear() { samples_.clear(); }
 

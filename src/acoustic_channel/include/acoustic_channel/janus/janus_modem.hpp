@@ -10,9 +10,9 @@
 
 namespace stg::acoustics::janus {
 
-/// What is chosen of an emulated JANUS modem.
+/// Options of an emulated JANUS modem.
 struct ModemOptions {
-  int station = 1;  ///< in packets of class 16 whose host names none
+  int station = 1;  ///< in packets of class 16 without a station from the host
 };
 
 /// Lines of a host, without their ends; a line that is too long comes once, as an empty optional
@@ -49,7 +49,7 @@ class JanusModem : public ModemEngine {
 
  private:
   using Words = std::map<std::string, std::string>;
-  /// What hosts get instead of ok.
+  /// The answer to a host instead of ok.
   struct Refusal {
     std::string why;
   };

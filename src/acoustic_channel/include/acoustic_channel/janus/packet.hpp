@@ -13,7 +13,7 @@ inline constexpr std::size_t kBaselineBytes = 8;
 inline constexpr int kVersion = 3;
 /// n bytes of cargo take n + 1 times as long, at 160 chips per second [s].
 inline constexpr double kCargoByte_s = 0.1;
-/// The class whose packets tell how long their cargo is.
+/// The class whose packets state the length of their cargo.
 inline constexpr int kReferenceClass = 16;
 inline constexpr int kToAllStations = 255;
 
@@ -26,8 +26,7 @@ struct Packet {
   int app_type = 0;
   /// 34 bits, of a packet with a schedule 26.
   std::uint64_t app_data = 0;
-  /// The channel is reserved for so long, or the packet is repeated so often: an index of
-  /// ScheduleS.
+  /// Time of the reservation, or interval of repetition: an index of ScheduleS.
   enum class Schedule { kNone, kReservation, kRepeat };
   Schedule schedule = Schedule::kNone;
   int schedule_index = 0;
@@ -36,7 +35,7 @@ struct Packet {
   int app_data_bits() const { return schedule == Schedule::kNone ? 34 : 26; }
 };
 
-/// Fields of the application data of class 16. Types 0 and 1 are known.
+/// Fields of the application data of class 16, types 0 and 1.
 struct ReferenceData {
   int station = 0;
   int parameter_set = 0;  ///< of type 0, 12 bits
@@ -49,15 +48,15 @@ struct ReferenceData {
 /// (reservation), of 17.7 % from 33 ms to a year (repeat). The standard prints the same series with
 /// some digits changed, by less than half a step.
 double ScheduleS(Packet::Schedule schedule, int index);
-/// The index that is nearest to a time; nothing: it is outside of the series.
+/// The index nearest to a time; empty: the time is outside of the series.
 std::optional<int> ScheduleIndex(Packet::Schedule schedule, double time_s);
 
 std::array<std::uint8_t, kBaselineBytes> Encode(const Packet& packet);
-/// Without cargo. Nothing: the checksum is wrong, or the version another one.
+/// Decodes a packet, without cargo. Empty: wrong checksum, or another version.
 std::optional<Packet> Decode(const std::array<std::uint8_t, kBaselineBytes>& bytes);
 
-/// The length on the air of so much cargo of type 0: 0, 1, 2, 4 or a multiple of 8 up to 480.
-/// Nothing: it is longer.
+/// The transmitted length of cargo of type 0: 0, 1, 2, 4 or a multiple of 8 up to 480. Empty: it is
+/// too long.
 std::optional<std::size_t> PaddedCargo(std::size_t bytes);
 /// @param data its cargo_bytes are one of PaddedCargo for type 0, and at most 255 for type 1
 std::uint64_t EncodeReference(int app_type, const ReferenceData& data);

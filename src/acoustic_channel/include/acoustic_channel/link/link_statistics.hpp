@@ -45,7 +45,7 @@ struct LinkStatistics {
   double average_age_s = 0.0;     ///< (1/T) integral of age over the episode, exact
   double peak_age_s = 0.0;        ///< mean age just before it was reset; 0 while it never was
   double max_age_s = 0.0;         ///< largest age so far
-  std::uint64_t delivered = 0;    ///< packets handed to the receiver
+  std::uint64_t delivered = 0;    ///< packets that the receiver got
   std::uint64_t dropped = 0;
   DropReason last_drop = DropReason::kNone;
   DropCounts drops{};  ///< by reason
@@ -58,18 +58,18 @@ struct ChannelTotals {
   DropCounts drops{};  ///< by reason
 };
 
-/// Pings by which nodes range by themselves.
+/// Pings of nodes that range by themselves.
 struct PingTotals {
   std::uint64_t sent = 0;      ///< requests that left
   std::uint64_t answered = 0;  ///< whose answer came
 };
 
-/// Accounts for the events of all links; costs nothing between events.
+/// Counts the events of all links; it has no cost between events.
 class LinkTable {
  public:
   explicit LinkTable(int agents);
 
-  /// Forgets everything; the ages count from `start`.
+  /// Clears everything; ages count from `start`.
   void Reset(TimeNs start);
 
   void Drop(int source, int destination, DropReason reason);

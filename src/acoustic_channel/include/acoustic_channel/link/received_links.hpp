@@ -8,13 +8,13 @@
 
 namespace stg::acoustics {
 
-/// What links are worth by what came over them; the distance does not matter.
+/// Link quality from received packets, independent of the distance.
 ///
-/// Every packet of a source is a sample: one that a gap in the sequence numbers betrays counts 0,
-/// one that came counts the probability that a packet survives at its SINR less a margin of
-/// kMarginDb. `learnt` is their running mean with weight kGain; quality is that times
-/// exp(-age / freshness). A source that sends to others alone looks worse than it is, as its
-/// numbers show gaps.
+/// Every packet of a source is a sample: a packet that is missing in the sequence numbers counts 0,
+/// and a received one counts the probability that a packet survives at its SINR minus a margin of
+/// kMarginDb. `learnt` is their running mean with weight kGain; quality is that times exp(-age /
+/// freshness). The quality is too low for a source that sends to others, because its numbers then
+/// have gaps.
 class ReceivedLinks : public LinkEstimator {
  public:
   static constexpr double kGain = 0.2, kMarginDb = 3.0;
@@ -33,7 +33,7 @@ class ReceivedLinks : public LinkEstimator {
  private:
   struct Link {
     std::array<double, kLanes> learnt;
-    std::array<std::int64_t, kLanes> next;  ///< sequence after the last that came; 0: none did
+    std::array<std::int64_t, kLanes> next;  ///< sequence after the last received one; 0: none
   };
 
   double freshness_s_;

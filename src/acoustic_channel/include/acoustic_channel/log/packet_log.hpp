@@ -10,7 +10,7 @@ namespace stg::acoustics {
 
 /// The packet log as CSV: one row per packet and receiver, written when its fate is known. Units
 /// are in the names of the columns, levels in dB re 1 uPa. A packet that never left its modem has a
-/// row for every node it was for, with empty fields from `sequence` on where nothing is known.
+/// row for each of its receivers, with empty fields from `sequence` on.
 class PacketLog : public PacketObserver {
  public:
   /// Writes the header.

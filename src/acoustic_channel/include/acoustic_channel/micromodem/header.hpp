@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// What a Micromodem tells another one beside the payload. It rides in Transmission::header.
+/// Fields that a Micromodem sends beside the payload, in Transmission::header.
 namespace stg::acoustics::micromodem {
 
 enum class PacketType : std::uint8_t {

@@ -15,15 +15,15 @@
 namespace stg::acoustics::micromodem {
 
 inline constexpr TimeNs kSecondNs = 1'000'000'000;
-/// A packet that has not left by then never will; the longest takes some seconds.
+/// A packet that has not left by then is given up; the longest one takes some seconds.
 inline constexpr TimeNs kSendingTimeout = 30 * kSecondNs;
 
-/// What is chosen of an emulated Micromodem.
+/// Options of an emulated Micromodem.
 struct ModemOptions {
   int address = 1;                     ///< SRC at power on, 1 to 127
   int broadcast = 0;                   ///< the address of all
   std::string firmware = "2.0.35490";  ///< 2 and above: a Micromodem-2, which knows more commands
-  /// Names and values that it has when it is switched on.
+  /// Settings at power on: names and values.
   std::vector<std::pair<std::string, std::string>> settings{};
 };
 
@@ -43,12 +43,12 @@ class Micromodem : public ModemEngine {
   void Tick(TimeNs t) override;
   TimeNs next() const override;
 
-  /// For tests: what it is at work on.
+  /// Present state, for tests.
   enum class State {
     kBoot,         ///< until the first CAREV
     kIdle,         ///< also while it waits for an answer that may never come
     kCycleTx,      ///< the start of a cycle leaves
-    kDataRequest,  ///< the host is asked for frames
+    kDataRequest,  ///< the modem asks the host for frames
     kDataTx,       ///< they leave
     kHeardCycle,   ///< another modem's frames must follow
     kPacketTx,     ///< a ping, mini-packet or flexible data packet leaves
@@ -56,13 +56,13 @@ class Micromodem : public ModemEngine {
   State state() const { return state_; }
 
  private:
-  /// The frames that the host is asked for.
+  /// The frames that the modem requests from the host.
   struct Cycle {
     Header header;
     int wanted = 0;
     std::vector<std::string> frames;
   };
-  /// What the modem sends by itself when its turnaround is over.
+  /// A packet that the modem sends by itself after its turnaround.
   struct Answer {
     TimeNs due = 0;
     Header header;
@@ -88,7 +88,7 @@ class Micromodem : public ModemEngine {
   TimeNs Utc(TimeNs t) const;
   /// When the modem's clock shows its next full second.
   TimeNs NextSecond(TimeNs t) const;
-  /// How good that clock is, as the statistics of this firmware tell it.
+  /// Quality of that clock, in the statistics of this firmware.
   int clock_mode() const;
   int setting(const std::string& key) const;
   bool second_generation() const;

@@ -8,7 +8,7 @@ namespace stg::acoustics::micromodem {
 
 inline constexpr int kRates = 7;  ///< 0 to 6
 
-/// What a Micromodem can send, all at the centre frequency of its own profile.
+/// Modes of a Micromodem, all at the centre frequency of its own profile.
 class Modes {
  public:
   explicit Modes(const ModemProfile& own);
@@ -22,7 +22,7 @@ class Modes {
   ModemProfile mini_, mini_psk_;
 };
 
-/// The rate that a profile is; -1: it is no Micromodem's.
+/// The rate of a profile; -1: it is not of a Micromodem.
 int RateOf(const ModemProfile& profile);
 
 }  // namespace stg::acoustics::micromodem

@@ -8,14 +8,14 @@
 #include "acoustic_channel/engine/text.hpp"
 #include "acoustic_channel/modem/packet.hpp"
 
-/// The protocol that WHOI Micromodems speak with their hosts: sentences in the manner of NMEA 0183.
-/// Both ends read and write with the parts of this folder.
+/// The protocol between WHOI Micromodems and their hosts: sentences as in NMEA 0183. Both ends use
+/// the parts of this folder.
 namespace stg::acoustics::micromodem {
 
 /// One line: `$CCCYC,0,1,2,0,0,1*5F` is {"CCCYC", "0", "1", "2", "0", "0", "1"}.
 struct Sentence {
-  std::vector<std::string> fields;  ///< the name first; of a broken one nothing
-  std::string error;                ///< why it could not be read; empty: it could
+  std::vector<std::string> fields;  ///< the name first; empty for a broken sentence
+  std::string error;                ///< why it could not be read; empty: it was read
 };
 
 /// `$BODY*HH` with end of line; HH is the exclusive or of the bytes of the body.
@@ -31,7 +31,7 @@ class SentenceReader {
 
   void Reset();
   void Feed(ByteView bytes);
-  /// The next sentence; nothing: more bytes are needed. Empty lines are none.
+  /// The next sentence; empty: more bytes are needed. Empty lines are skipped.
   std::optional<Sentence> Next();
 
  private:

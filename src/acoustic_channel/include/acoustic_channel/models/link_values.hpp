@@ -2,7 +2,7 @@
 
 namespace stg::acoustics {
 
-/// What a propagation model says of a link.
+/// Values of a link by a propagation model.
 template <class T>
 struct LinkValues {
   T loss;     ///< probability that a packet is lost

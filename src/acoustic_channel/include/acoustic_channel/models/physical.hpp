@@ -10,7 +10,7 @@
 namespace stg::acoustics {
 
 /// The network of modems behind the interface of decision steps: positions are known at steps, and
-/// nodes move on straight lines between; whatever happens between two steps happens in Deliver.
+/// nodes move on straight lines between; Deliver processes the events between two steps.
 class PhysicalChannel : public Channel {
  public:
   /// Throws UserError for names in the section that do not exist.

@@ -11,12 +11,12 @@ double RatioToDb(double ratio);
 double BpskBitError(double gamma);
 /// Non-coherent orthogonal BFSK without fading: exp(-gamma / 2) / 2.
 double NoncoherentFskBitError(double gamma);
-/// The two when every bit fades on its own: Rayleigh with mean gamma, and Rice with K.
+/// Both with independent fading of each bit: Rayleigh with mean gamma, and Rice with K.
 double RayleighBpskBitError(double gamma);
 double RayleighNoncoherentFskBitError(double gamma);
 double RicianNoncoherentFskBitError(double gamma, double rician_k);
 
-/// How a modem's frames die of noise.
+/// How noise destroys a modem's frames.
 struct ErrorCurve {
   enum class Kind {
     kNone,            ///< nothing is ever lost

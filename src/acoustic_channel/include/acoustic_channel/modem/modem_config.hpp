@@ -7,10 +7,10 @@
 
 namespace stg::acoustics {
 
-/// What a modem does with a packet that cannot leave yet.
+/// Queue of packets that cannot leave yet.
 enum class QueuePolicy {
-  kNewest,  ///< one waits; a newer one replaces it: best for age
-  kFifo     ///< up to `queue_length` wait; one more is refused
+  kNewest,  ///< one packet waits, and a newer one replaces it: lowest age
+  kFifo     ///< up to `queue_length` packets wait; more are refused
 };
 
 /// Keys of `channel.physical.modem`.
@@ -23,9 +23,9 @@ struct ModemConfig {
   double clock_offset_std_s = 0.0;      ///< of a node's clock at the start of an episode
   double clock_drift_std_ppm = 0.0;     ///< of its rate
   double timing_std_s = 0.0;            ///< of a travel time that a modem measures
-  double late_probability = 0.0;        ///< that it takes a later sound for the first one
-  double late_max_s = 0.1;              ///< by which that came later, at most
-  double freshness_s = 30.0;            ///< decay time of link quality with the age of the news
+  double late_probability = 0.0;        ///< that the travel time is that of a later arrival
+  double late_max_s = 0.1;              ///< largest delay of that arrival
+  double freshness_s = 30.0;            ///< decay time of link quality with the age of information
   double source_level_offset_db = 0.0;  ///< added to the source level of every profile
 };
 

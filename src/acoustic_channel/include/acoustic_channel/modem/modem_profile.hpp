@@ -14,11 +14,11 @@
 /// Modems as data: a new one is one entry of the table in modem_profile.cpp.
 namespace stg::acoustics {
 
-/// What the network has to know of a modem. Levels in dB re 1 uPa at 1 m.
+/// Data of a modem for the network. Levels in dB re 1 uPa at 1 m.
 struct ModemProfile {
   std::string name;
   std::string waveform;  ///< modems of the same one understand each other; others are noise
-  bool ideal = false;    ///< instant and lossless, whatever the water; the rest means nothing
+  bool ideal = false;    ///< instant and lossless in any water; other fields are unused
 
   double centre_khz = 0.0, bandwidth_khz = 0.0;
   double source_level_db = 0.0;
@@ -28,7 +28,7 @@ struct ModemProfile {
   std::size_t frame_bytes = 1, max_frames = 1;
 
   double acquisition_db = 0.0;     ///< ratio in the band at which a receiver locks on
-  double implementation_db = 0.0;  ///< by which a real receiver is worse than its error curve
+  double implementation_db = 0.0;  ///< loss of a real receiver against its error curve
   ErrorCurve errors;
   /// Bandwidth over bit rate [dB]. Despreading lifts a packet out of the noise by this, but not out
   /// of others of the same waveform, which it lifts as well: their power counts so much more.
@@ -56,10 +56,10 @@ ModemProfileRegistry& ModemProfiles();
 /// or a list that is not as long as the fleet.
 std::vector<ModemProfile> MakeProfiles(const ModemConfig& config, int nodes);
 
-/// Why the section cannot work for so many nodes; nothing: it can.
+/// Why the section cannot work for so many nodes; empty: it can.
 std::optional<config::Violation> FindConflict(const ModemConfig& c, int nodes);
 
-/// Longest payload of the network: the section's, or what every modem takes [bytes].
+/// Longest payload of the network: the section's, or the longest one of every modem [bytes].
 std::size_t LongestPayload(const ModemConfig& config, int nodes);
 
 /// Longest time that a packet of the network takes to leave a modem of the fleet, and the longest

@@ -5,7 +5,7 @@
 
 #include "auv_common/time.hpp"
 
-/// What modems exchange. The channel carries bytes and does not read them.
+/// Packets between modems. The channel carries bytes and does not read them.
 namespace stg::acoustics {
 
 /// Bytes that the caller owns.
@@ -19,8 +19,8 @@ ByteView ViewOf(const Bytes& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-inline constexpr int kToAll = -1;     ///< destination of a packet for all that hear it
-inline constexpr int kToNobody = -2;  ///< of one for a modem that is not in this water
+inline constexpr int kToAll = -1;     ///< destination of a packet for all receivers
+inline constexpr int kToNobody = -2;  ///< of a packet for a modem outside this water
 
 /// Longest payload of a modem without a profile of its own [bytes]: the largest frame set of the
 /// modems in use today (eight frames of 256 bytes).
@@ -28,38 +28,38 @@ inline constexpr std::size_t kLargestFrame = 2048;
 
 struct ModemProfile;
 
-/// What a packet is to the modems. All but data is their own business: no vehicle is given it, and
-/// links do not count it.
+/// Kind of a packet. Modems use all kinds except data for themselves: vehicles do not receive them,
+/// and links do not count them.
 enum class PacketKind : std::uint8_t {
   kData,
   kPing,     ///< of Network::Ping, which answers with kReply
   kReply,    ///< to it
   kAck,      ///< an acknowledgement that a modem sends by itself
-  kControl,  ///< what else a modem's protocol sends: a start of a cycle, a ping of its own
+  kControl,  ///< other packets of a modem's protocol, such as the start of a cycle
 };
 
 /// A packet offered to the sender's modem.
 struct Transmission {
   int source = 0;
-  int destination = kToAll;  ///< or the node that it is for; others do not see it
+  int destination = kToAll;  ///< or a node; other nodes do not receive it
   TimeNs stamp = 0;          ///< time of the step it is offered in
-  TimeNs generation = 0;     ///< time at which the payload was true, not after `stamp`
-  std::uint32_t tag = 0;     ///< the caller's own, not read; comes back in receptions and reports
+  TimeNs generation = 0;     ///< time of the content, not after `stamp`
+  std::uint32_t tag = 0;     ///< for the caller; returned in receptions and reports
   ByteView payload;          ///< not empty; the modem copies it
 
-  // Of modems with a protocol of their own; read by Network alone.
+  // For modems with a protocol of their own; only Network reads it.
   PacketKind kind = PacketKind::kData;  ///< kData, kAck or kControl
-  const ModemProfile* mode = nullptr;   ///< that it is sent in; null: the node's. Outlives the run
+  const ModemProfile* mode = nullptr;   ///< of the transmission; null: the node's. Outlives the run
   std::size_t air_bytes = 0;            ///< bytes whose airtime it takes; 0: those of the payload
   double level_db = 0.0;                ///< added to the source level of the mode
-  std::uint64_t header = 0;             ///< rides along; no part of the air, not read
+  std::uint64_t header = 0;             ///< carried along; it has no airtime
 };
 
-/// A packet as one receiver's modem gives it. Every number is finite.
+/// A packet from a receiver's modem. Every number is finite.
 ///
-/// One without payload is the answer to a ping, of a channel whose nodes range by themselves:
-/// `source` is the node that answered, `transmit` when the request left, `generation` the time that
-/// the range is of, travel_time_s half the round trip.
+/// A reception without payload is the answer to a ping, in a channel whose nodes range by
+/// themselves: `source` is the answering node, `transmit` the time of the request, `generation` the
+/// time of the range, travel_time_s half the round trip.
 struct Reception {
   int source = 0, receiver = 0;
   int destination = kToAll;       ///< as addressed by the sender
@@ -68,8 +68,8 @@ struct Reception {
   TimeNs transmit = 0;            ///< the packet began to leave the sender
   TimeNs arrival = 0;             ///< the packet was complete at the receiver
   double distance_m = 0.0;        ///< between the two at transmission
-  double travel_time_s = 0.0;     ///< one-way, as the clocks of the two see it
-  double loss_probability = 0.0;  ///< probability with which this packet could have been lost
+  double travel_time_s = 0.0;     ///< one-way, by the clocks of both modems
+  double loss_probability = 0.0;  ///< probability that this packet is lost
   double link_quality = 0.0;      ///< [0, 1], of the model, with the age at arrival
   double received_level_db =
       0.0;                      ///< re 1 uPa; this and the next two are 0 when the model has none

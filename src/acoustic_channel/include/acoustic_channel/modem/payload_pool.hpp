@@ -7,9 +7,9 @@
 
 namespace stg::acoustics {
 
-/// Payloads under way: one copy of each, however many receivers it is on its way to. A slot is
-/// used again when its last receiver has the payload and Recycle was called. Allocates only while
-/// the number or the size of payloads under way reaches a new maximum.
+/// Payloads in transmission: one copy of each for all its receivers. A slot is free again when the
+/// last receiver has the payload and Recycle was called. Allocates only while the number or the
+/// size of these payloads reaches a new maximum.
 class PayloadPool {
  public:
   /// Copies a payload that has no holder yet; returns the handle of the copy.
@@ -17,13 +17,13 @@ class PayloadPool {
   /// Valid until the next Store.
   ByteView at(int handle) const { return ViewOf(slots_[static_cast<std::size_t>(handle)].bytes); }
 
-  /// One more receiver to go.
+  /// Adds a receiver.
   void Hold(int handle) { ++slots_[static_cast<std::size_t>(handle)].holders; }
-  /// One receiver has it; also the last one may read it until Recycle.
+  /// Removes a receiver; the last one, too, may read the payload until Recycle.
   void Release(int handle);
-  /// Payloads without a holder are forgotten.
+  /// Frees payloads without a receiver.
   void Recycle();
-  /// Forgets all payloads.
+  /// Frees all payloads.
   void Clear();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace stg::acoustics {
 
-/// What happens in a network. At one time, smaller kinds come first.
+/// Kinds of events in a network. At one time, smaller kinds come first.
 enum class EventKind : std::uint8_t {
   kPresence,      ///< a node joins or leaves
   kMove,          ///< a position becomes known
@@ -18,23 +18,23 @@ enum class EventKind : std::uint8_t {
   kReply,         ///< a modem answers a ping
   kSend,          ///< a modem wants to send
   kArrivalBegin,  ///< the first sound of a packet at a receiver
-  kAcquire,       ///< the receiver decides which of those to lock onto
+  kAcquire,       ///< the receiver chooses an arrival to lock onto
   kNoise,         ///< noise at a receiver changes
-  kTimeout,       ///< a ping is given up
+  kTimeout,       ///< a ping has timed out
 };
 
 struct Event {
   TimeNs t;
   std::uint64_t order;   ///< kind, source, receiver: decides at one time
-  std::uint32_t serial;  ///< of insertion: only of alike events, whose order is the caller's
-  std::int32_t index;    ///< of what it happens to, by kind
+  std::uint32_t serial;  ///< order of insertion, for otherwise equal events
+  std::int32_t index;    ///< index of the object of the event, by kind
 
   EventKind kind() const { return static_cast<EventKind>(order >> 56); }
   int source() const { return static_cast<int>(order >> 28 & 0xfffffff); }
   int receiver() const { return static_cast<int>(order & 0xfffffff); }
 };
 
-/// Events by time, a binary heap. Allocates only when it becomes longer than ever.
+/// Events by time, a binary heap. Allocates only when it exceeds its earlier maximum.
 class EventQueue {
  public:
   explicit EventQueue(std::size_t reserve) { heap_.reserve(reserve); }
@@ -75,7 +75,7 @@ class EventQueue {
   std::uint32_t serial_ = 0;
 };
 
-/// Things of one kind that come and go, addressed by their index.
+/// Reusable slots for objects of one kind, addressed by their index.
 template <class T>
 class Pool {
  public:

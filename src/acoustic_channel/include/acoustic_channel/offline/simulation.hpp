@@ -11,12 +11,12 @@
 
 namespace stg::acoustics {
 
-/// What a simulated network did. Nodes are indices; a packet counts once for each receiver, but for
-/// `offered` and `transmitted`.
+/// Results of a simulated network. Nodes are indices. A packet counts once for each receiver,
+/// except in `offered` and `transmitted`.
 struct SimulationSummary {
   struct Receiver {
     std::uint64_t delivered = 0;
-    double throughput = 0.0;  ///< share of the time in which packets came in that were delivered
+    double throughput = 0.0;  ///< share of time with the reception of delivered packets
   };
   struct Link {
     int source = 0, destination = 0;
@@ -28,27 +28,27 @@ struct SimulationSummary {
   std::uint64_t transmitted = 0;  ///< packets that left them
   std::uint64_t expected = 0;     ///< receivers of all packets that left
   std::uint64_t delivered = 0;
-  std::uint64_t in_flight = 0;  ///< left, but not decided at the end
+  std::uint64_t in_flight = 0;  ///< sent, but without a fate at the end
   DropCounts drops{};
   std::vector<Receiver> receivers;  ///< by node
   std::vector<Link> links;          ///< by source, then destination
   std::vector<double> energy_j;     ///< by node
 };
 
-/// A network offline. Time goes in steps: at each one, positions and presence are set, and what was
-/// offered since the last one goes to the modems: at its own time where the model has continuous
-/// time; elsewhere at the end of the step, and of several packets of a node in one step the newest.
+/// A network offline. Time advances in steps. At each step, positions and presence are set, and the
+/// packets since the last step go to the modems: in a model with continuous time, each at its own
+/// time; otherwise at the end of the step, and only the newest packet of a node.
 class Simulation {
  public:
   /// @param log gets every packet's reports; null: none. It must live as long as this object.
   Simulation(const SimulationFile& file, PacketObserver* log);
   ~Simulation();
 
-  /// False: the end is reached.
+  /// Runs a step. False: the end is reached.
   bool Step();
   double time_s() const { return Seconds(now_); }
 
-  /// Of what happened until now, which must not be before the first step.
+  /// Results up to now, after at least one step.
   SimulationSummary Summary() const;
 
  private:

@@ -30,12 +30,12 @@ struct SimulationFile {
   std::vector<SimulatedNode> nodes;  ///< by ascending id
   std::vector<TrafficSpec> traffic;
 
-  /// What the channel needs to know of the run.
+  /// The run of the channel.
   RunConfig Run() const;
 };
 
 /// Reads the file that docs/simulate.md describes; tracks lie relative to it. Throws UserError with
-/// file, line and key for everything that it does not know or that cannot work.
+/// file, line and key for unknown keys and invalid values.
 SimulationFile LoadSimulation(const std::string& path);
 
 }  // namespace stg::acoustics

@@ -7,7 +7,7 @@
 
 namespace stg::acoustics {
 
-/// The way of a vehicle over time: straight lines between points, at rest before the first and
+/// The position of a vehicle over time: straight lines between points, at rest before the first and
 /// after the last.
 class Track {
  public:
@@ -25,7 +25,7 @@ class Track {
   static Track Load(const std::string& file);
 
   void At(double t_s, Vec3<double>* p_W, Vec3<double>* v_W) const;
-  /// Both times, and those between them at which the way may turn.
+  /// Both times, and the times between them at which the direction may change.
   std::vector<double> Corners(double from_s, double to_s) const;
 
  private:

@@ -7,7 +7,7 @@
 #include "acoustic_channel/modem/packet.hpp"
 #include "auv_common/time.hpp"
 
-/// Which node wants to send what and when, in a network that is simulated offline.
+/// Traffic of a network that is simulated offline.
 namespace stg::acoustics {
 
 /// One flow of packets.
@@ -32,13 +32,12 @@ struct Offer {
   std::size_t bytes = 0;
 };
 
-/// All flows together, in order of time. What a flow does depends on the seed and its place in the
-/// list alone.
+/// All flows together, in order of time. A flow depends only on the seed and its place in the list.
 class Traffic {
  public:
   Traffic(std::vector<TrafficSpec> flows, std::uint64_t seed);
 
-  /// Appends what is offered up to and including t and was not given before, by time, then by flow.
+  /// Appends the new packets up to and including t, by time, then by flow.
   void Take(TimeNs t, std::vector<Offer>* offers);
 
  private:
@@ -52,7 +51,7 @@ class Traffic {
 
   std::uint64_t seed_;
   std::vector<Flow> flows_;
-  std::vector<std::size_t> heap_;  ///< of flows that go on, the earliest on top
+  std::vector<std::size_t> heap_;  ///< of flows that continue, the earliest on top
 };
 
 }  // namespace stg::acoustics

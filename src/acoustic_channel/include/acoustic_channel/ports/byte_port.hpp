@@ -11,53 +11,54 @@
 
 #include "auv_common/time.hpp"
 
-/// Streams of bytes to the outside: sockets, pseudo terminals and serial lines behind one interface
-/// for poll(2). Nothing here blocks.
+/// Streams of bytes: sockets, pseudo terminals and serial lines with one interface for poll(2). No
+/// function blocks.
 namespace stg::acoustics {
 
-/// Called with what comes over a port.
+/// Callbacks of a port.
 struct PortListener {
   std::function<void()> connected;
   std::function<void()> disconnected;
   std::function<void(const char* bytes, std::size_t size)> read;
-  /// One more client than the port takes was turned away.
+  /// The port refused a client, because it has no free place.
   std::function<void()> refused = [] {};
-  /// Of clients beside the first one: they read along (see MakeTcpServer).
+  /// For further clients, which read along (see MakeTcpServer).
   std::function<void(int guest)> guest_came = [](int) {};
   std::function<void(int guest)> guest_left = [](int) {};
   std::function<void(int guest, const char* bytes, std::size_t size)> guest_read =
       [](int, const char*, std::size_t) {};
 };
 
-/// One stream at a time. What the other side does not read is kept up to 256 KiB, then dropped and
-/// counted; a connection that has not been read for ten seconds is closed.
+/// One stream at a time. Up to 256 KiB that the other side does not read are kept; more is dropped
+/// and counted. A connection that is not read for ten seconds is closed.
 class BytePort {
  public:
   virtual ~BytePort();
   BytePort(const BytePort&) = delete;
   BytePort& operator=(const BytePort&) = delete;
 
-  /// What poll has to watch, appended.
+  /// Appends the file descriptors for poll.
   virtual void Watch(std::vector<pollfd>* watched) const;
   /// Accepts, connects, reads and writes what is possible now [ns of any clock that does not jump].
-  /// Reads at most 16 KiB, so that one that floods does not keep others waiting.
+  /// Reads at most 16 KiB, so that a client that sends too much does not delay others.
   virtual void Serve(TimeNs now, const PortListener& listener);
-  /// Earliest time at which Serve is wanted without an event.
+  /// Earliest time at which Serve must be called without an event.
   virtual TimeNs next() const;
   void Write(const std::string& bytes);
-  /// Closes the connections, where there are some; the port waits for others.
+  /// Closes all connections; the port waits for new ones.
   virtual void HangUp() { hang_up_ = true; }
   /// False: no client can connect, and connected ones are hung up.
   virtual void SetOpen(bool /*open*/) {}
 
-  // Guests; a port that takes none has no use for these.
+  // For guests; only for ports that accept guests.
   virtual void WriteToGuest(int /*guest*/, const std::string& /*bytes*/) {}
-  /// The guest becomes the client that is obeyed, and the one that was a guest of this number.
+  /// The guest becomes the commanding client, and the commanding client becomes the guest of this
+  /// number.
   virtual void GiveControlTo(int /*guest*/, const PortListener& /*listener*/) {}
 
   bool connected() const { return stream_ >= 0; }
   std::uint64_t dropped() const { return dropped_; }
-  /// In words: "tcp 127.0.0.1:9201".
+  /// A description, such as "tcp 127.0.0.1:9201".
   const std::string& name() const { return name_; }
 
  protected:
@@ -76,25 +77,25 @@ class BytePort {
 
  private:
   std::string out_;
-  TimeNs stalled_ = -1;  ///< since when nothing could be written
+  TimeNs stalled_ = -1;  ///< time since which nothing could be written
   bool hang_up_ = false;
   std::uint64_t dropped_ = 0;
 };
 
-/// Listens on an address. The first client is the one that `read` and Write are about; up to
-/// `clients` - 1 more are guests, the oldest of which takes its place when it goes. All others are
-/// refused. Throws UserError where the port cannot be had. Port 0: any that is free.
+/// Listens on an address. `read` and Write concern the first client. Up to `clients` - 1 more are
+/// guests; when the first client disconnects, the oldest guest takes its place. All others are
+/// refused. Throws UserError if the port is not available. Port 0: any free one.
 std::unique_ptr<BytePort> MakeTcpServer(const std::string& address, int port, int clients = 1);
 /// Connects, and again after 1, 2, 4, ... up to 30 s.
 std::unique_ptr<BytePort> MakeTcpClient(const std::string& host, int port);
 /// A pseudo terminal, raw, without echo, mode 0600; `link` becomes a symbolic link to it and is
-/// removed at the end. Throws UserError where the link is something else than a link of an earlier
-/// run that leads nowhere. @param link empty: none
+/// removed at the end. Throws UserError if `link` exists, unless it is a broken link of an earlier
+/// run. @param link empty: none
 std::unique_ptr<BytePort> MakePty(const std::string& link);
 /// A serial device, raw. Opened again when it vanishes.
 std::unique_ptr<BytePort> MakeSerial(const std::string& device, int baud);
 
-/// tcp://HOST:PORT or a serial device. Throws UserError for what is neither.
+/// tcp://HOST:PORT or a serial device. Throws UserError for anything else.
 std::unique_ptr<BytePort> MakePortTo(const std::string& where, int baud);
 
 /// Waits until something happens at a port, or `until` by the steady clock.

@@ -8,18 +8,19 @@
 
 namespace stg::acoustics {
 
-/// Slow fading: for every pair of nodes a level [dB] that wanders about 0, normal with standard
-/// deviation `shadowing_db`, of autocorrelation exp(-|dt| / shadowing_time_s) (first-order
-/// autoregression; M. Gudmundson, Electronics Letters 27 (1991) 2145, over time instead of way).
-/// Both directions of a link have the same. A draw depends on seed, episode, link and how often
-/// this link was asked at a new time, not on what other links were asked.
+/// Slow fading: for every pair of nodes a level [dB], normal around 0 with standard deviation
+/// `shadowing_db`, of autocorrelation exp(-|dt| / shadowing_time_s) (first-order autoregression; M.
+/// Gudmundson, Electronics Letters 27 (1991) 2145, over time instead of way). Both directions of a
+/// link have the same level. A draw depends on seed, episode, link and the number of earlier times
+/// for this link, not on calls for other links.
 class Shadowing {
  public:
   Shadowing(const PropagationConfig& config, int nodes);
 
   void Reset(std::uint64_t seed, std::uint32_t episode);
 
-  /// At time t, not before the last t of this link; asked again for the same t, the same.
+  /// Level at time t, which must not be before the last t of this link. The same t gives the same
+  /// level.
   double LevelDb(int a, int b, TimeNs t);
 
  private:

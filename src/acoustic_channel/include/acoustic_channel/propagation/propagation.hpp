@@ -10,13 +10,13 @@
 
 namespace stg::acoustics {
 
-/// Is the straight line between two points [m, world axes] free? Empty: all are.
+/// Whether the straight line between two points [m, world axes] is free. Empty: all lines are free.
 using LineOfSight = std::function<bool(const Vec3<double>& a_W, const Vec3<double>& b_W)>;
 
 /// Rician K above which a link does not fade: the draw would be within 0.02 dB of its mean.
 inline constexpr double kSteadyRicianK = 1e6;
 
-/// What the water makes of a signal from one point to another, before any draw.
+/// Propagation of a signal from one point to another, before any draw.
 struct PathSum {
   double distance_m = 0.0;      ///< straight
   double travel_time_s = 0.0;   ///< of the straight path, which is the first
@@ -27,15 +27,16 @@ struct PathSum {
   bool blocked = false;         ///< the line is not free; its loss is in gain_db
 };
 
-/// Spreading, absorption, reflections and shadow, from the configuration alone. Any thread may ask;
-/// nothing is allocated.
+/// Spreading, absorption, reflections and shadow, from the configuration alone. Thread-safe;
+/// allocates nothing.
 ///
 /// Every path loses 10 k lg(L / 1 m) + a L / 1000 dB over its length L [m] (not below 1 m), and
 /// what its reflections take. With one path, this is the link budget of Urick, and the Rician K is
-/// the configuration's. With more, K is the straight path's share; k is then best 2, as the layer
-/// makes the rest. A line that is not free loses `shadow_db` as a whole and has K = 0.
+/// the configuration's. With more paths, K follows from the straight path's share of the power, and
+/// k should be 2, because the reflections model the layer. A blocked line loses `shadow_db` in all
+/// and has K = 0.
 ///
-/// Depths above the surface or below the bottom count as at the surface or bottom.
+/// Depths above the surface or below the bottom are moved to the surface or bottom.
 class Propagation {
  public:
   Propagation(const WaterConfig& water, const PropagationConfig& propagation,

@@ -4,7 +4,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel.physical.propagation`: how sound gets from one vehicle to another.
+/// Keys of `channel.physical.propagation`: propagation of sound from one vehicle to another.
 struct PropagationConfig {
   double spreading = 1.5;  ///< k of 10 k lg d, of every path
   int paths = 1;           ///< straight one and images, in order of reflections
@@ -13,9 +13,9 @@ struct PropagationConfig {
   double bottom_density_ratio = 1.9;
   double bottom_speed_ratio = 1.1;
   double bottom_loss_db = 0.8;     ///< per wavelength, in the bottom
-  double shadow_db = 30.0;         ///< lost on a line that is not free
+  double shadow_db = 30.0;         ///< loss on a blocked line
   double shadowing_db = 3.0;       ///< standard deviation of the slow fading of a link
-  double shadowing_time_s = 10.0;  ///< in which its autocorrelation falls to 1/e
+  double shadowing_time_s = 10.0;  ///< time in which its autocorrelation falls to 1/e
 };
 
 void Describe(PropagationConfig* c, config::Table* t);

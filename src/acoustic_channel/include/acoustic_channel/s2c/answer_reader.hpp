@@ -9,13 +9,13 @@
 
 namespace stg::acoustics::s2c {
 
-/// What a modem with a NET interpreter says: an answer, or a notification.
+/// An answer or a notification of a modem with a NET interpreter.
 struct ModemLine {
   std::vector<std::string> fields;  ///< split at commas, without the payload
   std::string payload;              ///< of RECV, RECVIM, RECVIMS, RECVPBM
 
   const std::string& name() const { return fields[0]; }
-  /// It is no answer to a command.
+  /// Whether it is a notification, not an answer to a command.
   bool notification() const;
 };
 

@@ -6,19 +6,19 @@
 
 namespace stg::acoustics::s2c {
 
-/// The modem's side of a connection beside that of the host which is obeyed: it reads all
+/// The modem's side of a further connection beside that of the commanding host: it gets all
 /// notifications, and its commands are refused until it takes control with AT@CTRL.
 class Bystander {
  public:
   /// @param net the interpreter of the port: NET, else AT
   explicit Bystander(bool net);
 
-  /// Answers to bytes. Stops behind a command that takes control, which is not answered here.
+  /// Answers to bytes. It stops after a command that takes control, which is not answered here.
   std::string Read(ByteView bytes);
   bool takes_control() const { return takes_control_; }
-  /// What was read behind that command; for the modem.
+  /// The bytes after that command, for the modem.
   std::string TakeRest() { return reader_.TakeRest(); }
-  /// A notification as it is written here.
+  /// A notification in the form of this connection.
   std::string Told(const std::string& notification) const;
 
  private:

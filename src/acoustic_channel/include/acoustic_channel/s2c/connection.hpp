@@ -18,13 +18,13 @@ namespace stg::acoustics::s2c {
 inline constexpr double kBurstBitrate = 6900.0;
 inline constexpr std::size_t kLongestBurst = 1024;
 
-/// Settings of the modem that its connection heeds.
+/// Settings of the modem for its connection.
 struct ConnectionSettings {
   int address = 1;
   int repeats = 3;             ///< AT!RC
   TimeNs patience = 0;         ///< AT!RT, for an answer after the last sound
   TimeNs idle = 0;             ///< AT!KO: closed when nothing happened for so long; 0: never
-  std::size_t pool_bytes = 0;  ///< AT!PS, of data that waits
+  std::size_t pool_bytes = 0;  ///< AT!PS, of waiting data
 };
 
 /// The acoustic connection of a modem with another one: it is established when there is data, each
@@ -49,26 +49,26 @@ class Connection {
 
   // The host. Answers are those of commands.
   std::string Add(int destination, int pid, const std::string& data, TimeNs t);
-  /// Bytes of data mode: joined to those that wait.
+  /// Adds bytes of data mode to the waiting ones.
   std::string AddRaw(int destination, const std::string& data, TimeNs t);
   std::string Dial(int destination, TimeNs t);
   /// @param tell_peer the other end closes, too
   void Close(bool tell_peer);
-  /// Data that waits is dropped; a burst under way is given up.
+  /// Drops waiting data and the present burst.
   void Clear();
 
   // The water.
-  /// What is to leave now, once; nothing: it waits for something.
+  /// The packet to send now, once; empty: none.
   std::optional<Outgoing> Next(TimeNs t);
   void OnSendEnd(TimeNs begin, TimeNs end);
   /// It did not leave.
   void OnDiscarded(TimeNs t) { OnSendEnd(t, t); }
-  /// A modem wants to connect; true: it is answered with kAccept.
+  /// A modem wants to connect; true: answer with kAccept.
   bool TakeConnect(int source, TimeNs t);
   /// @return true: this modem is connected now
   bool TakeAccept(int source, TimeNs t);
   void SetPropagation(std::uint32_t us) { propagation_us_ = us; }
-  /// A burst is here. True: it is acknowledged; `fresh`: it was not here before.
+  /// A burst has arrived. True: acknowledge it; `fresh`: it is not a repetition.
   bool TakeBurst(const Header& header, TimeNs t, bool* fresh);
   void TakeBurstAck(const Header& header, TimeNs t);
   void TakeClose(int source);
@@ -104,7 +104,7 @@ class Connection {
   int tries_left_ = 0;
   TimeNs deadline_ = 0;  ///< of kAwaiting
   TimeNs backoff_ = 0;   ///< its end
-  TimeNs active_ = 0;    ///< when something happened last
+  TimeNs active_ = 0;    ///< time of the last event
   TimeNs began_ = 0, ended_ = 0;
   int number_ = 0;           ///< of the burst under way, 1 to 255
   int heard_ = 0;            ///< of the last one of the other end

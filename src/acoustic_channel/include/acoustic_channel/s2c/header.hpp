@@ -2,14 +2,14 @@
 
 #include <cstdint>
 
-/// What an S2C modem tells another one beside the payload. It rides in Transmission::header.
+/// Fields that an S2C modem sends beside the payload, in Transmission::header.
 namespace stg::acoustics::s2c {
 
 enum class MessageType : std::uint8_t {
   kPlain,  ///< of a vehicle without such a modem: an instant message without acknowledgement
   kIm,     ///< instant message
   kIms,    ///< synchronous instant message
-  kAck,    ///< acknowledgement; its payload is a piggyback message, or one byte of nothing
+  kAck,    ///< acknowledgement; its payload is a piggyback message, or an unused byte
   // Of acoustic connections.
   kConnect,   ///< a modem wants to connect
   kAccept,    ///< and is answered

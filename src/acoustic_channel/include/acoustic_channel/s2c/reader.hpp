@@ -7,18 +7,18 @@
 
 #include "acoustic_channel/modem/packet.hpp"
 
-/// The protocol that EvoLogics S2C modems speak with their hosts, as public host software speaks
-/// it. Both ends read with the parts of this folder.
+/// The protocol between EvoLogics S2C modems and their hosts, as public host software uses it. Both
+/// ends use the parts of this folder.
 namespace stg::acoustics::s2c {
 
-/// A line of the host's, cut out of its stream of bytes.
+/// A line of the host.
 struct Item {
   enum class Kind {
     kCommand,  ///< `text` without "AT" and end of line: "!AL5"
     kMessage,  ///< the same with `payload`: text "*SENDIM,5,2,ack"
     kData,     ///< `payload` for the acoustic connection (data mode)
-    kBroken,   ///< nothing that could be read: `error` says why
-    kTooLong,  ///< a payload that no message takes: as long as the host said, and skipped
+    kBroken,   ///< unreadable: `error` contains the reason
+    kTooLong,  ///< a payload that is too long for any message; it is skipped
   };
   Kind kind = Kind::kCommand;
   bool escaped = false;  ///< it began with "+++"
@@ -40,21 +40,21 @@ class Reader {
 
   void SetMode(Mode mode) { mode_ = mode; }
   Mode mode() const { return mode_; }
-  /// Forgets a half line.
+  /// Drops an incomplete line.
   void Reset();
   void Feed(ByteView bytes);
-  /// The next item, in the mode that is in force then; nothing: more bytes are needed.
+  /// The next item, in the present mode; empty: more bytes are needed.
   std::optional<Item> Next();
 
-  /// Silence of kGuard_s means something here: see OnSilence.
+  /// Whether a silence of kGuard_s has a meaning now: see OnSilence.
   bool awaits_silence() const { return skipping_ || (!buffer_.empty() && buffer_[0] == '+'); }
   /// A binary payload is not complete.
   bool inside_message() const { return inside_message_; }
   /// The host has been silent for a second. True: it escapes from data mode with a lonely "+++".
   bool OnSilence();
-  /// The host has left a message unfinished for seconds: the message is given up.
+  /// The host has not finished a message for seconds: the message is dropped.
   void GiveUp();
-  /// Bytes that were fed and not yet cut into items; they are forgotten here.
+  /// Returns and removes the bytes that are not yet cut into items.
   std::string TakeRest();
 
  private:
@@ -75,10 +75,10 @@ class Reader {
 
 /// An answer or notification (of which the name is empty) as the interpreters write it.
 std::string Framed(Reader::Mode mode, const std::string& name, const std::string& text);
-/// What an answer calls a command; nothing in it could be taken for another field.
+/// The name of a command in an answer, without characters of other fields.
 std::string NameOf(const std::string& text);
 
-/// A whole number without sign, all of `text`; nothing: it is none, or above 2^32 - 1.
+/// A whole number without sign; empty: `text` contains anything else, or a number above 2^32 - 1.
 std::optional<std::uint32_t> WholeNumber(const std::string& text);
 
 }  // namespace stg::acoustics::s2c

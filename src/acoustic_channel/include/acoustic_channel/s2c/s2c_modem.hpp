@@ -15,12 +15,12 @@
 
 namespace stg::acoustics::s2c {
 
-/// What is chosen of an emulated S2C modem.
+/// Options of an emulated S2C modem.
 struct ModemOptions {
   bool net = false;     ///< the interpreter of its port: NET, else AT
   int address = 1;      ///< at power on
   int broadcast = 255;  ///< the address of all
-  bool defer = true;    ///< an instant message waits for the end of a reception; else it ends it
+  bool defer = true;    ///< instant messages wait for the end of a reception; false: they end it
   double rssi_offset_db = -190.0;  ///< from a level re 1 uPa to dB re 1 V
   std::string firmware = "1.9";
   /// Names and values that are stored at power on.
@@ -51,7 +51,7 @@ class S2cModem : public ModemEngine {
 
  private:
   enum class State { kListen, kNoise, kDeaf };
-  /// The instant message that the modem is at work on.
+  /// The present instant message.
   struct Message {
     enum class Step { kWaiting, kOffered, kSending, kAwaitingAck };
     Step step = Step::kWaiting;
@@ -133,7 +133,7 @@ class S2cModem : public ModemEngine {
   Settings settings_;
   Reader reader_;
   bool connected_ = false;
-  TimeNs silence_ = 0;  ///< since then the host is silent
+  TimeNs silence_ = 0;  ///< since when the host has been silent
   bool awaits_silence_ = false;
   TimeNs power_on_ = 0;
   State state_ = State::kListen;
@@ -143,7 +143,7 @@ class S2cModem : public ModemEngine {
   std::deque<Ack> acks_;
   Connection connection_;
   ModemProfile burst_mode_;
-  std::uint32_t burst_tag_ = 0;  ///< of the connection's packet that the water has; 0: none
+  std::uint32_t burst_tag_ = 0;  ///< of the connection's packet in the network; 0: none
   std::uint32_t tag_ = 0;
   bool sending_ = false, receiving_ = false;
   Measured measured_;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-/// The settings of an S2C modem that host software sets and reads.
+/// Settings of an S2C modem that host software sets and reads.
 namespace stg::acoustics::s2c {
 
 /// Values by the letters of their commands: "L" of AT!L and AT?L, "ZX" of AT@ZX.
@@ -18,11 +18,11 @@ class Settings {
   /// 0 for what does not exist.
   int at(const std::string& name) const;
   bool knows(const std::string& name) const { return values_.count(name) > 0; }
-  /// AT&W: what is in force is kept over a reboot. AT&F: as the modem left its factory.
+  /// AT&W: stores the present values for a reboot. AT&F: restores the factory settings.
   void Store();
   void Restore();
   void RestoreFactory();
-  /// A value is not the stored one: answers about it carry a mark.
+  /// Whether a value differs from the stored one; answers then mark it.
   bool changed(const std::string& name) const;
   /// AT&V: a line for each value that is shown, with its end of line.
   std::string List() const;

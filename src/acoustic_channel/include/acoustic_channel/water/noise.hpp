@@ -13,8 +13,8 @@ struct NoiseConfig {
   double site_db = 0.0;         ///< flat density added to the formulas, re 1 uPa^2/Hz
   double own_db = 65.0;         ///< density at 1 kHz and 1 m/s at the vehicle's own receiver
   double own_slope_db = 60.0;   ///< per decade of speed
-  double burst_db = 20.0;       ///< by which a burst raises the ambient noise
-  double burst_every_s = 0.0;   ///< mean time between bursts; 0: there are none
+  double burst_db = 20.0;       ///< level by which a burst raises the ambient noise
+  double burst_every_s = 0.0;   ///< mean time between bursts; 0: no bursts
   double burst_length_s = 0.5;  ///< mean
 };
 
@@ -30,7 +30,7 @@ double ThermalNoise(double khz);
 /// Sum of the powers of the four.
 double AmbientNoise(double khz, double shipping, double wind_mps);
 
-/// Density that a vehicle's own propulsion makes at its own receiver, dB re 1 uPa^2/Hz:
+/// Density of a vehicle's own propulsion noise at its own receiver, dB re 1 uPa^2/Hz:
 /// own_db + own_slope_db lg(v / 1 m/s) - 20 lg(f / 1 kHz), the power law of propeller noise over
 /// speed and its fall of 6 dB an octave (D. Ross, Mechanics of Underwater Noise, 1976). At rest
 /// there is none: -infinity.

@@ -7,7 +7,7 @@
 
 namespace stg::acoustics {
 
-/// Keys of `channel.physical.water`: what the water is made of.
+/// Keys of `channel.physical.water`: properties of the water.
 struct WaterConfig {
   enum class SoundSpeed { kMackenzie, kProfile };
   enum class Absorption { kThorp, kFrancoisGarrison };
@@ -19,7 +19,7 @@ struct WaterConfig {
   double salinity_psu = 35.0;
   double ph = 8.0;
   SoundSpeed sound_speed = SoundSpeed::kMackenzie;
-  /// Knots of the profile: ascending depths, and the sound speed there; linear between, constant
+  /// Points of the profile: ascending depths, and the sound speed there; linear between, constant
   /// outside.
   std::array<double, kKnots> profile_depths_m{0.0, 20.0, 50.0, 100.0};
   std::array<double, kKnots> profile_speeds_mps{1500.0, 1500.0, 1500.0, 1500.0};

@@ -4,14 +4,14 @@
 
 namespace stg::dynamics {
 
-/// How vehicles that must keep moving are steered by a velocity command. The gains are of
-/// normalised loops: what the fins do at the present speed is divided out with the vehicle's own
+/// Steering by a velocity command for vehicles that must keep moving. The gains are those of
+/// normalised loops: the effect of the fins at the present speed is divided out with the vehicle's
 /// constants.
 struct AutopilotConfig {
   int period_steps = 1;        ///< physics steps between two commands to the actuators
-  double min_speed_mps = 0.8;  ///< through the water: no command is slower
+  double min_speed_mps = 0.8;  ///< smallest commanded speed through the water
   double speed_integral_ps = 0.1;
-  double course_gain_ps = 0.25;  ///< turn rate per error of course
+  double course_gain_ps = 0.25;  ///< turn rate per course error
   double max_turn_rate_radps = 0.0873;
   double turn_gain_ps = 2.5;  ///< angular acceleration per error of the turn rate
   double turn_integral_ps2 = 0.6;

@@ -29,7 +29,7 @@ inline Vec3<T> DesiredVelocity(const VehicleConfig& v, const T* action) {
           action[2] * T(v.max_velocity_mps[2])};
 }
 
-/// Generalised force as a fraction of its maximum, to newtons and newton metres.
+/// Generalised force [N, N m] from fractions of its maximum.
 template <class T>
 inline Wrench<T> ScaleWrench(const VehicleConfig& v, const T* fraction) {
   const auto& t = v.max_tau;
@@ -56,7 +56,7 @@ inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
   fraction[2] = Clip(error.z * T(c.velocity_gain / vmax[2]), lo, hi);
   Vec3<T> attitude{T(-c.attitude_gain) * rpy.x, T(-c.attitude_gain) * rpy.y, T(0.0)};
   if (c.heading == HeadingMode::kAlongVelocity) {
-    // Bow along the command, as long as the command is a direction at all.
+    // The bow points along the command, if the command has a direction.
     const Vec3<T> b = R_WB.TransposeTimes(v_des_W);
     const T horizontal = Sqrt(b.x * b.x + b.y * b.y);
     const Mask<T> moving = Dot(b, b) > T(1e-6 * vmax[0] * vmax[0]);
@@ -69,14 +69,14 @@ inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
   fraction[5] = Clip(attitude.z - w_WB_B.z * T(c.rate_gain / wmax[2]), lo, hi);
 }
 
-/// Executes an action (Eqs. 23-27), from what was wanted to the force: the one place where both
-/// interfaces meet. velocity3: rate limit, smoothing, desired velocity, velocity controller. tau6:
-/// the action, clipped, is the force.
+/// Executes an action (Eqs. 23-27), from the desired action to the force, for both interfaces.
+/// velocity3: rate limit, smoothing, desired velocity, velocity controller. tau6: the action,
+/// clipped, is the force.
 ///
-/// @param wanted   [action size] what the policy says
+/// @param wanted   [action size] action of the policy
 /// @param rpy      called for velocity3 only: roll, pitch, yaw [rad]; angles cost arc tangents
-/// @param executed [action size] holds the action executed last, becomes the one executed now
-/// @param fraction [kWrenchSize] becomes tau / tau_max; other parameters as VelocityController
+/// @param executed [action size] in: the last executed action; out: the present one
+/// @param fraction [kWrenchSize] out: tau / tau_max; other parameters as VelocityController
 /// @return the desired velocity, world axes [m/s]; zero for tau6
 template <class T, class Rpy>
 inline Vec3<T> ExecuteAction(const ControlConfig& c, const VehicleConfig& v, const T* wanted,
@@ -95,8 +95,8 @@ inline Vec3<T> ExecuteAction(const ControlConfig& c, const VehicleConfig& v, con
   return v_des_W;
 }
 
-/// The action that asks for a desired velocity, given as an action of velocity3: itself, or for
-/// tau6 what the velocity controller makes of it. May be in place.
+/// The action for a desired velocity, which is given as an action of velocity3: the same action, or
+/// for tau6 the output of the velocity controller. May be in place.
 /// @param velocity [3] v / v_max, world axes
 /// @param action   [action size]
 template <class T, class Rpy>
@@ -110,7 +110,7 @@ inline void ActionForVelocity(const ControlConfig& c, const VehicleConfig& v, co
   for (int k = 0; k < ActionSize(c.interface); ++k) action[k] = velocity[k];
 }
 
-/// VelocityController from a navigation state: what a controller node runs.
+/// VelocityController from a navigation state, for the controller node.
 inline void VelocityController(const ControlConfig& c, const VehicleConfig& v,
                                const Vec3<double>& v_des_W, const NavState& nav, double* fraction) {
   const Mat3<double> R_WB = RotationOf(nav.q_WB);

@@ -5,10 +5,10 @@
 
 namespace stg::dynamics {
 
-/// What a policy commands: velocity per world axis, or force and torque per body axis.
+/// Command of a policy: velocity per world axis, or force and torque per body axis.
 enum class ActionInterface { kVelocity3, kTau6 };
 
-/// Numbers of an action, and the most that any interface takes.
+/// Size of an action, and the largest size of any interface.
 constexpr int ActionSize(ActionInterface interface) {
   return interface == ActionInterface::kVelocity3 ? 3 : 6;
 }
@@ -28,7 +28,7 @@ struct ControlConfig {
   double rate_gain = 0.10;      ///< K_omega (Eq. 25), of the maximum moment per max rate
   HeadingMode heading = HeadingMode::kFree;
   double heading_gain = 0.12;  ///< along_velocity: of the maximum moment per rad
-  AutopilotConfig autopilot;   ///< of vehicles that are not commanded by force and moment
+  AutopilotConfig autopilot;   ///< for vehicles that do not take force and moment
 
   int action_size() const { return ActionSize(interface); }
 };

@@ -8,13 +8,13 @@
 
 namespace stg::dynamics {
 
-/// Commands of velocity that wait for the odometry which they answer: the two come over connections
-/// of their own, so either may be ahead of the other, by several steps.
+/// Velocity commands that wait for their odometry. Commands and odometry come over separate
+/// connections, so either may be ahead of the other by several steps.
 ///
 /// A command waits while its stamp is at most kMost periods ahead of the newest odometry. Any other
-/// one waits for the next odometry alone: a clock that leaps (another run begins) may let the
-/// command come first. Whatever cannot be the answer any more is dropped and counted by the caller.
-/// Nothing is allocated after construction. Not thread-safe.
+/// command waits only for the next odometry, because a command may come first when the clock jumps
+/// at the start of another run. Commands that cannot match any more are dropped, and the caller
+/// counts them. Nothing is allocated after construction. Not thread-safe.
 class WaitingCommands {
  public:
   struct Command {
@@ -22,26 +22,27 @@ class WaitingCommands {
     Vec3<double> v_des_W;  ///< desired velocity, world axes [m/s]
   };
 
-  /// As many commands wait, and as many periods ahead.
+  /// Largest number of waiting commands, and of periods ahead.
   static constexpr std::size_t kMost = 20;
 
   /// @param period of decisions [ns], > 0
-  /// @param late a command acts on all odometry that is at most this much newer [ns]; 0: on one
-  ///        message of its own stamp
+  /// @param late a command matches odometry that is at most this much newer [ns]; 0: only
+  ///        odometry with its own stamp
   WaitingCommands(TimeNs period, TimeNs late);
 
-  /// Takes a command; one of the same stamp replaces the one before. Returns how many commands are
-  /// dropped unused: when too many wait, the one that came first is.
+  /// Takes a command; it replaces an earlier one with the same stamp. Returns the number of
+  /// commands that are dropped unused: if too many wait, the first one is dropped.
   int Add(const Command& command);
 
-  /// The newest odometry is of `stamp` now. Returns how many commands are dropped unused.
+  /// Takes the stamp of the newest odometry. Returns the number of commands that are dropped
+  /// unused.
   int Advance(TimeNs stamp);
 
-  /// The command for the newest odometry, the newest of those that may act; null: none is here, or
-  /// no odometry. Valid until the next call of another function.
+  /// The newest command that matches the newest odometry; null: no command, or no odometry. Valid
+  /// until the next call of another function.
   const Command* Current() const;
 
-  /// Current() has acted: it is not counted when it is dropped.
+  /// Marks Current() as used: it is not counted when it is dropped.
   void Take();
 
  private:

@@ -12,18 +12,18 @@
 
 namespace stg::dynamics {
 
-/// The larger of the limits of a command's number: its shares are shares of this.
+/// The larger limit of a number of a command, by which its shares are computed.
 inline double LargestOf(const Axis& axis) { return std::max(std::abs(axis.lo), std::abs(axis.hi)); }
 
-/// The autopilots of a world's vehicles, in all lanes: what a controller node of each AUV does, in
-/// one process.
+/// The autopilots of a world's vehicles, in all lanes: the work of the controller nodes in one
+/// process.
 class Helm {
  public:
-  /// Whether vehicles are steered by an autopilot, not by force and moment.
+  /// Whether an autopilot steers the vehicles.
   static bool Steers(const VehicleConfig& vehicle);
 
-  /// Throws UserError when they are not.
-  /// @param believed what the autopilots take the vehicle for
+  /// Throws UserError when no autopilot steers them.
+  /// @param believed vehicle that the autopilots assume
   Helm(const VehicleConfig& vehicle, const VehicleConfig& believed, const AutopilotConfig& config,
        const RunConfig& run);
 
@@ -34,8 +34,8 @@ class Helm {
   /// @param v_des_W [agents], desired velocity over ground, world axes [m/s]
   void Drive(const std::vector<Vec3<Pack>>& v_des_W, World* world);
 
-  /// The last command of AUV i as shares of what its actuators can do: of the first kWrenchSize of
-  /// them, as many numbers as they are.
+  /// The last command of AUV i as shares of the limits of its actuators, at most the first
+  /// kWrenchSize ones.
   void WriteShares(int i, Pack* shares) const;
 
  private:

@@ -6,8 +6,8 @@
 
 namespace stg::dynamics {
 
-/// What the vehicles know of their own motion. Deviations are those that each episode, or each
-/// ping, draws from; docs/navigation.md says where the numbers come from.
+/// Navigation of the vehicles. Each episode, or each ping, draws errors with these deviations;
+/// docs/navigation.md gives the sources of the numbers.
 struct NavigationConfig {
   std::string kind = "perfect";      ///< name in the registry of navigation systems
   config::OptionsByName kinds = {};  ///< options of systems that are registered
@@ -15,12 +15,12 @@ struct NavigationConfig {
   double period_s = 1.0;          ///< between two pings of the Doppler log
   double dvl_scale_std = 0.002;   ///< scale error of the Doppler log
   double dvl_noise_mps = 0.01;    ///< noise of each horizontal component of a ping
-  double dvl_altitude_m = 100.0;  ///< higher above the bottom it measures against the water
+  double dvl_altitude_m = 100.0;  ///< above this altitude it measures against the water
   double heading_std_deg = 0.3;   ///< constant error of the heading
   double gyro_walk_deg_per_sqrt_h = 0.1;
   double depth_std_m = 0.05;     ///< of the pressure gauge
-  double gps_depth_m = 0.3;      ///< shallower than this there is a fix with every ping
-  double gps_std_m = 3.0;        ///< of each horizontal component of a fix
+  double gps_depth_m = 0.3;      ///< above this depth each ping has a GPS position
+  double gps_std_m = 3.0;        ///< of each horizontal component of a GPS position
   double start_std_m = 1.0;      ///< of each horizontal component when an episode starts
   double current_std_mps = 0.1;  ///< of the current, which is unknown to the navigation
 };

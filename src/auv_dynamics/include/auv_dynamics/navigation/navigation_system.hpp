@@ -11,29 +11,29 @@
 
 namespace stg::dynamics {
 
-/// What a navigation system is made from. It copies what it keeps.
+/// Data from which a navigation system is made. The system copies the parts that it needs later.
 struct NavigationSetup {
   const NavigationConfig& navigation;
   int vehicles;
   double dt_s;                     ///< physics step
-  const NavigationConfig& stated;  ///< what it takes its errors for, when it states them
+  const NavigationConfig& stated;  ///< errors of which it states the deviations
 };
 
-/// Where a vehicle takes itself to be while it looks at a target, in one lane.
+/// Navigated position and heading of a vehicle that looks at a target, in one lane.
 struct Observer {
-  Vec3<double> p_WO;               ///< its position as it believes [m]
-  double position_std_m = 0.0;     ///< as stated, of each horizontal component
-  double heading_error_rad = 0.0;  ///< by which all that it says of directions is turned, truly
-  double heading_std_rad = 0.0;    ///< as stated
+  Vec3<double> p_WO;               ///< navigated position [m]
+  double position_std_m = 0.0;     ///< stated, of each horizontal component
+  double heading_error_rad = 0.0;  ///< true error of all its directions
+  double heading_std_rad = 0.0;    ///< stated
 };
 
-/// What the vehicles of one World know of their own motion, in every lane. Random numbers come from
-/// the clock's draws with Stream::kNavigation and Stream::kNavigationStart alone.
+/// Navigation of the vehicles of one World, in every lane. All random numbers must be the clock's
+/// draws with Stream::kNavigation and Stream::kNavigationStart.
 class NavigationSystem {
  public:
   virtual ~NavigationSystem() = default;
 
-  /// It tells the truth, and nothing below is called.
+  /// True: it gives the true state, and no other function is called.
   virtual bool perfect() const { return false; }
 
   /// An episode starts in this lane with vehicle i in this state.
@@ -43,15 +43,14 @@ class NavigationSystem {
   /// @param v_WC current at the vehicle, world axes [m/s]
   virtual void Step(int i, const EpisodeClocks& clocks, const VehicleState<Pack>& vehicle,
                     const Vec3<Pack>& v_WC, const Terrain& terrain) = 0;
-  /// Turns the truth about vehicle i into what it believes.
+  /// Changes the true state of vehicle i into its navigated state.
   virtual void Believe(int i, Navigation<Pack>* navigation) const = 0;
   /// The same for its position and heading in one lane.
   virtual Observer At(int lane, int i) const = 0;
 };
 
-/// What `navigation.kind` may name. A new kind is a new file and one line in
-/// src/navigation/navigation_systems.cpp; a kind of another program is added with Add before it
-/// loads a scenario.
+/// The names for `navigation.kind`. To add a kind, write a new file and one line in
+/// src/navigation/navigation_systems.cpp; another program calls Add before it loads a scenario.
 using NavigationRegistry = Registry<NavigationSystem, const NavigationSetup&>;
 NavigationRegistry& NavigationSystems();
 

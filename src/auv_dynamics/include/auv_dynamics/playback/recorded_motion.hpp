@@ -6,12 +6,12 @@
 
 #include "auv_dynamics/vehicle/vehicle_config.hpp"
 
-/// Motions of a torpedo that another simulator or a trial recorded, to check ours against.
+/// Motions of a torpedo from another simulator or a trial, for comparison with this simulator.
 namespace stg::dynamics {
 
-/// What a row tells of the vehicle, in the file's frames: NED world, FRD body, SI, radians.
+/// State of the vehicle in a row, in the file's frames: NED world, FRD body, SI, radians.
 enum MotionColumn { kX, kY, kZ, kPhi, kTheta, kPsi, kU, kV, kW, kP, kQ, kR, kMotionColumns };
-/// "x", "y", "z", "phi" ... as the file's header has them.
+/// Names of the columns, as in the file's header: "x", "y", "z", "phi" ...
 const char* NameOf(MotionColumn column);
 
 struct MotionRow {
@@ -20,7 +20,7 @@ struct MotionRow {
   std::array<double, kMotionColumns> state{};
 };
 
-/// From rest at the origin, with actuators at zero, under one command that is held.
+/// A motion from rest at the origin, with actuators at zero, under one constant command.
 struct RecordedMotion {
   double rpm = 0.0, rudder_deg = 0.0, stern_deg = 0.0;
   double current_mps = 0.0;          ///< Vc
@@ -36,19 +36,19 @@ struct RecordedMotion {
 /// times below zero or past a day, and for files without rows or larger than 64 MiB.
 std::vector<RecordedMotion> LoadMotions(const std::string& file);
 
-/// How far ours is from the recorded motions.
+/// Errors of this simulator against the recorded motions.
 struct MotionError {
   struct Column {
     double max_abs_error = 0.0;
     double lo = 0.0, hi = 0.0;  ///< of the recorded values
-    int motion = 0;             ///< where the error is largest, 0-based, and its line
+    int motion = 0;             ///< motion of the largest error, 0-based, and its line
     int line = 0;
     /// The error as a share of the range; 0 where there is no error at all.
     double share() const;
   };
   std::array<Column, kMotionColumns> columns;
-  /// Largest distance between ours and the recorded position, each as a share of the distance that
-  /// its motion runs, along straight lines between its rows and through the origin.
+  /// Largest distance between simulated and recorded position, as a share of the length of its
+  /// motion, along straight lines from the origin through its rows.
   double position_share = 0.0;
   int position_line = 0;
   int motions = 0, rows = 0;
@@ -57,8 +57,8 @@ struct MotionError {
   bool Within(double tolerance) const;
 };
 
-/// Flies the motions with `vehicle.model: torpedo` in physics steps of at most dt_s, shorter ones
-/// before a row, and compares every row. Angles are compared on the circle.
+/// Simulates the motions with `vehicle.model: torpedo` in physics steps of at most dt_s, shorter
+/// ones before a row, and compares every row. Differences of angles are taken on the circle.
 MotionError Compare(const VehicleConfig& vehicle, const std::vector<RecordedMotion>& motions,
                     double dt_s);
 

@@ -7,20 +7,20 @@
 
 namespace stg::dynamics {
 
-/// Options of the sensors `range`, `bearing` and `range_bearing`; docs/sensors.md says where the
-/// numbers come from.
+/// Options of the sensors `range`, `bearing` and `range_bearing`; docs/sensors.md gives the sources
+/// of the numbers.
 struct RelativeOptions {
-  bool has_range = true, has_bearing = true;  ///< which keys there are
+  bool has_range = true, has_bearing = true;  ///< whether these keys exist
   double range_std_m = 1.0;                   ///< a of the deviation a + b r of a range
   double range_std_share = 0.01;              ///< b of it
   double bearing_std_deg = 2.0;               ///< of azimuth and elevation
-  double probability_at_range = 1.0;          ///< share of detection_probability left at range_m
-  double outlier_probability = 0.0;           ///< that a detection is drawn from anywhere
-  double false_alarm_probability = 0.0;       ///< that a look without a detection tells of one
-  double field_of_view_deg = 360.0;           ///< full angle around the bow
-  bool ambiguous = false;                     ///< a bearing cannot tell port from starboard
+  double probability_at_range = 1.0;     ///< share of detection_probability that remains at range_m
+  double outlier_probability = 0.0;      ///< that a detection is drawn from anywhere in range
+  double false_alarm_probability = 0.0;  ///< of a false detection in a look without one
+  double field_of_view_deg = 360.0;      ///< full angle around the bow
+  bool ambiguous = false;                ///< bearings do not distinguish port from starboard
 
-  /// Chance of a detection at a share of the detection range.
+  /// Probability of a detection at a share of the detection range.
   double chance(double detection_probability, double share) const {
     return detection_probability * (1.0 - (1.0 - probability_at_range) * share * share);
   }
@@ -29,9 +29,9 @@ struct RelativeOptions {
 };
 void Describe(RelativeOptions* o, config::Table* t);
 
-/// What a range to a target costs.
+/// Cost of a range to a target.
 enum class Ranging {
-  kFree,  ///< nothing: the sensor has water of its own
+  kFree,  ///< none: the sensor does not use the acoustic channel
   kPing   ///< a ping of the AUV's modem, which the target's transponder answers
 };
 
@@ -45,7 +45,7 @@ struct SensingConfig {
   double dropout_duration_s = 1.0;     ///< mean duration of a blind spell
   double cue_std_m = 0.05;             ///< uncertainty of the initial datum, per component
   double period_s = 0.0;               ///< between two looks; 0: every decision
-  config::OptionsByName sensors = {};  ///< options of each, but of position
+  config::OptionsByName sensors = {};  ///< options of each one except `position`
   Ranging ranging = Ranging::kFree;
 
   bool pings() const { return ranging == Ranging::kPing; }

@@ -6,7 +6,7 @@
 
 namespace stg::dynamics {
 
-/// Targets and how they move.
+/// Targets and their motion.
 struct TargetConfig {
   int count = 1;
   std::string motion = "constant_velocity";  ///< name in the registry of target motions
@@ -14,7 +14,7 @@ struct TargetConfig {
   double max_turn_rate_radps = 0.5;
   config::OptionsByName motions = {};  ///< options of each
 
-  /// Target that an AUV is tasked with: its index modulo the number of targets.
+  /// Target of an AUV: its index modulo the number of targets.
   int of(int agent) const { return agent % count; }
 };
 

@@ -6,7 +6,7 @@
 /// Depths and heights of a part of the Earth, from files of the usual grids.
 namespace stg::dynamics {
 
-/// A part of the Earth, degrees. East of the date line longitudes go on past 180.
+/// A part of the Earth, degrees. East of the date line longitudes continue above 180.
 struct GeoRegion {
   double south = 0.0, north = 0.0;  ///< latitude
   double west = 0.0, east = 0.0;    ///< longitude
@@ -16,20 +16,20 @@ struct GeoRegion {
 /// points it is bilinear in latitude and longitude.
 class Bathymetry {
  public:
-  /// Largest number of points that are held.
+  /// Largest number of points.
   static constexpr std::size_t kMostPoints = 25'000'000;
 
   /// Reads a NetCDF file (classic or 4): the variable `elevation`, `z`, `topo`, `ROSE` or the only
   /// one over latitude and longitude, in either order, of any numeric type, packed (scale_factor,
-  /// add_offset) or not, metres, positive up unless its attribute `positive` says down. GEBCO,
-  /// ETOPO and their like are such files.
+  /// add_offset) or not, metres, positive up unless its attribute `positive` says down. GEBCO and
+  /// ETOPO have such files.
   ///
-  /// Throws UserError that names the file and what is wrong with it: no NetCDF or damaged; no such
-  /// variable, or several; axes that are too short, not evenly spaced or no latitudes and
-  /// longitudes; a region that it does not cover; missing or absurd elevations; more points than
-  /// kMostPoints. Nothing is filled in.
+  /// Throws UserError with the file and the error: not NetCDF, or damaged; no such variable, or
+  /// several; axes that are too short, not evenly spaced, or not latitude and longitude; a region
+  /// that it does not cover; missing or impossible elevations; more points than kMostPoints.
+  /// Missing values are not filled in.
   static Bathymetry Load(const std::string& file);
-  /// The part of it that covers the region: its points and those around them.
+  /// Reads only the part that covers the region: its points and the points around them.
   static Bathymetry Load(const std::string& file, const GeoRegion& region);
 
   /// @param elevation_m [latitudes, longitudes], row-major, both axes ascending
@@ -38,7 +38,7 @@ class Bathymetry {
 
   /// Writes it as GEBCO does: `elevation(lat, lon)` int16 [m], rounded; NetCDF classic. Throws
   /// UserError when the file cannot be written.
-  /// @param note goes into the attribute `history`
+  /// @param note text for the attribute `history`
   void Save(const std::string& file, const std::string& note) const;
 
   /// Elevation [m]; throws UserError for a point outside the grid.

@@ -10,7 +10,7 @@ class LocalCartesian;
 
 namespace stg::dynamics {
 
-/// Where the world's origin lies on the Earth: WGS 84 geodetic coordinates to the local tangent
+/// Place of the world's origin on the Earth: WGS 84 geodetic coordinates to the local tangent
 /// frame ENU and back, by GeographicLib, exact to nanometres. Over 4 km the sea curves 0.3 m below
 /// the tangent plane at the edges of the region; heights here are along the plane's normal.
 class Datum {

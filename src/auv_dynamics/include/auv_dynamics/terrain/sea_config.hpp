@@ -8,9 +8,8 @@
 
 namespace stg::dynamics {
 
-/// Open water instead of the box: a surface at z = 0, a bottom, and no walls. What scales with
-/// workspace.half_extent_m (packets, observations, waypoints) then takes it for the size of the
-/// region, not for a wall.
+/// Open water instead of the box: a surface at z = 0, a bottom, and no walls. For packets,
+/// observations and waypoints, workspace.half_extent_m is then the size of the region, not a wall.
 struct SeaConfig {
   bool open = false;
   std::string terrain = "flat";  ///< or the name of a bathymetry, see TerrainFile

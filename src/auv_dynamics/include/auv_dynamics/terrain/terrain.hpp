@@ -9,7 +9,7 @@
 
 namespace stg::dynamics {
 
-/// A body in the water that stops vehicles, sound and sight.
+/// A body in the water that blocks vehicles, sound and sight.
 struct Obstacle {
   enum class Kind { kSphere, kCylinder };
   Kind kind = Kind::kSphere;
@@ -21,7 +21,8 @@ struct Obstacle {
   double Distance(const Vec3<double>& p_W) const;
   /// 1 where a point lies inside, else 0.
   Pack Inside(const Vec3<Pack>& p_W) const;
-  /// Moves a point inside to the nearest place on its surface; the direction outward there.
+  /// Moves a point inside it to the nearest point of its surface; returns the outward direction
+  /// there.
   Vec3<double> Expel(Vec3<double>* p_W) const;
   /// Whether it touches the segment from a to b.
   bool Blocks(const Vec3<double>& a, const Vec3<double>& b) const;
@@ -55,9 +56,9 @@ class Terrain {
   std::vector<float> heights_;  // [side_, side_], rows to the north
 };
 
-/// Whether nothing stands between two points: neither the bottom, looked at every half spacing of
-/// its grid along the segment, nor an obstacle. The same from b to a. What lies inside the bottom
-/// or an obstacle sees nothing.
+/// Whether neither bottom nor obstacle is between two points; the bottom is tested at every half
+/// spacing of its grid along the segment. The result is the same from b to a. It is false for a
+/// point inside the bottom or an obstacle.
 bool LineOfSight(const Terrain& terrain, const std::vector<Obstacle>& obstacles,
                  const Vec3<double>& a, const Vec3<double>& b);
 

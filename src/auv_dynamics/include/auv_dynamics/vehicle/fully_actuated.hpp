@@ -6,8 +6,8 @@
 
 namespace stg::dynamics {
 
-/// A hull that is given its generalised force directly: the paper's vehicle, Eqs. 2 and 3. Any
-/// force within the limits is there at once.
+/// A hull with a directly commanded generalised force: the paper's vehicle, Eqs. 2 and 3. Any force
+/// within the limits acts at once.
 class FullyActuated : public Vehicle {
  public:
   /// Throws UserError when the mass matrix is not positive definite.

@@ -5,10 +5,10 @@
 
 namespace stg::dynamics {
 
-/// The steps below integrate any rigid body. What tells bodies apart:
+/// The steps below integrate any rigid body, which has two functions:
 ///   accelerate(R_WB, nu, c) -> BodyVelocity<T>: nu_dot at attitude and velocity nu, at the time
 ///       c dt after the start of the step, c in {0, 1/2, 1}
-///   limit(nu) -> BodyVelocity<T>: what is left of the velocity at the end of the step
+///   limit(nu) -> BodyVelocity<T>: the limited velocity at the end of the step
 
 /// The release's step: velocities by explicit Euler, then position and Euler
 /// angles with the new velocities through the old attitude.
@@ -83,9 +83,9 @@ void StepRk4(const Accelerate& accelerate, const Limit& limit, double dt, Vehicl
   s->w_WB_B = nu.w;
 }
 
-/// One physics step of dt of a body that is given its generalised force, held over the step, by the
-/// configured integrator and substeps; leaves R_WB and v_WB consistent with the attitude and body
-/// velocity, except that the semi-implicit step keeps v_WB of the old attitude as the release does.
+/// One physics step of dt under a constant generalised force, by the configured integrator and
+/// substeps. R_WB and v_WB are then consistent with attitude and body velocity, except that the
+/// semi-implicit step keeps v_WB of the old attitude, as the release does.
 template <class T>
 void Integrate(const VehicleModel& model, const Wrench<T>& tau, const Vec3<T>& v_WC, double dt,
                VehicleState<T>* s) {

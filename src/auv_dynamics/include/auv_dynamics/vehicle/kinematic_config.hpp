@@ -8,7 +8,7 @@ namespace stg::dynamics {
 /// Its limits are those of the section `vehicle`: max_velocity_mps for speed (surge) and climb rate
 /// (heave), max_rate_radps for the turn rate (yaw).
 struct KinematicConfig {
-  double min_speed_mps = 0.0;  ///< it cannot be slower; 0: it can stop
+  double min_speed_mps = 0.0;  ///< smallest speed; 0: the vehicle can stop
   double speed_lag_s = 2.0;
   double turn_lag_s = 1.0;
   double climb_lag_s = 2.0;

@@ -11,7 +11,7 @@ bool TurnsPropeller(const VehicleConfig& config, int i);
 
 /// Mechanical power of a torpedo's shaft, P = 2 pi n Q with Q = rho n^2 D^5 K_Q(J) [W]. K_Q is that
 /// of TorpedoModel: linear in the advance number J = inflow speed / (n D) ahead, and that of J = 0
-/// astern. Where the water turns the propeller it is 0: nothing is won back.
+/// astern. Where the water turns the propeller the power is 0: no energy is recovered.
 /// @param rpm   shaft speed, positive ahead [rpm]
 /// @param speed through the water [m/s]
 template <class T>

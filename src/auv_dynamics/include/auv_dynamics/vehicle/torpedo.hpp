@@ -24,7 +24,7 @@ void Integrate(const TorpedoModel& model, const VehicleConfig& config,
   const double h = dt / config.substeps;
   const double fin_lag = model.config().fin_lag_s, shaft_lag = model.config().propeller_lag_s;
   const bool euler = config.integrator == Integrator::kSemiImplicit;
-  // What is left after half a step of the way to the command.
+  // Remaining share of the difference to the command after half a step.
   const double fin = std::exp(-0.5 * h / fin_lag), shaft = std::exp(-0.5 * h / shaft_lag);
   const auto after = [&](double fin_left, double shaft_left) {
     const TorpedoActuators<T>& from = *actuators;

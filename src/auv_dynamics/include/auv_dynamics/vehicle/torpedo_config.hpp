@@ -36,8 +36,8 @@ struct TorpedoConfig {
   double propeller_advance = 0.6632;
   double propeller_inflow = 0.944;  ///< advance speed as a share of the speed through the water
   double thrust_deduction = 0.1;
-  double torque_share = 0.1;  ///< share of the propeller's torque that rolls the hull
-  /// The advance speed from the speed over ground: what the public model does, and nature does not.
+  double torque_share = 0.1;  ///< share of the propeller's torque that acts on the hull
+  /// The advance speed is computed from the speed over ground, an error of the public model.
   bool advance_over_ground = false;
 };
 

@@ -7,7 +7,7 @@
 
 namespace stg::dynamics {
 
-/// What the actuators of a torpedo are, or shall be. Positive rudder turns to starboard, positive
+/// Actuators of a torpedo, present or commanded. A positive rudder turns to starboard, a positive
 /// stern plane lowers the bow, as in the public model.
 template <class T>
 struct TorpedoActuators {
@@ -24,13 +24,13 @@ struct TorpedoActuators {
 /// - linear damping of surge and sway fades with the speed, lift and drag of the hull as a wing in
 ///   the vertical plane (Beard and McLain 2012), cross-flow drag of 21 strips in the horizontal one
 ///   with Hoerner's coefficient of a circle, 1.1977;
-/// - of the Coriolis terms of the added mass those that couple surge with heave and sway with yaw
-///   and pitch are left out, as there is no quadratic rotational damping to hold them;
+/// - the Coriolis terms of the added mass that couple surge with heave and sway with yaw and pitch
+///   are left out, because there is no quadratic rotational damping to balance them;
 /// - fins by their lift slope, propeller by K_T and K_Q over the advance number; astern at the
 ///   values of advance number 0.
 /// Valid for a neutrally buoyant hull in deep water, ahead, at angles of attack of a few degrees
-/// and speeds to about 2.6 m/s. Astern the angle of attack is near pi, where lift and drag mean
-/// little; the terms are kept as the public model has them.
+/// and speeds to about 2.6 m/s. Astern the angle of attack is near pi, where lift and drag are not
+/// valid; the terms are those of the public model.
 class TorpedoModel {
  public:
   /// Throws UserError when the hull is not longer than it is wide.
@@ -53,12 +53,12 @@ class TorpedoModel {
   double PitchDamping() const { return D_[4] / M_[4]; }
   double Righting() const { return weight_ * c_.cg_below_m / M_[4]; }
 
-  /// Within what the actuators can do.
+  /// Limits a command to the ranges of the actuators.
   template <class T>
   TorpedoActuators<T> Limit(const TorpedoActuators<T>& wanted) const;
 
   /// Propeller thrust after deduction [N] and its torque on the hull [N m].
-  /// @param advance speed that the advance number is made of [m/s]
+  /// @param advance speed for the advance number [m/s]
   template <class T>
   void Propeller(const T& rpm, const T& advance, T* thrust, T* torque) const;
 

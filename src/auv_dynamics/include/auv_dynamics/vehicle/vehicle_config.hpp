@@ -22,7 +22,7 @@ enum class AddedMassCoriolis { kFull, kNoMunk, kOff };
 /// of the actuators, are those of `fully_actuated`; other models have sections of their own.
 struct VehicleConfig {
   std::string model = "fully_actuated";  ///< name in the registry of vehicles
-  std::vector<std::string> models;       ///< of a mixed fleet, one after the other; else empty
+  std::vector<std::string> models;       ///< of a mixed fleet, in turn; otherwise empty
   std::string profile = "remus100";
   double mass_kg = 31.9;
   std::array<double, 3> inertia_kgm2{0.16, 4.10, 4.10};
@@ -48,7 +48,7 @@ struct VehicleConfig {
   KinematicConfig kinematic;         ///< read by that model alone
   config::OptionsByName kinds = {};  ///< options of models that are registered
 
-  /// Name of what AUV i is.
+  /// Name of the model of AUV i.
   const std::string& model_of(int i) const {
     return models.empty() ? model : models[static_cast<std::size_t>(i) % models.size()];
   }

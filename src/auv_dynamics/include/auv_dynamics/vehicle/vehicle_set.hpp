@@ -7,17 +7,17 @@
 
 namespace stg::dynamics {
 
-/// The vehicles of a world, which may be of several kinds (`vehicle.models`). Commands and internal
-/// states of all of them stand in rows of one length, that of the kind that needs most.
+/// The vehicles of a world, which may be of several kinds (`vehicle.models`). Their commands and
+/// internal states are in rows of equal length, that of the kind that needs most.
 class VehicleSet {
  public:
-  /// @param vehicles how many there are
+  /// @param vehicles number of vehicles
   VehicleSet(const VehicleConfig& config, int vehicles);
 
   const Vehicle& operator[](int i) const { return *of_[static_cast<std::size_t>(i)]; }
-  /// Numbers of a row of commands, of which a vehicle takes as many as it has actuators.
+  /// Length of a row of commands; a vehicle uses as many numbers as it has actuators.
   std::size_t command_size() const { return command_size_; }
-  /// The same of a row of internal states.
+  /// Length of a row of internal states.
   std::size_t internal_size() const { return internal_size_; }
 
  private:

@@ -4,7 +4,7 @@
 
 namespace stg::dynamics {
 
-/// Truth of one vehicle: body B in world W.
+/// True state of one vehicle: body B in world W.
 template <class T>
 struct VehicleState {
   Vec3<T> p_WB;  ///< position [m]
@@ -17,7 +17,7 @@ struct VehicleState {
   Vec3<T> v_WB;                                  ///< velocity over ground, world axes [m/s]
 };
 
-/// Makes R_WB, trig and v_WB those of q_WB and v_WB_B: the end of a step that turned q_WB.
+/// Sets R_WB, trig and v_WB from q_WB and v_WB_B, at the end of a step that turned q_WB.
 template <class T>
 inline void FollowQuaternion(VehicleState<T>* s) {
   s->R_WB = RotationOf(s->q_WB);
@@ -25,8 +25,8 @@ inline void FollowQuaternion(VehicleState<T>* s) {
   s->v_WB = s->R_WB * s->v_WB_B;
 }
 
-/// Puts one lane at rest or in motion at a given place and attitude: for states that are set, not
-/// stepped. `trig` and `R_WB` are those of q_WB.
+/// Sets one lane to a given position, attitude and motion, without a step. `trig` and `R_WB` follow
+/// from q_WB.
 inline void SetState(VehicleState<Pack>* s, int lane, const Vec3<double>& p_WB,
                      const double (&q_WB)[4], const EulerTrig<double>& trig,
                      const Mat3<double>& R_WB, const Vec3<double>& v_WB_B,

@@ -8,7 +8,7 @@
 
 namespace stg::dynamics {
 
-/// Forces between vehicles that touch: along the line of centres, a softplus of the overlap.
+/// Forces between vehicles in contact: along the line of centres, a softplus of the overlap.
 class Contacts {
  public:
   /// @param radius_m collision radius of one vehicle

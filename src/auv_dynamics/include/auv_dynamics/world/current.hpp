@@ -10,17 +10,17 @@ namespace stg::dynamics {
 
 /// Water current over depth and time: a constant, plus layers that are linear between four depths
 /// and constant above and below, plus a tide, amplitude cos(2 pi t / period + phase), plus layers
-/// and a tide like these that are drawn per episode. Horizontal
-/// but for the constant. A vehicle takes the current at its origin for that of its whole hull, and
-/// as steady and irrotational during a physics step.
+/// and a tide of the same form that are drawn per episode. All parts except the constant are
+/// horizontal. The current at a vehicle's origin acts on its whole hull; during a physics step it
+/// is steady and irrotational.
 class Current {
  public:
   explicit Current(const CurrentConfig& config);
 
-  /// Draws what is drawn per episode, in one lane.
+  /// Draws the random parts of an episode, in one lane.
   void Reset(int lane, std::uint64_t seed, std::uint32_t episode);
 
-  /// The same everywhere and always.
+  /// Whether the current is constant in space and time.
   bool uniform() const { return uniform_; }
   /// @param z      height in the world [m], negative below the surface
   /// @param time_s since the start of the episode [s]

@@ -14,7 +14,7 @@ class Disturbance {
  public:
   Disturbance(const DisturbanceConfig& config, int vehicles, double dt_s);
 
-  /// To the step of each lane's clock.
+  /// Advances to the step of each lane's clock.
   void Advance(const EpisodeClocks& clocks);
   /// On vehicle i, body axes.
   const Wrench<Pack>& wrench(int i) const { return wrenches_[static_cast<size_t>(i)]; }

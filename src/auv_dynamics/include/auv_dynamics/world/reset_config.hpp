@@ -6,14 +6,14 @@
 
 namespace stg::dynamics {
 
-/// Stages of the curriculum: how far out and how fast targets start.
+/// Stages of the curriculum: distance and speed of targets at the start.
 enum class ResetStage { kEasy, kMedium, kHard };
 
-/// Where vehicles start: each around its target, or all on a line in one place, or anywhere. Around
-/// the target their positions tell where it is.
+/// Start of vehicles: each around its target, or all on a line in one place, or anywhere. In the
+/// first case, their positions contain information about the target.
 enum class Deploy { kAround, kPoint, kArea };
 
-/// Where and how fast an episode starts.
+/// Ranges of start positions and speeds.
 struct ResetStageConfig {
   config::Interval target_radius_m{0.25, 0.55};
   config::Interval auv_distance_m{0.25, 0.45};

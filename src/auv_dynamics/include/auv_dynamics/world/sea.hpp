@@ -8,12 +8,12 @@
 
 namespace stg::dynamics {
 
-/// Open water as vehicles and targets meet it: surface, bottom, obstacles. A vehicle that reaches
-/// surface or bottom stops there: its height is clamped and the vertical part of its velocity, over
-/// ground, is taken from it; a slope does not stop it, and where the bottom is above the surface it
-/// goes on along the surface, aground. One that meets an obstacle is held at its surface and keeps
-/// the part of its velocity that does not lead into it. Coming to the bottom and coming to an
-/// obstacle are events, counted once until the vehicle is off it again.
+/// Contacts of vehicles and targets with surface, bottom and obstacles of open water. A vehicle
+/// that reaches surface or bottom stops there: its height is clamped, and the vertical part of its
+/// velocity over ground becomes zero. A slope does not stop it, and where the bottom is above the
+/// surface it continues along the surface, aground. A vehicle that meets an obstacle stays at its
+/// surface and keeps the part of its velocity that does not lead into it. A contact with the bottom
+/// or an obstacle counts once, until the vehicle is free again.
 class Sea {
  public:
   /// @param region_m as for Seascape, which says what it throws
@@ -23,15 +23,15 @@ class Sea {
   void Reset(int lane);
   /// Keeps vehicle i in the water.
   void Apply(int i, VehicleState<Pack>* vehicle);
-  /// Keeps targets within their depths, and out of what stands there: they slide along it.
+  /// Keeps targets within their depths and out of bottom and obstacles, along which they slide.
   void Apply(std::vector<TargetState<Pack>>* targets) const;
 
   const Seascape& scape() const { return scape_; }
   const Terrain& terrain() const { return scape_.terrain; }
-  /// How often vehicle i has come to the bottom in this episode, and whether it lies on it now (1).
+  /// How often vehicle i has reached the bottom in this episode, and whether it touches it now (1).
   const Pack& groundings(int i) const { return groundings_[static_cast<std::size_t>(i)]; }
   const Pack& aground(int i) const { return aground_[static_cast<std::size_t>(i)]; }
-  /// How often it has come to an obstacle, and whether it touches one now (1).
+  /// How often it has reached an obstacle, and whether it touches one now (1).
   const Pack& collisions(int i) const { return collisions_[static_cast<std::size_t>(i)]; }
   const Pack& touching(int i) const { return touching_[static_cast<std::size_t>(i)]; }
 

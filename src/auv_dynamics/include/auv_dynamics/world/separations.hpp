@@ -7,7 +7,7 @@
 
 namespace stg::dynamics {
 
-/// How far apart the vehicles of a swarm are. T = double: one swarm. T = Pack: kLanes swarms.
+/// Distances between the vehicles of a swarm. T = double: one swarm. T = Pack: kLanes swarms.
 template <class T>
 class Separations {
  public:

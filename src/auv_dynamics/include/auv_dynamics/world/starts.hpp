@@ -19,13 +19,13 @@ struct Start {
 /// target (vehicle i around target i modulo their number) at a distance from the others. Throws
 /// UserError when there is no room.
 ///
-/// @param start in and out: its sizes say how many vehicles and targets there are
+/// @param start in and out: its sizes are the numbers of vehicles and targets
 void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
 
 /// The same in open water: distances and directions in the horizontal plane, depths uniform within
 /// those of `sea`, targets level. All start 5 m or more off the bottom and obstacles.
-/// Vehicles may also start in one place or anywhere: reset.deploy.
+/// With reset.deploy, vehicles may also start in one place or anywhere.
 void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascape& scape,
                   ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start);
 

@@ -18,8 +18,8 @@ struct CurrentConfig {
   std::array<double, 2> tide_mps{0.0, 0.0};
   double tide_period_s = 44714.2;  ///< M2, 12.4206 h
   double tide_phase_rad = 0.0;
-  // Added and drawn per episode: a speed at each of the four depths and a direction that turns
-  // between them, and a tide that begins at any time of its period.
+  // Added and drawn per episode: a speed at each of the four depths, a direction that turns between
+  // them, and a tide with a random phase.
   config::Interval random_mps{0.0, 0.0};
   double random_turn_deg = 28.6;  ///< standard deviation, from one depth to the next
   double random_tide_mps = 0.0;   ///< amplitude; its direction is drawn, too
@@ -40,8 +40,8 @@ struct ContactConfig {
   double softness_m = 0.001;
 };
 
-/// The box and what is left of a velocity that meets a wall: its normal and tangential world
-/// components, and the body velocity and rates of the vehicle.
+/// The box, and the shares of a velocity that remain after contact with a wall: its normal and
+/// tangential world components, and the body velocity and rates of the vehicle.
 struct WorkspaceConfig {
   double half_extent_m = 1.0;  ///< walls at +-half_extent on each axis
   double restitution = 0.2;

@@ -21,19 +21,18 @@
 
 namespace stg::dynamics {
 
-/// What to do about a state that is not finite.
+/// Advice for a state that is not finite.
 inline constexpr char kUnstableHint[] =
     "the motion is unstable with these vehicle constants; check damping, mass and limits, clip "
     "velocities (vehicle.clip_velocity), or use a smaller time.dt_s or more vehicle.substeps";
 
 /// kLanes independent copies of one scenario's physics, one per SIMD lane: vehicles, contacts,
-/// walls, targets, sensors. The registries make its vehicles, target motion and sensor. It knows
-/// nothing of agents, channel or reward. A caller that wants one world uses lane 0.
+/// walls, targets, sensors. The registries make its vehicles, target motion and sensor. It is
+/// independent of agents, channel and reward. A caller that needs one world uses lane 0.
 class World {
  public:
   /// Throws UserError for a scenario that fails its validation.
-  /// @param stated the errors that the vehicles' navigation states of itself, which may differ from
-  /// those that it has
+  /// @param stated errors that the vehicles' navigation states, which may differ from its true ones
   World(const WorldConfig& config, const RunConfig& run, const NavigationConfig& stated);
   World(const WorldConfig& config, const RunConfig& run) : World(config, run, config.navigation) {}
   explicit World(const WorldScenario& s) : World(s.world, s.run, s.believed().navigation) {}
@@ -56,17 +55,17 @@ class World {
   /// @param commands [agents, command_size()], row-major; a vehicle takes as many numbers of its
   /// row as it has actuators
   void Step(const std::vector<Pack>& commands);
-  /// The same for vehicles that are commanded by a generalised force, one for each. Throws
-  /// UserError when the scenario's vehicles are not.
+  /// The same for vehicles that take a generalised force, one for each. Throws UserError for other
+  /// vehicles.
   void Step(const std::vector<Wrench<Pack>>& tau);
 
   /// Throws UserError that names vehicle, step and seed when the state of a vehicle is not finite:
-  /// the equations of motion, stepped like this, are unstable.
+  /// the integration is then unstable.
   void CheckFinite() const;
 
   int agents() const { return static_cast<int>(vehicles_.size()); }
   int targets() const { return static_cast<int>(targets_.size()); }
-  /// What vehicle i is.
+  /// The model of vehicle i.
   const Vehicle& model(int i = 0) const { return kinds_[i]; }
   std::size_t command_size() const { return kinds_.command_size(); }
   const TargetSensor& sensor() const { return *sensor_; }
@@ -79,11 +78,11 @@ class World {
   const std::vector<VehicleState<Pack>>& vehicle_states() const { return vehicles_; }
   const std::vector<TargetState<Pack>>& target_states() const { return targets_; }
 
-  /// What the navigation of vehicle i believes: the truth where `navigation.kind` is perfect.
+  /// The navigated state of vehicle i; the true one where `navigation.kind` is perfect.
   NavState Nav(int lane, int i) const;
   /// The same of all lanes.
   Navigation<Pack> Nav(int i) const;
-  /// What a perfect navigation would report, whatever navigation the vehicles have.
+  /// The true state of vehicle i, for any navigation.
   NavState Truth(int lane, int i) const;
   /// Simulated time since the start of the episode: physics steps times dt.
   TimeNs time(int lane) const { return dt_ns_ * static_cast<TimeNs>(step(lane)); }
@@ -91,11 +90,11 @@ class World {
   std::uint32_t episode(int lane) const { return clock(lane).episode; }
   std::uint64_t seed(int lane) const { return clock(lane).seed; }
 
-  /// Detection of target k by vehicle i at the current step; false when there is none, as where
-  /// bottom or obstacles of open water stand between them. Draws
-  /// depend on (seed, episode, step, i, k) only.
+  /// Detection of target k by vehicle i at the current step; false when there is none, for example
+  /// because bottom or obstacles are between them. Draws depend on (seed, episode, step, i, k)
+  /// only.
   bool Sense(int lane, int i, int k, Detection* out) const;
-  /// Datum that vehicle i starts the episode with.
+  /// Datum of vehicle i at the start of the episode.
   Cue InitialCue(int lane, int i, int k) const;
 
   /// Pairs of vehicles closer than two radii, and the smallest distance between
@@ -103,7 +102,7 @@ class World {
   const Pack& colliding_pairs() const { return separations_.colliding_pairs(); }
   const Pack& smallest_separation() const { return separations_.smallest(); }
 
-  /// Surface, bottom and obstacles; of scenarios in open water.
+  /// Surface, bottom and obstacles, in scenarios in open water.
   const Sea& sea() const { return sea_; }
   bool open_water() const { return open_; }
 
@@ -119,7 +118,7 @@ class World {
   double dt_s_;
   TimeNs dt_ns_;
   Current current_;
-  Vec3<Pack> v_WC_;  // where it is uniform
+  Vec3<Pack> v_WC_;  // for a uniform current
   ResetConfig reset_;
   SeaConfig depths_;
   SensingConfig sensing_;

@@ -17,7 +17,7 @@
 
 namespace stg::dynamics {
 
-/// Vehicles, what surrounds them, what they follow and sense, and how they are steered.
+/// Vehicles, surroundings, targets, sensing and control.
 struct WorldConfig {
   VehicleConfig vehicle;
   CurrentConfig current;
@@ -32,26 +32,26 @@ struct WorldConfig {
   ControlConfig control;
 };
 
-/// Where the walls are on each axis [m]; infinity: there are none.
+/// Distance of the walls on each axis [m]; infinity: there are none.
 inline double WallOf(const WorkspaceConfig& workspace, const SeaConfig& sea) {
   return sea.open ? std::numeric_limits<double>::infinity() : workspace.half_extent_m;
 }
 
 /// Keys, units and ranges of the sections.
 void Describe(WorldConfig* c, config::Table* t);
-/// Keys for which vehicles may have another value on board than the true one: what they know of
-/// themselves, of their instruments, of the water and of the targets.
+/// Keys for which vehicles may have another value on board than the true one: keys of the vehicle,
+/// its instruments, the water and the targets.
 const std::vector<std::string>& KeysOnBoard();
-/// What vehicles take the world for that differ from it in these keys.
+/// The world that vehicles assume if it differs from the true one in these keys.
 WorldConfig Believed(WorldConfig world, const config::Differences& agent_model);
 /// Contradictions between their keys, and with those of the run.
 std::optional<config::Violation> FindConflict(const WorldConfig& c, const RunConfig& run);
 
-/// What a program needs that moves or steers vehicles.
+/// Sections of a program that moves or steers vehicles.
 struct WorldScenario {
   RunConfig run;
   WorldConfig world;
-  config::Differences agent_model;  ///< of KeysOnBoard; empty: all is known as it is
+  config::Differences agent_model;  ///< of KeysOnBoard; empty: all values are the true ones
 
   WorldConfig believed() const { return Believed(world, agent_model); }
 };
