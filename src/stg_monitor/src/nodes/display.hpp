@@ -12,11 +12,11 @@
 
 namespace stg::nodes {
 
-/// Sends a few steps of a run to displays: a run in lockstep makes many more than anybody can look
-/// at. The first and the last step of an episode are always sent.
+/// Sends some steps of a run to displays, because a run in lockstep has many more than a person can
+/// see. It always sends the first and the last step of an episode.
 ///
-/// A step is chosen when the world tells of it, and sent when all AUVs have told of it, too, or
-/// after kPatience_s. Times `now_s` are wall time in seconds.
+/// It chooses a step when the world's state of it arrives, and sends the step when the states of
+/// all AUVs have arrived, too, or after kPatience_s. Times `now_s` are wall time in seconds.
 class Display {
  public:
   static constexpr double kPatience_s = 0.1;
