@@ -92,6 +92,7 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   for (const char* key : {"interpreter", "defer", "rssi_offset_db", "clients"}) {
     if (!s2c) refuse(key, "only the protocol s2c has this key");
   }
+  if (s2c || janus) refuse("pps", "only the protocol micromodem has this key");
   if (janus) refuse("broadcast", "only the protocols s2c and micromodem have this key");
   if (janus) refuse("settings", "only the protocols s2c and micromodem have this key");
   TakeSettings(file, prefix + ".", &map, &place);
@@ -109,6 +110,7 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   t.Add("interpreter", config::Name(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
   t.Add("address", &place.address, config::Within(1, s2c || janus ? 254 : 127), "-", "");
   t.Add("broadcast", &place.broadcast, config::Within(-1, s2c ? 255 : 127), "-", "");
+  t.Add("pps", &place.pps, config::kNone, "-", "");
   t.Add("defer", &place.defer, config::kNone, "-", "");
   t.Add("rssi_offset_db", &place.rssi_offset_db, config::Within(-1e3, 1e3), "dB", "");
   config::Loader loader(t, config::Scope::kWhole);

@@ -31,6 +31,7 @@ std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundin
     options.address = place.address;
     options.broadcast = place.broadcast;
     options.firmware = place.firmware;
+    options.pps = place.pps;
     options.settings = place.settings;
     return std::make_unique<micromodem::Micromodem>(options, world);
   }

@@ -1,11 +1,14 @@
 #include "acoustic_channel/engine/text.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
 
 namespace stg::acoustics {
 namespace {
 
 constexpr char kDigits[] = "0123456789ABCDEF";
+constexpr char kBase64[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 int DigitOf(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -35,6 +38,21 @@ std::optional<std::string> FromHex(const std::string& digits) {
     bytes += static_cast<char>(high * 16 + low);
   }
   return bytes;
+}
+
+std::string ToBase64(const std::string& bytes) {
+  std::string digits;
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
+    std::uint32_t bits = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      bits = bits << 8 | (j < count ? static_cast<unsigned char>(bytes[k + j]) : 0u);
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      digits += j <= count ? kBase64[bits >> (18 - 6 * j) & 0x3f] : '=';
+    }
+  }
+  return digits;
 }
 
 std::optional<int> NumberIn(const std::string& text, int lowest, int highest) {

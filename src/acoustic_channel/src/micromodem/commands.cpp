@@ -102,22 +102,15 @@ bool Micromodem::ObeySetting(const Fields& fields, TimeNs t) {
 
 bool Micromodem::ObeyClock(const Fields& fields, TimeNs t) {
   const std::string& name = fields[0];
-  const auto set = [&](const std::optional<TimeNs>& utc) {
-    if (!utc) {
-      Error(t, "NMEA", 4, "not a valid time");
-      return false;
-    }
-    pps_ = false;
-    clock_offset_ += *utc - Utc(t);
-    clock_set_ = true;
-    return true;
-  };
   if (name == "CCCLK") {
     const auto n = Numbers(fields, {2200, 12, 31, 23, 59, 60});
-    if (!set(n ? UtcOf((*n)[0], (*n)[1], (*n)[2], (*n)[3], (*n)[4], (*n)[5]) : std::nullopt)) {
-      return true;
+    const auto utc = n ? UtcOf((*n)[0], (*n)[1], (*n)[2], (*n)[3], (*n)[4], (*n)[5]) : std::nullopt;
+    if (SetClock(utc, options_.pps, t)) {
+      // With a tick, the clock will show this time at the next tick. Goby waits for a second before
+      // it compares this time with its own.
+      const TimeNs time = utc.value_or(0);
+      Say({"CACLK", FormatUtc(time, "%Y,%m,%d,%H,%M,%S")});
     }
-    Say({"CACLK", FormatUtc(Utc(t), "%Y,%m,%d,%H,%M,%S")});
     return true;
   }
   if (name == "CCCLQ") {
@@ -136,9 +129,8 @@ bool Micromodem::ObeyClock(const Fields& fields, TimeNs t) {
     const auto utc = whole ? UtcOf(year, month, day, hour, minute, second) : std::nullopt;
     if (!mode) {
       Error(t, "NMEA", 3, "CCTMS needs a time and the mode 0 or 1");
-    } else if (set(utc)) {
+    } else if (SetClock(utc, options_.pps || *mode == 1, t)) {
       const TimeNs time = utc.value_or(0);
-      if (*mode == 1) FollowPps(time, t);
       Say({"CATMS", "0", FormatUtc(time, "%Y-%m-%dT%H:%M:%SZ")});
     }
     return true;
@@ -151,13 +143,24 @@ bool Micromodem::ObeyClock(const Fields& fields, TimeNs t) {
   return false;
 }
 
-/// The clock shows `utc` at the next tick, and ticks with UTC from now on, however the vehicle's
-/// own clock runs.
-void Micromodem::FollowPps(TimeNs utc, TimeNs t) {
-  const TimeNs now = world_->utc_start() + t;
-  const TimeNs tick = now - now % kSecondNs + kSecondNs;
-  pps_ = true;
-  clock_offset_ = utc - utc % kSecondNs - tick;
+/// Without a tick, the clock shows `utc` now. With a tick, the clock shows `utc` at the next tick,
+/// and does not drift from then on, whatever the vehicle's own clock does.
+/// @return false if the time is not valid
+bool Micromodem::SetClock(const std::optional<TimeNs>& utc, bool pps, TimeNs t) {
+  if (!utc) {
+    Error(t, "NMEA", 4, "not a valid time");
+    return false;
+  }
+  pps_ = pps;
+  clock_set_ = true;
+  if (pps) {
+    const TimeNs now = world_->utc_start() + t;
+    const TimeNs tick = now - now % kSecondNs + kSecondNs;
+    clock_offset_ = *utc - *utc % kSecondNs - tick;
+  } else {
+    clock_offset_ += *utc - Utc(t);
+  }
+  return true;
 }
 
 bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {

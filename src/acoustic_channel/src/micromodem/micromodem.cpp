@@ -30,7 +30,7 @@ std::string FormatUtc(TimeNs utc, const char* format, int decimals) {
 }
 
 Micromodem::Micromodem(const ModemOptions& options, ModemSurroundings* world)
-    : options_(options), world_(world), modes_(world->profile()) {
+    : options_(options), world_(world), modes_(world->profile()), pps_(options.pps) {
   world_->SetWaveforms({"micromodem_fsk", "micromodem_psk"});
   SetDefaults();
   for (const auto& [key, value] : options_.settings) settings_[key] = value;
@@ -99,7 +99,7 @@ int Micromodem::clock_mode() const {
   constexpr int kUserCommand = 2, kExternal = 3;
   // Newer firmware tells where the time comes from, and above these two bits the tick.
   if (second_generation()) return (clock_set_ ? kUserCommand : 0) + (pps_ ? kExternal << 2 : 0);
-  return clock_set_ ? 1 : 0;
+  return (clock_set_ ? 1 : 0) + (pps_ ? 2 : 0);
 }
 
 int Micromodem::setting(const std::string& key) const {

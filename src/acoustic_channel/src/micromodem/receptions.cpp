@@ -125,10 +125,14 @@ void Micromodem::OnReceptionEnd(const ModemEvent& event) {
   TellReception(header, event);
 }
 
-void Micromodem::TakeCycle(const Header& header, TimeNs t) {
+void Micromodem::TellCycle(const Header& header) {
   Say({"CACYC", std::to_string(header.poller_command), std::to_string(header.source),
        std::to_string(header.destination), std::to_string(header.rate),
        header.acks != 0 ? "1" : "0", std::to_string(header.frames)});
+}
+
+void Micromodem::TakeCycle(const Header& header, TimeNs t) {
+  TellCycle(header);
   if (state_ != State::kIdle && state_ != State::kHeardCycle) return;
   cycle_ = {};
   cycle_.header = header;
@@ -152,12 +156,10 @@ void Micromodem::TakeFrames(const Header& header, const ModemEvent& event) {
     std::string all;
     for (const std::string& frame : frames) all += frame;
     Say({"CARDP", source, destination, std::to_string(header.rate), asked, "0", "",
-         "1;" + std::to_string(all.size()) + ";" + ToHex(all)});
+         "1;" + std::to_string(all.size()) + ";" +
+             (setting("recv.base64data") == 1 ? ToBase64(all) : ToHex(all))});
   } else {
-    if (Psk(event.packet)) {
-      Say({"CACYC", std::to_string(header.poller_command), source, destination,
-           std::to_string(header.rate), asked, std::to_string(header.frames)});
-    }
+    if (Psk(event.packet)) TellCycle(header);
     for (std::size_t k = 0; k < frames.size() && forMe(header); ++k) {
       Say({header.text ? "CARXA" : "CARXD", source, destination,
            (header.acks >> k & 1) != 0 ? "1" : "0", std::to_string(k + 1),
@@ -204,6 +206,9 @@ void Micromodem::TellLoss(const Header& header, const ModemEvent& event) {
     Say({"CAMSG", "PACKET_TIMEOUT", std::to_string(header.rate)});
     return;
   }
+  // In PSK, the header of a packet has its own code; we assume that the modem has decoded it.
+  // Without CACYC, host software such as Goby does not count the frames as bad.
+  if (header.type == PacketType::kData && Psk(event.packet)) TellCycle(header);
   const int frames = header.type == PacketType::kData ? std::max(1, header.frames) : 1;
   for (int k = 1; k <= frames; ++k) Say({"CAMSG", "BAD_CRC", std::to_string(k)});
 }

@@ -7,6 +7,8 @@
 namespace stg::acoustics::micromodem {
 namespace {
 
+constexpr int kBadFrames = 3;  ///< error of PSK: the checksum of a frame or more is wrong
+
 /// As the modem numbers kinds of packets.
 int NumberOf(PacketType type, int rate, const PacketInfo& packet) {
   switch (type) {
@@ -47,6 +49,7 @@ void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
   std::vector<std::string> fields{"CACST"};
   if (newer) fields.emplace_back("6");
   const std::string sinr = Whole(fate.sinr_db);
+  const bool psk = data && header.rate != 0;
   const std::string rest[] = {
       std::to_string(mode),
       newer ? FormatUtc(begin, "%Y%m%d%H%M%S", 6) : FormatUtc(begin, "%H%M%S", 4),
@@ -63,7 +66,7 @@ void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
       std::to_string(header.rate),
       std::to_string(header.source),
       std::to_string(header.destination),
-      "0",
+      psk && mode == 1 ? std::to_string(kBadFrames) : "0",
       std::to_string(NumberOf(header.type, header.rate, event.packet)),
       std::to_string(frames),
       std::to_string(lost ? frames : 0),

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "modems/modem_fixture.hpp"
 
 /// What third-party clients wrote to emulated modems, byte for byte and in their rhythm, and what
@@ -156,6 +158,82 @@ TEST(Transcripts, Pyacomms) {
                  "$CARXD,3,4,0,1,000001006B072B33*64\r\n", "$CARXD,3,4,0,3,", "$CACST,6,0,",
                  "$CARXD,3,4,1,1,68656C6C6F2066726F6D20707961636F6D6D73*62\r\n", "$CACST,6,0,",
                  "$CATXP,2*40\r\n", "$CARXD,3,4,0,1,66736B206672616D65*67\r\n"});
+}
+
+/// What its program goby_test_mmdriver1 does with Micromodems-2: a ping, a frame at rate 0, three
+/// at rate 2, flexible data. Its frames were longer.
+TEST(Transcripts, Goby) {
+  ModemBench bench(2);
+  bench.StartMicromodems();
+  std::vector<Spoken> words;
+  for (const int host : {0, 1}) {
+    const std::string source = "$CCCFG,SRC," + std::string(host == 0 ? "1*31" : "2*32");
+    const std::string boot = "$CCMSC," + std::string(host == 0 ? "1,1" : "2,2") + ",0*41";
+    double t_s = 9.0;
+    for (const std::string& word :
+         {std::string("$CCCFG,ALL,0*33"), std::string("$CCCFG,CST,1*37"),
+          std::string("$CCCFG,AGC,0*37"), std::string("$CCCFG,AGN,0*3A"),
+          std::string("$CCCFG,psk.packet.mod_hdr_version,0*70"), source,
+          std::string("$CCCFG,REV,1*32"), std::string("$CCCFG,RXP,1*29"), boot}) {
+      words.push_back({t_s += 0.1, host, word + "\r\n"});
+    }
+    words.push_back({10.1, host, "$CCCFQ,SRC*3A\r\n"});  // into the reboot, so it comes again
+    words.push_back({15.1, host, "$CCCFQ,SRC*3A\r\n"});
+    words.push_back({15.3, host, "$CCTMS,2026-11-26T11:05:35Z,0*75\r\n"});
+    words.push_back({15.4, host, "$CCCFQ,TOP*33\r\n"});
+  }
+  words.insert(words.end(),
+               {{29.700, 0, "$CCTMQ,0*54\r\n"},
+                {32.731, 0, "$CCMPC,1,2*5D\r\n"},
+                {38.114, 0, "$CCCYC,0,1,2,0,1,1*5A\r\n"},
+                {39.033, 0, "$CCTXD,1,2,1,0001020304*7E\r\n"},
+                {46.766, 0, "$CCCYC,0,1,2,2,1,3*5A\r\n"},
+                {46.768, 0, "$CCTXD,1,2,1,404142*7D\r\n"},
+                {46.872, 0, "$CCTXD,1,2,1,808182*71\r\n"},
+                {46.973, 0, "$CCTXD,1,2,1,c0c1c2*2A\r\n"},
+                {54.492, 1, "$CCCFG,psk.packet.mod_hdr_version,1*71\r\n"},
+                {54.698, 1, "$CCTDP,1,1,0,0,00112233445566778899001122334455667788990011*6C\r\n"}});
+  std::stable_sort(words.begin(), words.end(),
+                   [](const Spoken& a, const Spoken& b) { return a.t_s < b.t_s; });
+  Replay(&bench, words);
+  ExpectInOrder(bench.hosts.all[0],
+                {"$CACFG,ALL,0*31\r\n",
+                 "$CACFG,psk.packet.mod_hdr_version,0*72\r\n",
+                 "$CACFG,SRC,1*33\r\n",
+                 "$CAMSC,1,1,0*43\r\n",
+                 "$CAREV,",
+                 ",INIT,2.0.35490*",
+                 ",AUV,2.0.35490*",
+                 "$CACFG,SRC,1*33\r\n",
+                 "$CATMS,0,2026-11-26T11:05:35Z*77\r\n",
+                 "$CATMQ,2026-11-26T11:05:49Z,",
+                 "$CAMPC,1,2*5F\r\n",
+                 "$CAMPR,2,1,1.0000*",
+                 "$CACST,6,0,",
+                 "$CACYC,0,1,2,0,1,1*58\r\n",
+                 "$CATXP,2*40\r\n",
+                 "$CAXST,6,",
+                 "$CADRQ,",
+                 "$CATXD,1,2,1,5*",
+                 "$CAXST,6,",
+                 "$CAACK,2,1,1,1*",
+                 "$CACST,6,0,",
+                 "$CACYC,0,1,2,2,1,3*58\r\n",
+                 "$CADRQ,",
+                 "$CADRQ,",
+                 "$CADRQ,",
+                 "$CAXST,6,",
+                 "$CAACK,2,1,1,1*",
+                 "$CAACK,2,1,2,1*",
+                 "$CAACK,2,1,3,1*",
+                 "$CACST,6,0,",
+                 "$CARDP,2,1,1,0,0,,1;22;00112233445566778899001122334455667788990011*",
+                 "$CACST,6,0,"});
+  ExpectInOrder(bench.hosts.all[1],
+                {"$CAMPA,1,2*", "$CACST,6,0,", "$CACYC,0,1,2,0,1,1*", "$CACST,6,0,",
+                 "$CARXD,1,2,1,1,0001020304*", "$CACST,6,0,", "$CACYC,0,1,2,2,1,3*",
+                 "$CARXD,1,2,1,1,404142*", "$CARXD,1,2,1,2,808182*", "$CARXD,1,2,1,3,C0C1C2*",
+                 "$CACST,6,0,", "$CATDP,0,1,1,1,0,0*", "$CAXST,6,"});
 }
 
 }  // namespace

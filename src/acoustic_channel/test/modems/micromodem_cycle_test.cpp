@@ -139,6 +139,13 @@ TEST_F(Cycles, FlexibleDataNeedsNoCycle) {
   EXPECT_TRUE(Told(0, Seal("CAACK,2,1,1,1")));
 }
 
+TEST_F(Cycles, FlexibleDataIsTextInBase64IfTheHostWantsIt) {
+  bench.Ask(1, 5.0, "$CCCFG,recv.base64data,1\r\n");
+  bench.Ask(0, 10.0, "$CCTDP,2,1,0,0,48690A00\r\n");
+  bench.water->Advance(Ns(20.0));
+  EXPECT_TRUE(Told(1, Seal("CARDP,1,2,1,0,0,,1;4;SGkKAA==")));
+}
+
 TEST_F(Cycles, TextPassesAsText) {
   bench.Ask(0, 10.0, "$CCCYC,0,1,0,1,0,1\r\n");
   bench.Ask(0, 10.0, "$CCTXA,1,0,0,hello, world\r\n");
@@ -151,8 +158,10 @@ TEST_F(Cycles, AFrameThatIsLostHasABadChecksum) {
   bench.medium->SetLevel(0, 1, -5.0);  // acquired at -10; 9 dB below what half of them survive
   bench.Ask(0, 10.0, "$CCTXD,1,2,0,AA\r\n");
   bench.water->Advance(Ns(20.0));
-  EXPECT_EQ(Names(1), "RXP MSG CST");
+  // The cycle comes first, from the header; error 3 is that of the published example.
+  EXPECT_EQ(Names(1), "RXP CYC MSG CST");
   EXPECT_TRUE(Told(1, Seal("CAMSG,BAD_CRC,1")));
+  EXPECT_TRUE(Told(1, ",5,1,2,3,3,1,1,"));
   EXPECT_TRUE(Told(1, "$CACST,6,1,"));
 }
 

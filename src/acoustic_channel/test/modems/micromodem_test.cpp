@@ -54,6 +54,18 @@ TEST(Sentence, HexadecimalDigitsComeInPairs) {
   EXPECT_FALSE(FromHex("0g"));
 }
 
+TEST(Sentence, Base64IsThatOfTheStandard) {
+  // RFC 4648, section 10
+  const std::vector<std::pair<std::string, std::string>> known = {{"", ""},
+                                                                  {"f", "Zg=="},
+                                                                  {"fo", "Zm8="},
+                                                                  {"foo", "Zm9v"},
+                                                                  {"foob", "Zm9vYg=="},
+                                                                  {"fooba", "Zm9vYmE="},
+                                                                  {"foobar", "Zm9vYmFy"}};
+  for (const auto& [bytes, digits] : known) EXPECT_EQ(ToBase64(bytes), digits);
+}
+
 TEST(Micromodem, ItTellsItsRevisionWhenItHasBooted) {
   ModemBench bench(1);
   bench.StartMicromodems();
@@ -97,6 +109,27 @@ TEST(Micromodem, WithATickItsClockIsThatOfUtc) {
   EXPECT_EQ(bench.Ask(0, 8.01, "$CCTMQ,0\r\n"), Seal("CATMQ,2024-02-29T23:59:59Z,USER_CMD,EXT"));
   EXPECT_NE(bench.Ask(0, 9.0, "$CCTMS,2024-02-29T23:59:59Z,2\r\n").find("CAERR"),
             std::string::npos);
+}
+
+/// Host software that has no command for the tick relies on the line that is connected.
+TEST(Micromodem, WithALineThatTicksEveryCommandSetsTheClockAtTheNextTick) {
+  for (const std::string firmware : {"2.0.35490", "0.94.0.0"}) {
+    ModemBench bench(1);
+    bench.pps = true;
+    bench.StartMicromodems(firmware);
+    const bool newer = firmware[0] == '2';
+    const std::string set = newer ? "$CCTMS,2024-02-29T23:59:59Z,0" : "$CCCLK,2024,2,29,23,59,59";
+    EXPECT_EQ(bench.Ask(0, 7.06, set + "\r\n"),
+              Seal(newer ? "CATMS,0,2024-02-29T23:59:59Z" : "CACLK,2024,02,29,23,59,59"));
+    EXPECT_EQ(bench.Ask(0, 7.99, "$CCCLQ\r\n"), Seal("CACLK,2024,02,29,23,59,58"));
+    EXPECT_EQ(bench.Ask(0, 8.01, "$CCCLQ\r\n"), Seal("CACLK,2024,02,29,23,59,59"));
+    bench.Ask(0, 8.2, "$CCMUC,1,0,0123\r\n");
+    bench.water->Advance(Ns(10.0));
+    // CAXST names the quality of the clock behind date and time of the start.
+    const std::string clock =
+        newer ? "CAXST,6,20240229,235959.2000,14," : "CAXST,20240229,235959.2000,3,";
+    EXPECT_NE(bench.hosts.all[0].find(clock), std::string::npos) << bench.hosts.all[0];
+  }
 }
 
 TEST(Micromodem, TheFirstGenerationKnowsLess) {

@@ -72,6 +72,7 @@ struct ModemBench {
         micromodem::ModemOptions options;
         options.address = i + 1;
         options.firmware = firmware;
+        options.pps = pps;
         auto modem = std::make_unique<micromodem::Micromodem>(options, world);
         micromodems.push_back(modem.get());
         return modem;
@@ -140,6 +141,7 @@ struct ModemBench {
 
   RunConfig run;
   ChannelConfig config;
+  bool pps = false;  ///< of the Micromodems: a line that ticks is connected
   StatedMedium* medium;
   Hosts hosts;
   std::unique_ptr<ModemWater> water;

@@ -79,6 +79,15 @@ TEST(ModemPorts, AMessageGoesFromOneSocketToTheOther) {
   EXPECT_TRUE(alpha.Hears(&server, "DELIVEREDIM,2\r\n"));
 }
 
+TEST(ModemPorts, OnlyAMicromodemHasATick) {
+  try {
+    LoadModemFile(FileWith(kNet + ", pps: true", kNet));
+    ADD_FAILURE() << "the key was accepted";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("micromodem"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ModemPorts, ASecondClientIsRefusedAndTheFirstGoesOn) {
   ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
   Client first(*server.port(0));

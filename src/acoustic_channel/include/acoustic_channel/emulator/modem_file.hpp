@@ -24,6 +24,7 @@ struct ModemPlace {
   int broadcast = -1;                                           ///< -1: 255 of s2c, 0 of micromodem
   std::string firmware;            ///< empty: 1.9 of s2c, 2.0.35490 of micromodem
   std::string interpreter = "at";  ///< of s2c: at or net
+  bool pps = false;                ///< of micromodem: a tick at each second of UTC
   bool defer = true;               ///< of s2c, as the next one
   double rssi_offset_db = -190.0;
 };

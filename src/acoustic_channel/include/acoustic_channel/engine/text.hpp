@@ -10,6 +10,8 @@ namespace stg::acoustics {
 std::string ToHex(const std::string& bytes);
 /// Empty for an odd number of digits, or for a character that is not a digit.
 std::optional<std::string> FromHex(const std::string& digits);
+/// With padding and without line ends (RFC 4648).
+std::string ToBase64(const std::string& bytes);
 /// A whole number in the range; `text` must contain nothing else.
 std::optional<int> NumberIn(const std::string& text, int lowest, int highest);
 

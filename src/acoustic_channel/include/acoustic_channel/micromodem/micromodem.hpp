@@ -23,6 +23,7 @@ struct ModemOptions {
   int address = 1;                     ///< SRC at power on, 1 to 127
   int broadcast = 0;                   ///< the address of all
   std::string firmware = "2.0.35490";  ///< 2 and above: a Micromodem-2, which knows more commands
+  bool pps = false;                    ///< a line that ticks at each second of UTC is connected
   /// Settings at power on: names and values.
   std::vector<std::pair<std::string, std::string>> settings{};
 };
@@ -98,7 +99,7 @@ class Micromodem : public ModemEngine {
   bool ObeySending(const std::vector<std::string>& fields, TimeNs t);
   bool ObeySetting(const std::vector<std::string>& fields, TimeNs t);
   bool ObeyClock(const std::vector<std::string>& fields, TimeNs t);
-  void FollowPps(TimeNs utc, TimeNs t);
+  bool SetClock(const std::optional<TimeNs>& utc, bool pps, TimeNs t);
   void SetDefaults();
   bool CommandCycle(const std::vector<std::string>& fields, TimeNs t);
   bool CommandFrame(const std::vector<std::string>& fields, bool text, TimeNs t);
@@ -118,6 +119,7 @@ class Micromodem : public ModemEngine {
   // receptions.cpp
   void OnReceptionEnd(const ModemEvent& event);
   Header HeaderOf(const ModemEvent& event) const;
+  void TellCycle(const Header& header);
   void TakeCycle(const Header& header, TimeNs t);
   void TakeFrames(const Header& header, const ModemEvent& event);
   void TakeReply(const Header& header, const ModemEvent& event);
@@ -137,7 +139,7 @@ class Micromodem : public ModemEngine {
   std::map<std::string, std::string> settings_;
   TimeNs clock_offset_ = 0;  ///< of the modem's UTC, as the host set it
   bool clock_set_ = false;
-  bool pps_ = false;  ///< a second is one of UTC's, as with a line that ticks (CCTMS,time,1)
+  bool pps_ = false;  ///< a second is one of UTC's: a line ticks, or CCTMS,time,1 was obeyed
   State state_ = State::kBoot;
   TimeNs deadline_ = 0;  ///< of the state; kNever: it has none
   TimeNs revision_ = 0;  ///< when the next CAREV is due
