@@ -127,7 +127,7 @@ def machine():
     heading("Machine")
     print(f"{model}, {facts['cores']} cores, load {load:.2f} at the start")
     if load > 0.5:
-        print("note: something else is running; every figure below suffers from it")
+        print("note: other programs are running, so the figures below are too low")
     return facts
 
 

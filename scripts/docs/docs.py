@@ -149,12 +149,12 @@ def main():
     """Runs the tool; returns the exit status."""
     parser = argparse.ArgumentParser(prog="docs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=SITE, help="folder of the site (default: build/site)")
-    parser.add_argument("--no-headers", action="store_true", help="without the C++ headers")
+    parser.add_argument("--no-headers", action="store_true", help="leave out the C++ headers")
     parser.add_argument("--versions", action="store_true", help="into a folder of the version below --out, beside other versions")
-    parser.add_argument("--serve", action="store_true", help="serve it on http://127.0.0.1:8301 then")
+    parser.add_argument("--serve", action="store_true", help="then serve the site on http://127.0.0.1:8301")
     options = parser.parse_args()
     if not shutil.which(MKDOCS):
-        print("docs: no mkdocs: install Debian's mkdocs-material", file=sys.stderr)
+        print("docs: mkdocs is missing: install Debian's mkdocs-material", file=sys.stderr)
         return 2
     site = options.out.resolve() / version() if options.versions else options.out.resolve()
     status = build(site, not options.no_headers, options.versions)

@@ -44,7 +44,7 @@ while (($# > 0)); do
 done
 [[ -n "$out" ]] || { usage >&2; exit 2; }
 [[ -f "$root/rviz/$view.rviz" ]] || fail "no view '$view'"
-[[ "$at" =~ ^[0-9]+([.][0-9]+)?$ ]] || fail "--at: '$at' is no number of seconds"
+[[ "$at" =~ ^[0-9]+([.][0-9]+)?$ ]] || fail "--at: '$at' is not a number of seconds"
 [[ -d "$(dirname "$out")" ]] || fail "there is no folder for $out"
 [[ "$size" =~ ^[0-9]+x[0-9]+$ ]] || fail "--size: not of the form 1280x800"
 

@@ -76,9 +76,9 @@ def check_includes(source=SOURCE):
         package, other = include.file.parts[0], include.header.split("/")[0]
         reason = None
         if part_of(include.file) == "core" and ROS.match(include.header):
-            reason = "the core needs neither ROS nor messages"
+            reason = "the core must not include ROS headers or messages"
         elif other in MAY_INCLUDE and other not in {package} | MAY_INCLUDE.get(package, set()):
-            reason = f"{package} does not build on {other}"
+            reason = f"{package} must not depend on {other}"
         if reason:
             findings.append(f"src/{include.file}:{include.line}: {include.header}: {reason}")
     return f"{len(cpp_files(source))} files", findings

@@ -57,8 +57,8 @@ def main(argv):
     """Prints a line for each job."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("built", type=pathlib.Path, help="folder of PACKAGE/PROGRAM of the source build")
-    parser.add_argument("installed", type=pathlib.Path, help="the same of the packages")
-    parser.add_argument("--policy", required=True, help="policy file that both fly")
+    parser.add_argument("installed", type=pathlib.Path, help="the same folder of the packages")
+    parser.add_argument("--policy", required=True, help="policy file for both")
     parser.add_argument("--pairs", type=int, default=6)
     parser.add_argument("--jobs", default="", help="names with commas between them (default: all)")
     options = parser.parse_args(argv)

@@ -152,7 +152,7 @@ def main(argv):
     for text in options.engines:
         name, _, file = text.partition("=")
         if not re.fullmatch(r"[\w-]+", name) or not pathlib.Path(file).is_file():
-            parser.error(f"'{text}' is no INSTRUCTION_SET=FILE")
+            parser.error(f"'{text}' is not of the form INSTRUCTION_SET=FILE")
         engines[name] = pathlib.Path(file)
     if "baseline" not in engines:
         parser.error("an engine of the instruction set baseline is needed")

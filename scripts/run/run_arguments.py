@@ -81,9 +81,9 @@ def check(words):
             hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(defaults)}"
             raise Refusal(f"{names[-1]} has no argument '{name}'; {hint}")
         if name == "bag" and "'" in text:
-            raise Refusal("bag: a name with ' in it cannot be given to the recorder")
+            raise Refusal("bag: the name must not contain '")
         if name == "agents" and not (text.isdecimal() and 1 <= int(text) <= MOST_AGENTS):
-            raise Refusal(f"agents: '{text}' is none of 1 to {MOST_AGENTS}")
+            raise Refusal(f"agents: '{text}' is not a whole number from 1 to {MOST_AGENTS}")
         if text and not text.strip():
             raise Refusal(f"{name}: '{text}' is blank")
         default, other = defaults[name] or "", OTHER.match(defaults[name] or "")

@@ -34,7 +34,7 @@ def _call(uri, name, *arguments):
     with xmlrpc.client.ServerProxy(uri, transport=_Transport()) as server:
         answer = getattr(server, name)("/stg", *arguments)
     if not (isinstance(answer, list) and len(answer) == 3):
-        raise ValueError("no answer of ROS")
+        raise ValueError("ROS does not answer")
     return answer
 
 
@@ -45,7 +45,7 @@ def master_is_online(uri):
         if not address.hostname or not address.port:
             raise ValueError
     except ValueError:
-        raise Refusal(f"ROS_MASTER_URI is '{uri}', not like http://127.0.0.1:11311") from None
+        raise Refusal(f"ROS_MASTER_URI is '{uri}', but must be like http://127.0.0.1:11311") from None
     try:
         socket.create_connection((address.hostname, address.port), PATIENCE_S).close()
     except OSError:
@@ -56,8 +56,8 @@ def master_is_online(uri):
     except Exception:  # whatever speaks there
         pass
     raise Refusal(
-        f"{uri}: something listens there that is no ROS master; end it, or choose a free port with"
-        " ROS_MASTER_URI=http://127.0.0.1:PORT"
+        f"{uri}: a program that is not a ROS master uses this port; end it, or choose a free port"
+        " with ROS_MASTER_URI=http://127.0.0.1:PORT"
     )
 
 
@@ -190,7 +190,7 @@ class Outputs:
         for bag in self.bags:
             check_file_can_be_written("bag", bag)
             if os.path.exists(bag):
-                print(f"stg: bag '{bag}' is there already; the recording replaces it", flush=True)
+                print(f"stg: bag '{bag}' exists already; the recording replaces it", flush=True)
             self._check_space(bag, "the recorder needs 1 GiB")
         if self.summary:
             check_file_can_be_written("summary_file", self.summary)
@@ -226,7 +226,7 @@ class Outputs:
                 if opened.get_message_count() == 0:
                     raise Refusal(f"bag '{bag}' is empty")
         except (rosbag.ROSBagException, OSError, ValueError) as error:
-            raise Refusal(f"bag '{bag}' is not whole: {error}") from None
+            raise Refusal(f"bag '{bag}' is incomplete: {error}") from None
         self._check_space(bag, "the recorder may have stopped before the run's end")
 
     def _check_summary(self):

@@ -39,18 +39,18 @@ def parse(argv):
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--modem", required=True, metavar="HOST:PORT", help="the emulated modem")
+    parser.add_argument("--modem", required=True, metavar="HOST:PORT", help="address of the emulated modem")
     for name, what in (("from", "its janus-tx writes"), ("to", "its janus-rx reads")):
         parser.add_argument(
             f"--{name}-host",
             required=True,
             metavar="PIPE|tcp:PORT",
-            help=f"where the host's sound is: {what}",
+            help=f"sound of the host, which {what}",
         )
     parser.add_argument("--tools", default="", help="folder of janus-tx and janus-rx (the PATH)")
-    parser.add_argument("--pset-file", required=True, help="parameter sets, as the tools take them")
+    parser.add_argument("--pset-file", required=True, help="file of parameter sets for these tools")
     parser.add_argument("--pset-id", default="1")
-    parser.add_argument("--stream-fs", type=int, default=44100, help="samples a second [Hz]")
+    parser.add_argument("--stream-fs", type=int, default=44100, help="sample rate [Hz]")
     return parser.parse_args(argv)
 
 
@@ -63,7 +63,7 @@ def open_sound(place, mode):
     if not path.exists():
         os.mkfifo(path, 0o600)
     if not stat.S_ISFIFO(path.stat().st_mode):
-        raise SystemExit(f"janus_bridge: {path} is no named pipe")
+        raise SystemExit(f"janus_bridge: {path} is not a named pipe")
     return open(path, mode, buffering=0)
 
 
@@ -164,7 +164,7 @@ def hear_water(tools, modem, sounds):
         words = dict(word.split("=", 1) for word in line.split()[1:] if "=" in word)
         if line.startswith("rx "):
             sounds.put(tools.encode(words))
-    raise SystemExit("janus_bridge: the modem has gone")
+    raise SystemExit("janus_bridge: the modem has disconnected")
 
 
 def play(args, sounds):

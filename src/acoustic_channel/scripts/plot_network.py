@@ -286,8 +286,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument(
         "log",
-        help="folder with packets.csv and, for energy, summary.json; or the packet log of a node, "
-        "whose times are counted from its first one",
+        help="folder with packets.csv and, for energy, summary.json; or the packet log of a node, whose times are shown from its first packet on",
     )
     parser.add_argument(
         "--out", help="picture (.png, .svg, .pdf); default: network.png in the folder, LOG.png beside a log"

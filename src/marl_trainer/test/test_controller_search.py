@@ -106,7 +106,7 @@ class Tune(unittest.TestCase):
     def test_seeds_for_reporting_are_refused(self):
         run = self.run_tune(seed=5000000)
         self.assertEqual(run.returncode, 2)
-        self.assertRegex(run.stderr, "^tune: .*of the reporting block, and must be of the choosing block")
+        self.assertRegex(run.stderr, "^tune: .*to the reporting block, but must belong to the choosing block")
 
     def test_unknown_keys_are_refused(self):
         run = self.run_tune(trails=3)
@@ -122,10 +122,10 @@ class Tune(unittest.TestCase):
                         {"start": [{"gain": "x"}]}, {"scenarios": []}, {"trials": "4"},
                         {"seed": True}, {"score": []}, {"step": [0.1]}, {"controller": 3}, {"set": "x"}, {"finals": {"trials": 1}}):  # fmt: skip
             refused(f"search.yaml: {list(changes)[0]}: is not", self.run_tune(**changes))
-        for start, what in (({"gain": 0}, "gain: 0 is not positive"), ({"gian": 1}, "gian is not in")):
+        for start, what in (({"gain": 0}, "gain: 0 must be positive"), ({"gian": 1}, "gian is not in")):
             refused(f"search.yaml: start: {what}", self.run_tune(start=[start]))
         refused("search.yaml: start, random", self.run_tune(start=[], random_trials=0))
-        refused("score: evaluate tells of no joy", self.run_tune(score={"joy": 1.0}))
+        refused("score: evaluate does not report joy", self.run_tune(score={"joy": 1.0}))
         file = self.folder / "search.yaml"
         for text, what in (
             (yaml.safe_dump(SEARCH) + "trials: 5\n", r"search.yaml:\d+: trials: duplicate key"),
@@ -135,7 +135,7 @@ class Tune(unittest.TestCase):
             refused(what, self.run_file())
         file.unlink()
         os.mkfifo(file)
-        refused("search.yaml: is no regular file", self.run_file())
+        refused("search.yaml: is not a regular file", self.run_file())
 
     def test_a_flight_that_fails_is_told_in_one_line(self):
         (self.folder / "evaluate").write_text("#!/bin/sh\necho why >&2\nexit 3\n")

@@ -92,7 +92,7 @@ class Flights(unittest.TestCase):
     def test_seeds_for_choosing_are_refused(self):
         run = self.reproduce(seed=7000)
         self.assertEqual(run.returncode, 1)
-        self.assertIn("are of the choosing block, and must be of the reporting block", run.stdout)
+        self.assertIn("belong to the choosing block, but must belong to the reporting block", run.stdout)
 
     def test_what_is_no_study_of_flights_is_refused_in_one_line(self):
         section = STUDY["sections"][0]
@@ -103,7 +103,7 @@ class Flights(unittest.TestCase):
             ({"columns": [{"metric": "return"}]}, r"columns\[0\].title: missing"),
             ({"knows": {"own": {"blind": True}}}, "knows.own.blind: unknown key"),
             ({"pilots": {"better": "{policies}/a.onnx"}}, "needs --policies"),
-            ({"pilots": {"better": "{nothing}/a.onnx"}}, "in braces is not known"),
+            ({"pilots": {"better": "{nothing}/a.onnx"}}, "in braces is unknown"),
         ):
             run = self.reproduce(**changes)
             with self.subTest(what):

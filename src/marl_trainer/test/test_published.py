@@ -39,7 +39,7 @@ class Published(StudyCase):
             file.write("evaluation_seed: 3000\n")
         status, output, _ = self.reproduce("--methods", "stg", "--seeds", "0")
         self.assertEqual(status, 1, output)
-        self.assertIn("of the choosing block, and must be of the reporting block", output)
+        self.assertIn("to the choosing block, but must belong to the reporting block", output)
         self.assertEqual(self.rows("results.csv"), [])
 
 

@@ -114,7 +114,7 @@ class Ranks(StudyCase):
         process.send_signal(signal.SIGUSR1)  # mpirun passes it on to all
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, output)
-        self.assertIn("stopped; the same command goes on", output)
+        self.assertIn("stopped; the same command continues", output)
         self.resume(folders)
 
     def test_a_lost_rank_ends_the_run_and_its_training_is_resumed(self):

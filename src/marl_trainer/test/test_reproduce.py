@@ -132,7 +132,7 @@ class Reproduce(StudyCase):
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, output)
-        self.assertIn("the same command goes on", output)
+        self.assertIn("the same command continues", output)
         self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.ckpt")))
         stub_programs.calls(self.folder)
         status, output, calls = self.reproduce("--methods", "stg", "--seeds", "0")
@@ -237,7 +237,7 @@ class Reproduce(StudyCase):
             self.refused(what)
         os.remove(self.study)
         os.mkfifo(self.study)
-        self.refused("study.yaml: is no regular file")
+        self.refused("study.yaml: is not a regular file")
 
     def test_damaged_runs_are_refused_in_one_line(self):
         only = ("--methods", "stg", "--seeds", "0")
@@ -253,7 +253,7 @@ class Reproduce(StudyCase):
             (f"{run}/summary.json", {**summary, "parameters": [1]}, "parameters: is not an object"),
             (f"{run}/summary.json", {**summary, "time_to_threshold": {"1000": 3}}, "1000: is not an"),
             (f"{run}/config.json", [1], "config.json: is not an object"),
-            (f"{run}/config.json", {"lr": [[1]]}, "config.json: lr: is neither a value"),
+            (f"{run}/config.json", {"lr": [[1]]}, "config.json: lr: must be a value"),
             (f"{run}/study_job.json", {"arguments": [1]}, "arguments: is not a text"),
             (f"{evaluation}.json", [found], "pursuit_seed0.json: is not an object"),
             (f"{evaluation}.json", {**found, "summary": 1}, "summary: is not an object"),
@@ -267,7 +267,7 @@ class Reproduce(StudyCase):
                 file.write(whole)
         os.mkfifo(self.path("fifo"))
         os.replace(self.path("fifo"), self.path(run, "config.json"))
-        self.refused("config.json: is no regular file", "--no-report", *only)
+        self.refused("config.json: is not a regular file", "--no-report", *only)
 
     def test_damaged_results_are_refused_in_one_line(self):
         self.assertEqual(self.reproduce("--methods", "stg", "--seeds", "0")[0], 0)

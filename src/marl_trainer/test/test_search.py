@@ -169,7 +169,7 @@ class Tune(unittest.TestCase):
         many = lines[:-1] + [lines[-1].replace("1000,", "many,", 1)]
         for name, content, what in (
             ("progress.csv", "".join(many), f"progress.csv:{len(many)}: env_steps: 'many'"),
-            ("progress.csv", lines[0], "progress.csv: tells of no validation"),
+            ("progress.csv", lines[0], "progress.csv: contains no validation"),
             ("progress.csv", lines[1], "progress.csv:1: no column"),
             ("summary.json", "[]", "summary.json: is not an object"),
             ("study_job.json", '{"arguments": 3}', "study_job.json: arguments: is not a list"),

@@ -154,7 +154,7 @@ class ScenarioAgents(unittest.TestCase):
                 self.refused(folder / "file.yaml", "file.yaml:")
             (folder / "heir.yaml").write_text("base: fifo.yaml\n")
             os.mkfifo(folder / "fifo.yaml")
-            self.refused(folder / "heir.yaml", "fifo.yaml: is no regular file")
+            self.refused(folder / "heir.yaml", "fifo.yaml: is not a regular file")
 
     def refused(self, scenario, what):
         """The script must end in one line that says `what`."""

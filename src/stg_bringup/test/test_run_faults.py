@@ -69,8 +69,8 @@ class Refused(WithFolder):
 
     def test_numbers_that_ros_cannot_carry(self):
         self.check_refused("seed: 5000000000 is more than 2147483647", "seed:=5000000000")
-        self.check_refused("agents: 'abc' is none of 1 to 255", "agents:=abc")
-        self.check_refused("agents: '256' is none of 1 to 255", "agents:=256")
+        self.check_refused("agents: 'abc' is not a whole number from 1 to 255", "agents:=abc")
+        self.check_refused("agents: '256' is not a whole number from 1 to 255", "agents:=256")
 
     def test_as_many_agents_as_a_scenario_may_have(self):
         # Launch files include themselves, one AUV after the other.
@@ -106,7 +106,7 @@ class Refused(WithFolder):
     def test_a_stranger_on_the_port_of_the_master(self):
         for answer in (b"HTTP/1.0 200 OK\r\n\r\nhello", b"SSH-2.0-OpenSSH\r\n", None):
             with self.subTest(answer), self.stranger(answer) as port:
-                self.check_refused("no ROS master", *ENDLESS, port=port)
+                self.check_refused("not a ROS master", *ENDLESS, port=port)
 
     @contextlib.contextmanager
     def stranger(self, answer):
@@ -165,7 +165,7 @@ class Refused(WithFolder):
                 with self.assertRaisesRegex(run_checks.Refusal, "too little space"):
                     check()
         bag.write_bytes(bag.read_bytes()[:-100])
-        with self.assertRaisesRegex(run_checks.Refusal, "not whole"):
+        with self.assertRaisesRegex(run_checks.Refusal, "is incomplete"):
             outputs.check_after()
 
 

@@ -77,7 +77,7 @@ class Bags(unittest.TestCase):
                     run_checks.Outputs([recorder], {}).check_before()
                 said.append(output.getvalue())
                 bag.touch()
-        self.assertEqual(said, ["", f"stg: bag '{bag}' is there already; the recording replaces "
+        self.assertEqual(said, ["", f"stg: bag '{bag}' exists already; the recording replaces "
                                     "it\n"])
 
 

@@ -31,7 +31,7 @@ class Judge(unittest.TestCase):
 
     def test_a_process_that_dies_on_the_way_is_told_and_a_helper_of_the_start_is_not(self):
         (told,) = SOAK.grown(rows(until=60), 100.0)
-        self.assertIn("was not there all the time", told)
+        self.assertIn("did not run all the time", told)
         self.assertEqual(SOAK.grown(rows(until=10), 100.0), [])
 
     def test_length_of_an_episode_comes_from_the_scenario_or_its_base(self):

@@ -67,7 +67,7 @@ class Tools(unittest.TestCase):
         self.check_refused("required.*--build", "test/fuzz.py", "packet", "1")
         self.check_refused("no packages", "lint/draw_architecture.py", "--source", ".")
         self.check_refused("none.svg: No such", "lint/draw_architecture.py", "--check", "--out", "none")
-        self.check_refused("--at: 'x' is no number", "docs/screenshot.sh", "--at", "x", "o.png")
+        self.check_refused("--at: 'x' is not a number", "docs/screenshot.sh", "--at", "x", "o.png")
         self.check_refused("no folder for none/o.png", "docs/screenshot.sh", "none/o.png")
 
     def test_figure_of_the_field_refuses_what_it_cannot_draw(self):

@@ -132,7 +132,7 @@ def read_run(bag, path):
         topic = "poses, targets and links"
         add_late(run, late, clock.lookup())
     except (AttributeError, TypeError, ValueError, LookupError) as error:
-        raise BagError(f"{path}: {topic}: not as this program records it: {error}") from None
+        raise BagError(f"{path}: {topic}: not of the form that this program records: {error}") from None
     if not run.rows["poses"]:
         raise LookupError(f"{path}: holds no /auv_<i>/odom: not a recorded run")
     return run
@@ -271,7 +271,7 @@ def parse_arguments(arguments):
     parser.add_argument("bag", help="recorded run")
     parser.add_argument("-o", "--out", help="output folder (default: the bag's name + _report)")
     parser.add_argument("--episode", type=int, help="draw this episode only (default: all)")
-    parser.add_argument("--max-figures", type=int, default=10, help="largest number of figures")
+    parser.add_argument("--max-figures", type=int, default=10, help="draw at most this number of figures")
     parser.add_argument("--no-figures", action="store_true", help="write the CSV files only")
     parser.add_argument(
         "--salvage", action="store_true", help="read the complete part of a truncated bag"

@@ -30,8 +30,8 @@ def parse_arguments(arguments):
     parser.add_argument("--title", help="title of the page (default: the name of RUN)")
     parser.add_argument("--salvage", action="store_true", help="read the undamaged part of a damaged bag")
     parser.add_argument("--video", metavar="FILE", help="write a video (.mp4, .webm or .gif), too")
-    parser.add_argument("--video-seconds", type=float, default=12.0, help="its length (default: 12)")
-    parser.add_argument("--video-size", default="1280x720", help="its size (default: 1280x720)")
+    parser.add_argument("--video-seconds", type=float, default=12.0, help="length of the video (default: 12)")
+    parser.add_argument("--video-size", default="1280x720", help="size of the video (default: 1280x720)")
     parser.add_argument("--video-theme", choices=["light", "dark"], default="dark")
     return parser.parse_args(arguments)
 

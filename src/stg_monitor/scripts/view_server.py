@@ -122,7 +122,7 @@ def main():
     rospy.init_node("view_server", disable_signals=False, disable_rostime=True)
     port, rate_hz = rospy.get_param("~port", 8300), rospy.get_param("~rate_hz", 10.0)
     if not (isinstance(port, int) and 1 <= port <= 65535 and isinstance(rate_hz, (int, float)) and 0.1 <= rate_hz <= 100):
-        raise PageError(f"port {port} or rate_hz {rate_hz} cannot be: a port is 1 to 65535, a rate 0.1 to 100")
+        raise PageError(f"port {port} or rate_hz {rate_hz} is out of range: a port is 1 to 65535, a rate 0.1 to 100")
     server = Server(port, float(rate_hz))
     if server.failure:
         raise PageError(f"port {port} of {HOST}: {server.failure.strerror}; choose another one with port:=")

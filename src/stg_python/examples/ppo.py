@@ -129,7 +129,7 @@ def main():
     parser.add_argument("--envs", type=int, default=64)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--episodes", type=int, default=30, help="of the evaluation")
+    parser.add_argument("--episodes", type=int, default=30, help="episodes of the evaluation")
     parser.add_argument("--out", default="ppo.onnx")
     options = parser.parse_args()
     torch.set_num_threads(1)

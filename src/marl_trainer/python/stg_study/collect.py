@@ -57,7 +57,7 @@ def _run_cells(job):
     # Older runs do not tell the sizes.
     sizes = expect(path, summary.get("parameters", {}), dict, "parameters")
     if any(not re.fullmatch(r"\w+", name) or type(size) is not int for name, size in sizes.items()):
-        raise Damaged(path, "parameters: is not a whole number for each network")
+        raise Damaged(path, "parameters: must be a whole number for each network")
     networks = " ".join(f"{name}:{size}" for name, size in sizes.items())
     flops = summary.get("update_flops_per_env_step")
     flops = "" if flops is None else _short(expect(path, flops, float, "update_flops_per_env_step"))
@@ -72,7 +72,7 @@ def _options_of(job):
     for name, value in options.items():
         parts = value if isinstance(value, list) else [value]
         if any(isinstance(part, (dict, list)) for part in parts):
-            raise Damaged(path, f"{name}: is neither a value nor a list of values")
+            raise Damaged(path, f"{name}: must be a value or a list of values")
         texts[name] = expect(path, ";".join(map(str, parts)), str, expect(path, name, str))
     return texts
 

@@ -111,12 +111,12 @@ def checked(search, file):
             raise Damaged(file, f"{key}: is not {what}")
     for name, value in ((n, v) for start in search["start"] for n, v in start.items()):
         if name not in search["space"]:
-            raise Damaged(file, f"start: {name} is not in the space, so that no trial would tell of it")
+            raise Damaged(file, f"start: {name} is not in the key space, so no trial would use it")
         if is_logarithmic(search["space"][name]) and value <= 0.0:
-            raise Damaged(file, f"start: {name}: {value} is not positive, and its range is searched by"
+            raise Damaged(file, f"start: {name}: {value} must be positive, because its range is searched by"
                                 " its logarithm")  # fmt: skip
     if not search["start"] and not search["random_trials"]:
-        raise Damaged(file, "start, random_trials: there is nothing to begin with")
+        raise Damaged(file, "start, random_trials: give at least one of the two")
     return search
 
 
@@ -177,7 +177,7 @@ def _fly(search, values, work, bin_dir, parallel):
     found = [job.summary() for job in jobs]
     unknown = [name for name in search["score"] if not all(is_number(cell.get(name)) for cell in found)]
     if unknown:
-        raise StudyError(f"score: evaluate tells of no {', '.join(unknown)}")
+        raise StudyError(f"score: evaluate does not report {', '.join(unknown)}")
     means = {name: sum(cell[name] for cell in found) / len(found) for name in search["score"]}
     return sum(weight * means[name] for name, weight in search["score"].items()), means
 

@@ -50,7 +50,7 @@ class Paper:
         for row in table_rows(path, {"mean": number, "std": optional(number)}):
             key = (row["table"], row["algorithm"], row["condition"], row["seed"], row["metric"])
             if key in self._values:
-                raise Damaged(path, f"{key} stands there twice")
+                raise Damaged(path, f"{key} is given twice")
             self._values[key] = (row["mean"], row["std"])
             names = self._algorithms.setdefault(row["table"], [])
             if row["algorithm"] not in names:

@@ -183,7 +183,7 @@ def training_table(path):
         seconds = f"{rows[tasks[0]]['seconds']:.0f}"
         lines.append([f"{step:,}", seconds, *(f"{s:.3f}" for s in shares), f"{means[-1]:.3f}"])
     if not means:
-        raise Damaged(path, "tells of no validation")
+        raise Damaged(path, "contains no validation")
     table = markdown(["Decisions of a swarm", "Seconds", *tasks, "Mean"], lines)
     share, last, best = means[-1] / max(means), means[-1], max(means)
     return table + f"\nThe last is {share:.3f} of the best ({last:.3f} of {best:.3f}).\n"

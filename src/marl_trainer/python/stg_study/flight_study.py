@@ -165,7 +165,7 @@ def _policy(pilot, scenario, seed, policies):
             shipped=shipped_policies(), policies=policies, scenario=scenario, seed=seed
         )
     except (KeyError, ValueError, IndexError):
-        raise StudyError(f"'{pilot.policy}': what stands in braces is not known") from None
+        raise StudyError(f"'{pilot.policy}': the name in braces is unknown") from None
     if not os.path.exists(path):
         raise FileError(path, "there is no such policy")
     return path

@@ -80,7 +80,7 @@ class Training:
         """Why the folder cannot be used, or None: what it holds was made otherwise."""
         record = self._arguments()
         if record is None and os.path.isdir(self.folder) and os.listdir(self.folder):
-            return f"{self.folder} is not empty and not a run of a study"
+            return f"{self.folder} is neither empty nor the folder of a run of a study"
         if record is not None and record != self.arguments:
             return (
                 f"{self.folder} was trained with other options ({' '.join(record)}); "
@@ -226,7 +226,7 @@ class Flight:
         block = summary.get("seed_block")
         if block != self._block:
             raise FileError(
-                self.name, f"its episodes are of the {block} block, and must be of the {self._block} block"
+                self.name, f"its episodes belong to the {block} block, but must belong to the {self._block} block"
             )
         os.replace(self.csv + ".part", self.csv)
         result = {"identity": self._identity(), "summary": summary}

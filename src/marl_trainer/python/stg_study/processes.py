@@ -67,7 +67,7 @@ class JobProcess(Running):
                 self.job.finish(log.read())
             return "" if self.job.complete() else "its output is incomplete"
         except (FileError, OSError, ValueError, IndexError) as error:
-            return f"its output cannot be taken over: {reason_of(error)}"
+            return f"its output cannot be read: {reason_of(error)}"
 
     def signal(self, number):
         """Tells the process and its children, if it still runs."""

@@ -129,7 +129,7 @@ class Runner:
                     self._conclude(item, finished)
         if self._stops:
             self._end(list(at_work.values()))
-            self._say("stopped; the same command goes on from here")
+            self._say("stopped; the same command continues from here")
             return False
         for job in evaluations:
             self.failed.append(f"{job.name}: not done, its training failed")
@@ -174,7 +174,7 @@ class Runner:
     def _end(self, running):
         """Interrupts the processes, which lets trainings save; a second Ctrl-C kills them."""
         if running:
-            self._say(f"stopping {len(running)} jobs, trainings save first (again: kill)")
+            self._say(f"stopping {len(running)} jobs; trainings save first (a second signal kills them)")
         for item in running:
             item.signal(signal.SIGINT)
         deadline = time.monotonic() + PATIENCE_S

@@ -57,7 +57,7 @@ def load_search(path):
     if search.trials < 1 or search.steps < 1:
         raise StudyError(f"{path}: trials and steps must be positive")
     if not seeds or min(seeds) < 0 or len(set(seeds)) != len(seeds):
-        raise StudyError(f"{path}: training_seeds: must be some, not negative, and must not repeat")
+        raise StudyError(f"{path}: training_seeds: must be at least one seed, not negative and not repeated")
     for key, table in (("algorithms", search.algorithms), ("fixed", search.fixed)):
         for algorithm, options in table.items():
             where = f"{path}: {key}.{algorithm}"
@@ -67,11 +67,11 @@ def load_search(path):
                 raise StudyError(f"{where}: must be a mapping")
             for option, value in options.items():
                 if not isinstance(option, str):
-                    raise StudyError(f"{where}.{option}: is no name of an option")
+                    raise StudyError(f"{where}.{option}: is not a name of an option")
                 if key == "algorithms":
                     _check_source(f"{where}.{option}", value)
                 elif not is_option(option, value):
-                    raise StudyError(f"{where}.{option}: is no value of an option")
+                    raise StudyError(f"{where}.{option}: is not a value of an option")
     return search
 
 
@@ -160,7 +160,7 @@ def _training_score(training):
     """(return, lost rate, wall seconds) of a finished training."""
     rows = training.validations()
     if not rows:
-        raise Damaged(training.progress_file, "tells of no validation")
+        raise Damaged(training.progress_file, "contains no validation")
     rows = final_stage(rows)
     return (
         sum(row["validation_return"] for row in rows) / len(rows),

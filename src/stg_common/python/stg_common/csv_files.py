@@ -94,5 +94,5 @@ def _row(path, line, kinds, cells):
         try:
             row[name] = kind(text)
         except ValueError:
-            raise Damaged(path, f"{name}: '{text[:40]}' cannot be", line) from None
+            raise Damaged(path, f"{name}: '{text[:40]}' is not a valid value", line) from None
     return row

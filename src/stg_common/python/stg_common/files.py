@@ -49,7 +49,7 @@ def opened(path, largest=LARGEST):
         if stat.S_ISDIR(state.st_mode):
             raise FileError(path, "is a folder, not a file")
         if not stat.S_ISREG(state.st_mode):
-            raise FileError(path, "is no regular file")
+            raise FileError(path, "is not a regular file")
         if state.st_size > largest:
             raise FileError(path, f"has {state.st_size} bytes, more than {largest}")
         with open(path, "rb") as file:

@@ -31,7 +31,7 @@ class _StrictLoader(yaml.SafeLoader):
         node = super().compose_node(parent, index)
         self._depth -= 1
         if isinstance(event, yaml.AliasEvent) and node not in self._values:
-            raise yaml.composer.ComposerError(None, None, "an alias of itself", event.start_mark)
+            raise yaml.composer.ComposerError(None, None, "an alias that contains itself", event.start_mark)
         return node
 
     def compose_scalar_node(self, anchor):
@@ -66,9 +66,9 @@ class _StrictLoader(yaml.SafeLoader):
             # What the constructors of dates, numbers and tags raise.
             _refuse(node, "this value cannot be read")
         if isinstance(value, int) and abs(value) > LARGEST_NUMBER:
-            _refuse(node, "too large a number")
+            _refuse(node, "the number is too large")
         if isinstance(value, str) and not is_text(value):
-            _refuse(node, "characters that are no text")
+            _refuse(node, "characters that are not text")
         return value
 
 

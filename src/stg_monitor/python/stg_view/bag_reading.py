@@ -21,7 +21,7 @@ def open_bag(path, salvage):
     if os.path.isdir(path):
         raise BagError(f"{path}: is a folder, not a bag")
     if not os.path.isfile(path):
-        raise BagError(f"{path}: is no regular file")
+        raise BagError(f"{path}: is not a regular file")
     if os.path.getsize(path) == 0:
         raise BagError(f"{path}: is empty")
     try:
@@ -31,7 +31,7 @@ def open_bag(path, salvage):
             return salvaged(path)
         raise BagError(
             f"{path}: is truncated or was not closed (it has no index);"
-            " --salvage reads what is whole of it"
+            " --salvage reads its complete part"
         ) from None
     except Exception as error:  # damage raises whatever rosbag trips over
         if salvage and looks_like_bag(path):
@@ -56,10 +56,10 @@ def salvaged(path):
         with rosbag.Bag(copy, "a", allow_unindexed=True) as bag:
             for _ in bag.reindex():
                 pass
-        print(f"bag_report: {path} is truncated; reading what is whole", file=sys.stderr)
+        print(f"bag_report: {path} is truncated; reading its complete part", file=sys.stderr)
         return rosbag.Bag(copy)
     except Exception as error:  # rosbag raises whatever it trips over in damaged data
-        raise BagError(f"{path}: nothing of it can be salvaged: {error}") from None
+        raise BagError(f"{path}: no part of it can be read: {error}") from None
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 

@@ -219,7 +219,7 @@ def read_bag(path, salvage, title):
                     collector.take(topic, message)
             collector.finish()
         except (AttributeError, TypeError, ValueError, LookupError, OverflowError) as error:
-            raise BagError(f"{path}: {topic}: not as this program records it: {error}") from None
+            raise BagError(f"{path}: {topic}: not of the form that this program records: {error}") from None
         except BagError as error:
             # What came before the damage is whole.
             if not salvage or not recording.steps.rows:

@@ -71,7 +71,7 @@ def read_log(path, names=None):
     for line, row in enumerate(rows, start=2):
         ends = [row["source"], row["destination"]]
         if any(name not in index for name in ends):
-            raise Damaged(path, "source or destination is no node", line)
+            raise Damaged(path, "source or destination is not a node", line)
         sequence = row["sequence"]
         recording.packets.add(
             index[ends[0]], index[ends[1]], -1 if sequence is None else int(sequence) % (1 << 31),
@@ -93,7 +93,7 @@ def read_simulation(folder):
         simulation = read_yaml(file)
         nodes = simulation.get("nodes") if isinstance(simulation, dict) else None
         if not isinstance(nodes, list) or not all(isinstance(n, dict) and "id" in n for n in nodes):
-            raise Damaged(file, "nodes: is no list of nodes")
+            raise Damaged(file, "nodes: is not a list of nodes")
         names = [str(node["id"]) for node in sorted(nodes, key=lambda node: node["id"])]
     recording = read_log(folder / "packets.csv", names)
     recording.meta["title"] = f"Network of {folder.resolve().name}"

@@ -65,9 +65,9 @@ def encode(kind, columns=(), **header):
 
 def messages(data):
     """Yields (header, {column: array}) of a recording's bytes; the last one may be cut off and is then
-    left out. Throws RecordingError for what is no recording."""
+    left out. Throws RecordingError for what is not a recording."""
     if data[: len(MAGIC)] != MAGIC:
-        raise RecordingError("is no recording")
+        raise RecordingError("is not a recording")
     at = len(MAGIC)
     while at + 8 <= len(data):
         header_bytes, body_bytes = struct.unpack_from("<II", data, at)

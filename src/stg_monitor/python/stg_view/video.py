@@ -27,7 +27,7 @@ def write_video(page, out, seconds, size, theme="dark", camera="swarm", tab="sto
     try:
         width, height = (int(x) // 2 * 2 for x in size.split("x"))
     except ValueError:
-        raise BrowserError(f"'{size}' is no size like 1280x720") from None
+        raise BrowserError(f"'{size}' is not a size such as 1280x720") from None
     if not (0.1 <= seconds <= 600 and 200 <= width <= 4096 and 200 <= height <= 4096):
         raise BrowserError("a video takes 0.1 to 600 seconds and 200 to 4096 pixels")
     command = ["ffmpeg", "-v", "error", "-y", "-f", "image2pipe", "-c:v", "mjpeg", "-r", str(rate), "-i", "-",

@@ -40,5 +40,5 @@ def choose():
 
     if wanted not in ("", _core.INSTRUCTION_SET):
         raise ImportError(
-            f"STG_INSTRUCTION_SET: no engine of stg for '{wanted}' here, or not for this processor"
+            f"STG_INSTRUCTION_SET: the engine of stg for '{wanted}' is not installed, or this processor cannot run it"
         )

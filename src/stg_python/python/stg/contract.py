@@ -75,7 +75,7 @@ def _check_parallel_episode(env, cycles):
         ended = {name for name in flying if terminations[name] or truncations[name]}
         gone |= ended
         assert set(env.agents) == set(flying + joined) - ended
-        assert not gone & set(env.agents), "an agent that is gone came back"
+        assert not gone & set(env.agents), "an agent came back after its end"
         if hasattr(env, "state_space"):
             assert env.state_space.contains(env.state())
 

@@ -111,7 +111,7 @@ class ParallelEnv(_Base):
             raise TypeError(f"options: expected a dictionary, not {type(options).__name__}")
         if options:
             names = ", ".join(map(str, options))
-            warnings.warn(f"reset: no option is known here; {names} changed nothing", stacklevel=2)
+            warnings.warn(f"reset: there are no options; {names} had no effect", stacklevel=2)
         seed = self._next_seed if seed is None else seed_of(seed)
         self._core.reset_env(0, seed)
         self._next_seed = seed + 1

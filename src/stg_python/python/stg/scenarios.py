@@ -35,7 +35,7 @@ def policy_file(name):
     file = folder / f"{name}.onnx"
     if not file.is_file():
         there = ", ".join(sorted(path.stem for path in folder.glob("*.onnx")))
-        raise ValueError(f"policy '{name}': none ships by this name; there are: {there}")
+        raise ValueError(f"policy '{name}': no policy with this name is shipped; there are: {there}")
     return str(file)
 
 
@@ -55,9 +55,9 @@ def _text(value, within):
 
 
 def _inside(value, within):
-    """Returns `within` and `value`; raises ValueError where the value holds itself or lies too deep."""
+    """Returns `within` and `value`; raises ValueError where the value contains itself or lies too deep."""
     if any(value is outer for outer in within):
-        raise ValueError(f"overrides: a {type(value).__name__} holds itself")
+        raise ValueError(f"overrides: a {type(value).__name__} contains itself")
     if len(within) >= 32:
         raise ValueError("overrides: more than 32 dictionaries or lists within each other")
     return (*within, value)
@@ -68,7 +68,7 @@ def _walk(prefix, values, within):
     within = _inside(values, within)
     for key, value in values.items():
         if not isinstance(key, str):
-            raise TypeError(f"overrides: keys are texts, not {type(key).__name__} ({key!r})")
+            raise TypeError(f"overrides: keys must be strings, not {type(key).__name__} ({key!r})")
         if isinstance(value, dict):
             yield from _walk(f"{prefix}{key}.", value, within)
         else:
@@ -84,7 +84,7 @@ def override_texts(overrides):
         return [str(text) for text in overrides]
     if not isinstance(overrides, dict):
         raise TypeError(
-            "overrides: expected a dictionary {'key.path': value} or a list of texts "
+            "overrides: expected a dictionary {'key.path': value} or a list of strings "
             f"'key.path=value', not {overrides!r}"
         )
     return list(_walk("", overrides, ()))

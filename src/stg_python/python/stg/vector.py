@@ -123,7 +123,7 @@ class VectorEnv(_Base):
         }
         unknown = set(given or ()) - set(arrays)
         if unknown:
-            raise ValueError(f"arrays: {sorted(unknown)} are none of {sorted(arrays)}")
+            raise ValueError(f"arrays: {sorted(unknown)} are not among {sorted(arrays)}")
         return {**arrays, **(given or {})}
 
     @property

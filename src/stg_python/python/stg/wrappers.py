@@ -33,7 +33,7 @@ def _from_env(name):
         return getattr(self.env, name)(*args, **kwargs)
 
     call.__name__ = name
-    call.__doc__ = f"See the environment within: its {name}."
+    call.__doc__ = f"See the wrapped environment: its {name}."
     return call
 
 
@@ -95,7 +95,7 @@ def _is_vector(env):
         return True
     if isinstance(env, (parallel.ParallelEnv, ParallelWrapper)):
         return False
-    raise TypeError(f"neither of parallel_env nor of vector_env: {env!r}")
+    raise TypeError(f"expected an environment of parallel_env or vector_env, not {env!r}")
 
 
 class _Bins:
