@@ -3,7 +3,7 @@
     env = stg.parallel_env("medium", condition="nominal", seed=0)    # PettingZoo's Parallel API
     envs = stg.vector_env("medium", num_envs=256, workers=2)         # Gymnasium's vector API
 
-docs/python.md is the tutorial, docs/environment.md says what every number means.
+docs/python.md is the tutorial, docs/environment.md describes every number.
 """
 
 from stg import _engine

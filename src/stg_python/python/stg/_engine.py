@@ -28,7 +28,7 @@ def _load(file):
 
 
 def choose():
-    """Makes the engine to use the module stg._core; to be called before all else imports that."""
+    """Loads the chosen engine as the module stg._core, before any other import of it."""
     wanted = os.environ.get("STG_INSTRUCTION_SET", "")
     file = _file("x86-64-v3")
     if file and wanted in ("", "x86-64-v3"):

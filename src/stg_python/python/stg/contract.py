@@ -1,5 +1,5 @@
-"""Checks of what every environment and wrapper must keep to, as Gymnasium's and PettingZoo's own
-testers do; an AssertionError says what is broken."""
+"""Checks of the contract of environments and wrappers, as Gymnasium's and PettingZoo's own
+testers do; an AssertionError names what is wrong."""
 
 import warnings
 
@@ -81,7 +81,7 @@ def _check_parallel_episode(env, cycles):
 
 
 def _check_parallel_seed(make):
-    """The same seed gives the same everything, in another object and after other episodes."""
+    """The same seed gives the same results, in another object and after other episodes."""
 
     def fly(env):
         draw = _sampled(env, 7)

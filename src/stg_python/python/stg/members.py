@@ -1,4 +1,4 @@
-"""When which AUV flies: members that leave a swarm and join it again (fleet.leave, fleet.join)."""
+"""AUVs that fly at each time: members that leave a swarm and join it again (fleet.leave, fleet.join)."""
 
 __all__ = ["Members"]
 
@@ -6,8 +6,8 @@ __all__ = ["Members"]
 class Members:
     """The lives of the AUVs of a scenario, by decision.
 
-    AUV i is the agent "auv_<i>". One that has left and joins again is another agent, whose name ends
-    in the number of its life, "auv_<i>_2": agents that are gone never come back.
+    AUV i is the agent "auv_<i>". An AUV that has left and joins again is another agent, whose name
+    ends in the number of its life, "auv_<i>_2", because an agent must not come back after its end.
     """
 
     def __init__(self, scenario):
@@ -23,7 +23,7 @@ class Members:
 
     @staticmethod
     def _lives_of(auv, events):
-        """[name, begin, end] of each life [s]; the end is None where it never leaves."""
+        """[name, begin, end] of each life [s]; the end is None if the AUV never leaves."""
         lives, there = [[f"auv_{auv}", 0.0, None]], True
         for time, who, joins in events:
             if who != auv or joins == there:

@@ -34,10 +34,10 @@ class Page:
 def report(env, path=None, title=None):
     """Returns a Page of the episode that an environment has flown up to now.
 
-    env    a ParallelEnv made with render_mode="rgb_array", which remembers its episode
-    path   where to write the page, too
+    env    a ParallelEnv made with render_mode="rgb_array", which stores its episode
+    path   file for the page; None: no file
     title  of the page; None: the scenario's name
-    Raises ValueError where nothing is remembered, ImportError where stg_view is not installed.
+    Raises ValueError if there is no stored episode, ImportError if stg_view is not installed.
     """
     from stg_view.page import report_page  # pylint: disable=import-outside-toplevel
 
@@ -52,7 +52,7 @@ def report(env, path=None, title=None):
 
 
 def recording_of(history, scenario, title):
-    """The bytes of a recording of Snapshots (stg.render says what they are)."""
+    """The bytes of a recording of Snapshots (see stg.render)."""
     from stg_view.recording import Recording  # pylint: disable=import-outside-toplevel
 
     first = history[0]

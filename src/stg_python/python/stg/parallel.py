@@ -37,18 +37,18 @@ except ImportError:
 
 
 class ParallelEnv(_Base):
-    """One swarm: AUV i is the agent "auv_<i>". Where the scenario says so (fleet.leave, fleet.join),
-    agents leave in the middle of an episode, which ends by termination for them, and join: `agents`
-    shrinks and grows. One that joins again is another agent, "auv_<i>_2"; see Members.
+    """One swarm: AUV i is the agent "auv_<i>". With the keys fleet.leave and fleet.join, agents leave
+    and join during an episode, and `agents` changes. The episode ends by termination for an agent
+    that leaves. An AUV that joins again is another agent, "auv_<i>_2"; see Members.
 
-    observations  [K] float32 each, of the decision to come
+    observations  [K] float32 each, for the next decision
     actions       [A] float32 or float64 each, clipped to [-1, 1]
     rewards       a float each
     terminations  true for an agent that leaves with this decision
     truncations   true for all at the last decision of an episode; `agents` is then empty
-    infos         empty but for the last decision: "metrics" of the episode, one dictionary for all
+    infos         empty except at the last decision: "metrics" of the episode, one dictionary for all
 
-    All that is returned is the caller's to keep. A step that raises changes nothing.
+    All returned arrays are copies. A step that raises an exception has no effect.
     """
 
     def __init__(
@@ -103,9 +103,9 @@ class ParallelEnv(_Base):
     def reset(self, seed=None, options=None):
         """Starts an episode; returns ({agent: observation}, {agent: info}).
 
-        seed: of the world; None: one more than the last one, the first time that given to
-        parallel_env. options: a dictionary, of which no key is known: each one gives a warning and
-        changes nothing, because PettingZoo's contract wants environments to take any.
+        seed: of the world; None: the last seed plus one, or at first the seed of parallel_env.
+        options: a dictionary. There are no options, so each key gives a warning and has no effect;
+        PettingZoo's contract requires that any key is accepted.
         """
         if options is not None and not isinstance(options, dict):
             raise TypeError(f"options: expected a dictionary, not {type(options).__name__}")
@@ -183,20 +183,20 @@ class ParallelEnv(_Base):
         )
 
     def state(self):
-        """The truth of the swarm [S] float32, for critics; after the end: of the last decision."""
+        """The true state of the swarm [S] float32, for critics; after the end, of the last decision."""
         return self._states[int(self._ended), 0].copy()
 
     def snapshot(self):
-        """The truth in SI units and world axes, for drawing; see render.Snapshot.
+        """The true states in SI units and world axes, for drawing; see render.Snapshot.
 
-        At the end of an episode it is already that of the next one.
+        At the end of an episode, these are already the states of the next one.
         """
         return self._core.snapshot(0)
 
     def controller_actions(self, controller, privileged=False):
         """Returns {agent: action} of a controller: "pursuit", ..., or a policy's file.
 
-        privileged: a built-in controller sees the truth in acoustic mode, too.
+        privileged: a built-in controller reads true states, also in acoustic mode.
         """
         if not self.agents:
             raise RuntimeError("no AUV flies: the episode has ended or not begun; call reset")
@@ -227,7 +227,7 @@ def parallel_env(scenario="medium", condition="nominal", overrides=None, seed=0,
     scenario      a shipped scenario's name, a YAML file, or a Scenario
     condition     a stress condition's name
     overrides     {"key.path": value} of docs/scenarios.md, nested or not
-    seed          of the first reset without one
+    seed          seed of the first reset without a seed
     render_mode   None or "rgb_array"
     """
     return ParallelEnv(scenario, condition, overrides, seed, render_mode)

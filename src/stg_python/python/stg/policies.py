@@ -23,7 +23,7 @@ def evaluate(policy, scenario="medium", condition="nominal", overrides=None, epi
     """Returns {metric: mean, metric_std: standard deviation} over whole episodes.
 
     policy: a file or a built-in controller's name. Episode e is drawn from seed + e. The numbers are
-    those of the command line `evaluate`. privileged: a built-in controller sees the truth.
+    those of the command line `evaluate`. privileged: a built-in controller reads true states.
     """
     s = load_scenario(scenario, condition, overrides)
     return _core.evaluate(str(policy), s, episodes, seed_of(seed), workers, privileged)
@@ -97,7 +97,7 @@ def export_policy(
     seed              of the training
     metrics           {name: text or number} for people
 
-    Raises ValueError for another module, or one that the file would not act like (tried on 64
+    Raises ValueError for another module, or if the file would give other actions (tried on 64
     observations), UserError for sizes that do not fit the scenario.
     """
     s = load_scenario(scenario)

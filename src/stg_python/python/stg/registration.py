@@ -27,7 +27,7 @@ def make_vector(scenario="medium", num_envs=4, **options):
 
 
 def register():
-    """Tells both packages the names, once; does nothing for one that is not installed."""
+    """Registers the names in both packages, once; skips a package that is not installed."""
     _tell_gymnasium()
     _tell_pettingzoo()
 

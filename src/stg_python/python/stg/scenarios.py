@@ -45,7 +45,7 @@ def scenario_names():
 
 
 def _text(value, within):
-    """Returns a value as it stands in a YAML file; `within` are the lists and dictionaries around it."""
+    """Returns the text of a value in a YAML file; `within` are the lists and dictionaries around it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):

@@ -1,4 +1,4 @@
-"""The spaces of Gymnasium where it can be imported; else the few that are needed, which act alike."""
+"""Gymnasium's spaces if it can be imported; otherwise the needed ones, with the same behaviour."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ __all__ = ["Box", "Discrete", "MultiDiscrete", "batch_space", "have_gymnasium"]
 
 
 class _Space:
-    """What Box, Discrete and MultiDiscrete have in common."""
+    """Common part of Box, Discrete and MultiDiscrete."""
 
     def __init__(self, shape, dtype, seed=None):
         self.shape = tuple(int(n) for n in shape)

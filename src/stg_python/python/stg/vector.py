@@ -58,18 +58,18 @@ class VectorEnv(_Base):
     One of Gymnasium's environments is a whole swarm: N AUVs, observations of K numbers each, A
     actions each. Episodes end by truncation alone and restart in the same step.
 
-    observations  [num_envs, N, K] float32, of the decision to come
+    observations  [num_envs, N, K] float32, for the next decision
     actions       [num_envs, N, A] float32 or float64, clipped to [-1, 1]
     rewards       [num_envs] float32, mean over the AUVs; or [num_envs, N] with rewards="agent"
     terminations  [num_envs] bool, never true
     truncations   [num_envs] bool, true where the decision ended the episode
-    infos         "state" [num_envs, S], the truth for a critic, of the decision to come;
+    infos         "state" [num_envs, S], the true state for a critic, at the next decision;
                   "agent_rewards" [num_envs, N]; and where episodes ended "final_obs"
                   [num_envs, N, K] and "final_info" with "state" [num_envs, S] and every
-                  metric [num_envs]. "_name" is the mask of the rows of "name" that count.
+                  metric [num_envs]. "_name" is the mask of the valid rows of "name".
 
-    A step that raises changes nothing. One thread at a time may use an environment, and only the
-    process that made it; without the GIL, other threads of Python run meanwhile.
+    A step that raises an exception has no effect. Only one thread at a time may use an environment,
+    and only in the process that made it. It releases the GIL, so other Python threads can run.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": SAME_STEP}
@@ -142,10 +142,10 @@ class VectorEnv(_Base):
     def reset(self, *, seed=None, options=None):
         """Starts an episode of every environment; returns (observations, infos).
 
-        seed: an integer S: environment e flies the world of seed S + e, and its k-th episode after
-        that the one of S + e + k num_envs. A list: one for each environment, None where it goes on
-        as it would. None: everybody's next episode. options: {"reset_mask": [num_envs] bool}: only
-        these start anew; their seeds are then needed.
+        seed: an integer S: environment e starts with the seed S + e, and its k-th episode after that
+        has the seed S + e + k num_envs. A list: a seed for each environment; None: its next
+        episode. None: the next episode of every environment. options: {"reset_mask": [num_envs]
+        bool}: only these environments start an episode; each of them needs a seed.
         """
         mask = self._mask(options)
         seeds = self._seeds(seed)
@@ -193,7 +193,8 @@ class VectorEnv(_Base):
         """One decision of every AUV.
 
         actions: [num_envs, N, A] float32 or float64. Returns (observations, rewards, terminations,
-        truncations, infos). Raises TypeError or ValueError for what is no such array or not finite.
+        truncations, infos). Raises TypeError or ValueError for another kind of array, or for a number
+        that is not finite.
         """
         if not self._started:
             raise RuntimeError("reset must come before the first step")
@@ -209,7 +210,7 @@ class VectorEnv(_Base):
         )  # fmt: skip
 
     def _add_final(self, infos):
-        """Adds what the episodes that ended leave behind."""
+        """Adds observations, states and metrics of the episodes that ended."""
         ended = self._arrays["truncated"].copy()
         final = {"state": self._given("final_states"), "_state": ended}
         for e in np.flatnonzero(ended):
@@ -226,19 +227,20 @@ class VectorEnv(_Base):
         return self._core.metrics(env)
 
     def state(self):
-        """The truth of every swarm [num_envs, S], a copy; for critics, never for policies."""
+        """The true state of every swarm [num_envs, S], a copy; for critics only, not for policies."""
         return self._arrays["states"].copy()
 
     def snapshot(self, env=0):
-        """The truth of one swarm in SI units and world axes, for drawing; see render.Snapshot."""
+        """The true states of one swarm in SI units and world axes, for drawing; see render.Snapshot."""
         return self._core.snapshot(env)
 
     def entities(self, env=0, agent=0):
-        """What one AUV knows, as rows: the layout `stg-2:entities`, in acoustic mode.
+        """The knowledge of one AUV as rows, in acoustic mode: the layout `stg-2:entities`.
 
         Returns {"self": [1, 26], "search": [1, 28], "targets": [T, 40], "neighbours": [n, 22],
-        "obstacles": [O, 10], "edges": [T, n, 8]}, float32, and where targets are chosen freely
-        "target_of_row", the targets that the rows are about; a policy file over entities has inputs of the same names.
+        "obstacles": [O, 10], "edges": [T, n, 8]}, float32. With task.assignment free
+        also "target_of_row", the index of the target of each row. A policy file over entities has
+        inputs of the same names.
         """
         if not self._started:
             raise RuntimeError("reset must come before entities")
@@ -251,11 +253,11 @@ class VectorEnv(_Base):
         self._core.follow(env, agent, target)
 
     def followed(self, env=0, agent=0):
-        """The target that an AUV is tasked with, or follows."""
+        """The target that an AUV follows."""
         return self._core.followed(env, agent)
 
     def controller_actions(self, controller, privileged=False):
-        """Returns what a controller does now: actions [num_envs, N, A].
+        """Returns the present actions of a controller [num_envs, N, A].
 
         controller: "pursuit", "pursuit_separated", "idle" or a policy's file. privileged: a built-in
         controller sees the truth in acoustic mode, too.
@@ -265,11 +267,11 @@ class VectorEnv(_Base):
         return self._core.decide(str(controller), privileged)
 
     def scenario(self, env=0):
-        """The Scenario that environment `env` flies; of a mix of n: number (env // 4) mod n."""
+        """The Scenario of environment `env`; in a mix of n scenarios, number (env // 4) mod n."""
         return self._core.scenario(env)
 
     def episode_seed(self, env=0):
-        """Seed of the world that environment `env` flies now."""
+        """World seed of the present episode of environment `env`."""
         return self._core.seed(env)
 
     def render(self):
@@ -303,17 +305,17 @@ def vector_env(scenario="medium", num_envs=4, **options):
     """Returns a VectorEnv.
 
     scenario      a shipped scenario's name, a YAML file, or a Scenario; a list: a mix
-    num_envs      swarms that fly together
+    num_envs      number of swarms
     condition     a stress condition's name; a list: a mix, see VectorEnv.scenario
     overrides     {"key.path": value} of docs/scenarios.md; a list: a mix
-    workers       threads; nothing but speed depends on them
-    seed          of the first reset without one
+    workers       number of threads; only speed depends on it
+    seed          seed of the first reset without a seed
     rewards       "team": [num_envs]; "agent": [num_envs, N]
-    copy          True: every array returned is the caller's to keep. False: the next call
-                  overwrites them, and nothing is copied
-    arrays        {name: array} of the caller's to write to (names of VectorEnv.arrays, C-contiguous
-                  float32, truncated bool); nothing is copied then
-    curriculum    easier starts first, where the scenario has a curriculum
+    copy          True: returned arrays are copies. False: they are views, which the next call
+                  overwrites
+    arrays        {name: array} of the caller for the results (names of VectorEnv.arrays,
+                  C-contiguous float32, truncated bool); the returned arrays are then views
+    curriculum    easier starts first, if the scenario has a curriculum
     stagger       first episodes of different lengths, so that not all end together
     render_mode   None or "rgb_array"
     """

@@ -27,7 +27,7 @@ except ImportError:
 
 
 def _from_env(name):
-    """A method that calls that of the environment within."""
+    """A method that calls the same method of the wrapped environment."""
 
     def call(self, *args, **kwargs):
         return getattr(self.env, name)(*args, **kwargs)
@@ -38,7 +38,7 @@ def _from_env(name):
 
 
 class _Wrapper:
-    """All that is not said otherwise is the environment's within."""
+    """Other attributes are those of the wrapped environment."""
 
     env = None
 
@@ -86,7 +86,7 @@ class VectorWrapper(_Wrapper, vector._Base):
 
     @property
     def closed(self):
-        """Whether the environment within is closed."""
+        """Whether the wrapped environment is closed."""
         return self.env.closed
 
 
@@ -186,7 +186,7 @@ class _JointEnv(_Wrapper, _Env):
 
     @property
     def unwrapped(self):
-        """Itself: the team is what a learner of Gymnasium knows."""
+        """The environment itself: only this one is a Gymnasium environment."""
         return self
 
     def reset(self, *, seed=None, options=None):
@@ -251,10 +251,10 @@ def joint(env):
 
 
 class FrameSkip(ParallelWrapper):
-    """Every action is held for `count` decisions; rewards add up, the last observation counts.
+    """Repeats each action for `count` decisions; returns summed rewards and the last observation.
 
-    The end of an episode ends the holding, too. For vector environments, whose swarms may end at
-    different times, let the engine hold actions: overrides={"time.decision_steps": count}.
+    The end of an episode also ends the repetition. Vector environments, whose swarms may end at
+    different times, repeat actions in the engine: overrides={"time.decision_steps": count}.
     """
 
     def __init__(self, env, count):
