@@ -36,9 +36,10 @@ struct Orbit {
 };
 
 void Describe(Orbit* o, config::Table* t) {
-  t->Add("radius", &o->radius_m, config::Positive(100), "m", "of the circle");
-  t->Add("speed", &o->speed_mps, config::NonNegative(10), "m/s", "along the circle");
-  t->Add("gain", &o->gain_per_s, config::NonNegative(10), "1/s", "towards the circle");
+  t->Add("radius", &o->radius_m, config::Positive(100), "m", "radius of the circle");
+  t->Add("speed", &o->speed_mps, config::NonNegative(10), "m/s", "speed along the circle");
+  t->Add("gain", &o->gain_per_s, config::NonNegative(10), "1/s",
+         "speed towards the circle per distance from it");
 }
 
 std::unique_ptr<Controller> MakeOrbit(const Orbit& orbit) {

@@ -33,7 +33,7 @@ struct Spiral {
 };
 
 void Describe(Spiral* o, config::Table* t) {
-  t->Add("speed", &o->speed, config::kFraction, "-", "of the largest velocity");
+  t->Add("speed", &o->speed, config::kFraction, "-", "speed as a share of the largest velocity");
 }
 
 std::unique_ptr<agent::Controller> MakeSpiral(const Spiral& spiral) {

@@ -21,9 +21,12 @@ struct SoftRangeOptions {
 };
 
 void Describe(SoftRangeOptions* o, config::Table* t) {
-  t->Add("steepness", &o->steepness, config::Positive(1e3), "-", "of the fall around the range");
-  t->Add("sound_speed_mps", &o->sound_speed_mps, config::Positive(1e5), "m/s", "of packets");
-  t->Add("freshness_s", &o->freshness_s, config::Positive(1e5), "s", "in which news grows old");
+  t->Add("steepness", &o->steepness, config::Positive(1e3), "-",
+         "how steeply the probability of arrival falls around the range");
+  t->Add("sound_speed_mps", &o->sound_speed_mps, config::Positive(1e5), "m/s",
+         "propagation speed of packets");
+  t->Add("freshness_s", &o->freshness_s, config::Positive(1e5), "s",
+         "decay time of link quality with the age of information");
 }
 
 class SoftRange {
