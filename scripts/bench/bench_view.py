@@ -201,7 +201,7 @@ def main():
     parser.add_argument("--page", type=pathlib.Path, help="a report (default: one of field20 is flown and made)")
     parser.add_argument("--seconds", type=float, default=10.0, help="of each measurement (default: 10)")
     parser.add_argument("--repeats", type=int, default=2, help="runs of lockstep of each kind (default: 2)")
-    parser.add_argument("--episodes", type=int, default=40, help="of a run of lockstep (default: 40)")
+    parser.add_argument("--episodes", type=int, default=120, help="of a run of lockstep (default: 120)")
     parser.add_argument("--publish", type=float, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.publish:
