@@ -136,6 +136,56 @@ TEST(DeadReckoning, GyroWalkGrowsWithThePowerThreeHalvesOfTime) {
   EXPECT_NEAR(drift.stated.front(), expected, 0.02 * expected);
 }
 
+TEST(DeadReckoning, AFixThatIsToldComesOnceForEachTimeAtTheSurface) {
+  WorldScenario s = DriftScenario();
+  s.world.navigation.start_std_m = 50.0;
+  s.world.navigation.fixes = FixUse::kReported;
+  const double dt = s.run.time.dt_s;
+  const auto steps = [dt](double seconds) { return static_cast<int>(std::lround(seconds / dt)); };
+  const std::vector<Pack> ahead{Pack(2.0), Pack(0.0), Pack(0.0)};
+  World world(s);
+  std::vector<double> errors;
+  for (int round = 0; round < kRounds; ++round) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      world.Reset(lane, static_cast<std::uint64_t>(2000 + round * kLanes + lane), 0,
+                  ResetStage::kMedium);
+    }
+    Vec3<Pack>& p_WB = world.mutable_vehicle(0).p_WB;
+    p_WB.z = Pack(-40.0);
+    for (int k = 0; k < steps(40.0); ++k) world.Step(ahead);
+    EXPECT_EQ(world.Nav(0, 0).fix_std_m, 0.0);
+    const Vec3<double> off = world.Nav(0, 0).p_WB - world.Truth(0, 0).p_WB;
+    p_WB.z = Pack(-0.1);
+    for (int k = 0; k < steps(30.0); ++k) world.Step(ahead);
+    EXPECT_EQ(world.Nav(0, 0).fix_std_m, 0.0);
+    for (int k = 0; k < steps(1.0); ++k) world.Step(ahead);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const NavState nav = world.Nav(lane, 0);
+      const Vec3<double> truth = Lane(p_WB, lane);
+      ASSERT_EQ(nav.fix_stamp, 71'000'000'000);
+      EXPECT_EQ(nav.fix_std_m, 3.0);
+      errors.push_back(nav.p_WF.x - truth.x);
+      errors.push_back(nav.p_WF.y - truth.y);
+    }
+    if (round > 0) continue;
+    // It stays the newest one for ten minutes, or until the vehicle has been under.
+    for (int k = 0; k < steps(599.0); ++k) world.Step(ahead);
+    EXPECT_EQ(world.Nav(0, 0).fix_stamp, 71'000'000'000);
+    for (int k = 0; k < steps(1.0); ++k) world.Step(ahead);
+    EXPECT_EQ(world.Nav(0, 0).fix_stamp, 671'000'000'000);
+    p_WB.z = Pack(-5.0);
+    for (int k = 0; k < steps(10.0); ++k) world.Step(ahead);
+    p_WB.z = Pack(-0.1);
+    for (int k = 0; k < steps(31.0); ++k) world.Step(ahead);
+    EXPECT_EQ(world.Nav(0, 0).fix_stamp, 712'000'000'000);
+    // No fix has corrected what the navigation reckons.
+    const Vec3<double> still = world.Nav(0, 0).p_WB - world.Truth(0, 0).p_WB;
+    EXPECT_NEAR(still.x, off.x, 1e-9);
+    EXPECT_NEAR(still.y, off.y, 1e-9);
+  }
+  EXPECT_NEAR(Rms(errors), 3.0, Tolerance(3.0));
+}
+
 TEST(DeadReckoning, CurrentDriftsItWhereTheLogHasNoBottom) {
   WorldScenario s = DriftScenario();
   s.world.current.velocity_mps = {0.2, 0.0, 0.0};

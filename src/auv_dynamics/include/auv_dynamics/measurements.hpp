@@ -19,6 +19,10 @@ struct Navigation {
   // Stated deviations of its errors; zero: there are no errors.
   T position_std_m = T(0.0);   ///< of each horizontal component of p_WB
   T heading_std_rad = T(0.0);  ///< of the error of q_WB about the vertical
+  // The newest GPS fix, of a navigation that reports fixes and is not corrected by them.
+  PerLane<T, TimeNs> fix_stamp{};  ///< time of the fix
+  Vec3<T> p_WF;                    ///< position of the body at that time [m]; z has no meaning
+  T fix_std_m = T(0.0);            ///< of each horizontal component of p_WF; 0: there was no fix
 };
 using NavState = Navigation<double>;
 

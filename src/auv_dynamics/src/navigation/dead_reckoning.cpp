@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "auv_dynamics/navigation/navigation_system.hpp"
@@ -27,12 +28,19 @@ struct Reckoning {
   Pack with_current = Pack(0.0);        ///< of the position and the current, each axis [m^2/s]
   Pack heading_variance = Pack(0.0);    ///< [rad^2]
   Pack position_std = Pack(0.0), heading_std = Pack(0.0);  ///< as stated
+  // Where fixes are reported.
+  std::array<TimeNs, kLanes> due{};    ///< of the next fix; kUnder: it is not at the surface
+  std::array<TimeNs, kLanes> fixed{};  ///< of the newest fix
+  Vec3<Pack> p_WF;                     ///< which is this
+  Pack fix_std = Pack(0.0);            ///< as stated; 0: there was none
 };
 
+constexpr TimeNs kUnder = -1;
+
 /// Position as the integral of velocity from a Doppler log along a heading, depth from pressure, a
-/// fix at the surface. The true way of each step, less the current where the log has no bottom,
-/// is scaled, turned by the heading's error and disturbed by the ping's noise; so without errors
-/// the position is true whatever the step.
+/// fix at the surface, which may be reported instead of taken in. The true way of each step, less
+/// the current where the log has no bottom, is scaled, turned by the heading's error and disturbed
+/// by the ping's noise; so without errors the position is true whatever the step.
 ///
 /// The stated deviation is that of the linear error model (e position, s scale, h heading, c
 /// current, d the way of a ping, J a quarter turn): e += s d + h J d + c t + noise, h += walk, with
@@ -47,6 +55,7 @@ class DeadReckoning : public NavigationSystem {
         dt_s_(setup.dt_s),
         steps_(static_cast<std::uint32_t>(
             std::max(1.0, std::round(setup.navigation.period_s / setup.dt_s)))),
+        step_ns_(static_cast<TimeNs>(std::llround(setup.dt_s * 1e9))),
         ping_s_(steps_ * setup.dt_s),
         walk_std_(WalkOf(setup.navigation)),
         stated_walk_std_(WalkOf(setup.stated)),
@@ -74,6 +83,9 @@ class DeadReckoning : public NavigationSystem {
     SetLane(&r.with_heading, lane, {});
     SetLane(&r.with_current, lane, 0.0);
     SetLane(&r.heading_variance, lane, heading_std * heading_std);
+    r.due[static_cast<std::size_t>(lane)] = kUnder;
+    SetLane(&r.p_WF, lane, {});
+    SetLane(&r.fix_std, lane, 0.0);
     Ping(lane, i, clock, 0.0);
     FollowHeading(&r);
     State(&r);
@@ -105,7 +117,12 @@ class DeadReckoning : public NavigationSystem {
       Random random = Ping(lane, i, clock, walk_std_);
       const bool lost_bottom = terrain.Altitude(p_WB) > config_.dvl_altitude_m;
       SetLane(&r.through_water, lane, lost_bottom ? 1.0 : 0.0);
-      if (-p_WB.z < config_.gps_depth_m) Fix(lane, p_WB, &random, &r);
+      const bool surfaced = -p_WB.z < config_.gps_depth_m;
+      if (config_.fixes == FixUse::kReported) {
+        LookForFix(lane, surfaced, clock.step * step_ns_, p_WB, &random, &r);
+      } else if (surfaced) {
+        Fix(lane, p_WB, &random, &r);
+      }
     }
     r.water_W = v_WC * r.through_water;
     FollowHeading(&r);
@@ -135,6 +152,9 @@ class DeadReckoning : public NavigationSystem {
     q[3] = z;
     nav->position_std_m = r.position_std;
     nav->heading_std_rad = r.heading_std;
+    nav->fix_stamp = r.fixed;
+    nav->p_WF = r.p_WF;
+    nav->fix_std_m = r.fix_std;
   }
 
   Observer At(int lane, int i) const override {
@@ -199,6 +219,27 @@ class DeadReckoning : public NavigationSystem {
     r->run_W = Select<Pack>(lanes, Vec3<Pack>(), r->run_W);
   }
 
+  /// A fix that is reported, once the receiver has been at the surface for long enough. One error
+  /// would last as long as the vehicle stays there, so the next fix is as late as it is forgotten.
+  void LookForFix(int lane, bool surfaced, TimeNs now, const Vec3<double>& p_WB, Random* random,
+                  Reckoning* r) const {
+    TimeNs& due = r->due[static_cast<std::size_t>(lane)];
+    if (!surfaced) {
+      due = kUnder;
+      return;
+    }
+    if (due == kUnder) due = now + Nanoseconds(config_.gps_first_fix_s);
+    if (now < due) return;
+    due = now + Nanoseconds(config_.gps_period_s);
+    r->fixed[static_cast<std::size_t>(lane)] = now;
+    const double x = random->Normal(), y = random->Normal();
+    SetLane(&r->p_WF, lane, p_WB + Vec3<double>{x, y, 0.0} * config_.gps_std_m);
+    SetLane(&r->fix_std, lane, stated_.gps_std_m);
+  }
+  static TimeNs Nanoseconds(double seconds) {
+    return static_cast<TimeNs>(std::llround(seconds * 1e9));
+  }
+
   /// A fix of the position in one lane.
   void Fix(int lane, const Vec3<double>& p_WB, Random* random, Reckoning* r) const {
     const double noise = stated_.gps_std_m * stated_.gps_std_m;
@@ -234,6 +275,7 @@ class DeadReckoning : public NavigationSystem {
   NavigationConfig config_, stated_;
   double dt_s_;
   std::uint32_t steps_;  // of physics between two pings
+  TimeNs step_ns_;
   double ping_s_, walk_std_, stated_walk_std_;
   std::vector<Reckoning> states_;  // [vehicles]
 };

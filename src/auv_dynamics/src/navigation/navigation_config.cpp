@@ -26,9 +26,19 @@ void DescribeDeadReckoning(NavigationConfig* c, config::Table* t) {
          "random walk of the heading");
   t->Add("depth_std_m", &c->depth_std_m, NonNegative(100), "m", "noise of the depth from pressure");
   t->Add("gps_depth_m", &c->gps_depth_m, NonNegative(100), "m",
-         "above this depth GPS gives a position with each ping; 0: never");
+         "above this depth GPS gives a position (a fix); 0: never");
   t->Add("gps_std_m", &c->gps_std_m, Positive(1e4), "m, world ENU",
          "standard deviation of each horizontal component of a GPS position");
+  t->AddOptional(
+      "fixes", config::Enum(&c->fixes, {"correct", "reported"}), "correct", kNone, "-",
+      "use of GPS fixes: each ping at the surface has a fix, which corrects the reckoned "
+      "position; or there is one fix for each time at the surface, which the agent gets "
+      "as a reading and which does not correct the reckoned position");
+  t->AddOptional("gps_first_fix_s", &c->gps_first_fix_s, "30.0", NonNegative(1e5), "s",
+                 "time at the surface before the first fix");
+  t->AddOptional("gps_period_s", &c->gps_period_s, "600.0", Positive(1e6), "s",
+                 "time between two fixes of an AUV that stays at the surface, whose errors are "
+                 "independent");
   t->Add("start_std_m", &c->start_std_m, NonNegative(1e4), "m, world ENU",
          "standard deviation of each horizontal component at the start of an episode");
   t->Add("current_std_mps", &c->current_std_mps, NonNegative(10), "m/s, world ENU",
@@ -46,6 +56,13 @@ void Describe(NavigationConfig* c, config::Table* t) {
                               return std::vector<std::string>{c->kind};
                             }};
   t->Thing(owner, "navigation.dead_reckoning", c, DescribeDeadReckoning);
+  for (const char* key : {"gps_first_fix_s", "gps_period_s"}) {
+    t->Own(
+        std::string("navigation.dead_reckoning.") + key,
+        {"use of fixes", {"reported"}, "navigation.dead_reckoning.fixes", [c] {
+           return std::vector<std::string>{c->fixes == FixUse::kReported ? "reported" : "correct"};
+         }});
+  }
   NavigationSystems().Describe("navigation", "navigation.kind", owner.chosen, &c->kinds, t);
   for (const char* key : {"period_s", "dvl_scale_std", "dvl_noise_mps", "dvl_altitude_m",
                           "heading_std_deg", "gyro_walk_deg_per_sqrt_h", "depth_std_m",

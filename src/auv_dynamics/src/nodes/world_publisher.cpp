@@ -186,6 +186,9 @@ void WorldPublisher::SetNavigationOf(const dynamics::World& world, TimeNs start,
   SetNavigation(nav, &m.pose, &m.twist);
   m.position_std = nav.position_std_m;
   m.heading_std = nav.heading_std_rad;
+  m.fix_std = nav.fix_std_m;
+  m.fix_stamp = nav.fix_std_m > 0.0 ? TimeOf(start + nav.fix_stamp) : ros::Time();
+  SetVector(nav.p_WF, &m.fix_position);
 }
 
 void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,

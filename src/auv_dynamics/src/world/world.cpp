@@ -33,6 +33,9 @@ NavState LaneOfNav(const Navigation<Pack>& all, int lane) {
   for (int k = 0; k < 4; ++k) nav.q_WB[k] = Lane(all.q_WB[k], lane);
   nav.position_std_m = Lane(all.position_std_m, lane);
   nav.heading_std_rad = Lane(all.heading_std_rad, lane);
+  nav.fix_stamp = OfLane(all.fix_stamp, lane);
+  nav.p_WF = Lane(all.p_WF, lane);
+  nav.fix_std_m = Lane(all.fix_std_m, lane);
   return nav;
 }
 

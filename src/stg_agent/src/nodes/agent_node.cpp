@@ -108,7 +108,8 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   }
   if (!FinitePose(message->pose) || !FiniteTwist(message->twist) ||
       !Finite(message->position_std) || !Finite(message->heading_std) ||
-      message->position_std < 0.0 || message->heading_std < 0.0) {
+      message->position_std < 0.0 || message->heading_std < 0.0 ||
+      !FiniteVector(message->fix_position) || !Finite(message->fix_std) || message->fix_std < 0.0) {
     refused_frames_.Add(Refusals::kNotFinite);
     return;
   }
@@ -233,6 +234,11 @@ void AgentNode::Decide() {
   dynamics::NavState nav = NavOf(frame_->pose, frame_->twist, stamp - start_);
   nav.position_std_m = frame_->position_std;
   nav.heading_std_rad = frame_->heading_std;
+  if (frame_->fix_std > 0.0) {
+    nav.fix_stamp = NsOf(frame_->fix_stamp) - start_;
+    nav.p_WF = VectorOf(frame_->fix_position);
+    nav.fix_std_m = frame_->fix_std;
+  }
   agent_.Observe(nav, observation_.data());
   if (decider_.observes()) {
     decider_.Act(id_, observation_.data(), action_);

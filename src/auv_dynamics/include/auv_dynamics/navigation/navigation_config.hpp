@@ -6,6 +6,12 @@
 
 namespace stg::dynamics {
 
+/// Use of GPS fixes at the surface.
+enum class FixUse {
+  kCorrect,  ///< they correct the reckoned position
+  kReported  ///< the agent gets them as readings; they do not correct the reckoned position
+};
+
 /// Navigation of the vehicles. Each episode, or each ping, draws errors with these deviations;
 /// docs/navigation.md gives the sources of the numbers.
 struct NavigationConfig {
@@ -18,11 +24,14 @@ struct NavigationConfig {
   double dvl_altitude_m = 100.0;  ///< above this altitude it measures against the water
   double heading_std_deg = 0.3;   ///< constant error of the heading
   double gyro_walk_deg_per_sqrt_h = 0.1;
-  double depth_std_m = 0.05;     ///< of the pressure gauge
-  double gps_depth_m = 0.3;      ///< above this depth each ping has a GPS position
-  double gps_std_m = 3.0;        ///< of each horizontal component of a GPS position
-  double start_std_m = 1.0;      ///< of each horizontal component when an episode starts
-  double current_std_mps = 0.1;  ///< of the current, which is unknown to the navigation
+  double depth_std_m = 0.05;  ///< of the pressure gauge
+  double gps_depth_m = 0.3;   ///< above this depth there are GPS fixes
+  double gps_std_m = 3.0;     ///< of each horizontal component of a GPS fix
+  FixUse fixes = FixUse::kCorrect;
+  double gps_first_fix_s = 30.0;  ///< kReported: time at the surface before the first fix
+  double gps_period_s = 600.0;    ///< kReported: time between two fixes, with independent errors
+  double start_std_m = 1.0;       ///< of each horizontal component when an episode starts
+  double current_std_mps = 0.1;   ///< of the current, which is unknown to the navigation
 };
 
 /// Keys, units and ranges of the section `navigation`, which a file may leave out.
