@@ -178,9 +178,16 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_EQ(summary.seed, env_options.seed);
     auto items = m.Items();
     // The metrics node hears neither what an AUV knows of its own position, nor pings.
-    const std::set<std::string> unheard{
-        "navigation_rmse", "navigation_rmse_tail", "navigation_nees", "relative_rmse", "pings",
-        "ping_loss",       "airtime_share"};
+    const std::set<std::string> unheard{"navigation_rmse",
+                                        "navigation_rmse_tail",
+                                        "navigation_nees",
+                                        "relative_rmse",
+                                        "fixes",
+                                        "surface_share",
+                                        "navigation_rmse_before_fix",
+                                        "pings",
+                                        "ping_loss",
+                                        "airtime_share"};
     items.erase(std::remove_if(items.begin(), items.end(),
                                [&](const auto& item) { return unheard.count(item.first) > 0; }),
                 items.end());
@@ -228,6 +235,10 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
         EXPECT_NEAR(summary.packet_loss, f.packet_loss, kTolerance);
       }
       EXPECT_EQ(summary.modem_energy, f.modem_energy);
+      if (FlagParameter("surfaces", false)) {
+        ASSERT_TRUE(f.navigation && f.navigation->surfacing);
+        EXPECT_GT(f.navigation->surfacing->fixes, 0.0);
+      }
     }
     RecordProperty("worst_difference_" + std::to_string(e), std::to_string(worst));
     std::printf("episode %d: largest difference %.3g\n", e, worst);

@@ -28,6 +28,14 @@ std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, cons
   return MediumAccesses().Make(config.access, config.accesses, config, run);
 }
 
+TimeNs RoundOf(const ChannelConfig& config, const RunConfig& run) {
+  const auto access = MakeMediumAccess(config, run);
+  if (access->adapts()) return 0;
+  access->Reset(0, 0);
+  const TimeNs turn = access->Next(0, 0, {});
+  return access->Next(0, turn + 1, {}) - turn;
+}
+
 Turns::Turns(const ChannelConfig& config, const RunConfig& run)
     : access_(MakeMediumAccess(config, run)),
       period_(run.decision_period()),

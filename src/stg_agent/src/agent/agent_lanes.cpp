@@ -118,7 +118,9 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
     Attend(lane, OfLane(nav.stamp, lane));
-    const OwnReckoning own{Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane)};
+    const OwnReckoning own{Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane),
+                           OfLane(nav.fix_stamp, lane), Lane(nav.p_WF, lane),
+                           Lane(nav.fix_std_m, lane)};
     answers_[static_cast<std::size_t>(lane)].Give(
         OfLane(nav.stamp, lane), own, Lane(nav.heading_std_rad, lane),
         [this, lane](const dynamics::Detection& detection) { Detect(lane, detection); });
@@ -163,12 +165,23 @@ Vec3<T> LanedAgent<T>::Act(const T* action) {
   T finite(0.0);
   for (int k = 0; k < model().control.action_size(); ++k) finite += NonFiniteness(action[k]);
   if (Any(!(finite == T(0.0)))) throw std::invalid_argument("non-finite action");
-  if (!model().fleet.changes()) return mind_.Act(model(), action);
-  T still[dynamics::kMaxActionSize];
+  if (!model().fleet.changes() && !model().surfaces()) return mind_.Act(model(), action);
+  T wanted[dynamics::kMaxActionSize];
+  for (int k = 0; k < model().control.action_size(); ++k) wanted[k] = action[k];
+  if (model().surfaces()) Surface(wanted);
   for (int k = 0; k < model().control.action_size(); ++k) {
-    still[k] = Select(present_ > T(0.5), action[k], T(0.0));
+    wanted[k] = Select(present_ > T(0.5), wanted[k], T(0.0));
   }
-  return mind_.Act(model(), still);
+  return mind_.Act(model(), wanted);
+}
+
+/// The vertical velocity of an AUV that goes up for a fix, and back, is not the policy's affair.
+template <class T>
+void LanedAgent<T>::Surface(T* action) const {
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+    const Surfacing& surfacing = *inbox(lane).surfacing();
+    if (surfacing.under_way()) SetLane(&action[2], lane, surfacing.climb_share());
+  }
 }
 
 template <class T>

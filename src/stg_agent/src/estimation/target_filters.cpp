@@ -28,12 +28,45 @@ std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
                            "this filter cannot use the measurements of this sensor"};
 }
 
+namespace {
+
+/// Conditions of reported fixes, and of AUVs that surface for them.
+std::optional<config::Violation> FindFixConflict(const AgentModel& s) {
+  const bool reported = s.navigation.kind == "dead_reckoning" && s.navigation.gps_depth_m > 0.0 &&
+                        s.navigation.fixes == dynamics::FixUse::kReported;
+  if (reported && s.sensing.relative().ambiguous) {
+    return config::Violation{{"navigation.dead_reckoning.fixes", "sensing.sensor"},
+                             "packets with ambiguous bearings have no room for reported fixes"};
+  }
+  if (!s.surfaces()) return {};
+  if (!reported || !s.sea.open) {
+    return config::Violation{
+        {"localization.ranges.surface_std_m", "navigation.dead_reckoning.fixes",
+         "navigation.dead_reckoning.gps_depth_m", "sea.open"},
+        "AUVs that surface for fixes need open water and the navigation 'dead_reckoning' with "
+        "'fixes: reported' and a 'gps_depth_m' above 0"};
+  }
+  if (s.control.interface != dynamics::ActionInterface::kVelocity3) {
+    return config::Violation{
+        {"localization.ranges.surface_std_m", "control.interface"},
+        "an AUV that surfaces for fixes commands its vertical velocity: set 'velocity3'"};
+  }
+  return {};
+}
+
+}  // namespace
+
 std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
   const bool located = s.track.observers == ObserverErrors::kLocated;
   if (!s.locates()) {
     if (s.stations.count() > 0) {
       return config::Violation{{"stations.beacons", "stations.crafts", "localization.kind"},
                                "only a localizer uses stations: set localization.kind"};
+    }
+    if (s.navigation.kind == "dead_reckoning" &&
+        s.navigation.fixes == dynamics::FixUse::kReported) {
+      return config::Violation{{"navigation.dead_reckoning.fixes", "localization.kind"},
+                               "only a localizer uses reported fixes: set localization.kind"};
     }
     if (!located) return {};
     return config::Violation{{"track.measurements.observers", "localization.kind"},
@@ -44,12 +77,16 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
         {"localization.kind", "track.filter", "track.measurements.observers"},
         "a localizer needs the filter 'measurements' with 'observers: located'"};
   }
-  if (s.navigation.kind != "dead_reckoning" || s.navigation.gps_depth_m > 0.0) {
+  const bool corrected =
+      s.navigation.gps_depth_m > 0.0 && s.navigation.fixes == dynamics::FixUse::kCorrect;
+  if (s.navigation.kind != "dead_reckoning" || corrected) {
     return config::Violation{
-        {"localization.kind", "navigation.kind", "navigation.dead_reckoning.gps_depth_m"},
+        {"localization.kind", "navigation.kind", "navigation.dead_reckoning.gps_depth_m",
+         "navigation.dead_reckoning.fixes"},
         "a localizer needs positions that GPS does not correct: 'dead_reckoning' with "
-        "'gps_depth_m: 0'"};
+        "'gps_depth_m: 0' or 'fixes: reported'"};
   }
+  if (auto violation = FindFixConflict(s)) return violation;
   const auto water =
       acoustics::PropagationModels().Make(s.channel.model, s.channel.models, s.channel);
   if (!water->has_modems()) {

@@ -17,6 +17,7 @@ Inbox::Inbox(SharedConstants constants, int id)
       target_(constants_->model.target.of(id)),
       pending_(static_cast<std::size_t>(constants_->model.beliefs())),
       localizer_(MakeLocalizer(constants_->model, id_)) {
+  if (constants_->model.surfaces()) surfacing_.emplace(constants_->model, id_);
   for (int k = 0; k < constants_->model.beliefs(); ++k) {
     filters_.push_back(
         TargetFilters().Make(constants_->model.track.filter, constants_->model, id_));
@@ -29,6 +30,7 @@ Inbox::Inbox(SharedConstants constants, int id)
 void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
   for (auto& filter : filters_) filter->Clear();
   if (localizer_ != nullptr) localizer_->Reset();
+  if (surfacing_) surfacing_->Reset();
   for (Pending& pending : pending_) pending = Pending();
   target_ = constants_->model.target.of(id_);
   changed_ = false;
@@ -77,6 +79,7 @@ std::optional<NeighbourState> Inbox::Receive(const acoustics::Reception& recepti
     if (localizer_ != nullptr) {
       localizer_->Hear(state, reception);
       if (state.source >= constants_->model.run.agents) return {};  // a station
+      if (surfacing_) surfacing_->Hear(state);
       ToOwnFrame(&state);
     }
     if (state.has_target) Hear(state);
@@ -124,6 +127,7 @@ void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnRecko
   if (localizer_ != nullptr) {
     localizer_->Advance(now, own);
     frame.error = localizer_->own();
+    if (surfacing_) surfacing_->Advance(now, own.p_WB, *localizer_);
   }
   changed_ = wanted_ >= 0 && wanted_ != target_;
   if (changed_) target_ = wanted_;
@@ -209,6 +213,7 @@ Packet Inbox::MakePacket(const Knowledge<double>& k) const {
     filters_.front()->Tell(k.lost > 0.5, &state);
   }
   if (localizer_ != nullptr) localizer_->Tell(&state);
+  if (surfacing_) state.surfacing = surfacing_->announces();
   return constants_->codec.Encode(state);
 }
 

@@ -323,6 +323,25 @@ bool JointFilter::Take(const RangeReading& z) {
   return true;
 }
 
+/// A receiver has no outliers here, so a fix is never set aside: a filter that is too sure of
+/// itself comes right.
+bool JointFilter::Take(const FixReading& z) {
+  if (IsAnchor(z.member) || SlotOf(z.member) < 0) return false;
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  const double noise = Squared(z.std_m) + Wander(age_s);
+  nis_ = 0.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    Row row;
+    AddError(z.member, axis, 1.0, age_s, &row);
+    std::array<double, kMostJointStates> column;
+    const double S = Column(row, column.data()) + noise;
+    const double innovation = (axis == 0 ? z.error_x : z.error_y) - Mean(row);
+    nis_ += 0.5 * innovation * innovation / S;
+    Update(column.data(), innovation / S, 1.0 / S);
+  }
+  return true;
+}
+
 PlaneError JointFilter::Spread(const Row& east, const Row& north) const {
   std::array<double, kMostJointStates> column;
   PlaneError e;
@@ -343,6 +362,20 @@ PlaneError JointFilter::Error(int id, TimeNs at) const {
   AddError(id, 0, 1.0, age_s, &east);
   AddError(id, 1, 1.0, age_s, &north);
   return Spread(east, north);
+}
+
+PlaneError JointFilter::Ahead(int id, double ahead_s) const {
+  Row east, north;
+  AddError(id, 0, 1.0, -ahead_s, &east);
+  AddError(id, 1, 1.0, -ahead_s, &north);
+  PlaneError e = Spread(east, north);
+  const int slot = SlotOf(id);
+  const bool adrift = slot >= 0 && observers_[static_cast<std::size_t>(slot)].adrift;
+  const double added =
+      (adrift ? Wander(ahead_s) : 0.0) + Squared(config_.reckoning_std_m) * ahead_s;
+  e.xx += added;
+  e.yy += added;
+  return e;
 }
 
 PlaneError JointFilter::Relative(int id, int than, TimeNs at) const {

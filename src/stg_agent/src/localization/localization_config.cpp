@@ -41,6 +41,10 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
   t->AddOptional("ping_period_s", &c->ping_period_s, "30.0", Positive(1e5), "s",
                  "time between two pings of an AUV, whole decisions; it pings the other AUVs and "
                  "the stations in turn");
+  t->AddOptional(
+      "surface_std_m", &c->surface_std_m, "0.0", NonNegative(1e6), "m, world ENU",
+      "an AUV surfaces for a GPS fix before the standard deviation of its own position is "
+      "above this; 0: never");
 }
 
 }  // namespace

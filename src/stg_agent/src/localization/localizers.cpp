@@ -13,6 +13,9 @@ class Uncorrected : public Localizer {
   void HearAnswer(const acoustics::Reception&) override {}
   void Advance(TimeNs, const OwnReckoning&) override {}
   PlaneError own() const override { return {}; }
+  PlaneError ahead(double) const override { return {}; }
+  int fixes() const override { return 0; }
+  TimeNs fixed() const override { return -1; }
   PlaneError relative(int, TimeNs) const override { return {}; }
   PlaneError current() const override { return {}; }
   void Tell(NeighbourState*) const override {}

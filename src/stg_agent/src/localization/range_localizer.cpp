@@ -1,10 +1,13 @@
+// Long because: all that an AUV hears comes together here, from packets and pings to the filter.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/water/sound_speed.hpp"
 #include "auv_common/numbers/attitude.hpp"
+#include "fixes.hpp"
 #include "localizers.hpp"
 #include "ping_ranges.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
@@ -48,6 +51,12 @@ std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
   return anchors;
 }
 
+/// For how long packets contain a fix: in three packets in a row, if they leave within a minute.
+TimeNs TellingOf(const AgentModel& s) {
+  const TimeNs round = acoustics::RoundOf(s.channel, NetworkRun(s.run, s.stations));
+  return round > 0 ? std::min(3 * round, kOldest) : kOldest / 3;
+}
+
 /// A joint filter over the own readings and those that the others tell of.
 class RangeLocalizer : public Localizer {
  public:
@@ -66,7 +75,8 @@ class RangeLocalizer : public Localizer {
         taken_(kMostTaken),
         pings_(s.pings_members()),
         by_ping_(self),
-        bearing_std_rad_(s.stations.usbl_std_deg * kPi / 180.0) {
+        bearing_std_rad_(s.stations.usbl_std_deg * kPi / 180.0),
+        fixes_(s.run.agents, self, TellingOf(s), s.run.decision_period() / 4) {
     pending_.reserve(kMostPending);
   }
 
@@ -79,6 +89,7 @@ class RangeLocalizer : public Localizer {
     by_ping_.Clear();
     next_taken_ = 0;
     own_way_.Clear();
+    fixes_.Clear();
     own_ = OwnReckoning();
     adrift_ = true;
     start_std_m_ = -1.0;
@@ -97,6 +108,8 @@ class RangeLocalizer : public Localizer {
     letter.range = packet.range;
     letter.has_bearing = packet.has_bearing;
     letter.bearing = packet.bearing;
+    letter.has_fix = packet.has_fix;
+    letter.fix = packet.fix;
     pending_.push_back(letter);
   }
 
@@ -112,6 +125,8 @@ class RangeLocalizer : public Localizer {
     if (self_ < auvs_) {
       filter_.SetAdrift(self_, adrift_);
       filter_.SetDepth(self_, -own.p_WB.z);
+      FixReading fix;
+      if (fixes_.TakeOwn(now, own, own_way_, &fix)) filter_.Take(fix);
     }
     // By what they are, not by when they came.
     std::sort(pending_.begin(), pending_.end(), [](const Letter& a, const Letter& b) {
@@ -129,6 +144,9 @@ class RangeLocalizer : public Localizer {
   }
 
   PlaneError own() const override { return filter_.Error(self_, filter_.now()); }
+  PlaneError ahead(double ahead_s) const override { return filter_.Ahead(self_, ahead_s); }
+  int fixes() const override { return fixes_.count(); }
+  TimeNs fixed() const override { return fixes_.newest(self_); }
   PlaneError relative(int id, TimeNs at) const override {
     if (!filter_.knows(id)) {
       PlaneError e;
@@ -152,6 +170,7 @@ class RangeLocalizer : public Localizer {
   void Tell(NeighbourState* packet) const override {
     packet->adrift = adrift_;
     packet->ranges = 0;
+    if (fixes_.Tell(packet)) return;  // they have the place of the ranges
     // Of a station if one was heard, and of an AUV: which ones changes from packet to packet.
     const auto stations = static_cast<int>(newest_.size()) - auvs_;
     const auto draw = static_cast<std::uint64_t>(packet->generation / 1000000);
@@ -170,6 +189,8 @@ class RangeLocalizer : public Localizer {
     std::array<ToldRange, kToldRanges> range;
     bool has_bearing = false;
     ToldBearing bearing;
+    bool has_fix = false;
+    ToldFix fix;
   };
 
   const ToldWay& Way(int id) const { return ways_[static_cast<std::size_t>(id)]; }
@@ -211,6 +232,11 @@ class RangeLocalizer : public Localizer {
       Take(now, z);
     }
     if (letter.has_bearing) ReadBearing(now, letter);
+    FixReading fix;
+    if (letter.has_fix && now - letter.fix.stamp <= kOldest && filter_.knows(letter.id) &&
+        fixes_.TakeTold(letter.id, letter.fix, &fix)) {
+      filter_.Take(fix);
+    }
     for (int k = 0; k < letter.ranges; ++k) {
       const ToldRange& told = letter.range[static_cast<std::size_t>(k)];
       if (told.source == letter.id) continue;
@@ -302,6 +328,7 @@ class RangeLocalizer : public Localizer {
   bool pings_;  // ranges are by pings
   PingRanges by_ping_;
   double bearing_std_rad_;
+  Fixes fixes_;
   OwnReckoning own_;
   bool adrift_ = true;
   double start_std_m_ = -1.0;  // below zero: no decision yet

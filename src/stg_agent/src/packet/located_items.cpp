@@ -7,7 +7,7 @@
 #include "measurement_fields.hpp"
 #include "stg_agent/packet/measurement_packet.hpp"
 
-/// What agents that locate each other tell of their own ranges and bearings.
+/// What agents that locate each other tell of their own ranges, bearings and fixes.
 namespace stg::agent {
 
 TimeNs MeasurementPacket::ToldAge(const NeighbourState& s, TimeNs stamp, Writer* w) const {
@@ -77,6 +77,56 @@ void MeasurementPacket::ReadToldRanges(Reader* r, NeighbourState* s) const {
     s->range[static_cast<std::size_t>(s->ranges++)] = {static_cast<int>(source),
                                                        s->generation - age, range};
   }
+}
+
+void MeasurementPacket::WriteToldFix(const NeighbourState& s, Writer* w) const {
+  const ToldFix& told = s.fix;
+  if (told.stamp > s.generation || !std::isfinite(told.error_x + told.error_y + told.std_m)) {
+    throw std::invalid_argument("PacketCodec::Encode: value without a code");
+  }
+  w->at = kFirstSighting + (kSightings - 1) * kSightingBits;
+  w->Bits(1, 1);
+  w->Bits(kFixCode, kTargetBits);
+  w->Bits(static_cast<std::uint64_t>(ToldAge(s, told.stamp, w)), kToldAgeBits);
+  w->Number(told_error_, told.error_x, kToldErrorBits);
+  w->Number(told_error_, told.error_y, kToldErrorBits);
+  w->Bits(told_std_.Code(told.std_m, 1.0 - 1e-9, &w->saturated), kToldStdBits);
+}
+
+void MeasurementPacket::ReadToldFix(Reader* r, NeighbourState* s) const {
+  const TimeNs age = static_cast<TimeNs>(r->Bits(kToldAgeBits)) * age_step_;
+  const double x = r->Number(told_error_, kToldErrorBits);
+  const double y = r->Number(told_error_, kToldErrorBits);
+  const double std_m = told_std_.Value(r->Bits(kToldStdBits));
+  if (std_m <= 0.0) RefusePacket("a field holds an unused code");
+  if (s->source >= agents_) RefusePacket("a station tells a fix");
+  if (s->generation - age < 0) RefusePacket("measured before the start");
+  s->has_fix = true;
+  s->fix = {s->generation - age, x, y, std_m};
+}
+
+void MeasurementPacket::WriteTold(const NeighbourState& s, Writer* w) const {
+  if (s.has_fix && !ambiguous_) {
+    WriteToldFix(s, w);
+  } else if (s.ranges > 0 && !ambiguous_) {
+    WriteToldRanges(s, w);
+  }
+  if (s.has_bearing && s.sightings == 0) WriteToldBearing(s, w);
+  w->at = kSurfacingBit;
+  w->Bits(s.surfacing ? 1 : 0, 1);
+}
+
+bool MeasurementPacket::ReadTold(int k, Reader* r, NeighbourState* s) const {
+  const bool second = k == kSightings - 1 && !ambiguous_;
+  const std::uint64_t code = Get(r->words, {r->at, kTargetBits});
+  const bool ranges = second && code == kRangesCode, fix = second && code == kFixCode;
+  const bool bearing = k == 0 && code == kBearingCode;
+  if (!ranges && !fix && !bearing) return false;
+  r->at += kTargetBits;
+  if (ranges) ReadToldRanges(r, s);
+  if (fix) ReadToldFix(r, s);
+  if (bearing) ReadToldBearing(r, s);
+  return true;
 }
 
 }  // namespace stg::agent

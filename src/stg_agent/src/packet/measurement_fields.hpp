@@ -25,13 +25,19 @@ inline constexpr int kSightingBits = 62;
 /// With task.assignment free: the target that the sender follows, and that of each measurement, as
 /// one more than its index; 0: none.
 inline constexpr int kNameBits = 4, kManyBits = 2, kFreeRangeBits = 12, kEarlierBits = 9;
-/// With a localizer: ranges and a bearing replace measurements of targets. Their codes are not
-/// indices of targets.
+/// With a localizer: ranges, a fix and a bearing replace measurements of targets. Their codes are
+/// not indices of targets.
 inline constexpr int kLocatedDeviationBits = kDeviationBits - 1;
-inline constexpr std::uint64_t kRangesCode = 31, kBearingCode = 29, kNoSource = 31;
+inline constexpr std::uint64_t kRangesCode = 31, kFixCode = 30, kBearingCode = 29, kNoSource = 31;
 inline constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14,
                      kToldAzimuthBits = 14;
 inline constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
+inline constexpr int kToldErrorBits = 21, kToldStdBits = 5;
+inline constexpr double kMostError_m = 65535.0, kLeastFixStd_m = 0.1, kMostFixStd_m = 100.0;
+inline constexpr int kSurfacingBit = kFirstSighting + kSightings * kSightingBits;
+static_assert(1 + kTargetBits + kToldAgeBits + 2 * kToldErrorBits + kToldStdBits == kSightingBits,
+              "a fix takes the room of a measurement");
+static_assert(kSurfacingBit + 1 == kCrcFirst, "all bits are used");
 static_assert(1 + kTargetBits + kToldRanges * (kToldSourceBits + kToldAgeBits + kToldRangeBits) ==
                   kSightingBits,
               "two ranges take the room of a measurement");

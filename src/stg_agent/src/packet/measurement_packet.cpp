@@ -86,6 +86,8 @@ MeasurementPacket::MeasurementPacket(const AgentModel& s)
   fine_elevation_ = Quantiser::Signed(2.0, kFineElevationBits);
   told_azimuth_ = Quantiser::Signed(kPi, kToldAzimuthBits);
   told_range_ = Quantiser::Unsigned(kLeastRange_m, kMostRange_m, kToldRangeBits);
+  told_error_ = Quantiser::Signed(kMostError_m, kToldErrorBits);
+  told_std_ = Logarithm::Of(kLeastFixStd_m, kMostFixStd_m, kToldStdBits);
   deviation_ = Logarithm::Of(1e-5 * half, half, located_ ? kLocatedDeviationBits : kDeviationBits);
   error_ = Logarithm::Of(1e-4 * half, 2.0 * std::sqrt(3.0) * half, kErrorBits);
 }
@@ -119,14 +121,14 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
     w.at = kFirstSighting;
     WriteFree(s, &w);
   } else if (s.has_target) {
-    const int fit = ambiguous_ || (located_ && s.ranges > 0) ? 1 : kSightings;
+    const bool taken = located_ && (s.ranges > 0 || s.has_fix);
+    const int fit = ambiguous_ || taken ? 1 : kSightings;
     for (int k = 0; k < std::min(s.sightings, fit); ++k) {
       w.at = kFirstSighting + k * kSightingBits;
       WriteSighting(s, s.sighting[static_cast<std::size_t>(k)], &w);
     }
   }
-  if (located_ && s.ranges > 0 && !ambiguous_) WriteToldRanges(s, &w);
-  if (located_ && s.has_bearing && s.sightings == 0) WriteToldBearing(s, &w);
+  if (located_) WriteTold(s, &w);
   w.at = saturated_bit;
   w.Bits(w.saturated ? 1 : 0, 1);
   w.at = kCrcFirst;
@@ -252,19 +254,10 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
   for (int k = 0; k < fit; ++k) {
     r.at = kFirstSighting + k * kSightingBits;
     if (r.Bits(1) == 0) continue;
-    if (located_ && !ambiguous_ && k == kSightings - 1 &&
-        Get(r.words, {r.at, kTargetBits}) == kRangesCode) {
-      r.at += kTargetBits;
-      ReadToldRanges(&r, &s);
-      continue;
-    }
-    if (located_ && k == 0 && Get(r.words, {r.at, kTargetBits}) == kBearingCode) {
-      r.at += kTargetBits;
-      ReadToldBearing(&r, &s);
-      continue;
-    }
+    if (located_ && ReadTold(k, &r, &s)) continue;
     ReadSighting(s, &r, &s.sighting[static_cast<std::size_t>(s.sightings++)]);
   }
+  if (located_) s.surfacing = Get(r.words, {kSurfacingBit, 1}) != 0;
   s.has_target = s.sightings > 0;
   if (!free_) s.followed = s.source % targets_;
   if (s.has_target) {

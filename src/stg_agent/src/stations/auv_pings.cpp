@@ -33,15 +33,6 @@ TimeNs ExchangeOf(const acoustics::ChannelConfig& channel, int nodes, double rea
   return std::llround((longest_s + 2.0 * reach_m / kSlowestSound_mps) * 1e9);
 }
 
-/// From one turn of an AUV to its next one, where that does not depend on what the AUV sent.
-TimeNs RoundOf(const acoustics::ChannelConfig& channel, const RunConfig& network) {
-  const auto access = acoustics::MakeMediumAccess(channel, network);
-  if (access->adapts()) return 0;
-  access->Reset(0, 0);
-  const TimeNs turn = access->Next(0, 0, {});
-  return access->Next(0, turn + 1, {}) - turn;
-}
-
 }  // namespace
 
 AuvPings::AuvPings(const AgentModel& model, const dynamics::SensingConfig& sensing)
@@ -174,7 +165,7 @@ std::optional<config::Violation> FindPingConflict(const AgentModel& s,
   }
   const RunConfig network = NetworkRun(s.run, s.stations, looks ? s.target.count : 0);
   if (auto violation = acoustics::FindConflict(s.channel, network)) return violation;
-  const double each_s = Seconds(RoundOf(s.channel, network) +
+  const double each_s = Seconds(acoustics::RoundOf(s.channel, network) +
                                 ExchangeOf(s.channel, network.agents, ReachOf(s, sensing)));
   double taken = 0.0;
   if (looks) taken += each_s / std::max(sensing.period_s, dt_s);

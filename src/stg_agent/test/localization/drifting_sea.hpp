@@ -20,10 +20,11 @@ struct DriftOptions {
   double seconds = 3600.0;
   double slot_s = 1.25;
   double loss = 0.0;
-  double late = 0.0;       ///< share of ranges that are late
-  bool ranges = true;      ///< false: nobody ranges
-  double shift_m = 0.0;    ///< of everything that is true, unseen by all
-  double drift_mps = 0.0;  ///< the same, growing
+  double late = 0.0;          ///< share of ranges that are late
+  bool ranges = true;         ///< false: nobody ranges
+  double fix_period_s = 0.0;  ///< between two fixes of AUV 1, of 3 m; 0: none
+  double shift_m = 0.0;       ///< of everything that is true, unseen by all
+  double drift_mps = 0.0;     ///< the same, growing
 };
 
 /// What the filter of AUV 0 says at the end.
@@ -76,6 +77,10 @@ class DriftingSea {
       }
       const auto now = static_cast<TimeNs>(t * 1e9);
       filter.Predict(now);
+      const double period = o_.fix_period_s;
+      if (period > 0.0 && t < o_.seconds && std::fmod(t, period) < 0.5 * dt) {
+        filter.Take(FixReading{1, now, e[2] + 3.0 * Normal(), e[3] + 3.0 * Normal(), 3.0});
+      }
       if (!o_.ranges) continue;
       const int source = s % members;
       for (int receiver = 0; receiver < o_.auvs; ++receiver) {

@@ -99,6 +99,77 @@ TEST(JointFilter, ABearingLeavesWhatItsErrorIsAcrossTheLine) {
               0.02);
 }
 
+// A fix of deviation r of a position that may be s off leaves s r / sqrt(s^2 + r^2), and the same
+// share of what it says.
+TEST(JointFilter, AFixLeavesWhatTwoSourcesLeave) {
+  constexpr double kStart_m = 40.0, kFix_m = 3.0;
+  JointFilter filter(LocalizationConfig(), kStart_m, 2, {{2.0, 600.0}}, 0);
+  const double S = kStart_m * kStart_m + kFix_m * kFix_m;
+  ASSERT_TRUE(filter.Take(FixReading{0, 0, 30.0, -20.0, kFix_m}));
+  EXPECT_NEAR(filter.last_nis(), 0.5 * (900.0 + 400.0) / S, 1e-12);
+  const PlaneError e = filter.Error(0, 0);
+  EXPECT_NEAR(e.xx, kStart_m * kStart_m * kFix_m * kFix_m / S, 1e-9);
+  EXPECT_NEAR(e.yy, e.xx, 1e-12);
+  EXPECT_NEAR(e.xy, 0.0, 1e-12);
+  EXPECT_NEAR(e.x, 30.0 * kStart_m * kStart_m / S, 1e-9);
+  EXPECT_NEAR(e.y, -20.0 * kStart_m * kStart_m / S, 1e-9);
+  // Nothing is known of the other one by that, and stations have no fixes.
+  EXPECT_EQ(filter.Error(1, 0).xx, kStart_m * kStart_m);
+  EXPECT_FALSE(filter.Take(FixReading{2, 0, 0.0, 0.0, kFix_m}));
+}
+
+// An hour with three fixes of another AUV, judged when the next one is due: the bound of all ranges
+// and fixes is 42 m then.
+TEST(JointFilter, FixesOfOneAuvHoldTheSwarm) {
+  DriftOptions o;
+  o.fix_period_s = 900.0;
+  const Judgement j = Judge(o, "a fix each 900 s", kManyRuns);
+  for (const double nees : {j.nees, j.relative_nees}) {
+    EXPECT_GT(nees, kManyLower);
+    EXPECT_LT(nees, kManyUpper);
+  }
+  EXPECT_LT(j.current_nees, kManyUpper);
+  EXPECT_LT(j.rmse, 1.3 * 42.0);
+  EXPECT_LT(j.relative_rmse, 2.2);
+  o.loss = 0.7;
+  EXPECT_LT(Judge(o, "the same, 70 % lost").nees, kUpper);
+}
+
+// sigma^2(t) = P_ee - 2 t P_ec + t^2 P_cc + q t^3 / 3 + what log and heading add; after two fixes
+// P_ec is known, too.
+TEST(JointFilter, WhatComesIsTheGrowthOfTheErrorModel) {
+  const LocalizationConfig c;
+  JointFilter filter(c, 1.0, 1, {}, 0);
+  filter.Take(FixReading{0, 0, 0.0, 0.0, 3.0});
+  const double T = 600.0, t = 900.0;
+  for (int s = 1; s <= 600; ++s) filter.Predict(s * TimeNs{1'000'000'000});
+  const double before = filter.Error(0, filter.now()).xx;
+  filter.Take(FixReading{0, filter.now(), -120.0, 60.0, 3.0});
+  // Of two fixes T apart: e and e - T c, each of which is known by its own.
+  const double rate = c.current_std_mps * c.current_std_mps + c.shear_std_mps * c.shear_std_mps;
+  EXPECT_NEAR(before, rate * T * T, 0.05 * rate * T * T);
+  const double q = 2.0 * (c.current_std_mps * c.current_std_mps / c.current_memory_s +
+                          c.shear_std_mps * c.shear_std_mps / c.shear_memory_s);
+  const PlaneError now = filter.Error(0, filter.now()), one = filter.Ahead(0, t),
+                   two = filter.Ahead(0, 2.0 * t);
+  const double added = c.reckoning_std_m * c.reckoning_std_m;
+  EXPECT_NEAR(filter.Ahead(0, 0.0).xx, now.xx, 1e-12);
+  // The quadratic part from two times must be that of a third.
+  const auto square = [&](const PlaneError& e, double s) {
+    return e.xx - q * s * s * s / 3.0 - added * s;
+  };
+  const double a = square(one, t) - now.xx, b = square(two, 2.0 * t) - now.xx;
+  const double P_cc = (b - 2.0 * a) / (2.0 * t * t), P_ec = (4.0 * a - b) / (-4.0 * t);
+  const PlaneError half = filter.Ahead(0, 0.5 * t);
+  EXPECT_NEAR(square(half, 0.5 * t), now.xx - t * P_ec + 0.25 * t * t * P_cc, 1e-6 * half.xx);
+  // The current is known by the way between the fixes, and by what it changed meanwhile.
+  const double known = (2.0 * 9.0 + added * T) / (T * T) + q * T / 3.0;
+  EXPECT_NEAR(P_cc, known, 0.15 * known);
+  // It goes on as it went: 0.2 m/s to the west, 0.1 to the north.
+  EXPECT_NEAR(one.x, -120.0 - 0.2 * t, 15.0);
+  EXPECT_NEAR(one.y, 60.0 + 0.1 * t, 10.0);
+}
+
 TEST(JointFilter, BeaconsHoldTheSwarm) {
   DriftOptions o;
   o.slot_s = 2.5;

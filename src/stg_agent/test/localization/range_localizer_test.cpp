@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "stg_agent/agent_config.hpp"
 #include "stg_agent/localization/localizer.hpp"
 
@@ -154,6 +155,93 @@ TEST(RangeLocalizer, WhatComesTwiceOrShuffledWithinADecisionChangesNothing) {
   EXPECT_EQ(once->own().x, often->own().x);
   EXPECT_EQ(once->own().xx, often->own().xx);
   EXPECT_EQ(once->relative(2, 600 * kSecond).y, often->relative(2, 600 * kSecond).y);
+}
+
+/// Every ten minutes AUV 2 has a fix that is 2 m off, which its next three packets tell.
+Letter WithFix(const Flight& flight, int t, double rounding_s) {
+  Letter l = flight.At(t);
+  const int fixed = (t - 1) / 600 * 600;
+  if (l.state.source != 2 || fixed == 0 || t - 1 - fixed > 9) return l;
+  l.state.ranges = 0;
+  l.state.has_fix = true;
+  l.state.fix.stamp =
+      fixed * kSecond + static_cast<TimeNs>(rounding_s * static_cast<double>(t % 3 - 1) * 1e9);
+  const Vec3<double> error = flight.Told(2, fixed) - flight.True(2, fixed);
+  l.state.fix.error_x = error.x - 2.0;
+  l.state.fix.error_y = error.y;
+  l.state.fix.std_m = 3.0;
+  return l;
+}
+
+TEST(RangeLocalizer, AFixOfAnotherAuvServesThisOneAndCountsOnce) {
+  const AgentModel model = Model(4, false);
+  const Flight flight(model);
+  const auto once = MakeLocalizer(model, 0), often = MakeLocalizer(model, 0),
+             never = MakeLocalizer(model, 0);
+  for (Localizer* l : {once.get(), often.get(), never.get()}) l->Reset();
+  int told = 0;
+  for (int t = 0; t <= 1230; ++t) {
+    std::vector<Letter> all, first, none;
+    if (t > 0) {
+      // Ages in packets are rounded to an eighth of a decision.
+      all = {WithFix(flight, t, 0.0625)};
+      first = all;
+      told = first[0].state.has_fix ? told + 1 : t % 600 > 20 ? 0 : told;
+      if (told > 1) first[0].state.has_fix = false;
+      none = {flight.At(t)};
+      if (all[0].state.has_fix) none[0].state.ranges = 0;
+    }
+    Advance(flight, t, first, once.get());
+    Advance(flight, t, all, often.get());
+    Advance(flight, t, none, never.get());
+  }
+  EXPECT_EQ(once->own().x, often->own().x);
+  EXPECT_EQ(once->own().xx, often->own().xx);
+  EXPECT_GT(never->own().std_m(), 200.0);
+  // Told by another one 20 s ago, the own position is known to what the fix and the ranges leave.
+  EXPECT_LT(once->own().std_m(), 5.0);
+  EXPECT_GT(once->own().std_m(), 2.5);
+  EXPECT_NEAR(once->own().x, -0.3 * 1230.0, 10.0);
+  EXPECT_NEAR(once->own().y, 0.1 * 1230.0, 10.0);
+  EXPECT_EQ(once->fixes(), 0) << "none is its own";
+}
+
+TEST(RangeLocalizer, TheOwnFixIsTakenOnceAndToldInThreeRoundsOfPackets) {
+  const AgentModel model = Model(4, true);
+  const Flight flight(model);
+  const auto localizer = MakeLocalizer(model, 0);
+  localizer->Reset();
+  const TimeNs round = acoustics::RoundOf(model.channel, NetworkRun(model.run, model.stations));
+  ASSERT_GT(round, 0);
+  double fixed_m2 = 0.0;
+  for (int t = 0; t <= 100; ++t) {
+    OwnReckoning own = flight.Own(t);
+    if (t >= 50) {
+      own.fix_stamp = 50 * kSecond;
+      own.p_WF = flight.True(0, 50.0) + Vec3<double>{1.0, -1.0, 0.0};
+      own.fix_std_m = 3.0;
+    }
+    localizer->Advance(t * kSecond, own);
+    if (t == 49) {
+      EXPECT_EQ(localizer->fixed(), -1);
+    }
+    if (t == 50) fixed_m2 = localizer->own().xx;
+    if (t == 51) {
+      EXPECT_GT(localizer->own().xx, fixed_m2) << "it is not taken again";
+    }
+    if (t < 50) continue;
+    EXPECT_EQ(localizer->fixes(), 1);
+    EXPECT_EQ(localizer->fixed(), 50 * kSecond);
+    NeighbourState packet;
+    packet.generation = t * kSecond;
+    localizer->Tell(&packet);
+    EXPECT_EQ(packet.has_fix, (t - 50) * kSecond < 3 * round) << t;
+    if (!packet.has_fix) continue;
+    EXPECT_EQ(packet.fix.stamp, 50 * kSecond);
+    EXPECT_NEAR(packet.fix.error_x, -0.3 * 50.0 - 1.0, 1e-9);
+    EXPECT_NEAR(packet.fix.error_y, 0.1 * 50.0 + 1.0, 1e-9);
+  }
+  EXPECT_LT(fixed_m2, 9.0);
 }
 
 TEST(RangeLocalizer, APacketTellsOfAStationAndOfAnAuv) {

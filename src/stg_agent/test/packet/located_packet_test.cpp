@@ -98,6 +98,39 @@ TEST(LocatedPacket, AStationTellsABearingBesideTwoRanges) {
   EXPECT_THROW(codec.Encode(s), std::invalid_argument);
 }
 
+TEST(LocatedPacket, CarriesAFixInPlaceOfTheRanges) {
+  const AgentModel model = Model("ranges");
+  const PacketCodec codec(model, PacketLayout::kMeasurements);
+  const MeasurementPacket layout(model);
+  NeighbourState s = Example();
+  s.has_fix = true;
+  for (const double error : {-60000.0, -3.0, 0.0, 812.34, 40000.0}) {
+    for (const double std_m : {0.5, 3.0, 20.0}) {
+      s.fix = {s.generation - 700'000'000, error, -0.5 * error, std_m};
+      s.surfacing = error > 0.0;
+      const Packet packet = codec.Encode(s);
+      const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+      ASSERT_TRUE(told.has_fix);
+      EXPECT_EQ(told.surfacing, s.surfacing);
+      EXPECT_EQ(told.ranges, 0);
+      EXPECT_FALSE(told.saturated);
+      EXPECT_NEAR(static_cast<double>(told.fix.stamp - s.fix.stamp), 0.0, 0.0626e9);
+      EXPECT_NEAR(told.fix.error_x, error, 1.001 * layout.told_fix_error_m());
+      EXPECT_NEAR(told.fix.error_y, -0.5 * error, 1.001 * layout.told_fix_error_m());
+      EXPECT_GE(told.fix.std_m, std_m * (1.0 - 1e-9));
+      EXPECT_LT(told.fix.std_m, 1.27 * std_m);
+    }
+  }
+  EXPECT_LT(layout.told_fix_error_m(), 0.04);
+  s.fix.stamp = s.generation + 1;
+  EXPECT_THROW(codec.Encode(s), std::invalid_argument);
+  // A station gets no such fixes.
+  s.fix.stamp = s.generation;
+  s.source = 4;
+  const Packet packet = codec.Encode(s);
+  EXPECT_THROW(codec.Decode(packet.data(), packet.size(), s.generation, s.p_W), UserError);
+}
+
 TEST(LocatedPacket, AStationSpeaksTheSameLayoutAndOthersDoNot) {
   const AgentModel model = Model("ranges");
   const PacketCodec codec(model, PacketLayout::kMeasurements);

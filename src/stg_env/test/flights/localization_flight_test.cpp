@@ -90,6 +90,19 @@ TEST(LocalizationFlight, LateSoundsAreSetAside) {
   EXPECT_LT(Fly("craft_late_sound").Mean("navigation_rmse_tail"), 10.0);
 }
 
+TEST(LocalizationFlight, AFixOfOneServesAll) {
+  const task::MetricSummary up = Fly("surfacing");
+  EXPECT_LT(up.Mean("navigation_rmse_tail"), 40.0);
+  EXPECT_LT(up.Mean("navigation_nees"), 5.0);
+  EXPECT_GT(up.Mean("band_share"), 0.7);
+  EXPECT_GE(up.Mean("fixes"), 2.0);
+  EXPECT_LT(up.Mean("fixes"), 5.0);
+  EXPECT_GT(up.Mean("surface_share"), 0.02);
+  EXPECT_LT(up.Mean("surface_share"), 0.25);
+  EXPECT_GT(up.Mean("navigation_rmse_before_fix"), 10.0);
+  EXPECT_LT(up.Mean("navigation_rmse_before_fix"), 60.0);
+}
+
 TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
   const auto error = [](const std::vector<std::string>& keys) {
     try {
@@ -114,6 +127,12 @@ TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
   EXPECT_NE(error({by, "localization.ranges.ping_period_s=20.5"}).find("whole"), std::string::npos);
   EXPECT_NE(error({by, "localization.ranges.ping_period_s=9.0"}).find("ping_period_s"),
             std::string::npos);
+  EXPECT_NE(error({"localization.ranges.surface_std_m=25.0"}).find("fixes: reported"),
+            std::string::npos);
+  EXPECT_NE(error({"navigation.dead_reckoning.gps_first_fix_s=10.0"}).find("fixes"),
+            std::string::npos);
+  EXPECT_THROW(Shipped("field", "nominal", {"navigation.dead_reckoning.fixes=reported"}),
+               UserError);
   // A station without anybody who makes use of it.
   EXPECT_THROW(Shipped("field", "nominal", {"stations.crafts=[[0,0]]"}), UserError);
 }

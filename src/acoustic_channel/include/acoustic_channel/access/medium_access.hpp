@@ -64,6 +64,9 @@ MediumAccessRegistry& MediumAccesses();
 /// The rule that the section names, for the nodes and the clock of the run. Throws UserError.
 std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, const RunConfig& run);
 
+/// From one turn of a node to its next one; 0 where that depends on what it sent.
+TimeNs RoundOf(const ChannelConfig& config, const RunConfig& run);
+
 /// The times at which packets that are offered at decisions can leave. Modems and agents compute
 /// the same times, so an agent need not make a packet that cannot leave.
 class Turns {

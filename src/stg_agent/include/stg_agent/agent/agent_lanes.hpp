@@ -69,6 +69,8 @@ class LanedAgent {
  private:
   Inbox& At(int lane) { return inboxes_[static_cast<std::size_t>(lane)]; }
   void Think(const dynamics::Navigation<T>& nav, const Mask<T>& lanes);
+  /// Sets the vertical velocity of an AUV that surfaces for a fix, until it is back.
+  void Surface(T* action) const;
   /// Lets the AUV leave and join at the times of the scenario.
   void Attend(int lane, TimeNs now);
 

@@ -13,6 +13,7 @@
 #include "stg_agent/graph/target_view.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
 #include "stg_agent/localization/localizer.hpp"
+#include "stg_agent/localization/surfacing.hpp"
 
 namespace stg::agent {
 
@@ -83,6 +84,8 @@ class Inbox {
   TargetBelief belief(int target) const { return Of(target).belief(); }
   /// Estimates the errors of reckoned positions; null: none is chosen.
   const Localizer* localizer() const { return localizer_.get(); }
+  /// Decides when the AUV surfaces for a fix; null: it never does.
+  const Surfacing* surfacing() const { return surfacing_ ? &*surfacing_ : nullptr; }
   /// Number of packets of this episode that could not be decoded.
   std::uint64_t refused_packets() const { return refused_packets_; }
 
@@ -109,6 +112,7 @@ class Inbox {
   std::vector<std::unique_ptr<TargetFilter>> filters_;  // of targets first_, first_ + 1, ...
   std::vector<Pending> pending_;                        // likewise
   std::unique_ptr<Localizer> localizer_;                // null: none is chosen
+  std::optional<Surfacing> surfacing_;
   TimeNs now_ = 0;
   OwnReckoning own_;
   std::uint32_t episode_ = 0;

@@ -34,6 +34,14 @@ struct BearingReading {
   double std_rad = 0.0;
 };
 
+/// A GPS fix of an AUV.
+struct FixReading {
+  int member = 0;
+  TimeNs at = 0;
+  double error_x = 0.0, error_y = 0.0;  ///< its reckoned minus its GPS position at that time [m]
+  double std_m = 0.0;                   ///< of each component
+};
+
 /// A Kalman filter of the errors of all reckoned positions that an AUV knows.
 ///
 /// States: of each AUV the error e of its reckoned position and the velocity w by which its current
@@ -69,9 +77,12 @@ class JointFilter {
   /// Takes a reading with a stamp up to now, between known members. False: the gate rejected it.
   bool Take(const RangeReading& reading);
   bool Take(const BearingReading& reading);
+  bool Take(const FixReading& reading);
 
   /// Error of a reported position, at a time up to now.
   PlaneError Error(int id, TimeNs at) const;
+  /// Predicted error after a time without readings.
+  PlaneError Ahead(int id, double ahead_s) const;
   /// Error of the first member minus that of the second.
   PlaneError Relative(int id, int than, TimeNs at) const;
   /// Mean error of the known AUVs.

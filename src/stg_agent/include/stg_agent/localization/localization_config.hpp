@@ -29,6 +29,8 @@ struct LocalizationConfig {
   double gate_sigma = 4.0;         ///< ranges farther off than this are rejected
   RangesBy by = RangesBy::kOneWay;
   double ping_period_s = 30.0;  ///< time between two pings of an AUV
+  /// An AUV surfaces for a fix before the deviation of its own position is above this; 0: never.
+  double surface_std_m = 0.0;
 };
 
 /// Keys, units and ranges of the section, which a file may leave out.

@@ -24,6 +24,10 @@ struct PlaneError {
 struct OwnReckoning {
   Vec3<double> p_WB;            ///< never corrected [m]
   double position_std_m = 0.0;  ///< stated by the navigation
+  // The newest GPS fix, which does not correct p_WB.
+  TimeNs fix_stamp = 0;    ///< time of the fix
+  Vec3<double> p_WF = {};  ///< position at that time [m]
+  double fix_std_m = 0.0;  ///< of each horizontal component; 0: there was none
 };
 
 /// Estimates the errors of the reckoned positions of this AUV and its neighbours. The reckoned
@@ -45,6 +49,11 @@ class Localizer {
 
   /// Error of the own reckoned position at the last Advance.
   virtual PlaneError own() const = 0;
+  /// The same after a time without readings, predicted.
+  virtual PlaneError ahead(double ahead_s) const = 0;
+  /// Number of own GPS fixes, and the time of the newest one; -1: there was none.
+  virtual int fixes() const = 0;
+  virtual TimeNs fixed() const = 0;
   /// Error of the reckoned position of AUV `id` minus the own error, at a time not after the last
   /// Advance.
   virtual PlaneError relative(int id, TimeNs at) const = 0;

@@ -40,8 +40,10 @@ namespace stg::agent {
 /// half extents; the receiver takes the position nearest to where it expects the sender. The
 /// deviation has 5 bits, and one bit states whether the log measures against the water. The second
 /// measurement may be two ranges of packets: there 1, target 31, two times source 5 (31: none), age
-/// 9 (an eighth of a decision), range 14 (-100 m to 4.9 km). Sources are the AUVs, then the
-/// stations, which send this layout too.
+/// 9 (an eighth of a decision), range 14 (-100 m to 4.9 km). Or it may be a GPS fix: there 1,
+/// target 30, age 9, reckoned minus GPS position 2 x 21 (65 km in 0.0625 m), deviation 5
+/// (logarithmic, 0.1 to 100 m, rounded up). The spare bit states whether the sender surfaces for a
+/// fix. Sources are the AUVs, then the stations, which send this layout too.
 class MeasurementPacket {
  public:
   explicit MeasurementPacket(const AgentModel& model);
@@ -58,6 +60,7 @@ class MeasurementPacket {
   double azimuth_error_rad() const { return 0.5 * azimuth_.resolution; }
   double elevation_error_rad() const { return 0.5 * elevation_.resolution; }
   double told_range_error_m() const { return 0.5 * told_range_.resolution; }
+  double told_fix_error_m() const { return 0.5 * told_error_.resolution; }
   /// Distance between two ages [ns].
   TimeNs age_step() const { return age_step_; }
 
@@ -98,6 +101,12 @@ class MeasurementPacket {
   void ReadToldBearing(Reader* r, NeighbourState* s) const;
   void WriteToldRanges(const NeighbourState& s, Writer* w) const;
   void ReadToldRanges(Reader* r, NeighbourState* s) const;
+  void WriteToldFix(const NeighbourState& s, Writer* w) const;
+  void ReadToldFix(Reader* r, NeighbourState* s) const;
+  /// Whatever stands beside the measurements of targets.
+  void WriteTold(const NeighbourState& s, Writer* w) const;
+  /// What stands in place of measurement k, whose code is next; false: a measurement does.
+  bool ReadTold(int k, Reader* r, NeighbourState* s) const;
 
   int agents_, targets_;
   bool free_;     ///< task.assignment is free: version 3
@@ -111,8 +120,8 @@ class MeasurementPacket {
   double heading_variance_, heading_walk_;  // [rad^2], [rad^2/s]
   TimeNs age_step_;
   Quantiser position_, velocity_, unit_, offset_, rise_, range_, azimuth_, elevation_;
-  Quantiser fine_azimuth_, fine_elevation_, told_azimuth_, told_range_;
-  Logarithm deviation_, error_;
+  Quantiser fine_azimuth_, fine_elevation_, told_azimuth_, told_range_, told_error_;
+  Logarithm deviation_, error_, told_std_;
 };
 
 }  // namespace stg::agent

@@ -40,6 +40,13 @@ struct ToldBearing {
   double azimuth_rad = 0.0;  ///< from the station, from east anticlockwise
 };
 
+/// An AUV's own GPS fix.
+struct ToldFix {
+  TimeNs stamp = 0;
+  double error_x = 0.0, error_y = 0.0;  ///< reckoned minus GPS position at that time [m]
+  double std_m = 0.0;                   ///< of each component
+};
+
 /// State of one AUV and its target estimate, for its neighbours. World axes (ENU).
 struct NeighbourState {
   int source = 0;               ///< index of the AUV, 0-based
@@ -70,6 +77,9 @@ struct NeighbourState {
   std::array<ToldRange, kToldRanges> range;
   bool has_bearing = false;  ///< only from a station, which has no measurements of targets
   ToldBearing bearing;
+  bool surfacing = false;  ///< it goes up for a fix by satellite
+  bool has_fix = false;    ///< in place of the ranges
+  ToldFix fix;
   bool saturated = false;  ///< set by Encode when a value did not fit and was clipped
 };
 

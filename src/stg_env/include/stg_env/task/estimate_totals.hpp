@@ -62,10 +62,12 @@ class NavigationTotals {
  private:
   struct Sums {
     T located = T(0.0), square = T(0.0), tail = T(0.0), in_tail = T(0.0), nees = T(0.0),
-      relative = T(0.0);
+      relative = T(0.0), surfacing = T(0.0), before_fix = T(0.0), fixings = T(0.0);
   };
 
   Sums sums_;
+  T fixes_ = T(-1.0);         // of all AUVs up to now; below 0: they never go up for one
+  T newest_square_ = T(0.0);  // mean over the AUVs at the last decision
 };
 
 extern template class NavigationTotals<double>;

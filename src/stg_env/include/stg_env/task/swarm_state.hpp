@@ -37,17 +37,19 @@ struct FieldState {
   Vec3<T> navigation_error;  ///< of its position in the world, horizontal [m]
   T navigation_covariance[3] = {T(0.0), T(0.0), T(0.0)};  ///< of it, xx xy yy [m^2]
   T relative_square = T(0.0);  ///< mean squared error of the others relative to the own one [m^2]
-  T altitude_m = T(1e9);       ///< above the bottom
-  T clearance_m = T(1e9);      ///< to the nearest obstacle
-  T groundings = T(0.0);       ///< in this episode up to now, as the following
-  T collisions = T(0.0);       ///< with obstacles
-  T received = T(0.0);         ///< packets that it received, and packets to it that were lost,
-  T missed = T(0.0);           ///< mean over the AUVs
-  T modem_energy_j = T(0.0);   ///< electric, of its modem
-  T airtime_s = T(0.0);        ///< for which its modem has sent
-  T pings = T(-1.0);           ///< sent pings for ranging, mean over the AUVs; below 0:
-                               ///< they are not counted
-  T ping_answers = T(0.0);     ///< answered ones of them
+  T surfacing = T(0.0);  ///< 1: it is on the way up for a fix, at the surface or on the way back
+  T fixes = T(-1.0);  ///< number of its fixes in this episode; below 0: it never surfaces for one
+  T altitude_m = T(1e9);      ///< above the bottom
+  T clearance_m = T(1e9);     ///< to the nearest obstacle
+  T groundings = T(0.0);      ///< in this episode up to now, as the following
+  T collisions = T(0.0);      ///< with obstacles
+  T received = T(0.0);        ///< packets that it received, and packets to it that were lost,
+  T missed = T(0.0);          ///< mean over the AUVs
+  T modem_energy_j = T(0.0);  ///< electric, of its modem
+  T airtime_s = T(0.0);       ///< for which its modem has sent
+  T pings = T(-1.0);          ///< sent pings for ranging, mean over the AUVs; below 0:
+                              ///< they are not counted
+  T ping_answers = T(0.0);    ///< answered ones of them
 };
 
 /// With task.assignment free: the target that each AUV follows, and its estimates of all targets.

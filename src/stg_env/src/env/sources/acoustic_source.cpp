@@ -129,6 +129,10 @@ void AcousticSource::TellNavigation(const dynamics::World& world, int i, int lan
     ++others;
   }
   SetLane(&f->relative_square, lane, square / std::max(1, others));
+  const agent::Surfacing* surfacing = agents_[static_cast<std::size_t>(i)].inbox(lane).surfacing();
+  if (surfacing == nullptr) return;
+  SetLane(&f->surfacing, lane, surfacing->under_way() ? 1.0 : 0.0);
+  SetLane(&f->fixes, lane, static_cast<double>(localizer->fixes()));
 }
 
 Pack AcousticSource::LinkQuality(const dynamics::World&) const {
