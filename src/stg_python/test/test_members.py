@@ -50,7 +50,7 @@ class Members(unittest.TestCase):
             env.step({**zeros(env), "auv_1": np.zeros(3, np.float32)})
 
     def test_an_agent_that_never_left_does_not_join(self):
-        with self.assertRaisesRegex(stg.UserError, "has not left"):
+        with self.assertRaisesRegex(stg.UserError, "can only join after it has left"):
             stg.load_scenario("field", "nominal", {"fleet.join": [[3, 1]]})
         with self.assertRaisesRegex(stg.UserError, "mode acoustic"):
             stg.load_scenario("field", "nominal", {"mode": "truth", "fleet.leave": [[3, 1]]})
