@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "auv_common/numbers/attitude.hpp"
+#include "joint_row.hpp"
+#include "stg_agent/localization/joint_filter.hpp"
+
+/// The readings of the joint filter: the row that each kind makes of the states, and its update.
+namespace stg::agent {
+namespace {
+
+constexpr double kLeastLevel_m = 5.0;  ///< nearer in the plane a bearing says nothing
+
+}  // namespace
+
+void JointFilter::AddError(int id, int axis, double weight, double age_s, Row* row) const {
+  if (IsAnchor(id)) {
+    row->Add(AnchorAt(id) + axis, weight);
+    return;
+  }
+  const int slot = SlotOf(id);
+  if (slot < 0) return;
+  row->Add(ErrorAt(slot) + axis, weight);
+  if (age_s == 0.0 || !observers_[static_cast<std::size_t>(slot)].adrift) return;
+  row->Add(ShearAt(slot) + axis, weight * age_s);
+  row->Add(CurrentAt() + axis, weight * age_s);
+}
+
+double JointFilter::Mean(const Row& row) const {
+  double sum = 0.0;
+  for (int k = 0; k < row.count; ++k) {
+    sum += row.value[static_cast<std::size_t>(k)] *
+           x_[static_cast<std::size_t>(row.index[static_cast<std::size_t>(k)])];
+  }
+  return sum;
+}
+
+/// P times the row as a column; returns row P column.
+double JointFilter::Column(const Row& row, double* column) const {
+  std::fill_n(column, n_, 0.0);
+  for (int k = 0; k < row.count; ++k) {
+    const double v = row.value[static_cast<std::size_t>(k)];
+    const double* p = P_.data() + row.index[static_cast<std::size_t>(k)] * n_;
+    for (int c = 0; c < n_; ++c) column[c] += v * p[c];
+  }
+  double sum = 0.0;
+  for (int k = 0; k < row.count; ++k) {
+    sum += row.value[static_cast<std::size_t>(k)] * column[row.index[static_cast<std::size_t>(k)]];
+  }
+  return sum;
+}
+
+void JointFilter::Offset(int to, int from, const Vec3<double>& told, double age_s,
+                         double (&offset)[2]) const {
+  for (int axis = 0; axis < 2; ++axis) {
+    Row error;
+    AddError(to, axis, 1.0, age_s, &error);
+    AddError(from, axis, -1.0, age_s, &error);
+    offset[axis] = (axis == 0 ? told.x : told.y) - Mean(error);
+  }
+}
+
+double JointFilter::Wander(double age_s) const {
+  return (Squared(config_.current_std_mps) / config_.current_memory_s +
+          Squared(config_.shear_std_mps) / config_.shear_memory_s) *
+         2.0 * age_s * age_s * age_s / 3.0;
+}
+
+void JointFilter::Update(const double* column, double gain, double less) {
+  for (int r = 0; r < n_; ++r) {
+    const double f = column[r];
+    x_[static_cast<std::size_t>(r)] += gain * f;
+    for (int c = 0; c <= r; ++c) {
+      const double p = P(r, c) - less * f * column[c];
+      P(r, c) = p;
+      P(c, r) = p;
+    }
+  }
+}
+
+bool JointFilter::Take(const BearingReading& z) {
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  double offset[2];
+  Offset(z.source, z.receiver, z.p_source - z.p_receiver, age_s, offset);
+  const double level = std::hypot(offset[0], offset[1]);
+  if (level < kLeastLevel_m) return false;  // overhead there is no bearing
+  const double along[2] = {offset[0] / level, offset[1] / level};
+  const double across[2] = {-along[1], along[0]};
+  Row row, line;
+  for (int axis = 0; axis < 2; ++axis) {
+    AddError(z.source, axis, -across[axis] / level, age_s, &row);
+    AddError(z.receiver, axis, across[axis] / level, age_s, &row);
+    AddError(z.source, axis, -along[axis] / level, age_s, &line);
+    AddError(z.receiver, axis, along[axis] / level, age_s, &line);
+  }
+  std::array<double, kMostJointStates> column;
+  const double lengthwise = Column(line, column.data());
+  const double sidewise = Column(row, column.data());
+  // To second order a bearing bends with the distance.
+  const double noise = Squared(z.std_rad) + Wander(age_s) / Squared(level) + lengthwise * sidewise;
+  const double S = sidewise + noise;
+  const double innovation = WrapAngle(z.azimuth_rad - std::atan2(offset[1], offset[0]));
+  nis_ = innovation * innovation / S;
+  if (nis_ > Squared(config_.gate_sigma)) return false;
+  Update(column.data(), innovation / S, 1.0 / S);
+  return true;
+}
+
+bool JointFilter::Take(const RangeReading& z) {
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  double offset[2];
+  Offset(z.receiver, z.source, z.p_receiver - z.p_source, age_s, offset);
+  const double dz = z.p_receiver.z - z.p_source.z;
+  const double level = std::max(std::hypot(offset[0], offset[1]), 1e-3);
+  const double range = std::hypot(level, dz);
+  const double u[2] = {offset[0] / range, offset[1] / range};
+  const double across[2] = {-offset[1] / level, offset[0] / level};
+
+  Row row, bend;
+  for (int axis = 0; axis < 2; ++axis) {
+    AddError(z.receiver, axis, -u[axis], age_s, &row);
+    AddError(z.source, axis, u[axis], age_s, &row);
+    AddError(z.receiver, axis, across[axis], age_s, &bend);
+    AddError(z.source, axis, -across[axis], age_s, &bend);
+  }
+  row.Add(ScaleAt(), range);
+  std::array<double, kMostJointStates> column;
+  const double curved = Column(bend, column.data()) / range;
+  // What the currents did since then is not in the row.
+  const double noise = Squared(config_.range_std_m) + Wander(age_s) + 0.5 * curved * curved;
+  const double S = Column(row, column.data()) + noise;
+  const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range;
+  const double innovation = z.range_m - expected - 0.5 * curved;
+  nis_ = innovation * innovation / S;
+  if (nis_ > Squared(config_.gate_sigma)) return false;
+  // A late sound makes a range longer by anything up to the most.
+  const double first =
+      (1.0 - config_.late_share) * std::exp(-0.5 * nis_) / std::sqrt(2.0 * kPi * S);
+  const double late = innovation > 0.0 ? config_.late_share / config_.late_max_m : 0.0;
+  const double truth = first / (first + late);
+  Update(column.data(), truth * innovation / S, (truth - truth * (1.0 - truth) * nis_) / S);
+  return true;
+}
+
+/// A receiver has no outliers here, so a fix is never set aside: a filter that is too sure of
+/// itself comes right.
+bool JointFilter::Take(const FixReading& z) {
+  if (IsAnchor(z.member) || SlotOf(z.member) < 0) return false;
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  const double noise = Squared(z.std_m) + Wander(age_s);
+  nis_ = 0.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    Row row;
+    AddError(z.member, axis, 1.0, age_s, &row);
+    std::array<double, kMostJointStates> column;
+    const double S = Column(row, column.data()) + noise;
+    const double innovation = (axis == 0 ? z.error_x : z.error_y) - Mean(row);
+    nis_ += 0.5 * innovation * innovation / S;
+    Update(column.data(), innovation / S, 1.0 / S);
+  }
+  return true;
+}
+
+}  // namespace stg::agent
