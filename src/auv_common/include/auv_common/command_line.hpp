@@ -11,7 +11,7 @@
 
 namespace stg {
 
-/// Adds the option --plugin, which loads what it names when the command line is parsed.
+/// Adds the option --plugin. It loads the named library while the command line is parsed.
 inline void AddPluginOption(CLI::App* app) {
   app->add_option_function<std::vector<std::string>>(
          "--plugin",
@@ -31,8 +31,8 @@ inline void AddPluginOption(CLI::App* app) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// Loads what --plugin names before the command line is parsed, of a program whose other options
-/// depend on it. Throws UserError.
+/// Loads the libraries that --plugin names, before the command line is parsed. A program calls it
+/// if its other options depend on these libraries. Throws UserError.
 inline void LoadPluginArguments(int argc, char** argv) {
   const std::string name = "--plugin";
   for (int i = 1; i < argc; ++i) {
@@ -45,10 +45,10 @@ inline void LoadPluginArguments(int argc, char** argv) {
   }
 }
 
-/// Parses the arguments and runs `body`. Returns the exit status: 0 after the help, 2 for arguments
-/// and input that are refused, with the reason on standard error, 1 for another failure, else what
-/// `body` returns.
-/// @param program its name, for the reason
+/// Parses the arguments and runs `body`. Returns the exit status: 0 after the help; 2 for refused
+/// arguments or input; 1 for another failure; otherwise the result of `body`. The reason of a
+/// failure goes to standard error.
+/// @param program name of the program, for the messages
 template <class Body>
 int RunProgram(const std::string& program, CLI::App* app, int argc, char** argv, const Body& body) {
   const auto fail = [&program](const std::exception& error, int status) {

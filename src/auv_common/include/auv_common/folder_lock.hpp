@@ -4,11 +4,12 @@
 
 namespace stg {
 
-/// Keeps other programs that take it too out of a folder, as long as it lives: flock on the file
-/// .lock in it, which the kernel lets go of however the program ends. The empty file stays.
+/// Locks a folder as long as this object lives. It keeps out other programs that use the same lock:
+/// flock on the file .lock in the folder. The kernel releases the lock when the program ends, in
+/// whatever way. The empty file stays.
 class FolderLock {
  public:
-  /// UserError when another program has the folder, or the file cannot be made or locked.
+  /// Throws UserError if another program has the lock, or if the file cannot be made or locked.
   explicit FolderLock(const std::string& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

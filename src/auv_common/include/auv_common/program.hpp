@@ -5,12 +5,12 @@
 
 #include "auv_common/error.hpp"
 
-/// What the command lines have in common.
+/// Parts that the command-line programs have in common.
 namespace stg {
 
-/// Prints the last line of a program: one JSON object (nlohmann's), which other programs read. What
-/// is no UTF-8 in it, such as of a file's name, becomes U+FFFD. Throws UserError when this line or
-/// one before it cannot be written.
+/// Prints the last line of a program: one JSON object (nlohmann's), which other programs read.
+/// Bytes that are not UTF-8, e.g. in the name of a file, become U+FFFD. Throws UserError if this
+/// line or an earlier one cannot be written.
 template <class Json>
 void PrintResult(const Json& json) {
   const std::string line = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -20,8 +20,8 @@ void PrintResult(const Json& json) {
   }
 }
 
-/// Throws UserError unless the value of an option is from lo to hi; NaN is not, which CLI::Range
-/// takes.
+/// Throws UserError unless the value of an option is from lo to hi. It refuses NaN; CLI::Range
+/// accepts NaN.
 inline void CheckOption(const std::string& option, double value, double lo, double hi) {
   if (value >= lo && value <= hi) return;
   char text[96];

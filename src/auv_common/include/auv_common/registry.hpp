@@ -11,9 +11,10 @@
 #include "auv_common/config/options.hpp"
 #include "auv_common/names.hpp"
 
-/// Things of one kind that a scenario chooses by name: vehicles, propagation models, algorithms ...
+/// Things of one kind that a scenario chooses by name: vehicles, propagation models, algorithms,
+/// ...
 ///
-/// The suite's own things stand in one list, in the function that owns the registry:
+/// The suite's own things are in one list, in the function that owns the registry:
 ///
 ///   MotionRegistry& TargetMotions() {
 ///     static MotionRegistry registry("target motion", {
@@ -23,22 +24,22 @@
 ///     return registry;
 ///   }
 ///
-/// A thing is added by its own file and one line there. The file ends with the entry, which no
-/// header declares:
+/// A new thing needs one file of its own and one line in this list. The file ends with the entry.
+/// No header declares it:
 ///
 ///   MotionRegistry::Entry EvasiveEntry() { return {"evasive", MakeEvasive}; }
 ///
-/// Its factory takes the arguments that all
-/// things of its kind take; or, of a thing with options of its own, a struct with Describe before
-/// them (auv_common/config/options.hpp):
+/// The factory takes the arguments that all things of its kind take. If the thing has options of
+/// its own, the factory takes them first: a struct with Describe (auv_common/config/options.hpp).
 ///
 ///   std::unique_ptr<TargetMotion> MakeEvasive(const EvasiveOptions&, const MotionSetup&);
 ///
 /// A program with things of its own adds them at its start, `TargetMotions().Add("spiral",
-/// MakeSpiral)`, before it loads a scenario: the key's range (config::Name) lists the names, and
-/// Describe the keys, that are registered when the file is read. The function-local object exists
-/// from its first use on, so this may happen in static initialisers too. Add while another thread
-/// uses the registry is a race; Make and Names may run concurrently.
+/// MakeSpiral)`, before it loads a scenario. When the file is read, the range of the key
+/// (config::Name) lists the registered names, and Describe adds the keys of the registered things.
+/// The function-local object exists from its first use on, so static initialisers may add things,
+/// too. Add is a race if another thread uses the registry at the same time. Make and Names may run
+/// concurrently.
 namespace stg {
 
 template <class Interface, class... Args>
@@ -47,7 +48,7 @@ class Registry {
   using Pointer = std::unique_ptr<Interface>;
   using Factory = std::function<Pointer(Args...)>;
 
-  /// A name, what it makes, and the defaults of its options.
+  /// A name, its factory, and the defaults of its options.
   struct Entry {
     Entry(std::string name, Factory make) : name(std::move(name)) {
       if (!make) return;
@@ -70,15 +71,15 @@ class Registry {
     std::function<Pointer(const config::Options&, Args...)> make;
   };
 
-  /// @param kind what is registered, for messages: "target motion".
+  /// @param kind what is registered, for messages, e.g. "target motion"
   Registry(std::string kind, std::vector<Entry> entries) : kind_(std::move(kind)) {
     for (Entry& entry : entries) Add(std::move(entry));
   }
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
-  /// Throws std::logic_error for a name that is taken or cannot stand in a file (see IsName), and
-  /// for an empty factory: bugs of the program, not of its input.
+  /// Throws std::logic_error for a name that is taken or that cannot stand in a file (see IsName),
+  /// and for an empty factory. These are bugs of the program, not of its input.
   void Add(Entry entry) {
     if (!IsName(entry.name))
       throw std::logic_error(kind_ + ": '" + entry.name + "' is not a valid name");
@@ -93,8 +94,9 @@ class Registry {
     Add(Entry(std::move(name), std::move(make)));
   }
 
-  /// What the factory of this name makes of its options and the arguments; never null. Throws
-  /// UserError that lists the names for an unknown one, and whatever the factory throws.
+  /// The thing that the factory of this name makes of its options and the arguments; never null.
+  /// Throws UserError that lists the names if the name is unknown. Exceptions of the factory pass
+  /// through.
   Pointer Make(const std::string& name, const config::OptionsByName& options, Args... args) const {
     const Entry& entry = Need(name);
     const config::Options* own = options.Find(name);
@@ -110,17 +112,16 @@ class Registry {
 
   bool Has(const std::string& name) const { return Find(name) != nullptr; }
 
-  /// In the order in which they were added.
+  /// Names in the order in which they were added.
   std::vector<std::string> Names() const {
     std::vector<std::string> names;
     for (const Entry& entry : entries_) names.push_back(entry.name);
     return names;
   }
 
-  /// Adds the keys of every thing that has options, each in the section of its name below
-  /// `section`.
-  /// @param chooser key that chooses among the things @param chosen what it says
-  /// @param options filled by the keys; must outlive the table
+  /// Adds the keys of every thing with options. The section of a thing is its name below `section`.
+  /// @param chooser the key that chooses among the things @param chosen its value
+  /// @param options filled by the keys; they must outlive the table
   void Describe(const std::string& section, const std::string& chooser,
                 const std::function<std::vector<std::string>()>& chosen,
                 config::OptionsByName* options, config::Table* table) const {
@@ -128,7 +129,7 @@ class Registry {
       DescribeIn(section + "." + entry.name, entry.name, chooser, chosen, options, table);
     }
   }
-  /// The same of one thing, in the section of that name itself.
+  /// The same for one thing; `section` is the thing's own section.
   void DescribeIn(const std::string& section, const std::string& name, const std::string& chooser,
                   const std::function<std::vector<std::string>()>& chosen,
                   config::OptionsByName* options, config::Table* table) const {
@@ -139,7 +140,7 @@ class Registry {
         [&](config::Table* t) { DescribeOne(name, options, t); },
         [&](config::Table* t) { defaults.DescribeTo(t); });
   }
-  /// Adds the keys of one thing; none where it has no options. Throws UserError for an unknown
+  /// Adds the keys of one thing; nothing if it has no options. Throws UserError for an unknown
   /// name.
   void DescribeOne(const std::string& name, config::OptionsByName* options,
                    config::Table* table) const {
@@ -166,8 +167,8 @@ class Registry {
 
 }  // namespace stg
 
-/// The entry that a function without arguments returns, which another file defines in the namespace
-/// around this line.
+/// The entry that a function without arguments returns. Another file defines the function, in the
+/// namespace around this line.
 #define STG_ENTRY(Registry, function)  \
   [] {                                 \
     extern Registry::Entry function(); \

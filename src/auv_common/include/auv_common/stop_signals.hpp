@@ -4,13 +4,13 @@
 
 namespace stg {
 
-/// The exit status of a program that saved and ended because it was asked to, by whichever signal.
+/// Exit status of a program that saved its work and ended after any of the signals below.
 inline constexpr int kStopped = 130;
 
-/// From now on signals ask the program to end by itself, instead of ending it: Ctrl-C (SIGINT),
-/// SIGTERM, SIGUSR1 (what SLURM and mpirun pass on) and a closed terminal (SIGHUP). A second SIGINT
-/// or SIGTERM ends it at once. A hangup that is ignored, as nohup has it, stays so.
-/// @return the signal that came last, 0 before any; the same object in all calls.
+/// Makes the program end by itself after these signals: Ctrl-C (SIGINT), SIGTERM, SIGUSR1 (passed
+/// on by SLURM and mpirun) and a closed terminal (SIGHUP). A second SIGINT or SIGTERM ends it at
+/// once. A SIGHUP that is ignored already, as under nohup, stays ignored.
+/// @return the last signal, 0 if there was none; the same object in all calls.
 const std::atomic<int>& HeedStopSignals();
 
 }  // namespace stg

@@ -2,7 +2,8 @@
 
 namespace stg {
 
-/// Headers and libraries belong together within a minor version; the file VERSION has all of it.
+/// Headers and libraries fit together within a minor version. The file VERSION has the full
+/// version.
 inline constexpr char kMinorVersion[] = "1.0";
 
 }  // namespace stg

@@ -5,13 +5,13 @@
 
 namespace stg::config {
 
-/// The section a key stands in; empty at the top.
+/// The section of a key; empty at the top level.
 inline std::string Parent(const std::string& path) {
   const auto dot = path.rfind('.');
   return dot == std::string::npos ? "" : path.substr(0, dot);
 }
 
-/// A key's own name.
+/// The last part of the path.
 inline std::string Leaf(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 }  // namespace stg::config

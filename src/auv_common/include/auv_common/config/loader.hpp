@@ -11,31 +11,33 @@
 #include "auv_common/config/value.hpp"
 #include "auv_common/config/yaml_tree.hpp"
 
-/// Strict YAML into described structs.
+/// Strict loading of YAML into described structs.
 ///
-/// A file either states every key or names another one with `base: <file>` (relative to itself)
-/// and states the difference; overlays (files with a subset of the keys) and `key.path=value`
-/// overrides follow in order. An unknown or missing key (Table::AddOptional apart), a wrong type, a
-/// non-finite or out-of-range value throws UserError with file, line and key.
+/// A file either states every key, or names another file with `base: <file>` (relative to itself)
+/// and states the differences. Overlays (files with some of the keys) and `key.path=value`
+/// overrides are applied after it, in order. UserError with file, line and key is thrown for an
+/// unknown or missing key (except Table::AddOptional), for a wrong type, and for a value that is
+/// not finite or out of range.
 namespace stg::config {
 
-/// Where a configuration comes from.
+/// The sources of a configuration.
 struct Source {
   std::string file;
   std::vector<std::string> overlays = {};   ///< files
   std::vector<std::string> overrides = {};  ///< key.path=value
 };
 
-/// Loads the libraries that the key `plugins` lists, in bases, the file, overlays and overrides
-/// (`plugins=[libmine.so]`, paths from the current folder): the keys and names that they add must
-/// be there before a table is made. Throws UserError.
+/// Loads the libraries that the key `plugins` lists in bases, the file, overlays and overrides
+/// (`plugins=[libmine.so]`, with paths from the current folder). The keys and names that they add
+/// must exist before a table is made. Throws UserError.
 void LoadPluginsOf(const Source& source);
 
-/// What a file may hold besides the described keys: nothing, or sections that belong to others. A
-/// program that needs some sections of a file leaves the rest to the program that knows them all.
+/// What a file may contain besides the described keys: nothing, or sections of other programs. A
+/// program that needs only some sections of a file leaves the check of the others to the program
+/// that knows all of them.
 enum class Scope { kWhole, kOwnSections };
 
-/// Fills the fields of one table; every value remembers where it came from.
+/// Fills the fields of one table, and remembers the origin of every value.
 class Loader {
  public:
   /// @param table must outlive this object.
@@ -44,18 +46,21 @@ class Loader {
   Loader& operator=(const Loader&) = delete;
 
   void Apply(const Source& source);
-  /// A whole file that is given as text; `origin` stands for its name. It cannot have a base.
+  /// Loads a whole file that is given as text. `origin` replaces its name in messages. The text
+  /// cannot have a base.
   void ApplyText(const std::string& text, const std::string& origin);
-  /// Keys of a map that lies at `prefix` ("" or with a point at its end) in `file`; those it leaves
-  /// out keep their values. For files of other programs that hold a described section.
+  /// Loads the keys of a map that lies at `prefix` ("" or with a point at its end) in `file`. Keys
+  /// that are not in the map keep their values. This is for files of other programs that contain a
+  /// described section.
   void ApplyPart(const YamlTree& map, const std::string& prefix, const std::string& file);
   /// "key.path=value".
   void ApplyOverride(const std::string& text);
-  /// Call after all that was applied. Throws UserError for a key of a thing that was not chosen:
-  /// one that stands in the file that chose another, or in one on top of it, an overlay or an
-  /// override. What a base states for a thing of its own choice is passed over.
+  /// Call it after everything was applied. Throws UserError for a key of a thing that was not
+  /// chosen, if the key stands in the file that chose another thing, or in a file, overlay or
+  /// override on top of it. Keys that a base states for the thing that the base itself chose are
+  /// ignored.
   void RefuseUnread() const;
-  /// Throws the violation with the origin of each of its keys.
+  /// Throws the violation, with the origin of each of its keys.
   [[noreturn]] void Refuse(const Violation& violation) const;
 
  private:
@@ -75,11 +80,11 @@ class Loader {
 
   const Table& table_;
   const Scope scope_;
-  /// Where a value comes from.
+  /// The origin of a value.
   struct Origin {
     std::string where;  ///< "file:line: "
-    /// Of the files from the last base to the one that was named; overlays and overrides, which are
-    /// asked for together, share the last one.
+    /// Files count from the last base to the named file. Overlays and overrides share the last
+    /// number, because one command asks for all of them.
     int layer = 0;
   };
   std::map<std::string, Origin> origin_;
@@ -88,11 +93,11 @@ class Loader {
   std::vector<std::string> open_;  ///< files whose bases are being loaded
 };
 
-/// First field whose value is not allowed, else nothing.
+/// The first field with a value that is not allowed, or nothing.
 std::optional<Violation> FindBadValue(const Table& table);
 
-/// Loads a configuration: a struct with Describe(Config*, Table*) and, for rules between keys,
-/// std::optional<Violation> FindConflict(const Config&). Throws UserError.
+/// Loads a configuration. Config is a struct with Describe(Config*, Table*). For rules between keys
+/// it has std::optional<Violation> FindConflict(const Config&). Throws UserError.
 template <class Config>
 Config Load(const Source& source, Scope scope = Scope::kWhole) {
   LoadPluginsOf(source);
@@ -106,12 +111,12 @@ Config Load(const Source& source, Scope scope = Scope::kWhole) {
   return config;
 }
 
-/// What happens to keys of things that were not chosen.
+/// What to do with keys of things that were not chosen.
 enum class Unread { kRefuse, kPassOver };
 
-/// The same from the text of a whole file. ResolvedText merges what bases state for things of their
-/// own choice, so that its text needs kPassOver. The libraries that it lists must be loaded
-/// already.
+/// The same from the text of a whole file. ResolvedText contains all keys of the bases, including
+/// those of things that were not chosen in the end, so its text needs kPassOver. The libraries that
+/// the text lists must be loaded already.
 template <class Config>
 Config LoadText(const std::string& text, const std::string& origin,
                 Unread unread = Unread::kRefuse) {
@@ -126,7 +131,7 @@ Config LoadText(const std::string& text, const std::string& origin,
   return config;
 }
 
-/// Sets keys of a struct, "key.path=value" each. Throws UserError as Load does.
+/// Sets keys of a struct; each override is "key.path=value". Throws UserError as Load does.
 template <class Config>
 void Override(Config* config, const std::vector<std::string>& overrides) {
   LoadPluginsOf({"", {}, overrides});
@@ -137,7 +142,7 @@ void Override(Config* config, const std::vector<std::string>& overrides) {
   loader.RefuseUnread();
 }
 
-/// First violation of a range or of a rule between keys, else nothing.
+/// The first violation of a range or of a rule between keys, or nothing.
 template <class Config>
 std::optional<Violation> FindViolation(const Config& config) {
   Config copy = config;
@@ -147,8 +152,8 @@ std::optional<Violation> FindViolation(const Config& config) {
   return FindConflict(config);
 }
 
-/// Throws UserError that begins with `what` and names the key when a value is out of range or two
-/// keys contradict each other.
+/// Throws UserError if a value is out of range or two keys contradict each other. The message
+/// begins with `what` and names the key.
 void ThrowViolation(const std::string& what, const Violation& violation);
 template <class Config>
 void ValidateOrThrow(const Config& config, const std::string& what = "scenario") {
@@ -158,9 +163,9 @@ void ValidateOrThrow(const Config& config, const std::string& what = "scenario")
 /// FNV-1a 64, hexadecimal.
 std::string HashOf(const std::string& text);
 
-/// Every key that is read with its value, but optional ones at their fallback that belong to no
-/// thing; loading the result gives the same struct, but for what is not read. Of a struct, the
-/// libraries that are loaded come first: its keys may need them.
+/// Writes every key that is read, with its value. Optional keys at their fallback that belong to no
+/// thing are left out. Loading the result gives the same struct, except for keys that are not read.
+/// For a struct, the list of loaded libraries comes first, because its keys may need them.
 std::string ToYaml(const Table& table);
 template <class Config>
 std::string ToYaml(const Config& config) {
@@ -169,7 +174,7 @@ std::string ToYaml(const Config& config) {
   Describe(&copy, &table);
   return PluginLine() + ToYaml(table);
 }
-/// Hash of the keys alone: where libraries lie is no part of what they say.
+/// Hash of the keys only. The paths of the libraries do not count.
 template <class Config>
 std::string HashOfKeys(const Config& config) {
   Config copy = config;
@@ -178,14 +183,15 @@ std::string HashOfKeys(const Config& config) {
   return HashOf(ToYaml(table));
 }
 
-/// The source as one file: base, overlays and overrides merged, numbers as ToYaml writes them.
-/// Checks nothing but the syntax.
+/// The source as one file: base, overlays and overrides are merged, and numbers are written as
+/// ToYaml writes them. Only the syntax is checked.
 std::string ResolvedText(const Source& source);
 
-/// The value of one scalar key in the file or the nearest base that states it, unchecked.
+/// The value of one scalar key in the file, or in the nearest base that states it. It is not
+/// checked.
 std::optional<std::string> FindScalar(const std::string& file, const std::string& path);
 
-/// Names, without folder and ending, of the file, its base, the base's base and so on.
+/// Names, without folder and ending, of the file, its base, the base of its base, and so on.
 std::vector<std::string> NamesOfBases(const std::string& file);
 
 }  // namespace stg::config

@@ -6,14 +6,14 @@
 
 #include "auv_common/config/field.hpp"
 
-/// Options of things that are chosen by name. A thing's options are a default-initialised, copyable
-/// struct with a function
+/// Options of things that are chosen by name. The options of a thing are a default-initialised,
+/// copyable struct with a function
 ///   void Describe(MyOptions* options, config::Table* table);
 /// in the thing's own file, which adds keys without a section. The registry
-/// (auv_common/registry.hpp) knows the struct from the thing's factory.
+/// (auv_common/registry.hpp) finds the struct through the thing's factory.
 namespace stg::config {
 
-/// Options of one thing, whose type only the thing knows.
+/// Options of one thing. Only the thing knows their type.
 class Options {
  public:
   /// No options.
@@ -27,12 +27,12 @@ class Options {
   }
 
   bool empty() const { return !value_.has_value(); }
-  /// Null unless T is the type that they were made of.
+  /// The options; null unless T is their type.
   template <class T>
   const T* As() const {
     return std::any_cast<T>(&value_);
   }
-  /// Adds their keys. The references last as long as this object.
+  /// Adds the keys of the options. The references last as long as this object.
   void DescribeTo(Table* table) {
     if (!empty()) describe_(&value_, table);
   }
@@ -42,10 +42,11 @@ class Options {
   void (*describe_)(std::any*, Table*) = nullptr;
 };
 
-/// Options of the things of one kind, by name. A thing that is not in it has its defaults.
+/// Options of the things of one kind, by name. A thing that is not in the map has its default
+/// options.
 class OptionsByName {
  public:
-  /// Those of one thing; T's defaults where it has none, or none of this type.
+  /// The options of one thing; T's defaults if there are none, or none of this type.
   template <class T>
   T Get(const std::string& name) const {
     const Options* options = Find(name);
@@ -56,7 +57,7 @@ class OptionsByName {
     const auto found = by_name_.find(name);
     return found == by_name_.end() ? nullptr : &found->second;
   }
-  /// Those of one thing; copies of `defaults` where there are none yet.
+  /// The options of one thing; if there are none yet, a copy of `defaults` is added.
   Options* Need(const std::string& name, const Options& defaults) {
     return &by_name_.try_emplace(name, defaults).first->second;
   }
@@ -65,7 +66,7 @@ class OptionsByName {
   std::map<std::string, Options> by_name_;
 };
 
-/// Fills the table from "key=value,key=value", as it follows a thing's name in
+/// Fills the table from "key=value,key=value", the text after a thing's name in
 /// "pursuit:gain=2,cap=0.5". Throws UserError that quotes `whole` and names the key.
 void ApplyPairs(const Table& table, const std::string& pairs, const std::string& whole);
 

@@ -6,41 +6,41 @@
 #include "auv_common/config/field.hpp"
 #include "auv_common/config/yaml_tree.hpp"
 
-/// Values of single keys as text: read, write, check.
+/// Values of single keys as text: reading, writing and checking.
 namespace stg::config {
 
-/// What a node is, for "expected ..., found ..." messages.
+/// Kind of a node, for messages "expected ..., found ...".
 std::string KindName(const YamlTree& node);
 
-/// Reads the node into the member that the field points to. Message when type
-/// or range do not fit, else nothing. Numbers are strict: no surrounding text,
-/// no quotes, no NaN or infinity, integers without a point.
+/// Reads the node into the member that the field points to. Returns a message if the type or the
+/// range does not fit, otherwise nothing. Numbers are strict: no other text, no quotes, no NaN or
+/// infinity, and integers without a point.
 std::optional<std::string> ParseValue(const Field& field, const YamlTree& node);
 
-/// The same from the text of a command line: a TextRef takes it as it is, a list needs no brackets.
-/// Throws UserError for a text that is no YAML.
+/// The same for the text of a command line. A TextRef takes the text unchanged, and a list needs no
+/// brackets. Throws UserError for a text that is not YAML.
 std::optional<std::string> ParseText(const Field& field, const std::string& text);
 
-/// Shortest text that reads back as the same double, always with a point so that every YAML reader
-/// takes it for a real number.
+/// The shortest text that reads back as the same double. It always has a point, so every YAML
+/// reader takes it for a real number.
 std::string FormatNumber(double value);
 
-/// The value as a YAML scalar or flow sequence; numbers round-trip exactly.
+/// The value as a YAML scalar or flow sequence. Numbers read back exactly.
 std::string FormatValue(const ValueRef& value);
 
 /// Allowed values in words: "(0, 10]", "truth | acoustic", "true | false".
 std::string FormatRange(const Field& field);
 
-/// Message when the value itself is not allowed, else nothing.
+/// A message if the value itself is not allowed, otherwise nothing.
 std::optional<std::string> CheckValue(const Field& field);
 
-/// The value that a model has for a key, as text; empty: that of the key.
+/// A model's value of a key, as text; empty: it has the key's own value.
 std::string TextOf(const DifferenceRef& difference);
-/// Message when the key does not take the value, else nothing. The key keeps its own.
+/// A message if the key does not take the value, otherwise nothing. The key's own value stays.
 std::optional<std::string> ParseDifference(const DifferenceRef& difference, const YamlTree& node);
 std::optional<std::string> CheckDifference(const DifferenceRef& difference);
-/// Sets the keys of the table to the values that a model has for them; passes over keys that the
-/// table lacks. Throws UserError for a value that its key does not take.
+/// Sets the keys of the table to the model's values, and ignores keys that the table does not have.
+/// Throws UserError for a value that its key does not take.
 void Apply(const Differences& differences, const Table& table);
 
 }  // namespace stg::config

@@ -6,10 +6,10 @@
 
 namespace stg {
 
-/// The cheapest way to give every row a column of its own, by the Hungarian method with potentials
-/// (Kuhn 1955, Munkres 1957; shortest augmenting paths, Jonker and Volgenant 1987): the rows times
-/// the square of the columns at most. Of several cheapest ways the same one everywhere.
-/// Allocates nothing.
+/// Gives every row a column of its own at the lowest total cost, by the Hungarian method with
+/// potentials (Kuhn 1955, Munkres 1957; shortest augmenting paths, Jonker and Volgenant 1987).
+/// Time: at most the number of rows times the square of the number of columns. Among several
+/// solutions with the lowest cost, it finds the same one on every machine. Allocates nothing.
 template <int kMostRows, int kMostColumns>
 class AssignmentSolver {
  public:
@@ -70,13 +70,13 @@ class AssignmentSolver {
     return sum;
   }
 
-  /// Of the last Solve.
+  /// Column of a row in the last solution.
   int column_of(int row) const { return column_of_[At(row)]; }
 
  private:
   static constexpr std::size_t At(int k) { return static_cast<std::size_t>(k); }
 
-  std::array<int, kMostColumns + 1> row_of_{};  // by column; 0: that of none
+  std::array<int, kMostColumns + 1> row_of_{};  // row of each column; 0: none
   std::array<double, kMostColumns + 1> price_{};
   std::array<int, kMostRows> column_of_{};
 };

@@ -14,8 +14,8 @@ inline T WrapAngle(const T& a) {
   return a - T(2.0 * kPi) * Floor((a + T(kPi)) * T(1.0 / (2.0 * kPi)));
 }
 
-/// Sines and cosines of roll, pitch, yaw: all that R_WB, the rate map and the
-/// observation need.
+/// Sines and cosines of roll, pitch and yaw. R_WB, the rate map and the observation need nothing
+/// else.
 template <class T>
 struct EulerTrig {
   T sin_phi, cos_phi, sin_theta, cos_theta, sin_psi, cos_psi;
@@ -45,7 +45,7 @@ inline Mat3<T> RotationOf(const EulerTrig<T>& t) {
   return R;
 }
 
-/// Rotation of a quaternion q != 0 of any norm, given two = 2 / |q|^2.
+/// Rotation matrix of a quaternion q != 0 of any norm; two = 2 / |q|^2.
 template <class T>
 inline Mat3<T> RotationOf(const T (&q)[4], const T& two) {
   const T one(1.0);
@@ -63,14 +63,14 @@ inline Mat3<T> RotationOf(const T (&q)[4], const T& two) {
   return R;
 }
 
-/// Rotation of a unit quaternion.
+/// Rotation matrix of a unit quaternion.
 template <class T>
 inline Mat3<T> RotationOf(const T (&q)[4]) {
   return RotationOf(q, T(2.0));
 }
 
-/// Roll, pitch and yaw trigonometry of a rotation matrix without evaluating an
-/// angle. At pitch +-90 deg, where roll and yaw are not unique, roll is zero.
+/// Sines and cosines of roll, pitch and yaw of a rotation matrix, without computing an angle. At
+/// pitch +-90 deg, where roll and yaw are not unique, roll is zero.
 template <class T>
 inline EulerTrig<T> TrigOf(const Mat3<T>& R) {
   const T one(1.0), zero(0.0);
@@ -86,7 +86,7 @@ inline EulerTrig<T> TrigOf(const Mat3<T>& R) {
   return t;
 }
 
-/// Roll, pitch, yaw [rad] of the trigonometry above.
+/// Roll, pitch and yaw [rad] of their sines and cosines.
 template <class T>
 inline Vec3<T> RpyOf(const EulerTrig<T>& t) {
   return {Atan2(t.sin_phi, t.cos_phi), Atan2(t.sin_theta, t.cos_theta),
@@ -108,8 +108,8 @@ inline void QuaternionOf(const Vec3<T>& rpy, T (*q)[4]) {
   (*q)[3] = sign * z;
 }
 
-/// Euler angle rates of body rates p q r (Fossen's T_Theta). The cosine of pitch
-/// is kept away from zero, so that the map stays finite at pitch +-90 deg.
+/// Euler angle rates of body rates p q r (Fossen's T_Theta). The cosine of pitch is kept away from
+/// zero, so the rates stay finite at pitch +-90 deg.
 template <class T>
 inline Vec3<T> EulerRates(const EulerTrig<T>& t, const Vec3<T>& w_WB_B) {
   const T eps(1e-6);

@@ -5,8 +5,8 @@
 
 #include "auv_common/numbers/lanes.hpp"
 
-/// One lane of a structure S<T> that has numbers T for members and nothing else, such as Vec3<T>
-/// or a structure of those.
+/// One lane of a structure S<T>. All members of S are numbers T, or structures of such members,
+/// such as Vec3<T>.
 namespace stg {
 
 namespace lane_structs {
@@ -57,7 +57,7 @@ inline void SetLaneOf(S<double>* to, int, const S<double>& numbers) {
   *to = numbers;
 }
 
-/// Takes back the lanes outside the mask: they become those of `before`.
+/// Restores the lanes outside the mask from `before`.
 inline void KeepOthers(const Mask<Pack>& lanes, const Pack& before, Pack* now) {
   *now = Select(lanes, *now, before);
 }

@@ -8,23 +8,22 @@
 #include <type_traits>
 #include <xsimd/xsimd.hpp>
 
-/// Scalar and SIMD arithmetic behind one set of names.
+/// Scalar and SIMD arithmetic with the same names.
 ///
-/// Every formula of the core is a template over T, which is `double` (one
-/// vehicle, one agent) or `Pack` (the same quantity of kLanes independent
-/// environments). Transcendental functions of a double are evaluated through a
-/// Pack, so that both instantiations round alike: a ROS node and the vectorised
-/// environment then agree bit for bit (the build sets -ffp-contract=off).
+/// Every formula of the core is a template over T. T is `double` (one vehicle, one agent) or `Pack`
+/// (the same quantity in kLanes independent environments). Transcendental functions of a double are
+/// evaluated through a Pack, so that both round alike. So a ROS node and the vectorised environment
+/// agree bit for bit (the build sets -ffp-contract=off).
 namespace stg {
 
 using Pack = xsimd::batch<double>;
 inline constexpr int kLanes = static_cast<int>(Pack::size);
 
-/// How many lanes a T has.
+/// Number of lanes of a T.
 template <class T>
 inline constexpr int kLanesOf = std::is_same_v<T, Pack> ? kLanes : 1;
 
-/// One V for every lane of a T that is no number of the core: a time, a count. Read by OfLane.
+/// One V for every lane of a T, where V is a time or a count. OfLane reads it.
 template <class T, class V>
 using PerLane = std::conditional_t<std::is_same_v<T, Pack>, std::array<V, kLanes>, V>;
 template <class V>
@@ -36,7 +35,8 @@ inline const V& OfLane(const std::array<V, kLanes>& values, int lane) {
   return values[static_cast<std::size_t>(lane)];
 }
 
-/// What comparing two T gives: Mask<double> is bool, Mask<Pack> one truth per lane.
+/// Result of a comparison of two T: Mask<double> is bool, and Mask<Pack> has one truth value per
+/// lane.
 template <class T>
 struct MaskOf;
 template <>
@@ -85,9 +85,9 @@ inline void SinCos(double a, double* s, double* c) {
   *c = sc.second.get(0);
 }
 
-/// Nearest number with float32's 24-bit significand, by Veltkamp's splitting.
-/// Not a pair of casts: GCC 12 at -O3 drops a vectorised double-float-double
-/// round trip. Exact for float32's normal range, which is all it is used for.
+/// Nearest number with float32's 24-bit significand, by Veltkamp's splitting. A pair of casts would
+/// not do: GCC 12 at -O3 removes a vectorised double-float-double round trip. Exact in float32's
+/// normal range; no other numbers are used.
 template <class T>
 inline T RoundToFloat(const T& a) {
   const T c = a * T(536870913.0);  // 2^29 + 1
@@ -96,7 +96,7 @@ inline T RoundToFloat(const T& a) {
 
 /// Value of one lane; a double has the same value in every lane.
 inline double Lane(double a, int) { return a; }
-// One load or store where the pack lies; Pack::get copies the whole pack first.
+// Reads one lane from memory; Pack::get would copy the whole pack first.
 inline double Lane(const Pack& a, int lane) {
   double value;
   std::memcpy(&value, reinterpret_cast<const double*>(&a) + lane, sizeof(value));

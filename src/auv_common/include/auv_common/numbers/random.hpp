@@ -7,11 +7,11 @@
 
 /// Counter-based random numbers (Philox 4x32-10, Salmon et al. 2011).
 ///
-/// A draw is a pure function of (seed, stream, episode, step, index), so that
-/// results depend neither on the number of threads nor on message timing.
+/// A draw is a pure function of (seed, stream, episode, step, index). So results depend neither on
+/// the number of threads nor on the timing of messages.
 namespace stg {
 
-/// One independent stream per use; never reuse a value.
+/// One independent stream for each use. Never reuse a value of a removed stream.
 enum class Stream : std::uint32_t {
   kReset = 1,
   kTarget = 2,
@@ -42,7 +42,7 @@ enum class Stream : std::uint32_t {
   kBearing = 57,
 };
 
-/// Draws of one (seed, stream, episode, step, index) key, in order.
+/// The sequence of draws of one key (seed, stream, episode, step, index).
 class Random {
  public:
   Random(std::uint64_t seed, Stream stream, std::uint32_t episode, std::uint32_t step,

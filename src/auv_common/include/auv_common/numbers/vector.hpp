@@ -5,10 +5,10 @@
 /// Vectors and rotation matrices over one number type.
 namespace stg {
 
-/// Three components of one quantity, in the frame its name says.
+/// Three components of one quantity. The name of a variable says the frame.
 template <class T>
 struct Vec3 {
-  // Not x{0.0}: a Pack would take that as a list of lanes.
+  // Not x{0.0}: a Pack would take this as a list of lanes.
   T x = T(0.0), y = T(0.0), z = T(0.0);
 
   Vec3 operator+(const Vec3& o) const { return {x + o.x, y + o.y, z + o.z}; }
@@ -29,7 +29,7 @@ template <class T>
 inline T Norm(const Vec3<T>& a) {
   return Sqrt(Dot(a, a));
 }
-/// Component-wise product and quotient with per-axis constants.
+/// Component-wise product and quotient with one constant per axis.
 template <class T>
 inline Vec3<T> Scale(const Vec3<T>& a, const Vec3<double>& s) {
   return {a.x * T(s.x), a.y * T(s.y), a.z * T(s.z)};
@@ -42,8 +42,8 @@ template <class T>
 inline Vec3<T> Select(const Mask<T>& m, const Vec3<T>& a, const Vec3<T>& b) {
   return {Select(m, a.x, b.x), Select(m, a.y, b.y), Select(m, a.z, b.z)};
 }
-/// Zero in every lane where the number is finite, NaN in the others: sums of it tell of many
-/// numbers in one comparison.
+/// Zero in every lane where the number is finite, and NaN in the others. One comparison of a sum of
+/// these values checks many numbers.
 template <class T>
 inline T NonFiniteness(const T& a) {
   return a - a;
@@ -52,7 +52,7 @@ template <class T>
 inline T NonFiniteness(const Vec3<T>& a) {
   return (a.x - a.x) + (a.y - a.y) + (a.z - a.z);
 }
-/// In all lanes.
+/// True if the vector is finite in all lanes.
 template <class T>
 inline bool Finite(const Vec3<T>& a) {
   return !Any(!(NonFiniteness(a) == T(0.0)));
@@ -69,7 +69,7 @@ inline void SetLane(Vec3<T>* a, int lane, const Vec3<double>& v) {
 }
 inline Vec3<Pack> Broadcast(const Vec3<double>& v) { return {Pack(v.x), Pack(v.y), Pack(v.z)}; }
 
-/// Rotation matrix R_WB, rows in the world frame, columns the body axes.
+/// Rotation matrix R_WB. Its columns are the body axes in the world frame.
 template <class T>
 struct Mat3 {
   T m[3][3];

@@ -10,8 +10,8 @@
 
 namespace stg {
 
-/// Persistent threads for data-parallel work in fixed slices. Which thread runs
-/// a slice is fixed too (slice modulo workers), so memory stays in its cache.
+/// Persistent threads for data-parallel work in fixed slices. The thread of a slice is fixed, too
+/// (slice modulo workers), so the memory of the slice stays in its cache.
 class WorkerPool {
  public:
   /// @param workers >= 1; the calling thread is one of them.
@@ -20,8 +20,8 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// Runs task(slice, worker) for slice 0 .. slices-1 and waits for all. An
-  /// exception of a task is rethrown here, after all others have finished.
+  /// Runs task(slice, worker) for the slices 0 .. slices-1 and waits until all have ended. If a
+  /// task throws, its exception is rethrown here after the others have ended.
   void Run(int slices, const std::function<void(int slice, int worker)>& task);
 
   int workers() const { return static_cast<int>(threads_.size()) + 1; }

@@ -7,88 +7,93 @@
 
 namespace stg {
 
-/// Which parties a step waits for: each party that is present answers, or is given up.
+/// Decides which parties a step waits for: each present party answers or is given up.
 ///
-/// One step is open at a time, known by its stamp (simulated time). A party is present, and waited
-/// for, or absent. The first answer of a party to the open step counts. A party that has not spoken
-/// by its deadline is absent, and no step waits for it before it speaks again; a word about another
-/// recent step is enough for that, but is no answer to this one.
+/// One step is open at a time; its stamp (simulated time) identifies it. A party is present or
+/// absent, and steps wait only for present ones. Only the first answer of a party to the open step
+/// counts. A party that has sent nothing by its deadline becomes absent. No step waits for it until
+/// it sends a message again. A message about another recent step makes it present, too, but does
+/// not answer the open step.
 ///
-/// Waiting always has an end: a party that has not spoken since it was first asked keeps the
-/// deadline of that step, however many steps are opened, left or closed meanwhile. Its silence
-/// costs no other party's patience.
+/// Every wait ends. A party that has sent nothing since it was first asked keeps the deadline of
+/// that step, however many steps are opened, replaced or closed in the meantime. Its silence does
+/// not shorten the time that other parties have.
 ///
-/// Deadlines are wall time in seconds of a clock of the caller's choice that does not go back. This
-/// class reads no clock. Parties that only listen have no place here: no step waits for them (see
-/// StepWindow). Nothing is allocated after construction. Not thread-safe.
+/// Deadlines are wall time in seconds. The caller chooses the clock; it must not go back. This
+/// class reads no clock. Parties that only listen do not belong here, because no step waits for
+/// them (see StepWindow). Nothing is allocated after construction. Not thread-safe.
 class StepBarrier {
  public:
-  /// Words about steps at least this far from the present one prove nothing [ns]. Where steps are
-  /// long it is three of them: the next but one may be spoken of before the next is opened.
+  /// Messages about steps at least this far from the present one do not show that a party is
+  /// present [ns]. If steps are long, the limit is three steps: a party may send a message about
+  /// the next step but one before the next is opened.
   static constexpr TimeNs kRecent = 10'000'000'000;
 
   enum class Opening {
     kOpened,
-    kReplaced,  ///< opened, and the step that was open is left without an end: no party missed it
-    kRepeated,  ///< this very step is open or was the last one closed: nothing has changed
+    kReplaced,  ///< opened; the step that was open is dropped without an end, and no party missed
+                ///< it
+    kRepeated,  ///< this step is open already, or was the last one closed: nothing changes
   };
 
-  /// What a party's word is worth.
+  /// Meaning of a message of a party.
   enum class Word {
     kCounts,     ///< the answer to the open step
-    kDuplicate,  ///< the party has answered this step before
+    kDuplicate,  ///< the party has answered this step already
     kLate,       ///< about an earlier step, or about the last one after it was closed
-    kEarly,      ///< about a later step: keep it and say it again when that step is open
-    kForeign,    ///< about a time that is not of this run: no sign of presence either
+    kEarly,  ///< about a later step: the caller keeps the message and repeats it when that step is
+             ///< open
+    kForeign,  ///< about a time that is not of this run; it does not show that the party is present
   };
 
-  /// All parties are present.
+  /// All parties are present at first.
   /// @param parties at least 0.
-  /// @param period of the steps [ns], at least 0; 0: short beside kRecent.
+  /// @param period of the steps [ns], at least 0; 0: short compared with kRecent.
   explicit StepBarrier(int parties, TimeNs period = 0);
 
-  /// Opens a step. Any order of stamps is allowed: presence outlives a clock that goes back.
-  /// @param deadline_s until when answers are waited for; infinity: for ever.
+  /// Opens a step. Stamps may come in any order: a party stays present even if the clock goes back.
+  /// @param deadline_s end of the wait for answers; infinity: wait forever.
   Opening Open(TimeNs stamp, double deadline_s);
 
-  /// Takes a party's word about the step at `stamp`.
+  /// Handles a message of a party about the step at `stamp`.
   Word Hear(int party, TimeNs stamp);
 
-  /// Asks nothing of a party in the open step: not waited for, no miss, no sign of presence. What
-  /// it owed before it goes on owing.
+  /// Excuses a party from the open step: the step does not wait for it, and counts no miss. This
+  /// does not show that the party is present. An answer that it owed before is still owed.
   void Excuse(int party);
 
-  /// Marks the parties absent that are out of time, and returns them: valid until the next call.
+  /// Marks the parties that are out of time as absent. Returns them; the list is valid until the
+  /// next call.
   const std::vector<int>& GiveUp(double now_s);
 
-  /// A step is open, and each party of [first, last) that is present has answered or is excused.
+  /// True if a step is open, and each present party of [first, last) has answered or is excused.
   bool Complete() const { return Complete(0, parties()); }
   bool Complete(int first, int last) const;
 
-  /// Ends the open step: a party that has not answered, present or not, has missed it.
+  /// Ends the open step. A party without an answer, present or absent, has missed it.
   void Close();
 
-  /// Gives all parties until `deadline_s`: after a pause.
+  /// Moves the deadline of all parties to `deadline_s`; used after a pause.
   void Extend(double deadline_s);
 
-  /// As new, but for the counters: another run begins.
+  /// Resets everything except the counters, because another run begins.
   void Restart();
 
   int parties() const { return static_cast<int>(parties_.size()); }
   bool open() const { return open_; }
-  /// A step has been closed: every party of the run has had the time to start.
+  /// True if a step has been closed: every party of the run has had the time to start.
   bool started() const { return started_; }
-  /// Of the step that is open or was the last one; meaningless before the first.
+  /// Stamp of the open step or, if none is open, of the last one; meaningless before the first.
   TimeNs stamp() const { return stamp_; }
-  /// The earliest deadline of the parties that the step waits for; infinity: there are none.
+  /// The earliest deadline of the parties that the step waits for; infinity: it waits for none.
   double deadline_s() const;
 
   bool present(int party) const { return At(party).present; }
-  /// Has answered the step that is open or was the last one.
+  /// True if the party has answered the open step or, if none is open, the last one.
   bool answered(int party) const { return At(party).answered; }
-  /// Steps that were closed without its answer.
+  /// Number of steps that were closed without its answer.
   std::uint64_t misses(int party) const { return At(party).misses; }
-  /// How often it was given up.
+  /// Number of times that it was given up.
   std::uint64_t losses(int party) const { return At(party).losses; }
 
  private:
@@ -96,9 +101,9 @@ class StepBarrier {
     bool present = true;
     bool answered = false;
     bool excused = false;
-    bool owes = false;        ///< was asked and has not said a word since
-    bool owed = false;        ///< the same before the open step
-    double deadline_s = 0.0;  ///< if it is waited for
+    bool owes = false;        ///< it was asked and has sent nothing since
+    bool owed = false;        ///< the value of `owes` before the open step
+    double deadline_s = 0.0;  ///< counts only if the step waits for it
     std::uint64_t misses = 0, losses = 0;
   };
 
@@ -110,7 +115,7 @@ class StepBarrier {
   bool open_ = false, started_ = false;
   bool has_stamp_ = false;
   TimeNs stamp_ = 0;
-  double deadline_s_ = 0.0;  ///< of the open step
+  double deadline_s_ = 0.0;  ///< deadline of the open step
   std::vector<Party> parties_;
   std::vector<int> given_up_;
 };

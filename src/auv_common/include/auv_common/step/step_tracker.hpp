@@ -6,49 +6,50 @@
 
 namespace stg {
 
-/// Where in a run a message says that it is.
+/// The place in a run that a message states for itself.
 struct RunPlace {
-  std::uint64_t run = 0;  ///< drawn anew when a run starts
+  std::uint64_t run = 0;  ///< random number, drawn when a run starts
   std::uint32_t episode = 0, step = 0;
-  TimeNs stamp = 0;  ///< of the step
+  TimeNs stamp = 0;  ///< simulated time of the step
 };
 
-/// Follows a run by what its messages say of themselves, and refuses what cannot be true of it.
+/// Follows a run by the places that its messages state, and refuses places that contradict the run.
 ///
-/// In a run, time and episodes never go back, and all steps of an episode are a period apart. Step
-/// 0 of the next episode follows the last step of the one before, or an earlier one that a reset
-/// has cut short. What contradicts this is refused, however near or far its stamp is. That a run
-/// has been started anew is never guessed from its stamps: it comes with another run number.
+/// In a run, time and episodes never go back, and all steps of an episode are one period apart.
+/// Step 0 of the next episode follows the last step of an episode, or an earlier step if a reset
+/// has cut the episode short. A place that contradicts this is refused, however near or far its
+/// stamp is. A new run is never inferred from stamps; it has another run number.
 ///
-/// A tracker misled by a message that contradicts nothing, say a future episode in the future,
-/// finds its way back: kPatience refused places that follow each other are believed, as the start
-/// of another run. Not thread-safe; reads no clock.
+/// A wrong message may contradict nothing, e.g. a future episode with a future stamp, and mislead
+/// the tracker. The tracker then recovers: it accepts kPatience refused places that follow each
+/// other as the start of another run. Not thread-safe; reads no clock.
 class StepTracker {
  public:
-  /// Later stamps are no time of any run [ns]: 2^31 s less a day. Where stamps are subtracted, ROS
-  /// has 32 bits for the seconds and a sign.
+  /// No run has later stamps [ns]: 2^31 s less a day. ROS has 32 bits with sign for the seconds of
+  /// a difference of stamps.
   static constexpr TimeNs kLatest = (2'147'483'648 - 86'400) * 1'000'000'000;
-  /// Places in a row that overrule what was known.
+  /// So many places in a row replace the known one.
   static constexpr int kPatience = 3;
 
   enum class Verdict {
-    kRepeated,    ///< the place that is known
-    kNext,        ///< a later step of the same episode
+    kRepeated,    ///< the known place
+    kNext,        ///< a later step of the known episode
     kNewEpisode,  ///< a later episode of the same run
-    kNewRun,      ///< another run, or the first place of all
-    kRefused,     ///< contradicts the run
+    kNewRun,      ///< another run, or the first place
+    kRefused,     ///< it contradicts the run
   };
 
-  /// @param period of steps, > 0 [ns]. @param episode_steps of the last place of an episode, >= 0.
+  /// @param period of steps, > 0 [ns]. @param episode_steps number of the last step of an episode,
+  /// >= 0.
   StepTracker(TimeNs period, int episode_steps);
 
-  /// Judges a place; unless it is refused, it is the known one from now on.
+  /// Judges a place. A place that is not refused becomes the known one.
   Verdict Hear(const RunPlace& place);
 
   bool started() const { return started_; }
-  /// The last place that was not refused; meaningless before there is one.
+  /// The last accepted place; meaningless before there is one.
   const RunPlace& place() const { return place_; }
-  /// Time of step 0 of its episode.
+  /// Time of step 0 of the known episode.
   TimeNs start() const { return StartOf(place_); }
 
  private:
@@ -56,15 +57,15 @@ class StepTracker {
     return p.stamp - static_cast<TimeNs>(p.step) * period_;
   }
   bool Possible(const RunPlace& place) const;
-  /// `later` may come after `earlier` in one run.
+  /// True if `later` may come after `earlier` in one run.
   bool Follows(const RunPlace& earlier, const RunPlace& later) const;
 
   TimeNs period_;
   std::uint32_t episode_steps_;
   bool started_ = false;
   RunPlace place_;
-  RunPlace doubted_;  ///< the last refused one
-  int doubts_ = 0;    ///< refused places that follow each other
+  RunPlace doubted_;  ///< the last refused place
+  int doubts_ = 0;    ///< number of refused places in a row that follow each other
 };
 
 }  // namespace stg

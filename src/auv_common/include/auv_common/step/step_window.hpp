@@ -14,32 +14,33 @@
 
 namespace stg {
 
-/// Steps as a listener sees them: many are open at once, and are taken in order of time.
+/// The steps of a run for a listener. Many steps are open at once, and they are taken in order of
+/// time.
 ///
-/// The messages of a step may come in any order, mixed with those of its neighbours. The oldest
-/// step is taken when it is complete, or given up when patience with it is over and the run has
-/// come to a later one, as Reach() says. No step waits for a listener, so unlike a StepBarrier it
-/// waits for all parties in each step: that delays its output, not the steps. Patience with the
-/// steps runs side by side.
+/// The messages of a step may come in any order, mixed with messages of its neighbours. The oldest
+/// step is taken when it is complete. It is also taken when it has waited too long and the run has
+/// come to a later step, which the caller reports by Reach(). No step of the run waits for a
+/// listener. So, unlike StepBarrier, this class waits for all parties in each step: this delays its
+/// output, but not the run. The steps wait at the same time, not one after the other.
 ///
-/// Stamps from the future do no harm: no step is given up before the run has come to it, patience
-/// with it begins no sooner than the last word about an earlier one, and where there is no room,
-/// the latest step goes. Stamps from the past are refused: that a run has been started anew, with
-/// stamps that were there before, must be said by Clear().
+/// Stamps from the future do no harm. No step is given up before the run has come to it. The wait
+/// for a step begins no sooner than the last message about an earlier one. If there is no room, the
+/// latest step is dropped. Stamps from the past are refused; so the caller must call Clear() if the
+/// run has been started anew with earlier stamps.
 ///
-/// Times `now_s` are wall time in seconds of a clock of the caller's choice that does not go back.
-/// This class reads no clock. Not thread-safe.
-/// @tparam Frame what is known of a step; copied from a blank one.
+/// Times `now_s` are wall time in seconds. The caller chooses the clock; it must not go back. This
+/// class reads no clock. Not thread-safe.
+/// @tparam Frame the data of a step; each is copied from a blank one.
 template <class Frame>
 class StepWindow {
  public:
-  /// @param capacity steps that may be open at once, at least 1.
+  /// @param capacity largest number of open steps, at least 1.
   StepWindow(std::size_t capacity, Frame blank) : capacity_(capacity), blank_(std::move(blank)) {
     assert(capacity > 0);
   }
 
-  /// The frame of a step, blank if it is the first word about it; valid until the next call of any
-  /// other function. Null: the step has been taken already, or a later one has, or there is no
+  /// The frame of a step; blank at the first message about it. It is valid until the next call of
+  /// any other function. Null: this step or a later one has been taken already, or there is no
   /// room.
   Frame* At(TimeNs stamp, double now_s) {
     assert(std::isfinite(now_s));
@@ -56,22 +57,22 @@ class StepWindow {
     return &found->second.frame;
   }
 
-  /// The frame of a step that is open, valid until the next call of At, Take or Clear. Null: it is
+  /// The frame of an open step, valid until the next call of At, Take or Clear. Null: the step is
   /// not open.
   const Frame* Open(TimeNs stamp) const {
     const auto found = steps_.find(stamp);
     return found == steps_.end() ? nullptr : &found->second.frame;
   }
 
-  /// The run has come to the step at `stamp`: to be said of what is trusted alone.
+  /// Reports that the run has come to the step at `stamp`. Call it only for trusted stamps.
   void Reach(TimeNs stamp) {
     reached_ = has_reached_ ? std::max(reached_, stamp) : stamp;
     has_reached_ = true;
   }
 
   /// Takes the oldest step if it is complete, or if it has waited for `patience_s` and the run has
-  /// come to a later one. False: wait.
-  /// @param complete tells of a const Frame& whether all of it is there.
+  /// come to a later one. False: no step was taken.
+  /// @param complete returns for a const Frame& whether all its data is there.
   template <class Complete>
   bool Take(double now_s, double patience_s, const Complete& complete, Frame* frame) {
     assert(std::isfinite(now_s));
@@ -90,7 +91,7 @@ class StepWindow {
     return true;
   }
 
-  /// Forgets all steps, and which were taken: the run has been started anew.
+  /// Forgets all steps and the last step taken, because the run has been started anew.
   void Clear() {
     steps_.clear();
     has_taken_ = has_reached_ = false;
@@ -98,20 +99,22 @@ class StepWindow {
 
   std::size_t size() const { return steps_.size(); }  ///< open steps
   bool has_taken() const { return has_taken_; }
-  TimeNs taken() const { return taken_; }             ///< stamp of the last step taken, if any
-  std::uint64_t late() const { return late_; }        ///< words about steps that were over
-  std::uint64_t crowded() const { return crowded_; }  ///< steps without room, or put out for others
+  TimeNs taken() const { return taken_; }       ///< stamp of the last step taken, if any
+  std::uint64_t late() const { return late_; }  ///< messages about steps that were taken already
+  std::uint64_t crowded() const {
+    return crowded_;
+  }  ///< steps that found no room, or were dropped for others
 
  private:
   static constexpr double kNever = -std::numeric_limits<double>::infinity();
 
   struct Step {
     Frame frame;
-    double opened_s;  ///< when the first word about it came
-    double heard_s;   ///< when the last one did
+    double opened_s;  ///< time of the first message about it
+    double heard_s;   ///< time of the last message about it
   };
 
-  /// Puts the latest step out, unless the new one would be later still.
+  /// Drops the latest step, unless the new one is later still.
   bool MakeRoom(TimeNs stamp) {
     ++crowded_;
     const auto latest = std::prev(steps_.end());
@@ -125,7 +128,7 @@ class StepWindow {
   std::map<TimeNs, Step> steps_;
   bool has_taken_ = false, has_reached_ = false;
   TimeNs taken_ = 0, reached_ = 0;
-  double heard_before_s_ = kNever;  ///< the last word about a step before it was taken
+  double heard_before_s_ = kNever;  ///< time of the last message about a step before it was taken
   std::uint64_t late_ = 0, crowded_ = 0;
 };
 

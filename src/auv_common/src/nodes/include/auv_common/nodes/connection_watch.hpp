@@ -6,30 +6,30 @@
 
 namespace stg::nodes {
 
-/// The wait for a node that is to hear a run from its first message on, such as a recorder.
+/// Waits for a node that must receive a run from its first message on, such as a recorder.
 ///
-/// A node subscribes to one topic after the other and connects to their publishers in the
-/// background, on a busy machine for seconds; how many topics it will want, it alone knows. So it
-/// is asked how many publishers it is connected to (getBusInfo of
-/// https://wiki.ros.org/ROS/Slave_API), and is taken to have them all once that number, above zero,
-/// has stood still for kSettled_s. A node that does not answer may be busy connecting: the wait
-/// starts again.
+/// A node subscribes to one topic after the other and connects to the publishers in the background.
+/// On a busy machine this takes seconds, and only the node knows how many topics it needs. So this
+/// class asks it for its number of connected publishers (getBusInfo of
+/// https://wiki.ros.org/ROS/Slave_API). The node is taken to have all connections once this number
+/// is above zero and has not changed for kSettled_s. A node that does not answer may be busy
+/// connecting; the wait then starts again.
 ///
-/// Only to be asked while nothing depends on the asking thread: the master and the node are waited
-/// for, the node kPatience_s at most. Not thread-safe.
+/// Use it only while nothing else depends on the calling thread, because each question waits for
+/// the master, and for the node up to kPatience_s. Not thread-safe.
 class ConnectionWatch {
  public:
   static constexpr double kSettled_s = 1.5, kPatience_s = 0.2;
 
-  /// @param node its full name, e.g. "/recorder"
+  /// @param node full name, e.g. "/recorder"
   explicit ConnectionWatch(std::string node) : node_(std::move(node)) {}
 
-  /// True once the node has all its connections; asks it anew, but not more often than every 0.1 s.
+  /// True once the node has all its connections. Asks the node again, at most every 0.1 s.
   /// @param now_s WallSeconds()
   bool Settled(double now_s);
 
   const std::string& node() const { return node_; }
-  /// Publishers that it was connected to when it last answered; 0: it has not yet.
+  /// Number of connected publishers in the last answer; 0: no answer yet.
   int connections() const { return connections_; }
 
  private:

@@ -9,12 +9,12 @@
 #include "auv_common/step/step_tracker.hpp"
 #include "auv_common/time.hpp"
 
-/// Between the core's plain data and messages. Doubles and integer nanoseconds pass unchanged, so
-/// that a graph of nodes computes the same bits as one process.
+/// Conversions between the core's plain data and messages. Doubles and integer nanoseconds are not
+/// changed, so a graph of nodes computes the same bits as one process.
 namespace stg::nodes {
 
 inline TimeNs NsOf(const ros::Time& t) { return static_cast<TimeNs>(t.toNSec()); }
-/// A stamp that a run can have: nothing computed with it is beyond what ROS holds in 32 bits.
+/// True for a stamp that a run can have: times computed from it fit into the 32 bits of ROS.
 inline bool PossibleStamp(const ros::Time& t) { return NsOf(t) <= StepTracker::kLatest; }
 inline ros::Time TimeOf(TimeNs t) { return ros::Time().fromNSec(static_cast<std::uint64_t>(t)); }
 
@@ -29,19 +29,19 @@ inline void SetVector(const Vec3<double>& v, Message* m) {
   m->z = v.z;
 }
 
-/// Beyond this a number from outside is a fault, and squares of it spoil what they enter.
+/// A larger number from outside is an error; its square would spoil other results.
 inline constexpr double kLargestInput = 1e6;
 
-/// Each of these also refuses numbers beyond kLargestInput.
+/// The functions below also refuse numbers beyond kLargestInput.
 inline bool Finite(double x) { return std::abs(x) <= kLargestInput; }
-/// Of a variance or a covariance, whose deviations are such numbers.
+/// For a variance or a covariance, the square of such numbers.
 inline bool FiniteSquare(double x) { return std::abs(x) <= kLargestInput * kLargestInput; }
 template <class Message>
 inline bool FiniteVector(const Message& m) {
   return Finite(m.x) && Finite(m.y) && Finite(m.z);
 }
 
-/// The orientation must be a rotation: a quaternion of length one.
+/// The orientation must be a quaternion of length one.
 template <class Pose>
 inline bool FinitePose(const Pose& m) {
   const auto& q = m.orientation;
@@ -53,7 +53,7 @@ inline bool FiniteTwist(const Twist& m) {
   return FiniteVector(m.linear) && FiniteVector(m.angular);
 }
 
-/// Velocity in the world of a body whose twist is given in its own axes (REP 103).
+/// Velocity in the world of a body. The twist is in body axes (REP 103).
 template <class Pose, class Twist>
 inline Vec3<double> WorldVelocity(const Pose& pose, const Twist& twist) {
   const double q[4] = {pose.orientation.w, pose.orientation.x, pose.orientation.y,

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <string>
 
-/// What every node tells on /diagnostics, once per second of wall time.
+/// Reports of every node on /diagnostics, once per second of wall time.
 namespace stg::nodes {
 
-/// Counts events; tells how many came since the last report and how often.
+/// Counts events in total and since the last report.
 class EventRate {
  public:
   void Add(std::uint64_t events = 1) { total_ += events; }
@@ -26,14 +26,14 @@ class EventRate {
   std::uint64_t total_ = 0, reported_ = 0;
 };
 
-/// Messages that a node refused, by reason.
+/// Counts the messages that a node refused, by reason.
 class Refusals {
  public:
   enum Reason { kNotFinite, kFrame, kStale, kMalformed, kReasons };
   void Add(Reason reason) { ++counts_[reason]; }
   std::uint64_t count(Reason reason) const { return counts_[reason]; }
   std::uint64_t total() const;
-  /// Adds one line per reason; a warning when there were new ones since the last report.
+  /// Adds one line per reason, and a warning if there are new ones since the last report.
   void Report(const std::string& topic, diagnostic_updater::DiagnosticStatusWrapper* status);
 
  private:
@@ -41,14 +41,15 @@ class Refusals {
   std::uint64_t reported_ = 0;
 };
 
-/// Lets a message through once in a while, however often there is cause for it, and tells how many
-/// were kept back. Wall time: simulated time may run a hundred times faster, or stand still.
+/// Lets a message through at most once per period and counts the messages that it keeps back. The
+/// period is wall time, because simulated time may run a hundred times faster or stand still.
 class Throttle {
  public:
   explicit Throttle(double period_s = 2.0) : period_s_(period_s) {}
-  /// True: say it now, with more() at its end.
+  /// True: log the message now, with more() at its end.
   bool Due();
-  /// " (and 41 more)", or nothing, of what was kept back before the last Due().
+  /// " (and 41 more)" for the messages that were kept back before the last Due(); empty if there
+  /// are none.
   const std::string& more() const { return more_; }
 
  private:
@@ -58,20 +59,21 @@ class Throttle {
   std::string more_;
 };
 
-/// Publishes one status of a node, paced by the wall clock: simulated time may run a hundred times
-/// faster, or stand still.
+/// Publishes the status of a node. Wall time sets the pace, because simulated time may run a
+/// hundred times faster or stand still.
 class Health {
  public:
   using Report = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
   Health(const std::string& name, const std::string& hardware, Report report);
 
-  /// To be called often; publishes when a second has passed.
+  /// Publishes if a second has passed. Call it often.
   void Tick();
-  /// The same for a node whose answers are waited for: publishes only when it was quiet for 5 ms or
-  /// is overdue by another second. Returns the seconds after which to call again.
-  /// @param busy when the node last had something to do
+  /// The same for a node whose answers others wait for. Publishes only if the node has been idle
+  /// for 5 ms, or if the report is late by another second. Returns the time until the next call
+  /// [s].
+  /// @param busy when the node last did something
   double TickWhenQuiet(const ros::WallTime& busy);
-  /// Seconds of wall time between the last two reports.
+  /// Wall time between the last two reports [s].
   double period_s() const { return period_s_; }
 
  private:

@@ -20,50 +20,51 @@
 
 namespace stg::nodes {
 
-/// Low latency for small messages: every subscription asks for it.
+/// Low latency for small messages; every subscription uses it.
 inline ros::TransportHints NoDelay() { return ros::TransportHints().tcpNoDelay(); }
 
-/// Handles incoming messages as they come, for at most `wait_s` seconds of wall time when none is
-/// there. Single-threaded: nodes need no locks.
+/// Handles incoming messages. If there is none, waits for one for at most `wait_s` seconds of wall
+/// time. Single-threaded: nodes need no locks.
 inline void HandleMessages(double wait_s) {
   ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(wait_s));
 }
 
-/// For a process that only watches: its wake-ups interrupt no process at work, so that a step is
-/// decided first and looked at then. To be called before ros::init, as threads inherit it. What
-/// `nice` does not do here: roslaunch gives each node a session, and Linux shares out the processor
-/// by session first.
+/// For a process that only displays: its wake-ups do not interrupt processes at work, so a step is
+/// decided first and displayed then. Call it before ros::init, because threads inherit the setting.
+/// `nice` does not have this effect: roslaunch gives each node a session, and Linux shares the
+/// processor between sessions first.
 inline void WatchOnly() {
   const sched_param parameters{};
-  sched_setscheduler(0, SCHED_BATCH, &parameters);  // fails: it watches as any other process
+  sched_setscheduler(0, SCHED_BATCH, &parameters);  // if this fails, the process runs as any other
 }
 
-/// Where a node has its simulated time from.
+/// Source of the simulated time of a node.
 enum class NodeClock {
-  kTopic,     ///< /clock, as every node of ROS
-  kMessages,  ///< the stamps of the messages that it answers, by SetNodeTime(): each message
-              ///< on /clock would wake two of its threads, just when it has to decide
+  kTopic,     ///< /clock, as for every node of ROS
+  kMessages,  ///< stamps of the messages that it answers, by SetNodeTime(). Each message on /clock
+              ///< would wake two of its threads just when it has to decide
 };
 
-/// For nodes with NodeClock::kMessages: what a diagnostic or a log message will be stamped with.
-/// Only for a PossibleStamp: with others ROS ends the process sooner or later.
+/// Sets the time for the stamps of diagnostics and log messages, in nodes with
+/// NodeClock::kMessages. The stamp must be a PossibleStamp; other stamps make ROS end the process
+/// sooner or later.
 inline void SetNodeTime(const ros::Time& stamp) {
   if (ros::Time::isSimTime()) ros::Time::setNow(stamp);
 }
 
-/// What a run was asked to write and could not; thrown at its end.
+/// Thrown at the end of a run if some output could not be written.
 class LostOutput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The user or roslaunch ended this process, and not another node that took its name.
+/// True if the user or roslaunch ended this process; false if another node took its name.
 inline std::atomic<bool>& StoppedBySignal() {
   static std::atomic<bool> stopped{false};
   return stopped;
 }
 
-/// After a shutdown the log of ROS is closed.
+/// After a shutdown the log of ROS is closed, so stderr is used.
 inline void SayWhyItEnds(const char* why) {
   if (ros::ok()) {
     ROS_FATAL("%s", why);
@@ -72,22 +73,23 @@ inline void SayWhyItEnds(const char* why) {
   }
 }
 
-/// A configuration that was refused once will be refused again. roslaunch starts a node anew
-/// whatever its exit status: where its launch file says so (STG_REFUSAL_ENDS_LAUNCH), it is asked
-/// to end instead, as by Ctrl-C. `./stg run` hears of the status itself.
+/// Ends the launch after a configuration was refused, because it would be refused again. roslaunch
+/// restarts a node whatever its exit status is. If the launch file sets STG_REFUSAL_ENDS_LAUNCH,
+/// this function makes roslaunch end, as Ctrl-C does. `./stg run` reads the exit status itself.
 void EndLaunchOfRefused();
 
-/// A node's main: Node has a constructor without arguments that may throw UserError, and Spin(),
-/// which returns when ROS shuts down. SIGTERM shuts down as SIGINT does. The exit code: 0, 2 after
-/// a UserError, 3 after any other exception, 4 after LostOutput.
-/// @param memory bytes that the process may have; 0: no limit
+/// The main function of a node. Node has a constructor without arguments, which may throw
+/// UserError, and Spin(), which returns when ROS shuts down. SIGTERM shuts the node down as SIGINT
+/// does. Exit status: 0; 2 after a UserError; 3 after any other exception; 4 after LostOutput.
+/// @param memory memory limit of the process in bytes; 0: no limit
 template <class Node>
 int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic,
             std::size_t memory = kNodeMemory) {
   if (memory > 0) LimitMemory(memory);
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // news is news in a pipe, too, as of `| tee`
+  std::setvbuf(stdout, nullptr, _IOLBF,
+               0);  // so that a pipe such as `| tee` gets each line at once
   std::vector<char*> arguments(argv, argv + argc);
-  // roscpp listens to /clock if it finds this parameter.
+  // roscpp subscribes to /clock if this parameter is set, so its name is changed to an unset one.
   char no_clock[] = "/use_sim_time:=/not_asked/use_sim_time";
   if (clock == NodeClock::kMessages) arguments.push_back(no_clock);
   int count = static_cast<int>(arguments.size());
@@ -101,7 +103,8 @@ int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = No
       ros::requestShutdown();
     });
   }
-  // Outlives the node: with the last handle ROS ends, and a fatal message would go nowhere.
+  // This handle outlives the node: ROS ends with the last handle, and a fatal message would be
+  // lost.
   ros::NodeHandle keeps_ros_running;
   if (clock == NodeClock::kMessages && SimulatedTimeParameter()) ros::Time::setNow(ros::Time());
   try {

@@ -9,19 +9,20 @@
 
 namespace stg::nodes {
 
-/// A topic that costs nothing while it has no subscriber. A new one gets the newest message at
-/// once, as from a latched topic; but roscpp serialises a latched message without subscribers, too.
+/// A topic that costs nothing while it has no subscriber. A new subscriber gets the newest message
+/// at once, as from a latched topic. A latched topic of roscpp serialises messages even without
+/// subscribers.
 template <class Message>
 class OnDemand {
  public:
-  /// Makes the newest message; false: there is none yet. Called in the node's own thread.
+  /// Makes the newest message; false: there is none yet. It is called in the node's own thread.
   using Make = std::function<bool(Message*)>;
 
   OnDemand() = default;
   OnDemand(const OnDemand&) = delete;
   OnDemand& operator=(const OnDemand&) = delete;
 
-  /// To be called once. @param make is called as long as this object lives.
+  /// Call it once. @param make is called as long as this object lives.
   void Advertise(const std::string& topic, std::uint32_t queue, Make make) {
     make_ = std::move(make);
     publisher_ = ros::NodeHandle().advertise<Message>(

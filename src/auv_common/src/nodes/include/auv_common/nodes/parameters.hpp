@@ -9,23 +9,23 @@
 
 namespace stg::nodes {
 
-/// Where a parameter is looked for. Parameters outlive the nodes and launches that they were meant
-/// for, so nothing is found by chance on the way between the two places.
+/// Where a parameter is searched. Parameters outlive the nodes and launches that set them. So no
+/// other namespace between the two places is searched.
 enum class Reach {
-  kNode,  ///< the node's private namespace alone
-  kRun    ///< there, then at the root: one value serves all nodes
+  kNode,  ///< only the node's private namespace
+  kRun    ///< the private namespace, then the root: one value serves all nodes
 };
 
-/// Where the scenario of the run is, from the parameters `scenario` (name or file, default medium),
-/// `condition` (default nominal), `agents` (overrides the scenario's, 0: does not) and `overrides`
-/// (a list of key.path=value), which are of the whole run. The information mode is always
-/// `acoustic`: nodes have no other source. Throws UserError.
+/// The source of the run's scenario, from parameters of the whole run: `scenario` (name or file,
+/// default medium), `condition` (default nominal), `agents` (replaces the number in the scenario;
+/// 0: does not) and `overrides` (a list of key.path=value). The information mode is always
+/// `acoustic`, because nodes have no other source. Throws UserError.
 config::Source ScenarioSource();
 
-/// Throws UserError when `overrides` contradicts the parameter `agents`.
+/// Throws UserError if `overrides` contradicts the parameter `agents`.
 void RequireAgents(int agents);
 
-/// The sections of the run's scenario that Config describes, or all of the scenario. Throws
+/// Loads the sections of the run's scenario that Config describes, or the whole scenario. Throws
 /// UserError.
 template <class Config>
 Config LoadScenarioParameters(config::Scope scope = config::Scope::kOwnSections) {
@@ -34,26 +34,27 @@ Config LoadScenarioParameters(config::Scope scope = config::Scope::kOwnSections)
   return config;
 }
 
-/// Warns when `agents` overrides another number in the scenario's file. For one node of the graph.
+/// Warns if `agents` replaces another number in the scenario's file. Only one node of the graph
+/// calls it.
 void WarnOfOverriddenAgents(int agents);
 
-/// A parameter, checked: throws UserError when it has another type, is not
-/// finite, or lies outside [lo, hi].
+/// A checked parameter. Throws UserError if it has another type, is not finite, or is outside [lo,
+/// hi].
 double NumberParameter(const std::string& name, double fallback, double lo, double hi,
                        Reach reach = Reach::kNode);
-/// The same for whole numbers, which the parameter server holds with 32 bits.
+/// The same for whole numbers. The parameter server has 32 bits for them.
 int IntegerParameter(const std::string& name, int fallback, int lo, int hi,
                      Reach reach = Reach::kNode);
-/// Throws UserError unless a parameter, where it is set, is a list of different whole numbers from
-/// 0 to `count` - 1, or one such number.
+/// If the parameter is set, throws UserError unless it is one whole number from 0 to `count` - 1,
+/// or a list of different ones.
 void RequireIndices(const std::string& name, int count);
 bool FlagParameter(const std::string& name, bool fallback);
-/// A list of texts, or one text of words; empty when it is not set.
+/// A list of texts, or one text with words; empty if the parameter is not set.
 std::vector<std::string> TextsParameter(const std::string& name, Reach reach = Reach::kNode);
 std::string TextParameter(const std::string& name, const std::string& fallback,
                           Reach reach = Reach::kNode);
 
-/// The parameter /use_sim_time of the graph, whatever name this node has for it.
+/// The parameter /use_sim_time of the graph, even if this node remaps the name.
 bool SimulatedTimeParameter();
 
 }  // namespace stg::nodes

@@ -6,7 +6,7 @@
 
 namespace stg::nodes {
 
-/// Wall time for barriers and pacers [s]: of a clock that no correction of the time of day moves.
+/// Wall time for barriers and pacers [s]. Corrections of the time of day do not change this clock.
 inline double WallSeconds() { return ros::SteadyTime::now().toSec(); }
 
 /// Wait time that ends a PollLoop.
@@ -15,27 +15,27 @@ inline constexpr double kLoopDone = -1.0;
 /// Runs a node in the thread in which roscpp reads and writes its sockets.
 ///
 /// With ros::spin a message changes threads twice on its way through a node: from the socket's
-/// thread to the spinner's, and what that publishes back again. Each change wakes a sleeping
-/// thread, which costs more than all the rest of a node here. In this loop, messages are read,
-/// handled and answered in one go: one wake-up for each batch of messages. The price: while a
-/// callback or `work` runs, nothing is read or sent, and neither may wait for another node, as a
-/// service call does.
+/// thread to the spinner's thread, and its answer goes back. Each change wakes a sleeping thread,
+/// which costs more than all other work of a node here. In this loop one thread reads, handles and
+/// answers messages: one wake-up for each batch of messages. The price: while a callback or `work`
+/// runs, nothing is read or sent. So neither may wait for another node, e.g. in a service call.
 ///
-/// Handles every message that is there, then calls `work`, over and over. `work` returns the
-/// seconds of wall time after which it wants to be called again even without a message (coarser
-/// than 0.1 s: as often), or kLoopDone. Returns when `work` is done or ROS shuts down; what `work`
-/// or a callback throws is thrown here.
+/// The loop handles every message that is there, then calls `work`, and repeats. `work` returns the
+/// wall time [s] after which it wants to be called again even without a message, or kLoopDone.
+/// It is called at least every 0.1 s in any case. The loop returns when `work` is done or ROS
+/// shuts down. Exceptions of `work` or of a callback pass through.
 /// @param realtime_priority 1 to 99: the thread runs at this real-time priority (SCHED_RR), before
-///        all ordinary threads of the machine; where the system does not permit it the node says so
-///        once and runs as an ordinary one. 0: ordinary.
+/// all ordinary threads of the machine. If the system does not permit it, the node reports this
+/// once and runs as an ordinary one. 0: ordinary.
 void PollLoop(const std::function<double()>& work, int realtime_priority = 0);
 
-/// To be called before the first NodeHandle: what a PollLoop publishes is then written to its
-/// sockets in the same round. roscpp asks its listeners in the order in which they came, and one
-/// that came after its own has everything it publishes wait for another round.
+/// Call it before the first NodeHandle: the messages that a PollLoop publishes are then written to
+/// the sockets in the same round. roscpp calls its poll listeners in the order in which they were
+/// added. If this one came after roscpp's own, each message would wait for another round.
 void ReservePollLoop();
 
-/// The parameter `realtime_priority` of a node or of the whole graph, default 0. Throws UserError.
+/// The parameter `realtime_priority` of the node or of the whole graph, default 0. Throws
+/// UserError.
 int RealtimePriorityParameter();
 
 }  // namespace stg::nodes

@@ -2,10 +2,10 @@
 
 #include <string>
 
-/// Names that several packages share. Each package's own topics are in its own header.
+/// Topic names that several packages share. Each package has a header for its own topics.
 namespace stg::topics {
 
-/// Namespace of everything that belongs to one AUV.
+/// Namespace of one AUV.
 inline std::string Auv(int i) { return "/auv_" + std::to_string(i); }
 inline std::string AuvTopic(int i, const char* name) { return Auv(i) + "/" + name; }
 
