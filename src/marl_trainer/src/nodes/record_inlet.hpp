@@ -11,17 +11,17 @@
 
 namespace stg::nodes {
 
-/// Turns messages of one source, live or from a bag, into episodes.
+/// Turns the messages of one source, live or from a bag, into episodes.
 class RecordInlet {
  public:
   RecordInlet(const RunConfig& run, const std::string& source);
 
-  /// @param agent index of the AUV on whose topic the message came.
+  /// @param agent index of the AUV of the message's topic.
   void Add(int agent, const auv_msgs::AgentStep& message);
   void Add(const auv_msgs::StepReport& message);
 
   learn::EpisodeAssembler& episodes() { return episodes_; }
-  /// Messages that belong to no AUV of the scenario.
+  /// Number of messages that belong to no AUV of the scenario.
   std::uint64_t foreign() const { return foreign_; }
 
  private:

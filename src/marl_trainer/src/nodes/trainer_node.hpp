@@ -18,12 +18,12 @@
 
 namespace stg::nodes {
 
-/// Learning over recorded episodes: from bags, one update; or live, update after update, with each
-/// new policy loaded into the agents.
+/// Trains on recorded episodes: one update from bags; or live, with one update after the other, and
+/// each new policy is loaded into the agents.
 ///
-/// Live, the world stands still during an update and starts an episode after it, so that no step
-/// is flown for nothing. Where no node offers /pause and /reset, episodes that more than one policy
-/// flew are dropped.
+/// In live training, the world is paused during an update and starts an episode after it, so that
+/// no steps are wasted. If no node offers /pause and /reset, episodes with more than one policy are
+/// dropped.
 class TrainerNode {
  public:
   /// Throws UserError.
@@ -34,7 +34,7 @@ class TrainerNode {
   void TrainOnBags();
   void TrainLive();
   void Subscribe();
-  /// Adds the episode to the collection, or counts and tells why not.
+  /// Adds the episode to the collection, or counts and reports its flaw.
   void Judge(learn::RecordedEpisode episode);
   void Learn();
   void Print(const learn::RecordedTrainer::Progress& progress) const;
@@ -42,7 +42,7 @@ class TrainerNode {
   void OnAgentStep(int agent, const auv_msgs::AgentStep& message);
   void OnReport(const auv_msgs::StepReport& message);
   void OnSummary(const auv_msgs::EpisodeSummary& message);
-  /// Loads the policy into agents that last decided with another one.
+  /// Loads the policy into agents whose last decision had another one.
   void UpdateAgents();
   bool LoadPolicy(int agent);
   void StartEpisode();
@@ -62,13 +62,13 @@ class TrainerNode {
   learn::RecordingReport recording_;
   std::unique_ptr<RecordInlet> inlet_;
   std::vector<ros::Subscriber> subscribers_;
-  std::vector<std::string> agent_policies_;  ///< with which each agent decided last; "": unknown
-  std::uint32_t first_episode_ = 0;          ///< flown by the present policy from its start
+  std::vector<std::string> agent_policies_;  ///< policy of each agent's last decision; "": unknown
+  std::uint32_t first_episode_ = 0;  ///< first episode that the present policy flies from its start
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries_;  ///< of the collection, by episode
   std::deque<double> lost_rates_;                                ///< of the newest used episodes
   ros::WallTime began_, last_load_;
-  std::optional<ros::WallTime> full_;  ///< since when the collection is
-  Throttle dropped_;                   ///< of warnings about episodes that were dropped live
+  std::optional<ros::WallTime> full_;  ///< since when the collection is full
+  Throttle dropped_;                   ///< for warnings about live episodes that were dropped
   int updates_done_ = 0;
   Health health_;
 };

@@ -7,8 +7,9 @@
 
 namespace stg::nodes {
 
-/// Reads private parameters named as the options of `train`, with _ for -, over the given defaults.
-/// Throws UserError for another type; ranges are checked with the rest of the configuration.
+/// Reads private parameters into the setup. They have the names of the options of `train`, with _
+/// instead of -. Throws UserError for another type. The ranges are checked with the rest of the
+/// configuration.
 void LoadTrainParameters(learn::TrainSetup* setup);
 
 /// The bags to train on: a list of texts, or one text with names separated by spaces.

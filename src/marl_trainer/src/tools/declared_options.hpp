@@ -9,8 +9,8 @@
 
 namespace stg::learn {
 
-/// Declares an option for each field of the table, "--path VALUE"; a flag's value may be left out.
-/// The table must live until the command line is parsed.
+/// Declares an option "--path VALUE" for each field of the table. The value of a flag may be
+/// omitted. The table must exist until the command line is parsed.
 inline void DeclareOptions(const config::Table& table, CLI::App* app) {
   for (const config::Field& option : table.fields()) {
     const auto take = [&option](const std::string& text) {
@@ -22,7 +22,7 @@ inline void DeclareOptions(const config::Table& table, CLI::App* app) {
     CLI::Option* declared =
         app->add_option_function<std::string>("--" + option.path, take, option.meaning);
     if (std::holds_alternative<bool*>(option.value)) {
-      // What CLI11 takes for a value that is left out is this text, which help does not show.
+      // CLI11 uses this text as the value if none is given; the help does not show it.
       declared->expected(0, 1)->default_str("true")->option_text(range + "=" + value);
     } else {
       declared->type_name(range)->default_str(value);

@@ -5,7 +5,7 @@
 
 namespace stg::learn {
 
-/// A seed on a command line. CLI11 would make 2^64 - 1 of -1.
+/// Checks a seed on a command line, because CLI11 would turn -1 into 2^64 - 1.
 inline CLI::Validator SeedCheck() {
   return CLI::Validator(
       [](std::string& text) {

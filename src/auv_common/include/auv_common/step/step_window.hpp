@@ -101,9 +101,8 @@ class StepWindow {
   bool has_taken() const { return has_taken_; }
   TimeNs taken() const { return taken_; }       ///< stamp of the last step taken, if any
   std::uint64_t late() const { return late_; }  ///< messages about steps that were taken already
-  std::uint64_t crowded() const {
-    return crowded_;
-  }  ///< steps that found no room, or were dropped for others
+  /// Number of steps that found no room, or were dropped for others.
+  std::uint64_t crowded() const { return crowded_; }
 
  private:
   static constexpr double kNever = -std::numeric_limits<double>::infinity();

@@ -13,40 +13,40 @@ namespace stg::learn {
 struct ImitationConfig;
 struct TrainConfig;
 
-/// Configuration of one algorithm, default-initialised to the `fast` preset, and the way to make
-/// it.
+/// Configuration of one algorithm, and the factory of the algorithm. Its defaults are the `fast`
+/// preset.
 class AlgorithmConfig {
  public:
   virtual ~AlgorithmConfig() = default;
   virtual std::unique_ptr<AlgorithmConfig> Clone() const = 0;
 
-  /// Adds its options, whose names differ from the common ones (TrainConfig::Describe).
+  /// Adds the algorithm's options. Their names differ from the common ones (TrainConfig::Describe).
   virtual void Describe(config::Table* table) = 0;
-  /// Turns the defaults into those of a preset, of this configuration and of the common one. There
-  /// is at least `fast`. Throws UserError that lists the presets for another name.
+  /// Replaces the defaults of this configuration and of the common one by those of a preset. Every
+  /// algorithm has at least `fast`. Throws UserError that lists the presets for any other name.
   virtual void ApplyPreset(const std::string& preset, TrainConfig* common);
-  /// Throws UserError, naming the option, for values that contradict each other; ranges have been
-  /// checked.
+  /// Throws UserError that names the option, for values that contradict each other. The ranges have
+  /// been checked before.
   virtual void ValidateOrThrow(const TrainConfig& common) const;
 
-  /// Turns the defaults into those for updates on few whole recorded episodes, common.horizon
-  /// steps each. Throws UserError for an algorithm that cannot learn from recordings.
+  /// Replaces the defaults by those for updates on a few whole recorded episodes of common.horizon
+  /// steps each. Throws UserError if the algorithm cannot learn from recordings.
   virtual void ApplyRecordings(const TrainConfig& common);
-  /// Takes the shape of the networks from the policy file to start from. Throws UserError for an
-  /// algorithm that cannot.
+  /// Takes the shape of the networks from the policy file that the training starts from. Throws
+  /// UserError if the algorithm cannot do this.
   virtual void FitPolicy(const agent::Policy& policy);
 
-  /// The stage of imitation at the start of a training; null: the algorithm has none.
+  /// Imitation at the start of a training; null: the algorithm has none.
   virtual const ImitationConfig* Imitation() const { return nullptr; }
-  /// Among how many ranks it can learn, at most.
+  /// Largest number of ranks that the algorithm can learn with.
   virtual int MostRanks() const { return 1; }
-  /// @param common, problem are copied. @param team who computes the update; outlives the
+  /// @param common, problem are copied. @param team computes the update; it must outlive the
   /// algorithm.
   virtual std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                           const Team& team) const = 0;
 };
 
-/// What a configuration `Config` derives from, that extends `Base`, to be able to copy itself.
+/// Base class of a configuration `Config` that extends `Base`; it adds Clone().
 template <class Config, class Base = AlgorithmConfig>
 class CopyableConfig : public Base {
  public:
@@ -55,10 +55,10 @@ class CopyableConfig : public Base {
   }
 };
 
-/// Algorithms by the name that --algorithm takes.
+/// Algorithms, by the name that --algorithm takes.
 using AlgorithmRegistry = Registry<AlgorithmConfig>;
 AlgorithmRegistry& Algorithms();
-/// The one that is meant where none is named.
+/// The algorithm that is used if none is named.
 std::string DefaultAlgorithm();
 
 }  // namespace stg::learn

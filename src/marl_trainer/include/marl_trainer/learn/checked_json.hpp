@@ -10,11 +10,12 @@
 #include "auv_common/config/yaml_tree.hpp"
 #include "auv_common/error.hpp"
 
-/// Values of JSON files that users can edit. The library's own conversions cut fractions, wrap
-/// numbers out of range (some of them undefined behaviour), and take true for 1.
+/// Reads values of JSON files that users can edit. The conversions of the JSON library are not safe
+/// for this: they cut fractions, wrap numbers out of range (some of this is undefined behaviour),
+/// and accept true as 1.
 namespace stg::learn {
 
-/// Whether a number is whole and one of Integer; `value` is set only if so.
+/// True if a number is whole and fits into Integer. `value` is only set in this case.
 template <class Integer, class Json>
 bool TakeWhole(const Json& json, Integer* value) {
   using Limits = std::numeric_limits<Integer>;
@@ -41,8 +42,9 @@ bool TakeWhole(const Json& json, Integer* value) {
   return true;
 }
 
-/// Sets a flag, text, number, whole number or list of them. UserError, "'1e+300' is not ...", for
-/// JSON of another type, a number that Value cannot hold, and a fraction where it is whole.
+/// Sets a flag, text, number, whole number or list of them. Throws UserError, e.g. "'1e+300' is not
+/// ...", if the JSON has another type, if Value cannot hold the number, or if a whole number has a
+/// fraction.
 template <class Value, class Json>
 void TakeJson(const Json& json, Value* value) {
   const auto require = [&json](bool ok, const std::string& what) {
@@ -68,7 +70,7 @@ void TakeJson(const Json& json, Value* value) {
   }
 }
 
-/// As TakeJson, of a member of an object; an error begins with its name.
+/// The same as TakeJson for a member of an object. An error begins with the member's name.
 template <class Value, class Json>
 void TakeMember(const Json& object, const std::string& name, Value* value) {
   if (!object.is_object() || !object.contains(name)) throw UserError(name + ": is missing");

@@ -4,11 +4,11 @@
 
 namespace stg::learn {
 
-/// Wall-clock seconds, for what is reported and never for what is computed.
+/// Wall-clock time [s], only for reports and never for computations.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  /// Seconds since the start or the last lap.
+  /// Time since the start or the last lap [s].
   double Lap() {
     const Clock::time_point now = Clock::now();
     const std::chrono::duration<double> lap = now - lap_;

@@ -11,7 +11,7 @@
 
 namespace stg::learn {
 
-/// What every training has, whatever its algorithm. Defaults are the `fast` preset.
+/// Options that every training has, for any algorithm. Defaults are the `fast` preset.
 struct TrainConfig {
   std::string preset = "fast";
   std::string variant = "stg";
@@ -21,7 +21,7 @@ struct TrainConfig {
   int envs = 64;
   int horizon = 50;
   bool stagger = true;
-  std::string start_from;  ///< folder of another run; empty: untrained networks
+  std::string start_from;  ///< folder of another run; empty: the networks start untrained
 
   std::int64_t validation_interval = 32000;
   int validation_episodes = 32;
@@ -31,35 +31,38 @@ struct TrainConfig {
   void Describe(config::Table* table);
 };
 
-/// Everything of a training run besides the scenario and its output folder: a value.
+/// The whole setup of a training run, except the scenario and the output folder. It can be copied.
 struct TrainSetup {
-  /// The preset of an algorithm; UserError that lists what there is for another name of either.
+  /// The preset of an algorithm. Throws UserError that lists the known names if one of the two
+  /// names is unknown.
   TrainSetup(const std::string& algorithm, const std::string& preset);
   TrainSetup(const TrainSetup& other);
   TrainSetup& operator=(const TrainSetup& other);
   TrainSetup(TrainSetup&&) = default;
   TrainSetup& operator=(TrainSetup&&) = default;
 
-  std::string algorithm;  ///< as registered
+  std::string algorithm;  ///< name in the registry
   TrainConfig common;
-  std::unique_ptr<AlgorithmConfig> own;  ///< of the algorithm; never null
+  std::unique_ptr<AlgorithmConfig> own;  ///< options of the algorithm; never null
 
-  /// Every option of the command line but preset, variant and algorithm. Refers to this object.
+  /// Every option of the command line except preset, variant and algorithm. The table refers to
+  /// this object.
   config::Table Options();
 
-  /// Throws UserError naming the option.
+  /// Throws UserError that names the option.
   void ValidateOrThrow() const;
 };
 
 nlohmann::ordered_json ToJson(const TrainSetup& setup);
-/// Inverse of ToJson; UserError on a missing or unknown field.
+/// Inverse of ToJson. Throws UserError for a missing or unknown field.
 TrainSetup TrainSetupFromJson(const nlohmann::ordered_json& json);
 
-/// First validation episode's seed; episode r uses this + r. Validation chooses policy_best.
+/// Seed of the first validation episode. Episode r has this seed + r. Validation chooses
+/// policy_best.
 inline constexpr std::uint64_t kValidationSeed = 900'000;
 static_assert(kValidationSeed >= env::kChoosingSeeds.first &&
               kValidationSeed <= env::kChoosingSeeds.last);
-/// First seed of the episodes that a training with this seed flies.
+/// First seed of the episodes in a training with this seed.
 inline std::uint64_t TrainingSeed(std::uint64_t seed) {
   return (seed + 1) * env::kTrainingSeeds.first;
 }

@@ -4,7 +4,7 @@
 
 namespace stg::learn {
 
-/// Whether mpirun or srun has started this process: Open MPI's launcher, or one that speaks PMIx
+/// True if mpirun or srun has started this process: Open MPI's launcher, or one that uses PMIx
 /// (SLURM) or PMI.
 inline bool StartedByMpi() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}) {

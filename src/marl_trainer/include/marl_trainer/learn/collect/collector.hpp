@@ -15,50 +15,51 @@
 
 namespace stg::learn {
 
-/// What one collection saw.
+/// Results of one collection.
 struct CollectionReport {
-  std::vector<task::EpisodeMetrics> finished;  ///< episodes that ended in it
-  double reward = 0.0;                         ///< mean over steps of the team's reward
-  /// Wall-clock time, split by where the workers spent theirs.
+  std::vector<task::EpisodeMetrics> finished;  ///< episodes that ended in this collection
+  double reward = 0.0;                         ///< team's reward, mean over steps
+  /// Wall-clock time of the workers, by task [s].
   double env_seconds = 0.0, inference_seconds = 0.0;
 };
 
-/// Sizes that an algorithm needs.
+/// The sizes that an algorithm needs.
 Problem ProblemOf(const RunConfig& run, const dynamics::WorldConfig& world,
                   const agent::AgentConfig& agent);
 
-/// Brings environments and algorithm together: the one collection loop. The environments are cut
-/// into fixed shards that a worker steps through a whole collection without waiting for others, so
-/// results depend neither on the number of workers nor on that of ranks.
+/// Runs the environments with an algorithm: the only collection loop. The environments are divided
+/// into fixed shards. A worker steps a shard through a whole collection without waiting for others.
+/// So results depend neither on the number of workers nor on the number of ranks.
 class Collector {
  public:
-  /// @param make_env of the scenarios that the environments cycle through; its agents know what
-  /// the controller to imitate knows.
-  /// @param imitation whose controller to ask; null: none
-  /// @param team whose ranks have a share of the environments each.
+  /// @param make_env factory for the scenarios that the environments cycle through; its agents have
+  /// the knowledge that the imitated controller needs.
+  /// @param imitation names the controller to ask; null: none
+  /// @param team each of its ranks has a share of the environments.
   Collector(const env::EnvFactory& make_env, const TrainConfig& config,
             const ImitationConfig* imitation, const Team& team);
   ~Collector();
 
-  /// `config.horizon` decisions of every environment of this rank with exploration, after
-  /// algorithm->Begin.
+  /// Makes `config.horizon` decisions of every environment of this rank, with exploration. Call it
+  /// after algorithm->Begin.
   /// @param number keys the draws of the exploration.
-  /// @param teach also ask the controller to imitate, at every state visited.
+  /// @param teach also ask the imitated controller in every visited state.
   CollectionReport Collect(std::uint32_t number, bool teach, Algorithm* algorithm);
 
   /// Starts the k-th episode of every environment.
   void RestartAt(std::uint64_t k);
-  /// Takes the present, where every environment starts an episode, for the last such start.
+  /// Treats the present as the last common start of an episode. Every environment must be at the
+  /// start of an episode now.
   void ForgetPast();
-  /// What was done since the last common start of an episode, which is enough to get back here, in
-  /// all ranks.
+  /// Stores the actions since the last common start of an episode. They are enough to reach the
+  /// present state again, in all ranks.
   void Save(Archive* archive) const;
-  /// After RestartAt of that start: goes to where Save was called. Throws UserError for an archive
-  /// of other environments or of other shards.
+  /// Goes to the state in which Save was called. Call it after RestartAt of the same start. Throws
+  /// UserError for an archive of other environments or other shards.
   void Load(const Archive& archive);
-  /// The largest k of an episode that runs, in any rank.
+  /// The largest number k of a running episode, over all ranks.
   std::uint64_t round() const;
-  /// True when every environment of all ranks stands at the start of an episode.
+  /// True if every environment of all ranks is at the start of an episode.
   bool at_episode_start() const;
 
  private:
@@ -67,7 +68,7 @@ class Collector {
   const int envs_, horizon_;
   const Team team_;
   std::vector<std::unique_ptr<Unit>> units_;
-  std::set<std::string> places_;  // names of all ranks' shards in an archive
+  std::set<std::string> places_;  // names of the shards of all ranks in an archive
 };
 
 }  // namespace stg::learn

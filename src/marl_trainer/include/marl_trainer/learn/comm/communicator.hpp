@@ -8,9 +8,9 @@
 
 namespace stg::learn {
 
-/// The processes ("ranks") that train one policy together, each with a share of the environments.
-/// Every call is made by all ranks at the same point of the run, by one thread, and returns the
-/// same bits in all of them. A rank that is lost ends the run of all.
+/// The processes ("ranks") that train one policy together. Each has a share of the environments.
+/// All ranks make each call at the same point of the run, in one thread, and it returns the same
+/// bits in all of them. If one rank is lost, the run of all ranks ends.
 class Communicator {
  public:
   virtual ~Communicator() = default;
@@ -19,10 +19,10 @@ class Communicator {
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// What every rank brings, one after the other by rank; sizes may differ.
+  /// Bytes of every rank, in the order of the ranks. Their sizes may differ.
   virtual std::vector<char> GatherBytes(const std::vector<char>& mine) = 0;
-  /// Adds up x [count] over the ranks: neighbours first (0 + 1, 2 + 3, ...), then neighbouring
-  /// pairs, and so on.
+  /// Adds x [count] over the ranks: first neighbours (0 + 1, 2 + 3, ...), then neighbouring pairs,
+  /// and so on.
   virtual void Sum(float* x, std::size_t count) = 0;
 
   template <class T>
@@ -36,7 +36,7 @@ class Communicator {
     return values;
   }
 
-  /// What this rank has sent, and how long its calls took [s], waiting for others included.
+  /// Bytes that this rank has sent, and time that its calls took, including waits for others [s].
   struct Traffic {
     std::int64_t bytes = 0, calls = 0;
     double seconds = 0.0;
@@ -47,7 +47,7 @@ class Communicator {
   Traffic traffic_;
 };
 
-/// A process that trains by itself: the only rank of one.
+/// A process that trains alone: the only rank.
 class OneRank : public Communicator {
  public:
   int rank() const override { return 0; }
@@ -55,11 +55,12 @@ class OneRank : public Communicator {
   std::vector<char> GatherBytes(const std::vector<char>& mine) override { return mine; }
   void Sum(float*, std::size_t) override {}
 };
-/// The communicator of a process alone.
+/// The communicator of a process that trains alone.
 Communicator* Alone();
 
-/// As a sum over ranks: neighbours, then neighbouring pairs, and so on, into parts[0].
-/// @param count a power of two of arrays [size] each
+/// Adds arrays in the order of a sum over ranks: neighbours, then neighbouring pairs, and so on.
+/// The result is parts[0].
+/// @param count number of arrays [size], a power of two
 void SumInPairs(std::vector<std::vector<float>>* parts, std::size_t count, std::size_t begin,
                 std::size_t end);
 

@@ -6,12 +6,12 @@
 
 namespace stg::learn {
 
-/// The ranks that mpirun, srun or an operator of theirs has started this process among; OneRank
-/// where none of them did. Throws UserError where one of them did and this program was built
-/// without MPI.
+/// The ranks among which mpirun, srun or a similar launcher has started this process; OneRank if
+/// there is no such launcher. Throws UserError if there is one but this program was built without
+/// MPI.
 std::unique_ptr<Communicator> JoinRanks(int* argc, char*** argv);
 
-/// Ends all ranks at once; returns where there are none.
+/// Ends all ranks at once. Returns if there are no ranks.
 void AbortRanks(int status);
 
 }  // namespace stg::learn

@@ -5,10 +5,10 @@
 
 namespace stg::learn {
 
-/// What computes a training: the threads of this process, and the ranks that train together. Both
-/// outlive the team.
+/// Resources of a training: the threads of this process, and the ranks that train together. Both
+/// must outlive the team.
 struct Team {
-  // A pool is a whole team: that of a process that trains by itself.
+  // Not explicit, because a pool alone is a team: a process that trains alone.
   // NOLINTNEXTLINE(google-explicit-constructor)
   Team(WorkerPool* own_pool, Communicator* all_ranks = Alone())
       : pool(own_pool), ranks(all_ranks) {}

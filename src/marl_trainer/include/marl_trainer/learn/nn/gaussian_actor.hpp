@@ -9,15 +9,15 @@
 
 namespace stg::learn {
 
-/// Least log sigma that a policy file can hold: no spread at all.
+/// Smallest log sigma in a policy file; it stands for no spread.
 constexpr float kNoSpread = -20.0F;
 
-/// The actor of Eq. 37: a Gaussian whose mean is a network of one AUV's normalised observation,
-/// squashed to the action's scale, with a standard deviation that does not depend on the state.
-/// Parameters in one flat array: the network, then log sigma [action_size].
+/// The actor of Eq. 37: a Gaussian. Its mean is a network of one AUV's normalised observation,
+/// squashed to the action's scale. Its standard deviation does not depend on the state. The
+/// parameters are in one flat array: the network, then log sigma [action_size].
 class GaussianActor {
  public:
-  /// @param mean its squash is the action's scale, and positive.
+  /// @param mean its squash is the action's scale and must be positive.
   explicit GaussianActor(NetworkSpec mean);
 
   const Mlp& mean() const { return mean_; }
@@ -32,11 +32,11 @@ class GaussianActor {
   void Initialise(std::uint64_t seed, std::uint32_t network, double log_std,
                   float* parameters) const;
 
-  /// The policy that `parameters` and the observation normaliser make; a log sigma below kNoSpread,
-  /// of a small action scale, is kNoSpread there.
+  /// The policy with these parameters and the observation normaliser. A log sigma below kNoSpread,
+  /// from a small action scale, is stored as kNoSpread.
   agent::Policy ToPolicy(const float* parameters, const Normaliser& observations,
                          agent::PolicyMetadata metadata) const;
-  /// Writes the parameters of a policy of the same shape.
+  /// Writes the parameters of a policy with the same shape.
   void FromPolicy(const agent::Policy& policy, float* parameters) const;
 
  private:

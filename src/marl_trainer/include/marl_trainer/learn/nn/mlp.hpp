@@ -7,9 +7,8 @@
 
 namespace stg::learn {
 
-/// The kernels' back end of a network: forward and backward written out on flat arrays, without
-/// libtorch and at these sizes faster than it (docs/adr/009); a test holds the gradient against
-/// libtorch's.
+/// Forward and backward pass of a network, written out on flat arrays, without libtorch. At these
+/// sizes it is faster than libtorch (docs/adr/009). A test compares its gradient with libtorch's.
 class Mlp {
  public:
   explicit Mlp(NetworkSpec spec);
@@ -18,13 +17,13 @@ class Mlp {
   int layers() const { return spec_.layers(); }
   int inputs() const { return spec_.inputs; }
   int outputs() const { return spec_.outputs; }
-  /// Where a layer's weight [outputs, inputs] and bias [outputs] begin in the flat array.
+  /// Where weight [outputs, inputs] and bias [outputs] of a layer begin in the flat array.
   std::size_t weight_offset(int l) const { return offsets_[static_cast<std::size_t>(l)]; }
   std::size_t bias_offset(int l) const;
   std::size_t parameters() const { return offsets_.back(); }
 
-  /// Activations of up to `rows` rows; allocated once. One per thread.
-  // The copy that the compiler writes has a reserved name in it.
+  /// Activations of up to `rows` rows, allocated once. Each thread needs its own.
+  // The implicit copy constructor has a reserved name in it.
   // NOLINTNEXTLINE(bugprone-reserved-identifier)
   class Workspace {
    public:
@@ -36,28 +35,29 @@ class Mlp {
     friend class Mlp;
     std::vector<std::vector<float>> values_;  ///< per layer [rows, outputs]
     std::vector<float> gradient_[2];          ///< [rows, widest]
-    // With layer_norm, per hidden layer: what it normalised [rows, outputs], and by what [rows].
+    // With layer_norm, for each hidden layer: normalised values [rows, outputs] and their factors
+    // [rows].
     std::vector<std::vector<float>> normalised_, inverse_std_;
     int rows_;
   };
 
-  /// Fills workspace->output() [rows, outputs] from x [rows, inputs].
+  /// Computes workspace->output() [rows, outputs] from x [rows, inputs].
   void Forward(const float* parameters, const float* x, int rows, Workspace* workspace) const;
 
-  /// Adds d loss / d parameters to `gradient`, given d loss / d output
-  /// [rows, outputs] of the rows that Forward saw last.
+  /// Adds d loss / d parameters to `gradient`, from d loss / d output [rows, outputs]. The rows are
+  /// the ones of the last Forward.
   void Backward(const float* parameters, const float* x, const float* d_output, int rows,
                 Workspace* workspace, float* gradient) const;
 
-  /// Writes d loss / d x[:, first .. first+count-1] as d_input [rows, count], given d loss / d
-  /// output as Backward; the parameters get no gradient.
+  /// Writes d loss / d x[:, first .. first+count-1] to d_input [rows, count], from d loss / d
+  /// output as in Backward. Computes no gradient of the parameters.
   void InputGradient(const float* parameters, const float* d_output, int rows, int first, int count,
                      Workspace* workspace, float* d_input) const;
 
  private:
-  /// d loss / d the last layer's sums, in the workspace unless d_output is that.
+  /// d loss / d sums of the last layer. The result is d_output itself or is in the workspace.
   const float* UndoSquash(const float* d_output, int rows, Workspace* workspace, int* next) const;
-  /// d loss / d layer l's sums from d loss / d the sums of layer l + 1.
+  /// d loss / d sums of layer l, from d loss / d sums of layer l + 1.
   const float* UndoLayer(const float* parameters, int l, const float* d, int rows,
                          Workspace* workspace, int* next) const;
 
@@ -65,8 +65,8 @@ class Mlp {
   std::vector<std::size_t> offsets_;
 };
 
-/// Changes the last layer of a network whose first output is a value, so that every output is
-/// multiplied by `ratio` and the value has `shift` added.
+/// Changes the last layer of a network whose first output is a value: every output is multiplied by
+/// `ratio`, and then `shift` is added to the value.
 void RescaleOutputs(const Mlp& network, double ratio, double shift, float* parameters);
 
 }  // namespace stg::learn

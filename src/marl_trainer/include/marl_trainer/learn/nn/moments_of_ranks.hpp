@@ -8,9 +8,9 @@
 
 namespace stg::learn {
 
-/// The moments of all ranks, one rank's after the other's.
-/// @param own of this rank's shards, one at least: so many kinds of each shard in turn, of sizes
-/// that are the same in every rank.
+/// The moments of all ranks, in the order of the ranks.
+/// @param own moments of this rank's shards, at least one: `kinds` moments of each shard in turn.
+/// Their sizes are the same in every rank.
 std::vector<RunningMoments> OfAllRanks(Communicator* ranks, const std::vector<RunningMoments>& own,
                                        std::size_t kinds);
 

@@ -9,22 +9,23 @@ namespace stg::learn {
 /// Nonlinearity of the hidden layers.
 enum class HiddenActivation { kTanh, kRelu };
 
-/// A multilayer perceptron, described once for the hand-written kernels (Mlp) and for libtorch's
-/// modules, which tests compare them with.
+/// Description of a multilayer perceptron, for the hand-written kernels (Mlp) and for the modules
+/// of libtorch with which tests compare them.
 ///
-/// Either keeps its parameters in one flat array: for every layer the weight [outputs, inputs],
-/// row-major, then the bias [outputs]. So an optimiser, a checkpoint or an exporter does not know
-/// which one computes.
+/// Both keep the parameters in one flat array: for every layer the weight [outputs, inputs],
+/// row-major, then the bias [outputs]. So optimisers, checkpoints and exporters do not depend on
+/// which of them computes.
 struct NetworkSpec {
   int inputs = 1;
   std::vector<int> hidden;  ///< widths of the hidden layers; may be empty
   HiddenActivation activation = HiddenActivation::kTanh;
   int outputs = 1;
-  /// > 0: the outputs are squash * tanh of the last layer's; 0: the last layer is linear.
+  /// > 0: the outputs are squash * tanh of the last layer; 0: the last layer is linear.
   float squash = 0.0F;
-  float output_gain = 1.0F;  ///< of the last layer's initial weights
-  /// Whether the hidden layers normalise each row before the activation (LayerNorm, Ba et al. 2016,
-  /// without gain and offset of its own: the next layer and the bias have them).
+  float output_gain = 1.0F;  ///< gain of the last layer's initial weights
+  /// True: the hidden layers normalise each row before the activation (LayerNorm, Ba et al. 2016).
+  /// It has no gain and offset of its own, because the next layer and the bias have the same
+  /// effect.
   bool layer_norm = false;
 
   int layers() const { return static_cast<int>(hidden.size()) + 1; }
@@ -32,15 +33,14 @@ struct NetworkSpec {
   int layer_outputs(int l) const;
   std::size_t parameters() const;
 
-  /// Multiply-adds of one row, forward; and of one row, forward and backward without the gradient
-  /// of the input.
+  /// Multiply-adds of one row: forward, and forward and backward without the gradient of the input.
   double forward_products() const;
   double training_products() const;
 };
 
-/// Orthogonal weights with gain sqrt(2) (ReLU) or 1 (tanh) in the hidden layers and output_gain in
-/// the last; zero biases.
-/// @param network tells the networks of one seed apart.
+/// Writes orthogonal weights with gain sqrt(2) (ReLU) or 1 (tanh) in the hidden layers and
+/// output_gain in the last layer, and zero biases.
+/// @param network distinguishes the networks of one seed.
 /// @param parameters [spec.parameters()], written.
 void InitialiseOrthogonally(const NetworkSpec& spec, std::uint64_t seed, std::uint32_t network,
                             float* parameters);

@@ -5,8 +5,8 @@
 
 namespace stg::learn {
 
-/// Running mean and variance of vectors, mergeable in any grouping (Chan et
-/// al. 1979): count, mean and sum of squared deviations per component.
+/// Running mean and variance of vectors: count, mean and sum of squared deviations per component.
+/// Parts can be merged in any grouping (Chan et al. 1979).
 class RunningMoments {
  public:
   explicit RunningMoments(int size = 0);
@@ -14,19 +14,19 @@ class RunningMoments {
   /// Adds `rows` vectors x [rows, size].
   void Add(const float* x, int rows);
   void Merge(const RunningMoments& other);
-  /// Forgets the past smoothly: the count is never more than `limit`.
+  /// Limits the count, so that old data loses weight smoothly.
   void LimitCount(double limit);
   void Clear();
 
   int size() const { return static_cast<int>(mean_.size()); }
   double count() const { return count_; }
   double mean(int i) const { return mean_[static_cast<std::size_t>(i)]; }
-  /// Population variance; 1 before anything was added.
+  /// Population variance; 1 without data.
   double variance(int i) const;
 
   /// Plain data for checkpoints: count, means, squared deviations.
   std::vector<double> Save() const;
-  /// Throws UserError when a count or a square is negative.
+  /// Throws UserError if a count or a square is negative.
   void Load(const std::vector<double>& data);
 
  private:
@@ -40,10 +40,10 @@ struct Normaliser {
   std::vector<float> mean, std;
   float clip = 10.0F;
 
-  /// std = max(sqrt(variance), floor): a component that never moved yet must
-  /// not be blown up when it first does.
+  /// std = max(sqrt(variance), floor). The floor avoids very large values when a component changes
+  /// for the first time.
   static Normaliser From(const RunningMoments& moments, float floor, float clip);
-  /// y [rows, size] from x [rows, size]; x == y is allowed.
+  /// Computes y [rows, size] from x [rows, size]; x == y is allowed.
   void Apply(const float* x, int rows, float* y) const;
 };
 

@@ -7,7 +7,8 @@
 
 namespace stg::learn {
 
-/// One thread's memory to ask a network about raw observations; it grows with the rows asked for.
+/// Memory of one thread for passes of raw observations through a network. It grows with the number
+/// of rows.
 class ObservedPass {
  public:
   /// @param network must outlive this object.
@@ -23,7 +24,7 @@ class ObservedPass {
   std::vector<float> normalised_;
 };
 
-/// One for each worker.
+/// One pass for each worker.
 std::vector<ObservedPass> PassesOf(const Mlp& network, int workers);
 
 }  // namespace stg::learn

@@ -15,30 +15,30 @@
 
 namespace stg::learn {
 
-/// Why an episode cannot be learnt from.
+/// Reason why an episode cannot be used for learning.
 enum class Flaw {
   kNone,
   kUnfinished,      ///< its last step was not recorded
   kGap,             ///< an agent's step is missing
   kNoReward,        ///< a step's reward and true state are missing
   kContradiction,   ///< one step was recorded twice, differently
-  kObservation,     ///< another observation layout or size
+  kObservation,     ///< another layout or size of the observation
   kAction,          ///< another number of action components
   kState,           ///< another size of the true state
   kNotFinite,       ///< NaN or infinity
-  kForeignPolicy,   ///< sampled by another policy than the one to improve
-  kLogProbability,  ///< the policy gives its action another probability
+  kForeignPolicy,   ///< sampled by another policy than the one to train
+  kLogProbability,  ///< the policy computes another probability for the action
   kCount,
 };
 const char* ToString(Flaw flaw);
 
-/// A flaw and where it was found; for people.
+/// A flaw and its place, for messages.
 struct Finding {
   Flaw flaw = Flaw::kNone;
   std::string where;
 };
 
-/// One decision of one agent, as recorded.
+/// One recorded decision of one agent.
 struct AgentRecord {
   std::uint32_t layout_version = 0;
   std::vector<float> observation;  ///< raw
@@ -48,9 +48,9 @@ struct AgentRecord {
   bool operator==(const AgentRecord& other) const;
 };
 
-/// What one decision step of the swarm led to.
+/// Result of one decision step of the swarm.
 struct RewardRecord {
-  std::vector<float> state, final_state;  ///< raw, of the critic; final where truncated
+  std::vector<float> state, final_state;  ///< raw, for the critic; final_state only where truncated
   double reward = 0.0;                    ///< mean over agents
   bool truncated = false;
   bool operator==(const RewardRecord& other) const;
@@ -59,17 +59,17 @@ struct RewardRecord {
 /// One episode, as far as it was recorded.
 struct RecordedEpisode {
   std::uint32_t number = 0;
-  std::string source;                                       ///< bag file, or how it was heard
+  std::string source;  ///< bag file, or name of the live source
   std::vector<std::map<std::uint32_t, AgentRecord>> steps;  ///< [agent], by step
   std::map<std::uint32_t, RewardRecord> rewards;            ///< by step
-  Finding finding;          ///< what was wrong with it while it was put together
-  std::uint64_t heard = 0;  ///< when the last word about it came, in words of the source
+  Finding finding;          ///< flaw that was found while it was assembled
+  std::uint64_t heard = 0;  ///< number of the source's last message about it
 
   bool Complete(int episode_steps) const;
 };
 
-/// Puts messages of one source together into episodes. An episode is known by its number and by
-/// when its step 0 was, so that two runs in one bag do not mix.
+/// Assembles episodes from the messages of one source. Number and start time identify an episode,
+/// so two runs in one bag do not mix.
 class EpisodeAssembler {
  public:
   EpisodeAssembler(const RunConfig& run, std::string source);
@@ -78,19 +78,19 @@ class EpisodeAssembler {
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent, AgentRecord record);
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, RewardRecord record);
 
-  /// Takes complete episodes, oldest first; and of the others all but the two that were heard of
-  /// last, whatever their stamps say: they are not going to be completed any more. What is said
-  /// later about an episode that has been taken is ignored.
+  /// Takes the complete episodes, oldest first. Of the others it takes all except the two with the
+  /// latest messages, whatever their stamps are, because no more messages are expected for them.
+  /// Later messages about a taken episode are ignored.
   std::vector<RecordedEpisode> TakeDone();
-  /// Takes all there is: the source has ended.
+  /// Takes all episodes, because the source has ended.
   std::vector<RecordedEpisode> TakeAll();
 
-  /// Records of episodes that had been taken.
+  /// Number of records of episodes that had been taken already.
   std::uint64_t late() const { return late_; }
 
  private:
   using Key = std::pair<TimeNs, std::uint32_t>;
-  /// Null: it has been taken.
+  /// The episode; null: it has been taken already.
   RecordedEpisode* At(std::uint32_t episode, TimeNs start);
   void Forget(const Key& key);
 
@@ -98,20 +98,20 @@ class EpisodeAssembler {
   const std::string source_;
   std::map<Key, RecordedEpisode> episodes_;
   std::set<Key> taken_;
-  std::deque<Key> taken_in_order_;  ///< the same, to forget the first ones
+  std::deque<Key> taken_in_order_;  ///< the same keys in order, to forget the oldest ones
   std::uint64_t heard_ = 0, late_ = 0;
 };
 
-/// Judges episodes for on-policy learning with one policy in one scenario.
+/// Checks episodes for on-policy learning with one policy in one scenario.
 class EpisodeChecker {
  public:
-  /// Largest deviation of a recorded log probability from the policy's own.
+  /// Largest allowed difference between a recorded log probability and the policy's own.
   static constexpr double kLogProbabilityTolerance = 1e-3;
 
-  /// @param policy must outlive this object, and fit the scenario.
+  /// @param policy must outlive this object and fit the scenario.
   EpisodeChecker(const RunConfig& run, const agent::ObservationConfig& observation, int state_size,
                  const agent::Policy& policy);
-  /// The first flaw found, kNone for an episode to learn from.
+  /// The first flaw; kNone if the episode can be used for learning.
   Finding Check(const RecordedEpisode& episode) const;
 
  private:
@@ -124,10 +124,10 @@ class EpisodeChecker {
   const agent::Policy& policy_;
 };
 
-/// Version in ObservationLayout(): 1 for "stg-1:...".
+/// Version of ObservationLayout(): 1 for "stg-1:...".
 std::uint32_t LayoutVersion(const agent::ObservationConfig& observation);
 
-/// How many episodes were used, and dropped for which reason.
+/// Numbers of used episodes and of dropped ones by reason.
 struct RecordingReport {
   std::uint64_t used = 0, unreadable_sources = 0, foreign_messages = 0;
   std::array<std::uint64_t, static_cast<std::size_t>(Flaw::kCount)> dropped{};

@@ -12,36 +12,38 @@
 
 namespace stg::learn {
 
-/// An on-policy algorithm on recorded episodes. Each update makes a new policy with an id of its
-/// own; episodes of any other policy are refused.
+/// Trains an on-policy algorithm on recorded episodes. Each update makes a new policy with its own
+/// id. Episodes of any other policy are refused.
 ///
-/// The folder holds the policy to fly with next, policy_last.onnx, and checkpoints. Where it holds
-/// a checkpoint, training goes on from there.
+/// The folder contains the next policy to fly, policy_last.onnx, and checkpoints. If it contains a
+/// checkpoint, the training continues from it.
 class RecordedTrainer {
  public:
   struct Options {
-    std::string out;  ///< folder, created
+    std::string out;  ///< folder; it is created
     std::string
         policy;  ///< ONNX file to start from; empty: the folder's checkpoint, else untrained
     int workers = 1;
     std::ostream* log = nullptr;
   };
 
-  /// What one update did.
+  /// Results of one update.
   struct Progress {
     std::int64_t updates = 0, env_steps = 0;
     int episodes = 0;
-    double episode_return = 0.0;  ///< summed over steps and AUVs, mean over episodes
-    std::string report;           ///< the algorithm's numbers, see ReportText
+    double episode_return = 0.0;  ///< sum over steps and AUVs, mean over episodes
+    std::string report;           ///< numbers of the algorithm, see ReportText
     double seconds = 0.0;
   };
 
   /// Throws UserError for a policy or folder that does not fit scenario and setup.
-  /// @param setup its envs and horizon are not used: a collection is a number of whole episodes.
+  /// @param setup its envs and horizon are not used, because a collection is a number of whole
+  /// episodes.
   RecordedTrainer(const Scenario& scenario, const TrainSetup& setup, const Options& options);
 
   Finding Check(const RecordedEpisode& episode) const;
-  /// One update on episodes that passed Check; at least one. Writes policy and checkpoint.
+  /// Makes one update on at least one episode; all must have passed Check. Writes policy and
+  /// checkpoint.
   Progress Update(const std::vector<RecordedEpisode>& episodes);
 
   const agent::Policy& policy() const { return *policy_; }
@@ -56,7 +58,7 @@ class RecordedTrainer {
   RecordedTrainer(const Scenario& scenario, const TrainSetup& setup, const Options& options,
                   const std::shared_ptr<const agent::Policy>& start);
   void Restore(const TrainState& state, const agent::Policy* start);
-  /// Hands an episode to the algorithm; returns the sum of its rewards.
+  /// Passes an episode to the algorithm. Returns the sum of its rewards.
   double Observe(const RecordedEpisode& episode, int shard);
   agent::Policy MakePolicy() const;
 
@@ -71,7 +73,7 @@ class RecordedTrainer {
   std::shared_ptr<const agent::Policy> policy_;
 };
 
-/// Defaults for updates on few whole episodes: more passes over less data than the presets.
+/// Defaults for updates on a few whole episodes: more passes over less data than in the presets.
 TrainSetup RecordedSetup(const RunConfig& run, const std::string& algorithm = DefaultAlgorithm());
 
 }  // namespace stg::learn

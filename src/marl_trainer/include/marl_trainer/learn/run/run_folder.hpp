@@ -14,33 +14,34 @@
 
 namespace stg::learn {
 
-/// The folder of a training: checkpoints, policies, and what it was started with.
+/// The folder of a training: checkpoints, policies and the setup.
 class RunFolder {
  public:
-  /// Creates the folder; UserError when that fails. @param log of refused checkpoints.
+  /// Creates the folder. Throws UserError if this fails. @param log gets messages about refused
+  /// checkpoints.
   RunFolder(std::string path, std::ostream* log);
 
-  /// Keeps other programs from writing into the folder, as long as this lives; UserError when one
-  /// does already. Among ranks, rank 0 calls it.
+  /// Locks the folder against other programs that write, as long as this object lives. Throws
+  /// UserError if another program has locked it. Among ranks, only rank 0 calls it.
   void Lock() { lock_.emplace(path_); }
 
   const std::string& path() const { return path_; }
-  /// Whether it has a checkpoint or a policy: a run that was ended before its first checkpoint
-  /// leaves nothing worth keeping.
+  /// True if there is a checkpoint or a policy. A run that ended before its first checkpoint left
+  /// nothing worth keeping.
   bool HoldsRun() const;
 
-  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml; UserError when that
+  /// Writes config.json, scenario.yaml and, for a mix, train_on_<k>.yaml. Throws UserError if this
   /// fails. @param scenario, mix as ToYaml writes them
   void WriteSetup(const nlohmann::ordered_json& config, const std::string& scenario,
                   const std::vector<std::string>& mix) const;
 
   std::optional<TrainState> Newest() const { return LoadNewestCheckpoint(path_, log_); }
-  /// Writes a checkpoint and removes all but the newest `keep`.
+  /// Writes a checkpoint and removes all except the newest `keep`.
   void Save(const TrainState& state, int keep) const;
 
-  /// Writes name.onnx, or name_<i>.onnx where each AUV has a policy of its own.
+  /// Writes name.onnx, or name_<i>.onnx if each AUV has its own policy.
   void SavePolicies(const std::vector<agent::Policy>& policies, const std::string& name) const;
-  /// Absolute path of SavePolicies' file for all AUVs.
+  /// Absolute path of the file that SavePolicies writes for all AUVs.
   std::string PolicyPath(const std::string& name) const;
 
  private:
@@ -49,22 +50,23 @@ class RunFolder {
   std::optional<FolderLock> lock_;
 };
 
-/// What a run was started with, as RunFolder::WriteSetup has written it.
+/// The setup of a run, as written by RunFolder::WriteSetup.
 struct RunSetup {
   TrainSetup setup;
   Scenario scenario;
-  std::vector<Scenario> mix;  ///< empty: trained on the scenario alone
+  std::vector<Scenario> mix;  ///< empty: trained on the scenario only
 };
 
-/// Reads a run's folder again; UserError that names the file when one is missing or damaged.
+/// Reads the setup from a run's folder. Throws UserError that names the file if one is missing or
+/// damaged.
 RunSetup ReadRunSetup(const std::string& folder);
 
-/// Throws UserError, beginning with `where`, unless the checkpoint's run has the configuration
-/// `ours`, except for more or fewer steps, and the same scenario.
+/// Throws UserError that begins with `where` unless the checkpoint's run has the same
+/// configuration, except for the number of steps, and the same scenario.
 void RequireSameRun(const TrainState& theirs, const nlohmann::ordered_json& ours,
                     const std::string& scenario, const std::string& where);
 
-/// What every exported policy tells about itself.
+/// Metadata of an exported policy.
 /// @param scenario_hash see ScenarioHash
 agent::PolicyMetadata MetadataOf(const agent::ObservationConfig& observation,
                                  const dynamics::ControlConfig& control,

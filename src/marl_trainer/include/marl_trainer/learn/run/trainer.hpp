@@ -14,38 +14,39 @@
 
 namespace stg::learn {
 
-/// Collect, update, validate, save: one instance per run, of any algorithm.
+/// Trains any algorithm: collect, update, validate, save. One instance per run.
 ///
-/// Weights depend on scenario, setup and seed only, neither on the number of workers nor on that of
-/// ranks, up to kGroups of them. Rank 0 alone writes, into a folder that all ranks can read. A run
-/// and one that was stopped and resumed are the same bit for bit: a checkpoint, taken between any
-/// two collections, holds what was done since all environments started an episode together. With
-/// `stagger`, or a horizon that does not divide the episode, the running episodes are cut for such
-/// a start, in every run, stopped or not.
+/// Weights depend only on scenario, setup and seed, and neither on the number of workers nor on the
+/// number of ranks (up to kGroups). Only rank 0 writes, into a folder that all ranks can read. A
+/// run that was stopped and resumed has the same result bit for bit: a checkpoint can be taken
+/// between any two collections, and it stores the actions since all environments last started an
+/// episode together. With `stagger`, or with a horizon that does not divide the episode, running
+/// episodes are cut for such a common start. This happens in every run, even if it is never
+/// stopped.
 class Trainer {
  public:
   struct Options {
-    std::string out;      ///< folder, created
-    bool resume = false;  ///< go on from the newest good checkpoint of `out`
+    std::string out;      ///< folder; it is created
+    bool resume = false;  ///< continue from the newest good checkpoint of `out`
     int workers = 1;
     std::ostream* log = nullptr;
-    Communicator* ranks = Alone();  ///< to train with
-    /// Set non-zero (by a signal) to save after the collection and return.
+    Communicator* ranks = Alone();  ///< ranks that train together
+    /// A signal sets it non-zero: the trainer then saves after the collection and returns.
     const std::atomic<int>* stop = nullptr;
-    /// Scenarios that the training environments cycle through, e.g.
-    /// stress conditions; empty: the scenario alone. Validation is on the scenario.
+    /// Scenarios that the training environments cycle through, e.g. stress conditions; empty: only
+    /// the scenario. Validation uses the scenario.
     std::vector<Scenario> mix;
-    std::int64_t halt_after = 0;  ///< > 0: as if `stop` were set after so many steps
+    std::int64_t halt_after = 0;  ///< > 0: stop after this number of steps, as if `stop` were set
   };
 
-  /// Throws UserError for a bad setup, a folder that holds another run
-  /// or, with `resume`, none.
+  /// Throws UserError for a bad setup and for a folder that contains another run; with `resume`,
+  /// also for a folder without a run.
   Trainer(const Scenario& scenario, const TrainSetup& setup, const Options& options);
 
-  /// True when all steps were made, false when stopped before.
+  /// True if all steps were made; false if it was stopped before.
   bool Run();
 
-  /// As of now, what a checkpoint would hold; called by all ranks.
+  /// The state that a checkpoint would store now. All ranks call it.
   TrainState state() const;
   Algorithm& algorithm() { return *algorithm_; }
   const Problem& problem() const { return problem_; }
@@ -55,8 +56,8 @@ class Trainer {
   void ScheduleNext();
   void Iterate(TrainRecord* record);
   void RunValidation(TrainRecord* record);
-  /// Where it is time for all environments to start an episode together, or with `force` (the end
-  /// of a run), restarts what is not at the start of one.
+  /// Restarts environments that are not at the start of an episode, if a common start of an episode
+  /// is due, or with `force` (at the end of a run).
   void AlignEpisodes(bool force);
   bool Stopped() const;
   void Save();
@@ -64,10 +65,11 @@ class Trainer {
   bool leads() const { return options_.ranks->rank() == 0; }
   double Elapsed() const { return state_.wall_seconds + watch_.seconds(); }
 
-  // As given; as trained in, which validations fly and checkpoints are chosen by; and that with the
-  // reward of the first, for the return that compares variants.
+  // The given scenario; the one of the training, in which validations fly and by which the best
+  // policy is chosen; and this one with the reward of the given scenario, for the return that
+  // compares variants.
   const Scenario scenario_, train_scenario_, evaluation_scenario_;
-  const std::vector<Scenario> mix_;  // never empty; the scenarios trained in
+  const std::vector<Scenario> mix_;  // scenarios of the training, never empty
   const TrainSetup setup_;
   const Options options_;
   const Problem problem_;
@@ -76,7 +78,7 @@ class Trainer {
   std::unique_ptr<Algorithm> algorithm_;
   Collector collector_;
   RunFolder folder_;
-  std::unique_ptr<TrainLog> log_;  // of the rank that leads
+  std::unique_ptr<TrainLog> log_;  // only in rank 0
   TrainState state_;
   task::MetricSummary last_validation_;
   Stopwatch watch_;

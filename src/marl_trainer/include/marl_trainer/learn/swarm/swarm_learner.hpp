@@ -12,9 +12,9 @@
 
 namespace stg::learn {
 
-/// MAPPO over entities: the clipped update of Eqs. 37-44 with one actor for all AUVs, and a value
-/// and an advantage for each AUV instead of one for the swarm. Returns are normalised by PopArt
-/// (van Hasselt et al. 2016). Results do not depend on the number of workers.
+/// MAPPO over entities: the clipped update of Eqs. 37-44 with one actor for all AUVs. Each AUV has
+/// its own value and advantage, instead of one for the swarm. Returns are normalised by PopArt (van
+/// Hasselt et al. 2016). Results do not depend on the number of workers.
 class SwarmLearner {
  public:
   explicit SwarmLearner(const SwarmConfig& config);
@@ -22,17 +22,17 @@ class SwarmLearner {
   SwarmActor actor() const {
     return {actor_, actor_numbers_.data(), actor_numbers_.data() + actor_.parameters()};
   }
-  /// Learns from one collection. @param progress share of the training that is done, in [0, 1]
-  /// Returns what it did, by name.
+  /// Learns from one collection. @param progress done share of the training, in [0, 1]
+  /// Returns its results, by name.
   using Report = std::vector<std::pair<std::string, double>>;
   Report Update(std::vector<SwarmRollout>* rollouts, std::uint32_t collection, double progress,
                 WorkerPool* pool);
 
   agent::EntityPolicy Policy(const agent::PolicyMetadata& metadata) const;
   void Save(Archive* archive) const;
-  /// Throws UserError for an archive of other sizes.
+  /// Throws UserError for an archive with other sizes.
   void Load(const Archive& archive);
-  /// Explores with this deviation from now on.
+  /// Sets the log standard deviation of the exploration.
   void SetDeviation(double log_std);
 
  private:
@@ -55,7 +55,7 @@ class SwarmLearner {
   void Gradient(const std::vector<SwarmRollout>& rollouts, const std::vector<Row>& rows,
                 std::size_t begin, std::size_t end, std::size_t batch, double entropy,
                 Part* part) const;
-  /// Adds what a row of a part says to the gradient of the actor's outputs.
+  /// Adds the gradient of the loss of a row to the gradient of the actor's outputs.
   void ActorLoss(const SwarmRollout& rollout, std::size_t row, int at, double entropy, float share,
                  Part* part) const;
   void KeepBlind(std::vector<float>* numbers) const;
@@ -64,8 +64,9 @@ class SwarmLearner {
   int size_;
   EntityActor actor_;
   PoolBatch critic_;
-  std::vector<bool> blind_;                            // of the actor's parameters, or empty
-  std::vector<float> actor_numbers_, critic_numbers_;  // the actor's with its log deviations
+  std::vector<bool> blind_;  // parameters of the actor that stay at 0, or empty
+  // The actor's numbers include its log deviations.
+  std::vector<float> actor_numbers_, critic_numbers_;
   AdamState actor_adam_, critic_adam_;
   double mean_ = 0.0, square_ = 1.0, seen_ = 0.0;  // moments of the returns
   double std_ = 1.0;

@@ -9,56 +9,57 @@
 
 namespace stg::learn {
 
-/// What one shard saw in a collection. Row of AUV i of environment e at policy step t:
-/// (t envs + e) agents + i.
+/// The collection of one shard. The row of AUV i of environment e at policy step t is (t envs + e)
+/// agents + i.
 struct SwarmRollout {
   SwarmRollout();
 
   int steps = 0, envs = 0, agents = 0;
   PackedRows actor, critic;
-  std::vector<float> commands;      // [rows, command size], unclipped
-  std::vector<int> choices;         // [rows], of what the network could choose from
-  std::vector<float> log_prob;      // [rows]
-  std::vector<float> own, rewards;  // [rows], the AUV's own mean reward; what it learns from
-  std::vector<std::uint8_t> done;   // [rows], the episode ended with this step
-  PackedRows finals;                // critic's rows of the states that ended an episode,
-  std::vector<int> final_of;        // [rows], which of them; -1: the episode went on
-  PackedRows next;                  // critic's rows of the state after the last step
-  std::vector<float> values, advantages, returns;  // [rows], by the learner
+  std::vector<float> commands;  // [rows, command size], unclipped
+  std::vector<int> choices;     // [rows], index of the choice
+  std::vector<float> log_prob;  // [rows]
+  // [rows]: the AUV's own mean reward; the reward that it learns from.
+  std::vector<float> own, rewards;
+  std::vector<std::uint8_t> done;  // [rows], 1: the episode ended with this step
+  PackedRows finals;               // critic's rows of the states at the end of an episode
+  std::vector<int> final_of;       // [rows], index in finals; -1: the episode went on
+  PackedRows next;                 // critic's rows of the state after the last step
+  std::vector<float> values, advantages, returns;  // [rows], written by the learner
   std::vector<task::EpisodeMetrics> finished;      // episodes that ended
 };
 
-/// The actor as a shard needs it.
+/// The actor, as a shard uses it.
 struct SwarmActor {
   const EntityActor& network;
   const float* parameters;
   const float* log_std;  ///< [command size]
 };
 
-/// What a decision in the band of a target pays one of the `inside` AUVs there, as a share of what
-/// it pays one alone: of targets that are chosen two AUVs are enough, whose ranges tell where it
-/// is, and more of them share the pay of two.
+/// Reward of a decision of one AUV in the band of a target with `inside` AUVs, as a share of the
+/// reward of an AUV alone. For targets that are chosen freely, two AUVs are enough, because two
+/// ranges locate the target; more AUVs share the reward of two.
 double ShareOfBand(bool chosen, int inside);
-/// What such a decision pays everybody: mean over the targets of the AUVs in its band as a share of
-/// two, 1 at most. @param inside of each target
+/// Reward of such a decision for all AUVs: min(inside, 2) / 2, as the mean over the targets. @param
+/// inside number of AUVs in the band of each target
 double ShareCovered(const std::vector<int>& inside);
 
-/// Environments of one scenario, so of one size of swarm, that one worker flies on its own.
+/// Environments of one scenario, all with the same size of swarm, that one worker flies.
 class SwarmShard {
  public:
-  /// @param first_env index of the first environment among all, @param total_envs of all
+  /// @param first_env index of the first environment among all, @param total_envs number of all
   SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& config, int first_env, int envs,
              int total_envs);
 
-  /// Starts the k-th episode of every environment; their first ones are cut to different lengths.
+  /// Starts the k-th episode of every environment. The first episodes are cut to different lengths.
   void RestartAt(std::uint64_t k);
-  /// `config.horizon` policy steps with exploration. @param collection keys the draws
+  /// Makes `config.horizon` policy steps with exploration. @param collection keys the draws
   void Collect(std::uint32_t collection, const SwarmActor& actor, SwarmRollout* out);
 
  private:
   void Observe(const SwarmActor& actor, std::uint32_t collection, int step, SwarmRollout* out);
   void FlyOn(int step, SwarmRollout* out);
-  /// Adds what the decision that was just flown pays to sums_.
+  /// Adds the reward of the last decision to sums_.
   void Pay();
   void Reward(int step, SwarmRollout* out) const;
   double Potential(int e, int i) const;

@@ -12,28 +12,29 @@
 
 namespace stg::learn {
 
-/// A training of one policy for swarms of any size: collections, updates, validation, checkpoints.
+/// Trains one policy for swarms of any size: collections, updates, validation and checkpoints.
 ///
-/// The folder gets progress.csv (a row for each collection), validation.csv (a row for each
-/// validation and task), policy_last.onnx, policy_best.onnx (the best mean band share in
-/// validation), config.json and checkpoint.ckpt. Every `segment` collections all environments start
-/// anew and a checkpoint is written, so a resumed training equals an uninterrupted one bit for bit.
+/// The folder gets progress.csv (one row per collection), validation.csv (one row per validation
+/// and task), policy_last.onnx, policy_best.onnx (the best mean band share in validation),
+/// config.json and checkpoint.ckpt. After every `segment` collections all environments restart and
+/// a checkpoint is written. So a resumed training has the same result as an uninterrupted one, bit
+/// for bit.
 class SwarmTrainer {
  public:
   struct Options {
     std::string out;
     bool resume = false;
-    std::string start_from;  ///< folder of another training whose networks this one begins with
+    std::string start_from;  ///< folder of another training; this one starts with its networks
     int workers = 1;
     std::ostream* log = nullptr;
     const std::atomic<int>* stop = nullptr;
   };
 
-  /// Throws UserError for a folder that holds another training, or none where it is to go on.
+  /// Throws UserError for a folder that contains another training, or none if this one must resume.
   SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask> validation,
                const SwarmConfig& config, const Options& options);
 
-  /// Trains to the end; false: stopped at a checkpoint.
+  /// Trains to the end. Returns false if it was stopped at a checkpoint.
   bool Run();
 
  private:
@@ -55,7 +56,7 @@ class SwarmTrainer {
   std::int64_t steps_ = 0;
   std::uint32_t collection_ = 0, segment_ = 0;
   double seconds_ = 0.0, best_ = -1.0, last_ = -1.0;
-  std::string progress_, table_;  // of the CSV files, whole
+  std::string progress_, table_;  // whole content of the CSV files
 };
 
 }  // namespace stg::learn

@@ -4,21 +4,22 @@
 #include "stg_agent/entities/entities.hpp"
 #include "stg_env/env/vector_env.hpp"
 
-/// What the critic of a swarm of any size sees: an AUV's own numbers, where everybody truly is, and
-/// what truth does not show, namely how wrong the AUV's estimate is.
+/// Input of the critic for a swarm of any size: an AUV's own numbers, the true positions of all,
+/// and the error of the AUV's estimate, which the true state does not contain.
 namespace stg::learn {
 
-/// Of an AUV itself: its own numbers, the error of its estimate along and across the line of sight
-/// and its size, and of the estimate two deviations, age, geometry of the observers (2), lost.
+/// Size of an AUV's own input: its own numbers; the error of its estimate along and across the line
+/// of sight, and the size of the error; two deviations of the estimate, its age, the geometry of
+/// the observers (2), lost.
 inline constexpr int kCriticSelf = agent::kSelfNumbers + 9;
-inline constexpr int kCriticTarget = 11;  ///< of its target
-inline constexpr int kCriticOther = 12;   ///< of every other AUV
+inline constexpr int kCriticTarget = 11;  ///< size of the input of its target
+inline constexpr int kCriticOther = 12;   ///< size of the input of every other AUV
 
 /// The network of a critic.
 agent::PoolSpec SwarmCriticSpec();
 
-/// Appends what the critic sees of AUV i.
-/// @param entities of that AUV now
+/// Appends the critic's input for AUV i.
+/// @param entities of this AUV at present
 void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities& entities,
                   PackedRows* rows);
 

@@ -5,14 +5,14 @@
 
 #include "stg_agent/entities/pool_network.hpp"
 
-/// Layers on packed rows and what flows back through them, by hand.
+/// Layers on packed rows and their gradients, written by hand.
 namespace stg::learn {
 
 inline std::size_t Count(int rows, int cols) {
   return static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
 }
 
-/// Row `row` of rows of `width` numbers.
+/// Row `row` of an array with rows of `width` numbers.
 inline float* RowOf(std::vector<float>* x, int row, int width) {
   return x->data() + static_cast<std::ptrdiff_t>(row) * width;
 }
@@ -27,22 +27,23 @@ inline void AddTimes(float factor, const float* x, int count, float* y) {
 /// y [rows, outputs] = x W^T.
 void ProductRows(const float* p, const agent::PoolBlock& weight, const float* x, int rows,
                  std::vector<float>* y);
-/// y [rows, outputs] = x W^T + b, then relu if asked.
+/// y [rows, outputs] = x W^T + b; then the rectifier if `relu`.
 void DenseRows(const float* p, const agent::PoolBlocks::Layer& layer, const float* x, int rows,
                bool relu, std::vector<float>* y);
 
-/// Where relu cut off, nothing flows back.
+/// Sets the gradient to zero where the rectifier was zero.
 void UndoRelu(const std::vector<float>& y, std::vector<float>* d);
-/// Adds the gradient of a weight, given d [rows, outputs] of its products. d_x may be null; it is
-/// [rows, inputs], written, or added to.
+/// Adds the gradient of a weight, from the gradient d [rows, outputs] of its products. d_x [rows,
+/// inputs] may be null; it is written, or added to if `add`.
 void UndoProduct(const float* p, const agent::PoolBlock& weight, const float* x, int rows,
                  const float* d, float* gradient, bool add, std::vector<float>* d_x);
-/// The same of a layer, whose d_x is written.
+/// The same for a layer; d_x is written.
 void UndoDense(const float* p, const agent::PoolBlocks::Layer& layer, const float* x, int rows,
                const float* d, float* gradient, std::vector<float>* d_x);
 
-/// Orthogonal weights of gain sqrt(2), of `output_gain` in the blocks of `outputs`; vectors are 0.
-/// @param network tells the networks of one seed apart
+/// Writes orthogonal weights with gain sqrt(2), or `output_gain` in the blocks `outputs`. Vectors
+/// are 0.
+/// @param network distinguishes the networks of one seed
 void Initialise(const std::vector<agent::PoolBlock>& blocks,
                 const std::vector<agent::PoolBlock>& outputs, double output_gain,
                 std::uint64_t seed, std::uint32_t network, float* parameters);

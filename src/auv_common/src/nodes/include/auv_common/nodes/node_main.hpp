@@ -86,8 +86,8 @@ template <class Node>
 int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = NodeClock::kTopic,
             std::size_t memory = kNodeMemory) {
   if (memory > 0) LimitMemory(memory);
-  std::setvbuf(stdout, nullptr, _IOLBF,
-               0);  // so that a pipe such as `| tee` gets each line at once
+  // So that a pipe such as `| tee` gets each line at once.
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   std::vector<char*> arguments(argv, argv + argc);
   // roscpp subscribes to /clock if this parameter is set, so its name is changed to an unset one.
   char no_clock[] = "/use_sim_time:=/not_asked/use_sim_time";

@@ -12,9 +12,9 @@
 namespace stg::learn {
 
 /// HAPPO (Kuba et al. 2022, "Trust region policy optimisation in multi-agent reinforcement
-/// learning"): an actor for each AUV, and one value of the swarm's true state. The actors learn one
-/// after the other in a fresh random order, each on the advantage times the joint probability ratio
-/// of those before it; then the critic learns.
+/// learning"): one actor for each AUV, and one value of the swarm's true state. The actors learn
+/// one after the other, in a new random order each time. The loss of an actor has the advantage
+/// times the joint probability ratio of the actors before it. The critic learns last.
 class Happo : public Algorithm {
  public:
   Happo(const HappoConfig& config, const TrainConfig& common, const Problem& problem,
@@ -29,7 +29,7 @@ class Happo : public Algorithm {
   void Load(const Archive& archive) override;
   void StartFrom(const Archive& archive) override;
 
-  /// One for each AUV.
+  /// One policy for each AUV.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
@@ -38,7 +38,7 @@ class Happo : public Algorithm {
   const std::vector<Trained>& actors() const { return actors_; }
   const Trained& critic() const { return critic_; }
   const ValuedRollouts& rollouts() const { return rollouts_; }
-  /// After the last AUV of the last update.
+  /// The ratio after the last AUV of the last update.
   const JointRatio& ratio() const { return ratio_; }
   /// The AUVs in the order of the last update.
   const std::vector<int>& order() const { return order_; }

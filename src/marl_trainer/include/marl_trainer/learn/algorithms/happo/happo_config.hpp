@@ -7,7 +7,7 @@
 namespace stg::learn {
 
 /// Configuration of HAPPO: the options and presets of all on-policy methods, and how the actors
-/// take their turns.
+/// take turns.
 struct HappoConfig : CopyableConfig<HappoConfig, PpoConfig> {
   bool sequential = true;
 

@@ -8,19 +8,20 @@
 
 namespace stg::learn {
 
-/// The factor M of each sample (Kuba et al. 2022): the ratio of the joint densities, new over old,
-/// of the actions taken by the AUVs that have learned so far.
+/// The factor M of each sample (Kuba et al. 2022): the ratio new / old of the joint density of the
+/// actions of all AUVs that have learned so far.
 class JointRatio {
  public:
   /// @param networks must outlive this object.
   JointRatio(const ActorCritic& networks, const Team& team);
 
-  /// Of the samples of these rollouts, which must outlive the use of this object: 1.
+  /// Sets the factors of the samples of these rollouts to 1. The rollouts must outlive the use of
+  /// this object.
   void Begin(const std::vector<const RolloutBuffer*>& rollouts);
-  /// Multiplies by the ratio of an AUV that has learned.
+  /// Multiplies the factors by the ratio of an AUV that has learned.
   void Multiply(int auv, const Trained& actor);
 
-  /// In the order of the rollouts.
+  /// Factors in the order of the rollouts.
   const std::vector<double>& factors() const { return factors_; }
   /// Mean |M - 1| over the samples of all ranks.
   double Miss() const;
@@ -30,8 +31,8 @@ class JointRatio {
     Mlp::Workspace pass;
     std::vector<float> observations;
   };
-  /// The samples of a rollout are computed in blocks: the last digits of a product of matrices may
-  /// depend on how many rows there are.
+  /// Part of a rollout that is computed at once. The last digits of a matrix product may depend on
+  /// the number of rows, so the blocks are fixed.
   struct Block {
     const RolloutBuffer* rollout;
     int from, to;

@@ -9,8 +9,8 @@
 namespace stg::learn {
 
 /// Independent PPO (de Witt et al. 2020) with shared parameters: every AUV learns from the team's
-/// reward with a value of its own observation. That is MAPPO where each AUV is a swarm of one whose
-/// state is what it sees, and so it is computed.
+/// reward, with a value of its own observation. It is computed as MAPPO in which each AUV is a
+/// swarm of one, and the state of this swarm is the AUV's observation.
 class Ippo : public Algorithm {
  public:
   Ippo(const IppoConfig& config, const TrainConfig& common, const Problem& problem,
@@ -33,7 +33,7 @@ class Ippo : public Algorithm {
   std::vector<NetworkSize> Sizes() const override { return single_.Sizes(); }
 
  private:
-  /// What an environment tells of the whole swarm, repeated for each AUV.
+  /// Data of an environment's whole swarm, repeated for each AUV.
   struct Told {
     std::vector<float> rewards;           ///< [envs, agents]
     std::vector<std::uint8_t> truncated;  ///< [envs, agents]

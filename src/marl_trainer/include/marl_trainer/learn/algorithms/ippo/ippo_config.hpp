@@ -6,8 +6,8 @@
 
 namespace stg::learn {
 
-/// Configuration of IPPO: MAPPO's options and presets; the critic's are those of the value of one
-/// AUV's own observation.
+/// Configuration of IPPO: MAPPO's options and presets. The options of the critic apply to the value
+/// of an AUV's own observation.
 struct IppoConfig : CopyableConfig<IppoConfig, MappoConfig> {
   void ApplyRecordings(const TrainConfig& common) override;
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,

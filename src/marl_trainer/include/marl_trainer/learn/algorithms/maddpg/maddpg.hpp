@@ -8,9 +8,9 @@
 
 namespace stg::learn {
 
-/// MADDPG (Lowe et al. 2017) with an actor that all AUVs share, and by its options MATD3 (Fujimoto
-/// et al. 2018, Ackermann et al. 2019): critics of state and joint action, a deterministic actor
-/// that climbs the first one's gradient.
+/// MADDPG (Lowe et al. 2017) with an actor that all AUVs share. With other options it is MATD3
+/// (Fujimoto et al. 2018, Ackermann et al. 2019). It has critics of the state and the joint action,
+/// and a deterministic actor that follows the gradient of the first critic.
 class Maddpg : public CentralCriticLearner {
  public:
   Maddpg(const ReplayOptions& options, const DeterministicOptions& own, const TrainConfig& common,
@@ -30,7 +30,9 @@ class Maddpg : public CentralCriticLearner {
   struct Scratch;  // per slice
 
   const DeterministicOptions own_;
-  const bool others_act_now_;  ///< in the actor's loss; else as they did
+  /// In the actor's loss the other AUVs act by the present policy; false: they take their recorded
+  /// actions.
+  const bool others_act_now_;
   std::vector<float> actor_target_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };

@@ -8,13 +8,13 @@
 
 namespace stg::learn {
 
-/// Which actions of the other AUVs the actor's loss is about: those that they took, or those that
-/// they would take now.
+/// Actions of the other AUVs in the actor's loss: their recorded actions, or the actions of the
+/// present policy.
 enum class OthersAct { kThen, kNow };
 
 /// Options of methods with a deterministic actor.
 struct DeterministicOptions {
-  ExplorationRamp noise{0.02, 0.2};  ///< in shares of the action's scale
+  ExplorationRamp noise{0.02, 0.2};  ///< standard deviation as a share of the action's scale
   OthersAct others = OthersAct::kNow;
   int critics = 1;
   int policy_delay = 1;

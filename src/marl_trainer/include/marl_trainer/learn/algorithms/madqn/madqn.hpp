@@ -9,14 +9,15 @@
 
 namespace stg::learn {
 
-/// Dimensions of an action that a row of the book is free in; the others repeat them.
+/// Number of action dimensions that a row of the book sets freely. The other dimensions repeat
+/// them.
 constexpr int kBookDimensions = 3;
 
-/// The actions that a Q-network chooses among: `heads` choices, each of a row of `choices`.
+/// The actions that a Q-network chooses from. Each of the `heads` chooses one row of `choices`.
 struct Codebook {
   Codebook(const Problem& problem, const QOptions& options);
 
-  /// The row that an action of head h stands for, the nearest. @param action [action_size], +-1
+  /// The row nearest to an action, for head h. @param action [action_size], +-1
   int Nearest(int head, const float* action) const;
 
   int heads = 1, count = 1, width = 1;  ///< action_size = heads * width
@@ -24,9 +25,10 @@ struct Codebook {
 };
 
 /// MADQN: independent double Q-learning on each AUV's own observation (Tampuu et al. 2017, van
-/// Hasselt et al. 2016) from the team's reward, with a network that all AUVs share. One head per
-/// action dimension (Tavakoli et al. 2018), or one for all combinations or a book of them; dueling
-/// (Wang et al. 2016): outputs V, then the advantages [heads, count], and q = V + A - mean A.
+/// Hasselt et al. 2016), with a network that all AUVs share. It learns from the team's reward, or
+/// from the AUV's own (QReward). It has one head per action dimension (Tavakoli et al. 2018), or
+/// one head for all combinations or for a book of them. The network is dueling (Wang et al. 2016):
+/// its outputs are V and then the advantages A [heads, count], and q = V + A - mean A.
 class Madqn : public ReplayLearner {
  public:
   Madqn(const ReplayOptions& options, const QOptions& own, const TrainConfig& common,
@@ -34,7 +36,7 @@ class Madqn : public ReplayLearner {
   ~Madqn() override;
 
   void Act(const Decision& decision, const Actions& out) override;
-  /// The greedy one.
+  /// The greedy policy.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
@@ -49,7 +51,7 @@ class Madqn : public ReplayLearner {
  private:
   struct Scratch;  // per slice
 
-  /// Summed over a slice's samples, the means over AUVs and heads.
+  /// Sums over the samples of a slice, of means over AUVs and heads.
   struct Sums {
     double squares = 0.0, values = 0.0;
   };
@@ -63,8 +65,8 @@ class Madqn : public ReplayLearner {
   SlicedGradient gradient_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::vector<ObservedPass> acting_;      // by worker
-  std::vector<std::vector<int>> chosen_;  // by worker: what each head of one AUV chose
-  // Since the last report.
+  std::vector<std::vector<int>> chosen_;  // by worker: choice of each head of one AUV
+  // Sums and last values since the last report.
   double squares_ = 0.0, values_ = 0.0, norm_ = 0.0;
   double rate_ = 1.0;
 };

@@ -8,13 +8,13 @@
 
 namespace stg::learn {
 
-/// What has a value of its own: each bin of each dimension, each combination of all dimensions, or
-/// each combination of three dimensions, which the other three repeat.
+/// The choices that have a value: each bin of each dimension, each combination of all dimensions,
+/// or each combination of three dimensions (the other three repeat them).
 enum class QHeads { kSeparate, kJoint, kBook };
-/// What an AUV learns from.
+/// Reward that an AUV learns from.
 enum class QReward { kTeam, kOwn };
 
-/// Options of MADQN's own.
+/// Options that only MADQN has.
 struct QOptions {
   int bins = 5;
   double bin_power = 1.0;

@@ -10,8 +10,8 @@
 
 namespace stg::learn {
 
-/// MAPPO (Eqs. 37-44): the clipped ratio of an actor that all AUVs share, and one value of the
-/// swarm's true state per environment step.
+/// MAPPO (Eqs. 37-44): clipped probability ratio, one actor that all AUVs share, and one value of
+/// the swarm's true state per environment step.
 class Mappo : public Algorithm {
  public:
   Mappo(const MappoConfig& config, const TrainConfig& common, const Problem& problem,

@@ -9,8 +9,9 @@
 
 namespace stg::learn {
 
-/// MASAC: soft actor-critic (Haarnoja et al. 2018) with two critics of state and joint action, an
-/// actor that all AUVs share, and an entropy weight that is learned for each AUV's entropy.
+/// MASAC: soft actor-critic (Haarnoja et al. 2018) with two critics of the state and the joint
+/// action, and one actor that all AUVs share. The weight of the entropy is learned, for a target
+/// entropy of each AUV.
 class Masac : public CentralCriticLearner {
  public:
   Masac(const ReplayOptions& options, const SoftOptions& own, const TrainConfig& common,
@@ -18,7 +19,7 @@ class Masac : public CentralCriticLearner {
   ~Masac() override;
 
   void Act(const Decision& decision, const Actions& out) override;
-  /// The mean before the squash, squashed.
+  /// The policy is the squashed mean.
   std::vector<agent::Policy> Policies(const agent::PolicyMetadata& metadata) const override;
   std::vector<ReportColumn> Columns() const override;
   std::vector<NetworkSize> Sizes() const override;
@@ -35,7 +36,7 @@ class Masac : public CentralCriticLearner {
  private:
   struct Scratch;  // per slice
 
-  /// What the actor does on observations [rows] with fresh draws, into the scratch memory.
+  /// Draws the actor's actions on observations [rows] into the scratch memory.
   void Sample(const float* observations, int rows, const StepContext& step, int purpose, int slice);
 
   const SoftOptions own_;
@@ -43,7 +44,7 @@ class Masac : public CentralCriticLearner {
   std::vector<float> log_alpha_;  // one number
   AdamState alpha_adam_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
-  std::vector<std::vector<float>> noise_;  // by worker, of one AUV's action
+  std::vector<std::vector<float>> noise_;  // by worker, for one AUV's action
 };
 
 }  // namespace stg::learn

@@ -7,7 +7,7 @@
 
 namespace stg::learn {
 
-/// Options of MASAC's own.
+/// Options that only MASAC has.
 struct SoftOptions {
   double initial_alpha = 0.002;
   double alpha_lr = 1e-3;

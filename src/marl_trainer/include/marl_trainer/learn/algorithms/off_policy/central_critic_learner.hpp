@@ -8,12 +8,12 @@
 
 namespace stg::learn {
 
-/// An off-policy method with an actor that all AUVs share and critics of state and joint action:
-/// how both take their steps. A method says what the critics are to predict and what the actor
-/// climbs.
+/// The gradient steps of off-policy methods with an actor that all AUVs share and critics of the
+/// state and the joint action. A method defines the targets of the critics and the actor's
+/// objective.
 class CentralCriticLearner : public ReplayLearner {
  public:
-  /// @param critics how many
+  /// @param critics number of critics
   CentralCriticLearner(const ReplayOptions& options, const NetworkSpec& actor, int critics,
                        const TrainConfig& common, const Problem& problem, const Team& team);
 
@@ -23,28 +23,28 @@ class CentralCriticLearner : public ReplayLearner {
   const JointCritics& critics() const { return critics_; }
 
  protected:
-  /// What a slice's gradient is computed from, summed over its samples.
+  /// Numbers behind a slice's gradient, summed over its samples.
   struct Sums {
     double squares = 0.0;  ///< (q - target)^2
-    double value = 0.0;    ///< of what the actor does
-    double entropy = 0.0;  ///< of each AUV's actions, where there is one
+    double value = 0.0;    ///< q of the actor's actions
+    double entropy = 0.0;  ///< of each AUV's actions, if the method has an entropy
   };
 
-  /// Adds the critics' gradient on a slice of the batch, the mean over the whole batch; `sums` gets
-  /// the squares.
+  /// Adds the critics' gradient of one slice, for the mean over the whole batch. `sums` gets the
+  /// squares.
   virtual void AddCriticGradient(const StepContext& step, int slice, float* gradient,
                                  Sums* sums) = 0;
-  /// The same of the actor; `sums` gets the rest.
+  /// The same for the actor. `sums` gets the rest.
   virtual void AddActorGradient(const StepContext& step, int slice, float* gradient,
                                 Sums* sums) = 0;
 
-  /// A gradient step of all critics, and of the actor; returns the means over samples.
+  /// One gradient step of all critics or of the actor. The actor's step returns means over samples.
   void TrainCritics(const StepContext& step);
   Sums TrainActor(const StepContext& step);
 
   void RescaleValues(double ratio, double shift) override { critics_.RescaleValues(ratio, shift); }
 
-  /// Multiplications of a sample in a step of the critics, and in one of the actor.
+  /// Multiplications per sample in one step of the critics and in one step of the actor.
   struct Products {
     double critics, actor;
   };
@@ -55,9 +55,9 @@ class CentralCriticLearner : public ReplayLearner {
     double learning_rate, critic_loss, value, entropy, actor_norm, critic_norm;
     int actor_steps;
   };
-  /// Means over the steps since the last call, `steps` of the critics.
+  /// Means over the steps since the last call. The critics made `steps` of them.
   Means TakeMeans(int steps);
-  /// Floating-point operations of so many steps.
+  /// Floating-point operations of these numbers of steps.
   double Flops(int critic_steps, int actor_steps) const;
 
   const Mlp& actor() const { return actor_; }

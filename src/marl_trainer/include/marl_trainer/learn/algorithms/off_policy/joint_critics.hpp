@@ -9,8 +9,8 @@
 
 namespace stg::learn {
 
-/// One or two networks q(state, actions of all AUVs) with the targets that follow them (Lowe et al.
-/// 2017; the smaller of two against overestimation: Fujimoto et al. 2018).
+/// One or two networks q(state, actions of all AUVs), and target networks that follow them (Lowe et
+/// al. 2017). The smaller of two values avoids overestimation (Fujimoto et al. 2018).
 class JointCritics {
  public:
   JointCritics(const Problem& problem, const ReplayOptions& options, int count, std::uint64_t seed);
@@ -27,17 +27,18 @@ class JointCritics {
     std::vector<float> d_output_, d_actions_;  // [rows], [rows, joint action]
   };
 
-  /// Value of the targets, the smallest, at states [rows, state_size] and joint actions [rows, A].
+  /// Smallest value of the target networks at states [rows, state_size] and joint actions [rows,
+  /// A].
   void Target(const float* states, const float* actions, int rows, Scratch* scratch,
               float* values) const;
 
-  /// Adds the gradient of weight * sum (q - target)^2 of every critic to gradient [parameters];
-  /// returns the sum of the squares, the mean over critics.
+  /// Adds the gradient of weight * sum (q - target)^2 of every critic to gradient [parameters].
+  /// Returns the sum of the squares, as the mean over critics.
   double AddGradient(const ReplayBatch& batch, const float* targets, float weight, Scratch* scratch,
                      float* gradient) const;
 
-  /// Values at joint actions, and d value / d actions [rows, A] times `weight`.
-  /// @param smallest of all critics, row by row; else the first one's
+  /// Computes the values at joint actions, and d value / d actions [rows, A] times `weight`.
+  /// @param smallest use the smallest of all critics in each row; false: use the first critic
   void ActionGradient(const float* states, const float* actions, int rows, float weight,
                       bool smallest, Scratch* scratch, float* values, float* d_actions) const;
 

@@ -7,34 +7,35 @@
 
 namespace stg::learn {
 
-/// How raw numbers become what off-policy networks see and predict.
+/// Scales between raw numbers and the inputs and outputs of off-policy networks.
 ///
-/// Rewards are shifted by their mean m and divided by s = std(r) / (1 - gamma). Because no episode
-/// ever ends but by truncation, the shift moves every value by the same m / (1 - gamma), and
-/// changes no decision: Q = s q + m / (1 - gamma), for networks that predict q.
+/// The mean m of the rewards is subtracted, and the result is divided by s = std(r) / (1 - gamma).
+/// Every episode ends by truncation. So the shift moves all values by the same m / (1 - gamma) and
+/// changes no decision: Q = s q + m / (1 - gamma), where networks predict q.
 struct ReplayScales {
   Normaliser observations, states;
-  float action = 1.0F;  ///< actions are in +-action; networks see them in +-1
+  float action = 1.0F;  ///< raw actions are in +-action; the inputs of networks are in +-1
   float reward_mean = 0.0F, reward_std = 1.0F;
   float value_mean = 0.0F;  ///< m / (1 - gamma)
 };
 
-/// Samples as networks see them: normalised, in rows.
+/// Samples as inputs of networks: normalised, in rows.
 struct ReplayBatch {
   /// Memory for up to `rows` samples.
-  /// @param own_rewards whether they have each AUV's rewards, too
+  /// @param own_rewards also store the rewards of each AUV
   ReplayBatch(const Problem& problem, int rows, bool own_rewards = false);
 
   /// Writes sample number `row`.
   void Set(int row, const ReplayBuffer::Sample& sample, const ReplayScales& scales);
-  /// Scales the raw own_rewards of sample number `row`, which Set has set.
+  /// Scales the raw own_rewards of sample number `row`, which the caller has written. Call Set
+  /// before.
   void ScaleOwnRewards(int row, const ReplayBuffer::Sample& sample, const ReplayScales& scales);
 
   std::vector<float> observations, next_observations;  ///< [rows, agents, observation_size]
   std::vector<float> states, next_states;              ///< [rows, state_size]
   std::vector<float> actions;                          ///< [rows, agents, action_size], in +-1
   std::vector<float> rewards, discounts;               ///< [rows]; q = reward + discount * next q
-  std::vector<float> own_rewards;                      ///< [rows, agents], or nothing
+  std::vector<float> own_rewards;                      ///< [rows, agents], or empty
   int count = 0;
 
  private:

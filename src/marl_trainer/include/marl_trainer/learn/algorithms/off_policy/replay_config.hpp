@@ -32,13 +32,13 @@ struct ReplayOptions {
   double std_floor = 0.01;
 };
 
-/// Their configuration, and their presets: `fast` (ours) and `paper` (Table S2, where it says
-/// something).
+/// Configuration of off-policy methods, with their presets: `fast` (ours) and `paper` (values of
+/// Table S2 where it has them).
 struct ReplayConfig : AlgorithmConfig, ReplayOptions {
   void Describe(config::Table* table) override;
-  /// Adds the options of critics of state and joint action.
+  /// Adds the options of critics of the state and the joint action.
   void DescribeCritics(config::Table* table);
-  /// The common part of `fast` and `paper`.
+  /// Applies the common part of `fast` and `paper`.
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
   int MostRanks() const override { return kGroups; }

@@ -15,13 +15,13 @@
 
 namespace stg::learn {
 
-/// What all off-policy methods share: the replayed transitions, the normalisers, when a gradient
-/// step is due and on which samples, and checkpoints. A method adds its networks: how to act and
-/// what a gradient step does. Every rank keeps what all of them have seen, and computes the
-/// gradient of its slices of a batch.
+/// Common part of all off-policy methods: the replayed transitions, the normalisers, the schedule
+/// of gradient steps, their samples, and checkpoints. A method adds its networks, how they act, and
+/// its gradient step. Every rank stores the transitions of all ranks, and computes the gradient of
+/// its own slices of a batch.
 class ReplayLearner : public Algorithm {
  public:
-  /// @param own_rewards whether samples have each AUV's own rewards, and values their scale
+  /// @param own_rewards samples also have each AUV's own rewards; values then have their scale
   ReplayLearner(const ReplayOptions& options, const TrainConfig& common, const Problem& problem,
                 const Team& team, bool own_rewards = false);
 
@@ -33,28 +33,29 @@ class ReplayLearner : public Algorithm {
   void Load(const Archive& archive) override;
   void StartFrom(const Archive& archive) override;
 
-  /// Environment steps that it has seen.
+  /// Environment steps of which it has received the transitions.
   std::int64_t seen() const { return seen_; }
   const ReplayScales& scales() const { return scales_; }
 
  protected:
-  /// A gradient step: which one of the run, and the share of the learning rates.
+  /// A gradient step: its number in the run, and the factor of the learning rates.
   struct StepContext {
     std::uint32_t number = 0;
     double rate = 1.0;
   };
 
-  /// What checkpoints hold of the method, by name; the arrays have their size and outlive this
+  /// Adds arrays to checkpoints under this name. The arrays keep their size and outlive this
   /// object.
-  /// @param start whether StartFrom takes it too
+  /// @param start StartFrom also takes them
   void Keep(const std::string& name, std::vector<float>* numbers, bool start = true);
   void Keep(const std::string& name, AdamState* adam);
 
   /// One gradient step on the samples in batches(), one for each slice.
   virtual void Step(const StepContext& step) = 0;
-  /// The values' scale changes: what was q is now ratio * q + shift. No prediction may change.
+  /// The scale of the values changes: the new q is ratio * q + shift. The networks must be changed
+  /// so that all predictions stay the same.
   virtual void RescaleValues(double ratio, double shift) = 0;
-  /// Numbers of Columns() of the gradient steps since the last call, which were `steps`.
+  /// Numbers of Columns() for the gradient steps since the last call. There were `steps` of them.
   virtual UpdateReport Report(int steps) = 0;
 
   const Problem& problem() const { return problem_; }
@@ -62,13 +63,13 @@ class ReplayLearner : public Algorithm {
   std::uint64_t seed() const { return seed_; }
   WorkerPool* pool() { return team_.pool; }
   std::vector<ReplayBatch>& batches() { return batches_; }
-  /// Whether actions are still random.
+  /// True while actions are still random.
   bool warming_up() const { return seen_ < options_.warmup; }
-  /// Place of an environment among all, in [0, 1]: environments explore differently.
+  /// Place of an environment among all of them, in [0, 1]. Environments explore differently.
   double Rank(int env) const;
-  /// Samples of a slice, at most.
+  /// Largest number of samples of a slice.
   int slice_rows() const;
-  /// What was computed of each slice: of all ranks, from those of this rank's.
+  /// Results of all slices of all ranks, from the results of this rank's slices.
   template <class T>
   std::vector<T> OfAllSlices(const std::array<T, kGroups>& own) const {
     const auto from = own.begin() + slices_.first;
@@ -86,8 +87,8 @@ class ReplayLearner : public Algorithm {
   const std::uint64_t seed_;
   const bool own_rewards_;
   const Team team_;
-  const GroupShare slices_;      // of a batch
-  std::size_t first_shard_ = 0;  // of this rank among those of all
+  const GroupShare slices_;      // slices of a batch
+  std::size_t first_shard_ = 0;  // index of this rank's first shard among all shards
   ReplayBuffer replay_;
   RunningMoments observations_, states_, rewards_;
   struct Moments {
@@ -107,7 +108,7 @@ class ReplayLearner : public Algorithm {
   };
   std::vector<Kept> kept_;
   std::vector<std::pair<std::string, AdamState*>> kept_adams_;
-  double due_ = 0.0;  // gradient steps
+  double due_ = 0.0;  // gradient steps that are due
 };
 
 /// target += tau (online - target).

@@ -11,22 +11,22 @@
 
 namespace stg::learn {
 
-/// A network with the numbers that are trained, and the optimiser's memory of them.
+/// Trained parameters of a network, and the state of their optimiser.
 struct Trained {
   explicit Trained(std::vector<float> initial)
       : numbers(std::move(initial)), adam(numbers.size()) {}
 
-  /// As `name` and `name`_adam.
+  /// Stores them as `name` and `name`_adam.
   void Save(const std::string& name, Archive* archive) const;
-  /// Throws UserError for another size.
+  /// Throws UserError if the size differs.
   void Load(const std::string& name, const Archive& archive);
 
   std::vector<float> numbers;
   AdamState adam;
 };
 
-/// Shapes of an actor, with log sigma, and of the critic, which maps the true state of the swarm to
-/// one value per environment step.
+/// Shapes of an actor, with log sigma, and of the critic. The critic maps the true state of the
+/// swarm to one value per environment step.
 struct ActorCritic {
   ActorCritic(const Problem& problem, const PpoOptions& config);
 
@@ -36,11 +36,11 @@ struct ActorCritic {
   int action_size() const { return actor.action_size(); }
 
   /// Replaces the mean of an AUV's action by a draw around it.
-  /// @param row of the AUV in `out`, its environment times `agents` plus its number
+  /// @param row row of the AUV in `out`: its environment times `agents` plus its number
   void Explore(const Trained& trained_actor, const DrawKeys& keys, int agents, int row,
                const Actions& out) const;
 
-  /// The i-th actor of a seed, and the critic.
+  /// Initial parameters of the i-th actor of a seed, and of the critic.
   Trained NewActor(std::uint64_t seed, int i, double log_std) const;
   Trained NewCritic(std::uint64_t seed) const;
 };

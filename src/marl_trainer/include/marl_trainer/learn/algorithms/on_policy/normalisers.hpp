@@ -9,35 +9,36 @@
 
 namespace stg::learn {
 
-/// Means and standard deviation of what the networks see and predict, fixed for
-/// one collection.
+/// Means and standard deviations of the inputs and outputs of the networks, fixed for one
+/// collection.
 struct Scales {
   Normaliser observations, states;
   float value_mean = 0.0F, value_std = 1.0F;
 };
 
-/// The running moments behind the scales of inputs and value targets.
+/// The running moments from which the scales of inputs and value targets are computed.
 class Normalisers {
  public:
   Normalisers(const Problem& problem, const PpoOptions& config);
 
   const Scales& scales() const { return scales_; }
 
-  /// Takes in raw observations and states. Call after the update on them: it changes the policy
-  /// once UpdateInputScales applies it.
+  /// Adds raw observations and states. Call it after the update on them, because the policy changes
+  /// when UpdateInputScales applies them.
   void Add(const RunningMoments& observations, const RunningMoments& states);
   void UpdateInputScales();
 
-  /// Takes in value targets and changes the critic's last layer with the scale, so that no
-  /// prediction changes (PopArt, van Hasselt et al. 2016).
+  /// Adds value targets, and changes the critic's last layer with the new scale, so that all
+  /// predictions stay the same (PopArt, van Hasselt et al. 2016).
   /// @param parameters of the critic.
   void AddTargets(const RunningMoments& targets, const Mlp& critic, float* parameters);
 
-  /// Takes the observations' moments of a policy file, as of all that it was trained on.
+  /// Takes the moments of the observations from a policy file, as if they were from its whole
+  /// training.
   void StartFrom(const agent::Policy& policy, int agents);
 
   void Save(Archive* archive) const;
-  /// Throws UserError for another size and leaves this object as it was.
+  /// Throws UserError if a size differs, and leaves this object unchanged.
   void Load(const Archive& archive);
 
  private:

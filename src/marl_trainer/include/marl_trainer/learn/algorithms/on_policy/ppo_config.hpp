@@ -35,11 +35,11 @@ struct PpoOptions {
   double std_floor = 0.01;
   double std_scale = 1.0;
   ImitationConfig imitation;
-  /// The normalisers take in every n-th decision; no option of the command line.
+  /// The normalisers use every n-th decision. This is no option of the command line.
   int moment_stride = 4;
 };
 
-/// Their configuration, and their presets: `fast` (ours) and `paper` (Table S2).
+/// Configuration of on-policy methods, with their presets: `fast` (ours) and `paper` (Table S2).
 struct PpoConfig : AlgorithmConfig, PpoOptions {
   void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;

@@ -6,7 +6,7 @@
 
 namespace stg::learn {
 
-/// Sums over rows of what an update reports.
+/// Sums over rows, for the report of an update.
 struct PpoSums {
   double actor_loss = 0.0, value_loss = 0.0, kl = 0.0, clipped = 0.0;
   double imitation_error = 0.0;  ///< squared distance to the teacher's action
@@ -14,34 +14,34 @@ struct PpoSums {
   void Add(const PpoSums& other);
 };
 
-/// Minibatch rows, gathered; [count] environment steps of `agents` rows each. The actor's loss
-/// reads no states and targets, the critic's nothing else.
+/// Gathered rows of a minibatch: [count] environment steps of `agents` rows each. The critic's loss
+/// reads only states and targets, and the actor's loss reads all the others.
 struct PpoBatch {
   int count = 0, agents = 0;
   const float* observations = nullptr;  ///< [count, agents, F]
   const float* actions = nullptr;       ///< [count, agents, A]
   const float* log_prob = nullptr;      ///< [count, agents]
-  const float* teacher = nullptr;       ///< [count, agents, A]; read where imitation > 0
+  const float* teacher = nullptr;       ///< [count, agents, A]; only read if imitation > 0
   const float* states = nullptr;        ///< [count, S]
   const float* advantages = nullptr;    ///< [count], normalised
   const float* targets = nullptr;       ///< [count], normalised value targets
-  /// In [0, 1]: share of the actor's loss that is, instead of Eq. 41, half the squared miss of
-  /// the teacher's action a, in sigmas, over (1 + |a / sigma|^2)^(f/2), f = imitation_focus.
-  /// Sigma is not fitted to it.
+  /// Share of the actor's loss that is imitation, in [0, 1]. The imitation loss replaces Eq. 41 by
+  /// half the squared distance to the teacher's action a, in sigmas, over (1 + |a / sigma|^2)^(f/2)
+  /// with f = imitation_focus. Sigma gets no gradient of it.
   float imitation = 0.0F;
 };
 
-/// Loss of Eqs. 41-44 and its gradient, on one worker's scratch memory.
+/// Loss of Eqs. 41-44 and its gradient, with the scratch memory of one worker.
 class PpoLoss {
  public:
-  /// @param networks must outlive this object. @param max_rows of a batch
+  /// @param networks must outlive this object. @param max_rows largest number of rows of a batch
   PpoLoss(const ActorCritic& networks, const PpoOptions& config, int max_rows);
 
-  /// Adds the gradient of the actor's loss (Eqs. 41, 42), log sigma's too, to gradient
-  /// [parameters]. Every term is weighted as one of `minibatch` environment steps.
+  /// Adds the gradient of the actor's loss (Eqs. 41, 42), including log sigma, to gradient
+  /// [parameters]. Each term has the weight of one of `minibatch` environment steps.
   void AddActor(const float* actor, const PpoBatch& batch, int minibatch, float* gradient,
                 PpoSums* sums);
-  /// The same of the critic (Eq. 43).
+  /// The same for the critic (Eq. 43).
   void AddCritic(const float* critic, const PpoBatch& batch, int minibatch, float* gradient,
                  PpoSums* sums);
 

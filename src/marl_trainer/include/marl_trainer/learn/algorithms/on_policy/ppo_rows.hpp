@@ -7,22 +7,22 @@
 
 namespace stg::learn {
 
-/// The AUVs whose rows a batch has: one of them, or all.
+/// The AUVs whose rows are in a batch: one AUV or all.
 struct AuvRange {
   int first = 0, count = 1;
 };
 
-/// Memory to gather samples of a minibatch in, for one pass through a network.
+/// Memory in which the samples of a minibatch are gathered, for one pass through a network.
 class PpoRows {
  public:
-  /// @param rows at most
+  /// @param rows largest number of rows
   PpoRows(const ActorCritic& networks, int rows);
 
-  /// What the actor's loss reads of the samples at places from .. to-1, rows of some AUVs.
-  /// @param weights of the advantages, by sample; null: 1
+  /// Inputs of the actor's loss for the samples at places from .. to-1, with the rows of some AUVs.
+  /// @param weights factors of the advantages, by sample; null: 1
   PpoBatch Actor(const PpoSamples& samples, int from, int to, const AuvRange& auvs,
                  const std::vector<double>* weights, float imitation);
-  /// What the critic's loss reads of them.
+  /// Inputs of the critic's loss for these samples.
   PpoBatch Critic(const PpoSamples& samples, int from, int to);
 
  private:

@@ -11,14 +11,14 @@
 
 namespace stg::learn {
 
-/// Sums of an epoch, in an order that depends neither on workers nor on ranks.
+/// Sums over an epoch. Their order depends neither on workers nor on ranks.
 class SlicedSums {
  public:
   explicit SlicedSums(const Team& team);
 
-  /// Of this rank's group; the computation of its gradient adds to it.
+  /// Sums of this rank's group g. The computation of the group's gradient adds to them.
   PpoSums& group(int g) { return groups_[static_cast<std::size_t>(g)]; }
-  /// Sums of all minibatches of all ranks; the next epoch begins.
+  /// Sums over all minibatches of all ranks. Then the next epoch begins.
   PpoSums EndEpoch();
 
  private:
@@ -26,11 +26,11 @@ class SlicedSums {
   std::vector<PpoSums> groups_;
 };
 
-/// What all methods of this family report, in the order of the columns.
+/// Numbers that all on-policy methods report, in the order of the columns.
 std::vector<ReportColumn> PpoColumns();
 
-/// Epochs of minibatch gradient steps over one collection, on an actor or on the critic. A method
-/// says whose, in which order and with which weights.
+/// Epochs of minibatch gradient steps over one collection, for an actor or the critic. A method
+/// chooses the actors, their order and the weights.
 class PpoUpdate {
  public:
   /// @param networks must outlive this object.
@@ -38,30 +38,30 @@ class PpoUpdate {
             const Team& team);
   ~PpoUpdate();
 
-  /// Begins the update on what was collected. The number of samples must be a multiple of the
-  /// minibatch.
-  /// @param rollouts must outlive the update. @param collection its number
+  /// Begins the update on a collection. The number of samples must be a multiple of the minibatch.
+  /// @param rollouts must outlive the update. @param collection number of the collection
   void Begin(const std::vector<const RolloutBuffer*>& rollouts, const Scales& scales,
              std::uint32_t collection, const UpdateContext& context);
 
-  /// Trains an actor on the rows of these AUVs, until it is too far from the one that acted.
-  /// @param first_epoch keys the order of the minibatches, with those that follow
-  /// @param weights of the advantages, by sample; null: 1
-  /// @return how many epochs
+  /// Trains an actor on the rows of these AUVs. It stops early if the actor differs too much from
+  /// the one that acted.
+  /// @param first_epoch keys the order of the minibatches; the next epochs have the next numbers
+  /// @param weights factors of the advantages, by sample; null: 1
+  /// @return number of epochs
   int TrainActor(const AuvRange& auvs, std::uint32_t first_epoch,
                  const std::vector<double>* weights, Trained* actor);
   void TrainCritic(int epochs, std::uint32_t first_epoch, Trained* critic);
 
-  /// The numbers of PpoColumns, means over the actors.
+  /// The numbers of PpoColumns, as means over the actors.
   UpdateReport Report(double explained_variance, const std::vector<const Trained*>& actors) const;
 
   const PpoSamples& samples() const { return samples_; }
 
  private:
   struct Scratch;                         // per worker
-  static constexpr int kBlockRows = 256;  // of a pass through a network
+  static constexpr int kBlockRows = 256;  // rows in a pass through a network
 
-  /// Adds the gradient of the loss of the samples at places from .. to-1.
+  /// Adds the gradient of the loss for the samples at places from .. to-1.
   using BlockLoss =
       std::function<void(Scratch* scratch, int from, int to, float* gradient, PpoSums* sums)>;
   PpoSums Epoch(std::uint32_t epoch, int block, const BlockLoss& add, SlicedGradient* gradient,
@@ -74,14 +74,14 @@ class PpoUpdate {
   std::vector<std::unique_ptr<Scratch>> scratch_;
   SlicedSums sums_;
   PpoSamples samples_;
-  // Of the update.
+  // State of one update.
   std::uint32_t collection_ = 0;
   double rate_ = 1.0;
   float imitation_ = 0.0F;
-  PpoSums last_;                                   // of the last epochs
+  PpoSums last_;                                   // sums of the last epoch of each training
   double actor_norms_ = 0.0, critic_norms_ = 0.0;  // sums over steps, before clipping
   int actor_steps_ = 0, critic_steps_ = 0;
-  double products_ = 0.0;  // multiplications a sample
+  double products_ = 0.0;  // multiplications per sample
 };
 
 }  // namespace stg::learn

@@ -7,8 +7,8 @@
 
 namespace stg::learn {
 
-/// What on-policy methods with a central critic collect: rollouts, the normalisers of what the
-/// networks see, and advantages by the critic.
+/// Data that on-policy methods with a central critic collect: rollouts, the normalisers of the
+/// networks' inputs, and advantages by the critic.
 class ValuedRollouts {
  public:
   /// @param critic must outlive this object.
@@ -18,11 +18,11 @@ class ValuedRollouts {
   void Begin(const Collection& collection);
   void Observe(const Transition& transition);
 
-  /// Estimates the advantages, and fits the scale of the values to their targets.
-  /// @param critic its parameters; its last layer changes with the scale.
-  /// @return explained variance of the value targets, by the critic that acted
+  /// Estimates the advantages, and adapts the scale of the values to their targets.
+  /// @param critic parameters of the critic; its last layer changes with the scale.
+  /// @return explained variance of the value targets, for the critic that acted
   double Estimate(float* critic);
-  /// Lets the normalisers see what was collected; call after the update on it.
+  /// Adds the collected inputs to the normalisers. Call it after the update on them.
   void UpdateInputScales();
 
   std::vector<const RolloutBuffer*> buffers() const;
@@ -31,14 +31,14 @@ class ValuedRollouts {
   const Normalisers& normalisers() const { return normalisers_; }
 
  private:
-  /// What one shard collects.
+  /// Data that one shard collects.
   struct Rollout {
     RolloutBuffer buffer;
     RunningMoments observations, states;  ///< raw
   };
 
   void EstimateAdvantages(const float* critic, int shard, int worker);
-  /// Values in units of reward of normalised states [rows, S].
+  /// Values, in units of reward, of normalised states [rows, S].
   void EstimateValues(const float* critic, const float* states, int rows, int worker,
                       float* values);
 
@@ -48,7 +48,7 @@ class ValuedRollouts {
   const Mlp& critic_;
   const Team team_;
   Normalisers normalisers_;
-  std::vector<Mlp::Workspace> workspaces_;  // per worker
+  std::vector<Mlp::Workspace> workspaces_;  // by worker
   std::vector<Rollout> rollouts_;
 };
 

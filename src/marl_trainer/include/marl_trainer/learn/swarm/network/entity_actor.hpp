@@ -10,21 +10,22 @@
 
 namespace stg::learn {
 
-/// What an actor over entities says of many AUVs: of each what there is to choose from, with its
-/// logit, and the mean of the command if that is chosen. A network that does not choose has one
+/// Output of an actor over entities for many AUVs. For each AUV it has the choices, the logit of
+/// each, and the mean of the command that belongs to it. A network that does not choose has one
 /// choice for each AUV.
 struct ActorWorkspace {
   PoolBatch::Workspace pool;
   GraphBatch::Workspace graph;
-  std::vector<int> first;                ///< [rows + 1], the first choice of an AUV
-  std::vector<float> logits, means;      ///< [choices], [choices, size]
-  std::vector<float> d_logits, d_means;  ///< of the loss, for Backward; means before tanh
+  std::vector<int> first;            ///< [rows + 1], first choice of each AUV
+  std::vector<float> logits, means;  ///< [choices], [choices, size]
+  /// Gradient of the loss, for Backward. For the means it is the gradient before tanh.
+  std::vector<float> d_logits, d_means;
 };
 
-/// The actor's network, whichever it is, for many AUVs at once.
+/// The actor's network of either kind, for many AUVs at once.
 class EntityActor {
  public:
-  /// @param outputs numbers of a command
+  /// @param outputs size of a command
   EntityActor(agent::EntityNetwork network, int outputs);
 
   std::size_t parameters() const;
@@ -32,9 +33,9 @@ class EntityActor {
   bool chooses() const { return std::holds_alternative<GraphBatch>(network_); }
   void Initialise(std::uint64_t seed, std::uint32_t network, float* parameters) const;
 
-  /// Fills first, logits and means, and clears d_logits and d_means.
+  /// Computes first, logits and means, and sets d_logits and d_means to zero.
   void Forward(const float* parameters, const PackedRows& x, ActorWorkspace* w) const;
-  /// Adds to the gradient what d_logits and d_means of the last Forward say.
+  /// Adds the gradient that follows from d_logits and d_means, for the last Forward.
   void Backward(const float* parameters, const PackedRows& x, ActorWorkspace* w,
                 float* gradient) const;
 
@@ -43,17 +44,18 @@ class EntityActor {
   std::variant<PoolBatch, GraphBatch> network_;
 };
 
-/// Logarithm of the probability of each choice of AUV `row`; returns how many there are.
+/// Computes the logarithm of the probability of each choice of AUV `row`. Returns the number of
+/// choices.
 int LogShares(const ActorWorkspace& w, int row, std::vector<float>* log_shares);
 
-/// Parameters that an ablation keeps at 0, so that the network cannot see something. The policy
-/// file needs no word of it: it flies as it was trained.
+/// Parameters that an ablation keeps at 0, so that the network cannot use a part of its input. The
+/// policy file does not mention the ablation, because it flies as it was trained.
 ///
 /// @param without `neighbours` (the rows of neighbours and edges; the six numbers of Eq. 18 stay),
-///   `graph` (these six numbers, phases and qualities too), `edges`, `age`, `covariance`, `links`
+///   `graph` (these six numbers, phases and qualities, too), `edges`, `age`, `covariance`, `links`
 ///   (link quality), `search` or `nothing`; another name throws UserError
 std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::string& without);
-/// The names that Blinded takes; `nothing` is the first.
+/// Names that Blinded accepts; `nothing` is the first.
 std::vector<std::string> BlindNames();
 
 }  // namespace stg::learn

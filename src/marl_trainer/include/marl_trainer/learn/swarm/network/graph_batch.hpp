@@ -9,11 +9,11 @@
 
 namespace stg::learn {
 
-/// agent::GraphNetwork for many AUVs at once, with its gradient, written out by hand as PoolBatch
-/// is. A test holds it against libtorch.
+/// agent::GraphNetwork for many AUVs at once, with its gradient. It is written by hand, as
+/// PoolBatch is. A test compares it with libtorch.
 ///
-/// What there is to choose from stands packed, too: of AUV r its targets and then "search", from
-/// row offset(0, r) + r on.
+/// The choices are packed, too: for AUV r, its targets and then "search", from row offset(0, r) + r
+/// on.
 class GraphBatch {
  public:
   explicit GraphBatch(const agent::GraphSpec& spec);
@@ -25,7 +25,7 @@ class GraphBatch {
   /// Memory of one thread.
   class Workspace {
    public:
-    /// [choices of all AUVs], and the last layer's sums for each of them, [choices, outputs].
+    /// [choices of all AUVs], and the sums of the last layer for each choice, [choices, outputs].
     const float* choices() const { return choices_.data(); }
     const float* output() const { return output_.data(); }
 
@@ -44,13 +44,13 @@ class GraphBatch {
   };
 
   void Forward(const float* parameters, const PackedRows& x, Workspace* w) const;
-  /// Adds d loss / d parameters to `gradient`, given d loss / d choices and d loss / d output of
-  /// the rows that Forward saw last.
+  /// Adds d loss / d parameters to `gradient`, from d loss / d choices and d loss / d output. The
+  /// rows are the ones of the last Forward.
   void Backward(const float* parameters, const PackedRows& x, const float* d_choices,
                 const float* d_output, Workspace* w, float* gradient) const;
 
  private:
-  /// Where the attended rows of set s are: those of the targets after the messages.
+  /// Rows of set s for the attention; the rows of targets are the ones after the messages.
   AttendedRows Attended(int s, const float* p, const PackedRows& x, const Workspace& w) const;
   void PassMessages(const float* p, const PackedRows& x, Workspace* w) const;
   void Join(const float* p, const PackedRows& x, Workspace* w) const;
@@ -65,8 +65,8 @@ class GraphBatch {
   std::array<RowAttention, 3> attention_;
 };
 
-/// As InitialisePool; the quality's weights are 1, and the target that is followed is preferred to
-/// another by e^4, so that untrained choices do not hop.
+/// The same as InitialisePool, with two exceptions: the weights of the quality are 1, and the
+/// present target is preferred to another one by e^4, so that untrained choices rarely change.
 void InitialiseGraph(const agent::GraphBlocks& blocks, double output_gain, std::uint64_t seed,
                      std::uint32_t network, float* parameters);
 

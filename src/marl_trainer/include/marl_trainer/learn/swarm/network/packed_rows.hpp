@@ -7,7 +7,7 @@
 
 namespace stg::learn {
 
-/// Numbers of the rows that a network over entities takes.
+/// Sizes of the rows that a network over entities takes.
 struct RowSizes {
   explicit RowSizes(const agent::PoolSpec& spec)
       : self(spec.self), search(spec.search), sets(spec.sets) {}
@@ -19,11 +19,13 @@ struct RowSizes {
 
   int self, search;
   std::vector<int> sets;
-  int edges = 0;  ///< of an edge between a row of set 0 and a row of set 1; 0: there are none
+  /// Size of an edge between a row of set 0 and a row of set 1; 0: there are no edges.
+  int edges = 0;
 };
 
-/// The rows of many AUVs, packed: the rows of a set of all AUVs in one array, with offsets (CSR).
-/// An AUV without rows costs nothing. The edges of an AUV are [rows of set 0, rows of set 1].
+/// The rows of many AUVs, packed: for each set, the rows of all AUVs in one array with offsets
+/// (CSR). An AUV without rows costs nothing. The edges of an AUV are [rows of set 0, rows of set
+/// 1].
 class PackedRows {
  public:
   explicit PackedRows(RowSizes sizes);
@@ -31,9 +33,9 @@ class PackedRows {
   void Clear();
   /// Appends one AUV.
   void Add(const agent::GraphRows& rows);
-  /// The same without edges. @param self, search, sets as PoolNetwork::Forward takes them
+  /// The same without edges. @param self, search, sets as in PoolNetwork::Forward
   void Add(const float* self, const float* search, const agent::PoolRows* sets);
-  /// Appends AUV `row` of another store of the same sizes.
+  /// Appends AUV `row` of another object with the same sizes.
   void Add(const PackedRows& from, int row);
 
   int rows() const { return rows_; }
@@ -43,12 +45,12 @@ class PackedRows {
   }
   /// Rows of set s, [offset(s, rows()), numbers].
   const float* set(int s) const { return sets_[static_cast<std::size_t>(s)].data(); }
-  /// Where the rows of an AUV begin.
+  /// Where the rows of an AUV begin in set s.
   int offset(int s, int row) const {
     return offsets_[static_cast<std::size_t>(s)][static_cast<std::size_t>(row)];
   }
   const int* offsets(int s) const { return offsets_[static_cast<std::size_t>(s)].data(); }
-  /// Edges of all AUVs, [edge_offset(rows()), numbers], and where those of an AUV begin.
+  /// Edges of all AUVs, [edge_offset(rows()), numbers], and where the edges of an AUV begin.
   const float* edges() const { return edges_.data(); }
   int edge_offset(int row) const { return edge_offsets_[static_cast<std::size_t>(row)]; }
 

@@ -7,9 +7,9 @@
 
 namespace stg::learn {
 
-/// agent::PoolNetwork for many AUVs at once, with its gradient, written out by hand: products of
-/// packed rows and sums over segments, in an order that depends on the rows alone. A test holds it
-/// against libtorch.
+/// agent::PoolNetwork for many AUVs at once, with its gradient. It is written by hand: products of
+/// packed rows and sums over segments, in an order that depends only on the rows. A test compares
+/// it with libtorch.
 class PoolBatch {
  public:
   explicit PoolBatch(const agent::PoolSpec& spec) : spec_(spec), blocks_(spec) {}
@@ -27,17 +27,17 @@ class PoolBatch {
     friend class PoolBatch;
     struct Set {
       std::vector<float> first, second;  // [set rows, width]
-      std::vector<int> most;             // [rows, width], which set row is the largest; -1: none
+      std::vector<int> most;  // [rows, width], the set row with the largest value; -1: none
     };
     std::vector<Set> sets_;
     std::vector<float> joined_, hidden1_, hidden2_, output_;
     std::vector<float> d_joined_, d_hidden1_, d_hidden2_, d_first_, d_second_, d_self_, self_;
   };
 
-  /// Fills workspace->output() [rows, outputs].
+  /// Computes workspace->output() [rows, outputs].
   void Forward(const float* parameters, const PackedRows& x, Workspace* w) const;
-  /// Adds d loss / d parameters to `gradient`, given d loss / d output [rows, outputs] of the rows
-  /// that Forward saw last.
+  /// Adds d loss / d parameters to `gradient`, from d loss / d output [rows, outputs]. The rows are
+  /// the ones of the last Forward.
   void Backward(const float* parameters, const PackedRows& x, const float* d_output, Workspace* w,
                 float* gradient) const;
 
@@ -46,8 +46,9 @@ class PoolBatch {
   agent::PoolBlocks blocks_;
 };
 
-/// Orthogonal weights of gain sqrt(2), of `output_gain` in the head; zero biases and nobodies.
-/// @param network tells the networks of one seed apart. @param parameters [blocks.size], written
+/// Writes orthogonal weights with gain sqrt(2), or `output_gain` in the head. Biases and the rows
+/// that stand for empty sets are zero.
+/// @param network distinguishes the networks of one seed. @param parameters [blocks.size], written
 void InitialisePool(const agent::PoolBlocks& blocks, double output_gain, std::uint64_t seed,
                     std::uint32_t network, float* parameters);
 

@@ -6,16 +6,17 @@
 
 namespace stg::learn {
 
-/// The rows of one set of many AUVs, as attention takes them: those of AUV r are
-/// rows[begin(r), begin(r + 1)), and the row of an empty set is behind them.
+/// The rows of one set of many AUVs, as input of attention. The rows of AUV r are rows[begin(r),
+/// begin(r + 1)). The row that stands for an empty set comes after them.
 struct AttendedRows {
   const float* rows;    ///< [all, width]
-  const float* nobody;  ///< [width]
+  const float* nobody;  ///< [width], the row for an empty set
   const int* begin;     ///< [auvs + 1]
-  const float* prior;   ///< [all], by which a weight of each head multiplies; null: none
+  const float* prior;   ///< [all]; each head has a weight for it; null: none
 };
 
-/// One query of each AUV to the rows of one set, with its gradient (GraphNetwork's a_x).
+/// Attention with one query of each AUV to the rows of one set, with its gradient (GraphNetwork's
+/// a_x).
 class RowAttention {
  public:
   RowAttention(const agent::GraphBlocks::Attention& blocks, const agent::PoolBlock& prior,
@@ -29,11 +30,11 @@ class RowAttention {
     std::vector<float> part_, d_query_, d_key_, d_context_;
   };
 
-  /// @param self [auvs, hidden] @param out rows of `stride` numbers, the first `width` written
+  /// @param self [auvs, hidden] @param out rows of `stride` numbers; the first `width` are written
   void Forward(const float* p, int auvs, const float* self, const AttendedRows& x, int stride,
                float* out, Workspace* w) const;
-  /// Adds to the gradient, and to d_rows [all, width], d_nobody [width], d_self [auvs, hidden].
-  /// @param d_out as `out`
+  /// Adds to `gradient`, d_rows [all, width], d_nobody [width] and d_self [auvs, hidden].
+  /// @param d_out has the layout of `out`
   void Backward(const float* p, int auvs, const float* self, const AttendedRows& x, int stride,
                 const float* d_out, Workspace* w, float* gradient, float* d_rows, float* d_nobody,
                 std::vector<float>* d_self) const;
