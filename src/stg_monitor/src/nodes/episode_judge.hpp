@@ -13,36 +13,37 @@
 
 namespace stg::nodes {
 
-/// Judges the run frame by frame: the task of the training environment, on the true states that the
-/// world publishes.
+/// Judges the run frame by frame: applies the task of the training environment to the true states
+/// that the world publishes.
 class EpisodeJudge {
  public:
   explicit EpisodeJudge(const task::JudgeConfig& scenario);
 
-  /// What one frame led to. A report answers the step that ended at this frame.
+  /// Results of one frame. A report belongs to the step that ended at this frame.
   struct Verdict {
     bool has_report = false, has_summary = false;
     auv_msgs::StepReport report;
     auv_msgs::EpisodeSummary summary;
     task::EpisodeMetrics metrics;  ///< of the summary
   };
-  /// Frames come in order of time. A frame without truth ends the episode it belongs to.
+  /// Frames must come in order of time. A frame without truth ends its episode.
   Verdict Judge(const SwarmFrame& frame);
 
-  /// Present truth, for display.
+  /// Present true values, for display.
   const task::Tracking<double>& tracking(int i) const { return task_.tracking(i); }
   std::uint32_t episode() const { return episode_; }
   std::uint32_t step() const { return step_; }
   bool started() const { return started_; }
-  /// That of all AUVs, or the different ones in the order of the AUVs, joined by `+`.
+  /// The policy id of all AUVs. If they differ, the different ids in the order of the AUVs, joined
+  /// by `+`.
   std::string policy_id() const;
 
  private:
   void SetTruth(const SwarmFrame& frame);
   void SetField(const SwarmFrame& frame);
   void SetFollowing(const SwarmFrame& frame);
-  /// Packets delivered to and lost on the way to all AUVs, and energy of their modems, in this
-  /// episode up to now; of open water.
+  /// Takes the numbers of packets that were delivered to all AUVs or lost on the way to them, and
+  /// the energy of their modems, in this episode so far. Only used in open water.
   void SetLinks(const auv_msgs::LinkStates& links);
   void TakeWrenches(const auv_msgs::SwarmState& truth);
   void TakeActions(const SwarmFrame& frame);
@@ -55,17 +56,17 @@ class EpisodeJudge {
 
   task::JudgeConfig scenario_;
   task::Task<double> task_;
-  // The swarm at the present frame, and the decision that led there.
+  // The swarm at the present frame, and the decision before it.
   std::vector<dynamics::VehicleState<double>> vehicles_;
   std::vector<dynamics::TargetState<double>> targets_;
   dynamics::Separations<double> separations_;
   task::Efforts<double> tau_, action_;
   double link_quality_ = 0.0;
-  // In open water; else null and empty.
+  // In open water; otherwise null and empty.
   std::unique_ptr<const dynamics::Seascape> scape_;
   std::unique_ptr<task::Following<double>> following_;  // null: targets are not chosen freely
   std::vector<task::FieldState<double>> field_;
-  std::vector<float> state_;  // the critic's, at the present frame
+  std::vector<float> state_;  // critic's state at the present frame
   bool started_ = false;      ///< an episode is being judged
   bool complete_ = true;      ///< no step of it is missing
   std::uint32_t episode_ = 0, step_ = 0, deadline_misses_ = 0, channel_misses_ = 0;

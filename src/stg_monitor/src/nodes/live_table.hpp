@@ -9,23 +9,23 @@
 
 namespace stg::nodes {
 
-/// The run in the terminal: redrawn in place where standard output is a terminal, else one line per
-/// second.
+/// Shows the run in the terminal. It redraws a table in place if standard output is a terminal;
+/// otherwise it prints one line per second.
 class LiveTable {
  public:
-  /// @param link_available quality from which on a link counts as usable
+  /// @param link_available smallest quality of a usable link
   LiveTable(const RunConfig& run, double link_available, int episodes);
 
-  /// What the agents and the channel say; kept for the next drawing.
+  /// Stores data of the agents and the channel for the next drawing.
   void SetPhase(int agent, int phase) { phases_[static_cast<std::size_t>(agent)] = phase; }
   void SetLinks(const auv_msgs::LinkStates& links);
 
-  /// Draws when it is time to. @param now simulated time since the episode's step 0 [s]
+  /// Draws if a drawing is due. @param now_s simulated time since step 0 of the episode [s]
   void Tick(const EpisodeJudge& judge, double now_s);
 
-  /// Leaves the table as it is and prints an episode's metrics below it.
+  /// Leaves the table in place and prints an episode's metrics below it.
   void PrintEpisode(const auv_msgs::EpisodeSummary& summary, const task::EpisodeMetrics& metrics);
-  /// Mean and deviation over all episodes so far.
+  /// Prints mean and standard deviation over all episodes so far.
   void PrintRun(const std::vector<task::EpisodeMetrics>& episodes) const;
 
  private:
@@ -40,7 +40,7 @@ class LiveTable {
   ros::WallTime drawn_;
   double drawn_s_ = 0.0, speed_ = 0.0;
   std::uint32_t drawn_episode_ = 0;
-  std::vector<int> phases_;            ///< [agents], -1: not heard yet
+  std::vector<int> phases_;            ///< [agents], -1: not received yet
   std::vector<double> age_, quality_;  ///< [agents], mean over incoming links
   std::vector<int> live_links_;        ///< [agents], incoming links with usable quality
 };

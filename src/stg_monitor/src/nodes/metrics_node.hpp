@@ -17,26 +17,27 @@
 
 namespace stg::nodes {
 
-/// Watches the whole swarm, truth included: rewards of every step, metrics of every episode, and a
-/// live table in the terminal. Nothing listens to it but the world, which waits for the last
-/// episode's summary before it ends the run.
+/// Watches the whole swarm, including the true states. It publishes the rewards of every step and
+/// the metrics of every episode, and shows a live table in the terminal. No node waits for it
+/// except the world: the world waits for the last episode's summary before it ends the run.
 class MetricsNode {
  public:
   /// Throws UserError.
   MetricsNode();
   ~MetricsNode();
-  /// Throws LostOutput at the end when episodes could not be written to the summary file.
+  /// Throws LostOutput at the end if episodes could not be written to the summary file.
   void Spin();
 
  private:
   double Work();
   void Subscribe();
-  /// Of the scenario's sizes, and finite.
+  /// True if the message has the scenario's sizes and finite numbers.
   bool Usable(const auv_msgs::SwarmState& message) const;
   bool Usable(const auv_msgs::TaskState& message) const;
-  /// Follows the run; false: the message contradicts it.
+  /// Follows the run. Returns false if the message contradicts it.
   bool Follow(const auv_msgs::SwarmState& message);
-  /// A stamp of the run's steps, not further ahead than messages may overtake each other.
+  /// True for a stamp of the run's steps that is not too far ahead; messages may overtake each
+  /// other.
   bool Near(TimeNs stamp) const;
   void OnLinks(const auv_msgs::LinkStates::ConstPtr& message);
   auv_msgs::LinkStates::ConstPtr TakeLinks(TimeNs stamp);
@@ -60,10 +61,10 @@ class MetricsNode {
   Display display_;
   auv_msgs::LinkStates::ConstPtr newest_links_;
   double now_s_ = 0.0;
-  std::map<TimeNs, auv_msgs::LinkStates::ConstPtr> links_;  ///< by the step they lead to
+  std::map<TimeNs, auv_msgs::LinkStates::ConstPtr> links_;  ///< by the step that they lead to
   TimeNs awaited_ = -1;           ///< stamp of the frame whose links were awaited last
   double awaited_since_s_ = 0.0;  ///< wall time [s]
-  std::vector<task::EpisodeMetrics> episodes_;  ///< complete ones
+  std::vector<task::EpisodeMetrics> episodes_;  ///< complete episodes
   std::string file_name_;
   std::ofstream file_;
   EventRate reports_;

@@ -10,15 +10,16 @@
 
 namespace stg::nodes {
 
-/// All messages of the swarm with one stamp. A null pointer: not here (yet).
+/// All messages of the swarm with the same stamp. Null: the message has not arrived.
 struct SwarmFrame {
   explicit SwarmFrame(int agents) : tasks(static_cast<std::size_t>(agents)) {}
 
-  auv_msgs::SwarmState::ConstPtr truth;              ///< what no step can be judged without
+  auv_msgs::SwarmState::ConstPtr truth;              ///< no step can be judged without it
   std::vector<auv_msgs::TaskState::ConstPtr> tasks;  ///< [agents]
-  auv_msgs::LinkStates::ConstPtr links;              ///< up to here; the channel tells now and then
+  /// Links up to this step. The channel does not send them at every step.
+  auv_msgs::LinkStates::ConstPtr links;
 
-  /// Everything is here.
+  /// True if all messages are here. Links are not required.
   bool Complete() const {
     const auto here = [](const auto& message) { return message != nullptr; };
     return truth && std::all_of(tasks.begin(), tasks.end(), here);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// Numpy arrays with the shape and type that somebody asks for, and nothing else.
+/// Checks that numpy arrays have the required shape and type.
 namespace stg::python {
 
 namespace py = pybind11;
@@ -30,7 +30,7 @@ inline std::string Text(const py::dtype& type) {
   return py::str(static_cast<const py::handle&>(type)).cast<std::string>();
 }
 
-/// Throws TypeError unless `object` is a numpy array, ValueError unless it has this shape.
+/// Throws TypeError unless `object` is a numpy array, and ValueError unless it has this shape.
 inline py::array RequireArray(const py::handle& object, const std::string& name,
                               const Shape& shape) {
   if (!py::isinstance<py::array>(object)) {
@@ -45,8 +45,8 @@ inline py::array RequireArray(const py::handle& object, const std::string& name,
   return array;
 }
 
-/// An array of the caller's that is to be written to: its type is exactly `Number`, row-major,
-/// without gaps, writable.
+/// An array of the caller for output. Its type must be exactly `Number`. It must be row-major,
+/// without gaps and writable.
 template <class Number>
 Number* RequireOutput(const py::handle& object, const std::string& name, const Shape& shape) {
   py::array array = RequireArray(object, name, shape);
@@ -61,7 +61,8 @@ Number* RequireOutput(const py::handle& object, const std::string& name, const S
   return static_cast<Number*>(array.mutable_data());
 }
 
-/// Float32 or float64 numbers of any strides; `wide` tells which. Made contiguous where need be.
+/// Float32 or float64 numbers of any strides, made contiguous if necessary. `wide`: they are
+/// float64.
 struct Floats {
   py::array array;
   bool wide;
@@ -80,7 +81,8 @@ inline Floats RequireFloats(const py::handle& object, const std::string& name, c
   return {array, wide};
 }
 
-/// Index of the first number that is not finite, or -1. Finds out by whole registers first.
+/// Index of the first number that is not finite, or -1. For speed, it first checks all numbers at
+/// once.
 template <class Number, class Bits>
 std::ptrdiff_t FindNotFinite(const Number* numbers, std::ptrdiff_t count, Bits exponent) {
   static_assert(sizeof(Number) == sizeof(Bits), "bits of the number");

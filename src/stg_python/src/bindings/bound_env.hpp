@@ -14,11 +14,11 @@ namespace stg::python {
 
 namespace py = pybind11;
 
-/// A EnvPool with numpy arrays of the caller's, which are written to without the GIL.
+/// An EnvPool that writes to numpy arrays of the caller, without the GIL.
 ///
-/// Every call checks what it is given before anything moves: after an exception the environments
-/// are as they were. A second thread's call while one is under way, and any call in a process that
-/// was forked from the one that made the environments, raise RuntimeError.
+/// Every call checks its arguments before it changes anything: after an exception the environments
+/// are unchanged. RuntimeError is raised for a second thread's call while another call is running,
+/// and for any call in a process that was forked from the one that made the environments.
 class BoundEnv {
  public:
   BoundEnv(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers);
@@ -26,25 +26,26 @@ class BoundEnv {
   BoundEnv(const BoundEnv&) = delete;
   BoundEnv& operator=(const BoundEnv&) = delete;
 
-  /// Names the arrays that every later call writes to; None: not wanted. Only names of EnvArrays.
+  /// Sets the arrays that later calls write to; None: not wanted. The names must be names of
+  /// EnvArrays.
   void Bind(const py::dict& arrays);
 
   void RestartAt(std::uint64_t k);
   void Reseed(std::uint64_t seed);
   void ResetEnv(int env, std::uint64_t seed);
-  /// Returns the number of environments whose episode this decision ended.
+  /// Makes one decision. Returns the number of environments whose episode ended.
   int Step(const py::handle& actions);
   /// The same for one environment. @param actions {name of an AUV: array [action_size]}
   int StepAgents(const py::dict& actions);
-  /// Actions [envs, agents, action_size] of a policy file or a built-in controller.
+  /// Actions [envs, agents, action_size] of a policy file or built-in controller.
   py::array_t<float> Decide(const std::string& name, bool privileged);
   void Close();
 
   py::dict Metrics(int env) const;
   py::dict Snapshot(int env) const;
-  /// The rows of the layout `stg-2:entities` of one AUV, by their names.
+  /// The rows of the layout `stg-2:entities` for one AUV, by name.
   py::dict Entities(int env, int agent) const;
-  /// An AUV follows another target from the next decision on, where targets are chosen freely.
+  /// Lets an AUV follow another target from the next decision on, if targets are chosen freely.
   void Follow(int env, int agent, int target);
   int followed(int env, int agent) const;
   Scenario scenario(int env) const;
@@ -56,7 +57,7 @@ class BoundEnv {
   int workers() const { return pool().workers(); }
 
  private:
-  /// Makes the environments one caller's for as long as it lives.
+  /// Reserves the environments for one caller as long as this object lives.
   class Use {
    public:
     explicit Use(const BoundEnv* env);
@@ -79,9 +80,9 @@ class BoundEnv {
 
   std::unique_ptr<EnvPool> pool_;
   int envs_, agents_, action_size_, observation_size_, state_size_;
-  py::dict arrays_;  ///< keeps them alive
+  py::dict arrays_;  ///< keeps the arrays alive
   env::EnvArrays out_;
-  std::vector<py::str> names_;  ///< of the AUVs
+  std::vector<py::str> names_;  ///< names of the AUVs
   std::vector<float> actions_;  ///< [agents, action_size], of StepAgents
   agent::Decider controller_;
   mutable std::atomic_flag busy_ = ATOMIC_FLAG_INIT;

@@ -6,12 +6,12 @@
 
 namespace stg::python {
 
-/// Gives the GIL up for as long as it lives.
+/// Releases the GIL as long as this object lives.
 ///
-/// Python ends the threads that ask for the GIL back while it shuts down, by unwinding their stacks
-/// (pthread_exit). A destructor cannot be unwound, so that pybind11's gil_scoped_release aborts the
-/// program there, and what lies above would drop references without the GIL. Such a thread waits
-/// here for the end of the process instead, as Python 3.14 lets it do.
+/// While Python shuts down, it ends the threads that want the GIL back by unwinding their stacks
+/// (pthread_exit). A destructor cannot be unwound, so pybind11's gil_scoped_release aborts the
+/// program there. Callers higher on the stack would also drop references without the GIL. Instead,
+/// such a thread waits here for the end of the process, as Python 3.14 does.
 class WithoutGil {
  public:
   WithoutGil() : thread_(PyEval_SaveThread()) {}

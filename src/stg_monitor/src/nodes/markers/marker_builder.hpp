@@ -7,8 +7,8 @@
 
 namespace stg::nodes {
 
-/// All markers of one view, frame world. Every namespace and id appears in every call, deleted
-/// where there is nothing to show, so that a view never keeps what is gone.
+/// All markers of one view, frame world. Every call contains every namespace and id. A marker
+/// without content is deleted, so a view never keeps old markers.
 visualization_msgs::MarkerArray BuildMarkers(const SwarmView& view, const MarkerStyle& style);
 
 }  // namespace stg::nodes

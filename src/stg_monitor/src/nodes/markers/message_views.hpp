@@ -5,15 +5,15 @@
 
 #include "shapes/swarm_view.hpp"
 
-/// From messages to what is drawn of them.
+/// Conversions from messages to the data that is drawn.
 namespace stg::nodes {
 
 bool Finite(const geometry_msgs::Point& p);
 
-/// A position as measured is a direction and a distance.
+/// A measured position is converted to a direction and a distance.
 DetectionView DetectionOf(const auv_msgs::TargetDetection& message);
 
-/// World axes: nav_msgs has the twist in the child frame.
+/// In world axes: nav_msgs has the twist in the child frame.
 geometry_msgs::Vector3 VelocityOf(const nav_msgs::Odometry& message);
 
 }  // namespace stg::nodes

@@ -6,8 +6,8 @@
 
 namespace stg::nodes {
 
-/// What of a resolved scenario is drawn, with defaults for the rest: a bag may be older than this
-/// program. Throws YAML::Exception for text that is no scenario at all.
+/// The drawn part of a resolved scenario. Missing keys have defaults, because a bag may be older
+/// than this program. Throws YAML::Exception if the text is no scenario.
 SceneConfig ReadScene(const std::string& yaml);
 
 }  // namespace stg::nodes

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Names of the view's topics, below the marker node's own name.
+/// Names of the view's topics, relative to the marker node's own name.
 namespace stg::topics {
 
 inline constexpr char kOverview[] = "overview";

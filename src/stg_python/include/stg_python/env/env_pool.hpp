@@ -9,32 +9,32 @@
 
 namespace stg::python {
 
-/// The environments of one learner on any number of threads: one env::VectorEnv per thread, which
-/// share the numbering of environments, so that nothing but speed depends on the threads. All
-/// arrays are those of all environments. Not thread-safe.
+/// The environments of one learner on any number of threads: one env::VectorEnv per thread. The
+/// threads share the numbering of environments, so they affect nothing but the speed. All arrays
+/// are for all environments. Not thread-safe.
 class EnvPool {
  public:
-  /// @param options `envs` of them; `first_env` and `total_envs` are set here
-  /// @param workers threads, the caller's included; at most one for each kMixBlock environments
-  /// are used. Throws UserError as VectorEnv does, for fewer than one, and for more
-  /// environments than this machine's memory holds.
+  /// @param options number of environments in `envs`; `first_env` and `total_envs` are set here
+  /// @param workers number of threads, including the caller's; more than one for each kMixBlock
+  /// environments are not used. Throws UserError as VectorEnv does, for fewer than one worker, and
+  /// for more environments than the memory of this machine allows.
   EnvPool(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options, int workers);
 
   void Reseed(std::uint64_t seed);
-  /// See VectorEnv; `env` counts through all threads.
+  /// See VectorEnv; `env` counts the environments of all threads.
   void RestartAt(std::uint64_t k, const env::EnvArrays& out);
   void ResetEnv(int env, std::uint64_t seed, const env::EnvArrays& out);
   /// @param actions [envs, agents, action_size], finite
   void Step(const float* actions, const env::EnvArrays& out);
   void Step(const double* actions, const env::EnvArrays& out);
 
-  /// Whose environment it is, and its number there.
+  /// The VectorEnv of an environment, and its number there.
   struct Place {
     const env::VectorEnv& envs;
     int env;
   };
   Place at(int env) const;
-  /// What one thread runs: its environments from `first` on.
+  /// The environments of one thread, from `first` on.
   struct Part {
     std::unique_ptr<env::VectorEnv> envs;
     int first;

@@ -7,9 +7,9 @@
 
 namespace stg::nodes {
 
-/// What the AUVs sense and believe of their targets: estimates with the ellipsoid of one standard
-/// deviation, and fresh detections: a line in the direction measured, a horizontal circle at the
-/// range measured, both of those for sensors that measure both.
+/// Draws estimates of the targets with the ellipsoid of one standard deviation, and fresh
+/// detections. A detection is a line in the measured direction, a horizontal circle at the measured
+/// range, or both if the sensor measures both.
 void AddBeliefMarkers(const SwarmView& view, const MarkerStyle& style,
                       visualization_msgs::MarkerArray* array);
 

@@ -7,9 +7,9 @@
 
 namespace stg::nodes {
 
-/// The acoustic network: links, packets under way and lost ones with their reasons; a ring around
-/// each modem that sends and the front of its sound; at receivers, where packets collided and
-/// which modem could not hear because it was sending.
+/// Draws the acoustic network: links; packets on their way; lost packets with the reasons; a ring
+/// around each modem that sends, and the front of its sound. At receivers it shows where packets
+/// collided, and which modem could not receive because it was sending.
 void AddNetworkMarkers(const SwarmView& view, const MarkerStyle& style,
                        visualization_msgs::MarkerArray* array);
 

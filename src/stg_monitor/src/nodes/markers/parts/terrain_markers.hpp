@@ -7,12 +7,12 @@
 
 namespace stg::nodes {
 
-/// The bottom of open water as a surface coloured by depth with lines on it, obstacles, a frame at
-/// the sea's surface, and the colours' scale in metres at its corner. Nothing of it moves: drawn
-/// once for a scenario.
+/// Draws the bottom of open water as a surface with depth colours and lines, obstacles, a frame at
+/// the sea's surface, and the scale of colours in metres at its corner. Nothing of it moves, so it
+/// is drawn once per scenario.
 visualization_msgs::MarkerArray BuildTerrain(const SceneConfig& scene,
                                              const dynamics::Seascape& sea);
-/// Takes away what BuildTerrain drew.
+/// Removes the markers of BuildTerrain.
 visualization_msgs::MarkerArray NoTerrain();
 
 }  // namespace stg::nodes

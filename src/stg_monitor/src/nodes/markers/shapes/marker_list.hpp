@@ -9,7 +9,7 @@
 
 namespace stg::nodes {
 
-/// A growing array of markers in frame world, and the shapes it is made of.
+/// A growing array of markers in frame world, and functions that add shapes.
 class MarkerList {
  public:
   using Marker = visualization_msgs::Marker;
@@ -18,7 +18,7 @@ class MarkerList {
 
   Marker New(const char* name, int id, int type, const ColorRGBA& color) const {
     Marker m;
-    m.header.frame_id = "world";  // stamp zero: always drawn, whatever the clock does
+    m.header.frame_id = "world";  // stamp zero: always drawn, independent of the clock
     m.ns = name;
     m.id = id;
     m.type = type;
@@ -32,7 +32,7 @@ class MarkerList {
     m.scale.x = width;
     return m;
   }
-  /// rviz warns about lists without points and texts without letters: those are deleted.
+  /// rviz warns about lists without points and texts without letters, so they are deleted.
   void Add(Marker m) {
     const bool list = m.type == Marker::LINE_LIST || m.type == Marker::LINE_STRIP ||
                       m.type == Marker::SPHERE_LIST;

@@ -60,7 +60,7 @@ inline std_msgs::ColorRGBA PhaseColor(ShownPhase phase, double alpha = 1.0) {
   }
 }
 
-/// Violet for no link, cyan for a perfect one; red is kept for lost packets.
+/// Violet for no link, cyan for a perfect link. Red is reserved for lost packets.
 inline std_msgs::ColorRGBA QualityColor(double quality) {
   const double q = std::clamp(quality, 0.0, 1.0);
   return Color(0.70 - 0.55 * q, 0.20 + 0.75 * q, 0.65 + 0.30 * q, 0.25 + 0.65 * q);

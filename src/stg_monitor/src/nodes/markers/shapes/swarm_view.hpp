@@ -14,23 +14,23 @@
 
 #include "auv_dynamics/terrain/sea_config.hpp"
 
-/// What a viewer knows of a run: the newest of everything that was published, and a short past.
-/// Lengths [m], frame world; times [s] of simulated time.
+/// Data of a run for display: the newest message of each kind, and a short past. Lengths [m], frame
+/// world; times [s] are simulated.
 namespace stg::nodes {
 
-/// The part of a scenario that is drawn.
+/// The drawn part of a scenario.
 struct SceneConfig {
   std::string name;
   double half_extent_m = 1.0;
-  double shown_half_extent_m = 1.0;  ///< of what the overview shows at first, around target 0
+  double shown_half_extent_m = 1.0;  ///< half extent of the overview at first, around target 0
   double sensing_range_m = 0.45;
   double band_lo_m = 0.010, band_hi_m = 0.015;
   double radius_m = 0.011;
   double decision_s = 0.1;
-  dynamics::SeaConfig sea;  ///< open: instead of walls
+  dynamics::SeaConfig sea;  ///< if it is open water, there are no walls
 };
 
-/// Values of auv_msgs/TaskState, and one for an AUV that has not said anything yet.
+/// Values of auv_msgs/TaskState, and one for an AUV without a message so far.
 enum class ShownPhase : std::uint8_t { kSearch, kApproach, kStable, kLost, kUnknown };
 
 struct TrailPoint {
@@ -51,11 +51,12 @@ struct VehicleView {
   geometry_msgs::Pose pose;
   ShownPhase phase = ShownPhase::kUnknown;
   bool leader = false;     ///< role of Eq. 18
-  double distance = -1.0;  ///< to the target as the AUV estimates it; negative: unknown
+  double distance = -1.0;  ///< estimated distance to the target; negative: unknown
   bool target_known = false;
-  geometry_msgs::Point estimate;  ///< where the AUV believes its target to be
+  geometry_msgs::Point estimate;  ///< estimated position of the target
   double estimate_std = 0.0;
-  std::array<double, 6> covariance{};  ///< of it, xx xy xz yy yz zz [m^2]; zero: not known
+  /// Covariance of the estimate, xx xy xz yy yz zz [m^2]; zero: unknown.
+  std::array<double, 6> covariance{};
   DetectionView detection;
   std::deque<TrailPoint> trail;
 };
@@ -73,24 +74,24 @@ struct LinkView {
   std::uint32_t delivered = 0, dropped = 0;
 };
 
-/// A packet that arrived or was lost, shown for a moment.
+/// A packet that arrived or was lost; it is shown for a moment.
 struct PacketEvent {
   int source = 0, destination = 0;
   double time = 0.0;
   bool lost = false;
-  std::uint8_t reason = 0;  ///< LinkState's constants
+  std::uint8_t reason = 0;  ///< constant of LinkState
 };
 
 /// Sound that a modem sends.
 struct CarrierView {
   int source = 0;
-  double begin = 0.0, end = 0.0;  ///< at the sender; equal where the model has no airtime
+  double begin = 0.0, end = 0.0;  ///< at the sender; equal if the model has no airtime
 };
 
 struct SwarmView {
   SceneConfig scene;
   double now = 0.0;
-  double step_s = 0.0;  ///< by which time went on last
+  double step_s = 0.0;  ///< last increase of time
   std::uint32_t episode = 0, step = 0;
   std::vector<VehicleView> vehicles;
   std::vector<MovingTarget> targets;
