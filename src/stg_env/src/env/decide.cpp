@@ -9,7 +9,7 @@
 namespace stg::env {
 namespace {
 
-/// From true states, all lanes of a slice at once.
+/// Decides from true states, in all lanes of a slice at once.
 void DecideTruly(const agent::Controller& c, const VectorEnv::Slice& slice, double* actions) {
   const Environment& env = *slice.lanes;
   const dynamics::World& world = env.world();

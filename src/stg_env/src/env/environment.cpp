@@ -90,7 +90,7 @@ void Environment::Move(const Pack* wanted) {
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     source_->Act(world_, static_cast<int>(i), wanted, &action_[i], &tau_[i]);
     const auto wrench = dynamics::ScaleWrench(model_.vehicle, tau_[i].data());
-    wrench_[i].force = wrench.force;  // by halves: the whole is copied by a call
+    wrench_[i].force = wrench.force;  // in two parts, because copying the whole struct is a call
     wrench_[i].moment = wrench.moment;
     for (std::size_t k = 0; k < share_.size(); ++k) tau_[i][k] = tau_[i][k] * Pack(share_[k]);
     wanted += scenario_.world.control.action_size();
@@ -118,7 +118,7 @@ void Environment::Steer() {
 void Environment::Judge() {
   source_->Observe(world_, LaneSet::All());
   LookAround();
-  // The link quality that is rewarded is the one after the step.
+  // The rewarded link quality is the quality after the step.
   if (scenario_.reward.kind == task::RewardKind::kPaper) {
     link_quality_ = source_->LinkQuality(world_);
   }
@@ -138,7 +138,7 @@ void Environment::AskWhatTheyFollow() {
   }
 }
 
-/// Where the AUVs stand in open water, and what they believe there.
+/// Updates the AUVs' places in open water and their beliefs.
 void Environment::LookAround() {
   AskWhatTheyFollow();
   const dynamics::Sea& sea = world_.sea();

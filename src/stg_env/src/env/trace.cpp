@@ -39,7 +39,7 @@ const std::set<std::string> kConfigKeys = {"agents",
   throw UserError(file + ":" + std::to_string(line) + ": " + what);
 }
 
-/// One key of config.yaml, checked.
+/// Reads and checks the keys of config.yaml.
 class Config {
  public:
   explicit Config(const std::string& file) : file_(file) {
@@ -149,7 +149,7 @@ void ReadSteps(const std::string& file, Trace* trace) {
   }
 }
 
-/// Our value of every column we know, by name.
+/// This environment's value of every known column, by name.
 using Columns = std::map<std::string, std::pair<std::string, std::function<double(int)>>>;
 
 Columns OurColumns(const VectorEnv& env, const EnvMemory& memory,
@@ -291,7 +291,7 @@ TraceError ReplayTrace(const Trace& trace, double tolerance) {
         const double expected = row(i)[found->second];
         if (std::isnan(expected)) continue;
         double error = std::abs(source.second(i) - expected);
-        // Angles near +-pi may differ by a whole turn.
+        // Angles near +-pi may differ by a full turn.
         if (source.first == "angle") error = std::min(error, std::abs(error - 2.0 * kPi));
         double& worst = result.by_group[source.first];
         worst = std::max(worst, error);

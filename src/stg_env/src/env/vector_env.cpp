@@ -10,7 +10,7 @@
 namespace stg::env {
 namespace {
 
-constexpr std::size_t kBlock = 4;  ///< of slices whose halves of a step run together
+constexpr std::size_t kBlock = 4;  ///< number of slices whose half steps run together
 
 std::size_t Size(int a, int b = 1, int c = 1) {
   return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * static_cast<std::size_t>(c);
@@ -49,7 +49,7 @@ VectorEnv::VectorEnv(const std::vector<Scenario>& mix, const VectorEnvOptions& o
   slice_of_.resize(Size(options_.envs));
   for (int env = 0; env < options_.envs;) {
     int count = 1;
-    // Lanes share a scenario.
+    // The lanes of a slice have the same scenario.
     while (count < kLanes && env + count < options_.envs &&
            &scenario(env + count) == &scenario(env)) {
       ++count;
@@ -85,7 +85,7 @@ int VectorEnv::FirstLength(int env) const {
 }
 
 void VectorEnv::Restart(const Slice& slice, int lane, bool first) {
-  // Lanes beyond the last environment do what the first one does.
+  // Lanes beyond the last environment copy the first lane.
   const int env = slice.first + (lane < slice.count ? lane : 0);
   const Scenario& s = scenario(env);
   const std::uint64_t r =
@@ -155,8 +155,8 @@ void VectorEnv::TakeActions(const Number* actions) {
 template <class Number>
 void VectorEnv::StepAll(const Number* actions, const EnvArrays& out) {
   TakeActions(actions);
-  // The code of a whole step does not fit the instruction cache, that of a half does: each half
-  // runs over some environments before the other takes its place.
+  // The code of a whole step does not fit into the instruction cache, but the code of half a step
+  // does. So each half runs over some environments before the other half runs.
   for (std::size_t first = 0; first < slices_.size(); first += kBlock) {
     const std::size_t last = std::min(first + kBlock, slices_.size());
     for (std::size_t k = first; k < last; ++k) {
@@ -188,7 +188,7 @@ void VectorEnv::Judge(const Slice& slice, const EnvArrays& out) {
 
 void VectorEnv::Finish(const Slice& slice, const LaneSet& done, const EnvArrays& out) {
   Environment& lanes = *slice.lanes;
-  // Only the rows of what has ended are written: the others' final rows stay what they are.
+  // Only the rows of ended episodes are written. The final rows of the others stay unchanged.
   const auto copy = [&](float* to, int width) {
     for (int lane = 0; lane < slice.count && to != nullptr; ++lane) {
       if (!done[lane]) continue;

@@ -17,8 +17,8 @@ std::unique_ptr<acoustics::Channel> MakeSea(const acoustics::NetworkConfig&,
                                    reports);
 }
 
-/// The acoustic channel where bottom and obstacles of the scenario's sea stand between vehicles,
-/// and in whose water beacons and surface craft live.
+/// An acoustic channel in the scenario's sea: the bottom and obstacles may be between vehicles, and
+/// there are beacons and surface craft.
 class SeaChannelNode : private StationReports, public ChannelNode {
  public:
   SeaChannelNode()

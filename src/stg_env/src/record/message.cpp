@@ -7,7 +7,7 @@
 namespace stg::env {
 namespace {
 
-constexpr std::size_t kAlignment = 8;  // of header and columns: typed arrays of a browser need it
+constexpr std::size_t kAlignment = 8;  // for header and columns; typed arrays of a browser need it
 
 void Pad(std::string* bytes, char with) {
   bytes->resize((bytes->size() + kAlignment - 1) / kAlignment * kAlignment, with);
@@ -53,7 +53,7 @@ void Message::Add(const std::string& name, int width, const std::vector<std::uin
 }
 
 std::string Message::Bytes() const {
-  // What is no UTF-8 (a name from a file) must not end a run.
+  // Text that is not UTF-8 (e.g. the name of a file) must not end a run.
   std::string header = header_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   Pad(&header, ' ');
   std::string bytes;

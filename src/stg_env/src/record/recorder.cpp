@@ -22,9 +22,9 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRowsOfMessage = 512;
-constexpr double kTouching_m = 1e-3;  // of bottom and obstacles, which hold an AUV at their surface
+constexpr double kTouching_m = 1e-3;  // an AUV this close to bottom or obstacle touches it
 
-/// Packets of one episode: rows of the message `packets`, one for each packet and receiver.
+/// Packets of one episode: the rows of the message `packets`, one for each packet and receiver.
 class PacketRows : public acoustics::PacketObserver {
  public:
   PacketRows(int nodes, TimeNs offset, std::ostream* csv)
@@ -91,7 +91,7 @@ class PacketRows : public acoustics::PacketObserver {
   std::vector<float> distance_, sinr_, probability_;
 };
 
-/// Rows of the message `steps`.
+/// The rows of the message `steps`.
 class StepRows {
  public:
   StepRows(task::JudgeConfig judge, bool acoustic) : s_(std::move(judge)), acoustic_(acoustic) {
@@ -109,7 +109,7 @@ class StepRows {
       const Vec3<double> rpy = RpyOf(v.trig);
       const agent::Knowledge<double> known = env.knowledge(e, i);
       Put(&c_.position, v.p_WB);
-      // A nose that points up has a negative pitch about the body's y axis, which points to port.
+      // With the bow up, the pitch is negative: the body's y axis points to port.
       c_.heading.push_back(static_cast<float>(rpy.z));
       c_.pitch.push_back(static_cast<float>(-rpy.y));
       c_.phase.push_back(static_cast<std::uint8_t>(agent::PhaseOf(s_.agent.observation, known)));
@@ -191,7 +191,7 @@ class StepRows {
     }
     c_.age.push_back(belief.started ? static_cast<float>(Seconds(now - belief.information))
                                     : kUnknown);
-    // Mean age of what it last heard of the others, which the network's links give.
+    // Mean age of the newest packets of the others, from the network's links.
     double sum = 0.0;
     for (int j = 0; j < s_.run.agents; ++j) {
       if (j != i) sum += env.channel(e).Link(j, i, now).age_s;
@@ -217,7 +217,7 @@ class StepRows {
   Columns c_;
 };
 
-/// The episodes of one recording.
+/// Flies and records the episodes.
 class Recorder {
  public:
   Recorder(const EnvFactory& make_env, const agent::Decider& controller, std::ostream* out,
@@ -231,7 +231,7 @@ class Recorder {
     *out_ << Message("meta", {{"meta", scene}}).Bytes();
   }
 
-  /// @param block environments fly together as Evaluate's do, for the same rounding
+  /// Environments fly in blocks of kMixBlock, as in Evaluate, so that numbers are rounded equally.
   void Fly(int episode, std::uint64_t seed, int total) {
     VectorEnvOptions o;
     o.seed = seed;
@@ -258,7 +258,8 @@ class Recorder {
     while (true) {
       steps.Add(env, e, offset_, reward);
       if (steps.rows() == kRowsOfMessage) *out_ << steps.Take().Bytes();
-      // The last decision starts the next episode at once, whose packets are not of this one.
+      // The last decision starts the next episode at once. Its packets do not belong to this
+      // episode.
       const bool last = env.step(e) + 1 == s.run.time.episode_steps;
       const TimeNs now = env.time(e);
       if (acoustic && last) env.ObservePackets(e, nullptr);
@@ -285,7 +286,7 @@ class Recorder {
   TimeNs offset_ = 0;
 };
 
-/// Closes what was written and has it take the place of the file of before.
+/// Closes the written file and replaces the old file by it.
 void Finish(std::ofstream* out, DurableFile* file) {
   out->close();
   if (!*out) file->Fail("not all of it could be written; is the disk full?");

@@ -8,9 +8,10 @@
 namespace stg::env {
 namespace {
 
-constexpr int kCells = 64;  // of the drawn bottom, on each side
+constexpr int kCells = 64;  // cells of the drawn bottom along each side
 
-/// Heights of the bottom on a grid, rows from south to north, whole decimetres are enough to see.
+/// Heights of the bottom on a grid, rows from south to north. Whole decimetres are enough for a
+/// picture.
 nlohmann::json BottomOf(const dynamics::Seascape& sea, double half_m) {
   const double step = 2.0 * half_m / kCells;
   nlohmann::json heights = nlohmann::json::array();

@@ -17,7 +17,7 @@ void Describe(Scenario* s, config::Table* t) {
   Describe(&s->agent, t);
   Describe(&s->reward, t);
   Describe(&s->critic, t);
-  // True states need neither instruments nor packets; links between them follow Eq. 5.
+  // In mode `truth` there are no instruments and packets. Links between true states follow Eq. 5.
   const config::Owner acoustic{"information mode", {"acoustic"}, "mode", [s] {
                                  const bool truth = s->mode == InformationMode::kTruth;
                                  return std::vector<std::string>{truth ? "truth" : "acoustic"};
@@ -25,7 +25,7 @@ void Describe(Scenario* s, config::Table* t) {
   for (const char* section : {"channel", "navigation", "sensing", "track"}) {
     t->Own(section, acoustic);
   }
-  // Choices that a run of nodes, whose mode is always acoustic, may need of the same file.
+  // A run of nodes has always the mode `acoustic`. It may read these keys of the same file.
   for (const char* key : {"channel.model", "channel.access", "navigation.kind", "sensing.sensor",
                           "track.filter", "channel.range_m", "sensing.range_m"}) {
     t->AlsoReadIf(key, [] { return true; });

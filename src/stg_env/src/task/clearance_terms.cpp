@@ -3,12 +3,12 @@
 namespace stg::task {
 namespace {
 
-/// What survey vehicles keep over rough ground.
+/// The default is a usual altitude of survey vehicles over rough ground.
 struct SeabedOptions {
   double margin_m = 10.0;
 };
 
-/// The turning circle of a torpedo.
+/// The default is the turning circle of a torpedo.
 struct ObstacleOptions {
   double margin_m = 25.0;
 };
@@ -23,9 +23,9 @@ void Describe(ObstacleOptions* o, config::Table* t) {
          "distance to the nearest obstacle beyond which the term is 0");
 }
 
-/// Minus the share of a margin that is missing to something to be kept clear of: 0 from the margin
-/// on, -1 in contact. 0 where there is no open water.
-/// @param of one of FieldState's lengths
+/// Minus the missing share of a margin to an obstruction: 0 at the margin and beyond, -1 in
+/// contact. 0 if there is no open water.
+/// @param of a length of FieldState
 struct ClearanceTerm {
   double margin_m;
 
@@ -37,7 +37,7 @@ struct ClearanceTerm {
   }
 };
 
-/// Altitude above the bottom.
+/// Term for the altitude above the bottom.
 struct SeabedTerm : TermOf<SeabedTerm> {
   explicit SeabedTerm(const SeabedOptions& options) : clearance{options.margin_m} {}
 
@@ -49,7 +49,7 @@ struct SeabedTerm : TermOf<SeabedTerm> {
   }
 };
 
-/// Distance to the nearest obstacle.
+/// Term for the distance to the nearest obstacle.
 struct ObstacleTerm : TermOf<ObstacleTerm> {
   explicit ObstacleTerm(const ObstacleOptions& options) : clearance{options.margin_m} {}
 

@@ -3,8 +3,8 @@
 namespace stg::task {
 namespace {
 
-/// Minus the mean square of the six tau / tau_max: what a decision costs in force, whatever the
-/// action interface. In [-1, 0].
+/// Minus the mean square of the six tau / tau_max: the force of a decision, with any action
+/// interface. In [-1, 0].
 struct EffortTerm : TermOf<EffortTerm> {
   template <class T>
   T Of(const TermInput<T>& in) const {

@@ -3,8 +3,8 @@
 namespace stg::task {
 namespace {
 
-/// Minus the cube of the first actuator's share of its limit: of a propeller or a commanded speed,
-/// what the power of propulsion goes with. In [-1, 0].
+/// Minus the cube of the first actuator's share of its limit. For a propeller or a commanded speed,
+/// the power of propulsion is proportional to it. In [-1, 0].
 struct EnergyTerm : TermOf<EnergyTerm> {
   template <class T>
   T Of(const TermInput<T>& in) const {

@@ -4,7 +4,7 @@
 namespace stg::task {
 namespace {
 
-/// As UTracking rewards an estimate (arXiv 2505.08222).
+/// Defaults are from the reward of estimates in UTracking (arXiv 2505.08222).
 struct EstimateOptions {
   double good_m = 10.0, fall_m = 40.0;
 };
@@ -16,8 +16,8 @@ void Describe(EstimateOptions* o, config::Table* t) {
          "the reward falls to 0 over this further error");
 }
 
-/// What the own estimate of the target is worth: 1 where it is off by `good_m` or less, falling to
-/// 0 within the next `fall_m`; 0 without an estimate or open water.
+/// Value of the own estimate of the target: 1 if its error is at most `good_m`, then falling to 0
+/// within another `fall_m`. 0 without an estimate or open water.
 struct EstimateTerm : TermOf<EstimateTerm> {
   explicit EstimateTerm(const EstimateOptions& options) : options_(options) {}
 

@@ -4,7 +4,7 @@
 namespace stg::task {
 namespace {
 
-/// How evenly the AUVs of the same target stand around it (Spread), in [0, 1].
+/// How evenly the AUVs with the same target are distributed around it (Spread), in [0, 1].
 struct SpreadTerm : TermOf<SpreadTerm> {
   template <class T>
   T Of(const TermInput<T>& in) const {

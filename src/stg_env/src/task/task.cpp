@@ -60,7 +60,8 @@ void Task<T>::Step(const SwarmState<T>& swarm) {
 
 template <class T>
 void Task<T>::Remember(const SwarmState<T>& swarm) {
-  // The paper's cost is of actions, the release's of forces; a registered term may ask for either.
+  // The paper's cost depends on actions, the release's cost on forces. A registered term may need
+  // either.
   const bool paper = scenario_.reward.kind == RewardKind::kPaper;
   const bool actions = paper || !extra_.empty(), forces = !paper || !extra_.empty();
   for (std::size_t i = 0; i < tracking_.size(); ++i) {
@@ -80,7 +81,7 @@ void Task<T>::Measure(const SwarmState<T>& swarm, const Mask<T>* starting) {
     k.Measure(t.p_WT - v.p_WB, v.v_WB - t.v_WT, scenario_.agent.task.desired_distance_m);
     const T d = k.distance;
     if (swarm.following != nullptr) {
-      // Another target is as far now as it was.
+      // If the target changed, the previous distance is the present distance to the new target.
       const T& target = swarm.following->target[i];
       before = Select(target == followed_[i], before, d);
       k.previous_distance = Select(target == followed_[i], k.previous_distance, d);
@@ -117,7 +118,7 @@ RewardInput<T> Task<T>::InputOf(const SwarmState<T>& swarm, int i) const {
   in.distance = k.distance;
   in.previous_distance = k.previous_distance;
   if (scenario_.agent.observation.release_bookkeeping) {
-    const auto first = totals_.steps() < T(0.5);  // the release has no d(t-1) there
+    const auto first = totals_.steps() < T(0.5);  // the release has no d(t-1) in the first step
     in.previous_distance = Select(first, k.distance, k.previous_distance);
   }
   in.closing = k.closing;

@@ -36,7 +36,7 @@ void AcousticSource::Start(const dynamics::World& world, const LaneSet& lanes) {
       agents_[static_cast<std::size_t>(i)].Reset(lane, world.episode(lane),
                                                  world.InitialCue(lane, i, targets_.of(i)));
       for (int k = 0; k < targets_.count; ++k) {
-        // Of one without a belief it is ignored.
+        // The agent ignores a cue of a target that it does not estimate.
         if (k != targets_.of(i)) {
           agents_[static_cast<std::size_t>(i)].AddCue(lane, world.InitialCue(lane, i, k));
         }
@@ -71,7 +71,7 @@ void AcousticSource::Observe(const dynamics::World& world, const LaneSet& lanes)
 void AcousticSource::Act(const dynamics::World&, int i, const Pack* wanted,
                          task::Effort<Pack>* action, task::Effort<Pack>* tau) {
   Pack rounded[dynamics::kMaxActionSize];
-  // What a policy says is float.
+  // A policy's output is float.
   for (int k = 0; k < action_size_; ++k) rounded[k] = RoundToFloat(wanted[k]);
   agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
   agent.Act(rounded);
@@ -105,7 +105,8 @@ void AcousticSource::Send(const dynamics::World& world) {
   }
 }
 
-/// What a localizer leaves of the errors of AUV i and of the others against its own.
+/// Errors of the positions of AUV i and of the others relative to it, after the localizer's
+/// corrections.
 void AcousticSource::TellNavigation(const dynamics::World& world, int i, int lane,
                                     task::FieldState<Pack>* f) const {
   const agent::Localizer* localizer = agents_[static_cast<std::size_t>(i)].inbox(lane).localizer();

@@ -40,7 +40,7 @@ void TruthSource::Act(const dynamics::World& world, int i, const Pack* wanted,
   mind.Act(model_, wanted, [&] { return exact_angles_ ? v.rpy : RpyOf(v.trig); });
   *action = mind.action;
   const Pack* t = mind.knowledge.tau;
-  *tau = {t[0], t[1], t[2], t[3], t[4], t[5]};  // std::copy is a call, which costs more
+  *tau = {t[0], t[1], t[2], t[3], t[4], t[5]};  // std::copy would be a call, which costs more
 }
 
 void TruthSource::Think(const dynamics::World& world) {
@@ -71,7 +71,7 @@ void TruthSource::Think(const dynamics::World& world) {
 void TruthSource::MeasureLinks(const dynamics::World& world) {
   const Pack zero(0.0), one(1.0), available(model_.observation.link_available);
   for (agent::NeighbourView<Pack>& s : links_) s.quality = s.best = s.effective = zero;
-  // Each pair once; every AUV adds up its neighbours in the order of their numbers.
+  // Handles each pair once. Every AUV adds its neighbours in the order of their numbers.
   for (int i = 0; i < model_.run.agents; ++i) {
     for (int j = i + 1; j < model_.run.agents; ++j) {
       const Pack q = acoustics::RangeQuality(world.distance(i, j), model_.channel.range_m);
@@ -102,7 +102,7 @@ void TruthSource::Show(const dynamics::World& world, int i, Vec3<Pack>* slots) c
 }
 
 Pack TruthSource::LinkQuality(const dynamics::World& world) const {
-  // Mean of q (Eq. 5) over the edges that exist.
+  // Mean of q (Eq. 5) over the existing edges.
   const Pack zero(0.0), one(1.0);
   Pack sum = zero, edges = zero;
   for (int i = 0; i < model_.run.agents; ++i) {

@@ -13,7 +13,7 @@ int BinOf(double error_m, int bins) {
   return static_cast<int>(Clip(k, 0.0, bins - 1.0));
 }
 
-/// The value below which a share of what was counted lies, at the upper end of its bin; 0: nothing.
+/// Upper end of the bin below which this share of the counted values lies; 0: nothing was counted.
 template <class Histogram>
 double Quantile(const Histogram& counts, double share) {
   std::uint64_t all = 0, below = 0;

@@ -28,7 +28,7 @@ T Spread(const SwarmState<T>& swarm, int target) {
 
 template <class T>
 T NormalisedSquare(const Vec3<T>& r, const T (&P)[6]) {
-  // By the adjugate.
+  // Uses the adjugate matrix.
   const T a = P[3] * P[5] - P[4] * P[4], b = P[2] * P[4] - P[1] * P[5],
           c = P[1] * P[4] - P[2] * P[3];
   const T d = P[0] * P[5] - P[2] * P[2], e = P[1] * P[2] - P[0] * P[4],
@@ -102,7 +102,7 @@ void FieldTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking<
   const config::Interval& band = scenario_.reward.band_m;
   Sums& s = sums_;
   s.groundings = s.collisions = s.received = s.missed = s.modem_energy = s.airtime = s.pings =
-      s.ping_answers = zero;  // counted by their owners
+      s.ping_answers = zero;  // these are counted elsewhere
   for (std::size_t i = 0; i < tracking.size(); ++i) {
     const FieldState<T>& f = (*swarm.field)[i];
     const Tracking<T>& k = tracking[i];

@@ -10,8 +10,8 @@ namespace stg::task {
 namespace {
 
 constexpr double kWindow_s = 600.0;
-constexpr double kGood_m = 20.0;     // an estimate is off by less
-constexpr double kCutoff_m = 100.0;  // an estimate that is off by more is none
+constexpr double kGood_m = 20.0;     // largest error of a good estimate
+constexpr double kCutoff_m = 100.0;  // an estimate with a larger error does not count
 
 template <class T>
 T Level(const Vec3<T>& r) {
@@ -72,7 +72,7 @@ T SearchTotals<T>::InBand(const Tracking<T>& k) const {
 
 template <class T>
 void SearchTotals<T>::Follow(const Vec3<T>& p_WT, OfTarget* t) const {
-  const auto first = decisions_ < T(1.5);  // the way from the start is not known
+  const auto first = decisions_ < T(1.5);  // the way from the start is unknown
   t->window_way = Select(first, T(0.0), t->window_way + Level(p_WT - t->p_WT));
   t->p_window = Select<T>(first, p_WT, t->p_window);
   t->p_WT = p_WT;
@@ -136,7 +136,7 @@ void SearchTotals<T>::Add(const SwarmState<T>& swarm, const std::vector<Tracking
       s2 += follows * (T(2.0) * r.x * r.y / square);
       near += follows * InBand(tracking[i]);
       best = Min(best, Select((f.known > T(0.5)) && ours, Level(f.r_BT_W - r), T(1e9)));
-      // The cue is of the start; an observation is younger than the episode.
+      // The cue is from the start, so only an observation is younger than the episode.
       const auto observed = (f.known > T(0.5)) && (f.age_s < elapsed_s - T(1e-3));
       seen = Select(observed && ours, one, seen);
       team += follows;
