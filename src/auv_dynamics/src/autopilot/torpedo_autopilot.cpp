@@ -7,11 +7,11 @@
 namespace stg::dynamics {
 namespace {
 
-/// Time in which the hull takes up the speed that belongs to its shaft speed [s].
+/// Time in which the hull reaches the speed of its shaft speed [s].
 constexpr double kWayLag_s = 2.0;
-/// Errors of speed beyond this are of gathering way or losing it, not of the balance [m/s].
+/// Larger errors of speed occur while the speed changes; the integrator ignores them [m/s].
 constexpr double kNearSpeed_mps = 0.7;
-/// The share of the smallest speed below which a fin's effect is not reckoned with.
+/// Smallest assumed flow over the fins, as a share of the smallest speed.
 constexpr double kSlowest = 0.5;
 
 }  // namespace
@@ -55,12 +55,12 @@ T TorpedoAutopilot::Rudder(const T& wanted, const T& rate, const T& flow, double
 template <class T>
 T TorpedoAutopilot::SternPlane(const T& wanted, const T& climb, const T& sine, const T& rate,
                                const T& flow, double dt, T* state) const {
-  // Pitch for the climb rate, bow up.
+  // Desired pitch for the climb rate, bow up.
   const T most(c_.max_pitch_rad);
   const T raw_pitch = wanted / flow + state[kClimb];
   const T pitch = Clip(raw_pitch, -most, most);
   const T slope = (wanted - climb) / flow;
-  // The stern plane for the pitch; to second order the sine is the angle at these pitches.
+  // Stern plane for this pitch. At these pitches the sine equals the angle to second order.
   const T error = pitch - sine;
   const double w = c_.pitch_frequency_radps;
   const T acceleration =
@@ -69,7 +69,7 @@ T TorpedoAutopilot::SternPlane(const T& wanted, const T& climb, const T& sine, c
   const T raw = -acceleration / (T(pitch_authority_) * flow * flow);
   const T stern_plane = Clip(raw, T(-max_fin_), T(max_fin_));
   Integrate(error * T(c_.pitch_integral_ps3 * dt), -raw, -stern_plane, &state[kPitch]);
-  // What asks for pitch waits while pitch or the stern plane is at its limit.
+  // The integrator of the climb rate waits while pitch or stern plane is at its limit.
   Integrate(Select(Abs(raw) > T(max_fin_), T(0.0), slope * T(c_.climb_integral_ps * dt)), raw_pitch,
             pitch, &state[kClimb]);
   return stern_plane;
@@ -85,7 +85,7 @@ void TorpedoAutopilot::Follow(const Vec3<T>& v_des_W, const Navigation<T>& nav, 
   const T flow = Max(state[kFlow], T(slowest_));
   command[0] = Shaft(wish.speed, speed, dt, state);
   command[1] = Rudder(wish.turn_rate, nav.w_WB_B.z, flow, dt, state);
-  // FLU: the last row of R_WB is the world's vertical in body axes, and positive q lowers the bow.
+  // In FLU axes, the last row of R_WB is the world's vertical, and positive q lowers the bow.
   command[2] = SternPlane(wish.climb, v_WB.z, R_WB.m[2][0], -nav.w_WB_B.y, flow, dt, state);
   state[kFlow] +=
       (command[0] * T(1.0 / rpm_per_speed_) - state[kFlow]) * T(1.0 - std::exp(-dt / kWayLag_s));

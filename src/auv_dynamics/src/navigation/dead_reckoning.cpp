@@ -7,46 +7,49 @@
 namespace stg::dynamics {
 namespace {
 
-/// Symmetric 2x2, horizontal.
+/// Symmetric 2x2 matrix, horizontal.
 struct Spread {
   Pack xx = Pack(0.0), xy = Pack(0.0), yy = Pack(0.0);
 };
 
-/// One vehicle in all lanes.
+/// State of one vehicle in all lanes.
 struct Reckoning {
-  Vec3<Pack> p_WB;      ///< as believed; its height comes from pressure, from the truth
+  Vec3<Pack> p_WB;      ///< estimate; the true height is used, because depth comes from pressure
   Vec3<Pack> before_W;  ///< true position one step ago
   Pack scale = Pack(0.0), heading = Pack(0.0);          ///< true errors [-], [rad]
   Pack sine = Pack(0.0), cosine = Pack(1.0);            ///< of `heading`
-  Pack sine_half = Pack(0.0), cosine_half = Pack(1.0);  ///< of half of it
-  Vec3<Pack> noise_W;              ///< of the last ping: velocity x, y [m/s]; depth z [m]
-  Vec3<Pack> water_W;              ///< current that the log does not see [m/s]; zero over ground
+  Pack sine_half = Pack(0.0), cosine_half = Pack(1.0);  ///< of half of `heading`
+  Vec3<Pack> noise_W;  ///< of the last ping: velocity x, y [m/s]; depth z [m]
+  Vec3<Pack> water_W;  ///< current that the log does not measure [m/s]; zero over ground
   Pack through_water = Pack(0.0);  ///< 1: the last ping found no bottom
-  Vec3<Pack> run_W;                ///< way since the last ping, as believed [m]
+  Vec3<Pack> run_W;                ///< estimated way since the last ping [m]
   Spread spread;                   ///< variance of the position [m^2]
-  Vec3<Pack> with_scale, with_heading;  ///< covariance of the position and these [m], [m rad]
-  Pack with_current = Pack(0.0);        ///< of the position and the current, each axis [m^2/s]
-  Pack heading_variance = Pack(0.0);    ///< [rad^2]
-  Pack position_std = Pack(0.0), heading_std = Pack(0.0);  ///< as stated
-  // Where fixes are reported.
-  std::array<TimeNs, kLanes> due{};    ///< of the next fix; kUnder: it is not at the surface
-  std::array<TimeNs, kLanes> fixed{};  ///< of the newest fix
-  Vec3<Pack> p_WF;                     ///< which is this
-  Pack fix_std = Pack(0.0);            ///< as stated; 0: there was none
+  /// Covariance of the position with scale and heading [m], [m rad].
+  Vec3<Pack> with_scale, with_heading;
+  Pack with_current = Pack(0.0);      ///< covariance of position and current, on each axis [m^2/s]
+  Pack heading_variance = Pack(0.0);  ///< [rad^2]
+  Pack position_std = Pack(0.0), heading_std = Pack(0.0);  ///< stated values
+  // Only used if fixes are reported.
+  /// Time of the next fix; kUnder: the vehicle is not at the surface.
+  std::array<TimeNs, kLanes> due{};
+  std::array<TimeNs, kLanes> fixed{};  ///< time of the newest fix
+  Vec3<Pack> p_WF;                     ///< position of the newest fix
+  Pack fix_std = Pack(0.0);            ///< stated value; 0: there was no fix
 };
 
 constexpr TimeNs kUnder = -1;
 
-/// Position as the integral of velocity from a Doppler log along a heading, depth from pressure, a
-/// fix at the surface, which may be reported instead of taken in. The true way of each step, less
-/// the current where the log has no bottom, is scaled, turned by the heading's error and disturbed
-/// by the ping's noise; so without errors the position is true whatever the step.
+/// Integrates the velocity of a Doppler log along a heading. Depth comes from pressure. At the
+/// surface there are fixes: they correct the position, or they are only reported. The true way of
+/// each step, minus the current if the log has no bottom, is scaled, turned by the error of the
+/// heading and disturbed by the noise of the ping. So without errors the position is true for any
+/// step.
 ///
-/// The stated deviation is that of the linear error model (e position, s scale, h heading, c
-/// current, d the way of a ping, J a quarter turn): e += s d + h J d + c t + noise, h += walk, with
-/// the covariances carried along. A fix enters with a gain that is equal for both axes; scale and
-/// heading are not estimated from it. What is stated, and that gain, follow from the deviations
-/// that the vehicle takes its instruments to have.
+/// The stated standard deviation follows the linear error model e += s d + h J d + c t + noise, h
+/// += walk (e position, s scale, h heading, c current, d way of a ping, J quarter turn). The
+/// covariances are propagated with it. A fix enters with the same gain on both axes; it does not
+/// correct scale and heading. The stated values and this gain use the standard deviations that the
+/// vehicle assumes for its instruments.
 class DeadReckoning : public NavigationSystem {
  public:
   explicit DeadReckoning(const NavigationSetup& setup)
@@ -132,7 +135,7 @@ class DeadReckoning : public NavigationSystem {
   void Believe(int i, Navigation<Pack>* nav) const override {
     const Reckoning& r = states_[static_cast<std::size_t>(i)];
     const Pack one(1.0);
-    // Velocity first, with the true attitude: what the log measures is in body axes.
+    // The velocity first, because the log measures in body axes and the true attitude is needed.
     const Mat3<Pack> R_WB = RotationOf(nav->q_WB);
     const Vec3<Pack> v_W = R_WB * nav->v_WB_B - r.water_W;
     const Vec3<Pack> noise{r.cosine * r.noise_W.x + r.sine * r.noise_W.y,
@@ -170,14 +173,14 @@ class DeadReckoning : public NavigationSystem {
 
  private:
   static double HeadingOf(const NavigationConfig& c) { return c.heading_std_deg * kPi / 180.0; }
-  /// Of the heading between two pings [rad].
+  /// Standard deviation of the heading's walk between two pings [rad].
   double WalkOf(const NavigationConfig& c) const {
     return c.gyro_walk_deg_per_sqrt_h * kPi / 180.0 * std::sqrt(ping_s_ / 3600.0);
   }
 
   Reckoning& At(int i) { return states_[static_cast<std::size_t>(i)]; }
 
-  /// Draws the noise of one ping; the generator goes on with that of a fix.
+  /// Draws the noise of one ping. The noise of a fix comes next from the returned generator.
   Random Ping(int lane, int i, const EpisodeClock& clock, double walk_std) {
     Reckoning& r = At(i);
     Random random =
@@ -194,7 +197,7 @@ class DeadReckoning : public NavigationSystem {
     SinCos(r->heading * Pack(0.5), &r->sine_half, &r->cosine_half);
   }
 
-  /// Carries the covariances over one ping, in the lanes of the mask.
+  /// Propagates the covariances over one ping, in the lanes of the mask.
   void Spend(const Mask<Pack>& lanes, Reckoning* r) const {
     const Pack zero(0.0), two(2.0), t(ping_s_), noise(stated_.dvl_noise_mps * ping_s_);
     const Pack ss(stated_.dvl_scale_std * stated_.dvl_scale_std);
@@ -219,8 +222,8 @@ class DeadReckoning : public NavigationSystem {
     r->run_W = Select<Pack>(lanes, Vec3<Pack>(), r->run_W);
   }
 
-  /// A fix that is reported, once the receiver has been at the surface for long enough. One error
-  /// would last as long as the vehicle stays there, so the next fix is as late as it is forgotten.
+  /// Reports a fix once the receiver has been at the surface for long enough. The error of GPS is
+  /// nearly constant for some time, so the next fix comes when this error has changed.
   void LookForFix(int lane, bool surfaced, TimeNs now, const Vec3<double>& p_WB, Random* random,
                   Reckoning* r) const {
     TimeNs& due = r->due[static_cast<std::size_t>(lane)];
@@ -240,7 +243,7 @@ class DeadReckoning : public NavigationSystem {
     return static_cast<TimeNs>(std::llround(seconds * 1e9));
   }
 
-  /// A fix of the position in one lane.
+  /// Corrects the position of one lane by a fix.
   void Fix(int lane, const Vec3<double>& p_WB, Random* random, Reckoning* r) const {
     const double noise = stated_.gps_std_m * stated_.gps_std_m;
     const double variance = Largest(r->spread, lane);
@@ -274,7 +277,7 @@ class DeadReckoning : public NavigationSystem {
 
   NavigationConfig config_, stated_;
   double dt_s_;
-  std::uint32_t steps_;  // of physics between two pings
+  std::uint32_t steps_;  // physics steps between two pings
   TimeNs step_ns_;
   double ping_s_, walk_std_, stated_walk_std_;
   std::vector<Reckoning> states_;  // [vehicles]

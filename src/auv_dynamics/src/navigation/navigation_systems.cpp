@@ -3,7 +3,7 @@
 namespace stg::dynamics {
 namespace {
 
-/// Every vehicle knows its state exactly: the paper's assumption.
+/// Every vehicle knows its exact state, as the paper assumes.
 class PerfectNavigation : public NavigationSystem {
  public:
   bool perfect() const override { return true; }

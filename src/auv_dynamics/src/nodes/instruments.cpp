@@ -91,7 +91,7 @@ void Instruments::PointDown(const std_msgs::Header& beam, const Vec3<double>& p_
   down.header.frame_id = frames::kWorld;
   down.child_frame_id = beam.frame_id;
   SetVector(p_WB, &down.transform.translation);
-  down.transform.rotation.y = down.transform.rotation.w = std::sqrt(0.5);  // x to -z
+  down.transform.rotation.y = down.transform.rotation.w = std::sqrt(0.5);  // turns x to -z
   frames_.sendTransform(down);
 }
 

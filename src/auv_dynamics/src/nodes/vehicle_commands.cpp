@@ -95,7 +95,7 @@ void VehicleCommands::Tell(const std::vector<std::uint8_t>& fresh, bool channel_
   }
 }
 
-/// Shares of the actuators' limits, kWrenchSize of each AUV.
+/// Shares of the actuators' limits, kWrenchSize numbers for each AUV.
 std::vector<double> VehicleCommands::Efforts() const {
   constexpr std::size_t kMost = dynamics::kWrenchSize;
   std::vector<double> efforts(refused_.size() * kMost, 0.0);
@@ -114,7 +114,7 @@ std::vector<double> VehicleCommands::Efforts() const {
   return efforts;
 }
 
-/// Whether a command is the first of this AUV for the open step, and well-formed.
+/// True if a command is well-formed and the first one of this AUV for the open step.
 bool VehicleCommands::Counts(int i, const std_msgs::Header& header, const std::string& frame,
                              bool finite) {
   if (header.frame_id != frame) {

@@ -15,13 +15,13 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 20;
-/// The clock starts here: ROS takes time zero for "not known yet".
+/// The clock starts here, because time zero means "not known yet" in ROS.
 constexpr TimeNs kFirstStamp = 1'000'000'000;
-/// Observers get a step when it is answered, or this long after it was opened [s]: a message on
-/// /clock wakes every node, and would do so just when all of them are to decide.
+/// Observers get a step when it is answered, or this time after it was opened [s]. A message on
+/// /clock wakes every node, and without this delay it would do so just when all nodes must decide.
 constexpr double kViewDelay_s = 0.005;
-/// Warnings wait so long: when a run is stopped its nodes end one after the other, the world last,
-/// and then silent AUVs are no news.
+/// Warnings are delayed by this time. When a run is stopped, its nodes end one after the other and
+/// the world last, so warnings about silent AUVs would be useless.
 constexpr double kWarningDelay_s = 2.0;
 
 Pacer::Options PacerParameters(TimeNs period) {
@@ -52,7 +52,7 @@ WorldNode::WorldNode()
       fresh_(static_cast<std::size_t>(scenario_.run.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   WarnOfOverriddenAgents(scenario_.run.agents);
-  // Of no use here; but no other node sees all that a launch says of them.
+  // The world does not use it, but no other node can check the whole list of a launch.
   RequireIndices("external", scenario_.run.agents);
   const std::string awaited = TextParameter("wait_for_node", "");
   if (!awaited.empty()) awaited_.emplace(awaited);
@@ -95,7 +95,7 @@ double WorldNode::Work() {
   return done_ ? kLoopDone : WaitTime();
 }
 
-/// Seconds until something is to be done without a message.
+/// Time until the node must act without a message [s].
 double WorldNode::WaitTime() const {
   const double wait_s =
       finishing_ ? Pacer::kIdleWait_s : pacer_.WaitTime(WallSeconds(), barrier_.deadline_s());
@@ -131,9 +131,9 @@ void WorldNode::Advance() {
   }
 }
 
-/// A node that joins while step 0 stands misses nothing, as every topic is latched.
+/// A node that joins during step 0 misses nothing, because every topic is latched.
 bool WorldNode::ListenersReady(double now) {
-  // The metrics node announces summaries once it has seen all of step 0.
+  // The metrics node advertises summaries once it has received all of step 0.
   const bool metrics = !wait_for_metrics_ || subscribers_.back().getNumPublishers() > 0;
   if (metrics && (!awaited_ || awaited_->Settled(now))) return true;
   if (now <= pacer_.deadline_s()) return false;
@@ -158,12 +158,12 @@ void WorldNode::StepWorld() {
   bool missed = false;
   for (std::size_t i = 0; i < fresh_.size(); ++i) {
     const bool answered = barrier_.answered(static_cast<int>(i));
-    // A decision is flown as commanded when every part of it is.
+    // A decision counts as executed only if every part of it was answered.
     fresh_[i] = answered && (part_ == 0 || fresh_[i]) ? 1 : 0;
     if (!answered) missed = true;
   }
   if (missed) ++missed_steps_;
-  if (part_ == 0) channel_fresh_ = barrier_.answered(Channel());  // later parts excuse it
+  if (part_ == 0) channel_fresh_ = barrier_.answered(Channel());  // it is excused from later parts
   commands_.Move(scenario_.run.time.decision_steps / commands_.parts(), &world_);
   CheckState();
   barrier_.Close();
@@ -178,7 +178,7 @@ void WorldNode::StepWorld() {
   OpenStep();
 }
 
-/// Between two decisions: navigation goes out to the autopilots alone.
+/// Between two decisions only the autopilots get navigation.
 void WorldNode::OpenPart() {
   opened_ = WallSeconds();
   publisher_->PublishNavigation(world_, start_);
@@ -187,7 +187,8 @@ void WorldNode::OpenPart() {
   barrier_.Excuse(Channel());
 }
 
-/// The nodes refuse numbers beyond kLargestInput, and would go on without a word from the world.
+/// Ends the run if the state is unusable. The nodes would refuse numbers beyond kLargestInput, and
+/// the world would give no reason.
 void WorldNode::CheckState() const {
   for (int i = 0; i < scenario_.run.agents; ++i) {
     const dynamics::NavState nav = world_.Truth(0, i);
@@ -207,7 +208,7 @@ void WorldNode::StartEpisode(std::uint32_t episode) {
   step_ = 0;
   summarised_ = false;
   part_ = 0;
-  // The other lanes run the same world; only lane 0 is looked at.
+  // The other lanes simulate the same world, but only lane 0 is used.
   for (int lane = 0; lane < kLanes; ++lane) {
     world_.Reset(lane, seed_ + (episode_ - seed_episode_), 0, scenario_.world.reset.stage);
   }
@@ -222,7 +223,8 @@ void WorldNode::OpenStep() {
   SetNodeTime(TimeOf(Now()));
   publisher_->PublishSensors(world_, start_, episode_, step_);
   if (instruments_ != nullptr) instruments_->Publish(world_, Now(), step_ == 0);
-  // In lockstep the channel's answer is waited for; on the wall clock it can wait for the AUVs.
+  // In lockstep the world waits for the channel's answer. On the wall clock the channel can wait
+  // for the AUVs.
   if (pacer_.lockstep()) publisher_->PublishSwarm();
   shown_ = false;
   pacer_.Open(WallSeconds());
@@ -239,7 +241,7 @@ void WorldNode::Finish() {
       static_cast<unsigned long long>(steps_.total()), wall_s, simulated_s / wall_s,
       static_cast<unsigned long long>(missed_steps_), DelayQuantile(0.5), DelayQuantile(0.99));
   give_up_s_ = WallSeconds() + summary_timeout_s_;
-  // No node could send it: fine, unless the run was asked for with metrics.
+  // No node can send a summary. This is an error only if the run was started with metrics.
   if (summarised_) {
     done_ = true;
   } else if (subscribers_.back().getNumPublishers() == 0) {
@@ -259,7 +261,7 @@ void WorldNode::OnChannelDone(const std_msgs::Header::ConstPtr& message) {
 }
 
 void WorldNode::OnSummary(const auv_msgs::EpisodeSummary::ConstPtr& message) {
-  // It may come before the last answers to the episode's final state do.
+  // The summary may arrive before the last answers to the episode's final state.
   if (!AtEnd() || message->episode != episode_) return;
   summarised_ = true;
   if (finishing_) done_ = true;
@@ -275,7 +277,8 @@ bool WorldNode::OnReset(auv_msgs::Reset::Request& request, auv_msgs::Reset::Resp
     seed_ = request.seed;
     seed_episode_ = episode_ + 1;
   }
-  // The open step's answers are waited for: they would meet those of the new episode half-way.
+  // First waits for the answers to the open step, because they would mix with those of the new
+  // episode.
   reset_ = true;
   response.success = true;
   response.episode = episode_ + 1;

@@ -75,7 +75,7 @@ void WorldPublisher::Advertise() {
                               return !m->header.stamp.isZero();
                             });
   }
-  // roscpp sends in the order of these lines: agents are served first.
+  // roscpp sends in the order of these lines, so the agents get their messages first.
   swarm_ = node.advertise<auv_msgs::SwarmState>(topics::kSwarmState, kSentQueue, true);
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
   detections_.Advertise(topics::kSwarmDetections, kSentQueue,
@@ -94,7 +94,7 @@ void WorldPublisher::Advertise() {
 }
 
 void WorldPublisher::SendWorldNed() {
-  // North is y of ENU, east is x, down is -z: half a turn about the axis between x and y.
+  // North is y of ENU, east is x, and down is -z: half a turn about the axis between x and y.
   geometry_msgs::TransformStamped ned;
   ned.header.frame_id = frames::kWorld;
   ned.child_frame_id = frames::kWorldNed;
@@ -198,7 +198,7 @@ void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
   m.seed = world.seed(0);
   SetDetections(world, start + world.time(0), i, &m);
   if (m.step == 0) {
-    m.cue_valid = true;  // and stays in the message, for an agent that comes late
+    m.cue_valid = true;  // it stays in the message for an agent that joins late
     const dynamics::Cue cue = world.InitialCue(0, i, scenario_.world.target.of(i));
     SetVector(cue.p_WT, &m.cue_position);
     m.cue_std = cue.std_m;

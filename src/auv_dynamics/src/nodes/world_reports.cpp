@@ -4,12 +4,12 @@
 #include "auv_dynamics/nodes/topics.hpp"
 #include "world_node.hpp"
 
-/// What the world says of the run, to people and in diagnostics.
+/// Reports of the world about the run, for the terminal and for diagnostics.
 namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMaxDelays = 10'000;
-/// The nodes that the start waits for are named this often.
+/// Period of messages about nodes that the start waits for [s].
 constexpr double kWaitingNews_s = 5.0;
 
 }  // namespace
@@ -31,7 +31,7 @@ void WorldNode::Warn() {
   warning_.clear();
 }
 
-/// Before the run begins, when a node's first answer does not come.
+/// Names the nodes whose first answer is missing, before the run begins.
 void WorldNode::TellWhoIsMissing(double now) {
   if (now - told_s_ < kWaitingNews_s) return;
   told_s_ = now;
@@ -46,7 +46,7 @@ void WorldNode::TellWhoIsMissing(double now) {
 }
 
 void WorldNode::KeepDelay() {
-  if (!pacer_.running()) return;  // the first answers wait for nodes to start
+  if (!pacer_.running()) return;  // the first answers also wait for nodes to start
   const auto delay = static_cast<float>(OpenFor() * 1e3);
   if (answer_ms_.size() < kMaxDelays) {
     answer_ms_.push_back(delay);
@@ -55,7 +55,7 @@ void WorldNode::KeepDelay() {
   }
 }
 
-/// Time from detection to wrench that `share` of the answers stayed within [ms].
+/// Largest time from detection to wrench [ms] of this share of the answers.
 double WorldNode::DelayQuantile(double share) const {
   if (answer_ms_.empty()) return 0.0;
   std::vector<float> sorted = answer_ms_;

@@ -17,8 +17,8 @@ constexpr double kDay_s = 86400.0;
 constexpr double kDegree = kPi / 180.0;
 constexpr char kHeader[] = "rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r";
 constexpr std::size_t kCommandCells = 5, kCells = kCommandCells + 1 + kMotionColumns;
-/// Of the command's cells, the time and the state's: what is larger is damage, and differences of
-/// it are no numbers. Angles may have been counted on past a turn.
+/// Largest magnitudes of the command's cells, the time and the state's cells. A larger number means
+/// damage, and computations with it could overflow. Angles may exceed a full turn.
 constexpr double kLargest[kCells] = {1e5, 90.0, 90.0, 100.0, 3600.0, kDay_s, 1e7, 1e7, 1e7,
                                      1e4, 1e4,  1e4,  1e3,   1e3,    1e3,    1e3, 1e3, 1e3};
 
@@ -66,7 +66,7 @@ bool SameCommand(const RecordedMotion& m, const Cells& c) {
          m.current_towards_deg == c[4];
 }
 
-/// The state in the file's frames: the world turned half around x, and the body as well.
+/// The state in the file's frames. World and body are both turned by half a turn around x.
 std::array<double, kMotionColumns> StateOf(const VehicleState<double>& s) {
   const Vec3<double> rpy = RpyOf(s.trig);
   return {s.p_WB.x,   -s.p_WB.y,   -s.p_WB.z,   rpy.x,      -rpy.y,      -rpy.z,
@@ -84,7 +84,7 @@ double DistanceRun(const RecordedMotion& motion) {
   return run;
 }
 
-/// One vehicle under way.
+/// Simulates one vehicle.
 class Flight {
  public:
   Flight(const VehicleConfig& vehicle, const RecordedMotion& motion, double dt_s)
@@ -178,7 +178,7 @@ MotionError Compare(const VehicleConfig& vehicle, const std::vector<RecordedMoti
         const double recorded = row.state[c];
         double error = ours[c] - recorded;
         if (c == kPhi || c == kTheta || c == kPsi) error = WrapAngle(error);
-        // From rest: each column starts at zero.
+        // Zero is in the range, because every column starts there.
         column.lo = std::min(column.lo, recorded);
         column.hi = std::max(column.hi, recorded);
         if (!(std::abs(error) <= column.max_abs_error)) {

@@ -5,8 +5,8 @@
 namespace stg::dynamics {
 namespace {
 
-/// The target's position with independent noise on each component, within a range. Ideal values
-/// are the paper's sensor.
+/// Measures the target's position, within a range, with independent noise on each component. With
+/// ideal values it is the paper's sensor.
 class PositionSensor : public TargetSensor {
  public:
   explicit PositionSensor(const SensingConfig& config) : config_(config) {}

@@ -5,9 +5,9 @@
 namespace stg::dynamics {
 namespace {
 
-/// Range, bearing or both of a target, from the true geometry, with normal noise: of the range its
-/// deviation is a + b r, of azimuth and elevation it is constant. An outlier and a false alarm are
-/// uniform in range and direction.
+/// Measures range, bearing or both of a target from the true geometry, with normal noise. The
+/// standard deviation of the range is a + b r; for azimuth and elevation it is constant. Outliers
+/// and false alarms are uniform in range and direction.
 class RelativeSensor : public TargetSensor {
  public:
   RelativeSensor(const RelativeOptions& options, const SensingConfig& config, MeasurementKind kind)
@@ -20,7 +20,7 @@ class RelativeSensor : public TargetSensor {
   MeasurementKind kind() const override { return kind_; }
 
   bool Sense(const Look& look, Detection* out) const override {
-    // What modems range is no business of the world.
+    // If modems measure ranges, the channel does it.
     if (config_.pings() || !LooksNow(config_, look)) return false;
     Measured m;
     if (!Measure(look, &m) && !FalseAlarm(look, &m)) return false;
@@ -73,7 +73,7 @@ class RelativeSensor : public TargetSensor {
             random->Uniform(-0.5 * kPi, 0.5 * kPi)};
   }
 
-  /// The measurement in the frame of the vehicle's own navigation.
+  /// Writes the measurement in the frame of the vehicle's own navigation.
   void Tell(const Look& look, const Measured& m, Detection* out) const {
     const bool has_range = kind_ != MeasurementKind::kBearing;
     const bool has_bearing = kind_ != MeasurementKind::kRange;
@@ -99,7 +99,7 @@ class RelativeSensor : public TargetSensor {
     out->std_m = Max(out->range_std_m, m.range_m * bearing_std_);
   }
 
-  /// Port first, whichever is true.
+  /// Writes both possible bearings, port first, whichever of them is true.
   static void TellBothSides(const Look& look, Detection* out) {
     const Mat3<Pack>& R = look.vehicle_state.R_WB;
     const double heading = std::atan2(Lane(R.m[1][0], look.lane), Lane(R.m[0][0], look.lane)) +

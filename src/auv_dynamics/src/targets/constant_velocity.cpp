@@ -3,8 +3,8 @@
 namespace stg::dynamics {
 namespace {
 
-/// Straight on. At a wall the position is clamped and that component of the velocity flips: the
-/// paper's target.
+/// The paper's target: it moves straight on. At a wall the position is clamped, and this component
+/// of the velocity is reversed.
 class ConstantVelocity : public TargetMotion {
  public:
   explicit ConstantVelocity(const MotionSetup& setup)

@@ -13,8 +13,8 @@ void Describe(CoordinatedTurnOptions* o, config::Table* t) {
   t->Add("period_s", &o->period_s, config::Positive(1e5), "s", "time between new turn rates");
 }
 
-/// Turns about an axis at a rate, both drawn anew every turn period; in open water to port or to
-/// starboard.
+/// Turns about an axis at a rate. Both are drawn anew in every turn period. In open water it turns
+/// to port or starboard.
 class CoordinatedTurn : public SteeredMotion {
  public:
   CoordinatedTurn(const CoordinatedTurnOptions& options, const MotionSetup& setup)

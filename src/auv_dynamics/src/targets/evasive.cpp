@@ -14,8 +14,8 @@ void Describe(EvasiveOptions* o, config::Table* t) {
          "the target flees AUVs closer than this");
 }
 
-/// Away from every vehicle in range, the closer the stronger, in open water at its depth; straight
-/// on while none is.
+/// Flees from every vehicle in range; closer vehicles have a stronger effect. In open water it
+/// keeps its depth. It moves straight on while no vehicle is in range.
 class Evasive : public SteeredMotion {
  public:
   Evasive(const EvasiveOptions& options, const MotionSetup& setup)

@@ -12,8 +12,8 @@ void Describe(RandomWaypointOptions* o, config::Table* t) {
          "distance within which a waypoint counts as reached");
 }
 
-/// Whether `to`, relative to a target of velocity v, lies inside the circle of
-/// its tightest turn: turning towards it would orbit it forever.
+/// True if the point `to`, relative to a target with velocity v, lies inside the circle of the
+/// tightest turn. A target that turns towards this point would circle it forever.
 bool InsideTurningCircle(const Vec3<double>& v, const Vec3<double>& to, double max_turn_rate) {
   const double speed = Norm(v);
   if (speed < 1e-12) return false;
@@ -23,8 +23,8 @@ bool InsideTurningCircle(const Vec3<double>& v, const Vec3<double>& to, double m
   return along * along + aside * aside < radius * radius;
 }
 
-/// Towards points drawn within 0.8 of the workspace, one after the other; in open water at its
-/// depth.
+/// Moves to random points within 0.8 of the workspace, one after the other. In open water it keeps
+/// its depth.
 class RandomWaypoint : public SteeredMotion {
  public:
   RandomWaypoint(const RandomWaypointOptions& options, const MotionSetup& setup)
@@ -47,7 +47,7 @@ class RandomWaypoint : public SteeredMotion {
       return Vec3<double>{x, y, open_water() ? now.p_WT.z : random.Uniform(-e, e)};
     };
     const Vec3<double> to = waypoint() - now.p_WT;
-    // A point that cannot be reached by turning is given up for the next one.
+    // A point that cannot be reached by a turn is skipped.
     if (Norm(to) < options_.radius_m ||
         InsideTurningCircle(now.v_WT, to, config().max_turn_rate_radps)) {
       ++index;
@@ -60,7 +60,8 @@ class RandomWaypoint : public SteeredMotion {
   }
 
   RandomWaypointOptions options_;
-  std::vector<std::uint32_t> index_;  // [lane, target] points reached or given up
+  // [lane, target] number of points that were reached or skipped.
+  std::vector<std::uint32_t> index_;
 };
 
 std::unique_ptr<TargetMotion> MakeRandomWaypoint(const RandomWaypointOptions& options,

@@ -12,7 +12,7 @@ Vec3<double> TurnTowards(const Vec3<double>& v, const Vec3<double>& direction, d
   if (between <= angle) return b * speed;
   Vec3<double> normal = b - a * Dot(a, b);
   double n = Norm(normal);
-  if (n < 1e-9) {  // opposite: any perpendicular will do
+  if (n < 1e-9) {  // opposite vectors: any perpendicular works
     normal = std::abs(a.z) < 0.9 ? Cross(a, {0.0, 0.0, 1.0}) : Cross(a, {1.0, 0.0, 0.0});
     n = Norm(normal);
   }

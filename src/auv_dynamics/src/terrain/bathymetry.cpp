@@ -10,8 +10,8 @@
 namespace stg::dynamics {
 namespace {
 
-/// Number of the cell of an ascending, even axis that a value lies in, and the share of the way
-/// through it.
+/// Number of the cell that contains a value on an ascending, even axis, and the value's position in
+/// it as a share of the cell.
 std::size_t CellOf(const std::vector<double>& axis, double value, double* share) {
   const double step = (axis.back() - axis.front()) / static_cast<double>(axis.size() - 1);
   const double cells = (value - axis.front()) / step;
@@ -21,7 +21,7 @@ std::size_t CellOf(const std::vector<double>& axis, double value, double* share)
   return cell;
 }
 
-/// The turn of longitude, in whole circles, that brings it onto the axis, or as it is.
+/// Adds full circles to a longitude so that it lies on the axis; unchanged if this is impossible.
 double OntoAxis(const std::vector<double>& axis, double longitude) {
   for (const double turn : {0.0, 360.0, -360.0}) {
     if (longitude + turn >= axis.front() && longitude + turn <= axis.back()) {
@@ -66,7 +66,8 @@ double Bathymetry::At(double latitude, double longitude) const {
                             point(row + 1, column + 1)};
   const double south = (1.0 - u) * corners[0] + u * corners[1];
   const double north = (1.0 - u) * corners[2] + u * corners[3];
-  // A sum of rounded shares may be a last digit outside of its corners, even on level ground.
+  // A sum of rounded shares may leave the range of the corners by a last digit, even on level
+  // ground.
   const auto [lowest, highest] = std::minmax_element(std::begin(corners), std::end(corners));
   return std::clamp((1.0 - v) * south + v * north, *lowest, *highest);
 }

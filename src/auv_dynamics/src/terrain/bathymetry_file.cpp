@@ -12,18 +12,18 @@ namespace {
 using Variable = NetcdfFile::Variable;
 
 constexpr std::size_t kLongestAxis = 1'000'000;
-/// The Challenger Deep and Mount Everest, with room for errors of a survey [m].
+/// A little beyond the Challenger Deep and Mount Everest, for errors of a survey [m].
 constexpr double kLowest_m = -11'100.0, kHighest_m = 8'900.0;
-/// Share of a step by which an axis may be uneven: GEBCO's cells are not whole in binary.
+/// Allowed unevenness of an axis, as a share of a step: GEBCO's cells have no exact binary values.
 constexpr double kUneven = 0.01;
-/// A tenth of a millimetre on the ground: what is closer is no grid but damage [degrees].
+/// A tenth of a millimetre on the ground. Closer points mean a damaged file [degrees].
 constexpr double kFinest_deg = 1e-9;
 
 bool OneOf(const std::string& text, const std::vector<const char*>& words) {
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return text == word; });
 }
 
-/// One axis of the grid as the file has it.
+/// One axis of the grid, as in the file.
 struct Axis1 {
   std::vector<double> values;
   bool latitude = false;
@@ -70,7 +70,7 @@ Axis1 ReadAxis(const NetcdfFile& file, const std::vector<Variable>& variables, i
   return axis;
 }
 
-/// The variable with the elevations.
+/// Finds the variable with the elevations.
 const Variable& FindElevation(const NetcdfFile& file, const std::vector<Variable>& variables) {
   std::vector<const Variable*> flat;
   std::string names;
@@ -91,7 +91,8 @@ const Variable& FindElevation(const NetcdfFile& file, const std::vector<Variable
   return *flat.front();
 }
 
-/// Points of an ascending axis from the last one at or below `lo` to the first at or above `hi`.
+/// Points of an ascending axis, from the last one at or below `lo` to the first one at or above
+/// `hi`.
 struct Span {
   std::size_t first = 0, count = 0;
 };
@@ -120,7 +121,7 @@ std::string LowerCase(std::string text) {
   return text;
 }
 
-/// Whether values are depths below the sea.
+/// True if the values are depths below the sea.
 bool PointsDown(const NetcdfFile& file, const Variable& variable) {
   const std::string positive = file.Text(variable, "positive").value_or("up");
   const std::string word = LowerCase(positive);
@@ -130,14 +131,14 @@ bool PointsDown(const NetcdfFile& file, const Variable& variable) {
   return word == "down";
 }
 
-/// A file that does not say is taken to be in metres.
+/// A file without units is taken to be in metres.
 void RequireMetres(const NetcdfFile& file, const Variable& variable) {
   const std::string units = file.Text(variable, "units").value_or("");
   if (OneOf(LowerCase(units), {"", "m", "meter", "meters", "metre", "metres"})) return;
   file.Refuse(variable.name + " is in '" + units + "'; convert it to metres");
 }
 
-/// Metres above the sea from what the file holds.
+/// Converts the values of the file to metres above the sea.
 void Unpack(const NetcdfFile& file, const Variable& variable, std::vector<float>* values) {
   const double scale = file.Number(variable, "scale_factor").value_or(1.0);
   const double offset = file.Number(variable, "add_offset").value_or(0.0);
@@ -194,7 +195,7 @@ Bathymetry Read(const std::string& path, const GeoRegion* region) {
     file.Refuse("holds " + std::to_string(rows.count) + " x " + std::to_string(columns.count) +
                 " points, too many: crop a region of it");
   }
-  // Where the part begins in the file's own order.
+  // Start of the part in the file's own order.
   const auto begin = [](const Axis1& axis, const Span& span) {
     return axis.descending ? axis.values.size() - span.first - span.count : span.first;
   };

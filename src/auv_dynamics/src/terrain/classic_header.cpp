@@ -9,13 +9,13 @@
 namespace stg::dynamics {
 namespace {
 
-/// Reads the header's big-endian numbers one after the other; bad() once it has come to an end.
+/// Reads the header's big-endian numbers in order. bad() is true after a read beyond the end.
 class HeaderReader {
  public:
   explicit HeaderReader(const std::string& path)
       : in_(path, std::ios::binary), bytes_(std::filesystem::file_size(path)) {}
 
-  /// 1, 2 or 5; 0: no classic file.
+  /// Version 1, 2 or 5; 0: the file is no classic file.
   int Version() {
     char magic[4] = {};
     in_.read(magic, 4);
@@ -33,15 +33,15 @@ class HeaderReader {
     }
     return value;
   }
-  /// A count, a length or a size.
+  /// Reads a count, a length or a size.
   std::uint64_t Count() { return Number(version_ == 5 ? 8 : 4); }
-  /// How many things follow that take so many bytes of the file each.
+  /// Reads the number of items that follow, each with this size in the file.
   std::uint64_t CountOf(std::uint64_t bytes_each) {
     const std::uint64_t count = Count();
     if (count > bytes_ / bytes_each) Fail();
     return bad() ? 0 : count;
   }
-  /// A place in the file.
+  /// Reads an offset in the file.
   std::uint64_t Offset() { return Number(version_ == 1 ? 4 : 8); }
   void SkipPadded(std::uint64_t bytes) {
     if (bytes > bytes_) Fail();
@@ -49,7 +49,7 @@ class HeaderReader {
     if (in_.peek() == std::ifstream::traits_type::eof()) Fail();
   }
   void SkipName() { SkipPadded(Count()); }
-  /// Bytes of a value, from the type that comes next.
+  /// Reads a type. Returns the size of its values in bytes.
   std::uint64_t SizeOfType() {
     static constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
     const std::uint64_t type = Number(4);
@@ -68,7 +68,7 @@ class HeaderReader {
 
  private:
   std::ifstream in_;
-  std::uint64_t bytes_;  // of the file
+  std::uint64_t bytes_;  // size of the file
   int version_ = 0;
 };
 
@@ -101,8 +101,8 @@ std::optional<std::uint64_t> SmallestClassicSize(const std::string& path) {
     header.SkipAttributes();
     header.SizeOfType();
     const std::uint64_t bytes = header.Count(), begin = header.Offset();
-    // Sizes are rounded up to four bytes, the file need not be; those of very large variables do
-    // not fit into their field.
+    // Sizes are rounded up to four bytes, but the file may end earlier. The sizes of very large
+    // variables do not fit into their field.
     if (!record && !header.bad() && bytes >= 4 && bytes < 0xfffffffcU) {
       size = std::max(size, begin + bytes - 3);
     }

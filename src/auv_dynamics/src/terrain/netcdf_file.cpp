@@ -9,13 +9,13 @@
 namespace stg::dynamics {
 namespace {
 
-/// Attributes longer than this are no units and no names.
+/// Longer attributes are not units or names.
 constexpr std::size_t kLongestText = 4096;
 
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::string& path) : netcdf_(NetcdfLibrary::Get()), path_(path) {
-  // libnetcdf also takes addresses; a file is what is meant.
+  // libnetcdf also accepts network addresses; only files are allowed here.
   RequireRegularFile(path);
   if (std::filesystem::file_size(path) == 0) throw UserError(path + ": is empty");
   const auto least = SmallestClassicSize(path);

@@ -12,10 +12,10 @@
 namespace stg::dynamics {
 namespace {
 
-/// Of a scenario in open water; others have no terrain.
+/// Makes the terrain of a scenario in open water. Other scenarios have no terrain.
 Terrain MakeTerrain(const SeaConfig& c, double region_m) {
   if (!c.open || c.terrain == "flat") return Terrain(c.bottom_m);
-  // A little more than the region, which is a square of metres and not of degrees.
+  // Slightly more than the region, because the region is a square in metres, not in degrees.
   const Datum datum(c.latitude_deg, c.longitude_deg);
   const Datum::Geodetic corners[] = {
       datum.ToGeodetic({-region_m, -region_m, 0.0}), datum.ToGeodetic({region_m, -region_m, 0.0}),
@@ -34,7 +34,7 @@ Terrain MakeTerrain(const SeaConfig& c, double region_m) {
 }  // namespace
 
 std::string TerrainFile(const std::string& name) {
-  std::error_code error;  // a link to itself is no file either
+  std::error_code error;  // a link to itself is not a file
   const auto is_file = [&error](const std::string& path) {
     return std::filesystem::is_regular_file(path, error);
   };

@@ -10,7 +10,7 @@
 namespace stg::dynamics {
 namespace {
 
-constexpr double kMetresPerDegree = 111'000.0;  // of latitude, for the size of a cell only
+constexpr double kMetresPerDegree = 111'000.0;  // in latitude; only for the size of a cell
 constexpr std::size_t kMostSide = 4001;
 
 /// Smallest squared distance in the plane between a segment and the origin.
@@ -41,7 +41,7 @@ Pack Obstacle::Inside(const Vec3<Pack>& p) const {
 
 Vec3<double> Obstacle::Expel(Vec3<double>* p) const {
   const Vec3<double> d = *p - p_W;
-  // The very centre or axis has no nearest place: any will do.
+  // The centre or axis has no unique nearest point, so any direction works.
   const auto outward = [](const Vec3<double>& r) {
     const double length = Norm(r);
     return length > 1e-9 ? r * (1.0 / length) : Vec3<double>{1.0, 0.0, 0.0};
@@ -74,7 +74,7 @@ bool Obstacle::Blocks(const Vec3<double>& a, const Vec3<double>& b) const {
     const Vec3<double> nearest = from + along * t;
     return Dot(nearest, nearest) <= radius_m * radius_m;
   }
-  // The part of the segment between foot and top, then in the plane.
+  // First the part of the segment between foot and top, then the distance in the plane.
   double begin = 0.0, end = 1.0;
   if (along.z == 0.0) {
     if (from.z < 0.0 || from.z > height_m) return false;
@@ -150,7 +150,7 @@ bool LineOfSight(const Terrain& terrain, const std::vector<Obstacle>& obstacles,
   if (std::min(a.z, b.z) > terrain.highest()) return true;
   if (terrain.Altitude(a) < 0.0 || terrain.Altitude(b) < 0.0) return false;
   if (terrain.flat()) return true;
-  // Symmetric: the points lie evenly between a and b.
+  // Symmetric in a and b: the points are evenly spaced between them.
   const double pieces = std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * terrain.spacing_m()));
   const auto steps = static_cast<std::int64_t>(pieces);
   for (std::int64_t k = 1; k < steps; ++k) {

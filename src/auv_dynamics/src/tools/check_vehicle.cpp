@@ -16,7 +16,7 @@ namespace {
 using stg::dynamics::MotionError;
 using stg::dynamics::RecordedMotion;
 
-/// Infinite shares, of columns that do not move at all, are null in JSON.
+/// Columns that do not move have an infinite share, which is null in JSON.
 nlohmann::json JsonOf(const MotionError& e) {
   nlohmann::json columns;
   for (int c = 0; c < stg::dynamics::kMotionColumns; ++c) {
@@ -48,7 +48,7 @@ void Print(const char* what, const MotionError& e) {
 
 }  // namespace
 
-/// Replays recorded vehicle motions; JSON on the last line; exit 1 past the tolerance, 2 on
+/// Replays recorded vehicle motions. The last line is JSON. Exit status 1: beyond the tolerance; 2:
 /// unusable input.
 int main(int argc, char** argv) {
   CLI::App app(
@@ -109,8 +109,8 @@ int main(int argc, char** argv) {
 
     const MotionError in_still = Compare(vehicle, still, dt_s);
     const MotionError in_current = Compare(vehicle, moving, dt_s);
-    // The public model's current neither feeds the propeller nor turns with pitch as ours does:
-    // shown, not judged, unless there is nothing else.
+    // In the public model, the current does not affect the propeller and does not turn with pitch;
+    // here it does. So motions in a current are shown but not judged, unless there are no others.
     const bool judged = still.empty();
     const bool pass = (judged ? in_current : in_still).Within(tolerance);
     if (!still.empty()) Print("without current", in_still);

@@ -13,7 +13,7 @@ namespace {
 
 using stg::dynamics::Bathymetry;
 
-/// A map in letters, north up: land `#`, then digits for tenths of the largest depth.
+/// Prints a map in letters with north up: `#` is land; digits are tenths of the largest depth.
 void Show(const Bathymetry& grid, int columns) {
   const stg::dynamics::GeoRegion r = grid.region();
   const double width = r.east - r.west, height = r.north - r.south;
@@ -38,7 +38,7 @@ void Show(const Bathymetry& grid, int columns) {
 
 }  // namespace
 
-/// Crops a region of a bathymetry file and shows it; JSON on the last line; exit 2 on unusable
+/// Crops a region of a bathymetry file and shows it. The last line is JSON. Exit status 2: unusable
 /// input.
 int main(int argc, char** argv) {
   CLI::App app(
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
                        : Bathymetry::Load(file, {region[0], region[1], region[2], region[3]});
     Show(grid, columns);
     if (!out.empty()) {
-      std::error_code error;  // of an output that is not there yet
+      std::error_code error;  // for an output that does not exist yet
       if (std::filesystem::equivalent(out, file, error)) {
         throw stg::UserError(out + ": is the input file; write to another file");
       }

@@ -22,8 +22,8 @@ void FullyActuated::Step(const Pack* command, const Surroundings& around, double
       *x = RoundToFloat(*x);
     }
   }
-  // The release adds contact to the command before the actuator limits; w of
-  // Eq. 3 acts on the hull, so it comes after them.
+  // The release adds contact to the command before the actuator limits. w of Eq. 3 acts on the
+  // hull, so it is added after the limits.
   total.force += s->R_WB.TransposeTimes(around.contact_W);
   total = model_.Limit(total);
   total.force += around.disturbance.force;

@@ -27,7 +27,7 @@ void Kinematic::Step(const Pack* command, const Surroundings& around, double dt,
   rate += (Within(1, command[1]) - rate) * share(lags_.turn_lag_s);
   climb += (Within(2, command[2]) - climb) * share(lags_.climb_lag_s);
 
-  // The chord of the arc that is flown in dt points along the heading of its middle.
+  // The chord of the arc of this step points along the heading at its middle.
   const Pack middle = s->rpy.z + (before + rate) * Pack(0.25 * dt);
   s->rpy = {zero, zero, WrapAngle(s->rpy.z + (before + rate) * half)};
   Pack sine, cosine;

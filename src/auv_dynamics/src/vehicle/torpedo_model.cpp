@@ -8,14 +8,14 @@ namespace stg::dynamics {
 namespace {
 
 constexpr double kGravity = 9.81;
-constexpr double kAddedRoll = 0.3;  // of the rigid body's moment of inertia
-constexpr double kWingArea = 0.7;   // of L D
+constexpr double kAddedRoll = 0.3;  // share of the rigid body's moment of inertia
+constexpr double kWingArea = 0.7;   // share of L D
 constexpr double kOswald = 0.7;
 constexpr double kHoernerCircle = 1.1977;  // cross-flow coefficient at beam = draught
 
 double Square(double x) { return x * x; }
 
-/// Lamb's factors of a prolate spheroid of this eccentricity: along, across, turning.
+/// Lamb's factors of a prolate spheroid with this eccentricity: along, across, turning.
 struct Lamb {
   explicit Lamb(double e) {
     const double ee = e * e, log = std::log((1.0 + e) / (1.0 - e));
@@ -77,7 +77,7 @@ TorpedoModel::TorpedoModel(const TorpedoConfig& c) : c_(c), z_G_(-c.cg_below_m) 
 }
 
 double TorpedoModel::SteadyRpmPerSpeed() const {
-  // thrust n^2 + slope inflow u n = drag u^2, per u^2.
+  // Root of thrust n^2 + slope inflow u n = drag u^2, divided by u^2.
   const double a = thrust_, b = thrust_slope_ * c_.propeller_inflow, drag = wing_ * CD_0_;
   return (-b + std::sqrt(b * b + 4.0 * a * drag)) / (2.0 * a);
 }

@@ -8,7 +8,7 @@
 namespace stg::dynamics {
 namespace {
 
-/// Fossen's M = M_RB + M_A about the body origin.
+/// Checks Fossen's M = M_RB + M_A about the body origin.
 bool MassMatrixIsPositive(const VehicleConfig& v) {
   Eigen::Matrix<double, 6, 6> m = Eigen::Matrix<double, 6, 6>::Zero();
   for (int i = 0; i < 3; ++i) {

@@ -13,8 +13,8 @@ void Contacts::Update(const std::vector<VehicleState<Pack>>& vehicles,
   for (size_t i = 0; i < vehicles.size(); ++i) {
     for (size_t j = i + 1; j < vehicles.size(); ++j) {
       const Pack& d = separations.distance(static_cast<int>(i), static_cast<int>(j));
-      // Beyond 40 softness lengths the softplus is below 1e-17 of a length; cut there lane by
-      // lane, so that no lane's result depends on the others.
+      // Beyond 40 softness lengths the softplus is below 1e-17 of a length, so it is set to zero.
+      // Each lane decides this for itself, so its result does not depend on other lanes.
       const auto near = d < Pack(reach + 40.0 * k);
       if (!Any(near)) continue;
       const Pack x = (Pack(reach) - d) * Pack(1.0 / k);

@@ -5,10 +5,10 @@
 namespace stg::dynamics {
 namespace {
 
-/// Targets keep this far from the bottom [m].
+/// Smallest distance of targets from the bottom [m].
 constexpr double kTargetAltitude_m = 5.0;
 
-/// Takes from a velocity what leads into an obstacle whose surface points along `out`.
+/// Removes the part of a velocity that leads into an obstacle. Its surface points along `out`.
 Vec3<double> Along(const Vec3<double>& v, const Vec3<double>& out) {
   return v - out * std::min(0.0, Dot(v, out));
 }
@@ -45,7 +45,7 @@ void Sea::Apply(int i, VehicleState<Pack>* s) {
   const auto above = s->p_WB.z > zero;
   Pack& aground = aground_[static_cast<std::size_t>(i)];
   Pack& groundings = groundings_[static_cast<std::size_t>(i)];
-  // A vehicle on the bottom that does not rise stays aground; only coming there counts.
+  // A vehicle that stays on the bottom remains aground. Only a new contact counts.
   const auto on = below || (s->p_WB.z == bottom && aground > zero);
   groundings += Select(below, one - aground, zero);
   aground = Select(on, one, zero);
@@ -83,7 +83,7 @@ void Sea::Apply(std::vector<TargetState<Pack>>* targets) const {
   for (TargetState<Pack>& t : *targets) {
     const auto outward = (t.p_WT.z < lo && t.v_WT.z < zero) || (t.p_WT.z > hi && t.v_WT.z > zero);
     t.p_WT.z = Min(Max(t.p_WT.z, lo), hi);
-    // It levels out, and its motion steers on from there.
+    // The vertical velocity is reversed, and the target's motion continues from there.
     t.v_WT.z = Select(outward, -t.v_WT.z, t.v_WT.z);
     if (scape_.clear()) continue;
     const Pack floor = Bottom(t.p_WT) + Pack(kTargetAltitude_m);
@@ -96,7 +96,7 @@ void Sea::Apply(std::vector<TargetState<Pack>>* targets) const {
         const Vec3<double> before = Lane(t.v_WT, lane);
         const Vec3<double> v = Along(before, o.Expel(&p));
         SetLane(&t.p_WT, lane, p);
-        // Aside at its own speed; a target that comes at right angles has no side, and turns.
+        // The target slides along at its own speed. If it comes at right angles, it turns aside.
         const double speed = Norm(before), left = Norm(v);
         SetLane(
             &t.v_WT, lane,

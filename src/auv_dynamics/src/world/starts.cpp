@@ -22,7 +22,7 @@ bool Inside(const Vec3<double>& p, double half_extent) {
          std::abs(p.z) <= half_extent;
 }
 
-/// Vehicles and targets start no closer to the bottom or an obstacle [m].
+/// Smallest distance of vehicles and targets from the bottom and obstacles at the start [m].
 constexpr double kClearOfAll_m = 5.0;
 
 Vec3<double> LevelDirection(Random* random) {
@@ -30,8 +30,8 @@ Vec3<double> LevelDirection(Random* random) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
-/// The vehicles on a level line, min_separation_m apart, whose middle is a drawn distance and
-/// direction from the first target.
+/// Places the vehicles on a level line, min_separation_m apart. The middle of the line has a random
+/// distance and direction from the first target.
 std::vector<Vec3<double>> DrawLine(const ResetConfig& config, const ResetStageConfig& stage,
                                    const Start& start, Random* random) {
   const double distance = random->Uniform(stage.auv_distance_m.lo, stage.auv_distance_m.hi);
@@ -45,9 +45,10 @@ std::vector<Vec3<double>> DrawLine(const ResetConfig& config, const ResetStageCo
   return line;
 }
 
-/// Draws a position for each vehicle until it lies in the region and apart from those before it.
+/// Draws a position for each vehicle until it lies in the region and far enough from the previous
+/// ones.
 /// @param draw  random, position of the vehicle's target -> a position
-/// @param clear whether a position is water
+/// @param clear true if a position is in free water
 template <class Draw, class Clear>
 void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, const Clear& clear,
                    Start* start) {
@@ -55,7 +56,7 @@ void PlaceVehicles(const ResetConfig& config, Random* random, const Draw& draw, 
   for (size_t i = 0; i < p_WB.size(); ++i) {
     const Vec3<double>& p_WT = start->targets[i % start->targets.size()].p_WT;
     bool placed = false;
-    // Rejection sampling; the validator rejects scenarios too crowded for it.
+    // Rejection sampling. Validation rejects scenarios that are too crowded for it.
     for (int attempt = 0; attempt < 100000 && !placed; ++attempt) {
       p_WB[i] = draw(random, p_WT);
       placed = Inside(p_WB[i], config.start_half_extent_m) && clear(p_WB[i]);

@@ -12,7 +12,7 @@ void Walls::Apply(VehicleState<Pack>* s) const {
   if (!Any(hit)) return;
   const Pack tangential(c.tangential);
   const auto reflect = [&](const Pack& p, const Pack& v) {
-    // Outward velocity turns back; a vehicle already moving inward keeps it.
+    // Outward velocity is reflected. A vehicle that moves inward already keeps its velocity.
     return Select(p * v > zero, -v * Pack(c.restitution), v);
   };
   Vec3<Pack> v = s->v_WB;

@@ -10,10 +10,10 @@
 namespace stg::dynamics {
 namespace {
 
-/// As ValidateOrThrow of a WorldScenario, without the keys of what agents believe: every
-/// environment of an evaluation comes here.
+/// The same as ValidateOrThrow of a WorldScenario, but without the keys of the agents' models. This
+/// saves time, because every environment of an evaluation is checked here.
 const WorldConfig& Valid(const WorldConfig& config, const RunConfig& run) {
-  WorldConfig world = config;  // a table refers to what can be changed
+  WorldConfig world = config;  // a table refers to values that it may change
   RunConfig steps = run;
   config::Table table;
   Describe(&steps, &table);
@@ -127,7 +127,7 @@ void World::Step(const std::vector<Wrench<Pack>>& tau) {
   Step(commands_);
 }
 
-/// Seconds since the start of each lane's episode.
+/// Time since the start of each lane's episode [s].
 Pack World::Time() const {
   Pack time_s(0.0);
   for (int lane = 0; lane < kLanes; ++lane) SetLane(&time_s, lane, dt_s_ * step(lane));

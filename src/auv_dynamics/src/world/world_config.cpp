@@ -11,10 +11,9 @@ namespace {
 
 using config::Violation;
 
-/// Can all AUVs be drawn one after the other with this separation around one
-/// point (targets may start together)? The share of the shell's volume that
-/// balls of half the separation may fill stays below what random placement
-/// reaches (about 0.38).
+/// True if all AUVs can be drawn one after the other with this separation around one point (targets
+/// may start together). Balls of half the separation must fill a smaller share of the shell's
+/// volume than random placement reaches (about 0.38).
 bool StartsFit(const ResetConfig& reset, const ResetStageConfig& stage, int agents) {
   constexpr double kShare = 0.25;
   const double half = 0.5 * reset.min_separation_m;
@@ -71,7 +70,7 @@ void Describe(WorldConfig* c, config::Table* t) {
 }
 
 const std::vector<std::string>& KeysOnBoard() {
-  // Of the torpedo those that its autopilot reads.
+  // Of the torpedo, only the keys that its autopilot reads.
   static const std::vector<std::string> keys{
       "vehicle.max_velocity_mps",
       "vehicle.max_rate_radps",

@@ -22,7 +22,7 @@ ControllerNode::ControllerNode()
       id_(IntegerParameter("id", 0, 0, scenario_.run.agents - 1)),
       body_frame_(frames::Body(id_)),
       period_(scenario_.run.decision_period()),
-      // An autopilot also takes a command that comes late: better that than the one before.
+      // An autopilot also accepts a late command, because it is better than an older one.
       waiting_(period_, dynamics::Helm::Steers(scenario_.world.vehicle) ? period_ - 1 : 0),
       health_("velocity controller", topics::Auv(id_).substr(1),
               [this](auto& status) { Report(status); }) {
@@ -73,7 +73,7 @@ void ControllerNode::OnOdometry(const nav_msgs::Odometry::ConstPtr& message) {
     refused_odometry_.Add(Refusals::kStale);
   } else {
     SetNodeTime(message->header.stamp);
-    if (has_nav_ && NsOf(message->header.stamp) < nav_.stamp) Forget();  // of another run
+    if (has_nav_ && NsOf(message->header.stamp) < nav_.stamp) Forget();  // another run
     nav_ = NavOf(*message, 0);
     has_nav_ = true;
     Refuse(waiting_.Advance(nav_.stamp));
@@ -99,7 +99,7 @@ void ControllerNode::Refuse(int commands) {
 }
 
 void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
-  if (message->header.frame_id != body_frame_) return;  // what it says is in the odometry, too
+  if (message->header.frame_id != body_frame_) return;  // the odometry shows this error, too
   const TimeNs stamp = NsOf(message->header.stamp);
   if (stamp == framed_) return;
   framed_ = stamp;
@@ -107,19 +107,19 @@ void ControllerNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   Answer();
 }
 
-/// An episode begins with the odometry of `stamp`, which may be here already or still to come:
-/// what is answered before it is of the episode before.
+/// Starts an episode with the odometry of `stamp`, which has arrived already or comes later.
+/// Answers to earlier odometry belong to the previous episode.
 void ControllerNode::Begin(TimeNs stamp) {
   if (!has_nav_ || stamp > nav_.stamp) {
     begins_ = stamp;
     return;
   }
-  // While no node was known to send frames, that odometry was answered without.
+  // Before any publisher of frames was known, this odometry was answered without its frame.
   const bool begun = began_ == stamp && answered_ - stamp < period_;
   if (!begun) Forget();
 }
 
-/// What the autopilot has in mind, as a new episode wants it.
+/// Resets the autopilot's memory for a new episode.
 void ControllerNode::Forget() {
   memory_.assign(memory_.size(), 0.0);
   began_ = begins_ = -1;
@@ -138,10 +138,12 @@ void ControllerNode::Answer() {
   waiting_.Take();
 }
 
-/// The newest odometry has not been answered, and it is known whether an episode begins with it.
+/// True if the newest odometry has no answer yet, and if it is known whether an episode begins with
+/// it.
 bool ControllerNode::Steerable(const dynamics::WaitingCommands::Command& command) const {
   if (nav_.stamp == answered_) return false;
-  // A frame says whether an episode begins; it may come later than the velocity that answers it.
+  // A frame says whether an episode begins. It may arrive later than the velocity for the same
+  // odometry.
   return nav_.stamp > command.stamp || frames_.getNumPublishers() == 0 || framed_ == nav_.stamp;
 }
 
