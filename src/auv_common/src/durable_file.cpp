@@ -22,7 +22,7 @@ std::string FolderOf(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-/// 0, or why not all of it was written.
+/// Returns 0, or the error code if not all bytes were written.
 int WriteAll(int file, const std::string& bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t n = ::write(file, bytes.data() + at, bytes.size() - at);
@@ -33,7 +33,7 @@ int WriteAll(int file, const std::string& bytes) {
   return 0;
 }
 
-/// 0, or why a file or folder is not on disk.
+/// Returns 0, or the error code if a file or folder is not on disk.
 int Sync(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return errno;
@@ -55,17 +55,17 @@ DurableFile::DurableFile(std::string path, std::string what)
     if (error) Fail(error.message());
   }
   temporary_ = place_ + ".tmp";
-  // With a slash, so that a file in the folder's place gives its own error.
+  // With a slash, so that a file in place of the folder gives the right error.
   if (::access((FolderOf(place_) + "/").c_str(), W_OK | X_OK) != 0) Fail(std::strerror(errno));
 }
 
-DurableFile::~DurableFile() { ::unlink(temporary_.c_str()); }  // no longer there after Commit
+DurableFile::~DurableFile() { ::unlink(temporary_.c_str()); }  // does nothing after Commit
 
 void DurableFile::Commit() {
   const int error = Sync(temporary_);
   if (error != 0) Fail(std::strerror(error));
   if (std::rename(temporary_.c_str(), place_.c_str()) != 0) Fail(std::strerror(errno));
-  Sync(FolderOf(place_));  // of use only; some file systems cannot
+  Sync(FolderOf(place_));  // useful but not required; some file systems cannot do it
 }
 
 void DurableFile::Write(const std::string& bytes) {

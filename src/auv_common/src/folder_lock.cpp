@@ -13,7 +13,7 @@ namespace stg {
 
 FolderLock::FolderLock(const std::string& folder) {
   const std::string path = folder + "/.lock";
-  // For writing: where the folder is on NFS, that is what a lock needs.
+  // Opened for writing, because a lock on NFS needs it.
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (file_ >= 0 && ::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
   const int reason = errno;

@@ -25,7 +25,7 @@ bool IsText(const std::string& text) {
       if (first < 0x20 || first == 0x7f) return false;
       continue;
     }
-    // Unicode, table 3-7: lead bytes and the bytes that may follow them.
+    // Unicode, table 3-7: lead bytes, and the bytes that may follow them.
     const int more = first >= 0xc2 && first <= 0xdf   ? 1
                      : first >= 0xe0 && first <= 0xef ? 2
                      : first >= 0xf0 && first <= 0xf4 ? 3
@@ -56,13 +56,13 @@ std::size_t EditDistance(const std::string& a, const std::string& b, std::size_t
       row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
       least = std::min(least, row[j]);
     }
-    if (least >= enough) return enough;  // later rows are no less
+    if (least >= enough) return enough;  // the values of later rows are not smaller
   }
   return std::min(row[b.size()], enough);
 }
 
 std::string NearestName(const std::string& text, const std::vector<std::string>& names) {
-  constexpr std::size_t kLongest = 200;  // what is longer is no slip of the pen
+  constexpr std::size_t kLongest = 200;  // a longer text is no typing error
   if (text.size() > kLongest) return "";
   std::string best;
   std::size_t least = std::max<std::size_t>(2, text.size() / 3) + 1;

@@ -7,8 +7,8 @@ namespace {
 
 std::atomic<int> stop_signal{0};
 
-/// The first signal asks for a clean end, the second one kills; but what closes a terminal tells so
-/// more than once, itself and by its shell, and ends the session.
+/// The first signal asks for a clean end, and the second one kills the program. SIGHUP is an
+/// exception: when a terminal closes, the terminal and its shell both send it.
 extern "C" void OnStopSignal(int signal) {
   stop_signal = signal;
   if (signal == SIGHUP) return;

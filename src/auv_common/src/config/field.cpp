@@ -78,7 +78,7 @@ void Table::Differ(const std::string& section, const std::vector<std::string>& k
     for (std::size_t k = 0; k < count; ++k) {
       const std::string& path = fields_[k].path;
       if (path != key && path.compare(0, inside.size(), inside) != 0) continue;
-      const Field of = fields_[k];  // a copy: the fields move when one is added
+      const Field of = fields_[k];  // a copy, because adding a field moves the others
       Section(section + "." + Parent(of.path));
       AddOptional(Leaf(of.path), DifferenceRef{differences, std::make_shared<const Field>(of)}, "",
                   of.limits, of.unit, "the agents' value of " + of.path);
@@ -104,7 +104,7 @@ std::string TextOf(const DifferenceRef& difference) {
 }
 
 std::optional<std::string> ParseDifference(const DifferenceRef& difference, const YamlTree& node) {
-  // The key itself reads the value, and gets its own back.
+  // The key itself parses the value. Its own value is restored below.
   const Field& key = *difference.of;
   const std::string truth = FormatValue(key.value);
   std::optional<std::string> message = ParseValue(key, node);

@@ -27,7 +27,7 @@ bool IsFolder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
-/// Names of the YAML files in a folder that begin with `prefix`, without it.
+/// Names of the YAML files in a folder that begin with `prefix`, without this prefix.
 std::string ListNames(const fs::path& folder, const std::string& prefix) {
   std::vector<std::string> names;
   std::error_code error;
@@ -43,8 +43,8 @@ std::string ListNames(const fs::path& folder, const std::string& prefix) {
   return text.empty() ? "none" : text;
 }
 
-/// Sources of the workspace come as <entry>/stg_bringup or, when the repository
-/// is cloned into a larger workspace, as <entry>/<repository>/src/stg_bringup.
+/// The sources of the workspace are at <entry>/stg_bringup, or at
+/// <entry>/<repository>/src/stg_bringup if the repository was cloned into a larger workspace.
 std::vector<fs::path> CandidatesUnder(const fs::path& entry) {
   std::vector<fs::path> candidates;
   if (entry.filename() == "stg_bringup") candidates.push_back(entry / "scenarios");
@@ -58,10 +58,10 @@ std::vector<fs::path> CandidatesUnder(const fs::path& entry) {
   return candidates;
 }
 
-/// Where the packages of one installation have the scenarios, below its prefix.
+/// The folder of the scenarios in an installation, relative to its prefix.
 constexpr char kInstalled[] = "share/stg_bringup/scenarios";
 
-/// The folder of the library, or of the program or Python module, that this code was linked into.
+/// The folder of the library, program or Python module that contains this code.
 fs::path FolderOfThisCode() {
   Dl_info info{};
   if (dladdr(kInstalled, &info) == 0) return {};

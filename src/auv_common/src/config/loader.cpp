@@ -17,20 +17,21 @@ std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";
 }
 
-/// 'a' or 'b'; "none" where there are no names.
+/// 'a' or 'b'; "none" if there are no names.
 std::string QuotedNames(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + name + "'";
   return text.empty() ? "none" : text;
 }
 
-/// User text without the quotes, shortened.
+/// Text of a user without quotes, shortened.
 std::string Shortened(const std::string& text) {
   const std::string quoted = Quoted(text);
   return quoted.substr(1, quoted.size() - 2);
 }
 
-/// Edits between what was written and a key, whose unit may have been left out; at most `enough`.
+/// Edit distance between a written text and a key, at most `enough`. The unit of the key may be
+/// missing in the text.
 std::size_t SlipDistance(const std::string& text, const std::string& key, std::size_t enough) {
   const std::size_t unit = key.rfind('_');
   const std::size_t whole = EditDistance(text, key, enough);
@@ -131,7 +132,7 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
                       Keys* given) {
   for (const YamlTree::Entry& entry : map.entries) {
     const std::string path = prefix + entry.key;
-    if (path == "base" || path == "plugins") continue;  // read before the keys
+    if (path == "base" || path == "plugins") continue;  // these are read before the keys
     const std::string where = Where(file, entry.line);
     if (const Field* field = table_.Find(path)) {
       Set(*field, entry.value, where);
@@ -145,7 +146,7 @@ void Loader::ApplyMap(const YamlTree& map, const std::string& prefix, const std:
       section_lines_[path] = entry.line;
       ApplyMap(entry.value, path + ".", file, given);
     } else if (!Foreign(path)) {
-      // Of a section that has moved, the key is what helps.
+      // If a whole section has moved, the message should name the key, not the section.
       const YamlTree& value = entry.value;
       if (value.kind == YamlTree::Kind::kMap && !value.entries.empty() && NewName(path)) {
         ApplyMap(value, path + ".", file, given);
@@ -177,7 +178,7 @@ void Loader::RequireAll(const YamlTree& root, const std::string& file, const Key
   throw UserError(text + " (state every key, or name a base file with 'base: <file>')");
 }
 
-/// A key at the top level, or in a section there, that this table says nothing of.
+/// True for a key at the top level, or in a section there, that this table does not know.
 bool Loader::Foreign(const std::string& path) const {
   if (scope_ == Scope::kWhole) return false;
   if (NewName(path)) return false;
@@ -185,8 +186,8 @@ bool Loader::Foreign(const std::string& path) const {
   return table_.Find(top) == nullptr && table_.sections().count(top) == 0;
 }
 
-/// The key or section this was probably meant to be: the same word elsewhere, or a similar word in
-/// the same section; or "".
+/// The key or section that was probably meant: the same word in another section, or a similar word
+/// in the same section; otherwise "".
 std::string Loader::Nearest(const std::string& path) const {
   std::vector<const std::string*> keys;
   for (const Field& field : table_.fields()) keys.push_back(&field.path);
@@ -220,7 +221,7 @@ std::string Loader::Unknown(const std::string& path) const {
   return best.empty() ? text : text + ", did you mean " + best + "?";
 }
 
-/// What replaces a key of earlier versions, or a key of a section that has moved.
+/// The new name of a key of earlier versions, or of a key in a section that has moved.
 std::optional<std::string> Loader::NewName(const std::string& path) const {
   for (const auto& [from, to] : table_.moved()) {
     if (path == from) return to;

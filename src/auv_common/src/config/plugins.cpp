@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The libraries that are loaded; they are never unloaded, since registries hold their functions.
+/// The loaded libraries. They are never unloaded, because registries refer to their functions.
 struct Loaded {
   std::mutex mutex;
   std::vector<std::string> paths;
@@ -35,7 +35,7 @@ Function* Find(void* library, const char* name) {
   return reinterpret_cast<Function*>(dlsym(library, name));
 }
 
-/// Where the system found it, so that another program finds it, too.
+/// The path at which the system found the library, so that another program finds it, too.
 std::string PathOf(const std::string& library, void* function) {
   Dl_info info;
   std::error_code error;
@@ -67,7 +67,7 @@ void LoadList(const YamlTree& list, const fs::path& folder, const std::string& w
   }
 }
 
-/// Bases first. What is wrong with the names of bases is the loader's to say.
+/// Loads the libraries of the bases first. The loader reports wrong names of bases later.
 void LoadFile(const std::string& path, std::size_t depth) {
   std::error_code error;
   if (depth > kMaxBases || !fs::is_regular_file(path, error)) return;
@@ -82,7 +82,7 @@ void LoadFile(const std::string& path, std::size_t depth) {
 
 void LoadPlugin(const std::string& library, const std::string& where) {
   const std::lock_guard lock(All().mutex);
-  // Local: what two libraries call by the same name stays apart.
+  // Local, so that equal names in two libraries do not collide.
   void* const handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     const char* reason = dlerror();
@@ -103,7 +103,7 @@ void LoadPlugin(const std::string& library, const std::string& where) {
   try {
     add();
   } catch (const std::exception& error) {
-    // What it added before stays, so the library must stay, too.
+    // The things that it has added stay registered, so the library must stay loaded.
     throw UserError(where + library + ": " + error.what());
   }
   All().handles.push_back(handle);

@@ -32,7 +32,7 @@ void Merge(const YamlTree& from, YamlTree* into) {
   }
 }
 
-/// The file on top of its bases.
+/// The file merged with its bases.
 YamlTree MergedFile(const std::string& path, std::size_t depth = 0) {
   YamlTree root = ReadMap(path);
   YamlTree merged;
@@ -162,7 +162,7 @@ std::string BaseOf(const std::string& path, const YamlTree::Entry& entry) {
     const fs::path shipped = fs::path(ScenarioFolder()) / name;
     if (fs::is_regular_file(shipped, error)) return shipped.string();
   } catch (const UserError&) {
-    // There are no shipped files here: the one beside is what is missing.
+    // There are no shipped files, so the message names the missing file in the same folder.
   }
   return beside.string();
 }
@@ -177,7 +177,7 @@ std::string ShippedHint(const std::string& name) {
       shipped.push_back(it->path().filename().string());
     }
   } catch (const UserError&) {
-    return "";  // there are none
+    return "";  // there are no shipped files
   }
   std::sort(shipped.begin(), shipped.end());
   const std::string nearest = NearestName(name, shipped);

@@ -24,7 +24,7 @@ bool IsFile(const std::string& text, const std::string& extension) {
          text[0] != '-' && std::all_of(text.begin(), text.end(), plain);
 }
 
-/// Bounds are written as a person would.
+/// Writes bounds in a short form.
 std::string FormatBound(double value) {
   char buffer[32];
   const auto result =
@@ -47,7 +47,7 @@ std::optional<std::string> CheckWhole(const Field& field, std::int64_t value) {
   return std::to_string(value) + " is out of range " + FormatRange(field);
 }
 
-/// Message of a refused value; the caller adds file, line and key.
+/// Message for a refused value. The caller adds file, line and key.
 struct Refusal {
   std::string message;
 };

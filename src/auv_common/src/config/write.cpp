@@ -14,7 +14,7 @@ std::string FormatNumbers(const double* values, int size) {
   return text + "]";
 }
 
-/// Quotes the words that some YAML readers take for something else.
+/// Quotes words that some YAML readers do not take as text.
 std::string FormatWord(const std::string& word) {
   for (const char* special : {"on", "off", "yes", "no", "true", "false", "null", "y", "n"}) {
     if (word == special) return "\"" + word + "\"";
@@ -88,7 +88,7 @@ std::string FormatValue(const ValueRef& value) {
 
 std::string ToYaml(const Table& table) {
   std::string text;
-  std::string open;  // section whose heading was written last
+  std::string open;  // section of the last heading
   for (const Field& field : table.fields()) {
     if (field.Unchosen() != nullptr) continue;
     const bool whole = field.owners.empty() || std::holds_alternative<DifferenceRef>(field.value);
@@ -98,7 +98,7 @@ std::string ToYaml(const Table& table) {
       return std::string(static_cast<std::size_t>(2 * std::count(path.begin(), path.end(), '.')),
                          ' ');
     };
-    // Headings of the levels that are new against the previous key.
+    // Headings of the levels that differ from the previous key.
     for (std::size_t end = 0; end < section.size();) {
       end = std::min(section.find('.', end + 1), section.size());
       const std::string level = section.substr(0, end);

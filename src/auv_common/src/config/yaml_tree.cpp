@@ -21,8 +21,8 @@ namespace {
 constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::size_t kMaxDepth = 16;
 
-/// Builds the tree from the parser's events. The parser's own node type would
-/// expand aliases and lose duplicate keys.
+/// Builds the tree from the parser's events. The parser's own node type would expand aliases and
+/// lose duplicate keys.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(std::string origin, bool with_lines, int max_values)
@@ -65,13 +65,13 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { Close(); }
 
  private:
-  /// A map or sequence that is still being filled.
+  /// A map or sequence that is not complete yet.
   struct Frame {
     YamlTree node;
     bool has_key = false;
     std::string key;
     int key_line = 1;
-    std::map<std::string, int> seen;  ///< key to its line
+    std::map<std::string, int> seen;  ///< line of each key
   };
 
   void Refuse(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) const {
@@ -182,7 +182,7 @@ std::string ReadBoundedFile(const std::string& path) {
     throw UserError(path + ": cannot be read" +
                     (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
   }
-  // It may grow while it is read.
+  // The size is checked again, because the file may grow while it is read.
   std::string text;
   char part[4096];
   while (stream.read(part, sizeof(part)), stream.gcount() > 0) {

@@ -11,7 +11,7 @@
 namespace stg::nodes {
 namespace {
 
-/// Calls a method of a node's own interface; false: no answer in time.
+/// Calls a method of a node's XML-RPC server. Returns false if there is no answer in time.
 bool Call(const std::string& uri, const char* method, const XmlRpc::XmlRpcValue& arguments,
           double patience_s, XmlRpc::XmlRpcValue* answer) {
   std::string host;
@@ -19,7 +19,7 @@ bool Call(const std::string& uri, const char* method, const XmlRpc::XmlRpcValue&
   if (!ros::network::splitURI(uri, host, port)) return false;
   XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
   if (!client.executeNonBlock(method, arguments)) return false;
-  // Not execute(), which waits for a stopped process for ever.
+  // execute() would wait for a stopped process forever.
   XmlRpc::XmlRpcDispatch dispatch;
   dispatch.addSource(&client,
                      XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
@@ -40,7 +40,7 @@ bool ConnectionWatch::Settled(double now_s) {
   return now_s - changed_s_ >= kSettled_s;
 }
 
-/// Returns how many publishers the node is connected to, if it answers.
+/// Returns the number of publishers that the node is connected to, if the node answers.
 std::optional<int> ConnectionWatch::Ask() const {
   XmlRpc::XmlRpcValue arguments, uri, answer;
   arguments[0] = ros::this_node::getName();

@@ -7,12 +7,13 @@
 #include <cstdint>
 #include <string>
 
-/// roscpp takes the messages of a node that is for this machine only (ROS_IP or ROS_HOSTNAME is the
-/// loopback) over the loopback alone, but lets its XML-RPC server, over which anybody can shut the
-/// node down, listen on all interfaces: libxmlrpcpp knows no other way. The definition below is
-/// found before the library's own, in programs that are linked with this library before
-/// libxmlrpcpp, and where it is preloaded (LD_PRELOAD). It does what theirs does, but for a node
-/// of the loopback. test_loopback.py looks at the sockets of a whole run.
+/// Replaces a function of libxmlrpcpp. If a node is only for this machine (ROS_IP or ROS_HOSTNAME
+/// is the loopback), roscpp accepts its messages only over the loopback. But its XML-RPC server,
+/// over which anybody can shut the node down, listens on all interfaces; libxmlrpcpp has no other
+/// way. The definition below is found before the library's own, in programs that are linked with
+/// this library before libxmlrpcpp, and if this library is preloaded (LD_PRELOAD). Except for nodes
+/// of the loopback, it does the same as the original. test_loopback.py checks the sockets of a
+/// whole run.
 namespace {
 
 bool OnlyThisMachine() {

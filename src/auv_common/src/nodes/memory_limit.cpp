@@ -8,7 +8,7 @@ namespace stg::nodes {
 
 void LimitMemory(std::size_t bytes) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  (void)bytes;  // sanitizers reserve terabytes
+  (void)bytes;  // sanitizers reserve terabytes of addresses
 #else
   rlimit limit{};
   if (getrlimit(RLIMIT_DATA, &limit) != 0) return;

@@ -17,7 +17,7 @@
 namespace stg::nodes {
 namespace {
 
-/// The value of a parameter; false: it is not set.
+/// Reads a parameter. Returns false if it is not set.
 bool Find(const std::string& name, Reach reach, XmlRpc::XmlRpcValue* value) {
   if (ros::NodeHandle("~").getParam(name, *value)) return true;
   return reach == Reach::kRun && ros::param::get("/" + name, *value);
@@ -110,7 +110,7 @@ bool SimulatedTimeParameter() {
   XmlRpc::XmlRpcValue request, response, value;
   request[0] = ros::this_node::getName();
   request[1] = std::string("/use_sim_time");
-  // Fails where it is not set.
+  // This call fails if the parameter is not set.
   return ros::master::execute("getParam", request, response, value, true) &&
          value.getType() == XmlRpc::XmlRpcValue::TypeBoolean && static_cast<bool>(value);
 }

@@ -24,7 +24,7 @@
 namespace stg::nodes {
 namespace {
 
-/// roscpp's thread looks around by itself at least this often [s].
+/// Longest time between two rounds of roscpp's thread [s].
 constexpr double kPollPeriod_s = 0.1;
 
 /// Wakes roscpp's socket thread at a point in time.
@@ -32,7 +32,7 @@ class Alarm {
  public:
   Alarm() : state_(std::make_shared<State>()) {
     ros::PollSet& sockets = ros::PollManager::instance()->getPollSet();
-    // The thread may still hold its copy of the function when this is gone.
+    // roscpp's thread may still have a copy of this function after the end of this object.
     sockets.addSocket(state_->file, [state = state_](int) { state->Drain(); });
     sockets.addEvents(state_->file, POLLIN);
   }
@@ -40,13 +40,13 @@ class Alarm {
   Alarm(const Alarm&) = delete;
   Alarm& operator=(const Alarm&) = delete;
 
-  /// Rings after `wait_s` seconds, and no more at the time that was set before.
+  /// Wakes the thread after `wait_s` seconds, instead of at the previous time.
   void Set(double wait_s) {
     const TimePoint wanted = Clock::now() + std::chrono::duration<double>(wait_s);
-    // A node names the same time with each message; setting it again would be a system call.
+    // A node asks for the same time with each message; setting it again would be a system call.
     if (std::abs((wanted - state_->set).count()) < 1e-5) return;
     state_->set = wanted;
-    const auto ns = static_cast<long>(wait_s * 1e9) + 1;  // 0 would mean never
+    const auto ns = static_cast<long>(wait_s * 1e9) + 1;  // 0 would switch the timer off
     const itimerspec time{{0, 0}, {ns / 1'000'000'000, ns % 1'000'000'000}};
     timerfd_settime(state_->file, 0, &time, nullptr);
   }
@@ -71,7 +71,7 @@ class Alarm {
   std::shared_ptr<State> state_;
 };
 
-/// What roscpp's thread does in each round, beside its own work; empty: nothing.
+/// Function that roscpp's thread calls in each round; empty: none.
 class RoundSlot {
  public:
   static RoundSlot& Get() {
@@ -79,7 +79,7 @@ class RoundSlot {
     return *slot;
   }
 
-  /// Afterwards no round runs that was set before.
+  /// After this call the previous function does not run any more.
   void Set(std::function<void()> round) {
     const std::lock_guard<std::mutex> lock(mutex_);
     round_ = std::move(round);
@@ -97,7 +97,7 @@ class RoundSlot {
   std::function<void()> round_;
 };
 
-/// Gives the calling thread a real-time priority. Threads that it starts are ordinary again.
+/// Gives the calling thread a real-time priority. Threads that it starts do not inherit it.
 void RunInRealTime(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
@@ -146,7 +146,7 @@ void PollLoop(const std::function<double()>& work, int realtime_priority) {
   ros::PollManager::instance()->getPollSet().signal();
   {
     std::unique_lock<std::mutex> lock(mutex);
-    // A shutdown by a signal ends roscpp's thread without a word to this one.
+    // A shutdown by a signal ends roscpp's thread without notifying this one.
     while (!done && ros::ok()) changed.wait_for(lock, std::chrono::milliseconds(200));
   }
   RoundSlot::Get().Set(nullptr);

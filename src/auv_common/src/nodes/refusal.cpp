@@ -14,7 +14,8 @@
 namespace stg::nodes {
 namespace {
 
-/// Whether a process, by its id, is roslaunch: the first or, after Python, the second word.
+/// True if this process is roslaunch: the first word of its command line or, after Python, the
+/// second.
 bool IsRoslaunch(pid_t process) {
   std::ifstream in("/proc/" + std::to_string(process) + "/cmdline");
   std::string word;
@@ -24,7 +25,7 @@ bool IsRoslaunch(pid_t process) {
   return false;
 }
 
-/// First line of a file of the main thread of a process; empty where the kernel does not show it.
+/// First line of a file of a process's main thread; empty if the kernel does not show it.
 std::string OfMainThread(pid_t process, const char* file) {
   const std::string id = std::to_string(process);
   std::ifstream in("/proc/" + id + "/task/" + id + "/" + file);
@@ -33,16 +34,17 @@ std::string OfMainThread(pid_t process, const char* file) {
   return line;
 }
 
-/// Whether a line of /proc/ID/syscall is of a thread that does something else than to sleep.
+/// True if a line of /proc/ID/syscall belongs to a thread that is not asleep.
 bool IsBusy(const std::string& syscall) {
   const std::string number = syscall.substr(0, syscall.find(' '));
   return !number.empty() && number != std::to_string(SYS_clock_nanosleep) &&
          number != std::to_string(SYS_pselect6);
 }
 
-/// Waits until roslaunch has started all nodes: for a second it starts none, and only sleeps, as
-/// between two looks at its nodes. A roslaunch that is interrupted while it starts a node holds
-/// that node's lock, then waits 20 s for the lock to end the nodes, and leaves some behind.
+/// Waits until roslaunch has started all nodes: until it has started none for a second and has only
+/// slept, as it does between two checks of its nodes. A roslaunch that is interrupted while it
+/// starts a node holds the lock of this node. It then waits 20 s for the lock before it ends the
+/// nodes, and some of them stay alive.
 void AwaitLaunched(pid_t roslaunch) {
   using std::chrono::steady_clock;
   constexpr std::chrono::seconds kQuiet{1}, kMost{30};
@@ -67,7 +69,7 @@ void EndLaunchOfRefused() {
   const pid_t parent = getppid();
   if (wanted == nullptr || std::string(wanted) != "1" || !IsRoslaunch(parent)) return;
   AwaitLaunched(parent);
-  if (StoppedBySignal() || getppid() != parent) return;  // it ends already
+  if (StoppedBySignal() || getppid() != parent) return;  // the launch ends already
   ROS_FATAL("this node refuses its configuration, so the launch ends");
   kill(parent, SIGINT);
 }

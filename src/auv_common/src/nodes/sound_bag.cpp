@@ -16,8 +16,8 @@
 namespace stg::nodes {
 namespace {
 
-// Format: wiki.ros.org/Bags/Format/2.0. A record is a length, a header of that many bytes, a length
-// and that many bytes of data; all numbers are little-endian.
+// Format: wiki.ros.org/Bags/Format/2.0. A record has a length, a header of this number of bytes,
+// another length, and data of this number of bytes. All numbers are little-endian.
 using Bytes = std::vector<std::uint8_t>;
 using Fields = std::map<std::string, std::string>;
 constexpr std::uint32_t kLengthBytes = 4;
@@ -34,7 +34,7 @@ std::uint32_t NumberAt(const std::uint8_t* p) {
   return n;
 }
 
-/// Not by ros::Header, which trusts the lengths of fields.
+/// Does not use ros::Header, because it does not check the lengths of fields.
 Fields FieldsOf(const Bytes& header, std::uint64_t at) {
   Fields fields;
   std::size_t place = 0;
@@ -78,7 +78,7 @@ std::uint8_t Operation(const Fields& fields, std::uint64_t at) {
   return static_cast<std::uint8_t>(Field(fields, rosbag::OP_FIELD_NAME, 1, at)[0]);
 }
 
-/// Reads a file record by record; throws where a record reaches past the end of the file.
+/// Reads a file record by record. Throws if a record ends behind the file.
 class Records {
  public:
   explicit Records(const std::string& path) : in_(path, std::ios::binary) {
@@ -139,7 +139,7 @@ Bytes Unpacked(Bytes data, const Fields& fields, std::uint64_t at) {
   return whole;
 }
 
-/// Where in a chunk the records of messages begin, ascending.
+/// Offsets of the message records in a chunk, ascending.
 std::vector<std::uint32_t> MessagesIn(const Bytes& chunk, std::uint64_t at) {
   std::vector<std::uint32_t> begins;
   const auto size = static_cast<std::uint32_t>(chunk.size());
@@ -163,7 +163,7 @@ std::vector<std::uint32_t> MessagesIn(const Bytes& chunk, std::uint64_t at) {
   return begins;
 }
 
-/// `count` is how many entries the record's header claims: rosbag reads as many.
+/// @param count number of entries that the record's header states; rosbag reads this many.
 void CheckIndex(const Bytes& index, std::uint64_t count, const std::vector<std::uint32_t>& messages,
                 std::uint64_t at) {
   if (index.size() != count * kIndexEntryBytes)
@@ -180,7 +180,7 @@ void CheckIndex(const Bytes& index, std::uint64_t count, const std::vector<std::
 
 void RequireSoundBag(const std::string& path) {
   Records records(path);
-  std::vector<std::uint32_t> messages;  // of the chunk that came last
+  std::vector<std::uint32_t> messages;  // of the last chunk
   std::vector<std::uint64_t> begins, chunks;
   std::uint64_t index = 0;
   while (records.more()) {

@@ -16,7 +16,7 @@ Pacer::Pacer(const Options& options)
 void Pacer::Open(double now_s) {
   assert(std::isfinite(now_s));
   if (!running_) {
-    // What is opened anew before the run begins has no more time than the first step had.
+    // A step that replaces the first one before the run begins keeps the first one's deadline.
     if (!opened_) deadline_s_ = now_s + options_.start_timeout_s;
   } else if (lockstep()) {
     due_s_ = now_s;

@@ -8,7 +8,7 @@
 namespace stg {
 namespace {
 
-/// Distance of two points in time: of any two, where a signed difference could overflow.
+/// Distance of any two points in time. A signed difference could overflow.
 std::uint64_t Distance(TimeNs a, TimeNs b) {
   const auto low = static_cast<std::uint64_t>(std::min(a, b));
   const auto high = static_cast<std::uint64_t>(std::max(a, b));
@@ -32,7 +32,7 @@ StepBarrier::Opening StepBarrier::Open(TimeNs stamp, double deadline_s) {
   deadline_s_ = deadline_s;
   for (Party& party : parties_) {
     party.answered = party.excused = false;
-    // A party that still owes an answer has no more time than it had.
+    // A party that still owes an answer keeps its earlier deadline.
     party.deadline_s = party.owes ? std::min(party.deadline_s, deadline_s) : deadline_s;
     party.owed = party.owes;
     party.owes = true;

@@ -40,7 +40,7 @@ bool StepTracker::Follows(const RunPlace& earlier, const RunPlace& later) const 
   if (later.run != earlier.run || later.episode < earlier.episode) return false;
   const TimeNs start = StartOf(earlier), next_start = StartOf(later);
   if (later.episode == earlier.episode) return next_start == start && later.step > earlier.step;
-  // A double, as the product may be beyond 64 bits; it holds the numbers of real runs exactly.
+  // A double, because the product may exceed 64 bits. It holds the numbers of real runs exactly.
   const double longest = (static_cast<double>(later.episode) - earlier.episode) *
                          (static_cast<double>(episode_steps_) + 1.0) * static_cast<double>(period_);
   return next_start >= earlier.stamp + period_ &&
