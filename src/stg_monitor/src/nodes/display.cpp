@@ -16,7 +16,7 @@ constexpr std::uint32_t kDisplayQueue = 100;
 
 Display::Display(double rate_hz, std::uint32_t last_step)
     : period_s_(1.0 / rate_hz), last_step_(last_step) {
-  // Latched: a display that starts late shows a paused run, too.
+  // Latched, so that a display that starts late shows a paused run, too.
   publisher_ = ros::NodeHandle().advertise<auv_msgs::SwarmDisplay>(topics::kSwarmDisplay,
                                                                    kDisplayQueue, true);
 }
@@ -38,7 +38,7 @@ void Display::Send(const SwarmFrame& frame, const auv_msgs::StepReport* report,
   if (!frame.truth) return;
   const auto chosen = chosen_.find(NsOf(frame.truth->header.stamp));
   if (chosen == chosen_.end()) return;
-  chosen_.erase(chosen_.begin(), std::next(chosen));  // older ones will not be judged any more
+  chosen_.erase(chosen_.begin(), std::next(chosen));  // older steps will not be judged any more
   message_.header = frame.truth->header;
   message_.state = *frame.truth;
   message_.agents.clear();

@@ -52,7 +52,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   const bool follows = truth && started_ && frame.truth->run == run_ &&
                        frame.truth->episode == episode_ && frame.truth->step > step_;
   if (started_ && !follows && truth) {
-    // Cut short by a reset: what there is still counts as an incomplete episode.
+    // A reset has cut the episode short. Its steps still count as an incomplete episode.
     complete_ = false;
     started_ = false;
     if (task_.steps(0) > 0) FillSummary(frame.truth->header.stamp, task_.Metrics(0), &verdict);
@@ -64,7 +64,7 @@ EpisodeJudge::Verdict EpisodeJudge::Judge(const SwarmFrame& frame) {
   SetTruth(frame);
   if (!follows) {
     if (frame.truth->step >= static_cast<std::uint32_t>(scenario_.run.time.episode_steps)) {
-      return verdict;  // the end of an episode that was not watched
+      return verdict;  // the end of an episode that was not observed
     }
     for (auto* v : {&tau_, &action_}) std::fill(v->begin(), v->end(), std::array<double, 6>{});
     for (auto& f : field_) f.received = f.missed = f.modem_energy_j = 0.0;
@@ -105,7 +105,7 @@ void EpisodeJudge::SetTruth(const SwarmFrame& frame) {
     v.v_WB_B = nav.v_WB_B;
     v.w_WB_B = nav.w_WB_B;
     dynamics::FollowQuaternion(&v);
-    v.v_WB = VectorOf(truth.velocities[i]);  // a wall may have turned it back
+    v.v_WB = VectorOf(truth.velocities[i]);  // a wall may have reversed it
   }
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     targets_[k].p_WT = VectorOf(truth.target_positions[k]);
@@ -169,7 +169,7 @@ void EpisodeJudge::SetLinks(const auv_msgs::LinkStates& links) {
   }
 }
 
-/// What acted on the AUVs until this frame.
+/// Stores the efforts of the AUVs in the step before this frame.
 void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
   const bool efforts = truth.efforts.size() == vehicles_.size() * dynamics::kWrenchSize;
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
@@ -190,7 +190,7 @@ void EpisodeJudge::TakeWrenches(const auv_msgs::SwarmState& truth) {
   if (!truth.channel_fresh) ++channel_misses_;
 }
 
-/// What the decision at this frame wants; it is judged with the next frame.
+/// Stores the decision at this frame. It is judged with the next frame.
 void EpisodeJudge::TakeActions(const SwarmFrame& frame) {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const auto& task = frame.tasks[i];
@@ -235,7 +235,8 @@ void EpisodeJudge::FillReport(const SwarmFrame& frame, std::vector<float> state,
     m.distances.push_back(task_.tracking(i).distance);
     m.reward += m.agent_rewards.back() / scenario_.run.agents;
   }
-  if (scenario_.agent.fleet.changes()) m.reward = task_.team_reward();  // of those that are there
+  // Mean over the AUVs that are present.
+  if (scenario_.agent.fleet.changes()) m.reward = task_.team_reward();
   for (std::size_t i = 0; i < field_.size(); ++i) {
     const task::FieldState<double>& f = field_[i];
     const double error = Norm(f.p_WT - Swarm().target_of(i).p_WT);

@@ -9,7 +9,7 @@
 namespace stg::nodes {
 namespace {
 
-constexpr int kMaxRows = 24;  // more AUVs than this do not fit on a screen
+constexpr int kMaxRows = 24;  // more AUVs do not fit on a screen
 constexpr const char* kPhases[] = {"search", "approach", "stable", "lost"};
 
 const char* PhaseName(int phase) { return phase >= 0 && phase < 4 ? kPhases[phase] : "-"; }

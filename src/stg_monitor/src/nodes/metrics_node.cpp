@@ -18,12 +18,14 @@
 namespace stg::nodes {
 namespace {
 
-/// Messages of a topic that wait: in lockstep no node waits for this one, and a lost message spoils
-/// an episode. So many are of ten seconds of the fastest run; a flood of messages takes no more.
+/// Largest number of waiting messages per topic. In lockstep no node waits for this node, and a
+/// lost message makes an episode incomplete. The number is for ten seconds of the fastest run, and
+/// it bounds the memory in a flood of messages.
 constexpr std::uint32_t kQueue = 50000;
-/// Memory for a run whose frames never get complete.
+/// Bounds the memory in a run whose frames never become complete.
 constexpr std::size_t kMaxFrames = 5000;
-/// Steps by which an agent's messages may come before the world's: what sockets and queues hold.
+/// Largest number of steps by which an agent's message may arrive before the world's: the capacity
+/// of sockets and queues.
 constexpr TimeNs kLargestLead = 1000;
 
 /// A text as one field of a CSV file.
@@ -66,7 +68,7 @@ MetricsNode::~MetricsNode() {
 
 void MetricsNode::Subscribe() {
   ros::NodeHandle node;
-  // Puts each message of one topic into its slot of the frame with its stamp.
+  // Puts each message of a topic into its slot in the frame with the same stamp.
   const auto into_frames = [&](const std::string& topic, auto slot, auto usable) {
     using Slot = std::remove_reference_t<decltype(slot(std::declval<SwarmFrame&>()))>;
     using Message = std::remove_const_t<typename Slot::element_type>;
@@ -112,7 +114,7 @@ void MetricsNode::Subscribe() {
 
 bool MetricsNode::Follow(const auv_msgs::SwarmState& m) {
   const TimeNs stamp = NsOf(m.header.stamp);
-  const bool in_run = tracker_.started();  // else what agents said before belongs to this run
+  const bool in_run = tracker_.started();  // if not, earlier messages of agents belong to this run
   switch (tracker_.Hear({m.run, m.episode, m.step, stamp})) {
     case StepTracker::Verdict::kRefused:
       refused_swarm_.Add(Refusals::kStale);
@@ -193,11 +195,12 @@ void MetricsNode::OnLinks(const auv_msgs::LinkStates::ConstPtr& message) {
   table_.SetLinks(*message);
   newest_links_ = message;
   const TimeNs end = NsOf(message->header.stamp) + period_;
-  // Not into a frame: patience with it would begin before the world has come to its step.
+  // Not stored in a frame: the wait for this frame would begin before the world has come to its
+  // step.
   if (Near(end) && links_.size() < kMaxFrames) links_[end] = message;
 }
 
-/// The newest links up to a step; older ones are forgotten.
+/// Takes the newest links up to a step, and forgets older ones.
 auv_msgs::LinkStates::ConstPtr MetricsNode::TakeLinks(TimeNs stamp) {
   const auto later = links_.upper_bound(stamp);
   if (later == links_.begin()) return nullptr;
@@ -206,8 +209,8 @@ auv_msgs::LinkStates::ConstPtr MetricsNode::TakeLinks(TimeNs stamp) {
   return newest;
 }
 
-/// The last frame of an episode waits for what the channel counted until then, but not for long:
-/// there may be no channel.
+/// The last frame of an episode waits for the channel's counts up to its step. The wait is short,
+/// because there may be no channel.
 bool MetricsNode::AwaitsLinks(const SwarmFrame& frame) {
   const bool last =
       frame.truth->step >= static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
@@ -228,7 +231,7 @@ void MetricsNode::JudgeFrames() {
     if (!frame.Complete()) {
       ++incomplete_frames_;
     } else if (!summary_) {
-      // Tells the world, too, that nothing of this run will be missed.
+      // This also tells the world that no summary of this run will be lost.
       summary_ =
           ros::NodeHandle().advertise<auv_msgs::EpisodeSummary>(topics::kEpisodeSummary, 10, true);
     }
@@ -245,7 +248,7 @@ void MetricsNode::JudgeFrames() {
   }
 }
 
-/// What a display shows need not wait as long as what is counted.
+/// A display gets a step earlier than the metrics do.
 void MetricsNode::SendOverdue() {
   const TimeNs stamp = display_.Overdue(WallSeconds());
   const SwarmFrame* frame = stamp < 0 ? nullptr : frames_.Open(stamp);
@@ -265,7 +268,8 @@ void MetricsNode::Publish(const EpisodeJudge::Verdict& verdict) {
   if (summary_) summary_.publish(verdict.summary);
 }
 
-/// What the run was asked for is lost. It goes on, and its end tells.
+/// Reports that the summary file cannot be written. The run continues, and its end reports the
+/// loss.
 void MetricsNode::LoseSummary() {
   if (lost_summaries_++ == 0) {
     ROS_ERROR("summary_file: cannot write '%s': %s", file_name_.c_str(), std::strerror(errno));
@@ -273,12 +277,14 @@ void MetricsNode::LoseSummary() {
   file_.clear();
 }
 
-/// A run begins with episode 0 and an empty file. In any other, this node has died and goes on.
+/// A run begins with episode 0 and an empty file. With another episode, this node has been
+/// restarted during a run.
 void MetricsNode::OpenSummary(std::uint32_t episode) {
   file_.open(file_name_, episode == 0 ? std::ios::trunc : std::ios::app | std::ios::ate);
 }
 
-/// One line per episode: CSV with a header, or for any other file name a JSON object.
+/// Writes one line per episode: CSV with a header, or a JSON object if the file name does not end
+/// in .csv.
 void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
   const auto& s = verdict.summary;
   const auto items = verdict.metrics.Items();
@@ -305,7 +311,7 @@ void MetricsNode::WriteSummary(const EpisodeJudge::Verdict& verdict) {
                               {"deadline_misses", s.deadline_misses},
                               {"channel_misses", s.channel_misses}};
   for (const auto& item : items) line[item.first] = item.second;
-  // What came over a topic may be no UTF-8.
+  // Text from a topic may not be UTF-8.
   file_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 

@@ -1,5 +1,5 @@
-/// Reads a resolved scenario from standard input and writes what of it the browser's view draws, as
-/// JSON in one line: for recordings whose program had no scenario at hand, such as bags.
+/// Reads a resolved scenario from standard input. Writes the part that the browser's view draws, as
+/// JSON in one line. This is for recordings of programs without a scenario, such as bags.
 /// Exit status: 0 done, 2 the text is no scenario.
 
 #include <exception>

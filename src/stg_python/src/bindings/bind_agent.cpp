@@ -24,7 +24,7 @@ using Triple = std::array<double, 3>;
 Vec3<double> VectorOf(const Triple& v) { return {v[0], v[1], v[2]}; }
 Triple TripleOf(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 
-/// A property of an object for a vector inside it.
+/// Getter of a Python property for a vector member of an object.
 template <class Object>
 auto Get(Vec3<double> Object::*member) {
   return [member](const Object& o) { return TripleOf(o.*member); };
@@ -64,7 +64,7 @@ dynamics::Detection DetectionOf(TimeNs stamp, const Triple& p_WT, double std_m, 
   return d;
 }
 
-/// An agent, and when its modem lets packets go.
+/// An agent, and the turns at which its modem may send.
 struct BoundAgent {
   BoundAgent(const Scenario& scenario, int id)
       : mind(Checked(scenario, id).model(), id), turns(scenario.channel, scenario.run) {}
@@ -79,7 +79,7 @@ struct BoundAgent {
 
   agent::Agent mind;
   acoustics::Turns turns;
-  std::vector<double> action;  ///< executed by the last act
+  std::vector<double> action;  ///< executed action of the last act
 };
 
 void Reset(BoundAgent& a, std::int64_t seed, std::uint32_t episode,
@@ -130,7 +130,7 @@ py::dict Act(BoundAgent& a, const py::handle& action) {
   return all;
 }
 
-/// What it believes about its task, by the names of the fields of auv_msgs/TaskState.
+/// The agent's view of its task, with the field names of auv_msgs/TaskState.
 py::dict Task(const BoundAgent& a) {
   const agent::TaskView task = a.mind.task();
   const agent::Knowledge<double>& k = a.mind.knowledge();

@@ -83,7 +83,7 @@ py::dict Parameters(const Policy& policy) {
   return all;
 }
 
-/// Mean actions [..., action_size] of observations [..., observation_size].
+/// Mean actions [..., action_size] for observations [..., observation_size].
 py::array_t<float> Mean(const Policy& policy, const py::handle& object) {
   if (!py::isinstance<py::array>(object))
     throw py::type_error("observations: expected a numpy array");
@@ -110,7 +110,7 @@ py::array_t<float> Mean(const Policy& policy, const py::handle& object) {
   return actions;
 }
 
-/// As the command line of the same name: means and standard deviations over the episodes.
+/// The same as the program `evaluate`: means and standard deviations over the episodes.
 py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episodes,
                   std::uint64_t seed, int workers, bool privileged) {
   if (episodes < 1) throw py::value_error("episodes: must be at least 1");

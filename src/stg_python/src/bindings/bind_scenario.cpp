@@ -15,7 +15,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// What a key holds, as Python has it.
+/// Converts the value of a key to a Python object.
 struct Cast {
   py::object operator()(const double* x) const { return py::float_(*x); }
   py::object operator()(const int* x) const { return py::int_(*x); }
@@ -69,7 +69,7 @@ py::list Layout(const Scenario& scenario) {
   return blocks;
 }
 
-/// Heights of the bottom of open water on a grid over the region.
+/// Heights of the bottom of open water, on a grid over the region.
 py::array_t<double> Bottom(const Scenario& s, int points) {
   if (!s.world.sea.open)
     throw UserError("scenario '" + s.run.name + "' has no open water (sea.open)");

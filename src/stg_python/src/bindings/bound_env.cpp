@@ -37,7 +37,7 @@ BoundEnv::BoundEnv(const std::vector<Scenario>& mix, const env::VectorEnvOptions
 }
 
 BoundEnv::~BoundEnv() {
-  // Threads that did not follow a fork cannot be joined.
+  // In a forked process the threads do not exist, so they cannot be joined.
   if (process_ != static_cast<int>(getpid())) (void)pool_.release();
 }
 

@@ -10,7 +10,7 @@
 namespace stg::python {
 namespace {
 
-/// A copy of `rows` rows without gaps.
+/// A copy of `rows` rows, without gaps.
 py::array_t<float> RowsOf(const float* data, int rows, int numbers) {
   py::array_t<float> array(Shape{rows, numbers});
   std::copy(data, data + static_cast<std::ptrdiff_t>(rows) * numbers, array.mutable_data());

@@ -26,7 +26,7 @@ class Table {
   double* to_;
 };
 
-/// Quality of the link from AUV j to AUV i, in [0, 1]; 0 where i has not heard of j.
+/// Quality of the link from AUV j to AUV i, in [0, 1]; 0 if i has received nothing from j.
 double Quality(const env::VectorEnv& envs, int env, int i, int j) {
   const Scenario& s = envs.scenario(env);
   if (i == j) return 0.0;

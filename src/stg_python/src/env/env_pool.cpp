@@ -14,10 +14,10 @@ namespace {
 
 std::ptrdiff_t Rows(int a, int b = 1, int c = 1) { return static_cast<std::ptrdiff_t>(a) * b * c; }
 
-/// Less than an AUV of an environment takes, whatever the scenario: `medium` takes 12 KiB.
+/// Lower bound of the memory per AUV of an environment in any scenario; `medium` needs 12 KiB.
 constexpr double kLeastBytesPerAgent = 8 * 1024.0;
 
-/// Refuses what this machine cannot hold: it would be swapped or killed after minutes.
+/// Refuses environments that do not fit into memory. They would be swapped or killed after minutes.
 void RequireMemory(const std::vector<Scenario>& mix, int envs) {
   const int agents = mix.empty() ? 1 : mix.front().run.agents;
   const double needed = kLeastBytesPerAgent * envs * agents;
@@ -30,7 +30,7 @@ void RequireMemory(const std::vector<Scenario>& mix, int envs) {
                   " GiB of memory, and this machine has " + gib(there));
 }
 
-/// Threads that have something to do: environments of one block share a register.
+/// Number of threads with work. The environments of one block share a register.
 int Busy(const std::vector<Scenario>& mix, int envs, int workers) {
   if (envs < 1) throw UserError("num_envs must be at least 1, not " + std::to_string(envs));
   RequireMemory(mix, envs);

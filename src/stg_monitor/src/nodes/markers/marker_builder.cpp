@@ -39,8 +39,8 @@ class Builder : private MarkerList {
   void Workspace() {
     const double h = view_.scene.half_extent_m;
     if (!view_.scene.sea.open) Walls(h);
-    // From each AUV and target a thread to the floor, or to the sea's surface: depth is hard to see
-    // otherwise.
+    // A line from each AUV and target to the floor, or to the sea's surface. Without it, depth is
+    // hard to see.
     Marker threads = Lines("workspace", 2, Marker::LINE_LIST,
                            0.002 * view_.scene.shown_half_extent_m, Color(0.7, 0.75, 0.8, 0.25));
     const auto thread = [&](const Point& p) {
@@ -105,7 +105,7 @@ class Builder : private MarkerList {
     }
   }
 
-  /// A line through the past, fading with age.
+  /// A line along the past positions. Older parts are more transparent.
   void Trail(const char* name, int id, const std::deque<TrailPoint>& trail, ColorRGBA color,
              bool by_phase) {
     Marker m = Lines(name, id, Marker::LINE_STRIP, 0.07 * unit_, Color(1, 1, 1));
@@ -137,7 +137,7 @@ class Builder : private MarkerList {
     const VehicleView& v = view_.vehicles[static_cast<size_t>(id)];
     if (!v.seen) return;
     const Point& p = v.pose.position;
-    // Enlarged hulls shrink where AUVs come close, down to their true size at most.
+    // Enlarged hulls shrink if AUVs come close, but not below their true size.
     const double nearest = Nearest(static_cast<size_t>(id));
     const double full = 2.0 * unit_;
     const double least = std::max(0.4 * full, std::min(full, 2.0 * view_.scene.radius_m));
@@ -153,7 +153,8 @@ class Builder : private MarkerList {
     Label(id, v);
   }
 
-  /// AUVs below this one: the rank of its label, so that labels of a crowd stack up.
+  /// Number of AUVs below this one. It is the rank of the label, so that labels in a crowd are
+  /// stacked.
   int Below(int id) const {
     const double z = PositionOf(id).z;
     int below = 0;
@@ -165,7 +166,8 @@ class Builder : private MarkerList {
     return below;
   }
 
-  /// Labels stand on stems, fanned out and stacked: they stay apart where the AUVs do not.
+  /// Labels stand on stems in different directions and heights, so they stay apart even if the AUVs
+  /// do not.
   void Label(int id, const VehicleView& v) {
     const int count = static_cast<int>(view_.vehicles.size());
     const bool many = count > kManyVehicles;
@@ -192,7 +194,7 @@ class Builder : private MarkerList {
     Text("label", id, Sum(end, At(0, 0, 0.6 * text_)), text_, text, Color(1, 1, 1, 0.95));
   }
 
-  /// Of lengths in text.
+  /// Number of decimals of lengths in texts.
   int Digits() const { return view_.scene.band_hi_m < 1.0 ? 3 : 0; }
 
   bool Seen(int i) const {
@@ -203,7 +205,7 @@ class Builder : private MarkerList {
     return view_.vehicles[static_cast<size_t>(i)].pose.position;
   }
 
-  /// What the whole swarm does, above the workspace or above target 0.
+  /// Text about the whole swarm, above the workspace or above target 0.
   void Summary() {
     double distance = 0.0, quality = 0.0, age = 0.0;
     std::uint64_t delivered = 0, dropped = 0;
@@ -246,7 +248,7 @@ class Builder : private MarkerList {
     if (style_.whole_workspace) Legend();
   }
 
-  /// Of what the overview shows.
+  /// Centre of the overview.
   Point Centre() const {
     const bool all = view_.scene.shown_half_extent_m >= view_.scene.half_extent_m;
     if (all || view_.targets.empty() || !view_.targets[0].seen) return At(0, 0, 0);
@@ -262,15 +264,15 @@ class Builder : private MarkerList {
       const auto phase = static_cast<ShownPhase>(k);
       Text("legend", k, line(k), 1.3 * text_, PhaseName(phase), PhaseColor(phase));
     }
-    // Of a few AUVs each label says it in words.
+    // With a few AUVs, each label has this text.
     if (static_cast<int>(view_.vehicles.size()) <= kManyVehicles) return;
     Text("legend", 4, line(4), 1.3 * text_, "* leads", Color(1, 1, 1, 0.95));
   }
 
   const SwarmView& view_;
   const MarkerStyle& style_;
-  const double unit_;  // [m] radius of a vehicle as drawn; every size that scales is a multiple
-  const double text_;  // [m] height of letters
+  const double unit_;  // drawn radius of a vehicle [m]; all sizes that scale are multiples of it
+  const double text_;  // height of letters [m]
 };
 
 }  // namespace

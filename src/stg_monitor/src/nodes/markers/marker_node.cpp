@@ -1,6 +1,6 @@
-/// Shows a running or a replayed swarm in rviz. It only listens, so it may come, go and fall behind
+/// Shows a running or replayed swarm in rviz. It only listens, so it may start, stop or be late
 /// without any effect on the run.
-/// Long because: each topic has its subscription and its answer here.
+/// Long because: the subscription and the callback of each topic are here.
 
 #include <auv_msgs/LinkState.h>
 #include <auv_msgs/LinkStates.h>
@@ -43,8 +43,9 @@ namespace {
 
 constexpr std::size_t kMaxVehicles = 256, kMaxTargets = 64, kMaxStations = 32,
                       kMaxTrailPoints = 1500;
-constexpr int kOdomQueue = 20;           // steps by which an AUV may come late
-constexpr double kLongestShown_s = 5.0;  // of a carrier after its end: sound on its way
+constexpr int kOdomQueue = 20;  // number of steps by which an AUV may be late
+// A carrier is shown for this time after its end, because its sound is still on its way.
+constexpr double kLongestShown_s = 5.0;
 
 class MarkerNode {
  public:
@@ -71,7 +72,7 @@ class MarkerNode {
     links_sub_ = nh_.subscribe(topics::kLinks, 50, &MarkerNode::OnLinks, this);
     const std::string file = TextParameter("scenario_file", "");
     if (!file.empty()) ReadScenarioFile(file);
-    // Wall clock: a paused or finished replay stays visible.
+    // Wall clock, so that a paused or finished replay stays visible.
     draw_timer_ = nh_.createWallTimer(ros::WallDuration(1.0 / rate_hz), &MarkerNode::OnDraw, this);
     discover_timer_ = nh_.createWallTimer(ros::WallDuration(0.5), &MarkerNode::OnDiscover, this);
   }
@@ -90,7 +91,8 @@ class MarkerNode {
     OnScenario(text);
   }
 
-  /// Of open water; without its file (a bag of another machine) the rest is shown all the same.
+  /// Shows the terrain of open water. If its file is missing (a bag of another machine), the rest
+  /// is still shown.
   void ShowTerrain() {
     const SceneConfig& scene = view_.scene;
     terrain_pub_.publish(NoTerrain());
@@ -111,7 +113,7 @@ class MarkerNode {
     }
   }
 
-  /// Subscribes to every AUV and target that anybody publishes: any number, live or from a bag.
+  /// Subscribes to every AUV and target with a publisher: any number, live or from a bag.
   void OnDiscover(const ros::WallTimerEvent&) {
     static const std::regex kPattern("/(auv|target|station)_([0-9]{1,4})/odom");
     ros::master::V_TopicInfo topics;
@@ -167,8 +169,8 @@ class MarkerNode {
     }
   }
 
-  /// Simulated time goes on; when it jumps back by more than an AUV may come late (a replay starts
-  /// over) the past is forgotten.
+  /// Advances the simulated time. If it jumps back by more than an AUV may be late (a replay starts
+  /// again), the past is forgotten.
   void Advance(const ros::Time& stamp) {
     const double t = stamp.toSec();
     if (t < view_.now - std::max(1.0, kOdomQueue * view_.step_s)) ForgetPast();
@@ -210,7 +212,7 @@ class MarkerNode {
     if (!told_of_truth_) Place(i, odom.pose.pose);
   }
 
-  /// Where AUVs are; their odometry is where they believe to be.
+  /// Shows the true positions of the AUVs. The odometry has their estimated positions.
   void OnTruth(const auv_msgs::SwarmState& swarm) {
     told_of_truth_ = true;
     const std::size_t count = std::min(swarm.poses.size(), view_.vehicles.size());
@@ -245,7 +247,8 @@ class MarkerNode {
 
   void OnTask(std::size_t i, const auv_msgs::TaskState& task) {
     if (!PossibleStamp(task.header.stamp)) return refused_.Add(Refusals::kStale);
-    // One AUV tells the episode: at its change the others' messages may still be the old one's.
+    // Only the messages of AUV 0 change the episode, because messages of the others may still be
+    // from the previous one.
     if (i == 0 && task.episode != view_.episode) {
       view_.episode = task.episode;
       ForgetPast();
@@ -270,7 +273,7 @@ class MarkerNode {
       const int source = static_cast<int>(s.source), destination = static_cast<int>(s.destination);
       const auto [found, is_new] = view_.links.try_emplace({source, destination});
       LinkView& link = found->second;
-      // Counts tell of packets only where no other message tells more.
+      // Counts are only used for packets if there are no messages about packets.
       const bool counts = !is_new && !told_of_packets_;
       if (counts && s.delivered > link.delivered) {
         view_.packets.push_back({source, destination, t, false, auv_msgs::LinkState::NONE});
@@ -294,7 +297,7 @@ class MarkerNode {
       } else if (e.receiver >= 0 && e.receiver < static_cast<int>(kMaxVehicles) &&
                  (e.kind == auv_msgs::PacketEvent::DELIVERED ||
                   e.kind == auv_msgs::PacketEvent::DROPPED)) {
-        // What is lost or heard is shown as its sound arrives.
+        // A lost or received packet is shown when its sound arrives.
         const double arrives = std::max(t, e.arrival.toSec());
         const bool lost = e.kind == auv_msgs::PacketEvent::DROPPED;
         view_.packets.push_back({source, e.receiver, arrives, lost, e.reason});
@@ -302,7 +305,7 @@ class MarkerNode {
     }
   }
 
-  /// What is too old to be shown.
+  /// Removes data that is too old to be shown.
   void Forget() {
     const double shown_s = std::max(kLongestShown_s, view_.step_s);
     const auto old = [&](const CarrierView& c) { return c.end < view_.now - shown_s; };

@@ -9,7 +9,7 @@ namespace stg::nodes {
 
 namespace {
 
-/// Rows of as many finite numbers as there should be; what is none of them is left out.
+/// Reads rows of `size` finite numbers. Other rows are left out.
 void ReadRows(const YAML::Node& list, std::size_t size, std::vector<std::vector<double>>* rows) {
   for (const YAML::Node& row : list) {
     std::vector<double> numbers = row.as<std::vector<double>>(std::vector<double>());
@@ -19,8 +19,8 @@ void ReadRows(const YAML::Node& list, std::size_t size, std::vector<std::vector<
   }
 }
 
-/// Half the size of what the overview shows at first: in open water a target and the AUVs where
-/// they start, else all of it. view.py has the camera that fits.
+/// Half extent of the overview at first. In open water it covers a target and the start positions
+/// of the AUVs; otherwise it covers the whole workspace. view.py sets the camera for it.
 double ShownHalfExtent(const YAML::Node& root, const SceneConfig& scene) {
   const YAML::Node reset = root["reset"];
   const bool anywhere = !reset || reset["deploy"].as<std::string>("around") == "area";

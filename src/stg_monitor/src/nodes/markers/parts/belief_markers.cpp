@@ -47,8 +47,8 @@ class BeliefBuilder : private MarkerList {
     Add(std::move(m));
   }
 
-  /// Turns a sphere into the ellipsoid of one standard deviation, no thinner than can be seen. What
-  /// is no covariance (an old recording has none) changes nothing.
+  /// Turns a sphere into the ellipsoid of one standard deviation; its axes have a visible minimum
+  /// length. An invalid covariance (an old recording has none) changes nothing.
   void ShapeAs(const std::array<double, 6>& xx_xy_xz_yy_yz_zz, Marker* m) const {
     const auto& c = xx_xy_xz_yy_yz_zz;
     Eigen::Matrix3d P;
@@ -92,7 +92,8 @@ class BeliefBuilder : private MarkerList {
     }
   }
 
-  static constexpr double kShown_s = 0.3;  ///< of simulated time that a detection stays at least
+  /// A detection is shown for at least this simulated time.
+  static constexpr double kShown_s = 0.3;
 
   const SwarmView& view_;
   const double unit_;

@@ -46,7 +46,7 @@ class NetworkBuilder : private MarkerList {
     return view_.vehicles[static_cast<size_t>(i)].pose.position;
   }
 
-  /// One line per directed link: its half that ends at the receiver, in the link's colour.
+  /// One line per directed link: the half at the receiver, in the link's colour.
   void Links() {
     Marker m = Lines("link", 0, Marker::LINE_LIST, 0.05 * unit_, Color(1, 1, 1));
     for (const auto& [pair, link] : view_.links) {
@@ -59,7 +59,8 @@ class NetworkBuilder : private MarkerList {
     Add(std::move(m));
   }
 
-  /// Packets travel as dots; a lost one ends in a red cross on the way, with a broken line to it.
+  /// Packets travel as dots. A lost packet ends in a red cross on the way, with a broken line to
+  /// it.
   void Packets() {
     Marker dots = New("packet", 0, Marker::SPHERE_LIST, Color(1, 1, 1));
     dots.scale.x = dots.scale.y = dots.scale.z = 0.18 * unit_;
@@ -70,7 +71,7 @@ class NetworkBuilder : private MarkerList {
     for (const PacketEvent& e : view_.packets) {
       if (!Seen(e.source) || !Seen(e.destination)) continue;
       const double age = view_.now - e.time;
-      if (age < 0.0) continue;  // on its way
+      if (age < 0.0) continue;  // still on its way
       const Point &from = PositionOf(e.source), &to = PositionOf(e.destination);
       const double travelled = std::clamp(age / style_.packet_s, 0.0, 1.0);
       if (!e.lost) {
@@ -100,7 +101,7 @@ class NetworkBuilder : private MarkerList {
     LostReasons(shown);
   }
 
-  /// Says at each cross why; only in swarms small enough to read it.
+  /// Writes the reason at each cross, only in small swarms where it is readable.
   void LostReasons(const std::map<std::pair<int, int>, std::uint8_t>& shown) {
     const int count = static_cast<int>(view_.vehicles.size());
     if (count > kManyVehicles) return;
@@ -118,14 +119,15 @@ class NetworkBuilder : private MarkerList {
     }
   }
 
-  /// A double ring around each modem that sends, and the front of its sound on its way out.
+  /// A double ring around each modem that sends, and the moving front of its sound.
   void Carriers() {
     Marker fronts =
         Lines("sound_front", 0, Marker::LINE_LIST, 0.02 * unit_, Color(0.2, 0.95, 1.0, 0.45));
     std::set<int> sending;
     for (const CarrierView& c : view_.carriers) {
       if (!Seen(c.source)) continue;
-      // Where time goes on in long steps: all that have sent since the one before.
+      // If time advances in long steps, all modems that have sent since the previous step get a
+      // ring.
       const double after_s = std::max(style_.carrier_s - (c.end - c.begin), view_.step_s);
       if (view_.now >= c.begin && view_.now <= c.end + after_s) sending.insert(c.source);
       const double radius = kSoundSpeed_mps * (view_.now - c.begin);
@@ -154,7 +156,7 @@ class NetworkBuilder : private MarkerList {
     }
   }
 
-  /// A ball around each receiver that lost a packet for that reason a moment ago.
+  /// A ball around each receiver that recently lost a packet for this reason.
   void Clashes(const char* name, std::uint8_t reason, const std_msgs::ColorRGBA& color) {
     std::map<int, double> since;
     for (const PacketEvent& e : view_.packets) {
@@ -178,7 +180,7 @@ class NetworkBuilder : private MarkerList {
   const SwarmView& view_;
   const MarkerStyle& style_;
   const double unit_, text_;
-  const double lost_s_;  ///< simulated time that what was lost stays visible
+  const double lost_s_;  ///< simulated time for which a lost packet stays visible
 };
 
 }  // namespace

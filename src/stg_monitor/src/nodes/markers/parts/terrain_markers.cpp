@@ -12,14 +12,14 @@ namespace {
 
 using visualization_msgs::MarkerArray;
 
-constexpr int kCells = 96;            // of the drawn surface, on each side
+constexpr int kCells = 96;            // cells of the drawn surface along each side
 constexpr int kLineEvery = 8;         // cells between two lines drawn on it
-constexpr int kScaleSteps = 6;        // colours named in the scale
-constexpr double kLeastSpan_m = 1.0;  // less is a flat bottom, which has one colour
+constexpr int kScaleSteps = 6;        // number of colours in the scale
+constexpr double kLeastSpan_m = 1.0;  // a bottom with less span is flat and has one colour
 constexpr double kFlatShare = 0.35;
 
-/// From the deepest point (0) through blues and greens to the shallowest (1); land is brown. All
-/// are dark enough for white captions in front of them.
+/// Colour from the deepest point (0) through blues and greens to the shallowest (1); land is brown.
+/// All colours are dark enough for white text in front of them.
 std_msgs::ColorRGBA DepthColor(double share, bool land) {
   struct Stop {
     double at, r, g, b;
@@ -90,7 +90,7 @@ class TerrainBuilder : private MarkerList {
     array_.markers.push_back(std::move(m));
   }
 
-  /// Lines on the bottom, which give its slopes away.
+  /// Lines on the bottom that make its slopes visible.
   void Grid() {
     Marker m =
         Lines("terrain_grid", 0, Marker::LINE_LIST, 0.0015 * half_, Color(0.75, 0.85, 0.95, 0.25));
@@ -114,7 +114,7 @@ class TerrainBuilder : private MarkerList {
     Add(std::move(m));
   }
 
-  /// Patches of colour with their depths, upright at the western corner.
+  /// Colour patches with their depths, upright at the western corner.
   void Scale() {
     const double size = 0.06 * half_;
     const bool flat = highest_ - lowest_ < kLeastSpan_m;
