@@ -12,12 +12,13 @@
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "oracle/torch_network.hpp"
 
-/// The kernels against libtorch on the networks of the presets, one thread: what docs/adr/009
-/// quotes.
+/// Compares the kernels with libtorch on the networks of the presets, on one thread. docs/adr/009
+/// has the results.
 namespace stg::learn {
 namespace {
 
-/// @param width of two hidden layers; 64 is the `fast` preset, tanh, 128 `paper`, ReLU.
+/// @param width of two hidden layers: 64 with tanh as in the `fast` preset, 128 with ReLU as in
+/// `paper`.
 NetworkSpec Actor(int width) {
   NetworkSpec spec;
   spec.inputs = 74;
@@ -40,7 +41,7 @@ std::size_t Size(int rows, int columns) {
   return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
 }
 
-/// Rows a second, and the rate of the matrix products.
+/// Reports rows per second, and the rate of the matrix products.
 void Report(benchmark::State& state, int rows, double products) {
   const double done = static_cast<double>(state.iterations()) * rows;
   state.counters["rows"] = benchmark::Counter(done, benchmark::Counter::kIsRate);
@@ -105,7 +106,7 @@ void TorchTraining(benchmark::State& state) {
   Report(state, rows, spec.training_products());
 }
 
-/// Random samples of a minibatch of four AUVs, and networks of the presets' sizes.
+/// Random samples of a minibatch of four AUVs, and networks with the sizes of the presets.
 struct Minibatch {
   static constexpr int kSamples = 1600, kAgents = 4, kActions = 3, kFeatures = 74, kState = 82;
   static constexpr int kRows = kSamples * kAgents;
@@ -127,7 +128,7 @@ struct Minibatch {
     config.activation = width == 64 ? HiddenActivation::kTanh : HiddenActivation::kRelu;
     return config;
   }
-  /// The actor's, then the critic's.
+  /// Parameters of the actor, then of the critic.
   std::vector<float> Parameters() const {
     std::vector<float> all = networks.NewActor(1, 0, -1.0).numbers;
     const std::vector<float> critic = networks.NewCritic(1).numbers;
@@ -147,7 +148,7 @@ struct Minibatch {
   std::vector<float> advantages = Draw(kSamples), targets = Draw(kSamples);
 };
 
-/// One gradient step as PpoUpdate makes it, without gathering: blocks of 64 samples.
+/// One gradient step as in PpoUpdate, without gathering: blocks of 64 samples.
 void KernelsStep(benchmark::State& state) {
   UseOneBlasThread();
   const int width = static_cast<int>(state.range(0));
@@ -185,7 +186,7 @@ void KernelsStep(benchmark::State& state) {
   Report(state, Minibatch::kSamples, m.products());
 }
 
-/// The same step by automatic differentiation and libtorch's Adam, on blocks of `block` samples.
+/// The same step with automatic differentiation and libtorch's Adam, on blocks of `block` samples.
 void TorchStep(benchmark::State& state) {
   torch::set_num_threads(1);
   const auto block = state.range(1);
@@ -234,7 +235,8 @@ void TorchStep(benchmark::State& state) {
 
 void Arguments(benchmark::internal::Benchmark* b) {
   b->ArgNames({"width", "rows"});
-  // A shard's decision (16 environments, 4 AUVs), an update's block, and a whole minibatch.
+  // Rows of a shard's decision (16 environments, 4 AUVs), of an update's block, and of a whole
+  // minibatch.
   for (const int width : {64, 128}) {
     for (const int rows : {64, 256, 6400}) b->Args({width, rows});
   }

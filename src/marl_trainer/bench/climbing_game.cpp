@@ -6,9 +6,9 @@
 #include "algorithms/game.hpp"
 #include "marl_trainer/learn/algorithm_config.hpp"
 
-/// What each algorithm reaches in the climbing game (Claus and Boutilier 1998), ten seeds: the
-/// table of docs/algorithms. No test: the best joint action stands beside the worst payoffs, and
-/// independent learners are known to settle for less.
+/// Result of each algorithm in the climbing game (Claus and Boutilier 1998) with ten seeds, for the
+/// table of docs/algorithms. It is no test: the best joint action is next to the worst payoffs, and
+/// independent learners are known to choose a worse one.
 namespace stg::learn {
 namespace {
 
@@ -22,7 +22,7 @@ Game ClimbingGame() {
   return game;
 }
 
-/// As in the test of the penalty game.
+/// The same options as in the test of the penalty game.
 nlohmann::json Options(const std::string& algorithm) {
   if (algorithm == "maddpg" || algorithm == "matd3") {
     return {{"others", "buffer"}, {"noise-max", 0.5}};
@@ -31,7 +31,7 @@ nlohmann::json Options(const std::string& algorithm) {
   return {};
 }
 
-/// Mean payoff of the policies that a training ends with, over what they can be shown.
+/// Mean payoff of the final policies over a grid of observations.
 double Reached(const std::string& algorithm, int seed) {
   const Game game = ClimbingGame();
   TrainSetup setup = GameSetup(algorithm, Options(algorithm));

@@ -9,13 +9,14 @@
 #include "oracle/torch_blocks.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
-/// The network `pool` by its kernels and by libtorch, one thread: what docs/adr/009 quotes.
+/// Compares the network `pool` with kernels and with libtorch, on one thread. docs/adr/009 has the
+/// results.
 namespace stg::learn {
 namespace {
 
 constexpr int kObstacles = 2;
 
-/// AUVs that have heard all others of their swarm and know of two obstacles.
+/// Rows of AUVs that have received packets of all others in their swarm and know two obstacles.
 PackedRows Rows(const agent::PoolSpec& spec, int auvs, int targets, int neighbours) {
   PackedRows packed{RowSizes(spec)};
   const int counts[] = {targets, neighbours, kObstacles};
@@ -131,7 +132,7 @@ void TorchStep(benchmark::State& state) {
   Report(state, auvs);
 }
 
-/// One AUV decides.
+/// The decision of one AUV.
 void KernelsDecide(benchmark::State& state) {
   const agent::PoolSpec spec = agent::EntityActorSpec(5);
   const agent::PoolNetwork network(spec, Parameters(spec));

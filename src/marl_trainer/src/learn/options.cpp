@@ -10,8 +10,8 @@
 namespace stg::learn {
 namespace {
 
-/// Calls `f` with a pointer to the option's value, of a type that JSON has: flag, text, number,
-/// whole number or list of them.
+/// Calls `f` with a pointer to the option's value. The type is one that JSON has: flag, text,
+/// number, whole number or list of them.
 template <class F>
 void WithValue(const config::Field& option, const F& f) {
   const auto none = [&option] {

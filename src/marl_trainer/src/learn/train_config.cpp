@@ -47,7 +47,7 @@ config::Table TrainSetup::Options() {
 }
 
 void TrainSetup::ValidateOrThrow() const {
-  TrainSetup copy(*this);  // a table refers to what can be changed
+  TrainSetup copy(*this);  // a table refers to values that it may change
   RequireRanges(copy.Options());
   own->ValidateOrThrow(common);
 }
@@ -66,7 +66,7 @@ TrainSetup TrainSetupFromJson(const nlohmann::ordered_json& json) {
   try {
     std::string algorithm;
     TakeMember(json, "algorithm", &algorithm);
-    TrainSetup setup(algorithm, "fast");  // the values of the preset are all replaced
+    TrainSetup setup(algorithm, "fast");  // all values of the preset are replaced
     TakeMember(json, "preset", &setup.common.preset);
     TakeMember(json, "variant", &setup.common.variant);
     const config::Table table = setup.Options();

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first line in which two texts differ, for people; empty when they are equal.
+/// The first line in which two texts differ, for a message; empty if they are equal.
 std::string Difference(const std::string& theirs, const std::string& ours) {
   if (theirs == ours) return "";
   std::istringstream a(theirs), b(ours);
@@ -79,7 +79,8 @@ BagContents ReadBag(const std::string& path, const RunConfig& run, const std::st
     contents.error = error.what();
     return contents;
   } catch (const std::exception& error) {
-    // rosbag throws its own kinds, ros's stream overruns, and what sizes read from damage lead to.
+    // rosbag throws its own errors; ROS throws overruns of a stream; sizes from damaged data cause
+    // others.
     contents.error = std::string("damaged bag: ") + error.what();
   }
   contents.episodes = inlet.episodes().TakeAll();

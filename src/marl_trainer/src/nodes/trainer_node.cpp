@@ -21,11 +21,11 @@
 namespace stg::nodes {
 namespace {
 
-constexpr std::uint32_t kUnlimited = 0;     // queue: nothing may be lost during an update
+constexpr std::uint32_t kUnlimited = 0;  // length of a queue: nothing may be lost during an update
 constexpr double kSummaryPatience_s = 1.0;  // after the last step of an episode
 constexpr double kLoadInterval_s = 0.5;     // between attempts to give agents their policy
 
-/// "3 s", for people.
+/// "3 s", for messages.
 std::string Seconds(const ros::WallDuration& d) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f s", d.toSec());
@@ -74,7 +74,7 @@ void TrainerNode::Judge(learn::RecordedEpisode episode) {
     return;
   }
   ++recording_.dropped[static_cast<std::size_t>(finding.flaw)];
-  // A bag has an end; what is heard live has none.
+  // For a bag, all warnings are logged. For a live run they are limited, because it has no end.
   if (inlet_ && !dropped_.Due()) return;
   ROS_WARN("trainer: %s, episode %u dropped: %s (%s)%s", episode.source.c_str(), episode.number,
            ToString(finding.flaw), finding.where.c_str(), dropped_.more().c_str());
@@ -119,7 +119,7 @@ void TrainerNode::Subscribe() {
 
 void TrainerNode::TrainLive() {
   Subscribe();
-  PauseWorld(false);  // a trainer that was killed while it learned left the world paused
+  PauseWorld(false);  // an earlier trainer may have been killed while the world was paused
   bool finished = false;
   while (ros::ok() && !finished) {
     HandleMessages(0.05);
@@ -161,8 +161,8 @@ bool TrainerNode::CollectionFull() {
   return true;
 }
 
-/// A summary that was lost is waited for only so long: episodes that come meanwhile, and in
-/// lockstep they come all the time, renew no patience.
+/// A lost summary is waited for only for a limited time. New episodes do not extend it; in lockstep
+/// they arrive all the time.
 bool TrainerNode::SummariesIn() const {
   if ((ros::WallTime::now() - *full_).toSec() > kSummaryPatience_s) return true;
   return std::all_of(collection_.begin(), collection_.end(),
@@ -199,7 +199,7 @@ bool TrainerNode::LoadPolicy(int agent) {
   return true;
 }
 
-/// Leaves the running episode, which an older policy began.
+/// Ends the running episode, because an older policy began it.
 void TrainerNode::StartEpisode() {
   auv_msgs::Reset call;
   if (ros::service::call(topics::kReset, call) && call.response.success) {
@@ -216,7 +216,7 @@ void TrainerNode::PauseWorld(bool pause) {
 
 void TrainerNode::Learn() {
   PauseWorld(true);
-  // However this ends: the world does not stand still for ever.
+  // Resumes the world in any case, even after an error.
   const std::shared_ptr<void> resume(nullptr, [this](void*) { PauseWorld(false); });
   const learn::RecordedTrainer::Progress progress = trainer_->Update(collection_);
   ++updates_done_;
@@ -242,7 +242,7 @@ bool TrainerNode::TargetReached() const {
          target_lost_rate_ * static_cast<double>(window_);
 }
 
-/// One line of progress. Tail distance and lost rate are those of the exploring swarm.
+/// Prints one line of progress. Tail distance and lost rate are for the exploring swarm.
 void TrainerNode::Print(const learn::RecordedTrainer::Progress& p) const {
   double tail = 0.0, lost = 0.0;
   const auto n = static_cast<double>(std::max<std::size_t>(1, summaries_.size()));

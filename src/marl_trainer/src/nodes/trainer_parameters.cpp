@@ -13,7 +13,7 @@
 namespace stg::nodes {
 namespace {
 
-/// What a parameter says, as text of a command line.
+/// The value of a parameter as text of a command line.
 std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
   using Value = XmlRpc::XmlRpcValue;
   switch (value.getType()) {
@@ -25,7 +25,7 @@ std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
       return std::to_string(static_cast<int>(value));
     case Value::TypeDouble: {
       const double number = value;
-      // A whole number that is too large for the server's 32 bits comes as a real one.
+      // A whole number that is too large for the server's 32 bits is stored as a real one.
       const bool whole = std::floor(number) == number && std::abs(number) < 1e15;
       return whole ? std::to_string(static_cast<std::int64_t>(number))
                    : config::FormatNumber(number);
@@ -48,7 +48,7 @@ void LoadTrainParameters(learn::TrainSetup* setup) {
   for (const config::Field& option : table.fields()) {
     std::string name = option.path;
     std::replace(name.begin(), name.end(), '-', '_');
-    // Private ones only: `seed` of the world, say, is another one.
+    // Only private parameters, because `seed`, for example, also exists for the world.
     XmlRpc::XmlRpcValue value;
     if (!node.getParam(name, value)) continue;
     if (const auto message = config::ParseText(option, TextOf(name, value))) {

@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 /// Environment steps per second of `env` on one thread for about `seconds`.
 double Run(stg::env::VectorEnv* env, double seconds) {
   const auto size = static_cast<size_t>(env->envs() * env->agents() * env->action_size());
-  // Random actions, drawn beforehand: the bench is of the environment.
+  // Random actions are drawn in advance, so that only the environment is measured.
   std::vector<std::vector<float>> actions(64, std::vector<float>(size));
   stg::Random random(1, stg::Stream::kPolicy, 0, 0, 0);
   for (auto& a : actions) {
@@ -55,8 +55,8 @@ double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
 
 }  // namespace
 
-/// Environment steps per second, observations and rewards included; one JSON
-/// object on the last line.
+/// Measures environment steps per second, including observations and rewards. The last line is one
+/// JSON object.
 int main(int argc, char** argv) {
   CLI::App app("Measures how fast the vectorised environment steps");
   std::string scenario = "medium", condition = "nominal";

@@ -8,8 +8,8 @@
 #include "stg_env/env/trace.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
-/// Replays golden traces; JSON on the last line; exit 1 past the tolerance, 2
-/// on unusable input.
+/// Replays golden traces. The last line is JSON. Exit status 1: beyond the tolerance; 2: unusable
+/// input.
 int main(int argc, char** argv) {
   CLI::App app(
       "Replays a trace of the release's simulator in this simulator and compares every column");

@@ -25,7 +25,7 @@
 
 namespace {
 
-/// One row per episode, at least one.
+/// One row per episode; there is at least one.
 /// @param training_returns of the same episodes
 std::string Table(const std::vector<stg::task::EpisodeMetrics>& episodes,
                   const std::vector<double>& training_returns, std::uint64_t seed) {
@@ -41,17 +41,18 @@ std::string Table(const std::vector<stg::task::EpisodeMetrics>& episodes,
   return out.str();
 }
 
-/// Where --csv goes: a file is replaced by the whole of the new one, a pipe or a device is written.
+/// The output of --csv. A file is replaced by the complete new one; a pipe or a device is written
+/// directly.
 class CsvOutput {
  public:
-  /// UserError at once for what cannot be written; "" is no output.
+  /// Throws UserError at once if the path cannot be written. "" means no output.
   explicit CsvOutput(const std::string& path) : path_(path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     streams_ = std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
     if (path.empty() || streams_) return;
     file_.emplace(path, "the table");
-    // As --csv /dev/stdout > FILE; the summary would go into the file that is replaced.
+    // For --csv /dev/stdout > FILE: the summary would be lost in the replaced file.
     if (std::filesystem::equivalent(path, "/dev/stdout", error)) {
       file_->Fail("standard output goes there");
     }
@@ -69,7 +70,7 @@ class CsvOutput {
   std::optional<stg::DurableFile> file_;
 };
 
-/// The constants of all controllers as options of the command line: --gain 2 is pursuit:gain=2.
+/// The constants of all controllers as options of the command line: --gain 2 means pursuit:gain=2.
 class Constants {
  public:
   explicit Constants(CLI::App* app) {
@@ -87,7 +88,7 @@ class Constants {
       }
     }
   }
-  /// The policy with what was given. Throws UserError for a constant that it does not have.
+  /// The policy with the given constants. Throws UserError for a constant that it does not have.
   std::string AddTo(const std::string& policy) const {
     std::string text = policy;
     const std::string name = policy.substr(0, policy.find(':'));
@@ -113,8 +114,8 @@ class Constants {
 
 }  // namespace
 
-/// The paper's metrics of one policy or built-in controller: a table, and one
-/// JSON object on the last line.
+/// Computes the paper's metrics for one policy or built-in controller: a table, and one JSON object
+/// on the last line.
 int main(int argc, char** argv) {
   CLI::App app("Evaluates a policy or built-in controller on held-out episodes");
   std::string policy, scenario = "medium", condition = "nominal", variant = "stg", csv, record;
@@ -177,7 +178,7 @@ int main(int argc, char** argv) {
       return metrics;
     };
     const auto metrics = fly(s);
-    // The same flights: a reward has no effect on them.
+    // The flights are the same, because a reward has no effect on them.
     const auto own = variant == "stg" ? metrics : fly(stg::env::VariantScenario(given, variant));
     std::vector<double> training_returns;
     for (const auto& episode : own) training_returns.push_back(episode.episode_return);

@@ -20,9 +20,9 @@ namespace {
 
 bool Leads(const stg::learn::Communicator& ranks) { return ranks.rank() == 0; }
 
-/// Says what went wrong and ends all ranks.
+/// Reports the error and ends all ranks.
 int Fail(const stg::learn::Communicator& ranks, const std::exception& error, int status) {
-  // One rank reports what is wrong with all of them, and ends the others meanwhile.
+  // If all ranks have the same error, rank 0 reports it and ends the others during this pause.
   if (!Leads(ranks)) std::this_thread::sleep_for(std::chrono::seconds(2));
   std::cerr << "train" << (Leads(ranks) ? "" : " (rank " + std::to_string(ranks.rank()) + ")")
             << ": " << error.what() << std::endl;
@@ -30,7 +30,8 @@ int Fail(const stg::learn::Communicator& ranks, const std::exception& error, int
   return status;
 }
 
-/// Value of an option before the others are declared with defaults that depend on it.
+/// Reads the value of an option before the other options are declared, because their defaults
+/// depend on it.
 std::string Argument(int argc, char** argv, const std::string& option,
                      const std::string& fallback) {
   const std::string start = option + "=";
@@ -47,7 +48,7 @@ bool HasFlag(int argc, char** argv, const std::string& flag) {
 
 int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   stg::LoadPluginArguments(argc, argv);
-  // A resumed run is what its folder says; options may repeat it.
+  // A resumed run has the setup of its folder. Options may repeat it.
   std::optional<stg::learn::RunSetup> earlier;
   const std::string folder = Argument(argc, argv, "--out", "");
   if (HasFlag(argc, argv, "--resume") && !folder.empty()) {

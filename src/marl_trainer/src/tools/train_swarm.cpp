@@ -10,7 +10,6 @@
 #include "declared_options.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
 
-/// Trains one policy for swarms of any size in open water.
 int main(int argc, char** argv) {
   CLI::App app("Trains one policy for swarms of any size in open water and writes it as ONNX.");
   std::string scenario = "field";

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
 constexpr char kMagic[8] = {'S', 'T', 'G', 'T', 'R', 'A', 'I', 'N'};
-constexpr std::uint32_t kTorchVersion = 1;  // held a libtorch archive
+constexpr std::uint32_t kTorchVersion = 1;  // a libtorch archive
 constexpr std::uint32_t kVersion = 3;
 constexpr std::uint64_t kMaxBytes = 4ULL << 30;
 constexpr std::uint32_t kMaxArrays = 1U << 16;
@@ -59,7 +59,7 @@ std::string Serialise(const Archive& archive) {
   return bytes;
 }
 
-/// Takes bytes from the front of a payload; UserError past its end.
+/// Takes bytes from the front of a payload. Throws UserError at its end.
 class Cursor {
  public:
   explicit Cursor(const std::string& bytes) : at_(bytes.data()), left_(bytes.size()) {}

@@ -43,7 +43,7 @@ TrainState FromArchive(const Archive& archive) {
 }  // namespace
 
 bool IsCheckpointName(const std::string& file_name) {
-  // Version 1 ended in .pt; its files are found so that they are refused by name.
+  // Version 1 ended in .pt. Its files are found, so that the message that refuses them names them.
   const std::string extension = fs::path(file_name).extension().string();
   return file_name.rfind("checkpoint_", 0) == 0 && (extension == ".ckpt" || extension == ".pt");
 }

@@ -28,7 +28,7 @@ std::string PastName(int first_env) { return "actions_" + std::to_string(first_e
 
 }  // namespace
 
-/// The environments of one shard, and memory for one step.
+/// The environments of one shard, and the memory for one step.
 class Collector::Unit {
  public:
   Unit(const env::EnvFactory& make_env, const TrainConfig& config, const ImitationConfig* imitation,
@@ -50,7 +50,7 @@ class Collector::Unit {
     RestartAt(0);
   }
 
-  /// @param index of this shard. @param worker that runs it.
+  /// @param index number of this shard. @param worker the worker that runs it.
   void Collect(std::uint32_t number, int steps, bool teach, int index, int worker,
                Algorithm* algorithm);
 
@@ -61,7 +61,7 @@ class Collector::Unit {
   void ForgetPast() { past_.clear(); }
   /// Actions since the last start, step by step.
   const std::vector<float>& past() const { return past_; }
-  /// Does what was done.
+  /// Repeats these actions.
   void Repeat(const std::vector<float>& actions);
   const env::VectorEnv& env() const { return env_; }
   const Shard& shard() const { return shard_; }
@@ -75,7 +75,7 @@ class Collector::Unit {
     options.envs = shard.envs;
     options.first_env = shard.first_env;
     options.total_envs = config.envs;
-    options.curriculum = true;  // where the scenario says so
+    options.curriculum = true;  // only if the scenario has a curriculum
     options.stagger = config.stagger;
     return options;
   }
@@ -88,7 +88,7 @@ class Collector::Unit {
   std::vector<float> actions_, log_prob_, taught_, past_;
   std::optional<agent::Decider> teacher_;
   std::vector<double> teacher_actions_;
-  CollectionReport report_;  // its reward is the sum
+  CollectionReport report_;  // its reward is a sum
 };
 
 void Collector::Unit::Collect(std::uint32_t number, int steps, bool teach, int index, int worker,
@@ -153,7 +153,7 @@ Collector::Collector(const env::EnvFactory& make_env, const TrainConfig& config,
                      const ImitationConfig* imitation, const Team& team)
     : envs_(config.envs), horizon_(config.horizon), team_(team) {
   const GroupShare share = team.share();
-  // Of all ranks, so that all refuse together.
+  // Checks the shards of all ranks, so that all ranks refuse together.
   for (int first = 0; first < share.groups; first += share.count) {
     RequireOption(!ShardsOf(share, first, share.count, config.envs).empty(), "envs",
                   "must be " + std::to_string(GroupShare::kBlock) + " for each rank at least");
@@ -208,7 +208,7 @@ void Collector::ForgetPast() {
 }
 
 void Collector::Save(Archive* archive) const {
-  std::vector<int> places;  // first environment and size of each unit's
+  std::vector<int> places;  // first environment and size of each unit
   std::vector<float> past;
   for (const auto& unit : units_) {
     places.push_back(unit->shard().first_env);
@@ -226,7 +226,7 @@ void Collector::Save(Archive* archive) const {
 }
 
 void Collector::Load(const Archive& archive) {
-  if (archive.arrays().empty()) return;  // taken at a start
+  if (archive.arrays().empty()) return;  // the archive is from a start of an episode
   std::set<std::string> theirs;
   for (const auto& array : archive.arrays()) theirs.insert(array.first);
   if (theirs != places_) throw UserError("its environments are divided into other shards");

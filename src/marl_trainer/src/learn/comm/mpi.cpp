@@ -1,6 +1,6 @@
 #include "marl_trainer/learn/comm/mpi.hpp"
 
-#define OMPI_SKIP_MPICXX 1  // the C interface alone
+#define OMPI_SKIP_MPICXX 1  // only the C interface
 #include <mpi.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace stg::learn {
 namespace {
 
-/// More than MPI counts in one message are sent in several.
+/// Larger messages are sent in parts, because of MPI's limit for counts.
 constexpr std::size_t kLargestMessage = 1u << 30;
 
 class MpiRanks : public Communicator {
@@ -60,7 +60,7 @@ class MpiRanks : public Communicator {
         MPI_Sendrecv(x + from, n, MPI_FLOAT, partner, 0, other_.data() + from, n, MPI_FLOAT,
                      partner, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
       }
-      // A sum of two is the same from either side, so both hold the same bits.
+      // A sum of two numbers does not depend on their order, so both ranks have the same bits.
       for (std::size_t i = 0; i < count; ++i) x[i] += other_[i];
       sent += static_cast<std::int64_t>(count * sizeof(float));
     }

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <vector>
 
-// The Fortran interface: every provider of the system's BLAS has it, and no header is needed.
+// The Fortran interface: every BLAS of the system has it, and it needs no header.
 extern "C" void sgemm_(const char* transpose_a, const char* transpose_b, const int* m, const int* n,
                        const int* k, const float* alpha, const float* a, const int* lda,
                        const float* b, const int* ldb, const float* beta, float* c, const int* ldc);
@@ -14,7 +14,7 @@ extern "C" void sgemm_(const char* transpose_a, const char* transpose_b, const i
 namespace stg::learn {
 
 void UseOneBlasThread() {
-  // Looked up at run time: the reference BLAS, which also serves, has no such function.
+  // Found at run time, because the reference BLAS, which works, too, has no such function.
   using SetThreads = void (*)(int);
   if (void* symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) {
     reinterpret_cast<SetThreads>(symbol)(1);
@@ -23,7 +23,7 @@ void UseOneBlasThread() {
 
 void Multiply(bool transpose_a, bool transpose_b, int m, int n, int k, const float* a,
               const float* b, float beta, float* c) {
-  // Column-major BLAS sees transposes: C^T = op(B)^T op(A)^T.
+  // BLAS is column-major and sees the transposes: C^T = op(B)^T op(A)^T.
   const float alpha = 1.0F;
   const int lda = transpose_a ? m : k, ldb = transpose_b ? k : n;
   sgemm_(transpose_b ? "T" : "N", transpose_a ? "T" : "N", &n, &m, &k, &alpha, b, &ldb, a, &lda,

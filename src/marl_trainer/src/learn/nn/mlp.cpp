@@ -46,8 +46,8 @@ void AddColumnSums(const float* d, int rows, int width, float* sum) {
   for (int r = 0; r < rows; ++r) s += ConstArray(d + static_cast<std::ptrdiff_t>(r) * width, width);
 }
 
-/// Sums of f(i) for i = 0 .. count-1 in an order that depends on count alone. Eigen's depends on
-/// where the numbers lie in memory.
+/// Sum of f(i) for i = 0 .. count-1. Its order depends only on `count`. The order of Eigen's sum
+/// depends on the position of the numbers in memory.
 template <class F>
 float SumInOrder(int count, F&& f) {
   constexpr int kParts = 16;
@@ -63,8 +63,8 @@ float SumInOrder(int count, F&& f) {
   return parts[0];
 }
 
-/// Each row of y [rows, width] to mean 0 and variance 1; keeps a copy and the factors for the way
-/// back.
+/// Normalises each row of y [rows, width] to mean 0 and variance 1. Stores a copy and the factors
+/// for the backward pass.
 void NormaliseRows(int rows, int width, float* y, float* copy, float* inverse_std) {
   constexpr float kSmallestVariance = 1e-5F;
   const float share = 1.0F / static_cast<float>(width);
@@ -79,7 +79,7 @@ void NormaliseRows(int rows, int width, float* y, float* copy, float* inverse_st
   std::copy_n(y, static_cast<std::ptrdiff_t>(rows) * width, copy);
 }
 
-/// d / d what was normalised, from d / d the result.
+/// Gradient by the values before the normalisation, from the gradient by its result.
 void NormaliseRowsGradient(int rows, int width, const float* normalised, const float* inverse_std,
                            float* d) {
   const float share = 1.0F / static_cast<float>(width);
@@ -98,7 +98,7 @@ void Squash(float squash, std::ptrdiff_t count, float* y) {
   a = squash * a.tanh();
 }
 
-/// d_in = d * squash (1 - tanh^2), expressed in y = squash * tanh.
+/// d_in = d * squash (1 - tanh^2), computed from y = squash * tanh.
 void SquashGradient(float squash, std::ptrdiff_t count, const float* y, const float* d,
                     float* d_in) {
   const ConstArray a(y, count);

@@ -43,7 +43,7 @@ void InitialiseOrthogonally(const NetworkSpec& spec, std::uint64_t seed, std::ui
     Random random(seed, Stream::kInit, network, static_cast<std::uint32_t>(l), 0);
     const int rows = spec.layer_outputs(l), cols = spec.layer_inputs(l);
     const int large = std::max(rows, cols), small = std::min(rows, cols);
-    // Q of a tall Gaussian matrix; the signs of R's diagonal make it uniform.
+    // Q of a tall Gaussian matrix. The signs of R's diagonal make its distribution uniform.
     Eigen::MatrixXd gaussian(large, small);
     for (int i = 0; i < large; ++i) {
       for (int j = 0; j < small; ++j) gaussian(i, j) = random.Normal();

@@ -19,7 +19,7 @@ void RunningMoments::Add(const float* x, int rows) {
   double* mean = scratch_.data();
   double* squares = mean + n;
   std::fill(scratch_.begin(), scratch_.end(), 0.0);
-  // Two passes: the batch is in cache and the variance loses no digits.
+  // Two passes, because the batch is in the cache and the variance loses no digits.
   for (int r = 0; r < rows; ++r) {
     const float* row = x + static_cast<std::size_t>(r) * n;
     for (std::size_t i = 0; i < n; ++i) mean[i] += static_cast<double>(row[i]);

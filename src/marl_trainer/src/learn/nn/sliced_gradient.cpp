@@ -15,7 +15,7 @@ SlicedGradient::SlicedGradient(std::size_t parameters, const Team& team)
 
 void SlicedGradient::ForRanges(std::size_t count,
                                const std::function<void(std::size_t, std::size_t)>& work) const {
-  // Waking the workers costs more than a small network's share.
+  // For a small network, waking the workers costs more time than it saves.
   constexpr std::size_t kSmall = 65536, kRanges = 16;
   if (count < kSmall) {
     work(0, count);

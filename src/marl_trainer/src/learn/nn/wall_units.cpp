@@ -29,7 +29,7 @@ void PlaceWallUnits(const Mlp& actor, const WallInputs& where, double margin_m,
     const double margin = multiple * margin_m / half_extent_m;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double wall : {-1.0, 1.0}) {
-        // relu(1 - room / margin) of the room between target and wall, 1 - wall (own + offset).
+        // relu(1 - room / margin), where room = 1 - wall (own + offset) is between target and wall.
         in.row(*unit).setZero();
         double constant = 1.0 - 1.0 / margin;
         for (const int i : {where.own_position + axis, where.target_offset + axis}) {

@@ -11,9 +11,9 @@ namespace stg::learn {
 namespace {
 
 constexpr std::size_t kOpenEpisodes = 2;
-constexpr std::size_t kRemembered = 1000;  // episodes that have been taken
+constexpr std::size_t kRemembered = 1000;  // number of taken episodes that are remembered
 
-/// A NaN equals itself, and the two zeros differ.
+/// With this comparison, NaN equals itself, and the two zeros differ.
 template <class T>
 bool SameBits(T a, T b) {
   return std::memcmp(&a, &b, sizeof a) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
@@ -106,7 +106,7 @@ RecordedEpisode* EpisodeAssembler::At(std::uint32_t episode, TimeNs start) {
 
 void EpisodeAssembler::Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent,
                            AgentRecord record) {
-  // The decision on an episode's last observation leads nowhere: the world restarts.
+  // The decision on the last observation of an episode has no effect, because the world restarts.
   if (step >= static_cast<std::uint32_t>(episode_steps_)) return;
   RecordedEpisode* const e = At(episode, start);
   if (e == nullptr) return;
@@ -180,7 +180,7 @@ Finding EpisodeChecker::Check(const RecordedEpisode& episode) const {
   const auto last = static_cast<std::uint32_t>(episode_steps_ - 1);
   const auto end = episode.rewards.find(last);
   const bool ended = end != episode.rewards.end() && end->second.truncated;
-  // What follows the cut of a recording is not a gap in it.
+  // Missing steps after the end of a recording are not a gap.
   if (!ended) return {Flaw::kUnfinished, "the end of the episode is missing"};
   for (std::uint32_t t = 0; t <= last; ++t) {
     const auto reward = episode.rewards.find(t);

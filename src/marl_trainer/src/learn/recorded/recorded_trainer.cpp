@@ -29,8 +29,8 @@ std::shared_ptr<const agent::Policy> LoadStart(const std::string& path,
   return policy;
 }
 
-/// The setup for collections of whole episodes, with the actor's shape taken from the policy to
-/// start from.
+/// The setup for collections of whole episodes. The actor has the shape of the policy to start
+/// from.
 TrainSetup Fit(TrainSetup setup, const RunConfig& run, const agent::Policy* start) {
   setup.common.envs = 1;
   setup.common.horizon = run.time.episode_steps;
@@ -40,7 +40,7 @@ TrainSetup Fit(TrainSetup setup, const RunConfig& run, const agent::Policy* star
   return setup;
 }
 
-/// FNV-1a of the policy's numbers: a name for what an update made.
+/// FNV-1a hash of the policy's numbers, which identifies the result of an update.
 std::string Hash(const agent::Policy& policy) {
   std::uint32_t hash = 2166136261U;
   const auto add = [&hash](const float* data, Eigen::Index count) {
@@ -61,7 +61,7 @@ std::string Hash(const agent::Policy& policy) {
   return text;
 }
 
-/// One step of a recorded episode in the arrays of a transition.
+/// Arrays of a transition, for one step of a recorded episode.
 struct StepArrays {
   std::vector<float> observations, actions, log_prob;
   float reward = 0.0F;

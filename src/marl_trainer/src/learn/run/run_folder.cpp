@@ -92,7 +92,7 @@ void RequireSameRun(const TrainState& state, const nlohmann::ordered_json& ours,
                     const std::string& scenario, const std::string& where) {
   const auto theirs = nlohmann::ordered_json::parse(state.config, nullptr, false);
   for (const auto& [key, value] : ours.items()) {
-    // More steps than planned are welcome; nothing else may change on the way.
+    // More steps than planned are allowed. No other option may change.
     if (key == "steps") continue;
     const bool known = theirs.is_object() && theirs.contains(key);
     if (known && theirs[key] == value) continue;

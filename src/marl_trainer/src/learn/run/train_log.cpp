@@ -16,12 +16,12 @@
 namespace stg::learn {
 namespace {
 
-constexpr double kPoor = 0.05;         // share of losses from which a policy is called poor
+constexpr double kPoor = 0.05;         // from this share of losses on a policy is called poor
 constexpr double kLineInterval = 2.0;  // [s] between progress lines without a validation
 const std::pair<const char*, double> kThresholds[] = {
     {"1000", 1000.0}, {"1020", 1020.0}, {"1030", 1030.0}, {"1040", 1040.0}};
 
-/// Name and value of every column but the algorithm's and the validation's.
+/// Name and value of every column except those of the algorithm and the validation.
 std::vector<std::pair<const char*, double>> CommonColumns(const TrainRecord& r) {
   return {{"env_steps", static_cast<double>(r.env_steps)},
           {"collection", static_cast<double>(r.collections)},
@@ -43,12 +43,12 @@ std::string Number(double value) {
   return text;
 }
 
-/// Whole collections are made, so that the last one may go past the end.
+/// Collections are never cut, so the last one may exceed the total.
 double PercentDone(std::int64_t steps, std::int64_t total) {
   return 100.0 * std::min(1.0, static_cast<double>(steps) / static_cast<double>(total));
 }
 
-/// Rows from before an interruption that a resumed run does not repeat.
+/// Rows from before an interruption that the resumed run does not write again.
 std::string KeptRows(const std::string& path, std::int64_t resume_at) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return "";
@@ -63,7 +63,7 @@ std::string KeptRows(const std::string& path, std::int64_t resume_at) {
     try {
       if (std::stoll(line) <= resume_at) kept += line + "\n";
     } catch (const std::exception&) {
-      break;  // a line cut off by a crash; what follows is repeated anyway
+      break;  // a line was cut off by a crash; the resumed run writes the next ones again
     }
   }
   return kept;
@@ -90,7 +90,7 @@ TrainLog::TrainLog(const std::string& out, std::vector<ReportColumn> columns,
       columns_(std::move(columns)),
       total_steps_(total_steps),
       lines_(lines) {
-  // Whole or not at all: a disk that is full now must not take the rows of before.
+  // Writes all or nothing: the earlier rows must not be lost if the disk is full now.
   const std::string kept = resume_at >= 0 ? KeptRows(csv_path_, resume_at) : "";
   WriteDurably(Header() + kept, csv_path_, "the progress");
   csv_.open(csv_path_, std::ios::app);

@@ -17,7 +17,7 @@ Scenario Valid(const Scenario& scenario, const TrainSetup& setup) {
   return scenario;
 }
 
-/// The scenarios to train in, all with the observation and episode of the first.
+/// The scenarios of the training. All have the observation and the episode length of the first one.
 std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>& mix,
                           const TrainSetup& setup) {
   const Scenario base = env::VariantScenario(scenario, setup.common.variant);
@@ -40,7 +40,7 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
   return all;
 }
 
-/// An algorithm with the networks of the run in `folder`.
+/// Starts an algorithm with the networks of the run in `folder`.
 void StartFrom(const std::string& folder, const std::string& algorithm, std::ostream* log,
                Algorithm* learner) {
   const std::optional<TrainState> theirs = LoadNewestCheckpoint(folder, log);
@@ -56,7 +56,7 @@ void StartFrom(const std::string& folder, const std::string& algorithm, std::ost
   }
 }
 
-/// The algorithm at its start; UserError where it cannot start so.
+/// The algorithm at the start of a training. Throws UserError if it cannot start.
 std::unique_ptr<Algorithm> AtStart(const TrainSetup& setup, const Problem& problem,
                                    const Trainer::Options& options, const Team& team) {
   const int size = team.ranks->size(), most = setup.own->MostRanks();
@@ -76,7 +76,7 @@ std::unique_ptr<Algorithm> AtStart(const TrainSetup& setup, const Problem& probl
   return learner;
 }
 
-/// The first multiple of `interval` past `steps`.
+/// The first multiple of `interval` that is larger than `steps`.
 std::int64_t NextMultiple(std::int64_t steps, std::int64_t interval) {
   return (steps / interval + 1) * interval;
 }
@@ -115,7 +115,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
     throw UserError(options_.out + ": holds another run; use --resume or another folder");
   }
   ScheduleNext();
-  // Before anybody writes, all have seen what was there.
+  // Waits until all ranks have read the folder, before rank 0 writes.
   team_.ranks->GatherBytes({});
   if (!leads()) return;
   std::vector<std::string> mix;
@@ -196,7 +196,7 @@ bool Trainer::Run() {
 bool Trainer::Stopped() const {
   const bool asked = options_.stop != nullptr && *options_.stop != 0;
   if (options_.halt_after > 0 && state_.env_steps >= options_.halt_after) return true;
-  // One is asked, all stop.
+  // A stop of one rank stops all.
   const std::vector<char> all = team_.ranks->GatherBytes({asked ? '1' : '0'});
   return std::count(all.begin(), all.end(), '1') > 0;
 }
@@ -244,7 +244,7 @@ void Trainer::RunValidation(TrainRecord* record) {
                                     algorithm_.get(), team_));
   };
   last_validation_ = fly(train_scenario_);
-  // The same flights: a reward has no effect on them.
+  // The flights are the same, because a reward has no effect on them.
   const task::MetricSummary judged =
       setup_.common.variant == "stg" ? last_validation_ : fly(evaluation_scenario_);
   last_validation_.Append("scenario_return", judged.Mean("return"), judged.Std("return"));
@@ -261,8 +261,8 @@ void Trainer::RunValidation(TrainRecord* record) {
 void Trainer::AlignEpisodes(bool force) {
   const TrainConfig& config = setup_.common;
   const int whole = scenario_.run.time.episode_steps / config.horizon;
-  // Cutting staggered episodes at every boundary would undo the staggering. Others must reach
-  // their end before they are cut, also where the horizon does not divide them.
+  // Cutting staggered episodes at every boundary would undo the staggering. Other episodes must
+  // reach their end before they are cut, even if the horizon does not divide them.
   const int every = config.stagger
                         ? 2 * std::max(1, whole)
                         : (scenario_.run.time.episode_steps + config.horizon - 1) / config.horizon;
@@ -279,7 +279,7 @@ void Trainer::AlignEpisodes(bool force) {
 void Trainer::Save() {
   const TrainState now = state();
   if (leads()) {
-    log_->Flush();  // a resumed run finds the rows up to the checkpoint
+    log_->Flush();  // so that a resumed run finds the rows up to the checkpoint
     folder_.Save(now, setup_.common.keep_checkpoints);
   }
   SavePolicy("policy_last");

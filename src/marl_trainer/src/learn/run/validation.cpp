@@ -8,7 +8,7 @@
 namespace stg::learn {
 namespace {
 
-constexpr int kBlock = 16;  // environments whose actions one pass through the network decides
+constexpr int kBlock = 16;  // environments per pass through the network
 
 }  // namespace
 
@@ -32,7 +32,7 @@ std::vector<task::EpisodeMetrics> Validate(const env::EnvFactory& make_env, int 
   options.episodes = episodes;
   options.seed = kValidationSeed;
   options.block = kBlock;
-  // Whole blocks, so that what is computed for a block does not depend on the worker.
+  // Every rank gets whole blocks, so that the results of a block do not depend on the worker.
   const int blocks = (episodes + kBlock - 1) / kBlock;
   const auto first = [&](int rank) {
     return std::min(episodes, blocks * rank / team.ranks->size() * kBlock);

@@ -8,14 +8,15 @@ namespace stg::learn {
 namespace {
 
 struct Waters {
-  const char* scenario;  ///< null: the one that is trained for
+  const char* scenario;  ///< null: the scenario of the training
   const char* condition;
   int agents;
   int targets = 1;
-  int longer = 1;  ///< episodes by this: a search takes long before anything pays
+  /// Factor of the episode's length, because a search gets a reward only after a long time.
+  int longer = 1;
 };
 
-/// The kinds of waters of the mixture, in the order in which they come.
+/// The scenarios of the mixture, in their order.
 constexpr Waters kWaters[] = {
     {nullptr, "combined_stress", 4},
     {"search", "nominal", 4, 1, 2},
@@ -34,7 +35,7 @@ constexpr Waters kWaters[] = {
     {nullptr, "far_initialization", 1},
     {nullptr, "combined_stress", 2},
 };
-/// With free_assignment these take the place of others: {place above, waters}.
+/// With free_assignment these replace others: {place above, scenario}.
 constexpr std::pair<int, Waters> kFreeWaters[] = {
     {3, {"many8", "nominal", 8, 2}},
     {7, {"many8", "nominal", 4, 2}},
@@ -102,7 +103,7 @@ void SwarmConfig::Describe(config::Table* t) {
 }
 
 void SwarmConfig::ValidateOrThrow() const {
-  SwarmConfig copy(*this);  // a table refers to what can be changed
+  SwarmConfig copy(*this);  // a table refers to values that it may change
   config::Table table;
   copy.Describe(&table);
   RequireRanges(table);
@@ -126,7 +127,7 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
         "target.count=" + std::to_string(waters.targets),
         "time.episode_steps=" + steps,
         "time.tail_steps=" + steps,
-        // What is near the band pays; the way to it is in the shaping.
+        // Rewards are given near the band. The shaping covers the way to it.
         "reward.error_max_m=40.0",
         "reward.w_band=1.0",
         "reward.w_progress=0.0",

@@ -93,7 +93,7 @@ void SwarmLearner::Normalise(const std::vector<SwarmRollout>& rollouts) {
   mean_ += share * (sum / count - mean_);
   square_ += share * (square / count - square_);
   std_ = std::sqrt(std::max(square_ - mean_ * mean_, 1e-4));
-  // What the critic says stays the same.
+  // Changes the last layer so that the critic's predictions stay the same.
   const agent::PoolBlocks::Layer& head = critic_.blocks().head;
   float* w = critic_numbers_.data() + head.weight.offset;
   for (std::size_t k = 0; k < head.weight.size(); ++k) {
@@ -149,7 +149,7 @@ void SwarmLearner::ActorLoss(const SwarmRollout& r, std::size_t row, int at, dou
   }
 }
 
-/// What the network cannot see, it does not learn of either.
+/// Parameters for a hidden part of the input stay 0.
 void SwarmLearner::KeepBlind(std::vector<float>* numbers) const {
   for (std::size_t k = 0; k < blind_.size(); ++k) {
     if (blind_[k]) (*numbers)[k] = 0.0F;

@@ -15,7 +15,7 @@ namespace stg::learn {
 namespace {
 
 constexpr std::uint32_t kMostAgents = 64;
-constexpr double kEnough = 2.0;  ///< AUVs in the band of a target: two ranges tell where it is
+constexpr double kEnough = 2.0;  ///< enough AUVs in the band of a target: two ranges locate it
 
 env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int envs,
                                    int total_envs) {
@@ -28,7 +28,7 @@ env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int
   return o;
 }
 
-/// Decisions that a command lasts.
+/// Number of decisions during a command.
 int DecisionsOf(const RunConfig& run) {
   return static_cast<int>(std::lround(agent::kCommandPeriod_s / run.decision_dt_s()));
 }
@@ -147,7 +147,8 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
     }
     const bool last = d + 1 == period;
     if (last) {
-      // The environment starts a new episode at once, so the end of one is seen a decision early.
+      // The environment starts a new episode at once, so the final state is read one decision
+      // earlier.
       last_.Clear();
       for (int e = 0; e < env_.envs(); ++e) {
         for (int i = 0; i < n; ++i) {
@@ -210,7 +211,7 @@ void SwarmShard::Reward(int step, SwarmRollout* out) const {
   const auto gamma = static_cast<float>(config_.gamma);
   const float* own = out->own.data() + static_cast<std::ptrdiff_t>(step) * env_.envs() * n;
   const dynamics::TargetConfig& targets = env_.scenario().world.target;
-  // AUVs that choose have all targets in common.
+  // AUVs that choose their targets share all of them.
   const bool free = env_.scenario().agent.task.free();
   for (int e = 0; e < env_.envs(); ++e) {
     for (int i = 0; i < n; ++i) {

@@ -78,7 +78,7 @@ std::string SwarmTrainer::ConfigText() const {
   for (const SwarmTask& task : mixture_) {
     waters.push_back({{"name", task.name}, {"scenario_hash", ScenarioHash(task.scenario)}});
   }
-  SwarmConfig copy(config_);  // a table refers to what can be changed
+  SwarmConfig copy(config_);  // a table refers to values that it may change
   config::Table table;
   copy.Describe(&table);
   nlohmann::ordered_json json;

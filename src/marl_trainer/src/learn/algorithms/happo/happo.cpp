@@ -12,9 +12,9 @@
 namespace stg::learn {
 namespace {
 
-/// Epochs of one update that keys keep apart: those of each AUV, then the critic's.
+/// Number of keys for the epochs of one training in an update: of each AUV, then of the critic.
 constexpr std::uint32_t kEpochsOfATurn = 1000;
-/// Index of the draw that orders the AUVs, among the draws of a collection's shuffles.
+/// Index of the draw for the order of the AUVs, among the draws of a collection's shuffles.
 constexpr std::uint32_t kOrderDraw = 1;
 
 std::string ActorName(std::size_t auv) { return "actor_" + std::to_string(auv); }

@@ -63,7 +63,7 @@ void JointRatio::MultiplyBlock(const Block& block, int auv, const float* actor, 
   }
 }
 
-/// Summed rollout by rollout, so that it does not depend on where they lie.
+/// Sums each rollout separately, so the result does not depend on the ranks that have the rollouts.
 double JointRatio::Miss() const {
   std::vector<double> sums;
   auto factor = factors_.begin();

@@ -8,7 +8,7 @@
 namespace stg::learn {
 namespace {
 
-/// Each AUV a swarm of one that knows of itself only.
+/// Each AUV as a swarm of one, which has only the AUV's own observation.
 Problem Single(const Problem& swarm) {
   Problem single = swarm;
   single.agents = 1;
@@ -16,7 +16,8 @@ Problem Single(const Problem& swarm) {
   return single;
 }
 
-/// As many environment steps per gradient step, each of them a sample of every AUV.
+/// Keeps the number of environment steps per gradient step. Each of them is one sample for every
+/// AUV.
 MappoConfig PerAgent(const IppoConfig& config, int agents) {
   MappoConfig single = config;
   single.minibatch *= agents;

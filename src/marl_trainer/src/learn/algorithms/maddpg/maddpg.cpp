@@ -16,7 +16,7 @@ NetworkSpec DeterministicSpec(const Problem& problem, const ReplayOptions& optio
   spec.activation = options.activation;
   spec.outputs = problem.action_size;
   spec.squash = 1.0F;
-  spec.output_gain = 0.01F;  // an untrained policy hardly moves
+  spec.output_gain = 0.01F;  // an untrained policy outputs almost zero
   return spec;
 }
 
@@ -105,7 +105,8 @@ void Maddpg::AddCriticGradient(const StepContext& step, int slice, float* gradie
       batch, s.values.data(), 1.0F / static_cast<float>(base().batch), &s.critics, gradient);
 }
 
-/// The joint actions that each AUV's loss is about: its own from the actor, and the others'.
+/// The loss of each AUV has a joint action: its own action from the actor, and the actions of the
+/// others.
 void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Sums* sums) {
   const ReplayBatch& batch = batches()[static_cast<std::size_t>(slice)];
   Scratch& s = *scratch_[static_cast<std::size_t>(slice)];
@@ -114,7 +115,7 @@ void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Su
   actor().Forward(actor_parameters().data(), batch.observations.data(), batch.count * agents,
                   &s.actor);
   const float* own = s.actor.output();
-  const int copies = others_act_now_ ? 1 : agents;  // joint actions of a sample
+  const int copies = others_act_now_ ? 1 : agents;  // joint actions per sample
   const int rows = batch.count * copies;
   if (others_act_now_) {
     std::copy_n(own, batch.count * joint, s.actions.data());
@@ -130,7 +131,7 @@ void Maddpg::AddActorGradient(const StepContext&, int slice, float* gradient, Su
                   s.states.data() + static_cast<std::ptrdiff_t>(r) * state);
     }
   }
-  // The loss is minus the value: the sum over AUVs, the mean over samples.
+  // The loss is minus the value, as a sum over AUVs and a mean over samples.
   critics().ActionGradient(s.states.data(), s.actions.data(), rows,
                            -1.0F / static_cast<float>(base().batch), false, &s.critics,
                            s.values.data(), s.d_actions.data());
@@ -170,7 +171,7 @@ std::vector<agent::Policy> Maddpg::Policies(const agent::PolicyMetadata& metadat
   NetworkSpec spec = actor().spec();
   spec.squash = scales().action;
   std::vector<float> parameters = actor_parameters();
-  // What a graph explores with.
+  // Standard deviation of the exploration in a graph of nodes.
   const double noise = std::max(own_.noise.min, 1e-3) * static_cast<double>(scales().action);
   parameters.insert(parameters.end(), static_cast<std::size_t>(problem().action_size),
                     static_cast<float>(std::log(noise)));

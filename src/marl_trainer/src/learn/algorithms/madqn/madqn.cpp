@@ -20,7 +20,7 @@ NetworkSpec QSpec(const Problem& problem, const ReplayOptions& options, const Co
   return spec;
 }
 
-/// Index of the largest, the first of equals: as agent::Policy chooses.
+/// Index of the largest value; the first of equal ones, as in agent::Policy.
 int Best(const float* advantages, int count) {
   return static_cast<int>(std::max_element(advantages, advantages + count) - advantages);
 }
@@ -153,7 +153,7 @@ Madqn::Sums Madqn::AddGradient(int slice, float* gradient) {
   const auto row = [&](int r) {
     return s.network.output() + static_cast<std::ptrdiff_t>(r) * outputs;
   };
-  // Double: the network chooses, its target judges.
+  // Double Q-learning: the network chooses, and its target network evaluates the choice.
   network_.Forward(parameters_.data(), batch.next_observations.data(), rows, &s.network);
   for (int r = 0; r < rows; ++r) {
     for (int h = 0; h < heads; ++h) {
@@ -174,7 +174,7 @@ Madqn::Sums Madqn::AddGradient(int slice, float* gradient) {
                                                    : batch.own_rewards[static_cast<std::size_t>(r)];
     s.targets[static_cast<std::size_t>(r)] = reward + batch.discounts[sample] * next;
   }
-  // The mean over samples, AUVs and heads of (q - target)^2.
+  // Mean over samples, AUVs and heads of (q - target)^2.
   network_.Forward(parameters_.data(), batch.observations.data(), rows, &s.network);
   const float weight = 2.0F / static_cast<float>(base().batch * agents * heads);
   Sums sums;
@@ -246,7 +246,7 @@ std::vector<ReportColumn> Madqn::Columns() const {
 std::vector<NetworkSize> Madqn::Sizes() const { return {{"values", network_.parameters()}}; }
 
 std::vector<agent::Policy> Madqn::Policies(const agent::PolicyMetadata& metadata) const {
-  // What is largest does not depend on V: the last layer without its first row.
+  // The largest advantage does not depend on V, so the first row of the last layer is left out.
   NetworkSpec spec = network_.spec();
   spec.outputs -= 1;
   spec.squash = scales().action;

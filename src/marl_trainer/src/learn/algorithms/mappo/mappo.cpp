@@ -25,7 +25,7 @@ void Mappo::Begin(const Collection& collection) {
   rollouts_.Begin(collection);
 }
 
-/// Every AUV's action is drawn from its own observation (Eqs. 9, 37).
+/// Draws every AUV's action from its own observation (Eqs. 9, 37).
 void Mappo::Act(const Decision& decision, const Actions& out) {
   const int rows = decision.envs * problem_.agents;
   const float* mean = acting_[static_cast<std::size_t>(decision.worker)].Evaluate(

@@ -9,7 +9,7 @@
 namespace stg::learn {
 namespace {
 
-/// What the draws of a gradient step are for.
+/// Purposes of the draws of a gradient step.
 constexpr int kNextActions = 0, kOwnActions = 1;
 
 NetworkSpec SoftSpec(const Problem& problem, const ReplayOptions& options) {
@@ -18,7 +18,7 @@ NetworkSpec SoftSpec(const Problem& problem, const ReplayOptions& options) {
   spec.hidden = options.actor_hidden;
   spec.activation = options.activation;
   spec.outputs = 2 * problem.action_size;
-  spec.output_gain = 0.01F;  // an untrained policy hardly moves, but for its spread
+  spec.output_gain = 0.01F;  // the mean of an untrained policy is almost zero
   return spec;
 }
 
@@ -129,7 +129,7 @@ void Masac::AddActorGradient(const StepContext& step, int slice, float* gradient
   const int rows = batch.count * problem().agents, size = problem().action_size;
   const float weight = 1.0F / static_cast<float>(base().batch);
   Sample(batch.observations.data(), rows, step, kOwnActions, slice);
-  // The loss is alpha sum_i log pi_i - min Q, the mean over samples.
+  // The loss is alpha sum_i log pi_i - min Q, as a mean over samples.
   critics().ActionGradient(batch.states.data(), s.actions.data(), batch.count, -weight, true,
                            &s.critics, s.values.data(), s.d_actions.data());
   const float d_log_prob = static_cast<float>(alpha()) * weight;
@@ -151,7 +151,7 @@ void Masac::AddActorGradient(const StepContext& step, int slice, float* gradient
 void Masac::Step(const StepContext& step) {
   TrainCritics(step);
   const double entropy = TrainActor(step).entropy;
-  // d / d log alpha of log alpha (entropy - target).
+  // Derivative of log alpha (entropy - target) by log alpha.
   const auto gradient = static_cast<float>(entropy - own_.target_entropy * problem().action_size);
   const Adam adam(base().adam_eps, &alpha_adam_);
   adam.Apply(0, 1, own_.alpha_lr * step.rate, 1.0F, &gradient, log_alpha_.data());
@@ -183,7 +183,7 @@ std::vector<agent::Policy> Masac::Policies(const agent::PolicyMetadata& metadata
   NetworkSpec spec = actor().spec();
   spec.outputs = problem().action_size;
   spec.squash = scales().action;
-  // The rows of the means in the last layer, then their biases.
+  // Takes the rows of the means in the last layer, then their biases.
   const int last = actor().layers() - 1;
   const auto size = static_cast<std::ptrdiff_t>(problem().action_size);
   const auto weight = static_cast<std::ptrdiff_t>(actor().weight_offset(last));
@@ -191,7 +191,8 @@ std::vector<agent::Policy> Masac::Policies(const agent::PolicyMetadata& metadata
   const auto from = actor_parameters().begin();
   std::vector<float> parameters(from, from + weight + size * actor().spec().layer_inputs(last));
   parameters.insert(parameters.end(), from + bias, from + bias + size);
-  // What a graph explores with: the spread differs with the observation; this is its middle.
+  // Standard deviation of the exploration in a graph of nodes. It depends on the observation; this
+  // is its middle.
   const float log_std = SquashedLogStd(
       range_, actor_parameters()[actor().bias_offset(last) + static_cast<std::size_t>(size)]);
   parameters.insert(parameters.end(), static_cast<std::size_t>(size),

@@ -8,7 +8,7 @@
 namespace stg::learn {
 namespace {
 
-/// log(1 - tanh(u)^2), exact for large |u| too.
+/// log(1 - tanh(u)^2), exact also for large |u|.
 float LogSlope(float u) {
   constexpr float kLog2 = 0.693147181F;
   const float softplus = std::max(-2.0F * u, 0.0F) + std::log1p(std::exp(-std::abs(2.0F * u)));

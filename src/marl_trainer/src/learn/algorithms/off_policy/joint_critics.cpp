@@ -28,7 +28,7 @@ JointCritics::JointCritics(const Problem& problem, const ReplayOptions& options,
       network_(CriticSpec(problem, options)),
       parameters_(static_cast<std::size_t>(count) * network_.parameters()) {
   for (int k = 0; k < count; ++k) {
-    // Network 0 is the actor's.
+    // The actor is network 0.
     InitialiseOrthogonally(
         network_.spec(), seed, static_cast<std::uint32_t>(1 + k),
         parameters_.data() + static_cast<std::size_t>(k) * network_.parameters());
@@ -107,7 +107,7 @@ void JointCritics::ActionGradient(const float* states, const float* actions, int
   std::fill_n(d_actions, static_cast<std::ptrdiff_t>(rows) * joint_action_, 0.0F);
   for (int k = 0; k < used; ++k) {
     for (int r = 0; r < rows; ++r) {
-      // The first of equals, so that each row counts once.
+      // Of equal values only the first counts, so that each row counts once.
       bool chosen = value(k, r) == values[r];
       for (int j = 0; j < k; ++j) chosen = chosen && value(j, r) != values[r];
       s->d_output_[static_cast<std::size_t>(r)] = chosen ? weight : 0.0F;

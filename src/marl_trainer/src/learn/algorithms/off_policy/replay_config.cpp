@@ -49,7 +49,7 @@ void ReplayConfig::DescribeCritics(config::Table* t) {
 void ReplayConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   common->envs = 128;
   common->horizon = 20;
-  // A checkpoint holds the replayed steps: some hundred megabytes.
+  // A checkpoint contains the replayed steps, which are some hundred megabytes.
   common->keep_checkpoints = 1;
   common->checkpoint_interval = 200000;
   if (preset == "fast") return;

@@ -11,10 +11,10 @@
 namespace stg::learn {
 namespace {
 
-constexpr int kMomentStride = 4;  // the normalisers take in every n-th decision
-/// Rewards that the scale of the values remembers [environment steps].
+constexpr int kMomentStride = 4;  // the normalisers use every n-th decision
+/// Number of rewards that the scale of the values remembers [environment steps].
 constexpr double kRewardMemory = 30000.0;
-/// Rewards that hardly differ must not be blown up.
+/// Limits the scale if rewards hardly differ.
 constexpr double kSmallestRewardStd = 0.01;
 
 }  // namespace
@@ -125,7 +125,8 @@ void ReplayLearner::DrawBatch(std::uint32_t number) {
 
 UpdateReport ReplayLearner::Update(const UpdateContext& context) {
   const ReplayScales before = scales_;
-  const bool scaled = rewards_.count() > 0.0;  // else an untrained critic knows no scale yet
+  // Without rewards, the untrained critic has no scale yet.
+  const bool scaled = rewards_.count() > 0.0;
   replay_.Exchange(team_.ranks, first_shard_, collected_.size());
   TakeInMoments();
   rewards_.LimitCount(kRewardMemory);
@@ -187,7 +188,7 @@ void ReplayLearner::Load(const Archive& archive) {
   const std::int64_t steps = archive.Count("gradient_steps");
   const double due = archive.Number("due");
   if (!(due >= 0.0 && due < 1.0)) throw UserError("'due' must be at least 0 and below 1");
-  // What throws comes first.
+  // Everything that may throw comes first, so that an error changes nothing.
   for (const Kept& kept : kept_) archive.Floats(kept.name, kept.numbers->size());
   for (const auto& [name, adam] : kept_adams_) adam->Load(name, archive);
   replay_.Load(archive);

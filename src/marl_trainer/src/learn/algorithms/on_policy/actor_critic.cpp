@@ -13,7 +13,7 @@ NetworkSpec ActorSpec(const Problem& problem, const PpoOptions& config) {
   spec.activation = config.activation;
   spec.outputs = problem.action_size;
   spec.squash = static_cast<float>(problem.action_scale);
-  spec.output_gain = 0.01F;  // an untrained policy hardly moves
+  spec.output_gain = 0.01F;  // an untrained policy outputs almost zero
   return spec;
 }
 
@@ -32,7 +32,7 @@ ActorCritic::ActorCritic(const Problem& problem, const PpoOptions& config)
 
 Trained ActorCritic::NewActor(std::uint64_t seed, int i, double log_std) const {
   std::vector<float> numbers(actor.parameters());
-  // Network 1 of a seed is the critic.
+  // The critic is network 1 of a seed.
   actor.Initialise(seed, static_cast<std::uint32_t>(i == 0 ? 0 : i + 1), log_std, numbers.data());
   return Trained(std::move(numbers));
 }

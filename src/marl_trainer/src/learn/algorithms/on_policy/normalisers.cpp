@@ -6,10 +6,10 @@
 namespace stg::learn {
 namespace {
 
-/// Value targets that the value normaliser remembers [environment steps].
+/// Number of value targets that the value normaliser remembers [environment steps].
 constexpr double kValueMemory = 100000.0;
 
-/// Observations that the normaliser of a given policy counts for at least.
+/// The normaliser of a given policy counts as at least this number of observations.
 constexpr double kStartCount = 10000.0;
 
 double ValueStd(const RunningMoments& values) { return std::sqrt(values.variance(0)) + 1e-4; }

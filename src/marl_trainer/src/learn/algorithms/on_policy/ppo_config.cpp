@@ -52,8 +52,8 @@ void PpoConfig::ApplyPreset(const std::string& preset, TrainConfig* common) {
   epochs = 10;
   gamma = 0.95;
   minibatch = 800;
-  // Table S2 gives no network sizes. The release's 256-256-256 (an option away)
-  // takes four times as long on a small machine.
+  // Table S2 gives no network sizes. The release has 256-256-256, which an option can set. It takes
+  // four times as long on a small machine.
   actor_hidden = {128, 128};
   critic_hidden = {128, 128};
   activation = HiddenActivation::kRelu;
@@ -93,7 +93,7 @@ void PpoConfig::FitPolicy(const agent::Policy& policy) {
   activation = p.activation == agent::Policy::Activation::kRelu ? HiddenActivation::kRelu
                                                                 : HiddenActivation::kTanh;
   observation_clip = static_cast<double>(p.input_clip);
-  // A component that never moved has the smallest deviation: the floor, scaled.
+  // A component that never changed has the smallest deviation: the scaled floor.
   const auto smallest = static_cast<double>(p.input_std.minCoeff());
   if (smallest < std_floor * std_scale) std_scale = smallest / std_floor;
 }

@@ -61,16 +61,17 @@ void PpoLoss::AddActor(const float* actor, const PpoBatch& batch, int minibatch,
     }
     const float advantage = batch.advantages[r / batch.agents];
     const float log_ratio = log_prob - batch.log_prob[r];
-    // Far outside the trust region the exponential must not overflow.
+    // The limit avoids an overflow of the exponential far outside the trust region.
     const float ratio = std::exp(std::min(log_ratio, 20.0F));
     const float clipped = std::min(std::max(ratio, 1.0F - clip_), 1.0F + clip_);
     sums->actor_loss -= std::min(ratio * advantage, clipped * advantage);
     sums->kl += (ratio - 1.0F) - log_ratio;
     sums->clipped += ratio == clipped ? 0.0 : 1.0;
-    // Where the clipped branch is the smaller one, it is constant.
+    // If the clipped branch is smaller, it is constant and has no gradient.
     const bool active = ratio * advantage <= clipped * advantage;
     const float d_log_prob = active ? -weight * share * ratio * advantage : 0.0F;
-    // Against the size of the teacher's action: a hold needs finer actions than an approach.
+    // Relative to the size of the teacher's action: station keeping needs finer actions than an
+    // approach.
     float shrink = 1.0F;
     if (teacher != nullptr) {
       float squares = 0.0F;
@@ -93,7 +94,7 @@ void PpoLoss::AddActor(const float* actor, const PpoBatch& batch, int minibatch,
     if (teacher != nullptr) teacher += size;
   }
   for (int a = 0; a < size; ++a) {
-    // The entropy's derivative by log sigma is 1 a row.
+    // The derivative of the entropy by log sigma is 1 per row.
     d_log_std[a] += static_cast<float>(d_sigma[a]) - entropy_ * weight * static_cast<float>(rows);
   }
   networks_.actor.mean().Backward(actor, batch.observations, d_actor_.data(), rows, &actor_,

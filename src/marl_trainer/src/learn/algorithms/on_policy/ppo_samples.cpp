@@ -26,8 +26,8 @@ void PpoSamples::Prepare(const std::vector<const RolloutBuffer*>& rollouts, cons
   Normalise();
 }
 
-/// Advantages to mean 0 and deviation 1 of the samples of all ranks, which come rank by rank, and
-/// so in the order of their environments.
+/// Normalises the advantages to mean 0 and standard deviation 1 over the samples of all ranks. The
+/// samples are in the order of the ranks, and so in the order of their environments.
 void PpoSamples::Normalise() {
   const std::vector<float> all = ranks_->Gather(advantages_);
   const std::vector<int> sizes = ranks_->Gather(std::vector<int>{own()});
@@ -54,7 +54,7 @@ void PpoSamples::Shuffle(std::uint64_t seed, std::uint32_t collection, std::uint
     const auto j = static_cast<std::size_t>(random.Uniform() * static_cast<double>(i + 1));
     std::swap(all[i], all[j]);
   }
-  // Of the order of all, the own ones, those of a minibatch by their groups.
+  // Takes this rank's samples from the order of all; in a minibatch they are sorted by groups.
   order_.clear();
   minibatches_.clear();
   std::vector<std::vector<int>> groups(static_cast<std::size_t>(share_.count));

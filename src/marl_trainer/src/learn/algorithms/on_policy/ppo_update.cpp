@@ -25,7 +25,7 @@ std::vector<ReportColumn> PpoColumns() {
           {"critic_gradient_norm", "", 0}};
 }
 
-/// One worker's memory for a block.
+/// Memory of one worker for a block.
 struct PpoUpdate::Scratch {
   Scratch(const ActorCritic& networks, const PpoOptions& options, int most_rows)
       : loss(networks, options, most_rows), rows(networks, most_rows) {}
@@ -148,7 +148,7 @@ UpdateReport PpoUpdate::Report(double explained_variance,
                    sigma,
                    actor_norms_ / actor_steps_,
                    critic_norms_ / critic_steps_};
-  // With the values that the advantages were estimated from.
+  // Includes the values from which the advantages were estimated.
   report.flops = 2.0 * samples_.size() * (products_ + networks_.critic.spec().forward_products());
   return report;
 }

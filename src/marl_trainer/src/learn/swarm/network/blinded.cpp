@@ -3,11 +3,11 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 
-/// What an ablation takes from a network: weights that stay 0.
+/// Weights of a network that stay 0 in an ablation.
 namespace stg::learn {
 namespace {
 
-/// Marks blocks, whole or columns of them.
+/// Marks blocks, or columns of them.
 class Marks {
  public:
   explicit Marks(std::size_t count) : marked_(count, false) {}
@@ -35,13 +35,13 @@ class Marks {
   std::vector<bool> marked_;
 };
 
-/// The blocks that ablations touch, of either network.
+/// The blocks that ablations use, for both networks.
 struct Seen {
   const agent::PoolBlock *self, *targets, *neighbours;
   const agent::PoolBlocks::Set* neighbour_set;
   const agent::PoolBlock *trunk, *edge_row = nullptr, *edge_neighbour = nullptr,
                                  *edge_nobody = nullptr, *prior = nullptr;
-  int search = 0;  // where the row about the search begins in the trunk
+  int search = 0;  // first column of the search row in the trunk
 };
 
 void NoEdges(const Seen& s, Marks* marks) {

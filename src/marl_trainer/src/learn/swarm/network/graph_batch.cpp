@@ -19,8 +19,8 @@ AttendedRows GraphBatch::Attended(int s, const float* p, const PackedRows& x,
           x.offsets(s), s == 1 ? w.prior_.data() : nullptr};
 }
 
-/// Messages of AUV r: of target t those of its neighbours, then that of the empty set, from row
-/// edge_offset(r) + offset(0, r) + t (neighbours + 1) on.
+/// Computes the messages. For target t of AUV r they are the messages of its neighbours, then the
+/// one of the empty set, from row edge_offset(r) + offset(0, r) + t (neighbours + 1) on.
 void GraphBatch::PassMessages(const float* p, const PackedRows& x, Workspace* w) const {
   const int rows = x.rows(), width = spec_.width;
   const int targets = x.offset(0, rows), neighbours = x.offset(1, rows);

@@ -3,7 +3,7 @@
 #include "marl_trainer/learn/swarm/network/graph_batch.hpp"
 #include "packed_layers.hpp"
 
-/// What flows back through GraphBatch.
+/// The backward pass of GraphBatch.
 namespace stg::learn {
 void GraphBatch::UndoChoose(const float* p, const PackedRows& x, const float* d_choices,
                             const float* d_output, Workspace* w, float* gradient) const {
@@ -31,7 +31,7 @@ void GraphBatch::UndoChoose(const float* p, const PackedRows& x, const float* d_
       const float* d_out = d_output + static_cast<std::ptrdiff_t>(choice) * outputs;
       AddTimes(1.0F, d_out, outputs, RowOf(&w->d_sums_, r, outputs));
       for (int k = 0; k < outputs; ++k) {
-        if (d_out[k] == 0.0F) continue;  // only what was chosen has a gradient
+        if (d_out[k] == 0.0F) continue;  // only a chosen output has a gradient
         AddTimes(d_out[k], W + static_cast<std::ptrdiff_t>(k) * width, width, d_h);
         AddTimes(d_out[k], h, width, d_W + static_cast<std::ptrdiff_t>(k) * width);
       }
@@ -113,7 +113,7 @@ void GraphBatch::UndoMessages(const float* p, const PackedRows& x, Workspace* w,
               false, nullptr);
   UndoProduct(p, blocks_.edge_neighbour, w->sets_[1].second.data(), neighbours, w->d_from_.data(),
               gradient, true, &w->sets_[1].d_second);
-  // As UndoDense, added to what is there.
+  // The same as UndoDense, but the result is added.
   UndoProduct(p, blocks_.edge_target.weight, w->sets_[0].second.data(), targets, w->d_base_.data(),
               gradient, true, &w->sets_[0].d_second);
   float* d_bias = gradient + blocks_.edge_target.bias.offset;

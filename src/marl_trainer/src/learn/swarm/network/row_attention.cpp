@@ -9,7 +9,7 @@
 namespace stg::learn {
 namespace {
 
-/// Columns [first, first + count) of rows of `stride` numbers, without gaps.
+/// Copies columns [first, first + count) of rows of `stride` numbers, without gaps.
 void TakeColumns(const float* from, int rows, int stride, int first, int count,
                  std::vector<float>* to) {
   to->resize(Count(rows, count));
@@ -104,7 +104,7 @@ void RowAttention::UndoWeigh(int head, int auvs, const AttendedRows& x, Workspac
     const auto row = [&](int k) {
       return k < count ? x.rows + static_cast<std::ptrdiff_t>(begin + k) * n : x.nobody;
     };
-    float mean = 0.0F;  // of what flows back to the shares
+    float mean = 0.0F;  // mean of the gradients of the shares
     for (int k = 0; k <= count; ++k) mean += share[k] * InnerProduct(d_context, row(k), n);
     for (int k = 0; k <= count; ++k) {
       const float d_score = share[k] * (InnerProduct(d_context, row(k), n) - mean);
