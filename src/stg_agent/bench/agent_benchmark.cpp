@@ -4,12 +4,12 @@
 #include "entities/entity_examples.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
-/// Nanoseconds per agent and decision: Observe, Act, a detection, and as many packets as
-/// arrive on average.
+/// Measures nanoseconds per agent and decision: Observe, Act, a detection, and the mean number of
+/// received packets.
 namespace stg::agent {
 namespace {
 
-/// Packets are encoded beforehand for this many decisions; then the episode starts again.
+/// Packets are encoded in advance for this number of decisions. Then the episode starts again.
 constexpr std::size_t kEpisode = 64;
 
 void Step(benchmark::State& state) {
@@ -62,7 +62,7 @@ void Step(benchmark::State& state) {
       static_cast<double>(state.iterations()) * static_cast<double>(agents.size()) * 1e-9,
       benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
-// Swarm size, packets received per agent and decision.
+// Size of the swarm, and packets received per agent and decision.
 BENCHMARK(Step)->Args({4, 0})->Args({4, 1})->Args({20, 1})->Args({100, 1});
 
 NeighbourState Told(int source, TimeNs t, const Vec3<double>& p) {
@@ -98,7 +98,7 @@ void Decode(benchmark::State& bench) {
 }
 BENCHMARK(Decode);
 
-/// Entities and command of one AUV. @param neighbours that it knows; @param targets rows
+/// Measures entities and command of one AUV. @param neighbours that it knows; @param targets rows
 void EntityCommand(benchmark::State& bench, EntityNetwork network) {
   const int neighbours = static_cast<int>(bench.range(0)),
             targets = static_cast<int>(bench.range(1));

@@ -74,7 +74,7 @@ std::optional<config::Violation> FindConflict(const FleetConfig& c, int agents) 
   return {};
 }
 
-/// What targets that are chosen freely do not go together with.
+/// Settings that contradict targets that are chosen freely.
 std::optional<config::Violation> FindFreeConflict(const AgentModel& model) {
   if (!model.task.free()) return {};
   if (model.target.count > kMostFreeTargets) {
@@ -176,7 +176,7 @@ AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
                    std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
                    agent.localization,
                    agent.stations};
-  // In a frame that goes with the water the target moves against it.
+  // The frame of an AUV may move with the water, and the target moves relative to it.
   if (model.locates()) {
     model.target.max_speed_mps += 2.0 * agent.localization.current_std_mps;
   }

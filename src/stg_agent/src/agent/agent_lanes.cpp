@@ -16,7 +16,7 @@ bool InMask(const Mask<T>& mask, int lane) {
   return Lane(Select(mask, T(1.0), T(0.0)), lane) != 0.0;
 }
 
-/// The clock of each lane [ns]: whole nanoseconds below 2^53 are exact.
+/// The clock of each lane [ns]. Whole nanoseconds below 2^53 are exact.
 template <class T>
 T Nanoseconds(const PerLane<T, TimeNs>& stamp) {
   T now;
@@ -175,7 +175,8 @@ Vec3<T> LanedAgent<T>::Act(const T* action) {
   return mind_.Act(model(), wanted);
 }
 
-/// The vertical velocity of an AUV that goes up for a fix, and back, is not the policy's affair.
+/// Sets the vertical velocity of an AUV that is on its way to the surface for a fix, or back. The
+/// policy does not control it then.
 template <class T>
 void LanedAgent<T>::Surface(T* action) const {
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {

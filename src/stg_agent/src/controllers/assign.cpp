@@ -10,19 +10,19 @@ namespace {
 
 using config::NonNegative;
 
-constexpr int kMostSwarm =
-    32;  ///< AUVs that are taken into account, the own one first, then by index
+constexpr int kMostSwarm = 32;  ///< most AUVs that are used: the own one first, then by index
 constexpr int kMostPlaces = 96;
-constexpr double kUnmanned_s = 1e6;  ///< what a target without one of its `least` AUVs costs
+/// Cost of each missing AUV, if a target has fewer than `least`.
+constexpr double kUnmanned_s = 1e6;
 constexpr double kLeastLead_mps = 0.3;
 
-/// An AUV as the assignment takes it.
+/// An AUV, as input of the assignment.
 struct Member {
   Vec3<double> p_W;
-  int follows;  ///< -1: it is not known
+  int follows;  ///< -1: unknown
 };
 
-/// The swarm as one AUV knows it, itself first.
+/// The known AUVs of the swarm, the own one first.
 int Muster(const AgentView& agent, double silent_frames, Member* members) {
   const AgentModel& model = agent.model();
   const double frame_s = model.channel.slots.length_s * model.run.agents;

@@ -8,13 +8,13 @@ using config::NonNegative;
 
 constexpr double kTwoPi = 2.0 * kPi;
 
-/// Of an angle within +-2 pi: the same in [0, 2 pi).
+/// Maps an angle within +-2 pi to [0, 2 pi).
 template <class T>
 T Positive(const T& angle) {
   return Select(angle < T(0.0), angle + T(kTwoPi), angle);
 }
 
-/// A velocity of the same direction with a speed between two.
+/// A velocity in the same direction with the speed limited to [lo, hi].
 template <class T>
 Level<T> Within(const Level<T>& v, double lo, double hi) {
   const T speed = Max(Norm(v), T(1e-6));
@@ -57,7 +57,7 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
   const T distance = Norm(miss);
   const T strength =
       matters * Max(one - distance / clearance, zero) * (one - time * T(1.0 / options.horizon_s));
-  // Head-on there is no side to pass it on: then to starboard.
+  // Head-on there is no side on which to pass, so it turns to starboard.
   const T range = Max(Norm(r), T(1e-3));
   const Level<T> starboard{r.y / range, -r.x / range};
   const T side = Select(Dot(miss, starboard) > T(0.5), -one, one);
@@ -105,7 +105,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const T own_circle = Radius(in, z - p_WT.z);
   const T R = Max(own_circle + guidance.radius_m, T(0.25) * own_circle);
 
-  // Where the vehicle will be: commands take effect late, and last a decision.
+  // Future position of the vehicle, because commands take effect late and last for a decision.
   const Level<T> own{k.v_WB.x, k.v_WB.y};
   const Level<T> now{k.r_BT_W.x, k.r_BT_W.y};
   const Level<T> r = now + (v_T - own) * T(o.lead_s + 0.5 * s.run.decision_dt_s());
@@ -116,7 +116,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const T length = one / Max(Sqrt(radial * radial + tangential * tangential), T(1e-6));
   const Level<T> direction = in_W * (radial * length) + around * (tangential * length);
 
-  // Gaps to those on this circle, and what is due to everybody else.
+  // Gaps to the AUVs on this circle, and avoidance of all others.
   const double d = s.task.desired_distance_m;
   const T phase = Atan2(-now.y, -now.x), distance = Norm(now);
   const auto on_circle = Abs(distance - R) < T(o.on_circle * d);
@@ -141,7 +141,8 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const T spread =
       Clip(early + guidance.phase_rad * T(o.spread_gain), T(-o.spread_limit), T(o.spread_limit));
 
-  // Relative speed: enough on the side that runs back, more on the way to the circle.
+  // Relative speed: the ground speed must be sufficient where the circle runs against the target's
+  // course. On the way to the circle it is higher.
   const T hurry = Clip((rho - R) * T(1.0 / d) - T(o.hurry_from), zero, one);
   const T on_it = (T(cruise) + Norm(v_T)) * (one + spread);
   T u = on_it + (T(fast) - on_it) * hurry + guidance.speed_mps;

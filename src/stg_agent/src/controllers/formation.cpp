@@ -9,7 +9,7 @@ using config::kNone;
 using config::NonNegative;
 
 constexpr double kFullTurn = 2.0 * kPi;
-/// Others that are distinguished; of a larger team the first ones in the maker's order.
+/// Largest number of other AUVs. Of a larger team, the first ones in the input are used.
 constexpr int kMost = 32;
 
 template <class T>
@@ -31,7 +31,7 @@ T Formation::Slot(const ControllerInput<T>& in, const Level<T>& v_T) const {
     const T a = bearing - reference + T(kPi);
     return a - T(kFullTurn) * Floor(a * T(1.0 / kFullTurn));
   };
-  // The own bearing first, then those of the others in the ring.
+  // First the own bearing, then the bearings of the others in the ring.
   std::array<T, kMost + 1> bearing, present;
   bearing[0] = from_astern(Atan2(-k.r_BT_W.y, -k.r_BT_W.x));
   present[0] = one;
@@ -122,7 +122,7 @@ void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T
                          Clip(climb * T(1.0 / vmax[2]), T(-1.0), T(1.0))};
   AskForVelocity(in, velocity, action);
 
-  // Slower than the vehicles fly: no place to keep.
+  // If the target is slower than the vehicles can fly, no place can be kept, so they circle.
   const auto slow = Norm(v_T) < T(options.weave_below_mps);
   if (!Any(slow)) return;
   T circling[dynamics::kMaxActionSize] = {};

@@ -12,7 +12,7 @@ namespace {
 using config::NonNegative;
 
 constexpr int kCourses = 64;
-/// In place of a plan's leg: the course is one to a target that was found.
+/// Value of a plan's leg if the course leads to a target that was found.
 constexpr int kCloseIn = -1;
 
 Encircle CircleOf(const FoundOptions& found) {
@@ -28,13 +28,13 @@ Formation FormOf(const FoundOptions& found) {
   return {o};
 }
 
-/// The course on which most is swept (Koopman 1956; Stone 1975).
+/// Chooses the course that covers the most probability (Koopman 1956; Stone 1975).
 class MapLaw final : public SearchLaw {
  public:
   explicit MapLaw(const SearchMapOptions& options) : SearchLaw(options), o_(options) {}
 
  private:
-  /// A course on which somebody flies for a time.
+  /// A course that an AUV flies for some time.
   struct Track {
     Level<double> start, direction;
     double length_m = 0.0;
@@ -58,7 +58,7 @@ class MapLaw final : public SearchLaw {
     return {kFar_m * std::cos(plan.course), kFar_m * std::sin(plan.course)};
   }
 
-  /// Where AUVs of lower numbers, the seniors, will have swept is left to them.
+  /// Courses of the AUVs with lower numbers. What they will search is left to them.
   std::vector<Track> SeniorTracks(const AgentView& agent) const {
     std::vector<Track> tracks;
     for (const int id : agent.neighbours().known()) {
@@ -80,7 +80,7 @@ class MapLaw final : public SearchLaw {
     std::array<double, kCourses> worth{}, cosine{}, sine{};
     const auto courses = static_cast<std::size_t>(o_.courses);
     for (std::size_t k = 0; k < courses; ++k) {
-      // Counted from the old course, so that it is one of them.
+      // The directions start at the present course, so that it is one of them.
       const double course = search.plan.course + 2.0 * kPi * static_cast<double>(k) / o_.courses;
       cosine[k] = std::cos(course);
       sine[k] = std::sin(course);
@@ -96,7 +96,7 @@ class MapLaw final : public SearchLaw {
         const double x = map.x(c) - p_WB.x, y = map.y(r) - p_WB.y;
         const double d = std::sqrt(x * x + y * y) + 1e-3;
         const double pull = o_.pull * std::exp(-d / o_.pull_m);
-        // What is swept sooner is worth more.
+        // An earlier search of a place is worth more.
         const double swept = 1.0 - 0.5 * std::min(1.0, d / length_m);
         for (std::size_t k = 0; k < courses; ++k) {
           const double along = x * cosine[k] + y * sine[k];
@@ -179,12 +179,13 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance, bo
     search->plan.made = false;
     Follow(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, guidance, action);
   } else {
-    // A plan of one kind says nothing to the other.
+    // A search plan and a plan to close in are not valid for each other.
     SearchPlan& plan = search->plan;
     const bool closes_in = plan.leg == kCloseIn;
     if (closes_in != found) plan.made = false;
     plan.leg = found ? kCloseIn : closes_in ? 0 : plan.leg;
-    // A far circle around the goal is the way to it, clear of the others and of the chart.
+    // The way to the goal is a circle around it, far away; so the law also avoids other AUVs and
+    // the chart's obstacles.
     const Level<double> goal = found ? WayToMass(agent, search) : Goal(agent, search);
     const double c = std::cos(guidance.phase_rad), s = std::sin(guidance.phase_rad);
     k.r_BT_W.x = c * goal.x - s * goal.y;

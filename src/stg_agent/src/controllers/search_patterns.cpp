@@ -3,7 +3,7 @@
 
 #include "stg_agent/controllers/search_laws.hpp"
 
-/// Searches by legs that are known beforehand (IAMSAR manual, volume III).
+/// Search patterns with legs that are known in advance (IAMSAR manual, volume III).
 namespace stg::agent {
 namespace {
 
@@ -21,9 +21,9 @@ class Pattern : public SearchLaw {
   explicit Pattern(const PatternOptions& options) : SearchLaw(options), o_(options) {}
 
  protected:
-  /// Of the plan's leg.
+  /// Waypoint of the plan's leg.
   virtual Level<double> Waypoint(const AgentView& agent, const SearchMemory& search) const = 0;
-  /// Before the first leg.
+  /// Called before the first leg.
   virtual void Begin(const AgentView& agent, SearchMemory* search) const = 0;
   static Level<double> Datum(const SearchMemory& search) {
     return {search.cue().p_WT.x, search.cue().p_WT.y};
@@ -44,7 +44,8 @@ class Pattern : public SearchLaw {
       ++search->plan.leg;
       goal = Waypoint(agent, *search) - own;
     }
-    // Far ahead on the way: at a waypoint itself the law would circle.
+    // The goal is moved far ahead in the same direction, because near a waypoint the law would
+    // circle.
     return goal * (1e4 / std::max(Norm(goal), 1.0));
   }
 };
@@ -83,7 +84,7 @@ class ParallelSweep final : public Pattern {
 
 Level<double> SquareWaypoint(const Level<double>& datum, double spacing_m, int id, int agents,
                              int leg) {
-  // Legs of 1, 1, 2, 2, ... spacings, each a quarter turn after the one before.
+  // Legs of 1, 1, 2, 2, ... spacings. Each turns a quarter from the one before.
   const double turn = 2.0 * kPi * id / std::max(1, agents);
   Level<double> p = datum;
   for (int k = 0; k < leg; ++k) {

@@ -1,4 +1,4 @@
-// Long because: every number of the layout is written here, in the order of the rows.
+// Long because: all numbers of the layout are written here, in the order of the rows.
 #include "stg_agent/entities/entities.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ Frame FrameOf(const Knowledge<double>& k) {
   return {k.trig.cos_psi, k.trig.sin_psi};
 }
 
-/// cos and sin of the bearing in K of a horizontal vector; straight ahead where there is none.
+/// cos and sin of the bearing of a horizontal vector in K; straight ahead if the vector is zero.
 void PutBearing(const Frame& K, const Vec3<double>& r, Row* row) {
   const double d = std::hypot(r.x, r.y);
   if (d < 1e-6) {
@@ -61,7 +61,7 @@ double ClosestApproach(const Vec3<double>& r, const Vec3<double>& w, double* mis
   return t;
 }
 
-/// One target as its row takes it: the one that the AUV is tasked with, or another one.
+/// One target, as input of its row: the followed target or another one.
 struct Subject {
   int target;
   const Knowledge<double>& knowledge;  ///< of this target
@@ -70,7 +70,7 @@ struct Subject {
   bool followed;
 };
 
-/// The newest own measurement of a target that a packet holds; false: none.
+/// Age of the newest own measurement of a target in a packet. Returns false if there is none.
 bool Sighted(const EntityInput& in, const Subject& t, const NeighbourState& report, double* age_s) {
   const bool free = in.model.task.free();
   if (!free && report.target != t.target) return false;
@@ -104,7 +104,7 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   const int targets = std::min((in.belief.started ? 1 : 0) + in.other_count, kTargetRows);
   row.Put(std::log(1.0 + targets) / 2.0);
   const double slot = m.channel.slots.length_s, frame = slot * m.run.agents;
-  const bool turns = frame > 0.0;  // as if slots went in turn, whatever the access
+  const bool turns = frame > 0.0;  // as if slots were in turn, for any access
   const double since = turns ? std::fmod(now - slot * in.id + frame * 4096.0, frame) : 0.0;
   row.Put(turns ? AgeScale(since) : 0.0F).Put(turns ? 1.0 - since / frame : 0.0);
   int silent = 0;
@@ -115,8 +115,8 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   row.Put(0.0);
 }
 
-/// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target of AUVs that
-/// measured it in the last minute; both 1, as of one observer, where none did.
+/// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target to AUVs that
+/// measured it in the last minute. Both are 1, as for one observer, if there was no measurement.
 void Geometry(const EntityInput& in, const Subject& t, double* once, double* twice) {
   const Vec3<double>& r = t.knowledge.r_BT_W;
   std::complex<double> first, second;
@@ -165,7 +165,7 @@ void PutTarget(const EntityInput& in, const Subject& t, const Frame& K, float* o
   const double s1 = std::sqrt(std::max(mean + radius, 0.0));
   const double s2 = std::sqrt(std::max(mean - radius, 0.0));
   row.Put(DeviationScale(s1)).Put(DeviationScale(s2));
-  // Of twice the angle between the long axis and the line of sight.
+  // Cosine and sine of twice the angle between the long axis and the line of sight.
   const double cos2 = radius > 1e-12 ? half / radius : 1.0;
   const double sin2 = radius > 1e-12 ? P.xy / radius : 0.0;
   const double c2 = lx * lx - ly * ly, s2l = 2.0 * lx * ly;
@@ -184,7 +184,7 @@ void PutTarget(const EntityInput& in, const Subject& t, const Frame& K, float* o
   row.Put(k.lost).Put(AgeScale(k.lost_steps * in.model.run.decision_dt_s()));
   double phase[kPhases], quality[kQualities];
   PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);
-  // What is known, not only how near it is.
+  // The quality contains the certainty, too, not only the distance.
   QualityOneHot(c, std::min(k.confidence, std::max(0.0, 1.0 - s1 / 100.0)), &quality);
   for (const double p : phase) row.Put(p);
   for (const double q : quality) row.Put(q);
@@ -211,7 +211,7 @@ void PutNeighbour(const EntityInput& in, const Frame& K, const EntityNeighbour& 
 void PutEdge(const EntityInput& in, const Subject& t, const EntityNeighbour& n, float* out) {
   const Vec3<double>& r = t.knowledge.r_BT_W;
   const Vec3<double>& s = n.sight.r_BN_W;
-  const Vec3<double> q = s - r;  // of the neighbour, from the target
+  const Vec3<double> q = s - r;  // position of the neighbour relative to the target
   const double d = Norm(q);
   const double level = std::hypot(q.x, q.y), own = std::hypot(r.x, r.y);
   const double both = std::max(level * own, 1e-9);
@@ -228,8 +228,8 @@ void PutEdge(const EntityInput& in, const Subject& t, const EntityNeighbour& n, 
   row.Put(between ? 1.0 : 0.0);
 }
 
-/// What the AUV would know at this decision of a target that it does not follow, if it did: there
-/// is no history of it.
+/// Knowledge of a target that the AUV does not follow, as if it followed it from this decision on.
+/// It has no history.
 Knowledge<double> Regarding(const EntityInput& in, const EntityBelief& b) {
   const AgentModel& m = in.model;
   Knowledge<double> k = in.knowledge;
@@ -246,7 +246,7 @@ Knowledge<double> Regarding(const EntityInput& in, const EntityBelief& b) {
   return k;
 }
 
-/// One obstacle of the chart, seen from the AUV.
+/// One obstacle of the chart, relative to the AUV.
 struct Seen {
   int kind;  // 0 sphere, 1 upright
   Vec3<double> r;

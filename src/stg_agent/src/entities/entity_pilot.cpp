@@ -8,14 +8,14 @@
 namespace stg::agent {
 namespace {
 
-// A radius beyond the law's grows by the deviation of the estimate, too: a lost target is searched
-// for on circles as wide as the doubt.
+// If the commanded radius is larger than the law's, the deviation of the estimate is added. So a
+// lost target is searched on circles as wide as the uncertainty.
 constexpr double kRadius_m = 60.0, kDoubts = 3.0, kWidest_m = 800.0;
 constexpr double kSpeed_mps = 0.8, kPhase_rad = kPi / 3.0, kDepth_m = 15.0;
 constexpr double kTurn_rad = kPi / 3.0;
 constexpr float kClockwiseFrom = -0.8F;
 
-/// The neighbours as the built-in laws see them.
+/// Acts by Encircle with the neighbours that built-in laws use.
 void Steer(const AgentView& agent, const Guidance<double>& guidance, double* action) {
   NeighbourSight<double> nearest[Controller::kNearestKnown];
   const int count = agent.Nearest(Controller::kNearestKnown, nearest);
@@ -30,9 +30,9 @@ SearchMapOptions SearchForm(double form) {
   return o;
 }
 
-/// The law that `law5` guides: where there is a search map `search_map`, else what it does once it
-/// has found the target. A target that may be faster than AUVs cruise outruns a circle, so a place
-/// is kept at it.
+/// The law that `law5` guides. With a search map it is `search_map`; without one it is the part of
+/// that law for a target that is found. A target that may be faster than the AUVs' cruise speed
+/// would leave a circle, so AUVs then keep a place relative to it.
 void SteerLaw(const AgentView& agent, const Guidance<double>& guidance, double* action) {
   static const std::unique_ptr<SearchLaw> circling = MakeSearchMap(SearchForm(0.0));
   static const std::unique_ptr<SearchLaw> keeping = MakeSearchMap(SearchForm(1.0));
@@ -50,14 +50,14 @@ void SteerLaw(const AgentView& agent, const Guidance<double>& guidance, double* 
   }
 }
 
-/// Deviation of the target's position along the long axis of its horizontal ellipse [m].
+/// Standard deviation of the target's position along the long axis of its horizontal ellipse [m].
 double LevelDeviation(const AgentView& agent) {
   const Covariance3 P = agent.belief().P_WT;
   const double mean = 0.5 * (P.xx + P.yy), half = 0.5 * (P.xx - P.yy);
   return std::sqrt(std::max(mean + std::hypot(half, P.xy), 0.0));
 }
 
-/// What a command of `course3` asks for: a change of the present course, a speed over ground and a
+/// Velocity of a command of `course3`: a change of the present course, a speed over ground and a
 /// climb rate. Zeros keep the course at the middle speed.
 Vec3<double> VelocityOf(const AgentView& agent, const float* command) {
   const Knowledge<double>& k = agent.knowledge();
@@ -104,7 +104,7 @@ void TakeCommand(const AgentView& agent, EntityAction action, const float* comma
 }
 
 void TakeChoice(const AgentView& agent, const Entities& entities, int choice) {
-  // Without a target the law looks for one by itself, and follows it as soon as it is found.
+  // Without a target, the law searches for one by itself and follows it when it is found.
   agent.memory().search = entities.targets > 0 && choice == entities.targets;
   if (choice < entities.targets) agent.Follow(entities.target_of_row[choice]);
 }

@@ -10,7 +10,7 @@ namespace stg::agent {
 
 namespace {
 
-/// Place of a name in a list; throws UserError, "`what` 'name': none of ...", if it is not there.
+/// Place of a name in a list. If it is not there, throws UserError "`what` 'name': none of ...".
 std::size_t PlaceOf(const std::string& name, const std::vector<std::string>& names,
                     const std::string& what) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -122,7 +122,7 @@ int EntityPolicy::Command(const Entities& entities, float* command) const {
   if (const auto* graph = std::get_if<GraphNetwork>(&network_)) {
     float choices[kTargetRows + 1], commands[(kTargetRows + 1) * kCommandNumbers];
     graph->Forward(EntityGraphRows(entities), choices, commands);
-    // The first one of those that are equal: all zeros follow what is followed.
+    // The first of equal choices: with all zeros the present target stays.
     for (int t = 1; t <= entities.targets; ++t) {
       if (choices[t] > choices[choice]) choice = t;
     }

@@ -15,9 +15,9 @@
 #include "onnx_operators.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
-/// Files of policies over entities. The reader takes the numbers out of a file, makes the one
-/// graph that the writer would make of them, and refuses the file unless it holds that graph and
-/// nothing else. So a file can never run code, and every shape is checked.
+/// Files of policies over entities. The reader takes the numbers from a file and builds the graph
+/// that the writer would build from them. It refuses the file unless the file has exactly this
+/// graph. So a file can never run code, and every shape is checked.
 namespace stg::agent {
 namespace {
 
@@ -36,7 +36,7 @@ std::string BytesOf(const onnx::ModelProto& model) {
   return bytes;
 }
 
-/// FNV-1a, 64 bits, to tell a damaged file from a good one.
+/// FNV-1a, 64 bits, which detects a damaged file.
 std::string ChecksumOf(const std::string& bytes) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
@@ -108,7 +108,7 @@ onnx::ModelProto ParseModel(const std::string& path) {
   return model;
 }
 
-/// Takes the numbers and the metadata out of a file, believing nothing else of it.
+/// Reads the numbers and the metadata of a file, and trusts nothing else in it.
 class EntityReader {
  public:
   EntityReader(std::string path, const onnx::ModelProto& model)
@@ -125,7 +125,7 @@ class EntityReader {
     EntityPolicy::Parameters p;
     Require(Property("stg.observation_layout") == kEntityLayout, "is of another layout");
     p.action = EntityActionNamed(Property("stg.action_interface"));
-    // Files from before there was a choice do not say it.
+    // Older files have no such property, because there was only one network.
     if (properties_.count("stg.network") > 0) {
       p.network = EntityNetworkNamed(Property("stg.network"));
     }
@@ -166,7 +166,7 @@ class EntityReader {
     }
   }
 
-  /// The constants come in the order in which the writer puts them.
+  /// The constants are in the order in which the writer writes them.
   void ReadNumbers(EntityPolicy::Parameters* p) const {
     p->numbers.assign(EntityParameters(p->network, CommandSize(p->action)), 0.0F);
     onnx::GraphProto written;
@@ -177,7 +177,8 @@ class EntityReader {
     for (std::size_t k = 0; k < order.size(); ++k) {
       const onnx::TensorProto& tensor = graph.initializer(static_cast<int>(k));
       const PoolBlock& block = order[k].block;
-      if (block.size() == 0) continue;  // the same in every file, compared with the graph
+      // The same in every file; the comparison of the graphs checks it.
+      if (block.size() == 0) continue;
       const int rows = order[k].transposed ? block.cols : block.rows;
       const int cols = order[k].transposed ? block.rows : block.cols;
       Require(tensor.dims_size() == 2 && tensor.dims(0) == rows && tensor.dims(1) == cols &&

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWidth = GraphNetwork::kMaxWidth, kRows = GraphNetwork::kMaxRows + 1;
 
-/// Rows of a set as the layers of its own make them, and one for an empty set behind them.
+/// Rows of a set after the set's own layers. The row of an empty set comes after them.
 struct Hidden {
   alignas(64) float h[kRows][kWidth];
   int count = 0;  // without the row of an empty set
@@ -34,7 +34,7 @@ void Embed(const float* p, const PoolBlocks::Set& set, const PoolRows& rows, Hid
   std::copy(p + set.nobody.offset, p + set.nobody.offset + width, out->h[rows.count]);
 }
 
-/// Maximum of the rows and of that of an empty set.
+/// Maximum over the rows, including the row of an empty set.
 void Most(const Hidden& x, int width, float* most) {
   std::copy(x.h[0], x.h[0] + width, most);
   for (int r = 1; r <= x.count; ++r) {
@@ -51,7 +51,7 @@ void Attend(const float* p, const GraphBlocks::Attention& a, int heads, const fl
   Product(p, a.query, self, false, query);
   const float scale = 1.0F / std::sqrt(static_cast<float>(size));
   for (int h = 0; h < heads; ++h) {
-    // The query in terms of the rows, so that a row costs one product and not two.
+    // The query is transformed to the rows, so that each row needs one product instead of two.
     alignas(64) float u[kWidth], context[kWidth], weight[kRows];
     Eigen::Map<Eigen::VectorXf> at(u, width);
     at.setZero();
@@ -77,7 +77,8 @@ void Attend(const float* p, const GraphBlocks::Attention& a, int heads, const fl
   }
 }
 
-/// Which AUV is on which target: h_t' of every target, and the row of an empty set as it is.
+/// Messages about which AUV follows which target: h_t' of every target. The row of an empty set
+/// stays unchanged.
 void PassMessages(const float* p, const GraphBlocks& b, const GraphRows& in,
                   const Hidden& neighbours, Hidden* targets) {
   const int width = b.edge_neighbour.rows, count = neighbours.count;
@@ -90,7 +91,7 @@ void PassMessages(const float* p, const GraphBlocks& b, const GraphRows& in,
   for (int t = 0; t < targets->count; ++t) {
     float *mean = joined + width, *most = mean + width;
     std::copy(targets->h[t], targets->h[t] + width, joined);
-    std::fill(mean, most + width, 0.0F);  // m is never negative
+    std::fill(mean, most + width, 0.0F);  // m is never negative, so the maximum may start at 0
     Dense(p, b.edge_target, targets->h[t], false, base);
     for (int j = 0; j <= count; ++j) {
       for (int k = 0; k < width; ++k) m[k] = base[k] + from[j][k];

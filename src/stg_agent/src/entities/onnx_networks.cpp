@@ -8,14 +8,14 @@ namespace {
 
 constexpr const char* kSetNames[] = {"targets", "neighbours", "obstacles"};
 
-/// All 0 but one number.
+/// All numbers are 0 except one, which is 1.
 std::vector<float> Selector(int size, int at) {
   std::vector<float> s(static_cast<std::size_t>(size), 0.0F);
   s[static_cast<std::size_t>(at)] = 1.0F;
   return s;
 }
 
-/// Of each head the numbers that are its own.
+/// Mask of each head's own numbers.
 std::vector<float> Heads(const GraphSpec& spec, float value) {
   std::vector<float> mask(static_cast<std::size_t>(spec.heads * spec.width), 0.0F);
   const int size = spec.width / spec.heads;
@@ -96,7 +96,7 @@ class GraphWriter {
     to_.Node("Relu", {to_.Dense("target_inputs", "update", b_.update, false)}, "targets_updated");
   }
 
-  /// w ln(quality + 0.01) of every neighbour, 0 of the row of an empty set.
+  /// w ln(quality + 0.01) of every neighbour, and 0 for the row of an empty set.
   void Prior() {
     to_.Node("MatMul",
              {"neighbours",

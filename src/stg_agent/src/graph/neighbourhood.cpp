@@ -9,7 +9,7 @@ Neighbourhood<T>::Neighbourhood(const AgentModel& model, int self)
     : max_age_s_(model.track.neighbour_max_age_s),
       wall_m_(model.wall_m()),
       sights_(static_cast<std::size_t>(model.run.agents)) {
-  // One by one: a copy would not have the room that the table keeps for the swarm.
+  // Constructed one by one, because a copy would not have the table's reserved memory.
   tables_.reserve(static_cast<std::size_t>(kLanesOf<T>));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) tables_.emplace_back(model, self);
   const int padded = (model.run.agents + kLanes - 1) / kLanes * kLanes;
@@ -75,8 +75,8 @@ void Neighbourhood<T>::Predict(const Vec3<T>& p_WB, const acoustics::LinkEstimat
       n.link_quality = links.Quality(n.distance_m, n.age_s, learnt);
     }
   } else {
-    // Whole packs at once: the exponentials cost as much for kLanes links as for one. Entries past
-    // the last neighbour hold old numbers and are not read back.
+    // Whole packs at once, because the exponentials cost as much for kLanes links as for one.
+    // Entries after the last neighbour contain old numbers and are not used.
     std::size_t heard = 0;
     for (std::size_t j = 0; j < sights_.size(); ++j) {
       const NeighbourSight<T>& n = sights_[j];

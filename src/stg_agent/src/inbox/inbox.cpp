@@ -85,7 +85,7 @@ std::optional<NeighbourState> Inbox::Receive(const acoustics::Reception& recepti
     if (state.has_target) Hear(state);
     return state;
   } catch (const UserError&) {
-    ++refused_packets_;  // what comes from the water may be damaged
+    ++refused_packets_;  // a packet may be damaged on its way
     return {};
   }
 }
@@ -137,8 +137,8 @@ void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnRecko
     pending_[k].has_cue = false;
     filters_[k]->Predict(now_);
   }
-  // A fixed order, whatever order the messages came in: shared estimates by index, then the
-  // own detection.
+  // The order is fixed, for any order of the messages: shared estimates by index, then the own
+  // detection.
   if (neighbours.unread()) FuseNewest(neighbours);
   for (std::size_t k = 0; k < filters_.size(); ++k) {
     Pending& pending = pending_[k];
@@ -157,8 +157,8 @@ void Inbox::FuseNewest(const NeighbourTable& neighbours) {
   }
 }
 
-/// Of every target the newest measurements of its own, the newest of all first, and of one instant
-/// those of the target that it follows.
+/// Writes the newest measurements of each target's own filter, newest first. At the same time,
+/// those of the followed target come first.
 void Inbox::TellFreely(bool lost, NeighbourState* state) const {
   state->followed = target_;
   Of(target_).Tell(lost, state);

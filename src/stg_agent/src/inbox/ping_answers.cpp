@@ -6,7 +6,8 @@
 namespace stg::agent {
 namespace {
 
-constexpr std::size_t kMostBetween = 8;  ///< between two decisions; a modem has one ping at a time
+/// Most answers between two decisions; a modem has one ping at a time.
+constexpr std::size_t kMostBetween = 8;
 
 }  // namespace
 

@@ -20,7 +20,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 50;
-/// A modem that starts together with the agent is given so long to connect [s].
+/// Time to connect for a modem that starts together with the agent [s].
 constexpr double kStartPatience_s = 5.0;
 
 }  // namespace
@@ -127,7 +127,8 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     case StepTracker::Verdict::kNewEpisode:
       break;
   }
-  // A run that begins: what the modem says before it is connected would be lost.
+  // At the start of a run the agent waits longer for the modem, because messages of the modem before
+  // it is connected are lost.
   const bool first = !in_run && message->episode == 0 && message->step == 0;
   const double patience_s = first ? std::max(patience_s_, kStartPatience_s) : patience_s_;
   const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s);
@@ -136,13 +137,13 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
   SetNodeTime(message->header.stamp);
   frame_ = message;
   for (const auto& detection : message->detections) pending_.Keep(detection, stamp);
-  // No window comes before step 0, but the one that greets.
+  // No window comes before step 0, except the first one of a run.
   if (message->step == 0 && !first) barrier_.Excuse(kModem);
   HearModem();
   DecideIfDue();
 }
 
-/// Windows come in order, and where no packet is due the next one comes before its step is opened.
+/// Windows come in order. If no packet is due, the next one comes before its step is opened.
 void AgentNode::HearModem() {
   const TimeNs stamp = barrier_.stamp();
   if (barrier_.open() && (window_ == stamp || window_ == stamp + period_)) {
@@ -187,7 +188,7 @@ void AgentNode::DecideIfDue() {
   if (barrier_.Complete()) Decide();
 }
 
-/// Another one begins, and the clock may have gone back.
+/// Another run begins, and the clock may have gone back.
 void AgentNode::ForgetRun() {
   barrier_.Restart();
   frame_.reset();
@@ -198,7 +199,7 @@ void AgentNode::ForgetRun() {
 
 void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
   dynamics::Cue cue;
-  cue.target = -1;  // none
+  cue.target = -1;  // no target
   if (frame.cue_valid && FiniteVector(frame.cue_position) && Finite(frame.cue_std) &&
       frame.cue_std >= 0.0) {
     cue.target = model_.target.of(id_);
@@ -271,11 +272,11 @@ void AgentNode::Command() {
 
 void AgentNode::ReportDecision() {
   const ros::Time stamp = decided_->header.stamp;
-  // A packet that cannot leave in this step would only be replaced by the next one.
+  // A packet that cannot leave in this step would be replaced by the next one, so it is not made.
   if (turns_.Due(id_, NsOf(stamp) - start_)) {
     packet_message_.header.stamp = packet_message_.generation = stamp;
     packet_message_.sequence = sequence_++;
-    packet_message_.data.clear();  // one that has left is silent
+    packet_message_.data.clear();  // an AUV that has left sends no data
     if (agent_.present()) {
       const agent::Packet packet = agent_.MakePacket();
       packet_message_.data.assign(packet.begin(), packet.end());

@@ -26,7 +26,7 @@ std::string Resolve(const std::string& name, const agent::AgentModel& model, int
   std::string shipped = config::ScenarioFolder() + "/../policies/" + model.run.name + ".onnx";
   std::error_code ignored;
   if (fs::exists(shipped, ignored)) return shipped;
-  // The user of a scenario derived from a shipped one may think that the latter's policy flies.
+  // If the scenario is derived from a shipped one, the user may expect the policy of that one.
   if (agent == 0 && !fs::exists(ShippedScenario(model.run.name), ignored)) {
     ROS_WARN(
         "no policy is shipped for a scenario named '%s', so the controller '%s' decides; "
@@ -36,7 +36,7 @@ std::string Resolve(const std::string& name, const agent::AgentModel& model, int
   return agent::DefaultController();
 }
 
-/// Names the shipped scenarios that a policy fits, for the refusal of another one.
+/// Names of the shipped scenarios that the policy fits, for the message that refuses this one.
 std::string WhereItFits(const agent::Policy& policy) {
   std::set<std::string> names;
   std::error_code ignored;

@@ -11,7 +11,8 @@
 namespace stg::nodes {
 namespace {
 
-constexpr std::size_t kMaxPending = 100;  // messages kept for a step that may never come
+// Most messages that are kept for a step that may never come.
+constexpr std::size_t kMaxPending = 100;
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace {
 constexpr int kFreeFirst = kFirstSighting + kNameBits;
 constexpr int kLookBits = kAgeBits + 2 * kOffsetBits + kRiseBits;
 constexpr int kItemBits = kNameBits + kFreeRangeBits;
-constexpr int kThree = 3;  // ranges of two looks
+constexpr int kThree = 3;  // ranges of two measurements
 static_assert(kFreeFirst + kManyBits + kLookBits + kFreeSightings * kItemBits <= kCrcFirst,
               "one look fits");
 static_assert(kFreeFirst + kManyBits + 2 * kLookBits - kAgeBits + kEarlierBits +
@@ -25,7 +25,7 @@ static_assert(kFreeFirst + kManyBits + 2 * kLookBits - kAgeBits + kEarlierBits +
 static_assert(kFreeFirst + 2 * (kNameBits + kSightingBits - 1 - kTargetBits) <= kCrcFirst,
               "both measurements fit");
 
-/// How many sightings from `first` on are of its instant.
+/// Number of sightings from `first` on that have the same time.
 int OfOneLook(const NeighbourState& s, int first) {
   int count = 0;
   while (first + count < s.sightings && s.sighting[static_cast<std::size_t>(first + count)].stamp ==

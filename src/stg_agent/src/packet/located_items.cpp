@@ -7,7 +7,7 @@
 #include "measurement_fields.hpp"
 #include "stg_agent/packet/measurement_packet.hpp"
 
-/// What agents that locate each other tell of their own ranges, bearings and fixes.
+/// The items of a packet about own ranges, bearings and fixes, for agents that locate each other.
 namespace stg::agent {
 
 TimeNs MeasurementPacket::ToldAge(const NeighbourState& s, TimeNs stamp, Writer* w) const {

@@ -27,7 +27,7 @@ double Length(const std::array<double, 3>& v) {
 }  // namespace
 
 MeasurementPacket::Logarithm MeasurementPacket::Logarithm::Of(double lo, double hi, int bits) {
-  const int codes = (1 << bits) - 1;  // besides zero
+  const int codes = (1 << bits) - 1;  // without zero
   const double step = std::log(hi / lo) / (codes - 1);
   return {lo, 1.0 / step, codes, step};
 }
@@ -286,7 +286,8 @@ void MeasurementPacket::ReadMeasured(const NeighbourState& s, int target, Reader
   const bool point = kind_ == MeasurementKind::kPosition || kind_ == MeasurementKind::kRangeBearing;
   if (point && !ambiguous_) {
     d->p_WT = ReadPlace(s.p_W, r);
-    // Where it was does not travel; only the directions of the deviations depend on it.
+    // The packet does not contain the observer's position. Only the directions of the deviations
+    // depend on it.
     d->p_WO = s.p_W - s.v_W * Seconds(age);
     const Vec3<double> line = d->p_WT - d->p_WO;
     d->range_m = Norm(line);

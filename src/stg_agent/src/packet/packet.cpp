@@ -35,9 +35,9 @@ static_assert(kCrcBits.end() == 8 * kPacketBytes, "the fields fill the packet");
 static_assert(kConfidence.count == kQuality.count, "one quantiser serves the unit interval");
 
 constexpr std::int64_t kMaxAge = (1 << kAge.count) - 1;
-constexpr double kPositionMargin = 1.25;  // noisy target estimates lie outside the walls
+constexpr double kPositionMargin = 1.25;  // noisy target estimates may be outside of the walls
 constexpr double kTargetSpeedMargin = 2.0;
-constexpr double kStdLo = 1e-5, kStdHi = 10.0;  // of the workspace half extent
+constexpr double kStdLo = 1e-5, kStdHi = 10.0;  // share of the workspace's half extent
 
 /// Zero when all components are finite, NaN otherwise.
 double Finiteness(const Vec3<double>& v) { return v.x * 0.0 + v.y * 0.0 + v.z * 0.0; }
@@ -48,7 +48,7 @@ double SpeedLimit(const AgentModel& s) {
 }
 
 double TargetSpeedLimit(const AgentModel& s) {
-  // A filter that starts with no velocity must be able to say what it believes.
+  // A filter that starts without a velocity must be able to send its estimate.
   return std::max(
       {kTargetSpeedMargin * s.target.max_speed_mps, 4.0 * s.track.initial_speed_std_mps, 1e-3});
 }
@@ -128,7 +128,7 @@ Packet PacketCodec::EncodeEstimate(const NeighbourState& s) const {
   Put(&w, kPhase, static_cast<std::uint64_t>(s.phase));
   Put(&w, kQuality, Code(unit_, s.link_quality, &saturated));
   if (s.has_target) {
-    // Both stamps are rounded before they are subtracted: each is within half a tick.
+    // Both stamps are rounded before the subtraction: each is within half a tick.
     const std::int64_t age = generation - Ticks(s.target_stamp);
     const std::int64_t clipped = std::min(std::max<std::int64_t>(age, 0), kMaxAge);
     saturated |= clipped != age;

@@ -36,7 +36,7 @@ void Validate(const Policy::Parameters& p) {
           std::to_string(p.layers.size()) + " layers, allowed are 1 to " +
               std::to_string(Policy::kMaxLayers));
   Eigen::Index inputs = p.input_mean.size();
-  // Largest magnitude that can reach each layer; past float's range inf - inf would give NaN.
+  // Largest magnitude that can reach each layer. Beyond float's range, inf - inf would give NaN.
   Eigen::VectorXd bound = Eigen::VectorXd::Constant(inputs, static_cast<double>(p.input_clip));
   for (std::size_t l = 0; l < p.layers.size(); ++l) {
     const std::string name = "layer " + std::to_string(l);
@@ -114,8 +114,8 @@ void Policy::Mean(const float* observation, float* action) const {
     const Packed& layer = packed_[l];
     Aligned sum(out, layer.padded);
     sum = AlignedConst(layer.bias.data(), layer.padded);
-    // Column by column: each output is summed in the order of the inputs,
-    // whatever the SIMD width, and four columns at a time spare stores.
+    // Column by column: each output is summed in the order of the inputs, for any SIMD width. Four
+    // columns at once need fewer stores.
     const float* column = layer.weight.data();
     int i = 0;
     for (; i + 4 <= layer.inputs; i += 4, column += 4 * layer.padded) {

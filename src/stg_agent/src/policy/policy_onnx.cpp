@@ -9,8 +9,8 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 
-/// Writing of policy files. Operator set 10 is the last whose Clip carries its
-/// bounds as attributes: readers as old as OpenCV 4.6 understand it.
+/// Writes policy files. Operator set 10 is the last one whose Clip has its bounds as attributes,
+/// which old readers such as OpenCV 4.6 understand.
 namespace stg::agent {
 namespace {
 
@@ -23,7 +23,7 @@ std::string Text(double value, int digits) {
   return text;
 }
 
-/// Appends nodes so that each reads its predecessor's output.
+/// Appends nodes. Each node reads the output of the previous one.
 class ChainWriter {
  public:
   ChainWriter(onnx::GraphProto* graph, std::string input)
@@ -92,8 +92,7 @@ void SetValueInfo(onnx::ValueInfoProto* info, const char* name, int size) {
   type->mutable_shape()->add_dim()->set_dim_value(size);
 }
 
-/// The operators after the last layer of a Q-network: the choice of each head, and what it stands
-/// for.
+/// The operators after the last layer of a Q-network: the choice of each head, and its action.
 void WriteChoice(const Policy::Parameters& p, ChainWriter* chain) {
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const std::int64_t count = p.choices.rows();
@@ -105,7 +104,7 @@ void WriteChoice(const Policy::Parameters& p, ChainWriter* chain) {
   const RowMajor choices = p.choices;
   onnx::NodeProto* gather = chain->Add("Gather", "chosen");
   chain->AddConstant(gather, "choices", {choices.rows(), choices.cols()}, choices.data());
-  gather->mutable_input()->SwapElements(0, 1);  // Gather takes the data first
+  gather->mutable_input()->SwapElements(0, 1);  // Gather needs the data first
   SetInt(gather, "axis", 0);
   SetInt(chain->Add("Flatten", "unscaled"), "axis", 1);
 }
@@ -141,7 +140,7 @@ class Fnv {
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 1099511628211ULL;
   }
-  /// With its end, so that texts cannot run into each other.
+  /// Adds the end of the text, too, so that two texts cannot be confused with one.
   void Add(const std::string& text) { Add(text.c_str(), text.size() + 1); }
   void Add(const float* data, Eigen::Index count) {
     Add(static_cast<const void*>(data), static_cast<std::size_t>(count) * sizeof(float));

@@ -13,11 +13,11 @@
 #include "auv_common/names.hpp"
 #include "policy_onnx.hpp"
 
-/// Reading of policy files: one known chain of operators, everything checked.
+/// Reads policy files: one known chain of operators. Everything is checked.
 namespace stg::agent {
 namespace {
 
-/// Everything that can be wrong is reported with the file's name.
+/// Every error names the file.
 class Reader {
  public:
   Reader(std::string path, const onnx::ModelProto& model)
@@ -64,7 +64,7 @@ class Reader {
     }
   }
 
-  /// Numbers of the constant that is input `index` of the node, and its shape.
+  /// Numbers and shape of the constant that is input `index` of the node.
   std::vector<float> Constant(const onnx::NodeProto& node, int index,
                               std::vector<std::int64_t>* dims) {
     const auto found = constants_.find(node.input(index));
@@ -108,8 +108,8 @@ class Reader {
     return Eigen::Map<const Eigen::VectorXf>(data.data(), static_cast<Eigen::Index>(data.size()));
   }
 
-  /// The next operator, checked to continue the chain with `inputs` inputs.
-  /// @param from which input continues it.
+  /// The next operator. It must continue the chain and have `inputs` inputs.
+  /// @param from input that continues the chain.
   const onnx::NodeProto& Next(const char* op, int inputs, int from = 0) {
     Require(next_ < graph_.node_size(), std::string("ends where ") + op + " is expected");
     const onnx::NodeProto& node = graph_.node(next_++);
@@ -123,7 +123,7 @@ class Reader {
     return node;
   }
 
-  /// Attributes of the node by name; fails on any that is not in `allowed`.
+  /// Attributes of the node by name. Fails for any attribute that is not in `allowed`.
   std::map<std::string, double> Attributes(const onnx::NodeProto& node,
                                            std::map<std::string, double> allowed) const {
     for (const onnx::AttributeProto& a : node.attribute()) {
@@ -183,7 +183,7 @@ class Reader {
             "has operators after Mul");
   }
 
-  /// What follows the last layer of a Q-network.
+  /// Reads the operators after the last layer of a Q-network.
   void ReadChoice() {
     const onnx::NodeProto& reshape = Next("Reshape", 2);
     Attributes(reshape, {});

@@ -6,7 +6,8 @@
 namespace stg::agent {
 namespace {
 
-/// What a detection leaves to a cell that it speaks against: it may be a false one.
+/// Remaining share of the probability of a cell that contradicts a detection, because the detection
+/// may be false.
 constexpr double kDoubt = 0.01;
 
 }  // namespace
@@ -23,7 +24,7 @@ SearchMap::SearchMap(const AgentModel& s)
 }
 
 void SearchMap::Start(const dynamics::Cue& cue) {
-  // Around the datum, as far as the workspace reaches.
+  // Around the datum, within the workspace.
   const double room = std::max(0.0, workspace_m_ - half_m());
   x0_ = Clip(cue.p_WT.x, -room, room) - half_m();
   y0_ = Clip(cue.p_WT.y, -room, room) - half_m();
@@ -88,7 +89,7 @@ void SearchMap::Find(const dynamics::Detection& d) {
   const Vec3<double>& p = ring ? d.p_WO : d.p_WT;
   const double range = ring ? d.range_m : 0.0;
   const double error = ring ? d.range_std_m : d.std_m;
-  // The place within a cell is not known either.
+  // The position within a cell is uncertain, too.
   const double std_m =
       std::sqrt(error * error + d.p_WO_std_m * d.p_WO_std_m + cell_m_ * cell_m_ / 6.0);
   for (int r = 0; r < kSide; ++r) {
@@ -101,8 +102,8 @@ void SearchMap::Find(const dynamics::Detection& d) {
 }
 
 void SearchMap::Spread(double time_s) {
-  // One step of a walk to the neighbouring cells, along either axis: its variance is 2 w cell^2.
-  // The edges of the workspace and of the map let nothing through.
+  // One step of a random walk to the neighbouring cells, on either axis: its variance is 2 w
+  // cell^2. Nothing crosses the edges of the workspace and of the map.
   const double w = std::min(1.0 / 3.0, 0.5 * diffusivity_ * time_s / (cell_m_ * cell_m_));
   const auto along = [&](int offset, int stride, int lo, int hi) {
     const auto at = [&](int k) -> double& {
@@ -129,7 +130,8 @@ void SearchMap::Normalise() {
       total += mass;
     }
   }
-  // A datum far outside of the map, or every cell searched to nothing: anywhere.
+  // If the datum is far outside of the map, or every cell was searched without result, the target
+  // may be anywhere.
   for (double& mass : mass_) mass = total > 1e-200 ? mass / total : 1.0 / kCells;
   total_ = 1.0;
 }

@@ -61,7 +61,7 @@ void SearchMemory::Hear(const NeighbourState& packet, Heard* heard) {
     map_.LookInVain(packet.p_W);
     return;
   }
-  // Newest first; what an earlier packet said is taken already.
+  // Newest first. Sightings of earlier packets have been used already.
   const TimeNs taken = heard->sighting;
   for (int k = 0; k < packet.sightings; ++k) {
     const dynamics::Detection& sighting = packet.sighting[static_cast<std::size_t>(k)];

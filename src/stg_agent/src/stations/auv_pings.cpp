@@ -12,19 +12,20 @@
 namespace stg::agent {
 namespace {
 
-constexpr TimeNs kTimeout = 300'000'000'000;  ///< of pings; the next one ends them sooner
+/// Limit for an answer; the next ping of the AUV ends the wait sooner.
+constexpr TimeNs kTimeout = 300'000'000'000;
 constexpr double kSlowestSound_mps = 1400.0;
 constexpr double kFarMember_m = 3000.0;
 
 TimeNs PeriodOf(double seconds) { return std::max<TimeNs>(std::llround(seconds * 1e9), 1); }
 
-/// How far what AUVs ping may be.
+/// Largest distance to anything that AUVs ping.
 double ReachOf(const AgentModel& model, const dynamics::SensingConfig& sensing) {
   return std::max(sensing.pings() ? sensing.range_m : 0.0,
                   model.pings_members() ? kFarMember_m : 0.0);
 }
 
-/// From the request to the answer at the edge of the reach.
+/// Time from the request to the answer at the edge of the reach.
 TimeNs ExchangeOf(const acoustics::ChannelConfig& channel, int nodes, double reach_m) {
   double longest_s = 0.0;
   for (const acoustics::ModemProfile& p : acoustics::MakeProfiles(channel.modem, nodes)) {
@@ -55,7 +56,7 @@ void AuvPings::Reset(std::uint64_t seed, std::uint32_t episode) {
   totals_ = {};
 }
 
-/// Where it may choose, it ranges all of them in turn.
+/// If the AUV may choose its target, it ranges all of them in turn.
 int AuvPings::TargetOf(int auv) const {
   if (!free_) return target_.of(auv);
   const auto asked = static_cast<int>(pingers_[static_cast<std::size_t>(auv)].asked);
@@ -89,7 +90,8 @@ void AuvPings::Ask(TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>
     if (look_period_ > 0 && t % look_period_ == 0) p.look_due = true;
     if (member_period_ > 0 && t % member_period_ == 0) p.member_due = first_target_ > 1;
     if (!(p.look_due || p.member_due) || !fleet_.present(i, Seconds(t))) continue;
-    if (p.waits || (p.sent >= 0 && t - p.sent < exchange_)) continue;  // one after the other
+    // One exchange after the other.
+    if (p.waits || (p.sent >= 0 && t - p.sent < exchange_)) continue;
     int node = 0;
     if (p.look_due) {
       node = AskTarget(i, step, p_W);
@@ -116,7 +118,7 @@ void AuvPings::OnSent(const acoustics::PacketInfo& packet) {
 void AuvPings::OnPing(const acoustics::PingResult& ping) {
   if (ping.source >= run_.agents) return;
   Pinger& p = pingers_[static_cast<std::size_t>(ping.source)];
-  if (ping.tag != p.tag) return;  // given up for the one that waits
+  if (ping.tag != p.tag) return;  // it was given up for the ping that waits
   const TimeNs sent = p.sent;
   p.sent = -1;
   p.waits = false;

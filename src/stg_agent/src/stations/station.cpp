@@ -11,9 +11,11 @@
 namespace stg::agent {
 namespace {
 
-constexpr double kCraftLag_s = 2.0;          ///< of a craft's velocity behind the wanted one
-constexpr double kDraught_m = 2.0;           ///< its modem hangs so far below the surface
-constexpr TimeNs kSilent = 120'000'000'000;  ///< an AUV is left out of the middle after it
+/// Time constant with which a craft's velocity follows the wanted one.
+constexpr double kCraftLag_s = 2.0;
+constexpr double kDraught_m = 2.0;  ///< depth of its modem below the surface
+/// After this time without a packet, an AUV does not count for the middle.
+constexpr TimeNs kSilent = 120'000'000'000;
 
 Vec3<double> HomeOf(const StationsConfig& s, int station) {
   if (!s.is_craft(station)) {
@@ -47,8 +49,8 @@ void Station::Reset(std::uint64_t seed, std::uint32_t episode) {
   Err(0, true);
 }
 
-/// Of a craft: the error of its position by satellite, anew at each decision; of a beacon: that of
-/// the survey, once.
+/// Draws the error of a position: for a craft the error of the satellite position, anew at each
+/// decision; for a beacon the error of the survey, once.
 void Station::Err(std::uint32_t step, bool start) {
   if (!start && !craft_) return;
   const AgentModel& s = constants_->model;
@@ -57,7 +59,7 @@ void Station::Err(std::uint32_t step, bool start) {
   if (start) {
     const double std_m = craft_ ? s.stations.gps_std_m : s.stations.survey_std_m;
     error_W_ = Vec3<double>{x, y, 0.0} * std_m;
-    // A beacon is reported to be where it was charted; it lies where the error leaves it.
+    // A beacon reports its charted position; its true position differs by the error.
     if (!craft_) p_W_ = home_W_ - error_W_;
     return;
   }
@@ -88,7 +90,7 @@ void Station::Receive(const acoustics::Reception& reception, const Vec3<double>&
     heard.bearing = {source, reception.transmit,
                      WrapAngle(std::atan2(r_W.y, r_W.x) + std_rad * random.Normal())};
   } catch (const UserError&) {
-    // What comes from the water may be damaged.
+    // A packet may be damaged on its way.
   }
 }
 
@@ -110,7 +112,8 @@ Vec3<double> Station::Wanted(TimeNs now) const {
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     const Heard& h = heard_[i];
     if (h.stamp < 0 || now - h.stamp > kSilent) continue;
-    // From its frame into the own one, which is the world but for the error of the satellites.
+    // From the AUV's frame to the own one, which differs from the world only by the error of the
+    // satellites.
     const PlaneError e = localizer_->relative(static_cast<int>(i), now);
     const Vec3<double> p = h.p_W + h.v_W * Seconds(now - h.stamp);
     middle += Vec3<double>{p.x - e.x, p.y - e.y, 0.0};
@@ -120,7 +123,7 @@ Vec3<double> Station::Wanted(TimeNs now) const {
   const StationsConfig& s = constants_->model.stations;
   const Vec3<double> out{told_W().x - centre.x, told_W().y - centre.y, 0.0};
   const double rho = std::max(Norm(out), 1e-3), R = s.craft_circle_m;
-  // Onto the circle and around it: the field of a limit cycle.
+  // The velocity field of a limit cycle leads onto the circle and around it.
   const double radial = (R * R - rho * rho) / rho, around = 2.0 * R;
   const Vec3<double> way{radial * out.x - around * out.y, radial * out.y + around * out.x, 0.0};
   return way * (s.craft_speed_mps / std::max(Norm(way), 1e-6));

@@ -13,8 +13,8 @@ using acoustics::Channel;
 using acoustics::PacketFate;
 using acoustics::PacketInfo;
 
-/// Passes on what is between AUVs alone: observers know no other members. AuvPings learns of all
-/// requests that leave, and of all results.
+/// Passes on events between AUVs only, because the observers do not know other members. AuvPings
+/// gets all requests that leave and all results.
 class AuvPackets : public acoustics::PacketObserver {
  public:
   AuvPackets(int auvs, AuvPings* pings) : auvs_(auvs), pings_(pings) {}
@@ -64,7 +64,7 @@ class AuvPackets : public acoustics::PacketObserver {
 
 class StationChannel : public Channel {
  public:
-  /// @param targets that carry transponders; 0: none is pinged
+  /// @param targets number of targets with transponders; 0: none is pinged
   StationChannel(const AgentModel& model, const dynamics::SensingConfig& sensing, int targets,
                  std::unique_ptr<Channel> water, StationObserver* observer)
       : auvs_(model.run.agents),
@@ -160,7 +160,7 @@ class StationChannel : public Channel {
   int auvs_, targets_, members_;
   std::unique_ptr<Channel> water_;
   StationObserver* observer_;
-  std::unique_ptr<AuvPings> pings_;  // null: nothing is pinged
+  std::unique_ptr<AuvPings> pings_;  // null: there are no pings
   AuvPackets packets_observer_;
   std::vector<Station> stations_;
   std::vector<Packet> packets_;  // [stations]
