@@ -127,8 +127,8 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     case StepTracker::Verdict::kNewEpisode:
       break;
   }
-  // At the start of a run the agent waits longer for the modem, because messages of the modem before
-  // it is connected are lost.
+  // At the start of a run the agent waits longer for the modem, because messages of the modem
+  // before it is connected are lost.
   const bool first = !in_run && message->episode == 0 && message->step == 0;
   const double patience_s = first ? std::max(patience_s_, kStartPatience_s) : patience_s_;
   const StepBarrier::Opening opening = barrier_.Open(stamp, WallSeconds() + patience_s);
