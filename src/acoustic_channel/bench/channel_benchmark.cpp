@@ -2,8 +2,8 @@
 
 #include "acoustic_channel/channel/channel.hpp"
 
-/// Cost of the channel as the vectorised environment uses it: N agents in the medium workspace,
-/// dt 0.1 s, one packet per agent every 0.5 s (staggered), all receptions fetched every step.
+/// Measures the channel as in the vectorised environment: N agents in the medium workspace, dt 0.1
+/// s, one packet per agent every 0.5 s (staggered), and all receptions are fetched in every step.
 namespace stg::acoustics {
 namespace {
 
@@ -51,7 +51,7 @@ void ExtendedStep(benchmark::State& bench) { Step(bench, "extended"); }
 BENCHMARK(RangeStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 BENCHMARK(ExtendedStep)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100);
 
-/// Modems 20 m apart that always have a packet, by a rule of medium access; decisions of 0.1 s.
+/// Modems 20 m apart that always have a packet, with one medium access; decisions of 0.1 s.
 void Modems(benchmark::State& bench, const char* access) {
   const int agents = static_cast<int>(bench.range(0));
   NetworkConfig s;

@@ -15,7 +15,7 @@ constexpr std::uint32_t kDoublings = 5;
 
 TimeNs Csma::Next(int node, TimeNs from, const Attempt& attempt) const {
   if (attempt.tries == 0) return Rested(node, from, attempt);
-  // The node takes the low bits of the index, so that no try shares a draw with the rest.
+  // The low bits of the index are the node, so that no two tries share a draw.
   const std::uint32_t index = static_cast<std::uint32_t>(node) | (attempt.tries % 4096) << 12;
   Random random(seed_, Stream::kMediumAccess, episode_, attempt.sequence, index);
   const double longest_s = config_.backoff_s * std::exp2(std::min(attempt.tries - 1, kDoublings));

@@ -10,7 +10,7 @@ int AddressIn(const std::string& text) { return NumberIn(text, 0, 127).value_or(
 
 std::string Line(const std::string& body) {
   const std::string sealed = Seal(body);
-  return sealed.substr(0, sealed.size() - 2);  // the end of line comes with the command
+  return sealed.substr(0, sealed.size() - 2);  // the end of line is added with the command
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ void MicromodemDriver::Take(const Fields& f, TimeNs t) {
   } else if (name == "CAREV" && f.size() > 3) {
     firmware_ = f[3];
   }
-  // An echo has the name of its command, with A for the second C.
+  // An echo has the name of its command, with A instead of the second C.
   const bool echo =
       asked().size() > 6 && name.size() == 5 && asked().compare(3, 3, name, 2, 3) == 0;
   if (!echo) return;
@@ -88,7 +88,7 @@ void MicromodemDriver::TakeError(const Fields& f, TimeNs t) {
   const std::string module = f.size() > 2 ? f[2] : "";
   const std::string why = Join(f);
   if (asked().empty()) {
-    // The data that the modem asked for came too late.
+    // The data for the modem's request came too late.
     if (module == "DATA_TIMEOUT") Refuse(why, t);
     return;
   }
@@ -98,7 +98,7 @@ void MicromodemDriver::TakeError(const Fields& f, TimeNs t) {
   } else if (module == "BUSY") {
     TryAgain(t);
   } else if (flexible && !first_generation_ && f.size() > 3 && f[3] == "2") {
-    first_generation_ = true;  // an unknown sentence: frames of cycles from now on
+    first_generation_ = true;  // an unknown sentence: from now on frames are sent in cycles
     TryAgain(t);
   } else {
     Refuse(why, t);

@@ -10,7 +10,7 @@
 namespace stg::acoustics {
 namespace {
 
-/// The thread looks as often for packets to send; bytes of modems wake it.
+/// Period in which the thread looks for packets to send. Bytes of modems wake it at once.
 constexpr TimeNs kLook = 5'000'000;
 
 }  // namespace
@@ -127,9 +127,10 @@ void ModemChannel::Deliver(int receiver, TimeNs /*until*/, std::vector<Reception
     r.source = source;
     r.receiver = receiver;
     r.destination = heard.destination == kToAll ? kToAll : receiver;
-    // Counted by link: a gap in it would be taken for a loss.
+    // Counted for each link, because a gap would be taken for a loss.
     r.sequence = sequences_[static_cast<std::size_t>(source) * given_.size() + node]++;
-    // It is given out in this step, and no step is given what has not arrived by its end.
+    // The packet is delivered in this step, and a step may only contain packets that arrive before
+    // its end.
     r.arrival = std::clamp<TimeNs>(heard.arrival - offset_, 0, stepped_);
     const TimeNs airtime = static_cast<TimeNs>(heard.airtime_s * 1e9);
     r.transmit = r.generation = std::max<TimeNs>(0, r.arrival - airtime);

@@ -13,7 +13,8 @@ namespace {
 constexpr TimeNs kAnswerTime = 1'000'000'000;
 constexpr int kMostAsked = 3;
 constexpr TimeNs kBusyTime = 200'000'000;
-/// A packet that the modem has not sent by then is lost, and a ping without answer over.
+/// If the modem has not sent a packet by this time, the packet is lost. A ping without an answer
+/// ends then, too.
 constexpr TimeNs kUnderWay = 20'000'000'000;
 
 }  // namespace
@@ -80,7 +81,7 @@ void ModemDriver::Ping(int address, TimeNs t) {
   Ask(PingFor(address), t);
 }
 
-/// Gives the packet that waits to the modem, where nothing else is under way.
+/// Gives the waiting packet to the modem if nothing else is on its way.
 void ModemDriver::Go(TimeNs t) {
   if (!ready_ || !asked_.empty() || under_way_ || !waiting_ || ping_ != 0 || t < again_) return;
   under_way_ = std::move(waiting_);

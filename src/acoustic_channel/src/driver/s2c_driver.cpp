@@ -5,7 +5,7 @@
 namespace stg::acoustics::s2c {
 namespace {
 
-/// What a ping carries; no host reads it.
+/// Payload of a ping; no host reads it.
 constexpr char kPingPayload[] = "?";
 
 double NumberOf(const std::string& text) { return std::strtod(text.c_str(), nullptr); }

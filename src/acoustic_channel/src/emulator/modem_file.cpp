@@ -35,7 +35,7 @@ YamlTree Without(const YamlTree& map, const std::string& key) {
   throw UserError(file + ":" + std::to_string(line) + ": " + key + ": " + why);
 }
 
-/// Texts that are no names: paths, topics, addresses. They are taken out of the map.
+/// Takes texts that are not names (paths, topics, addresses) out of the map.
 void TakeText(const std::string& file, const std::string& prefix, const std::string& key,
               YamlTree* map, std::string* text) {
   const YamlTree::Entry* entry = FindEntry(*map, key);
@@ -47,7 +47,7 @@ void TakeText(const std::string& file, const std::string& prefix, const std::str
   *map = Without(*map, key);
 }
 
-/// The settings of a modem: names of the protocol's, so no table knows them.
+/// Takes the settings of a modem. They have the protocol's names, so no table contains them.
 void TakeSettings(const std::string& file, const std::string& prefix, YamlTree* map,
                   ModemPlace* place) {
   const YamlTree::Entry* entry = FindEntry(*map, "settings");

@@ -78,7 +78,7 @@ ModemServer::ModemServer(const ModemFile& file, const std::string& command_log)
     const ModemVehicle& v = file.vehicles[i];
     const Vec3<double> place{v.position_m[0], v.position_m[1], v.position_m[2]};
     water_.Move(static_cast<int>(i), 0, {place, {0.0, 0.0, 0.0}});
-    // A vehicle without word of its place is not in the water.
+    // A vehicle without a known position is not in the water.
     if (!v.moored) water_.SetPresent(static_cast<int>(i), 0, false);
   }
 }
@@ -113,7 +113,7 @@ PortListener ModemServer::ListenerOf(int node) {
   return listener;
 }
 
-/// They come to S2C modems alone.
+/// Only S2C modems accept more than one host.
 void ModemServer::ListenToGuests(int node, PortListener* listener) {
   Place& place = places_[static_cast<std::size_t>(node)];
   listener->guest_came = [this, &place](int guest) {
@@ -130,7 +130,7 @@ void ModemServer::ListenToGuests(int node, PortListener* listener) {
                              bystander.Read({reinterpret_cast<const std::uint8_t*>(bytes), size}));
     if (!bystander.takes_control()) return;
     const std::string words = (place.net ? "AT@CTRL\n" : "+++AT@CTRL\n") + bystander.TakeRest();
-    bystander = s2c::Bystander(place.net);  // from now on of the host that was obeyed
+    bystander = s2c::Bystander(place.net);  // from now on for the host that had control
     place.port->GiveControlTo(guest, place.listener);
     place.listener.read(words.data(), words.size());
   };
@@ -205,7 +205,7 @@ void ModemServer::Write(int node, const std::string& bytes) {
   Place& place = places_[static_cast<std::size_t>(node)];
   if (!place.port || !place.power) return;
   if (place.serial_baud == 0) return place.port->Write(bytes);
-  // A byte is ten bits on the line: a start, eight, a stop.
+  // A byte needs ten bits on the line: a start bit, eight data bits and a stop bit.
   const auto bits = static_cast<TimeNs>(10 * bytes.size());
   place.line_free =
       std::max(place.line_free, SteadyNow()) + bits * 1'000'000'000 / place.serial_baud;

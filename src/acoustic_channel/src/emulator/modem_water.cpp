@@ -12,7 +12,8 @@
 namespace stg::acoustics {
 namespace {
 
-/// A modem sends when its host says so: what else waits would be a delay that no real modem has.
+/// A modem sends when its host says so. Any other medium access would add a delay that no real
+/// modem has.
 const ChannelConfig& CheckedForModems(const ChannelConfig& config, const RunConfig& run) {
   const auto require = [](bool fits, const char* key, const char* what) {
     if (!fits) throw UserError(std::string(key) + ": emulated modems need " + what);
@@ -174,7 +175,7 @@ void ModemWater::Advance(TimeNs t) {
   if (happened) ForgetReceptions();
 }
 
-/// Modems have heard of them as events.
+/// Modems have received them as events already.
 void ModemWater::ForgetReceptions() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     if (members_[i].engine) network_.Take(static_cast<int>(i), now(), &scratch_);
@@ -183,7 +184,7 @@ void ModemWater::ForgetReceptions() {
   network_.Recycle();
 }
 
-/// Modems answer events, and may cause more.
+/// Passes the events to the modems. Their answers may cause more events.
 void ModemWater::Dispatch() {
   while (!events_.empty()) {
     Addressed a = std::move(events_.front());

@@ -9,11 +9,11 @@
 namespace stg::acoustics {
 namespace {
 
-/// Runs that begin within one hour count from the same time 0. The grid of steps and the draws then
-/// do not depend on whose first word came in.
+/// Runs that begin within one hour count from the same time 0. So the grid of steps and the draws
+/// do not depend on which message arrived first.
 constexpr TimeNs kHour = 3'600'000'000'000;
 
-/// Packets of a vehicle whose steps are still to come.
+/// Most packets of a vehicle that wait for later steps.
 constexpr std::size_t kMostWaiting = 10'000;
 
 TimeNs Nanoseconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9)); }
@@ -77,12 +77,14 @@ void FleetChannel::Ping(int source, int destination, TimeNs timeout, std::uint32
   asked_.push_back({source, destination, timeout, tag});
 }
 
-/// Until when everything is in at the time `now`, or has been waited for.
+/// The time up to which, at the time `now`, all messages have arrived or have been waited for long
+/// enough.
 TimeNs FleetChannel::Settled(TimeNs now) const {
-  const TimeNs complete = now - lag_;  // no word up to here is still to come
+  const TimeNs complete = now - lag_;  // no message up to this time is expected any more
   TimeNs settled = complete;
   for (const MotionTrack& track : tracks_) {
-    // A step between two samples needs both, and no third between them: hence not the newest one.
+    // A step between two samples needs both of them and no third one between them. So the newest
+    // sample is not enough for later times.
     const auto newest = track.NewestUntil(complete);
     const bool silent = !newest || (begun_ && *newest + silent_after_ < closed_);
     if (!silent) settled = std::min(settled, std::max(*newest, complete - patience_));
@@ -147,7 +149,7 @@ void FleetChannel::Ask(TimeNs now) {
   asked_.clear();
 }
 
-/// Where all vehicles are, and which are not there.
+/// Sets the positions of all vehicles, and which vehicles are absent.
 void FleetChannel::Place() {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const auto motion = tracks_[i].At(next_);
@@ -162,7 +164,7 @@ void FleetChannel::Place() {
   }
 }
 
-/// The packets of this step.
+/// Collects the packets of this step.
 void FleetChannel::Collect() {
   sending_.clear();
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
@@ -177,7 +179,7 @@ void FleetChannel::Collect() {
       }
       const bool one_a_step = !channel_->continuous();
       if (one_a_step && !sending_.empty() && sending_.back().packet.source == static_cast<int>(i)) {
-        Discard(sending_.back());  // as a modem does that has room for one
+        Discard(sending_.back());  // like a modem that has room for one packet
         sending_.back() = std::move(offered);
       } else {
         sending_.push_back(std::move(offered));
@@ -200,7 +202,8 @@ void FleetChannel::Discard(const Offered& offered) const {
 }
 
 void FleetChannel::Hand(const Offered& offered) {
-  Transmission packet = offered.packet;  // moving the bytes has not moved them in memory
+  // The bytes keep their place in memory if their owner is moved.
+  Transmission packet = offered.packet;
   const TimeNs stamp = channel_->continuous() ? std::max(packet.stamp, closed_ + 1) : next_;
   packet.stamp = stamp - start_;
   packet.generation -= start_;

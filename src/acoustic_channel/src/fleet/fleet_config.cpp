@@ -6,13 +6,13 @@
 namespace stg::acoustics {
 namespace {
 
-/// A network of which every key may be left out.
+/// A network in which every key may be omitted.
 struct PartialNetwork {
   NetworkConfig network;
 };
 
 void Describe(PartialNetwork* c, config::Table* t) {
-  // Keys of a thing, which is always chosen, need not be stated.
+  // The keys of a thing that is always chosen may be omitted.
   const auto fleet = [] { return std::vector<std::string>{"fleet"}; };
   t->Thing({"network", fleet(), "channel", fleet}, "", &c->network,
            [](NetworkConfig* network, config::Table* table) { Describe(network, table); });
@@ -26,7 +26,7 @@ std::optional<config::Violation> FindConflict(const PartialNetwork& c) {
 
 NetworkConfig LoadFleetNetwork(const std::string& file, const std::vector<std::string>& overrides,
                                int vehicles) {
-  // What a default would be is nothing that a fleet at sea could guess.
+  // For these keys, no default would fit a real fleet.
   if (!config::FindScalar(file, "channel.model")) {
     throw UserError(file + ": channel.model: missing key; it chooses the propagation model");
   }

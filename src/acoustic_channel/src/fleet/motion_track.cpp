@@ -20,8 +20,8 @@ MotionTrack::Samples::const_iterator MotionTrack::FirstAfter(TimeNs t) const {
 
 bool MotionTrack::Add(TimeNs t, const Motion& motion) {
   const auto place = FirstAfter(t);
-  // The first of several that are rounded to one stamp: a caller has it as the
-  // others come in.
+  // Of several samples that are rounded to one stamp, the first one counts. A caller may already
+  // have used it when the others arrive.
   if (place != samples_.cbegin() && (place - 1)->t == t) return false;
   samples_.insert(place, {t, motion});
   return true;
@@ -49,7 +49,7 @@ std::optional<TimeNs> MotionTrack::NewestUntil(TimeNs t) const {
 }
 
 void MotionTrack::ForgetBefore(TimeNs t) {
-  // The two samples before t stay: the one in force, and the one that gives it a velocity.
+  // The two samples before t stay: the one that applies, and the one that gives it a velocity.
   const auto keep = FirstAfter(t) - samples_.cbegin() - 2;
   if (keep > 0) samples_.erase(samples_.begin(), samples_.begin() + keep);
 }

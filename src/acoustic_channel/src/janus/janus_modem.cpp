@@ -6,11 +6,11 @@
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/engine/text.hpp"
 
-/// Lines in, lines out, and what the water tells.
+/// Lines from and to the host, and events of the water.
 namespace stg::acoustics::janus {
 namespace {
 
-/// A packet that has not left by then never will; the longest takes 50 s.
+/// A packet that has not left after this time is lost; the longest packet takes 50 s.
 constexpr TimeNs kSendingTimeout = 120'000'000'000;
 
 std::string Fixed(double value, int decimals) {
@@ -58,8 +58,8 @@ std::optional<LineReader::Line> LineReader::Next() {
 
 JanusModem::JanusModem(const ModemOptions& options, ModemSurroundings* world)
     : options_(options), world_(world), with_cargo_(world->profile()) {
-  // Behind the baseline packet, whose airtime is the profile's. Its bytes are frames like the
-  // others.
+  // Cargo comes after the baseline packet, whose airtime is in the profile. The bytes of the cargo
+  // are frames, too.
   with_cargo_.name += "_cargo";
   with_cargo_.preamble_s +=
       with_cargo_.frame_s + kCargoByte_s * (1.0 - static_cast<double>(kBaselineBytes));
@@ -168,7 +168,7 @@ void JanusModem::OnReceptionEnd(const ModemEvent& event) {
   std::optional<Packet> packet;
   if (fate.reason == DropReason::kNone) packet = Decode(baseline);
   if (!packet) {
-    // Lost, or an ordinary vehicle's bytes, which are no packet of the standard.
+    // Lost, or the bytes of an ordinary vehicle, which are not a packet of the standard.
     Say("lost" + signal);
     return;
   }

@@ -9,7 +9,7 @@ namespace {
 constexpr int kLastIndex = 127;
 constexpr std::size_t kLongestPadded = 480;
 
-/// First and last time of a series, and the factor of a step.
+/// First and last time of a series, and the factor between two steps.
 struct Series {
   double first_s, last_s, factor;
 };

@@ -7,12 +7,12 @@
 #include "acoustic_channel/engine/text.hpp"
 #include "acoustic_channel/janus/janus_modem.hpp"
 
-/// Words of hosts as packets, and packets as words.
+/// Conversions between words of hosts and packets.
 namespace stg::acoustics::janus {
 namespace {
 
 constexpr std::size_t kLongestCargo = 480;
-constexpr std::size_t kLongestAddressed = 255;  ///< of type 1, with its checksum
+constexpr std::size_t kLongestAddressed = 255;  ///< of type 1, including its checksum
 constexpr std::array<const char*, 15> kNames = {
     "ack",    "cargo",   "class", "data",    "destination", "forward", "mobility", "packet",
     "repeat", "reserve", "set",   "station", "text",        "tx-rx",   "type"};
@@ -39,7 +39,7 @@ void AddChecksum(std::string* cargo) {
   *cargo += static_cast<char>(crc & 0xff);
 }
 
-/// Types of class 16 that tell the length of their cargo.
+/// True for types of class 16 that state the length of their cargo.
 bool TellsCargo(const Packet& p) {
   return p.class_id == kReferenceClass && (p.app_type == 0 || p.app_type == 1);
 }
@@ -55,7 +55,7 @@ JanusModem::Words JanusModem::WordsOf(const std::string& line) {
     if (equal == std::string::npos || equal > end) throw Refusal{"a word without ="};
     const std::string name = line.substr(at, equal - at);
     if (!Known(name)) throw Refusal{"unknown word"};
-    if (name == "text") end = line.size();  // it may have blanks, so it is the last one
+    if (name == "text") end = line.size();  // it may have blanks, so it must be the last one
     if (!words.emplace(name, line.substr(equal + 1, end - equal - 1)).second) {
       throw Refusal{name + " twice"};
     }
@@ -92,7 +92,7 @@ Packet JanusModem::PacketOf(const Words& words) const {
     if (!packet) throw Refusal{"packet with a wrong checksum or version"};
     const std::size_t told =
         TellsCargo(*packet) ? DecodeReference(packet->app_type, packet->app_data).cargo_bytes : 0;
-    // Two bytes less than stated: without the checksum.
+    // Two bytes fewer than stated: the checksum is missing.
     if (packet->app_type == 1 && told == cargo.size() + kChecksumBytes) AddChecksum(&cargo);
     if (told != cargo.size()) throw Refusal{"packet states another length of cargo"};
     packet->cargo = cargo;

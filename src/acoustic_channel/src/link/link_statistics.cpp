@@ -74,7 +74,7 @@ void LinkTable::Deliver(int source, int destination, TimeNs generation, TimeNs t
   e.delay_sum_s += Seconds(arrival - transmit);
   ++e.delivered;
   ++totals_.delivered;
-  // The first delivery replaces the assumed update at the start even if it is no younger.
+  // The first delivery replaces the assumed update at the start, even if its data is not newer.
   if (generation > e.freshest || e.resets == 0) {
     const double peak = Seconds(at - e.freshest);
     e.peak_sum_s += peak;

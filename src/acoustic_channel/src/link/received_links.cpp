@@ -6,14 +6,14 @@
 namespace stg::acoustics {
 namespace {
 
-constexpr std::int64_t kLongestGap = 20;  ///< more losses in a row change nothing any more
+constexpr std::int64_t kLongestGap = 20;  ///< more losses in a row change nothing
 
 template <class T>
 T Fresh(const T& age_s, const T& learnt, double freshness_s) {
   return learnt * Exp(age_s * T(-1.0 / freshness_s));
 }
 
-/// A pack of ones.
+/// A pack with the value 1 in all lanes.
 const std::array<double, kLanes>& Ones() {
   static const std::array<double, kLanes> ones = [] {
     std::array<double, kLanes> a{};
@@ -57,7 +57,7 @@ void ReceivedLinks::Learn(int lane, const Reception& reception) {
   const auto source = static_cast<std::size_t>(reception.source);
   const ModemProfile& p = fleet_[source];
   double sample = 1.0;
-  // A real modem may tell neither noise nor ratio: then only losses are learnt from.
+  // A real modem may report neither noise nor ratio. Then only losses count.
   const bool measured = reception.sinr_db != 0.0 || reception.noise_level_db != 0.0;
   if (!p.ideal && measured) {
     const double bits = 8.0 * static_cast<double>(p.frames(reception.payload.size) * p.frame_bytes);

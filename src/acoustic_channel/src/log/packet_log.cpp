@@ -106,7 +106,7 @@ void PacketLog::Node(int node) {
   }
 }
 
-/// Seconds with all nine digits, in whole numbers: nothing is rounded.
+/// Writes seconds with all nine digits, from whole numbers, so nothing is rounded.
 void PacketLog::Time(TimeNs t) {
   constexpr TimeNs kSecond = 1'000'000'000;
   TimeNs ns = t + offset_;
@@ -121,7 +121,7 @@ void PacketLog::Time(TimeNs t) {
   row_ += digits;
 }
 
-/// Never -0.
+/// Never writes -0.
 void PacketLog::Number(double value, int decimals) {
   char text[400];
   const auto end =

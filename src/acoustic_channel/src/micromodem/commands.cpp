@@ -4,7 +4,7 @@
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 
-/// What hosts say: settings, clock, and what is to be sent.
+/// Commands of hosts: settings, clock, and data to send.
 namespace stg::acoustics::micromodem {
 namespace {
 
@@ -13,7 +13,7 @@ constexpr int kLargestMini = 0x1fff;  ///< 13 bits
 
 using Fields = std::vector<std::string>;
 
-/// Numbers of the fields from `first` on, each within its limit; nothing: one is not.
+/// Numbers of the fields from `first` on, each within its limit. Nothing if one of them is not.
 std::optional<std::vector<int>> Numbers(const Fields& fields, const std::vector<int>& limits) {
   if (fields.size() != limits.size() + 1) return {};
   std::vector<int> numbers;
@@ -25,7 +25,7 @@ std::optional<std::vector<int>> Numbers(const Fields& fields, const std::vector<
   return numbers;
 }
 
-/// UTC of a calendar date [ns since 1970]; nothing: there is no such date.
+/// UTC of a calendar date [ns since 1970]. Nothing if there is no such date.
 std::optional<TimeNs> UtcOf(int year, int month, int day, int hour, int minute, double second) {
   const bool fits = year >= 1970 && year <= 2200 && month >= 1 && month <= 12 && day >= 1 &&
                     day <= 31 && hour >= 0 && hour <= 23 && minute >= 0 && minute <= 59 &&
@@ -231,7 +231,7 @@ bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
   if (*destination == setting("SRC")) return refuse("to itself");
   std::optional<std::string> bytes;
   if (text) {
-    bytes = Join(Fields(fields.begin() + 4, fields.end()));  // a text may have commas
+    bytes = Join(Fields(fields.begin() + 4, fields.end()));  // a text may contain commas
   } else {
     bytes = FromHex(fields[4]);
   }
@@ -244,7 +244,7 @@ bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
     return true;
   }
   Header& h = cycle_.header;
-  if (cycle_.frames.empty()) h.acks = 0;  // from here on by frame
+  if (cycle_.frames.empty()) h.acks = 0;  // from here on it counts by frame
   h.source = setting("SRC");
   h.destination = *destination;
   h.text = text;

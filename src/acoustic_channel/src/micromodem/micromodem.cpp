@@ -7,7 +7,7 @@
 
 #include "acoustic_channel/access/medium_access.hpp"
 
-/// Lines in, lines out, and time.
+/// Lines from and to the host, and time.
 namespace stg::acoustics::micromodem {
 namespace {
 
@@ -48,7 +48,8 @@ void Micromodem::Reboot(TimeNs t) {
   answers_.clear();
   synchronous_.reset();
   world_->SetAddress(setting("SRC"));
-  // What was given to the water and has not left does not leave; its tags are the last few.
+  // Takes back everything that was given to the water and has not left. These are the last few
+  // tags.
   for (std::uint32_t tag = tag_ > 8 ? tag_ - 8 : 0; tag <= tag_; ++tag) world_->TakeBack(tag);
   Enter(State::kBoot, t + kBootTime);
   revision_ = kNever;
@@ -97,7 +98,8 @@ TimeNs Micromodem::NextSecond(TimeNs t) const {
 
 int Micromodem::clock_mode() const {
   constexpr int kUserCommand = 2, kExternal = 3;
-  // Newer firmware tells where the time comes from, and above these two bits the tick.
+  // Newer firmware reports the source of the time and, above these two bits, the source of the
+  // tick.
   if (second_generation()) return (clock_set_ ? kUserCommand : 0) + (pps_ ? kExternal << 2 : 0);
   return (clock_set_ ? 1 : 0) + (pps_ ? 2 : 0);
 }

@@ -16,7 +16,8 @@ Modes::Modes(const ModemProfile& own) {
     rates_[static_cast<std::size_t>(rate)] = at_own_frequency(family + std::to_string(rate));
   }
   mini_ = mini_psk_ = at_own_frequency("micromodem_mini");
-  // Nothing is published of mini-packets in PSK: they take as long and are lost as often.
+  // Nothing is published about mini-packets in PSK. They are assumed to take as long and to be lost
+  // as often.
   mini_psk_.waveform = "micromodem_psk";
   mini_psk_.name += "_psk";
 }

@@ -5,7 +5,7 @@
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 
-/// What the water tells the modem, and what it tells its host of that.
+/// Events of the water, and the modem's reports about them to its host.
 namespace stg::acoustics::micromodem {
 namespace {
 
@@ -13,7 +13,7 @@ bool Psk(const PacketInfo& packet) {
   return packet.mode != nullptr && packet.mode->waveform == "micromodem_psk";
 }
 
-/// The frames of a packet, in the order of their numbers.
+/// The frames of a packet, in order.
 std::vector<std::string> Split(const Header& header, const std::vector<std::uint8_t>& payload) {
   const std::size_t count = static_cast<std::size_t>(header.frames);
   std::string bytes(payload.begin(), payload.end());
@@ -61,7 +61,7 @@ void Micromodem::Handle(const ModemEvent& event) {
 Header Micromodem::HeaderOf(const ModemEvent& event) const {
   Header h = Unpack(event.packet.header);
   if (h.type != PacketType::kPlain) return h;
-  // An ordinary vehicle's packet is a set of frames of its profile's rate.
+  // The packet of an ordinary vehicle is a set of frames at its profile's rate.
   h.source = world_->AddressOf(event.packet.source);
   h.destination = event.packet.destination == kToAll ? options_.broadcast
                                                      : world_->AddressOf(event.packet.destination);
@@ -139,7 +139,8 @@ void Micromodem::TakeCycle(const Header& header, TimeNs t) {
   cycle_.wanted = header.frames;
   const bool polled = header.source == setting("SRC");
   if (polled) {
-    Enter(State::kDataRequest, kNever);  // it asks for its first frame once the poll is reported
+    // After the report of the poll, it asks for its first frame.
+    Enter(State::kDataRequest, kNever);
   } else {
     Enter(State::kHeardCycle, t + std::max(1, setting("CTO")) * kSecondNs);
   }

@@ -3,7 +3,7 @@
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 
-/// Frames from the host into the water.
+/// Frames from the host to the water.
 namespace stg::acoustics::micromodem {
 namespace {
 
@@ -24,7 +24,7 @@ PacketKind KindOf(PacketType type) {
   return PacketKind::kControl;
 }
 
-/// Mini-packets carry 13 bits, and are counted as two bytes.
+/// Mini-packets contain 13 bits and count as two bytes.
 bool Mini(const Header& header) {
   return header.type != PacketType::kData && header.type != PacketType::kFlexible;
 }

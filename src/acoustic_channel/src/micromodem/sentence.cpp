@@ -12,7 +12,7 @@ unsigned ChecksumOf(const std::string& body) {
 Sentence Broken(const std::string& why) { return {{}, why}; }
 
 Sentence Parse(const std::string& line) {
-  // What stands before the last dollar sign is the rest of a sentence that was cut off.
+  // Text before the last dollar sign is the rest of a sentence that was cut off.
   const std::size_t dollar = line.rfind('$');
   if (dollar == std::string::npos) return Broken("no dollar sign");
   std::string body = line.substr(dollar + 1);

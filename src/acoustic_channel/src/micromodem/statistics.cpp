@@ -3,13 +3,13 @@
 
 #include "acoustic_channel/micromodem/micromodem.hpp"
 
-/// CACST and CAXST: what host software wants to know of every reception and transmission.
+/// CACST and CAXST: statistics of every reception and transmission for host software.
 namespace stg::acoustics::micromodem {
 namespace {
 
-constexpr int kBadFrames = 3;  ///< error of PSK: the checksum of a frame or more is wrong
+constexpr int kBadFrames = 3;  ///< error of PSK: the checksum of at least one frame is wrong
 
-/// As the modem numbers kinds of packets.
+/// The modem's number of a kind of packet.
 int NumberOf(PacketType type, int rate, const PacketInfo& packet) {
   switch (type) {
     case PacketType::kPlain:
@@ -72,7 +72,7 @@ void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
       std::to_string(lost ? frames : 0),
       Whole(fate.received_level_db),
       sinr,
-      sinr,  // at the equaliser's output: it is taken to be perfect
+      sinr,  // at the equaliser's output; the equaliser is assumed to be perfect
       sinr,
       "0",
       lost ? "0" : "200",
@@ -90,7 +90,7 @@ void Micromodem::TellTransmission(const Header& header, const PacketInfo& packet
   if (setting("XST") == 0) return;
   const bool data = header.type == PacketType::kData || header.type == PacketType::kFlexible;
   const ModemProfile& sound = data ? modes_.rate(header.rate) : modes_.mini();
-  // When it began to leave; of one that never did, now.
+  // Start of the transmission; for a packet that never left, the present time.
   const TimeNs begin = Utc(mode == 0 ? packet.transmit : t);
   std::vector<std::string> fields{"CAXST"};
   if (second_generation()) fields.emplace_back("6");
@@ -100,7 +100,7 @@ void Micromodem::TellTransmission(const Header& header, const PacketInfo& packet
       FormatUtc(begin, "%H%M%S", 4),
       std::to_string(clock_mode()),
       std::to_string(mode),
-      "0",  // length of the probe: it is part of the airtime
+      "0",  // length of the probe; it is included in the airtime
       Whole(sound.bandwidth_khz * 1e3),
       Whole(sound.centre_khz * 1e3),
       std::to_string(header.rate),

@@ -17,7 +17,7 @@ double SpreadingDb(const ModemProfile& p) {
   return 10.0 * std::log10(1e3 * p.bandwidth_khz / bits_per_s);
 }
 
-/// Instant and lossless: what is left are medium access and queues.
+/// Instant and lossless; only medium access and queues have an effect.
 Profile Ideal() {
   ModemProfile p;
   p.name = p.waveform = "ideal";
@@ -29,13 +29,13 @@ Profile Ideal() {
   return std::make_unique<ModemProfile>(p);
 }
 
-/// Noncoherent FSK, whose only gain is that of its spreading.
+/// Noncoherent FSK. Its only gain is from spreading.
 void DetectNoncoherently(ModemProfile* p) {
   p->errors.kind = ErrorCurve::Kind::kNoncoherentFsk;
   p->errors.processing_gain_db = p->spreading_db = SpreadingDb(*p);
 }
 
-/// What a WHOI Micromodem is, whatever it sends.
+/// Properties of a WHOI Micromodem at any rate.
 ModemProfile Micromodem(const std::string& waveform, int rate) {
   ModemProfile p;
   p.waveform = "micromodem_" + waveform;
@@ -61,8 +61,8 @@ Profile MicromodemFsk() {
   return std::make_unique<ModemProfile>(p);
 }
 
-/// A mini-packet of 13 bits: pings, their replies, acknowledgements, starts of cycles. No public
-/// document says how long it takes; .9 s is what one hears.
+/// A mini-packet of 13 bits: pings, their replies, acknowledgements and starts of cycles. No public
+/// document states its duration; recordings sound like 0.9 s.
 Profile MicromodemMini() {
   ModemProfile p = Micromodem("fsk", 0);
   p.name = "micromodem_mini";
@@ -75,7 +75,8 @@ Profile MicromodemMini() {
   return std::make_unique<ModemProfile>(p);
 }
 
-/// Coded PSK at 5 kHz. A set of frames takes the published time; one of fewer frames its share.
+/// Coded PSK at 5 kHz. A full set of frames takes the published time, and fewer frames their share
+/// of it.
 Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, double set_s) {
   ModemProfile p = Micromodem("psk", rate);
   p.centre_khz = 25.0;
@@ -87,8 +88,8 @@ Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, dou
   if (rate % 2 == 1) {
     p.errors = CodedPskCurve(rate);
   } else {
-    // No curve of the even rates is published: half of their frames are lost at the ratio of energy
-    // to noise per bit at which half of those of the others are, 3.5 dB on average.
+    // No curve of the even rates is published. The assumption is: they lose half of their frames at
+    // the same ratio of energy to noise per bit as the other rates, 3.5 dB on average.
     p.errors.kind = ErrorCurve::Kind::kCoded;
     p.errors.half_db = 3.5 - p.spreading_db;
     p.errors.frame_bits = 8.0 * static_cast<double>(frame_bytes);
@@ -97,8 +98,9 @@ Profile MicromodemPsk(int rate, std::size_t frames, std::size_t frame_bytes, dou
   return std::make_unique<ModemProfile>(p);
 }
 
-/// JANUS baseline packet (NATO STANAG 4748): 32 chips of preamble and 144 of 64 coded bits, at 160
-/// chips per second. The standard leaves the source level open; this one is a usual transducer's.
+/// JANUS baseline packet (NATO STANAG 4748): a preamble of 32 chips, then 144 chips of 64 coded
+/// bits, at 160 chips per second. The standard does not set the source level; this one is usual for
+/// transducers.
 Profile Janus() {
   ModemProfile p;
   p.name = p.waveform = "janus";
@@ -118,9 +120,9 @@ Profile Janus() {
   return std::make_unique<ModemProfile>(p);
 }
 
-/// Like an EvoLogics S2C R 18/34 with instant messages: preamble and rate are the straight line
+/// Similar to an EvoLogics S2C R 18/34 with instant messages. Preamble and rate are a straight line
 /// through the published airtimes of 16, 32 and 39 bytes, within 1 %. No error curve is published;
-/// this one loses half of the frames of 32 bytes at Eb/N0 = 4 dB, as convolutional codes do.
+/// this one loses half of the frames of 32 bytes at Eb/N0 = 4 dB, like convolutional codes.
 Profile Evologics() {
   ModemProfile p;
   p.name = p.waveform = "evologics_s2c";

@@ -4,7 +4,8 @@
 #include "auv_common/numbers/random.hpp"
 #include "network_impl.hpp"
 
-/// The receiving side: what is acquired, how interference eats at it, and why packets are lost.
+/// The receiving side: which packets are acquired, the effect of interference, and the reasons of
+/// losses.
 namespace stg::acoustics {
 
 void Network::Impl::Begin(int arrival, TimeNs t) {
@@ -36,7 +37,8 @@ bool Network::Impl::Understands(const Node& n, const ModemProfile& sender) const
 }
 
 void Network::Impl::Acquire(int node, TimeNs t) {
-  // Of those that begin together the strongest is tried first; the others find it in their way.
+  // Of packets that begin together, the strongest is tried first. The others then find the receiver
+  // locked.
   for (;;) {
     Node& n = At(node);
     int best = kNone;
@@ -94,7 +96,7 @@ void Network::Impl::LockOrDrop(int node, int arrival, TimeNs t) {
   if (sinr_db >= needed_db) {
     n.locked = arrival;
     n.lock_begin = a.piece_begin = t;
-    SenseNoise(node, t);  // again, so that its changes are watched
+    SenseNoise(node, t);  // again, so that changes of the noise are tracked
     if (observer_ != nullptr) observer_->OnAcquired(packets_[a.packet].info, node, a.begin);
     return;
   }
@@ -117,7 +119,7 @@ void Network::Impl::Integrate(Node* n, TimeNs t) {
   const double interference = Interference(*n, n->locked);
   const double sinr_db = Db(a.power / (n->noise + interference));
   const Packet& p = packets_[a.packet];
-  // The sender chooses the rate, so the curve is its modem's.
+  // The sender chooses the rate, so the error curve is from its modem.
   const ModemProfile& sender = SenderOf(a);
   a.log_success += sender.errors.LogSuccess(sinr_db - sender.implementation_db, p.bits * share);
   a.noise += n->noise * share;
@@ -165,7 +167,7 @@ void Network::Impl::Finish(int arrival, TimeNs t) {
   const double sinr_db = Db(a.power / (a.noise + a.interference));
   if (luck < 1.0 - loss) {
     if (!a.open) {
-      // Only overheard.
+      // Only overheard by this node.
     } else if (p.info.kind == PacketKind::kPing) {
       Tell(p, FateOf(a));
       Answer(a, t);
@@ -180,7 +182,7 @@ void Network::Impl::Finish(int arrival, TimeNs t) {
     EndLock(a, FateOf(a), true, t);
     return;
   }
-  // With the same luck, what would have saved it?
+  // With the same draw, which better condition would have saved the packet?
   const auto survives = [&](double snr_db) {
     return luck < std::exp(profile.errors.LogSuccess(snr_db - profile.implementation_db, p.bits));
   };

@@ -6,12 +6,12 @@
 namespace stg::acoustics {
 namespace {
 
-/// Below the noise by more than this, a sound is neither heard nor disturbs [dB].
+/// A sound that is farther below the noise than this is neither received nor interferes [dB].
 constexpr double kInaudibleDb = -20.0;
-/// Pings and replies count by themselves: sequences are those of packets with data.
+/// Pings and replies have their own counter, because sequences are for packets with data.
 constexpr std::uint32_t kControl = 0x80000000;
 
-/// Share of the sender's power that falls into the receiver's band.
+/// Share of the sender's power in the receiver's band.
 double Overlap(const ModemProfile& sender, const ModemProfile& receiver) {
   const double low = std::max(sender.centre_khz - 0.5 * sender.bandwidth_khz,
                               receiver.centre_khz - 0.5 * receiver.bandwidth_khz);
@@ -269,7 +269,7 @@ void Network::Impl::Answer(const Arrival& request, TimeNs t) {
   Transmission reply;
   reply.source = request.receiver;
   reply.destination = asked.info.source;
-  // The modem counts its turnaround by its own clock.
+  // The modem measures its turnaround with its own clock.
   reply.stamp = reply.generation =
       t + std::llround(n.profile.turnaround_s / (1.0 + n.clock_rate) * 1e9);
   reply.tag = asked.info.tag;

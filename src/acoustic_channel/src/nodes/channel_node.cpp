@@ -106,13 +106,14 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
     return;
   }
   if (verdict == Verdict::kNewRun) {
-    barrier_.Restart();  // but keeps transmissions: those of this step may have come before it
+    // Transmissions stay, because those of this step may have arrived before it.
+    barrier_.Restart();
   } else if (barrier_.open() && stamp > barrier_.stamp()) {
-    // The world has gone on without this channel.
+    // The world has continued without this channel.
     Close();
     ++incomplete_steps_;
   }
-  // Nodes need time to start, and the world waits with its first step until they have.
+  // Nodes need time to start. The world waits for them with its first step.
   const bool at_start = message->episode == 0 && message->step == 0;
   const double deadline_s =
       at_start ? std::numeric_limits<double>::infinity() : WallSeconds() + timeout_s_;
@@ -138,14 +139,14 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   CloseIfDue();
 }
 
-/// Of a latched topic only the last message waits for a subscriber. Agents begin with this one, an
-/// empty window before the run: an agent that has it is connected, and will hear all that follow.
+/// Sends an empty window before the run. A new subscriber of a latched topic gets only the last
+/// message. An agent that has this window is connected and will receive all later ones.
 void ChannelNode::Greet() {
   received_.clear();
   for (int i = 0; i < scenario_.run.agents; ++i) PublishWindow(i, 0);
 }
 
-/// Only of those whose packet can leave in this step, though others may offer one, too.
+/// Waits only for AUVs whose packet can leave in this step. Others may offer a packet, too.
 void ChannelNode::AskForTransmissions() {
   const TimeNs stamp = barrier_.stamp();
   for (int i = 0; i < scenario_.run.agents; ++i) {
@@ -183,7 +184,7 @@ void ChannelNode::OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr
 }
 
 bool ChannelNode::Sendable(const auv_msgs::AcousticPacket& message) const {
-  if (message.data.empty()) return true;  // silent in this step
+  if (message.data.empty()) return true;  // no data in this step
   try {
     channel_->CheckOrThrow(TransmissionOf(message));
     return true;
@@ -221,7 +222,7 @@ void ChannelNode::Close() {
     if (!barrier_.answered(static_cast<int>(i)) || m->data.empty()) continue;
     offered_.push_back(TransmissionOf(*m));
   }
-  // Only subscribers learn what happens; without them it is not written down.
+  // Events are only recorded if there are subscribers.
   const bool watched = packets_.getNumSubscribers() > 0;
   reports_.Begin(start_);
   channel_->Observe(watched ? &reports_ : nullptr);
@@ -237,13 +238,13 @@ void ChannelNode::Close() {
   done_.publish(done);
   steps_.Add();
   reports_.message().header.stamp = done.stamp;
-  // What an episode came to is no matter of the wall clock.
+  // The final counts of an episode do not depend on the wall clock.
   const bool last = step_ + 1 == static_cast<std::uint32_t>(scenario_.run.time.episode_steps);
   PublishPackets(last);
   PublishLinks(now, last);
 }
 
-/// A run in lockstep makes many steps between two looks of any observer.
+/// In lockstep, many steps pass between two messages for observers.
 void ChannelNode::PublishPackets(bool now) {
   auv_msgs::PacketEvents& m = reports_.message();
   const double wall_s = WallSeconds();
@@ -274,7 +275,7 @@ void ChannelNode::PublishLinks(TimeNs now, bool last) {
   m.links.clear();
   m.energy.clear();
   for (int i = 0; i < scenario_.run.agents; ++i) {
-    m.energy.push_back(channel_->EnergyJ(i, now + period_));  // packets are counted until then
+    m.energy.push_back(channel_->EnergyJ(i, now + period_));  // packets are counted until that time
     for (int j = 0; j < scenario_.run.agents; ++j) {
       if (i == j) continue;
       auv_msgs::LinkState& link = m.links.emplace_back();

@@ -5,7 +5,7 @@
 
 namespace stg::acoustics {
 
-/// Counts what is reported, and passes it on.
+/// Counts the reported events and passes them on.
 class Simulation::Tally : public PacketObserver {
  public:
   Tally(int nodes, PacketObserver* next) : nodes_(nodes), next_(next) {
@@ -58,7 +58,7 @@ class Simulation::Tally : public PacketObserver {
   PacketObserver* next_;
   SimulationSummary counts_;
   std::uint64_t decided_ = 0;
-  std::vector<TimeNs> received_;  ///< airtime of what was delivered, by receiver
+  std::vector<TimeNs> received_;  ///< airtime of delivered packets, by receiver
 };
 
 Simulation::Simulation(const SimulationFile& file, PacketObserver* log)
@@ -93,7 +93,7 @@ void Simulation::Place() {
 
 void Simulation::Offer() {
   offers_.clear();
-  // The end itself is not part of the run.
+  // The end time itself is not part of the run.
   traffic_.Take(now_ == end_ ? end_ - 1 : now_, &offers_);
   transmissions_.clear();
   for (std::size_t k = 0; k < offers_.size(); ++k) {
@@ -130,7 +130,7 @@ bool Simulation::Step() {
     receptions_.clear();
     for (int i = 0; i < channel_->nodes(); ++i) channel_->Deliver(i, now_, &receptions_);
   };
-  // A model without a clock of its own delivers what came in before it takes the next packets.
+  // A model without its own clock delivers the arrived packets before it takes the next ones.
   if (!channel_->continuous() && step_ > 0) deliver();
   Place();
   Offer();

@@ -17,14 +17,14 @@ namespace {
 using config::YamlTree;
 
 constexpr std::size_t kMaxNodes = 1000;
-/// As many as fit into the largest file, nearly: times of packets are lists.
+/// Nearly the number that fits into the largest file, because times of packets are lists.
 constexpr int kMaxValues = 300000;
 constexpr double kLongestS = 1e8;
 
-/// The keys of one map of the file, each by the program's usual rules.
+/// The keys of one map of the file. Each follows the usual rules of configurations.
 class Reader {
  public:
-  /// @param prefix of the keys in messages, with a point at its end; or empty
+  /// @param prefix prefix of the keys in messages, with a point at its end; or empty
   Reader(const std::string& file, const YamlTree& map, const std::string& prefix)
       : file_(file), map_(map), prefix_(prefix) {
     if (map.kind != YamlTree::Kind::kMap) {
@@ -60,7 +60,8 @@ class Reader {
     }
   }
 
-  /// Reads all keys but these, which the caller reads by hand, into what the table points to.
+  /// Reads all keys into the members that the table points to, except the ones in `by_hand`, which
+  /// the caller reads.
   const config::Loader& Read(const std::vector<std::string>& by_hand) {
     YamlTree rest = map_;
     rest.entries.clear();
@@ -75,7 +76,7 @@ class Reader {
     return *loader_;
   }
 
-  /// The items of a list, at least one.
+  /// The elements of a list; there is at least one.
   const std::vector<YamlTree>& List(const std::string& key) const {
     Require(key);
     const YamlTree::Entry& entry = *Find(key);
@@ -90,10 +91,10 @@ class Reader {
   const YamlTree& map_;
   std::string prefix_;
   config::Table table_;
-  std::optional<config::Loader> loader_;  ///< made when the table is whole
+  std::optional<config::Loader> loader_;  ///< made when the table is complete
 };
 
-/// Without keys of a scenario that this file does not have.
+/// Removes keys of a scenario, because this file does not have them.
 config::Violation InThisFile(config::Violation violation, const config::Table& table) {
   auto& keys = violation.keys;
   const auto unknown = [&](const std::string& key) { return table.Find(key) == nullptr; };
@@ -204,8 +205,8 @@ TrafficSpec ReadFlow(const std::string& file, const YamlTree& map, std::size_t i
   return flow;
 }
 
-/// Refuses nodes of modems that are, while they take part, in the air or in the ground: the model
-/// knows neither. Between the points of a track the way is straight.
+/// Refuses nodes with modems that are in the air or in the ground while they take part, because the
+/// model covers neither. Between the points of a track the way is straight.
 void RequireInWater(const std::string& file, const Reader& reader, const SimulationFile& s) {
   if (!PropagationModels().Make(s.channel.model, s.channel.models, s.channel)->has_modems()) return;
   const WaterConfig& water = s.channel.water;

@@ -13,7 +13,7 @@
 namespace stg::acoustics {
 namespace {
 
-/// As far as a node of a network may be, as fast and for as long.
+/// Limits of a node of a network: distance, speed and duration.
 constexpr double kFarthest_m = 1e7, kFastest_mps = 100.0, kLongest_s = 1e8;
 
 double Largest(const Vec3<double>& v) {
@@ -26,7 +26,7 @@ std::string_view Trimmed(std::string_view text) {
   return text;
 }
 
-/// Four finite numbers of a row; false: something else.
+/// Parses a row of four finite numbers. Returns false for anything else.
 bool ParseRow(std::string_view row, double values[4]) {
   for (int i = 0; i < 4; ++i) {
     const auto comma = row.find(',');

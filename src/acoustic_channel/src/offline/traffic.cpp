@@ -10,7 +10,7 @@
 namespace stg::acoustics {
 namespace {
 
-/// Anything later never happens: three centuries.
+/// Later times never happen; this is three centuries.
 constexpr double kEndOfTimeS = 9e9;
 
 TimeNs Nanoseconds(double s) { return std::llround(s * 1e9); }

@@ -20,7 +20,7 @@ constexpr std::size_t kMostWaiting = 256 * 1024;
 constexpr TimeNs kMostPatience = 10'000'000'000;
 constexpr std::size_t kReadAtOnce = 16 * 1024;
 
-/// A socket whose other end has gone is an error here, and no signal.
+/// If the other end of a socket is closed, this is an error here, not a signal.
 ssize_t WriteTo(int stream, const std::string& bytes) {
   const ssize_t size = send(stream, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   return size < 0 && errno == ENOTSOCK ? write(stream, bytes.data(), bytes.size()) : size;

@@ -27,7 +27,7 @@ void SendAtOnce(int stream) {
   throw UserError(name + ": " + std::strerror(errno));
 }
 
-/// A client beside the first one.
+/// A client in addition to the first one.
 class Guest : public BytePort {
  public:
   Guest(int number, int stream) : BytePort("guest"), number_(number) { Open(stream); }
@@ -66,7 +66,7 @@ class TcpServer : public BytePort {
     return first;
   }
   void Serve(TimeNs now, const PortListener& listener) override {
-    // A client that has gone makes room for the next.
+    // A client that has disconnected makes room for the next one.
     BytePort::Serve(now, listener);
     ServeGuests(now, listener);
     if (wants_listener() && now >= retry_ && !Listen()) retry_ = now + kFirstWait;
@@ -107,7 +107,7 @@ class TcpServer : public BytePort {
 
  private:
   bool wants_listener() const { return open_ && listener_ < 0; }
-  /// False: the address cannot be had now, errno says why.
+  /// Returns false if the address is not available now; errno has the reason.
   bool Listen() {
     listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     const int on = 1;
@@ -138,7 +138,7 @@ class TcpServer : public BytePort {
     }
   }
   void ServeGuests(TimeNs now, const PortListener& listener) {
-    // One of them may become the client meanwhile, which changes what its number stands for.
+    // One of them may become the client in this loop. Then its number has another meaning.
     for (std::size_t k = 0; k < guests_.size(); ++k) {
       const int number = guests_[k]->number();
       PortListener of_guest;

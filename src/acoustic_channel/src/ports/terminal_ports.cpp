@@ -46,7 +46,8 @@ void MakeRaw(int terminal, speed_t speed) {
   tcsetattr(terminal, TCSANOW, &settings);
 }
 
-/// A pseudo terminal of ours: the host's end stays open here, so that hosts may come and go.
+/// A pseudo terminal of this program. The host's end stays open here, so that hosts may come and
+/// go.
 class Pty : public BytePort {
  public:
   explicit Pty(const std::string& link) : BytePort("pty"), link_(link) {

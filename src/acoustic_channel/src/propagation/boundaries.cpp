@@ -11,7 +11,7 @@ double SurfaceReflection(double sin_theta, double wave_number, double height_rms
 
 std::complex<double> BottomReflection(double sin_theta, double density_ratio, double speed_ratio,
                                       double loss_db) {
-  // Loss per wavelength as the imaginary part of the index of refraction: 2 pi 20 lg e dB.
+  // The loss per wavelength is the imaginary part of the index of refraction: 2 pi 20 lg e dB.
   constexpr double kDbPerUnit = 54.575054;
   const std::complex<double> index = std::complex<double>(1.0, loss_db / kDbPerUnit) / speed_ratio;
   const double cos2 = 1.0 - sin_theta * sin_theta;

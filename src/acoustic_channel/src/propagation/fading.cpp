@@ -43,7 +43,7 @@ double Shadowing::LevelDb(int a, int b, TimeNs t) {
 double RicianDb(double rician_k, std::uint64_t seed, std::uint32_t episode, std::uint32_t sequence,
                 int source, int receiver) {
   if (rician_k >= kSteadyRicianK) return 0.0;
-  // 12 bits each: a channel of more nodes would run out of memory first.
+  // 12 bits each, because a channel with more nodes would not fit into memory.
   assert(source >= 0 && source < 4096 && receiver >= 0 && receiver < 4096);
   Random random(seed, Stream::kFading, episode, sequence,
                 static_cast<std::uint32_t>(source) << 12 | static_cast<std::uint32_t>(receiver));

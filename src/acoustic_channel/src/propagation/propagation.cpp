@@ -54,13 +54,13 @@ PathSum Propagation::At(const Vec3<double>& p_A_W, const Vec3<double>& p_B_W,
   const auto gain_db = [&](double length_m) {
     return -10.0 * config_.spreading * std::log10(std::max(length_m, 1.0)) - a_db_per_m * length_m;
   };
-  // The straight path by its true distance, though a node be outside of the layer.
+  // The straight path has its true length, even if a node is outside of the layer.
   const double straight_db = gain_db(g.distance_m);
   if (config_.paths == 1) {
     sum.gain_db = straight_db;
     sum.rician_k = std::min(config_.rician_k, kSteadyRicianK);
   } else {
-    // Powers relative to the straight path, delays after it.
+    // Powers are relative to the straight path, and delays are after it.
     double others = 0.0, first_moment = 0.0, second_moment = 0.0;
     const double wave_number = 2.0 * kPi * centre_khz * 1e3 * g.slowness;
     ForEachImage(g.range_m, g.depth_A_m, g.depth_B_m, water_.depth_m, config_.paths,

@@ -9,7 +9,7 @@
 namespace stg::acoustics::s2c {
 namespace {
 
-/// Fields before the payload, with the name; 0: it has none.
+/// Number of fields before the payload, including the name; 0: there is no payload.
 std::size_t FieldsBeforePayload(const std::string& name) {
   if (name == "RECVIM" || name == "RECVIMS" || name == "RECV") return 9;
   return name == "RECVPBM" ? 8 : 0;
@@ -45,7 +45,7 @@ std::optional<ModemLine> AnswerReader::Next() {
     at = end + 1;
     if (buffer_[end] != ',') break;
     if (line.fields.size() != FieldsBeforePayload(line.name())) continue;
-    // RECVIM,[p<pid>,]<length>: the protocol id is one field more.
+    // RECVIM,[p<pid>,]<length>: the protocol id is an additional field.
     if (!line.fields[1].empty() && line.fields[1][0] == 'p') {
       line.fields.erase(line.fields.begin() + 1);
       continue;

@@ -4,7 +4,7 @@
 
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 
-/// The modem and its acoustic connection.
+/// Burst data and the acoustic connection.
 namespace stg::acoustics::s2c {
 
 ModemProfile BurstMode(const ModemProfile& own) {
@@ -14,7 +14,7 @@ ModemProfile BurstMode(const ModemProfile& own) {
   p.frame_bytes = 1;
   p.max_frames = kLongestBurst;
   p.spreading_db = 10.0 * std::log10(1e3 * p.bandwidth_khz / kBurstBitrate);
-  // The same ratio of energy to noise per bit.
+  // Keeps the ratio of energy to noise per bit.
   p.errors.half_db += own.spreading_db - p.spreading_db;
   return p;
 }
@@ -37,7 +37,7 @@ std::string S2cModem::SendBurst(const Header& header, const std::string& payload
 
 void S2cModem::TakeRaw(const std::string& bytes, TimeNs t) {
   const int remote = settings_.at("AR");
-  if (WrongDestination(remote, false) || state_ != State::kListen) return;  // no modem takes it
+  if (WrongDestination(remote, false) || state_ != State::kListen) return;  // the data is dropped
   HeedSettings();
   for (std::size_t at = 0; at < bytes.size(); at += kLongestBurst) {
     const std::string answer = connection_.AddRaw(remote, bytes.substr(at, kLongestBurst), t);
@@ -74,7 +74,7 @@ bool S2cModem::ControlConnection(const std::string& text, TimeNs t) {
   return true;
 }
 
-/// Instant messages and acknowledgements go first.
+/// Instant messages and acknowledgements have priority.
 void S2cModem::LaunchBurst(TimeNs t) {
   if (burst_tag_ != 0 || sending_ || receiving_ || message_ || !acks_.empty()) return;
   if (state_ != State::kListen) return;

@@ -10,7 +10,7 @@ std::string Bystander::Read(ByteView bytes) {
   reader_.Feed(bytes);
   std::string answers;
   while (const std::optional<Item> item = reader_.Next()) {
-    if (item->kind == Item::Kind::kData) continue;  // no modem takes it
+    if (item->kind == Item::Kind::kData) continue;  // the data is dropped
     const bool fits = !item->escaped || reader_.mode() == Reader::Mode::kData;
     takes_control_ = fits && item->kind == Item::Kind::kCommand && item->text == "@CTRL";
     if (takes_control_) break;

@@ -13,7 +13,7 @@ std::string Fixed(double value, int decimals) {
   return text;
 }
 
-/// Of instant messages: 11 ms a byte.
+/// Bit rate of instant messages: 11 ms per byte.
 constexpr long kImBitrate = 727;
 
 bool Letter(char c) { return c >= 'A' && c <= 'Z'; }
@@ -61,7 +61,7 @@ void S2cModem::Command(const std::string& text, TimeNs t) {
 void S2cModem::Change(char group, const std::string& name, const std::string& value) {
   const std::string command = group + name;
   const bool extended = !name.empty() && name[0] == 'Z';
-  // AT@ZX and its like live in a group of their own, AT!ZC does not.
+  // AT@ZX and similar commands are a group of their own; AT!ZC is not in it.
   const bool in_group =
       group == '@' ? name == "ZX" || name == "ZF" || name == "ZU" || name == "ZA"
                    : !extended || name == "ZC" || name == "ZP" || name == "ZI" || name == "ZS";
@@ -155,7 +155,7 @@ void S2cModem::Control(const std::string& text, TimeNs t) {
     state_ = State::kDeaf;
     Answer(text, "INITIATION DEAF");
   } else if (text == "C") {
-    // The answer is the first one of command mode.
+    // The answer is the first one in command mode.
     SetMode(Reader::Mode::kPlain);
     accept();
   } else if (text == "O") {
@@ -163,7 +163,7 @@ void S2cModem::Control(const std::string& text, TimeNs t) {
   } else if (text == "I0") {
     Answer(text, options_.firmware);
   } else if (text == "I1") {
-    // dune takes the number of the one from the first zero on, that of the other behind the "v".
+    // dune reads the first number from its first zero on, and the second number after the "v".
     Answer(text, "phy: emulated 0.1, mac: emulated v" + options_.firmware);
   } else if (text == "I7") {
     Answer(text, "EM" + std::to_string(options_.address));

@@ -10,7 +10,7 @@ namespace stg::acoustics::s2c {
 namespace {
 
 constexpr TimeNs kBackoffTime = 2'000'000'000;
-/// Two modems that call each other at once must not do so for ever.
+/// Two modems that call each other at the same time must not do so forever.
 constexpr TimeNs kApart = 125'000'000;
 constexpr int kSteps = 8;
 
@@ -42,7 +42,7 @@ std::string Connection::Add(int destination, int pid, const std::string& data, T
 }
 
 std::string Connection::AddRaw(int destination, const std::string& data, TimeNs t) {
-  // The first chunk may be on its way.
+  // The first chunk cannot be extended, because it may be on its way.
   const bool joins = buffer_.size() > 1 && buffer_.back().raw &&
                      buffer_.back().destination == destination &&
                      buffer_.back().data.size() + data.size() <= kLongestBurst;
@@ -100,7 +100,7 @@ void Connection::Begin(MessageType type, TimeNs t) {
   active_ = t;
 }
 
-/// Whatever there is to do next.
+/// Starts the next action, if there is one.
 void Connection::Continue(TimeNs t) {
   if (step_ != Step::kNothing || buffer_.empty()) return;
   if (state_ == State::kOnline) Begin(MessageType::kBurst, t);
@@ -159,7 +159,7 @@ void Connection::GoOnline(int peer, TimeNs t) {
 bool Connection::TakeConnect(int source, TimeNs t) {
   if (state_ == State::kBackoff) return false;
   if (state_ != State::kOffline && peer_ != source) return false;
-  // It calls anew where it did not hear the answer; what waits here for it goes out again.
+  // The peer calls again because it did not receive the answer. The data for it is sent again.
   GoOnline(source, t);
   return true;
 }

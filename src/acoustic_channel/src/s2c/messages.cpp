@@ -3,12 +3,12 @@
 
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 
-/// Instant, synchronous and piggyback messages on their way out.
+/// Sending of instant, synchronous and piggyback messages.
 namespace stg::acoustics::s2c {
 namespace {
 
 constexpr std::size_t kLongestIm = 64;
-/// A synchronous message whose time has been over for longer is not sent [us].
+/// A synchronous message is not sent if it is later than this [us].
 constexpr std::int32_t kLate_us = 1000;
 constexpr char kBusy[] = "BUSY DELIVERING MESSAGE";
 

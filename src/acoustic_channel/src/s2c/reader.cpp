@@ -11,7 +11,7 @@ constexpr char kEscape[] = "+++AT";
 constexpr std::size_t kEscapeLength = 5;
 constexpr std::size_t kLongestHeader = 128;
 
-/// Commands with a binary payload, and the fields between name and payload.
+/// Commands with a binary payload, and the number of fields between name and payload.
 int FieldsOf(const std::string& name) {
   static const std::array<std::pair<const char*, int>, 4> messages{
       {{"*SENDIM", 3}, {"*SENDIMS", 3}, {"*SENDPBM", 2}, {"*SEND", 2}}};
@@ -95,7 +95,7 @@ std::optional<Item> Reader::NextData() {
   if (escape == 0) return NextLine();
   std::size_t length = escape;
   if (escape == std::string::npos) {
-    // What could be the beginning of an escape is kept.
+    // Bytes that may be the beginning of an escape are kept.
     std::size_t kept = std::min(buffer_.size(), kEscapeLength - 1);
     while (kept > 0 && buffer_.compare(buffer_.size() - kept, kept, kEscape, kept) != 0) --kept;
     length = buffer_.size() - kept;
@@ -145,7 +145,7 @@ std::optional<Item> Reader::NextLine() {
 std::optional<Item> Reader::NextMessage(std::size_t begin, std::size_t name_end, int fields) {
   const std::string name = buffer_.substr(begin + 2, name_end - begin - 2);
   inside_message_ = true;
-  // The first field may be a protocol id, "p5".
+  // The first field may be a protocol id, e.g. "p5".
   std::size_t at = name_end + 1, number = at;
   if (at < buffer_.size() && buffer_[at] == 'p') ++fields;
   std::size_t header_end = name_end;

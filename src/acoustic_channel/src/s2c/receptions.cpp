@@ -4,11 +4,11 @@
 
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 
-/// What the water tells the modem, and what it tells its host of that.
+/// Events of the water, and the modem's reports about them to its host.
 namespace stg::acoustics::s2c {
 namespace {
 
-constexpr int kGood = 100;  ///< integrity of a signal that could just be acquired
+constexpr int kGood = 100;  ///< integrity of a signal that is just strong enough
 constexpr int kBest = 999;
 
 std::uint32_t Microseconds(TimeNs t) { return static_cast<std::uint32_t>((t + 500) / 1000); }
@@ -49,7 +49,7 @@ void S2cModem::Handle(const ModemEvent& event) {
       OnSendEnd(event.packet, event.t);
       break;
     case ModemEvent::Kind::kDiscarded:
-      // Taken back by the modem itself, or the vehicle has left: no host hears of it.
+      // The modem has taken it back, or the vehicle has left. No host is notified.
       if (message_ && message_->tag == event.packet.tag &&
           message_->step == Message::Step::kOffered) {
         message_.reset();

@@ -6,12 +6,12 @@
 
 #include "acoustic_channel/access/medium_access.hpp"
 
-/// Lines in, lines out, and time.
+/// Lines from and to the host, and time.
 namespace stg::acoustics::s2c {
 namespace {
 
-constexpr TimeNs kGuard = 1'000'000'000;     ///< silence around a lonely "+++"
-constexpr TimeNs kPatience = 5'000'000'000;  ///< with a message that does not go on
+constexpr TimeNs kGuard = 1'000'000'000;     ///< silence around a single "+++"
+constexpr TimeNs kPatience = 5'000'000'000;  ///< longest wait for the rest of a message
 constexpr TimeNs kAckPatience = 1'000'000'000;
 
 }  // namespace
@@ -34,7 +34,7 @@ void S2cModem::Start(TimeNs t) {
   reader_.Reset();
   state_ = State::kListen;
   sending_ = receiving_ = false;
-  // A host that is still there hears that its messages have ended.
+  // A host that is still connected is notified that its messages have ended.
   if (message_ && message_->step >= Message::Step::kSending) GiveUp("FAILED");
   DropMessages(true);
   acks_.clear();
@@ -46,7 +46,7 @@ void S2cModem::Start(TimeNs t) {
 }
 
 void S2cModem::Reboot(TimeNs t) {
-  const bool connected = std::exchange(connected_, false);  // nothing more is said
+  const bool connected = std::exchange(connected_, false);  // nothing more is sent to the host
   Start(t);
   connected_ = connected;
   world_->HangUp();
@@ -81,7 +81,7 @@ void S2cModem::Work(TimeNs t) {
 void S2cModem::Obey(const Item& item, TimeNs t) {
   if (item.kind == Item::Kind::kData) return TakeRaw(item.payload, t);
   const std::string name = NameOf(item.text);
-  // The interpreter of plain lines knows no escapes.
+  // The interpreter of plain lines does not know escapes.
   if (item.kind == Item::Kind::kBroken ||
       (item.escaped && reader_.mode() == Reader::Mode::kPlain)) {
     Answer(name, "ERROR WRONG FORMAT");
@@ -99,8 +99,8 @@ void S2cModem::Answer(const std::string& name, const std::string& text) {
 }
 
 void S2cModem::AnswerLines(const std::string& name, const std::string& lines) {
-  // Each ends with a line feed alone, and only the whole with carriage return and line feed: EviNS
-  // looks for both at the end, and dune takes what comes before for one line.
+  // Each line ends with a line feed only, and the whole answer with carriage return and line feed.
+  // EviNS looks for both at the end, and dune takes everything before them as one line.
   Answer(name, lines);
 }
 

@@ -10,10 +10,11 @@ namespace {
 struct Known {
   const char* name;
   int factory, lo, hi;
-  const char* shown;  ///< in AT&V; null: not there
+  const char* shown;  ///< name in AT&V; null: not listed there
 };
 
-/// Values that change what the emulated modem does; then those that it stores and shows alone.
+/// First the settings that change the behaviour of the emulated modem, then those that it only
+/// stores and shows.
 constexpr std::array<Known, 26> kKnown{{
     {"L", 0, 0, 3, "Source Level"},
     {"LC", 0, 0, 1, "Source Level Control"},
@@ -43,7 +44,8 @@ constexpr std::array<Known, 26> kKnown{{
     {"PS", 16384, 0, 1048576, "Pool Size"},
 }};
 
-/// AT@ZX and its like last until the power goes: they are never stored, and never marked.
+/// AT@ZX and similar settings last until the power is switched off. They are never stored and never
+/// marked.
 bool OfSession(const std::string& name) {
   return name == "ZX" || name == "ZF" || name == "ZU" || name == "ZA";
 }

@@ -35,10 +35,10 @@ void MakeFolder(const std::string& folder) {
   }
 }
 
-/// packets.csv while it grows, beside the one of an earlier simulation.
+/// packets.csv while it is being written. The file of an earlier simulation stays until Commit.
 class PacketFile {
  public:
-  /// Opened anew; UserError when that does not work.
+  /// Opens an empty file. Throws UserError if this fails.
   PacketFile(const std::string& folder, const std::vector<std::string>& nodes)
       : file_(folder + "/packets.csv", "the packets"),
         out_(file_.temporary()),
@@ -46,7 +46,7 @@ class PacketFile {
     if (!out_) file_.Fail(std::strerror(errno));
   }
   stg::acoustics::PacketLog* log() { return &log_; }
-  /// UserError when rows were lost: there is no use in going on.
+  /// Throws UserError if rows were lost, because it is useless to continue.
   void Check() const {
     if (!out_) file_.Fail("rows are lost, is the disk full?");
   }
@@ -62,15 +62,16 @@ class PacketFile {
   stg::acoustics::PacketLog log_;
 };
 
-/// Of an earlier simulation: beside another's summary it would be taken for this one's.
+/// Removes a file of an earlier simulation. Together with the new summary it would be taken for a
+/// new one.
 void Remove(const std::string& folder, const std::string& name) {
   std::error_code error;
   std::filesystem::remove(std::filesystem::path(folder) / name, error);
   if (error) throw stg::UserError(folder + "/" + name + ": cannot be removed");
 }
 
-/// Texts of the tracks by their names. A track of another folder is not among them: the copy of the
-/// simulation names it as the file does.
+/// Contents of the tracks, by name. Tracks in other folders are not included, because the copy of
+/// the simulation refers to them as the original file does.
 std::map<std::string, std::string> ReadTracks(const SimulationFile& file, const std::string& path) {
   std::map<std::string, std::string> texts;
   const auto folder = std::filesystem::path(path).parent_path();
@@ -123,7 +124,7 @@ nlohmann::json ToJson(const SimulationSummary& s, const SimulationFile& file, bo
           {"energy_j", energy}};
 }
 
-/// How far it is, on a terminal, twice a second of wall time.
+/// Shows the progress on a terminal, twice per second of wall time.
 class Progress {
  public:
   Progress(double duration_s, bool on) : duration_s_(duration_s), on_(on) {}
@@ -147,8 +148,8 @@ class Progress {
   Clock::time_point start_ = Clock::now(), shown_ = start_;
 };
 
-/// Exit status: 0, or kStopped when it was interrupted. What the folder holds of an earlier
-/// simulation stays until this one is done.
+/// Exit status: 0, or kStopped if it was interrupted. Results of an earlier simulation in the
+/// folder stay until this one is complete.
 int Simulate(const std::string& path, const std::string& folder, bool quiet, bool log_packets,
              const std::atomic<int>& stop) {
   const SimulationFile file = stg::acoustics::LoadSimulation(path);
@@ -206,7 +207,7 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
   try {
     stg::PrintResult(json);
   } catch (const stg::UserError&) {
-    // All is written, and there may be no reader left when the terminal was closed.
+    // Everything is written, and after the terminal was closed there may be no reader.
     if (whole) throw;
   }
   return whole ? 0 : stg::kStopped;
@@ -214,8 +215,8 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
 
 }  // namespace
 
-/// A network offline: nodes, motion and traffic from a file; packet log as CSV, summary as one JSON
-/// object on the last line.
+/// Simulates a network with nodes, motion and traffic from a file. Writes a packet log as CSV; the
+/// last line is the summary as one JSON object.
 int main(int argc, char** argv) {
   CLI::App app(
       "Runs an acoustic network from a file (docs/simulate.md) and writes DIR/packets.csv, "

@@ -28,7 +28,7 @@ double SoundSpeedProfile::At(double depth_m) const {
 
 double SoundSpeedProfile::MeanSlowness(double depth_a_m, double depth_b_m) const {
   const double lo = std::min(depth_a_m, depth_b_m), hi = std::max(depth_a_m, depth_b_m);
-  // Simpson's rule; a metre of depth changes c by less than a part in a thousand.
+  // Simpson's rule. One metre of depth changes c by less than a thousandth.
   if (hi - lo < 1.0) return 1.0 / At(0.5 * (lo + hi));
   constexpr int kHalves = 8;
   const double h = (hi - lo) / (2 * kHalves);

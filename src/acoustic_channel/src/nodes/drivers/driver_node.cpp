@@ -15,7 +15,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 100;
-/// Messages of ROS are looked for as often; bytes of the modem wake the node.
+/// Period in which the node looks for messages of ROS. Bytes of the modem wake it at once.
 constexpr TimeNs kLook = 5'000'000;
 using auv_msgs::TransmitStatus;
 using Event = acoustics::ModemPort::Event;
@@ -66,7 +66,7 @@ void DriverNode::Spin() {
 }
 
 void DriverNode::OnPacket(const auv_msgs::AcousticPacket::ConstPtr& message) {
-  if (message->data.empty()) return;  // nothing to say
+  if (message->data.empty()) return;  // nothing to send
   const bool all = message->destination == acoustics::kToAll;
   if (!all &&
       (message->destination < 0 || message->destination > 253 || message->destination == id_)) {
@@ -157,7 +157,7 @@ void DriverNode::TellEvents() {
         m.status = TransmitStatus::QUEUED;
         break;
       case Event::Kind::kSent:
-        leaving_[event.tag] = event.t;  // reported with the airtime, once that is known
+        leaving_[event.tag] = event.t;  // it is reported with the airtime, when this is known
         continue;
       case Event::Kind::kSendEnd:
         m.status = TransmitStatus::SENT;

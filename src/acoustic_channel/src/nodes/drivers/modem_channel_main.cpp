@@ -15,7 +15,7 @@ std::unique_ptr<acoustics::Channel> OpenModems(const acoustics::NetworkConfig& s
   return std::make_unique<acoustics::ModemChannel>(scenario.channel, scenario.run, modems);
 }
 
-/// The channel of a swarm whose vehicles have modems of their own, real or emulated.
+/// The channel of a swarm whose vehicles have their own modems, real or emulated.
 class ModemChannelNode : public ChannelNode {
  public:
   ModemChannelNode() : ChannelNode(OpenModems) {}

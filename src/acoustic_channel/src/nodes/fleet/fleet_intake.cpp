@@ -7,14 +7,14 @@
 #include "auv_common/nodes/poll_loop.hpp"
 #include "fleet_node.hpp"
 
-/// What comes in from vehicles: taken, doubted or refused.
+/// Messages from vehicles: accepted, kept for later judgement, or refused.
 namespace stg::nodes {
 namespace {
 
 constexpr std::size_t kMostDoubtful = 10'000;
-/// Frames that diagnostics tell, and characters of each.
+/// Most frames that diagnostics list, and most characters of each.
 constexpr std::size_t kMostFrames = 8, kFrameText = 64;
-/// A clock that is on its way is here after this wall time.
+/// A message of the clock that is on its way arrives within this wall time.
 constexpr double kDoubt_s = 0.5;
 
 using Word = acoustics::FleetChannel::Word;
@@ -34,7 +34,7 @@ void FleetNode::Judge(TimeNs stamp, std::function<void(bool)> decide) {
   doubtful_.push_back({stamp, WallSeconds(), std::move(decide)});
 }
 
-/// In the order in which they came in.
+/// Judges the doubtful messages again, in the order of their arrival.
 void FleetNode::JudgeAgain() {
   const double wall_s = WallSeconds();
   for (std::size_t left = doubtful_.size(); left > 0; --left) {
@@ -57,7 +57,7 @@ void FleetNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mess
         vehicle, Refusals::kFrame,
         "frame '" + message->header.frame_id.substr(0, kFrameText) + "' instead of " + frame_);
   }
-  // An orientation matters only where the twist is in its frame.
+  // The orientation is only needed if the twist is in the body frame.
   const bool placed = twist_ == TwistFrame::kBody ? FinitePose(pose) : FiniteVector(pose.position);
   if (!placed || (twist_ != TwistFrame::kNone && !FiniteVector(twist.linear))) {
     return RefuseOdometry(vehicle, Refusals::kNotFinite,

@@ -18,11 +18,11 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 1000;
-/// Messages that were sent at one moment come in within this wall time.
+/// Messages that were sent at the same time arrive within this wall time.
 constexpr double kSettling_s = 0.02;
-/// A clock that goes back by more begins again; by less it was corrected.
+/// If the clock goes back by more, a new run begins. A smaller step is a correction.
 constexpr TimeNs kStepBack = 1'000'000'000;
-/// A clock that goes forward by more is another one.
+/// If the clock goes forward by more, it is another clock.
 constexpr TimeNs kStepForward = 3'600'000'000'000;
 
 TimeNs Nanoseconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9)); }
@@ -58,7 +58,7 @@ std::vector<int> IdsOf(const std::vector<Vehicle>& vehicles) {
   return ids;
 }
 
-/// Null where `path` is empty. Opened before anything is written.
+/// Opens the bag before anything is written. Returns null if `path` is empty.
 std::unique_ptr<rosbag::Bag> OpenBag(const std::string& path) {
   if (path.empty()) return nullptr;
   auto bag = std::make_unique<rosbag::Bag>();
@@ -68,7 +68,7 @@ std::unique_ptr<rosbag::Bag> OpenBag(const std::string& path) {
     bag->open(path, rosbag::bagmode::Read);
   } catch (const UserError& error) {
     throw UserError(std::string("parameter bag: ") + error.what());
-  } catch (const std::exception& error) {  // a damaged one throws many kinds
+  } catch (const std::exception& error) {  // a damaged bag causes many kinds of errors
     throw UserError("parameter bag: " + path + ": " + error.what());
   }
   return bag;
@@ -180,7 +180,7 @@ void FleetNode::StartAnew() {
   pings_.RefuseAll("the clock went back or jumped ahead: the channel has restarted");
 }
 
-/// Closes what is settled at clock time `now`, and tells.
+/// Closes the steps that are settled at clock time `now`, and reports them.
 void FleetNode::Advance(TimeNs now) {
   const TimeNs before = fleet_.closed();
   const bool begun = fleet_.begun();
@@ -189,7 +189,7 @@ void FleetNode::Advance(TimeNs now) {
   Tell();
 }
 
-/// Reads everything the vehicles said from a bag, as fast as this machine can.
+/// Reads all messages of the vehicles from a bag, as fast as this machine can.
 void FleetNode::ReplayBag() {
   std::map<std::string, int> odometry, packets;
   std::vector<std::string> wanted;
@@ -200,7 +200,7 @@ void FleetNode::ReplayBag() {
   }
   try {
     ReadBag(rosbag::View(*recording_, rosbag::TopicQuery(wanted)), odometry, packets);
-  } catch (const std::exception& error) {  // of rosbag, of a message, or out of memory
+  } catch (const std::exception& error) {  // from rosbag, from a message, or out of memory
     throw UserError("parameter bag: " + bag_ + ": " + error.what());
   }
   fleet_.Finish();
@@ -227,7 +227,7 @@ void FleetNode::ReadBag(rosbag::View view, const std::map<std::string, int>& odo
   }
 }
 
-/// Says how the bag went.
+/// Reports the result of the bag.
 void FleetNode::Conclude() {
   const auto count = [](std::uint64_t n) { return static_cast<unsigned long>(n); };
   const acoustics::ChannelTotals& totals = fleet_.channel().totals();

@@ -7,7 +7,7 @@
 #include "auv_common/nodes/topics.hpp"
 #include "fleet_node.hpp"
 
-/// What goes out: to vehicles, to observers, into the log.
+/// Output to vehicles, observers and the log.
 namespace stg::nodes {
 
 using acoustics::DropReason;

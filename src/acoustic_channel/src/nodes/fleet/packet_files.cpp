@@ -14,7 +14,7 @@ PacketFiles::PacketFiles(std::string path, const std::vector<int>& ids, const st
     : path_(std::move(path)) {
   for (const int id : ids) names_.push_back(std::to_string(id));
   if (path_.empty()) return;
-  std::error_code ignored;  // of one that is not there yet
+  std::error_code ignored;  // the path may not exist yet
   if (!bag.empty() && std::filesystem::equivalent(path_, bag, ignored)) {
     throw UserError("parameter packet_log: " + path_ +
                     " is the bag of the parameter bag; name another file");
@@ -32,7 +32,7 @@ std::string PacketFiles::Path(int run) const {
 }
 
 void PacketFiles::Open(int run) {
-  // To open a pipe without a reader would wait for ever.
+  // Opening a pipe without a reader would wait forever.
   if (std::filesystem::exists(Path(run))) {
     try {
       RequireRegularFile(Path(run));

@@ -36,7 +36,7 @@ bool PingDesk::OnCall(auv_msgs::Ping::Request& request, auv_msgs::Ping::Response
   Pending& pending = pending_[tag];
   questions_.push_back({tag, request.source, request.destination,
                         request.timeout > 0.0 ? request.timeout : kDefault_s});
-  // A shutdown by a signal may come without a word.
+  // A shutdown by a signal may happen without a notification.
   while (!pending.answered && !closed_ && ros::ok()) {
     changed_.wait_for(lock, std::chrono::milliseconds(200));
   }

@@ -23,7 +23,7 @@ std::string TextOf(int place, const XmlRpcValue& value, const std::string& what)
   return XmlRpcValue(value);
 }
 
-/// NAME or NAME=TOPIC.
+/// Parses NAME or NAME=TOPIC.
 Vehicle FromWord(const std::string& word) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos) return {word, 0, ""};
