@@ -3,10 +3,10 @@
 namespace stg::agent {
 namespace {
 
-/// Oldest target estimate worth sending: the packet's age field ends at 32.767 s.
+/// Oldest target estimate to send: the packet's age field ends at 32.767 s.
 constexpr TimeNs kOldestShared = 30'000'000'000;
 
-/// TargetTrack: positions in, own and of others as fused estimates.
+/// TargetTrack: its inputs are positions, own ones and fused estimates of others.
 class KalmanFilter : public TargetFilter {
  public:
   explicit KalmanFilter(const AgentModel& model) : track_(model) {}
@@ -46,7 +46,7 @@ class KalmanFilter : public TargetFilter {
   }
 
   void Tell(bool lost, NeighbourState* state) const override {
-    // Only what rests on an observation: everybody has the cue already.
+    // Only estimates from an observation are sent, because all AUVs know the cue already.
     state->has_target =
         !lost && track_.observed() && now_ - track_.information_stamp() <= kOldestShared;
     if (!state->has_target) return;

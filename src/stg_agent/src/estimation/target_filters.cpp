@@ -30,7 +30,7 @@ std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
 
 namespace {
 
-/// Conditions of reported fixes, and of AUVs that surface for them.
+/// Conditions for reported fixes, and for AUVs that surface for them.
 std::optional<config::Violation> FindFixConflict(const AgentModel& s) {
   const bool reported = s.navigation.kind == "dead_reckoning" && s.navigation.gps_depth_m > 0.0 &&
                         s.navigation.fixes == dynamics::FixUse::kReported;
@@ -93,7 +93,7 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
     return config::Violation{{"localization.kind", "channel.model"},
                              "only modems measure travel times: set channel.model to physical"};
   }
-  constexpr int kMostMembers = 31, kMostTargets = 16;  // that a packet names
+  constexpr int kMostMembers = 31, kMostTargets = 16;  // limits of a packet
   if (s.run.agents + s.stations.count() > kMostMembers || s.target.count > kMostTargets) {
     return config::Violation{
         {"localization.kind", "agents", "stations.beacons", "stations.crafts", "target.count"},

@@ -6,7 +6,7 @@
 namespace stg::agent {
 namespace {
 
-/// Stops a target at a wall and turns its velocity component back, as the world does.
+/// Stops a target at a wall and reverses this component of its velocity, as the world does.
 void ReflectAtWall(double limit, double* p, double* v) {
   if (std::abs(*p) <= limit) return;
   *p = std::copysign(limit, *p);
@@ -20,7 +20,7 @@ double IntersectionWeight(const double (&A)[3], const double (&B)[3]) {
   const double f2 = a * c - b * b;
   const double f1 = B[0] * c + B[2] * a - 2.0 * B[1] * b;
   if (f2 < 0.0) return Clip(-0.5 * f1 / f2, 0.0, 1.0);
-  return f1 + f2 >= 0.0 ? 1.0 : 0.0;  // convex: the better end, det A against det B
+  return f1 + f2 >= 0.0 ? 1.0 : 0.0;  // convex: the better end, by comparison of det A and det B
 }
 
 /// Inverse of the covariance of an estimate.
@@ -109,13 +109,13 @@ void TargetTrack::Detect(const dynamics::Detection& detection) {
 }
 
 void TargetTrack::Restart(const dynamics::Detection& newest, double std_m) {
-  // Two-point differencing: position from the newest, velocity from the last two.
+  // Two-point differencing: the position is the newest one, and the velocity is from the last two.
   const double t = Seconds(newest.stamp - previous_rejected_.stamp);
   Start(newest.p_WT, std_m, newest.stamp);
   observed_ = true;
   if (t <= 0.0) return;
   const Vec3<double> v = (newest.p_WT - previous_rejected_.p_WT) * (1.0 / t);
-  if (Norm(v) > 2.0 * max_speed_mps_) return;  // twice: room for noise
+  if (Norm(v) > 2.0 * max_speed_mps_) return;  // a factor of two leaves room for noise
   now_.v_WT = v;
   const double other = Max(previous_rejected_.std_m, floor_std_m_);
   now_.pv = now_.pp / t;
@@ -155,7 +155,7 @@ void TargetTrack::Fuse(const SharedEstimate& shared) {
   const double i0 = w * A[0] + (1.0 - w) * B[0];
   const double i1 = w * A[1] + (1.0 - w) * B[1];
   const double i2 = w * A[2] + (1.0 - w) * B[2];
-  // Correction form, x = x1 + (1 - w) P B (x2 - x1): exactly x1 when w is 1.
+  // Correction form, x = x1 + (1 - w) P B (x2 - x1). It gives exactly x1 if w is 1.
   const double inv = 1.0 / (i0 * i2 - i1 * i1);
   const double pp = i2 * inv, pv = -i1 * inv, vv = i0 * inv;
   const Vec3<double> dv = other.v_WT - now_.v_WT;

@@ -9,7 +9,7 @@
 namespace stg::agent {
 namespace {
 
-/// What an Ornstein-Uhlenbeck process of unit variance keeps of itself.
+/// Share of its value that an Ornstein-Uhlenbeck process of unit variance keeps.
 double ShareKept(double dt_s, double memory_s) { return std::exp(-dt_s / memory_s); }
 
 }  // namespace
@@ -33,7 +33,8 @@ void JointFilter::Clear() {
   now_ = 0;
   std::fill(x_.begin(), x_.end(), 0.0);
   std::fill(P_.begin(), P_.end(), 0.0);
-  // The own one first, so that it never loses its states to another; then by index.
+  // The own AUV comes first, so it never loses its states to another AUV. The others follow by
+  // index.
   int id = 0;
   for (int slot = 0; slot < slots_; ++slot) {
     const bool own = slot == 0 && !IsAnchor(self_);
@@ -69,7 +70,7 @@ void JointFilter::Scale(int i, double share) {
   for (int r = 0; r < n_; ++r) P(r, i) *= share;
 }
 
-/// A state keeps a share of itself and is renewed to its own variance.
+/// Reduces a state to a share of itself and renews it to its own variance.
 void JointFilter::Forget(int i, double share, double variance) {
   Scale(i, share);
   P(i, i) += variance * (1.0 - share * share);
@@ -145,8 +146,8 @@ void JointFilter::Admit(int id, TimeNs heard) {
   o.heard = std::max(o.heard, heard);
 }
 
-/// A new AUV came through the same water as the others: its error is another one's, and what they
-/// may have come to differ by since the start.
+/// Starts the states of a new AUV. It came through the same water as the others. So its error
+/// equals the error of another AUV, plus a difference that may have grown since the start.
 void JointFilter::Start(int slot, int id) {
   const int like = slot == 0 ? 1 : 0;
   const double t = Seconds(now_);

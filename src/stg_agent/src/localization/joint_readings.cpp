@@ -6,11 +6,12 @@
 #include "joint_row.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
 
-/// The readings of the joint filter: the row that each kind makes of the states, and its update.
+/// The readings of the joint filter: for each kind, its row of the states and its update.
 namespace stg::agent {
 namespace {
 
-constexpr double kLeastLevel_m = 5.0;  ///< nearer in the plane a bearing says nothing
+/// At a smaller horizontal distance a bearing has no information.
+constexpr double kLeastLevel_m = 5.0;
 
 }  // namespace
 
@@ -36,7 +37,7 @@ double JointFilter::Mean(const Row& row) const {
   return sum;
 }
 
-/// P times the row as a column; returns row P column.
+/// Computes P times the row as a column. Returns row P column.
 double JointFilter::Column(const Row& row, double* column) const {
   std::fill_n(column, n_, 0.0);
   for (int k = 0; k < row.count; ++k) {
@@ -84,7 +85,7 @@ bool JointFilter::Take(const BearingReading& z) {
   double offset[2];
   Offset(z.source, z.receiver, z.p_source - z.p_receiver, age_s, offset);
   const double level = std::hypot(offset[0], offset[1]);
-  if (level < kLeastLevel_m) return false;  // overhead there is no bearing
+  if (level < kLeastLevel_m) return false;  // straight above or below there is no bearing
   const double along[2] = {offset[0] / level, offset[1] / level};
   const double across[2] = {-along[1], along[0]};
   Row row, line;
@@ -97,7 +98,7 @@ bool JointFilter::Take(const BearingReading& z) {
   std::array<double, kMostJointStates> column;
   const double lengthwise = Column(line, column.data());
   const double sidewise = Column(row, column.data());
-  // To second order a bearing bends with the distance.
+  // In second order, a bearing depends on the distance.
   const double noise = Squared(z.std_rad) + Wander(age_s) / Squared(level) + lengthwise * sidewise;
   const double S = sidewise + noise;
   const double innovation = WrapAngle(z.azimuth_rad - std::atan2(offset[1], offset[0]));
@@ -127,14 +128,14 @@ bool JointFilter::Take(const RangeReading& z) {
   row.Add(ScaleAt(), range);
   std::array<double, kMostJointStates> column;
   const double curved = Column(bend, column.data()) / range;
-  // What the currents did since then is not in the row.
+  // The row does not contain the effect of the currents since then.
   const double noise = Squared(config_.range_std_m) + Wander(age_s) + 0.5 * curved * curved;
   const double S = Column(row, column.data()) + noise;
   const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range;
   const double innovation = z.range_m - expected - 0.5 * curved;
   nis_ = innovation * innovation / S;
   if (nis_ > Squared(config_.gate_sigma)) return false;
-  // A late sound makes a range longer by anything up to the most.
+  // A late sound makes a range longer, by any value up to late_max_m.
   const double first =
       (1.0 - config_.late_share) * std::exp(-0.5 * nis_) / std::sqrt(2.0 * kPi * S);
   const double late = innovation > 0.0 ? config_.late_share / config_.late_max_m : 0.0;
@@ -143,8 +144,8 @@ bool JointFilter::Take(const RangeReading& z) {
   return true;
 }
 
-/// A receiver has no outliers here, so a fix is never set aside: a filter that is too sure of
-/// itself comes right.
+/// GPS has no outliers here, so a fix is never rejected. So a filter with too small a covariance
+/// can recover.
 bool JointFilter::Take(const FixReading& z) {
   if (IsAnchor(z.member) || SlotOf(z.member) < 0) return false;
   const double age_s = std::max(0.0, Seconds(now_ - z.at));

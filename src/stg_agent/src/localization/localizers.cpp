@@ -5,7 +5,7 @@ namespace {
 
 constexpr char kUncorrected[] = "uncorrected";
 
-/// Takes every reckoned position for what it is reported to be.
+/// Takes every position as it was reported.
 class Uncorrected : public Localizer {
  public:
   void Reset() override {}

@@ -1,4 +1,5 @@
-// Long because: all that an AUV hears comes together here, from packets and pings to the filter.
+// Long because: everything that an AUV receives for its position meets here, from packets and pings
+// to the filter.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,20 +19,21 @@ namespace stg::agent {
 namespace {
 
 constexpr std::size_t kMostPending = 128;
-constexpr std::size_t kMostTaken = 256;  ///< identities of readings that are in already
+constexpr std::size_t kMostTaken = 256;  ///< identities of readings that were used already
 constexpr TimeNs kOldest = 60'000'000'000;
-/// The own log finds no bottom where the own deviation grows by more than this share of the
-/// current's; judged only once it has grown to the other one, as it grows slowly at first.
+/// The own log has no bottom if the own deviation grows by more than this share of the current's.
+/// This is only decided once the deviation has grown by the other factor, because the growth is
+/// slow at first.
 constexpr double kDriftShare = 0.5, kGrown = 1.3;
 constexpr TimeNs kJudged = 10'000'000'000;
 
-/// Identity of a reading: by the packet and the one that heard it.
+/// Identity of a reading: the packet, and the member that received it.
 struct Taken {
   int receiver = -1, source = -1;
   TimeNs at = 0;
 };
 
-/// Where the stations are known to begin: beacons as charted, crafts at the surface.
+/// Initial positions of the stations: beacons as charted, crafts at the surface.
 std::vector<Vec3<double>> ChartOf(const AgentModel& s) {
   std::vector<Vec3<double>> chart;
   for (const auto& at : s.stations.beacons) chart.push_back({at[0], at[1], at[2]});
@@ -51,13 +53,13 @@ std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
   return anchors;
 }
 
-/// For how long packets contain a fix: in three packets in a row, if they leave within a minute.
+/// How long packets contain a fix: three packets in a row, if they leave within a minute.
 TimeNs TellingOf(const AgentModel& s) {
   const TimeNs round = acoustics::RoundOf(s.channel, NetworkRun(s.run, s.stations));
   return round > 0 ? std::min(3 * round, kOldest) : kOldest / 3;
 }
 
-/// A joint filter over the own readings and those that the others tell of.
+/// Joint filter of the own readings and the readings that others send.
 class RangeLocalizer : public Localizer {
  public:
   RangeLocalizer(const AgentModel& s, int self)
@@ -128,7 +130,7 @@ class RangeLocalizer : public Localizer {
       FixReading fix;
       if (fixes_.TakeOwn(now, own, own_way_, &fix)) filter_.Take(fix);
     }
-    // By what they are, not by when they came.
+    // Sorted by their content, so that the order of arrival has no effect.
     std::sort(pending_.begin(), pending_.end(), [](const Letter& a, const Letter& b) {
       return a.way.transmit != b.way.transmit ? a.way.transmit < b.way.transmit : a.id < b.id;
     });
@@ -160,9 +162,11 @@ class RangeLocalizer : public Localizer {
   Vec3<double> NearTo(int id) const override {
     const ToldWay& way = ways_[static_cast<std::size_t>(id)];
     if (!way.empty()) return way.newest().p;
-    // A station can be farther than the own position tells apart: packets hold it modulo.
+    // A station may be so far away that the own position cannot resolve it: packets contain it
+    // modulo a distance.
     if (id >= auvs_) return chart_[static_cast<std::size_t>(id - auvs_)];
-    // No AUV is far from what can be heard: the own position in the other's frame.
+    // No AUV is far from a place where it can be received, so this is the own position in the
+    // other's frame.
     const PlaneError e = filter_.knows(id) ? relative(id, filter_.now()) : PlaneError();
     return {own_.p_WB.x + e.x, own_.p_WB.y + e.y, own_.p_WB.z};
   }
@@ -170,8 +174,9 @@ class RangeLocalizer : public Localizer {
   void Tell(NeighbourState* packet) const override {
     packet->adrift = adrift_;
     packet->ranges = 0;
-    if (fixes_.Tell(packet)) return;  // they have the place of the ranges
-    // Of a station if one was heard, and of an AUV: which ones changes from packet to packet.
+    if (fixes_.Tell(packet)) return;  // a fix uses the space of the ranges
+    // A range to a station, if one was received, and a range to an AUV. The choice changes from
+    // packet to packet.
     const auto stations = static_cast<int>(newest_.size()) - auvs_;
     const auto draw = static_cast<std::uint64_t>(packet->generation / 1000000);
     Pick(auvs_, stations, draw, packet);
@@ -200,7 +205,7 @@ class RangeLocalizer : public Localizer {
       start_std_m_ = own.position_std_m;
       stated_ = now;
     } else if (own.position_std_m != own_.position_std_m && now > stated_) {
-      // It is stated anew with each ping of the log.
+      // The deviation changes with each ping of the log.
       const bool judged = own.position_std_m > kGrown * start_std_m_ || now > kJudged;
       const double growth = (own.position_std_m - own_.position_std_m) / Seconds(now - stated_);
       if (judged) adrift_ = growth > kDriftShare * current_std_mps_;
@@ -256,7 +261,7 @@ class RangeLocalizer : public Localizer {
     }
   }
 
-  /// A station says at which bearing it heard a packet.
+  /// Uses the bearing at which a station received a packet.
   void ReadBearing(TimeNs now, const Letter& letter) {
     BearingReading z;
     z.receiver = letter.id;
@@ -271,7 +276,7 @@ class RangeLocalizer : public Localizer {
     filter_.Take(z);
   }
 
-  /// The own packets are not heard; within the age's resolution it is known when one left.
+  /// The own packets are not received, but their times are known to within the age's resolution.
   bool OwnPacketAt(TimeNs stamp, TimeNs* at, Vec3<double>* p) const {
     *at = stamp;
     return own_way_.At(stamp, p);
@@ -301,7 +306,7 @@ class RangeLocalizer : public Localizer {
     int heard = 0;
     for (int id = first; id < first + count; ++id) heard += usable(id) ? 1 : 0;
     if (heard == 0) return;
-    // A hash spreads the choice, whatever the rhythm of the packets.
+    // A hash spreads the choice for any rhythm of the packets.
     const std::uint64_t mixed = (draw * 0x9E3779B97F4A7C15ULL) >> 33;
     auto chosen = static_cast<int>(mixed % static_cast<std::uint64_t>(heard));
     for (int id = first; id < first + count; ++id) {
@@ -319,20 +324,20 @@ class RangeLocalizer : public Localizer {
   double surface_z_m_;
   std::vector<Vec3<double>> chart_;  // [stations]
   JointFilter filter_;
-  std::vector<ToldWay> ways_;      // [members]
-  std::vector<ToldRange> newest_;  // [members], own readings of their packets
+  std::vector<ToldWay> ways_;      // by member
+  std::vector<ToldRange> newest_;  // by member: own readings of its packets
   std::vector<Letter> pending_;
   OwnWay own_way_;
-  std::vector<Taken> taken_;  // a ring
+  std::vector<Taken> taken_;  // used as a ring
   std::size_t next_taken_ = 0;
-  bool pings_;  // ranges are by pings
+  bool pings_;  // ranges are measured by pings
   PingRanges by_ping_;
   double bearing_std_rad_;
   Fixes fixes_;
   OwnReckoning own_;
   bool adrift_ = true;
-  double start_std_m_ = -1.0;  // below zero: no decision yet
-  TimeNs stated_ = 0;          // when the own deviation last changed
+  double start_std_m_ = -1.0;  // negative: no decision yet
+  TimeNs stated_ = 0;          // time of the last change of the own deviation
 };
 
 }  // namespace

@@ -9,15 +9,15 @@ namespace stg::agent {
 namespace {
 
 constexpr TimeNs kSecond = 1'000'000'000;
-constexpr TimeNs kAnnounced = 300 * kSecond;  ///< an announcement holds for so long
-constexpr TimeNs kKnown =
-    120 * kSecond;  ///< an AUV that was not heard for longer is not reckoned with
-constexpr TimeNs kNextWaits = 60 * kSecond;  ///< each deeper AUV, before it goes instead
-/// So much longer than planned it stays on the way.
+constexpr TimeNs kAnnounced = 300 * kSecond;  ///< validity of an announcement
+constexpr TimeNs kKnown = 120 * kSecond;      ///< an AUV whose last packet is older is ignored
+/// An AUV waits this long for each AUV that is shallower, because that one goes first.
+constexpr TimeNs kNextWaits = 60 * kSecond;
+/// It stays on its way for longer than planned by at most this factor and this time [s].
 constexpr double kPatience = 2.0, kPatience_s = 60.0;
-constexpr double kBack_m = 1.0;        ///< nearer to the depth that it came from it is back
-constexpr double kSlowing_ps = 0.25;   ///< climb rate by the depth that is left
-constexpr double kPressing_mps = 0.1;  ///< against the surface
+constexpr double kBack_m = 1.0;  ///< at a smaller distance from its former depth it has returned
+constexpr double kSlowing_ps = 0.25;   ///< climb rate per remaining depth
+constexpr double kPressing_mps = 0.1;  ///< climb rate against the surface
 
 }  // namespace
 

@@ -13,7 +13,7 @@ namespace stg::nodes {
 namespace {
 
 constexpr std::uint32_t kQueue = 1000;
-/// Messages of ROS are looked for as often; hosts are answered at once.
+/// Period in which the node looks for messages of ROS. Hosts get their answers at once.
 constexpr TimeNs kLook = 5'000'000;
 
 std::vector<int> IdsOf(const acoustics::ModemFile& file) {

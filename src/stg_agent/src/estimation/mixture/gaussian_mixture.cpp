@@ -8,14 +8,14 @@ namespace stg::agent {
 namespace {
 
 constexpr double kLeastWeight = 1e-6;
-/// Two components this close, in units of the heavier one's covariance of the position and weighed
-/// by the smaller share of the two, cannot be distinguished by measurements.
+/// Measurements cannot distinguish two components that are closer than this: their squared distance
+/// in units of their mean covariance of the position, times the smaller share of their weight.
 constexpr double kTooClose = 0.1;
-/// However little weight there is on one of them, what lies this far apart is not the same.
+/// Components that are farther apart than this are not merged, however small their weight is.
 constexpr double kFar = 9.0;
-/// A third of a normal distribution: weights, offset in deviations, kept share of the variance.
-/// The offsets are those of the best fit in L2 (DeMars, Bishop, Jah 2013); the kept variance is
-/// such that the split has the variance of what it splits.
+/// A normal distribution split into three: weights, offset in standard deviations, kept share of
+/// the variance. The offset is the best fit in L2 (DeMars, Bishop, Jah 2013). With the kept
+/// variance, the split has the same variance as the original.
 constexpr double kOuterWeight = 0.2252246249;
 constexpr double kOffset = 1.0575154615;
 constexpr double kKept = 1.0 - 2.0 * kOuterWeight * kOffset * kOffset;
@@ -24,7 +24,7 @@ constexpr double kKept = 1.0 - 2.0 * kOuterWeight * kOffset * kOffset;
 
 GaussianMixture::GaussianMixture(int states, int capacity)
     : states_(states),
-      stride_((states + 3) & ~3),  // whole registers
+      stride_((states + 3) & ~3),  // full registers
       capacity_(capacity),
       step_(static_cast<std::size_t>(1 + stride_ + stride_ * stride_)),
       data_(new double[step_ * static_cast<std::size_t>(capacity)]) {}
@@ -75,7 +75,7 @@ void GaussianMixture::Remove(int k) {
 void GaussianMixture::Normalise() {
   double sum = 0.0;
   for (int k = 0; k < size_; ++k) sum += *at(k).weight;
-  // All of them impossible: none is more so than the others.
+  // If all are impossible, they get equal weights.
   const bool none = !(sum > 0.0) || !std::isfinite(sum);
   for (int k = 0; k < size_; ++k) *at(k).weight = none ? 1.0 / size_ : *at(k).weight / sum;
 }
@@ -106,7 +106,7 @@ double GaussianMixture::Separation(int i, int j) const {
   const double xx = sum(0, 0), xy = sum(0, 1), xz = sum(0, 2), yy = sum(1, 1), yz = sum(1, 2),
                zz = sum(2, 2);
   const double dx = a.x[0] - b.x[0], dy = a.x[1] - b.x[1], dz = a.x[2] - b.x[2];
-  // Solve by elimination.
+  // Solves by elimination.
   const double l1 = xy / xx, l2 = xz / xx;
   const double y2 = yy - l1 * xy, yz2 = yz - l1 * xz;
   const double l3 = yz2 / y2, z2 = zz - l2 * xz - l3 * yz2;

@@ -13,43 +13,43 @@ namespace {
 
 using dynamics::Detection;
 
-constexpr int kMostComponents = 28;  ///< while a detection is taken
-constexpr int kKeptComponents = 12;  ///< after it
+constexpr int kMostComponents = 28;  ///< while a detection is used
+constexpr int kKeptComponents = 12;  ///< after a detection
 constexpr int kSnapshots = 24;
 constexpr std::size_t kMostSightings = 512;
-constexpr std::size_t kForgottenTogether = 32;  ///< sightings, so that the rest moves seldom
+constexpr std::size_t kForgottenTogether = 32;  ///< sightings; so the others move less often
 
-/// Two ranges leave two places, mirrored at the line between the observers, and the filter may have
-/// taken the wrong one when the target crossed that line: the other one gets a chance so often.
+/// Two ranges give two places, mirrored at the line between the observers. The filter may choose
+/// the wrong one when the target crosses this line, so the other one gets some weight each period.
 constexpr TimeNs kMirrorPeriod = 5'000'000'000;
 constexpr double kMirrorWeight = 0.03;
-/// Three observers that stand around the target tell the two places apart, so the other one needs
-/// less. It needs a chance all the same: seen from a wrong place, a pile stands around it.
+/// Three observers around the target can distinguish the two places, so less weight is enough. Some
+/// is always needed, because AUVs that are close together may also surround a wrong place.
 constexpr double kLeastMirrorWeight = 0.002;
-constexpr TimeNs kAlone = 20'000'000'000;  ///< after a third observer
-constexpr double kLeastSurround = 0.3;     ///< for the other place to need less
+constexpr TimeNs kAlone = 20'000'000'000;  ///< after the last sighting of a third observer
+constexpr double kLeastSurround = 0.3;     ///< from this value on, less weight is enough
 
-/// A detection and the AUV that made it.
+/// A detection and the AUV that measured it.
 struct Sighting {
   Detection detection;
   int source = 0;
 };
 
-/// The filter at a time, all sightings up to it taken.
+/// State of the filter after all sightings up to a time.
 struct Snapshot {
   Snapshot(const StateLayout& layout, const DriftModel& drift, int self, int capacity)
       : mixture(layout.states(), capacity), observers(layout, drift, self) {}
 
-  TimeNs covers = -1;  ///< sightings up to this time are in it
+  TimeNs covers = -1;  ///< contains the sightings up to this time
   TimeNs stamp = 0;    ///< time of the state
   TimeNs information = 0;
   bool observed = false;
-  Sighting last;            ///< the newest one in it
-  Sighting other;           ///< the newest one of another AUV than that
-  TimeNs third = 0;         ///< when there was last one of a third AUV
-  Surround surround;        ///< of the target by what observed it
-  TimeNs mirrored = 0;      ///< when the mirror image was last given a chance
-  GaussianMixture mixture;  ///< empty: nothing is known of the target
+  Sighting last;            ///< the newest sighting in it
+  Sighting other;           ///< the newest one of another AUV
+  TimeNs third = 0;         ///< time of the last one of a third AUV
+  Surround surround;        ///< how the observers surround the target
+  TimeNs mirrored = 0;      ///< when the mirror image last got some weight
+  GaussianMixture mixture;  ///< empty: nothing is known about the target
   Observers observers;
 };
 
@@ -58,10 +58,10 @@ DriftModel DriftModelOf(const AgentModel& s) {
           s.track.shear_memory_s, s.navigation.start_std_m * s.navigation.start_std_m};
 }
 
-/// Gaussian-sum filter of one target from measurements of any kind, own and shared, whose sharers'
-/// navigation errors are states of it. Sightings lie in a list by time; one that comes late takes
-/// the filter back to a snapshot before it, from where the list is played again. So the result
-/// depends on the set of sightings that came, not on when and in what order they did.
+/// Gaussian-sum filter of one target for measurements of all kinds, own and shared. The navigation
+/// errors of the AUVs that share them are states. The sightings are in a list by time. If one
+/// arrives late, the filter goes back to a snapshot before it and uses the list again from there.
+/// So the result depends only on the set of sightings, not on when and in which order they arrive.
 class MeasurementFilter : public TargetFilter {
  public:
   MeasurementFilter(const AgentModel& s, int self)
@@ -156,7 +156,7 @@ class MeasurementFilter : public TargetFilter {
     Kept(kept_++) = now_;
   }
 
-  /// Sightings that no snapshot needs any more.
+  /// Removes sightings that no snapshot needs any more.
   void Forget() {
     std::size_t old = 0;
     while (old < played_ && sightings_[old].detection.stamp <= Kept(0).covers) ++old;
@@ -174,7 +174,7 @@ class MeasurementFilter : public TargetFilter {
     const TimeNs stamp = s.detection.stamp;
     if (stamp <= Kept(0).covers || stamp < belief_.stamp - memory_) return;
     const auto at = std::lower_bound(sightings_.begin(), sightings_.end(), s, Before);
-    // The same one again comes with the next packet of its source.
+    // Later packets of the source repeat the same sighting.
     for (auto it = at; it != sightings_.end() && it->detection.stamp - stamp < same_; ++it) {
       if (it->source == s.source) return;
     }
@@ -189,7 +189,7 @@ class MeasurementFilter : public TargetFilter {
     if (index < played_) Rewind(stamp);
   }
 
-  /// To a snapshot before a time.
+  /// Goes back to a snapshot before a time.
   void Rewind(TimeNs stamp) {
     while (kept_ > 1 && Kept(kept_ - 1).covers >= stamp) --kept_;
     now_ = Kept(kept_ - 1);
@@ -199,11 +199,11 @@ class MeasurementFilter : public TargetFilter {
     }
   }
 
-  /// Takes the next sighting of the list.
+  /// Uses the next sighting of the list.
   void Play() {
     const Sighting& next = sightings_[played_];
     const TimeNs stamp = next.detection.stamp;
-    // A snapshot covers whole instants.
+    // A snapshot contains all sightings of its last instant.
     if (now_.covers < stamp && stamp - Kept(kept_ - 1).covers > memory_ / (kSnapshots - 1) &&
         now_.covers > Kept(kept_ - 1).covers) {
       Keep();
@@ -269,7 +269,7 @@ class MeasurementFilter : public TargetFilter {
     }
   }
 
-  /// Splits what is too wide for a linear view of a detection, the weightiest first.
+  /// Splits components that are too wide for the linearisation of a detection, the heaviest first.
   void SplitFor(const Detection& d, int slot) {
     GaussianMixture& mixture = now_.mixture;
     std::array<double, kMostComponents> excess;
@@ -290,7 +290,7 @@ class MeasurementFilter : public TargetFilter {
         }
       }
       if (worst < 0) return;
-      measure(worst);  // for its column
+      measure(worst);  // for the column of this component
       mixture.Split(worst, Pa, variance);
       measure(worst);
       measure(mixture.size() - 2);
@@ -298,7 +298,7 @@ class MeasurementFilter : public TargetFilter {
     }
   }
 
-  /// The estimate at a time.
+  /// Computes the estimate at a time.
   void Tell(TimeNs now) {
     belief_ = TargetBelief();
     estimate_ = TargetEstimate();
@@ -315,7 +315,7 @@ class MeasurementFilter : public TargetFilter {
     if (in_own_frame) ToWorld();
   }
 
-  /// From the own frame into the world.
+  /// Converts from the own frame to the world.
   void ToWorld() {
     PlaneError e;
     e.xx = e.yy = own_.position_std_m * own_.position_std_m;
@@ -328,15 +328,15 @@ class MeasurementFilter : public TargetFilter {
 
   SightingModel model_;
   int self_;
-  TimeNs same_;  // two sightings of one source closer than this are one
+  TimeNs same_;  // two sightings of one source that are closer than this are the same
   TimeNs memory_, spacing_, oldest_shared_;
   std::vector<Sighting> sightings_;  // by time, then by source
-  std::size_t played_ = 0;           // so many of them are in now_
+  std::size_t played_ = 0;           // number of sightings that are in now_
   Snapshot now_;
-  std::vector<Snapshot> snapshots_;  // a ring
+  std::vector<Snapshot> snapshots_;  // used as a ring
   int first_ = 0, kept_ = 0;
-  OwnFrame own_;          // now
-  GaussianMixture view_;  // of the target and the own errors, now
+  OwnFrame own_;          // at present
+  GaussianMixture view_;  // target and own errors at present
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

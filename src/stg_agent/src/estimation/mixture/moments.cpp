@@ -26,7 +26,7 @@ void SetMoments(const GaussianMixture& mixture, bool drifts, TargetBelief* belie
     P.yy += w * (cov(1, 1) + e.y * e.y);
     P.yz += w * (cov(1, 2) + e.y * e.z);
     P.zz += w * (cov(2, 2) + e.z * e.z);
-    // Of the estimate: what the vehicle steers by moves with its own navigation.
+    // Error of the estimate: the vehicle steers in the frame of its own navigation.
     Vec3<double> f = e;
     double own_x = cov(0, 0), own_y = cov(1, 1);
     if (own >= 0) {

@@ -40,19 +40,20 @@ void Follow(int i, double stated, double before, GaussianMixture* mixture) {
   }
 }
 
-/// An error that is stated to be this much smaller than before was corrected by a fix.
+/// If the stated error falls below this share of the previous one, a fix has corrected it.
 constexpr double kFix = 0.7;
-/// The own log finds no bottom where the own deviation grows by more than this share of the
-/// current's. With the bottom in sight it grows by some 1 % of the speed.
+/// The own log has no bottom if the own deviation grows by more than this share of the current's
+/// deviation. With the bottom in range it grows by about 1 % of the speed.
 constexpr double kAdrift = 0.5;
-/// What the log, its scale and the heading add to a position adrift, each axis [m^2/s]. The value
-/// is that of 0.06 m/s in a second, which covers scale and heading without states of their own.
+/// Growth of the variance of a drifting position by the log, its scale and the heading, on each
+/// axis [m^2/s]. It equals 0.06 m/s over one second, which includes scale and heading without their
+/// own states.
 constexpr double kReckoning = 0.06 * 0.06;
 
-/// Correlation time of what a localizer leaves of an error.
+/// Correlation time of the remaining error of a localizer [s].
 constexpr double kLocated_s = 100.0;
 
-/// State i of all components grows by `dt_s` times state `rate`.
+/// Adds `dt_s` times state `rate` to state i in all components.
 void Drift(int i, int rate, double dt_s, double added, double kept, double renewed,
            GaussianMixture* mixture) {
   const int stride = mixture->stride();
@@ -96,7 +97,7 @@ void Observers::Predict(double dt_s, GaussianMixture* mixture) const {
   }
 }
 
-/// What a localizer leaves of an error is a new one after a while.
+/// Lets the remaining error of a localizer decorrelate.
 void Observers::Renew(double dt_s, GaussianMixture* mixture) const {
   if (dt_s <= 0.0) return;
   const double kept = std::exp(-dt_s / kLocated_s);
@@ -137,7 +138,7 @@ int Observers::Admit(int id, TimeNs stamp, double position_std_m, double heading
     block.id = id;
   }
   if (layout_.located && slot == 0) {
-    // The own frame is the frame.
+    // The own frame is the reference frame.
   } else if (!layout_.rates) {
     Follow(first, position_std_m, block.position_std_m, mixture);
     Follow(first + 1, position_std_m, block.position_std_m, mixture);
@@ -162,7 +163,7 @@ void Observers::AdmitOwn(TimeNs stamp, double position_std_m, GaussianMixture* m
     adrift_ = growth > kAdrift * drift_.current_std_mps;
     return;
   }
-  // The own frame has jumped by about what it was off.
+  // The own frame has jumped by about its previous error.
   Grow(0, before * before, mixture);
   Grow(1, before * before, mixture);
   for (std::size_t b = 1; b < blocks_.size(); ++b) blocks_[b].id = -1;
@@ -172,7 +173,8 @@ void Observers::AdmitOther(int slot, bool is_new, double position_std_m, Gaussia
   Block& block = blocks_[static_cast<std::size_t>(slot)];
   const int first = layout_.block(slot), rate = first + layout_.rate();
   const Block& own_block = blocks_[0];
-  // The same instruments in the same water: as good as the other's, where nothing is known yet.
+  // Both AUVs have the same instruments in the same water. So while nothing is known about the own
+  // error, it is taken to be as large as the other's.
   const double own = own_block.id < 0 ? position_std_m : own_block.position_std_m;
   const bool fixed = !is_new && position_std_m < kFix * block.position_std_m;
   const double shear = 2.0 * drift_.shear_variance;

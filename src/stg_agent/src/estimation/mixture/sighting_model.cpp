@@ -15,10 +15,10 @@ using dynamics::MeasurementKind;
 
 namespace {
 
-constexpr int kRing = 24, kRay = 8;  // components of a first range, a first bearing
-/// A component that is faster than it can be by one deviation has lost e^-1/2 after this time.
+constexpr int kRing = 24, kRay = 8;  // components of a first range and of a first bearing
+/// A component that is one deviation faster than possible loses the factor e^-1/2 in this time [s].
 constexpr double kDoubt_s = 5.0;
-/// Every detection is believed with some reserve, or a wrong track would never be given up.
+/// No detection is trusted completely; otherwise the filter could not leave a wrong track.
 constexpr double kLeastFalseShare = 1e-3;
 
 }  // namespace
@@ -38,13 +38,13 @@ SightingModel::SightingModel(const AgentModel& s) {
   }
   observer_depth_variance_ =
       navigation->perfect() ? 0.0 : s.navigation.depth_std_m * s.navigation.depth_std_m;
-  // Of a target that is as fast as it can be, in any horizontal direction.
+  // Velocity of a target at its largest speed in any horizontal direction.
   const double speed = s.track.velocity_std_mps > 0.0 ? s.track.velocity_std_mps
                                                       : s.target.max_speed_mps * std::sqrt(0.5);
   velocity_variance_ = speed * speed;
   max_speed_mps_ = s.target.max_speed_mps;
   if (layout_.rates) {
-    // In a frame that goes with the water the target moves against it.
+    // In a frame that moves with the water, the target moves relative to it.
     velocity_variance_ += s.navigation.current_std_mps * s.navigation.current_std_mps;
     max_speed_mps_ += 2.0 * s.navigation.current_std_mps;
   }
@@ -65,7 +65,8 @@ void SightingModel::Predict(double t, GaussianMixture* mixture) const {
   const double T = velocity_memory_s_, s = t / T, q = velocity_variance_;
   const double gone = -std::expm1(-s), a = 1.0 - gone, g = T * gone;
   const double vv = q * gone * (1.0 + a), pv = q * T * gone * gone;
-  // 2 s - 3 + 4 a - a^2 loses its digits for short times; its series begins with 2 s^3 / 3.
+  // 2 s - 3 + 4 a - a^2 loses its digits for short times, so its series is used, which begins with
+  // 2 s^3 / 3.
   const double shape = s > 0.01 ? 2.0 * s - 3.0 + 4.0 * a - a * a
                                 : s * s * s * (2.0 / 3.0 - 0.5 * s + 7.0 / 30.0 * s * s);
   const double pp = q * T * T * shape;

@@ -11,21 +11,22 @@ using dynamics::MeasurementKind;
 
 namespace {
 
-/// Share of the noise that the second-order error of a linear view may have.
+/// Largest second-order error of the linearisation, as a share of the noise.
 constexpr double kBendShare = 0.2;
-/// Ranges that an unknown depth bends alike before it has become another one: so many count as one
-/// as far as that goes.
+/// An unknown depth bends successive ranges in the same way until the depth has changed. For this
+/// effect, this number of ranges counts as one.
 constexpr double kBentAlike = 15.0;
-/// Largest deviation of the distance, as a share of it, for a linear view of a bearing.
+/// Largest deviation of the distance, as a share of it, for the linearisation of a bearing.
 constexpr double kDepthShare = 0.5;
-/// A distribution this much longer than wide is a cone with its tip at the observer.
+/// A distribution whose length exceeds its width by this factor is a cone with its tip at the
+/// observer.
 constexpr double kCone = 4.0;
 
-/// Turns the covariance of the target's position as the line to it has turned. What is uncertain
-/// along a line of sight stays so along the new one; a linear update leaves it along the old one,
-/// and the two lines would cross somewhere, which tells of a distance that nothing has measured.
+/// Turns the covariance of the target's position with the line to it. The uncertainty along a line
+/// of sight stays along the new line. A linear update would leave it along the old line. The two
+/// lines would then cross at some distance, as if this distance had been measured.
 void Turn(const Vec3<double>& u, const Vec3<double>& v, Gaussian g, int stride) {
-  // Rotation of u to v: 1 + [w] + [w]^2 / (1 + u v), w = u x v.
+  // Rotation of u to v: 1 + [w] + [w]^2 / (1 + u v) with w = u x v.
   const Vec3<double> w = Cross(u, v);
   const double f = 1.0 / (1.0 + Dot(u, v));
   const double R[3][3] = {
@@ -105,7 +106,7 @@ double SightingModel::Excess(const Detection& d, int slot, const GaussianMixture
   double excess;
   const double across = at.Along(side);
   if (d.kind == MeasurementKind::kRange) {
-    // A target straight below: any direction bends the range.
+    // For a target straight below, any direction bends the range.
     if (at.level < 0.3 * at.range && at.Along(out) > across) along = out;
     excess = std::max(across, along.x == out.x ? at.Along(out) : 0.0) /
              (2.0 * at.range * kBendShare * std::max(d.range_std_m, floor_std_m_));
@@ -125,7 +126,7 @@ double SightingModel::Excess(const Detection& d, int slot, const GaussianMixture
   return *variance > 0.0 ? excess : 0.0;
 }
 
-/// Returns the likelihood of the innovation; weighs nothing.
+/// Returns the likelihood of the innovation. Does not change the weight.
 double SightingModel::Take(const Row& row, double innovation, double variance, double alike,
                            double clutter, Gaussian g, int stride) const {
   double column[kMostStride];
@@ -133,12 +134,12 @@ double SightingModel::Take(const Row& row, double innovation, double variance, d
   const double own = (1.0 - false_share_) * NormalDensity(innovation * innovation / s, s);
   const double likelihood = own + false_share_ * clutter;
   Apply(row, innovation, variance + alike, own / likelihood, g, stride);
-  // What many measurements share counts once among them, for the weights as for the gain.
+  // The effect that many measurements share counts only once, for the weights as for the gain.
   return alike > 0.0 ? std::pow(likelihood, s / (s + alike)) : likelihood;
 }
 
-/// The update by one number that is true with a probability: the mixture of what is with and
-/// without it, by its moments.
+/// Update by a number that is true with a probability: the mixture of the states with and without
+/// it, approximated by its moments.
 void SightingModel::Apply(const Row& row, double innovation, double variance, double truth,
                           Gaussian g, int stride) const {
   double column[kMostStride];
@@ -159,7 +160,7 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
   const Geometry at = GeometryOf(d, slot, *mixture, k);
   const Vec3<double> u = at.d * (1.0 / at.range);
   const double std_m = std::max(d.range_std_m, floor_std_m_);
-  // Second order: a wide target is farther off on the mean than its middle.
+  // Second order: the mean distance to a wide target is larger than the distance to its middle.
   const double wide = std::max(0.0, at.C[0][0] + at.C[1][1] + at.C[2][2] - at.Along(u));
   const double bend = wide / (2.0 * at.range);
   const double level = at.level / at.range;
@@ -168,16 +169,17 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
   const double alike = 2.0 * kBentAlike * tall * tall;
   const Gaussian g = mixture->at(k);
   const int stride = mixture->stride();
-  // A range sees depth by its square, above and below alike: what it would say of it is not taken.
-  // The depth stays what is known beforehand, and what it does to the rest is reckoned with.
+  // A range depends on the square of the depth difference, so it cannot distinguish above and
+  // below. So it must not change the depth, which keeps its prior. The effect of the uncertain
+  // depth on the other states is included.
   double *z = g.P + 2 * stride, *w = g.P + 5 * stride;
   const double kept[] = {g.x[2], g.x[5], z[2], z[5], w[5]};
   *g.weight *=
       Take(RowOf(u, slot), d.range_m - at.range - bend, variance, alike, 1.0 / range_m_, g, stride);
   g.x[2] = kept[0];
   g.x[5] = kept[1];
-  // A range that is half believed may have widened the depth with the rest: that stays, as the
-  // covariance of a depth that alone is narrower would be none.
+  // A range that is only partly believed may have widened the depth together with the rest. This is
+  // kept, because a covariance in which only the depth is narrower would be invalid.
   if (z[2] >= kept[2] && w[5] >= kept[4]) return;
   z[2] = kept[2];
   z[5] = w[2] = kept[3];
@@ -225,7 +227,7 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   }
 }
 
-/// What gives a point is linear in the state: along the three axes of its noise.
+/// A detection that gives a point is linear in the state, along the three axes of its noise.
 void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot,
                                 GaussianMixture* mixture, int k) const {
   const Gaussian g = mixture->at(k);
@@ -243,7 +245,7 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
     axes[0] = {c * ca, c * sa, z};
     axes[1] = {-sa, ca, 0.0};
     axes[2] = {-z * ca, -z * sa, c};
-    // Unbiased: noisy directions shorten the mean of the point by exp(-b) in the horizontal.
+    // Unbiased: noise in the direction shortens the mean horizontal position by the factor exp(-b).
     const double shortened = std::exp(0.5 * b);
     r = {d.range_m * c * ca * shortened * shortened, d.range_m * c * sa * shortened * shortened,
          d.range_m * z * shortened};
@@ -251,7 +253,7 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
     variance[1] = std::max(range2 * c * c * b, least) + std_m * std_m * b;
     variance[2] = std::max(range2 * b, least) + std_m * std_m * b;
   }
-  // One detection is true or false as a whole.
+  // A detection is true or false as a whole.
   const Geometry prior = GeometryOf(d, slot, *mixture, k);
   const int heading = layout_.heading ? layout_.block(slot) + 2 : -1;
   Row rows[3];
@@ -259,7 +261,7 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3<double>& a = axes[axis];
     rows[axis] = RowOf(a, slot);
-    // A heading error turns the measured line about the vertical.
+    // An error of the heading turns the measured line about the vertical.
     AddHeading(a.y * r.x - a.x * r.y, slot, &rows[axis]);
     variance[axis] += a.z * a.z * observer_depth_variance_;
     const double s = rows[axis].Times(g, mixture->stride(), column) + variance[axis];
