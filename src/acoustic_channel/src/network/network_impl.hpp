@@ -12,34 +12,34 @@
 
 namespace stg::acoustics {
 
-/// The state of a network: nodes, packets and arrivals, and what happens to them. The parts of the
-/// class stand in network.cpp (time, motion, energy), sending.cpp and receiving.cpp.
+/// The state of a network: nodes, packets and arrivals, and the events between them. The parts of
+/// the class are in network.cpp (time, motion, energy), sending.cpp and receiving.cpp.
 class Network::Impl {
  public:
   static constexpr int kNone = -1;
 
   struct Packet {
     PacketInfo info;
-    int payload = kNone;              ///< in payloads_
-    int holders = 0;                  ///< queue or sender, and arrivals
+    int payload = kNone;              ///< index in payloads_
+    int holders = 0;                  ///< number of owners: queue or sender, and arrivals
     std::uint32_t draw_sequence = 0;  ///< keys its random numbers
-    double bits = 0.0;                ///< on the air
-    std::uint32_t ping = 0;           ///< of the source of the request, by number
-    TimeNs deadline = 0;              ///< of a request
+    double bits = 0.0;                ///< bits that are transmitted
+    std::uint32_t ping = 0;           ///< number of the request among those of its source
+    TimeNs deadline = 0;              ///< for a request
     double level_db = 0.0;            ///< added to the source level
     TimeNs airtime = 0;
   };
 
-  /// A packet at one receiver, from its first to its last sound.
+  /// A packet at one receiver, from the beginning to the end of its sound.
   struct Arrival {
     int packet = kNone, receiver = 0;
-    bool open = true;        ///< its fate is not reported
-    bool candidate = false;  ///< began now, and the receiver has not decided
+    bool open = true;        ///< its fate is not reported yet
+    bool candidate = false;  ///< it has just begun, and the receiver has not decided yet
     Hearing hearing;
     double power = 0.0;  ///< in the receiver's band, 1 uPa^2
     double closing_mps = 0.0;
     TimeNs begin = 0, end = 0;
-    // While it is locked: up to piece_begin, in parts of the whole packet.
+    // While it is locked: sums up to piece_begin, as shares of the whole packet.
     TimeNs piece_begin = 0;
     double log_success = 0.0;
     double noise = 0.0, interference = 0.0;  ///< mean powers
@@ -50,7 +50,8 @@ class Network::Impl {
     bool open = false;
     PingResult result;
     TimeNs transmit = 0;
-    double request_error_s = 0.0;  ///< with which the other modem took the time of the request
+    /// Error with which the other modem measured the time of the request.
+    double request_error_s = 0.0;
   };
 
   struct Delivered {
@@ -60,7 +61,7 @@ class Network::Impl {
 
   struct Node {
     ModemProfile profile;
-    std::vector<std::string> waveforms;  ///< decoded besides the profile's
+    std::vector<std::string> waveforms;  ///< waveforms that it decodes in addition to the profile's
     NodeMotion motion;
     TimeNs moved = 0;  ///< time of motion
     bool present = true;
@@ -68,21 +69,21 @@ class Network::Impl {
 
     // Sending.
     std::vector<int> queue;  ///< packets, oldest first
-    int request = kNone;     ///< a ping that waits; it goes first
+    int request = kNone;     ///< a waiting ping; it has priority
     std::uint32_t sequence = 0, control_sequence = 0, tries = 0;
-    bool attempts = false;  ///< an event kSend is under way
+    bool attempts = false;  ///< an event kSend is scheduled
     int sending = kNone;
     TimeNs send_begin = 0, send_end = 0, ready = 0, last_end = kNever;
     Ping ping;
 
     // Receiving.
-    std::vector<int> active;  ///< arrivals whose sound is here
+    std::vector<int> active;  ///< arrivals whose sound is at the node now
     int locked = kNone;
     TimeNs lock_begin = 0;
-    double noise = 0.0, quiet_noise = 0.0;  ///< powers, while something is locked
+    double noise = 0.0, quiet_noise = 0.0;  ///< powers, while an arrival is locked
     std::vector<Delivered> delivered;
 
-    // Whole spans that are over.
+    // Completed spans.
     TimeNs present_since = 0, present_ns = 0, sent_ns = 0, received_ns = 0;
   };
 
@@ -127,7 +128,7 @@ class Network::Impl {
   void Answer(const Arrival& request, TimeNs t);
   void Reply(int node, int packet, TimeNs t);
   void TakeReply(const Arrival& reply, TimeNs t);
-  /// Adds what a receiver makes of a travel time beside the truth.
+  /// Adds the error with which a receiver measures a travel time.
   void AddTimingError(const Packet& packet, int receiver, double* travel_time_s) const;
 
   // receiving.cpp
@@ -138,7 +139,8 @@ class Network::Impl {
   void Unlock(Node* n, TimeNs t);
   void Integrate(Node* n, TimeNs t);
   void SenseNoise(int node, TimeNs t);
-  /// Power of all that sounds at a node but one arrival, weighed as the receiver of that does.
+  /// Power of all sounds at a node except one arrival, weighted as the receiver of this arrival
+  /// does.
   double Interference(const Node& n, int but) const;
   bool HearsCarrier(int node, TimeNs t);
   void LockOrDrop(int node, int arrival, TimeNs t);
@@ -149,15 +151,15 @@ class Network::Impl {
   bool IsFor(const Packet& p, int receiver) const {
     return p.info.destination == receiver || (p.info.destination == kToAll && receiver < talkers_);
   }
-  /// Closes an arrival; tells of it where it was for this node.
+  /// Closes an arrival, and reports its fate if it was for this node.
   void Drop(Arrival* a, DropReason reason, double noise_db, double sinr_db, double loss);
   void Tell(const Packet& packet, const PacketFate& fate);
-  /// A locked arrival is let go of.
+  /// Ends the lock of an arrival before its end.
   void BreakLock(const Arrival& a, DropReason reason, TimeNs t);
   void EndLock(const Arrival& a, const PacketFate& fate, bool read, TimeNs t);
   PacketFate FateOf(const Arrival& a) const;
 
-  int count_, talkers_;  ///< nodes, and those of them that are no transponders
+  int count_, talkers_;  ///< number of nodes, and number of those that are not transponders
   std::size_t max_payload_;
   ModemConfig config_;
   std::unique_ptr<Medium> medium_;

@@ -6,20 +6,20 @@
 
 namespace stg::dynamics {
 
-/// What both autopilots ask for, from a velocity command and the navigation.
+/// Wanted motion for both autopilots, from a velocity command and the navigation.
 template <class T>
 struct Wish {
-  T speed;      ///< over ground, horizontal [m/s], at least the smallest
+  T speed;      ///< over ground, horizontal [m/s]; not below the smallest speed
   T turn_rate;  ///< [rad/s], counter-clockwise from above
   T climb;      ///< [m/s], up
 };
 
-/// Below this speed over ground the course is that of the bow [m/s].
+/// Below this speed over ground the heading is used as the course [m/s].
 inline constexpr double kSteerageWay_mps = 0.3;
-/// A horizontal command below this has no direction: straight on [m/s].
+/// A slower horizontal command has no direction, and the vehicle goes straight on [m/s].
 inline constexpr double kNoDirection_mps = 1e-3;
 
-/// Turns the course over ground onto that of the command.
+/// Computes the turn of the course over ground towards the course of the command.
 /// @param v_WB velocity over ground, world axes
 template <class T>
 inline Wish<T> WishOf(const AutopilotConfig& c, const Vec3<T>& v_des_W, const Mat3<T>& R_WB,
@@ -40,8 +40,9 @@ inline Wish<T> WishOf(const AutopilotConfig& c, const Vec3<T>& v_des_W, const Ma
           v_des_W.z};
 }
 
-/// An integral that stands still while what it drives is at its limit and it would drive it on.
-/// @param raw what was asked for, of which `limited` is left; both of this step
+/// Adds to an integral, except when its output is at the limit and the increment would drive it
+/// further.
+/// @param raw, limited output before and after the limit, both of this step
 template <class T>
 inline void Integrate(const T& increment, const T& raw, const T& limited, T* integral) {
   const Mask<T> pushing = (raw - limited) * increment > T(0.0);

@@ -5,8 +5,8 @@
 
 namespace stg::dynamics {
 
-/// The command itself as speed, turn rate and climb rate. Nothing holds against a current but the
-/// course.
+/// Uses the command itself as speed, turn rate and climb rate. Only the course is corrected for a
+/// current.
 class KinematicAutopilot : public Autopilot {
  public:
   KinematicAutopilot(const VehicleConfig& vehicle, const AutopilotConfig& config)

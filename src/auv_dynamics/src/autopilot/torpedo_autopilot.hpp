@@ -5,10 +5,10 @@
 
 namespace stg::dynamics {
 
-/// Speed by the shaft, course by the rudder, climb rate by the stern plane through pitch. Each loop
-/// has an integral that stands still at the limits; what a fin does is taken from the model of the
-/// vehicle at the speed through the water, which is estimated from the shaft speed, as the log of a
-/// vehicle over the ground does not know it.
+/// Controls the speed by the shaft, the course by the rudder, and the climb rate by the stern plane
+/// through the pitch. Each loop has an integral that stops at the limits. The effect of a fin is
+/// taken from the model of the vehicle at the speed through the water. This speed is estimated from
+/// the shaft speed, because a log over ground does not measure it.
 class TorpedoAutopilot : public Autopilot {
  public:
   TorpedoAutopilot(const VehicleConfig& vehicle, const AutopilotConfig& config);

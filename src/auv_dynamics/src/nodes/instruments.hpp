@@ -16,27 +16,29 @@
 
 namespace stg::nodes {
 
-/// The instruments that marine ROS software listens to, of every AUV of lane 0 in open water, at
-/// each decision:
-///   imu       attitude and body rates as the navigation has them; the specific force is the mean
-///             since the decision before, from the change of true velocity over ground
-///   pressure  absolute, of the depth that the navigation has: p_atm + rho g depth
-///   dvl       velocity over ground in body axes as the navigation has it
-///   altitude  of the body's origin above the bottom, straight down however the body lies, along x
-///             of a frame of its own in tf; +Inf where it is out of range (REP 117)
+/// Publishes the instruments that marine ROS software uses, for every AUV of lane 0 in open water,
+/// at each decision:
+///   imu       attitude and body rates of the navigation; the specific force is the mean since the
+///             previous decision, from the change of the true velocity over ground
+///   pressure  absolute, for the depth of the navigation: p_atm + rho g depth
+///   dvl       velocity over ground in body axes, from the navigation
+///   altitude  of the body's origin above the bottom, straight down for any attitude, along x of
+///   its
+///             own frame in tf; +Inf if it is out of range (REP 117)
 ///   gps       within kSurface_m of the surface, where an aerial is out of the water
-/// Costs nothing without subscribers.
+/// It costs nothing without subscribers.
 class Instruments {
  public:
   static constexpr double kDensity_kgpm3 = 1026.0, kGravity_mps2 = 9.81;
   static constexpr double kAtmosphere_Pa = 101325.0;
   static constexpr double kSurface_m = 0.5;
-  static constexpr double kAltimeter_m[2] = {0.3, 100.0};  ///< its range
+  static constexpr double kAltimeter_m[2] = {0.3, 100.0};  ///< range of the altimeter
 
-  /// Throws UserError for a scenario without open water, where there is neither depth nor place.
+  /// Throws UserError for a scenario without open water, because there is neither depth nor
+  /// latitude.
   explicit Instruments(const dynamics::WorldScenario& scenario);
 
-  /// @param now clock time of the decision; `first` of an episode: nothing moved there
+  /// @param now clock time of the decision; `first` decision of an episode: no motion before it
   void Publish(const dynamics::World& world, TimeNs now, bool first);
 
  private:

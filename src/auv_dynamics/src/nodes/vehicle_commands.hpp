@@ -18,34 +18,35 @@
 
 namespace stg::nodes {
 
-/// The newest command of each AUV, and what it does to the world: force and moment; or, of vehicles
-/// that are steered by autopilots, values of actuators, or a velocity where the autopilots are on
-/// board, which is in this process.
+/// The newest command of each AUV, and its effect on the world. A command is force and moment. For
+/// vehicles with an autopilot it is the values of the actuators, or a velocity if the autopilots
+/// run on board, which is in this process.
 class VehicleCommands {
  public:
-  /// What an AUV's word about the step at this stamp is worth; called for well-formed commands.
+  /// Reports a message of an AUV about the step at this stamp, and returns its meaning. It is
+  /// called for well-formed commands.
   using Hear = std::function<StepBarrier::Word(int auv, TimeNs stamp)>;
 
-  /// @param onboard autopilots run here, and take a command for each decision
+  /// @param onboard the autopilots run here, with one command per decision
   VehicleCommands(const dynamics::WorldScenario& scenario, const dynamics::World& world,
                   bool onboard, Hear hear);
   VehicleCommands(const VehicleCommands&) = delete;
   VehicleCommands& operator=(const VehicleCommands&) = delete;
 
-  /// Subscribes to all AUVs' commands.
+  /// Subscribes to the commands of all AUVs.
   void Listen();
-  /// An episode starts: no command.
+  /// Drops all commands, because an episode starts.
   void Clear();
-  /// Steps the world under the newest commands, which all lanes get.
+  /// Steps the world with the newest commands, the same in all lanes.
   void Move(int steps, dynamics::World* world);
-  /// What acted on the AUVs, for the nodes that judge it.
-  /// @param fresh of each AUV: the command was for the last step
-  /// @param channel_fresh the acoustic channel had closed it
+  /// Publishes the forces on the AUVs, for the nodes that judge the run.
+  /// @param fresh of each AUV: its command was for the last step
+  /// @param channel_fresh the acoustic channel had closed the last step
   void Tell(const std::vector<std::uint8_t>& fresh, bool channel_fresh,
             WorldPublisher* publisher) const;
-  /// In which a decision is flown: periods of autopilots that are not on board.
+  /// Number of parts of a decision: periods of autopilots that are not on board.
   int parts() const { return parts_; }
-  /// Name of the topic below an AUV.
+  /// Name of the topic, relative to the AUV's.
   const char* topic() const;
   Refusals& refused(int auv) { return refused_[static_cast<std::size_t>(auv)]; }
 
@@ -62,9 +63,9 @@ class VehicleCommands {
   Hear hear_;
   dynamics::VehicleConfig vehicle_;
   std::vector<dynamics::Space> actuators_;  ///< [agents]
-  std::size_t row_;                         ///< numbers of an AUV in values_
-  bool steered_;                            ///< by autopilots, which command actuators
-  std::unique_ptr<dynamics::Helm> helm_;    ///< of those on board, else null
+  std::size_t row_;                         ///< number of values per AUV in values_
+  bool steered_;                          ///< the vehicles have autopilots, which command actuators
+  std::unique_ptr<dynamics::Helm> helm_;  ///< the autopilots on board; otherwise null
   int parts_;
   std::vector<Refusals> refused_;
   std::vector<ros::Subscriber> subscribers_;

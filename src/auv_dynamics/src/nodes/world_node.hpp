@@ -24,28 +24,29 @@
 
 namespace stg::nodes {
 
-/// Steps the world and paces the whole graph.
+/// Steps the world and sets the pace of the whole graph.
 ///
-/// Every decision k at t_k: publish what the sensors give, wait for the wrench of every AUV and for
-/// the channel, step. In real time a step also waits for the wall clock and never past it; in
-/// lockstep (real_time_factor 0) it waits for the answers alone, at most `deadline` seconds. What
-/// is missing then is a deadline miss: the AUV's last command is held, and the AUV (or channel) is
-/// not waited for again before it has spoken again. All topics are latched, so a node that comes
-/// late or comes back gets the present step and answers it.
+/// At every decision k at t_k it publishes the sensor data, waits for the wrench of every AUV and
+/// for the channel, and steps. On the wall clock a step also waits for its time, and never longer.
+/// In lockstep (real_time_factor 0) it only waits for the answers, at most `deadline` seconds. A
+/// missing answer is a deadline miss: the AUV's last command is used again, and the world does not
+/// wait for this AUV (or the channel) until it sends again. All topics are latched, so a node that
+/// is late or comes back gets the present step and answers it.
 ///
-/// Vehicles that are steered by autopilots get a command of their actuators more often: a decision
-/// is then flown in parts, before each of which all AUVs, not the channel, are waited for.
+/// Vehicles with autopilots get commands for their actuators more often. A decision is then made of
+/// several parts. Before each part the world waits for all AUVs, but not for the channel.
 ///
-/// A reset waits for the open step's answers too, and leaves the step unflown.
+/// A reset also waits for the answers to the open step, and then drops this step.
 ///
-/// After the last decision of an episode the final state is published as step T and answered like
+/// After the last decision of an episode, the final state is published as step T and answered like
+/// any other. Its wrenches are not used. The next episode starts one decision later.
 /// any other; its wrenches are not used. The next episode starts one decision later.
 class WorldNode {
  public:
   /// Throws UserError.
   WorldNode();
-  /// Returns after the last episode, when its summary is out. Throws UserError when the vehicles'
-  /// motion gets out of hand, LostOutput when the run did not end as it was asked to.
+  /// Returns after the last episode, when its summary was published. Throws UserError if the motion
+  /// of the vehicles becomes unstable, and LostOutput if the run did not end as requested.
   void Spin();
 
  private:
@@ -66,7 +67,7 @@ class WorldNode {
   void TellWhoIsMissing(double now);
   void StepWorld();
   void OpenPart();
-  /// Throws UserError when a vehicle's state is beyond what the nodes take.
+  /// Throws UserError if a vehicle's state is outside the range that the nodes accept.
   void CheckState() const;
   void StartEpisode(std::uint32_t episode);
   void OpenStep();
@@ -84,36 +85,36 @@ class WorldNode {
   dynamics::World world_;
   TimeNs period_;  ///< of decisions [ns]
   VehicleCommands commands_;
-  int part_ = 0;  ///< of the decision, whose commands are waited for
+  int part_ = 0;  ///< part of the decision whose commands are awaited
   Pacer pacer_;
   double summary_timeout_s_;
-  int episodes_;                            ///< to run; 0: until stopped
-  std::optional<ConnectionWatch> awaited_;  ///< must hear the run from its start on
+  int episodes_;                            ///< number of episodes to run; 0: until stopped
+  std::optional<ConnectionWatch> awaited_;  ///< a node that must receive the run from its start on
   bool wait_for_metrics_;
-  std::uint64_t seed_;  ///< episode e is drawn from seed_ + e - seed_episode_
+  std::uint64_t seed_;  ///< seed of episode e: seed_ + e - seed_episode_
   std::uint32_t seed_episode_ = 0;
   std::uint32_t episode_ = 0, step_ = 0;
   TimeNs start_;         ///< clock time of the present episode's step 0
   StepBarrier barrier_;  ///< AUVs 0 to n - 1, then the channel
   bool finishing_ = false, done_ = false, summary_lost_ = false;
   bool reset_ = false;       ///< the next episode begins when the open step is answered
-  bool summarised_ = false;  ///< the episode that has ended
+  bool summarised_ = false;  ///< the summary of the episode that has ended was published
   std::uint64_t missed_steps_ = 0;
-  Throttle losses_;        ///< of warnings about nodes that are given up
-  std::string warning_;    ///< that waits; empty: none
-  double warned_s_ = 0.0;  ///< wall time when it came up
-  double told_s_;          ///< wall time when the start's delay was reported
+  Throttle losses_;        ///< for warnings about nodes that are given up
+  std::string warning_;    ///< delayed warning; empty: none
+  double warned_s_ = 0.0;  ///< wall time of the delayed warning
+  double told_s_;          ///< wall time of the last message about the delayed start
   bool shown_ = true;      ///< observers have the present step
   EventRate steps_;
   double began_ = 0.0;            ///< WallSeconds() when the run began
-  double opened_ = 0.0;           ///< when the present step's sensor data began to go out
+  double opened_ = 0.0;           ///< when the publication of the present step's sensor data began
   double give_up_s_ = 0.0;        ///< until when the last summary is waited for
-  std::vector<float> answer_ms_;  ///< from there to each wrench, the last kMaxDelays
+  std::vector<float> answer_ms_;  ///< time from opened_ to each wrench, the last kMaxDelays
   std::size_t next_answer_ = 0;
   std::vector<std::uint8_t> fresh_;  ///< the command was for the last step
-  bool channel_fresh_ = false;       ///< the channel had closed it
+  bool channel_fresh_ = false;       ///< the channel had closed the last step
   std::unique_ptr<WorldPublisher> publisher_;
-  std::unique_ptr<Instruments> instruments_;  ///< null: not asked for
+  std::unique_ptr<Instruments> instruments_;  ///< null: not requested
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   Health health_;

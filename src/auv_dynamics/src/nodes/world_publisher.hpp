@@ -17,35 +17,35 @@
 
 namespace stg::nodes {
 
-/// Puts the state of lane 0 of a world on topics.
+/// Publishes the state of lane 0 of a world.
 class WorldPublisher {
  public:
-  /// @param display_rate_hz largest rate of transforms and of detections for displays per second of
-  ///                        wall time, and a tenth of the largest rate of /clock: no step waits for
-  ///                        them
+  /// @param display_rate_hz largest rate, per second of wall time, of transforms and of detections
+  /// for displays, and a tenth of the largest rate of /clock. No step waits for these messages.
   WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz);
 
-  /// What acted on the AUVs in the step that ends at the next PublishSensors: wrenches, and which
-  /// of them were commanded for it; and whether the acoustic channel had closed it.
+  /// Sets the wrenches on the AUVs in the step that ends at the next PublishSensors, which of them
+  /// were commanded for it, and whether the acoustic channel had closed it.
   void SetWrenches(const std::vector<dynamics::Wrench<double>>& wrenches,
                    const std::vector<std::uint8_t>& fresh, bool channel_fresh);
 
-  /// The same of vehicles with other actuators: shares of their limits, kWrenchSize of each AUV.
+  /// The same for vehicles with other actuators: shares of their limits, kWrenchSize for each AUV.
   void SetEfforts(const std::vector<double>& efforts, const std::vector<std::uint8_t>& fresh,
                   bool channel_fresh);
 
-  /// The AUVs' navigation between two decisions, for their autopilots.
+  /// Publishes the AUVs' navigation between two decisions, for their autopilots.
   void PublishNavigation(const dynamics::World& world, TimeNs start);
 
-  /// What the AUVs sense at decision `step` of `episode`, whose step 0 was at clock time `start`
-  /// [ns].
+  /// Publishes the sensor data of the AUVs at decision `step` of `episode`. Step 0 was at clock
+  /// time `start` [ns].
   void PublishSensors(const dynamics::World& world, TimeNs start, std::uint32_t episode,
                       std::uint32_t step);
 
-  /// The true state of all of them at the decision of the last PublishSensors.
+  /// Publishes the true states of all at the decision of the last PublishSensors.
   void PublishSwarm();
 
-  /// What only observers need of the same decision: targets, detections, transforms, the clock.
+  /// Publishes data that only observers need, of the same decision: targets, detections, transforms
+  /// and the clock.
   void PublishViews(const dynamics::World& world, TimeNs start);
 
  private:
@@ -72,7 +72,7 @@ class WorldPublisher {
   double display_period_s_;
   std::uint64_t run_;  ///< id of this run
   ros::WallTime clock_sent_, frames_sent_, detections_sent_;
-  ros::Time detections_until_;  ///< stamp of the newest detection that displays were sent
+  ros::Time detections_until_;  ///< stamp of the newest detection that was sent to displays
   std::vector<AuvTopics> auvs_;
   std::vector<OnDemand<nav_msgs::Odometry>> targets_;
   std::vector<nav_msgs::Odometry> target_messages_;

@@ -2,16 +2,16 @@
 
 #include "auv_dynamics/sensing/target_sensor.hpp"
 
-/// What sensors have in common: docs/sensors.md has their rules.
+/// Common parts of the sensors. docs/sensors.md has their rules.
 namespace stg::dynamics {
 
-/// Whether a look falls on the sensor's period.
+/// True if a look is at the sensor's period.
 bool LooksNow(const SensingConfig& config, const Look& look);
-/// Dropouts start in each spell-long slot with the probability of a Poisson process of the given
-/// rate and blind the sensor for that slot: memoryless across slots, so that a draw needs no
-/// history.
+/// True if the sensor has a dropout. Dropouts start in each slot of the length of a spell, with the
+/// probability of a Poisson process of the given rate, and last for this slot. The slots are
+/// independent, so a draw needs no history.
 bool Blind(const SensingConfig& config, const Look& look);
-/// Fills what every detection holds besides the measurement: when, of what, by which vehicle.
+/// Writes everything in a detection except the measurement: time, target and vehicle.
 void SetObserver(const Look& look, Detection* out);
 
 }  // namespace stg::dynamics

@@ -8,7 +8,7 @@
 
 namespace stg::dynamics {
 
-/// A NetCDF file that is open for reading. Every failure throws UserError with the file's name.
+/// An open NetCDF file for reading. Every error throws UserError with the file's name.
 class NetcdfFile {
  public:
   explicit NetcdfFile(const std::string& path);

@@ -6,14 +6,15 @@
 
 namespace stg::dynamics {
 
-/// The functions of libnetcdf, which is opened when the first terrain is. With what it is linked to
-/// (HDF5, curl, TLS, Kerberos, XML, ...) it fills seven megabytes, in every agent, where only a
-/// world reads terrain.
+/// The functions of libnetcdf, which is loaded when the first terrain is opened. With its own
+/// libraries (HDF5, curl, TLS, Kerberos, XML, ...) it needs seven megabytes. Every agent would need
+/// them, although only a world reads terrain.
 class NetcdfLibrary {
  public:
-  /// Throws UserError where the library is not installed.
+  /// Throws UserError if the library is not installed.
   static const NetcdfLibrary& Get();
-  /// libnetcdf serves one thread at a time, whatever the files: hold this while one is open.
+  /// libnetcdf supports only one thread at a time, even for different files. Keep this lock while a
+  /// file is open.
   [[nodiscard]] static std::unique_lock<std::mutex> Lock();
 
   decltype(&::nc_strerror) strerror = nullptr;

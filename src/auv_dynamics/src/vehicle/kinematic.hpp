@@ -5,9 +5,9 @@
 namespace stg::dynamics {
 
 /// A vehicle whose commands are speed, turn rate and climb rate (KinematicConfig). It stays level,
-/// drifts with the current and feels neither contact nor disturbance: for research on what to do,
-/// not on how to steer, at full speed. Each physics step is exact for the lags and, to second order
-/// in dt, for the turn.
+/// drifts with the current, and has neither contact nor disturbance. It is fast, and is for
+/// research on decisions rather than on control. Each physics step is exact for the lags, and exact
+/// to second order in dt for the turn.
 class Kinematic : public Vehicle {
  public:
   explicit Kinematic(const VehicleConfig& config);

@@ -26,7 +26,7 @@ inline void Rectify(float* x, int count) {
   y = y.cwiseMax(0.0F);
 }
 
-/// out = W x + b, then relu if asked.
+/// out = W x + b, then the rectifier if `relu`.
 inline void Dense(const float* parameters, const PoolBlocks::Layer& layer, const float* x,
                   bool relu, float* out) {
   Eigen::Map<Eigen::VectorXf>(out, layer.weight.rows) =

@@ -16,30 +16,30 @@ class OnnxOperators {
  public:
   using Attributes = std::vector<std::pair<std::string, std::int64_t>>;
 
-  /// @param numbers of the network, into which blocks point
+  /// @param numbers of the network; blocks refer to them
   OnnxOperators(onnx::GraphProto* graph, const std::vector<float>& numbers)
       : graph_(graph), numbers_(numbers) {}
 
-  /// @param dimensions 0: any number, named after the value
+  /// @param dimensions 0: any size, named after the value
   void Input(const std::string& name, const std::vector<int>& dimensions);
   void Output(const std::string& name, const std::vector<int>& dimensions);
   /// Returns the output's name.
   std::string Node(const std::string& op, const std::vector<std::string>& inputs,
                    const std::string& output, const Attributes& attributes = {});
 
-  /// The block as a constant [columns, rows]: of a matrix W its transpose, for x W^T.
+  /// The block as a constant [columns, rows]: the transpose of W, for x W^T.
   std::string Constant(const std::string& name, const PoolBlock& block);
-  /// The block as it stands, [rows, columns].
+  /// The block without transposition, [rows, columns].
   std::string Upright(const std::string& name, const PoolBlock& block);
-  /// Numbers that no training changes.
+  /// A constant that training does not change.
   std::string Fixed(const std::string& name, int rows, int cols, const std::vector<float>& data);
-  /// x W^T + b, then relu if asked.
+  /// x W^T + b, then the rectifier if `relu`.
   std::string Dense(const std::string& input, const std::string& name,
                     const PoolBlocks::Layer& layer, bool relu);
   /// The two layers of a set.
   std::string Embed(const std::string& name, const PoolBlocks::Set& set);
 
-  /// Which block the n-th constant holds, and whether transposed; a size of 0: fixed.
+  /// Block of the n-th constant, and whether it is transposed; size 0: a fixed constant.
   struct Held {
     PoolBlock block;
     bool transposed = false;

@@ -15,8 +15,9 @@ namespace stg::agent {
 /// copy.
 class Fixes {
  public:
-  /// @param telling for how long packets tell of an own fix
-  /// @param apart stamps of one fix differ by less, as ages in packets are rounded
+  /// @param telling how long packets contain an own fix
+  /// @param apart stamps of the same fix differ by less than this, because ages in packets are
+  /// rounded
   Fixes(int auvs, int self, TimeNs telling, TimeNs apart)
       : self_(self),
         telling_(telling),
@@ -29,7 +30,7 @@ class Fixes {
     own_ = ToldFix();
   }
 
-  /// The own newest fix as a reading; false: it counts already, or there is none.
+  /// The own newest fix as a reading. Returns false if it was used already, or if there is none.
   bool TakeOwn(TimeNs now, const OwnReckoning& own, const OwnWay& way, FixReading* z) {
     if (own.fix_std_m <= 0.0 || own.fix_stamp > now || own.fix_stamp <= newest(self_)) return false;
     Vec3<double> p;
@@ -39,7 +40,7 @@ class Fixes {
     return TakeTold(self_, own_, z);
   }
 
-  /// One that a packet tells; false: it counts already.
+  /// The fix in a packet as a reading. Returns false if it was used already.
   bool TakeTold(int id, const ToldFix& told, FixReading* z) {
     if (newest(id) != kNever && told.stamp < newest(id) + apart_) return false;
     newest_[static_cast<std::size_t>(id)] = told.stamp;
@@ -47,7 +48,7 @@ class Fixes {
     return true;
   }
 
-  /// Adds the own fix to a packet while it is new; false: there is none to tell.
+  /// Adds the own fix to a packet while it is new. Returns false if there is none.
   bool Tell(NeighbourState* packet) const {
     if (count_ == 0 || packet->generation - own_.stamp >= telling_) return false;
     packet->has_fix = true;
@@ -55,8 +56,8 @@ class Fixes {
     return true;
   }
 
-  int count() const { return count_; }  ///< own ones
-  /// When the newest one of an AUV was; -1: none is known.
+  int count() const { return count_; }  ///< number of own fixes
+  /// Time of the newest fix of an AUV; -1: unknown.
   TimeNs newest(int id) const {
     const auto u = static_cast<std::size_t>(id);
     return u < newest_.size() ? newest_[u] : kNever;  // stations have none

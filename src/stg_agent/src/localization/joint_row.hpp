@@ -11,7 +11,7 @@ inline constexpr int kMostJointStates = 128;
 
 inline double Squared(double x) { return x * x; }
 
-/// The few numbers of a row that are not zero.
+/// The nonzero numbers of a row.
 struct JointFilter::Row {
   std::array<int, 24> index{};
   std::array<double, 24> value{};

@@ -7,8 +7,8 @@
 namespace stg::nodes {
 
 /// The Decider of one agent node.
-/// @param name a built-in controller, an ONNX file (see agent::PolicyFileOf), or "auto": the policy
-///             shipped for the scenario's name where there is one, else pursuit_separated
+/// @param name a built-in controller, an ONNX file (see agent::PolicyFileOf), or "auto": the
+/// shipped policy for the scenario's name if there is one, otherwise pursuit_separated
 /// Throws UserError when the file is not a policy for this scenario.
 agent::Decider DeciderFor(const std::string& name, const agent::AgentModel& model, int id);
 

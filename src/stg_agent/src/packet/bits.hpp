@@ -23,10 +23,10 @@ constexpr TimeNs kTick = 1'000'000;  // resolution of times [ns]
 constexpr std::size_t kWords = kPacketBytes / 8;
 using Words = std::array<std::uint64_t, kWords>;
 
-/// Tables for eight bytes at a time: kCrc[k][b] is the checksum of byte b and k zero bytes.
+/// Tables for eight bytes at a time: kCrc[k][b] is the checksum of byte b followed by k zero bytes.
 /// Bits are taken least significant first, so that the first bit of the version is the highest
-/// power: the one pair of bits that the polynomial's period of 255 hides contains that bit, and
-/// the version check sees it.
+/// power. Because of the polynomial's period of 255, one pair of wrong bits stays undetected. It
+/// contains this bit, so the version check detects it.
 struct CrcTables {
   std::uint8_t t[8][256];
 };
@@ -52,7 +52,7 @@ inline std::uint64_t ExtendCrc(std::uint64_t crc, std::uint64_t word) {
   return sum;
 }
 
-/// CRC-8 of all bytes but the last, which holds it.
+/// CRC-8 of all bytes except the last one, which contains it.
 inline std::uint64_t Checksum(const Words& words) {
   std::uint64_t crc = 0xFF;  // so that a packet of zeros is damaged
   for (std::size_t w = 0; w + 1 < kWords; ++w) crc = ExtendCrc<8>(crc, words[w]);

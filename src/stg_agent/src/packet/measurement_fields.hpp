@@ -7,8 +7,8 @@
 #include "bits.hpp"
 #include "stg_agent/packet/measurement_packet.hpp"
 
-/// Widths of the fields of a packet of measurements, and how they are written and read one after
-/// the other.
+/// Widths of the fields in a packet of measurements. The fields are written and read one after the
+/// other.
 namespace stg::agent {
 
 inline constexpr std::uint64_t kMeasurementVersion = 2, kFreeVersion = 3, kLocatedVersion = 5;
@@ -45,7 +45,7 @@ static_assert(kFirstSighting + kSightings * kSightingBits <= kCrcFirst, "both me
 
 [[noreturn]] inline void RefusePacket(const std::string& why) { throw UserError("packet: " + why); }
 
-/// Fields one after the other.
+/// Writes fields one after the other.
 struct MeasurementPacket::Writer {
   Words words{};
   int at = 0;

@@ -13,8 +13,8 @@
 
 namespace stg::nodes {
 
-/// The modem of one vehicle behind the topics and the service that a vehicle of a simulated fleet
-/// has: acoustic/tx, rx, status and ping, in wall time.
+/// Connects the modem of one vehicle to the topics and the service that a vehicle of a simulated
+/// fleet has: acoustic/tx, rx, status and ping, in wall time.
 class DriverNode {
  public:
   /// Throws UserError.
@@ -36,10 +36,10 @@ class DriverNode {
   double sound_speed_mps_;
   acoustics::ModemPort port_;
   TimeNs start_ = 0;                           ///< ROS time at time 0 of the steady clock [ns]
-  std::map<std::uint32_t, int> destinations_;  ///< of packets that are not done with, by tag
-  std::map<std::uint32_t, TimeNs> leaving_;    ///< when a packet began to leave
+  std::map<std::uint32_t, int> destinations_;  ///< of packets in progress, by tag
+  std::map<std::uint32_t, TimeNs> leaving_;    ///< start of each transmission, by tag
   std::uint32_t received_ = 0;
-  std::uint32_t question_ = 0;  ///< the ping under way
+  std::uint32_t question_ = 0;  ///< tag of the open ping
   bool asks_ = false;
   PingDesk desk_;
   ros::Publisher receptions_, statuses_;

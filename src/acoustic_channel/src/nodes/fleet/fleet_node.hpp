@@ -28,11 +28,12 @@
 
 namespace stg::nodes {
 
-/// The acoustic channel by itself, for vehicles of any simulator, of a replayed bag or at sea.
+/// The acoustic channel without the other nodes, for vehicles of any simulator, of a replayed bag,
+/// or at sea.
 ///
-/// Vehicles tell their odometry and offer packets when they like; the channel goes on with the
-/// clock of ROS, whatever that is, a moment behind it. No node waits for this one, and it waits for
-/// none longer than its patience. When the clock goes back, everything starts anew.
+/// Vehicles send odometry and packets at any time. The channel follows the clock of ROS, of any
+/// source, with a short delay. No node waits for this one, and it waits for no node longer than its
+/// patience. If the clock goes back, a new run begins.
 class FleetNode : private acoustics::FleetListener {
  public:
   /// Throws UserError.
@@ -41,20 +42,20 @@ class FleetNode : private acoustics::FleetListener {
   void Spin();
 
  private:
-  /// What the twist of odometry is.
+  /// Frame of the twist in the odometry.
   enum class TwistFrame { kBody, kWorld, kNone };
 
-  /// A message whose stamp is far from the clock: of the two, the clock may be what is late.
+  /// A message whose stamp is far from the clock. The clock may be the late one.
   struct Doubtful {
     TimeNs stamp;
     double since_s;                    ///< wall time
-    std::function<void(bool)> decide;  ///< take it, or refuse it
+    std::function<void(bool)> decide;  ///< accepts or refuses the message
   };
 
   struct Member {
     ros::Publisher reception, status;
     ros::Subscriber odometry, packets;
-    std::uint64_t late = 0;  ///< packets whose step was closed before they came in
+    std::uint64_t late = 0;  ///< packets that arrived after their step was closed
   };
 
   static TwistFrame TwistParameter();
@@ -108,24 +109,24 @@ class FleetNode : private acoustics::FleetListener {
   acoustics::NetworkConfig network_;
   acoustics::FleetChannel fleet_;
   TwistFrame twist_;
-  std::string frame_;  ///< of all odometry; empty: any
-  TimeNs tolerance_;   ///< of stamps against the clock [ns]
+  std::string frame_;  ///< frame of all odometry; empty: any frame
+  TimeNs tolerance_;   ///< largest difference between stamps and the clock [ns]
   double display_period_s_;
   std::string bag_;
   double clock_deadline_s_;  ///< wall time until which the first time of the clock is waited for
   std::vector<Member> members_;
   PacketReports reports_;
-  std::unique_ptr<rosbag::Bag> recording_;  ///< null: the vehicles speak
+  std::unique_ptr<rosbag::Bag> recording_;  ///< null: the vehicles send live
   PacketFiles files_;
-  acoustics::PacketObserver* log_ = nullptr;  ///< of this run
+  acoustics::PacketObserver* log_ = nullptr;  ///< log of this run
 
-  TimeNs now_ = 0;          ///< clock of ROS [ns]; 0: not known yet
-  TimeNs settled_ = 0;      ///< the clock a moment ago: what was on its way then has come in
-  double settled_s_ = 0.0;  ///< wall time of that
+  TimeNs now_ = 0;      ///< clock of ROS [ns]; 0: unknown
+  TimeNs settled_ = 0;  ///< clock a moment ago; messages that were on their way then have arrived
+  double settled_s_ = 0.0;  ///< wall time of settled_
   std::deque<Doubtful> doubtful_;
-  std::set<std::string> frames_;  ///< of odometry that was taken, the first few
+  std::set<std::string> frames_;  ///< frames of accepted odometry, the first few
   std::uint64_t runs_ = 0, receptions_ = 0, odometry_ = 0, packets_ = 0;
-  std::uint64_t foreign_messages_ = 0;  ///< of the bag, of some other type
+  std::uint64_t foreign_messages_ = 0;  ///< messages of the bag with another type
   Refusals refused_odometry_, refused_packets_;
   std::string last_refusal_;
   ros::Publisher events_, links_;

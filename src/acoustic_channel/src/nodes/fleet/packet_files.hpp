@@ -9,20 +9,20 @@
 
 namespace stg::nodes {
 
-/// The packet log of a node: a CSV file for each run, `packets.csv`, `packets.2.csv` and so on,
-/// with vehicles by id and times of the clock.
+/// The packet log of a node: one CSV file per run, `packets.csv`, `packets.2.csv` and so on. It has
+/// ids of vehicles and times of the clock.
 class PacketFiles {
  public:
-  /// @param path of the first file; empty: none. Throws UserError when it cannot be written, is
-  ///        there and no file, or is the same file as `bag`, which is read.
+  /// @param path of the first file; empty: no log. Throws UserError if it cannot be written, if the
+  /// path is not a regular file, or if it is the same file as `bag`, which is read.
   PacketFiles(std::string path, const std::vector<int>& ids, const std::string& bag);
 
-  /// A run begins, whose times count from `start` [ns]. Its log, null without a file, is valid
-  /// until the next.
+  /// Begins a run. `start` is the time from which its times count [ns]. Returns its log, valid
+  /// until the next run; null without a file.
   acoustics::PacketObserver* Begin(TimeNs start);
-  /// What was written is in the file, or is lost.
+  /// Writes all rows to the file. A failure is stored in lost().
   void Flush();
-  /// The first file that does not hold all of its rows; empty: all do.
+  /// The first file with missing rows; empty: all rows were written.
   const std::string& lost() const { return lost_; }
 
  private:

@@ -15,30 +15,30 @@
 
 namespace stg::nodes {
 
-/// The service that measures ranges. A call waits until the answer has travelled, in a thread of
-/// its own: the node's thread goes on meanwhile, takes the questions and gives the answers.
+/// The service that measures ranges. Each call waits for its answer in a thread of its own.
+/// Meanwhile the node's thread continues, takes the questions and gives the answers.
 class PingDesk {
  public:
   struct Question {
     std::uint32_t tag;
     std::uint32_t source, destination;  ///< ids
-    double timeout_s;                   ///< of simulated time
+    double timeout_s;                   ///< in simulated time
   };
 
-  /// @param service its name
+  /// @param service name of the service
   explicit PingDesk(const std::string& service);
   /// Callers that still wait get an answer that says so.
   ~PingDesk();
 
-  /// What was asked since the last call.
+  /// The questions since the last call.
   std::vector<Question> TakeQuestions();
   void Answer(std::uint32_t tag, const auv_msgs::Ping::Response& answer);
   void Refuse(std::uint32_t tag, const std::string& why);
-  /// The run of the questions is over.
+  /// Refuses all open questions, because their run is over.
   void RefuseAll(const std::string& why);
 
  private:
-  static constexpr int kCallers = 8;  ///< at once; more wait for their turn
+  static constexpr int kCallers = 8;  ///< largest number of simultaneous calls; more calls wait
   struct Pending {
     bool answered = false;
     auv_msgs::Ping::Response response;

@@ -17,8 +17,8 @@
 
 namespace stg::nodes {
 
-/// Emulated modems in real time: hosts on sockets, terminals and serial lines, vehicles by their
-/// odometry or by their place in the file.
+/// Emulated modems in real time. Hosts connect to sockets, terminals and serial lines. Vehicles are
+/// moved by their odometry, or have a fixed place in the file.
 class ModemsNode : private acoustics::PacketObserver {
  public:
   /// Throws UserError.
@@ -30,7 +30,7 @@ class ModemsNode : private acoustics::PacketObserver {
   struct Member {
     ros::Publisher reception;
     ros::Subscriber odometry, packets;
-    TimeNs heard = 0;  ///< of its place, last
+    TimeNs heard = 0;  ///< time of the last message about its place
   };
 
   void Connect();

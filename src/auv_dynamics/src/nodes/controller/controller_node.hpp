@@ -18,13 +18,13 @@
 
 namespace stg::nodes {
 
-/// Velocity controller of one AUV. Where force and moment command the vehicle (Eqs. 24-26), it
-/// answers each desired velocity with the wrench for the odometry of the same stamp, and holds no
-/// state between steps. Else the vehicle's autopilot answers every odometry with a command of the
-/// actuators: that of a decision when its velocity is in, those until the next decision at once.
-/// Its memory begins anew with each episode, of which the sensor frame of step 0 tells; on a
-/// vehicle without simulator there is none, and it begins with the node, or when the clock of the
-/// odometry goes back.
+/// Velocity controller of one AUV. If force and moment command the vehicle (Eqs. 24-26), it answers
+/// each desired velocity with the wrench for the odometry of the same stamp, and has no state
+/// between steps. Otherwise the vehicle's autopilot answers every odometry with a command for the
+/// actuators: at a decision, when the desired velocity has arrived; between decisions, at once. The
+/// autopilot's memory is reset in each episode, when the sensor frame of step 0 arrives. A vehicle
+/// without a simulator has no such frame: there the memory is reset when the node starts, and when
+/// the clock of the odometry goes back.
 class ControllerNode {
  public:
   /// Throws UserError.
@@ -46,7 +46,7 @@ class ControllerNode {
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   dynamics::WorldScenario scenario_;
-  dynamics::VehicleConfig believed_;  ///< what the AUV takes itself for
+  dynamics::VehicleConfig believed_;  ///< the AUV's own model of its vehicle
   int id_;
   std::string body_frame_;
   TimeNs period_;           ///< of decisions
@@ -55,14 +55,14 @@ class ControllerNode {
   ros::WallTime busy_;
   dynamics::WaitingCommands waiting_;
   geometry_msgs::WrenchStamped wrench_;
-  // Of vehicles that are steered by autopilots; else null.
+  // For vehicles with an autopilot; otherwise null.
   std::unique_ptr<const dynamics::Autopilot> autopilot_;
   std::vector<double> memory_;  ///< of the autopilot
-  TimeNs begins_ = -1;          ///< stamp of the episode's step 0, whose odometry is still to come
-  TimeNs began_ = -1;           ///< stamp of the first odometry that this memory steered by
+  TimeNs begins_ = -1;  ///< stamp of the episode's step 0, if its odometry has not arrived yet
+  TimeNs began_ = -1;   ///< stamp of the first odometry that was answered with this memory
   auv_msgs::ActuatorCommand actuators_;
   TimeNs framed_ = 0;    ///< stamp of the newest sensor frame
-  TimeNs answered_ = 0;  ///< of the newest odometry that was answered
+  TimeNs answered_ = 0;  ///< stamp of the newest odometry that was answered
   ros::Subscriber frames_;
   EventRate answers_;
   Refusals refused_odometry_, refused_commands_;

@@ -8,17 +8,17 @@
 namespace stg::agent {
 
 /// One normal distribution over a state: position and velocity of the target, then a block of
-/// errors for each observer. A view; the numbers lie in a GaussianMixture.
+/// errors for each observer. It is a view; the numbers are in a GaussianMixture.
 struct Gaussian {
   double* weight;
-  double* x;  ///< [stride]; what is past the state's size is zero
+  double* x;  ///< [stride]; zero beyond the size of the state
   double* P;  ///< [stride, stride], symmetric
 };
 
 inline constexpr int kTargetStates = 6;
 
-/// Weighted normal distributions over one state. Fixed capacity; allocates nothing after
-/// construction, and a copy costs as much as there are components.
+/// Weighted normal distributions over one state. The capacity is fixed, and nothing is allocated
+/// after construction. The cost of a copy is proportional to the number of components.
 class GaussianMixture {
  public:
   /// @param states    size of the state
@@ -39,23 +39,23 @@ class GaussianMixture {
   }
   /// Forgets all components.
   void Clear() { size_ = 0; }
-  /// A new component, all zero but a weight of one. Not when full.
+  /// Adds a component with weight one and zeros. The mixture must not be full.
   Gaussian Add();
-  /// A copy of component k. Not when full.
+  /// Adds a copy of component k. The mixture must not be full.
   Gaussian Copy(int k);
-  /// A copy of the first states of component k of another mixture. Not when full.
+  /// Adds a copy of the first states of component k of another mixture. It must not be full.
   void AddPart(const GaussianMixture& other, int k);
-  void Remove(int k);  ///< the last one takes its place
+  void Remove(int k);  ///< the last component takes its place
 
   /// Scales the weights to a sum of one.
   void Normalise();
-  /// Splits component k along a unit vector of quantities a x, with the column P a of it: three
-  /// components of the same mean and covariance together. Needs room for two more.
+  /// Splits component k along a unit vector a of quantities, with the column P a. The three new
+  /// components together have the same mean and covariance. Needs room for two more components.
   /// @param Pa      [stride], P a
   /// @param variance aᵀ P a, positive
   void Split(int k, const double* Pa, double variance);
-  /// Drops what has next to no weight, merges what lies close together, and what is nearest until
-  /// at most `most` are left. Keeps mean and covariance of what it merges.
+  /// Drops components with negligible weight and merges close ones. Then merges the nearest ones
+  /// until at most `most` are left. Merging keeps mean and covariance.
   void Reduce(int most);
 
  private:
@@ -64,10 +64,10 @@ class GaussianMixture {
   double Separation(int a, int b) const;
 
   int states_, stride_, capacity_;
-  std::size_t step_;  // numbers of a component
+  std::size_t step_;  // numbers per component
   int size_ = 0;
-  // Not filled before it is needed: most mixtures have one component most of the time, and memory
-  // that was never touched costs nothing.
+  // Memory is only written when it is needed. Most mixtures have one component most of the time,
+  // and untouched memory costs nothing.
   std::unique_ptr<double[]> data_;
 };
 

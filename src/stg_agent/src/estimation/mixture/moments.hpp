@@ -5,8 +5,8 @@
 
 namespace stg::agent {
 
-/// Mean and covariance of a mixture over the target's state and, where navigation drifts, the own
-/// errors: in the world, and in the frame of the own navigation, which is off by them.
+/// Computes mean and covariance of a mixture over the target's state and, if navigation drifts, the
+/// own errors: in the world, and in the frame of the own navigation, which differs by these errors.
 void SetMoments(const GaussianMixture& mixture, bool drifts, TargetBelief* belief,
                 TargetEstimate* estimate);
 

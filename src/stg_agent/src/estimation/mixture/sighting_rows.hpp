@@ -5,19 +5,20 @@
 
 #include "sighting_model.hpp"
 
-/// What the equations of SightingModel are written in.
+/// Parts of the equations of SightingModel.
 namespace stg::agent {
 
-/// Observers whose errors a filter keeps apart; of larger swarms those heard last.
+/// Number of observers with separate errors. In larger swarms, they are the last ones with a
+/// packet.
 inline constexpr int kMostObservers = 8;
 inline constexpr int kMostStates = kTargetStates + 5 * kMostObservers;
 inline constexpr int kMostStride = (kMostStates + 3) & ~3;
 
-/// The line from the observer to the target and its covariance, errors of the observer included.
+/// The line from the observer to the target and its covariance, including errors of the observer.
 struct SightingModel::Geometry {
   Vec3<double> d;       ///< target minus observer
   double C[3][3];       ///< covariance of d
-  double range, level;  ///< length, and that of its horizontal part
+  double range, level;  ///< length, and length of its horizontal part
 
   double Along(const Vec3<double>& a, const Vec3<double>& b) const {
     const double u[3] = {a.x, a.y, a.z}, v[3] = {b.x, b.y, b.z};
@@ -30,7 +31,7 @@ struct SightingModel::Geometry {
   double Along(const Vec3<double>& a) const { return Along(a, a); }
 };
 
-/// The few numbers of a row that are not zero.
+/// The nonzero numbers of a row.
 struct SightingModel::Row {
   std::array<int, 6> index{};
   std::array<double, 6> value{};
@@ -40,7 +41,7 @@ struct SightingModel::Row {
     index[static_cast<std::size_t>(count)] = i;
     value[static_cast<std::size_t>(count++)] = v;
   }
-  /// P times the row as a column; returns row P column.
+  /// Computes P times the row as a column. Returns row P column.
   double Times(const Gaussian& g, int stride, double* column) const {
     std::fill_n(column, stride, 0.0);
     for (int k = 0; k < count; ++k) {

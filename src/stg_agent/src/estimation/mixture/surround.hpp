@@ -7,12 +7,12 @@
 
 namespace stg::agent {
 
-/// How evenly the observers of the last half minute stood around the target that a mixture tells
-/// of: one minus the length of the mean of e^{2 i theta}, theta the bearing of an observer from the
-/// target. 0: all on one line through it, so two on opposite sides, too, as they see one axis.
+/// How evenly the observers of the last half minute surround the target of a mixture: one minus the
+/// length of the mean of e^{2 i theta}, where theta is the bearing of an observer from the target.
+/// 0: all are on one line through the target. Two on opposite sides also count as one line.
 class Surround {
  public:
-  /// @param dt_s since the observer before
+  /// @param dt_s time since the previous observer
   void LookFrom(const Vec3<double>& p_WO, double dt_s, const GaussianMixture& mixture) {
     double x = p_WO.x, y = p_WO.y;
     for (int k = 0; k < mixture.size(); ++k) {

@@ -45,7 +45,7 @@ class AcousticSource : public InformationSource {
   void TellNavigation(const dynamics::World& world, int i, int lane,
                       task::FieldState<Pack>* f) const;
 
-  int count_;  // of AUVs
+  int count_;  // number of AUVs
   dynamics::TargetConfig targets_;
   int action_size_;
   std::uint32_t decision_steps_;

@@ -23,18 +23,18 @@ namespace stg::nodes {
 
 /// The acoustic channel of the whole swarm.
 ///
-/// Step k closes when the positions at t_k are in and the transmissions of all AUVs whose packets
-/// can leave in it; then each AUV gets its reception window (t_k, t_{k+1}], and the world its
-/// acknowledgement. An AUV that is due and silent for `timeout` seconds, or whose step the world
-/// has left behind, is gone for the channel and not waited for again before it transmits again.
-/// Positions, velocities, step, episode and seed come with /swarm_state; one that contradicts the
-/// run is refused, see StepTracker.
+/// Step k closes when the positions at t_k have arrived, and the transmissions of all AUVs whose
+/// packets can leave in it. Then each AUV gets its reception window (t_k, t_{k+1}], and the world
+/// gets an acknowledgement. If the packet of an AUV is missing for `timeout` seconds, or the world
+/// continues without its step, the channel treats the AUV as absent. It does not wait for this AUV
+/// until it transmits again. Positions, velocities, step, episode and seed come from /swarm_state.
+/// A message that contradicts the run is refused, see StepTracker.
 class ChannelNode {
  public:
   /// Throws UserError.
-  /// @param line_of_sight where something may stand in the water; empty: all lines are free
+  /// @param line_of_sight if obstacles may be in the water; empty: all lines are free
   explicit ChannelNode(acoustics::LineOfSight line_of_sight = {});
-  /// With a channel that the caller makes from the run's scenario. Throws UserError.
+  /// Uses a channel that the caller makes from the run's scenario. Throws UserError.
   using MakeChannel =
       std::function<std::unique_ptr<acoustics::Channel>(const acoustics::NetworkConfig&)>;
   explicit ChannelNode(const MakeChannel& make);
@@ -42,7 +42,7 @@ class ChannelNode {
 
  private:
   struct Auv {
-    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< of the open step, or an early one
+    auv_msgs::AcousticPacket::ConstPtr transmission;  ///< of the open step, or of a later one
     ros::Publisher reception;
     ros::Subscriber subscriber;
   };
@@ -52,17 +52,17 @@ class ChannelNode {
   void Greet();
   void AskForTransmissions();
   void OnTransmission(int i, const auv_msgs::AcousticPacket::ConstPtr& message);
-  /// Says nothing, or something that the modem takes.
+  /// True if the message has no data, or data that the modem accepts.
   bool Sendable(const auv_msgs::AcousticPacket& message) const;
-  /// What the message offers.
+  /// The transmission in the message.
   acoustics::Transmission TransmissionOf(const auv_msgs::AcousticPacket& message) const;
   void CloseIfDue();
   void Close();
-  /// What AUV i received up to a time of the episode [ns]: all of received_.
+  /// Publishes the receptions of AUV i up to a time of the episode [ns]: all of received_.
   void PublishWindow(int i, TimeNs until);
-  /// At once, or when the last message is old enough.
+  /// Publishes if `now`, or if the last message is old enough.
   void PublishPackets(bool now);
-  /// @param last of the episode
+  /// @param last it is the last step of the episode
   void PublishLinks(TimeNs now, bool last);
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -71,8 +71,8 @@ class ChannelNode {
   TimeNs period_;  ///< of decisions [ns]
   double timeout_s_, display_period_s_;
   StepTracker tracker_;
-  StepBarrier barrier_;   ///< the AUVs
-  bool gave_up_ = false;  ///< on an AUV in the open step
+  StepBarrier barrier_;   ///< the parties are the AUVs
+  bool gave_up_ = false;  ///< an AUV was given up in the open step
   TimeNs start_ = -1;     ///< clock time of the episode's step 0 [ns]
   std::uint32_t step_ = 0;
   ros::WallTime links_sent_;

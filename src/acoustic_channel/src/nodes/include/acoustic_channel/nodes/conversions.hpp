@@ -8,7 +8,7 @@
 
 namespace stg::nodes {
 
-/// `start` is the clock time of the episode's step 0 [ns]: the core counts from there.
+/// `start` is the clock time of the episode's step 0 [ns]. The times of the core count from it.
 inline void SetReceivedPacket(const acoustics::Reception& r, TimeNs start,
                               auv_msgs::ReceivedPacket* m) {
   m->source = static_cast<std::uint32_t>(r.source);
@@ -27,8 +27,8 @@ inline void SetReceivedPacket(const acoustics::Reception& r, TimeNs start,
   m->data.assign(r.payload.data, r.payload.data + r.payload.size);
 }
 
-/// The inverse, for node `receiver`; the payload is valid as long as the message. The true distance
-/// is not in the message: a modem does not know it.
+/// The inverse, for node `receiver`. The payload is valid as long as the message. The message does
+/// not contain the true distance, because a modem does not know it.
 inline acoustics::Reception ReceptionOf(const auv_msgs::ReceivedPacket& m, int receiver,
                                         TimeNs start) {
   acoustics::Reception r;
@@ -50,7 +50,7 @@ inline acoustics::Reception ReceptionOf(const auv_msgs::ReceivedPacket& m, int r
   return r;
 }
 
-/// The numbers of a link; not whose it is.
+/// Writes the numbers of a link, but not its nodes.
 inline void SetLinkState(const acoustics::LinkStatistics& s, auv_msgs::LinkState* m) {
   m->distance = s.distance_m;
   m->quality = s.quality;

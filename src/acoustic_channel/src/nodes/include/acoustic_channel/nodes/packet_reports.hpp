@@ -8,15 +8,15 @@
 
 namespace stg::nodes {
 
-/// Gathers what the channel says of packets into the message for observers.
+/// Collects the channel's events about packets in the message for observers.
 class PacketReports : public acoustics::PacketObserver {
  public:
-  /// @param ids of the nodes, as messages name them
+  /// @param ids of the nodes in messages
   explicit PacketReports(std::vector<int> ids);
 
-  /// Times of the channel count from here [ns].
+  /// Sets the time from which the channel's times count [ns].
   void Begin(TimeNs start) { start_ = start; }
-  /// What was gathered since Clear.
+  /// The events since Clear.
   auv_msgs::PacketEvents& message() { return message_; }
   void Clear() { message_.events.clear(); }
 
@@ -26,7 +26,7 @@ class PacketReports : public acoustics::PacketObserver {
   void OnSent(const acoustics::PacketInfo& packet) override;
   void OnFate(const acoustics::PacketInfo& packet, const acoustics::PacketFate& fate) override;
 
-  /// As messages name a node: also kToAll.
+  /// The id of a node in messages; kToAll stays kToAll.
   int IdOf(int node) const { return node < 0 ? node : ids_[static_cast<std::size_t>(node)]; }
 
  private:

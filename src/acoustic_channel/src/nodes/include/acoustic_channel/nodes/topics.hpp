@@ -3,7 +3,7 @@
 /// Names of the acoustic channel's topics.
 namespace stg::topics {
 
-// Of each AUV, below Auv(i), or of each vehicle of a fleet, below its name.
+// For each AUV, relative to Auv(i), or for each vehicle of a fleet, relative to its name.
 inline constexpr char kAcousticTx[] = "acoustic/tx";
 inline constexpr char kAcousticRx[] = "acoustic/rx";
 inline constexpr char kAcousticStatus[] = "acoustic/status";

@@ -5,10 +5,10 @@
 
 namespace stg::nodes {
 
-/// The private parameter `autopilot` of agents and world: what turns a desired velocity into what
-/// moves the vehicle. False, `external`: a controller node. True, `onboard`: of vehicles that force
-/// and moment command, the agent; of those that an autopilot steers, the world, as its own loop
-/// runs inside a real vehicle. Throws UserError for anything else.
+/// The private parameter `autopilot` of agents and world: where a desired velocity becomes a
+/// command. False, `external`: in a controller node. True, `onboard`: in the agent if force and
+/// moment command the vehicle; in the world if the vehicle has an autopilot, because in a real
+/// vehicle this is an inner loop. Throws UserError for any other value.
 inline bool AutopilotOnBoardParameter() {
   const std::string autopilot = TextParameter("autopilot", "external");
   if (autopilot == "onboard") return true;

@@ -8,7 +8,7 @@
 #include "auv_common/nodes/conversions.hpp"
 #include "auv_dynamics/measurements.hpp"
 
-/// Between the vehicles' plain data and messages.
+/// Conversions between the plain data of vehicles and messages.
 namespace stg::nodes {
 
 /// Pose in `world`, twist in body axes (REP 103).
@@ -23,7 +23,7 @@ inline void SetNavigation(const dynamics::NavState& nav, geometry_msgs::Pose* po
   SetVector(nav.w_WB_B, &twist->angular);
 }
 
-/// The inverse of SetNavigation, at a time since the episode's step 0.
+/// The inverse of SetNavigation. @param stamp time since the episode's step 0
 inline dynamics::NavState NavOf(const geometry_msgs::Pose& pose, const geometry_msgs::Twist& twist,
                                 TimeNs stamp) {
   dynamics::NavState nav;
@@ -38,18 +38,19 @@ inline dynamics::NavState NavOf(const geometry_msgs::Pose& pose, const geometry_
   return nav;
 }
 
-/// The same of an odometry message, whose stamp is the clock time.
+/// The same for an odometry message, whose stamp is the clock time.
 inline dynamics::NavState NavOf(const nav_msgs::Odometry& m, TimeNs start) {
   return NavOf(m.pose.pose, m.twist.twist, NsOf(m.header.stamp) - start);
 }
 
-/// Stated deviations as the covariance of a pose. Row-major 6 x 6; what is not stated is zero.
+/// Writes the stated deviations as the covariance of a pose. It is row-major 6 x 6; values that are
+/// not stated are zero.
 inline void SetCovariance(const dynamics::NavState& nav, geometry_msgs::PoseWithCovariance* pose) {
   pose->covariance[0] = pose->covariance[7] = nav.position_std_m * nav.position_std_m;
   pose->covariance[35] = nav.heading_std_rad * nav.heading_std_rad;
 }
 
-/// All but the header.
+/// Writes everything except the header.
 inline void SetDetection(const dynamics::Detection& d, auv_msgs::TargetDetection* m) {
   const Vec3<double> r = d.p_WT - d.p_WO;
   const double variance = d.std_m * d.std_m;
@@ -71,7 +72,7 @@ inline void SetDetection(const dynamics::Detection& d, auv_msgs::TargetDetection
   m->mirror_azimuth = d.mirror_azimuth_rad;
 }
 
-/// Whether DetectionOf gives something that a filter can use.
+/// True if a filter can use the result of DetectionOf.
 inline bool UsableDetection(const auv_msgs::TargetDetection& m) {
   return m.kind <= auv_msgs::TargetDetection::RANGE_BEARING && FiniteVector(m.position) &&
          FiniteSquare(m.variance.x) && FiniteSquare(m.variance.y) && FiniteSquare(m.variance.z) &&

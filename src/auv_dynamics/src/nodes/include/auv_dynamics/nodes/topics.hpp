@@ -2,24 +2,24 @@
 
 #include "auv_common/nodes/topics.hpp"
 
-/// Names of the topics, services and frames between world, controllers and the rest of the graph.
+/// Names of topics, services and frames between world, controllers and the other nodes.
 namespace stg::topics {
 
-// Of each AUV, below Auv(i).
+// For each AUV, relative to Auv(i).
 inline constexpr char kSensorFrame[] = "sensor_frame";
 inline constexpr char kOdom[] = "odom";
 inline constexpr char kTargetDetection[] = "target_detection";
 inline constexpr char kCmdVel[] = "cmd_vel";
 inline constexpr char kWrench[] = "wrench";
 inline constexpr char kActuators[] = "actuators";
-// Its instruments, as marine software knows them.
+// Its instruments, with the names that marine software uses.
 inline constexpr char kImu[] = "imu";
 inline constexpr char kPressure[] = "pressure";
 inline constexpr char kDvl[] = "dvl";
 inline constexpr char kAltitude[] = "altitude";
 inline constexpr char kGps[] = "gps";
 
-// Of the whole run.
+// For the whole run.
 inline std::string TargetOdom(int k) { return "/target_" + std::to_string(k) + "/odom"; }
 inline constexpr char kClock[] = "/clock";
 inline constexpr char kScenario[] = "/scenario";
@@ -35,7 +35,7 @@ inline constexpr char kEpisodeSummary[] = "/episode_summary";
 namespace stg::frames {
 
 inline constexpr char kWorldNed[] = "world_ned";
-/// Where an altimeter's beam begins; x along it, straight down.
+/// Origin of an altimeter's beam, with x along the beam, straight down.
 inline std::string Altimeter(int i) { return "auv_" + std::to_string(i) + "/altimeter"; }
 inline std::string Target(int k) { return "target_" + std::to_string(k); }
 
