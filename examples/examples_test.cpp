@@ -18,7 +18,7 @@ std::vector<std::string> Programs() {
 class Examples : public testing::TestWithParam<std::string> {};
 
 TEST_P(Examples, DoesWhatItShould) {
-  // Where they are built, they need not find the scenarios by themselves.
+  // The environment variable gives the folder of the scenarios.
   const std::string command = "STG_SCENARIOS='" STG_SCENARIO_FOLDER "' '" + GetParam() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
 }

@@ -1,4 +1,4 @@
-// What libFuzzer calls. STG_FUZZ_TARGET says which loader takes the inputs.
+// The entry point of libFuzzer. STG_FUZZ_TARGET names the loader that takes the inputs.
 
 #include <cstdint>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Every input that the fuzzers start from, and every one that they have found a bug with, is
-// refused or taken as it should be.
+// Every initial input of the fuzzers, and every input that found a bug, must be refused or accepted
+// as its name says.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ class Fuzz : public ::testing::TestWithParam<Target> {
   static void SetUpTestSuite() { setenv("STG_SCENARIOS", STG_SCENARIOS, 1); }
 };
 
-/// Runs the files of a folder; returns how many there are.
+/// Runs the files of a folder. Returns their number.
 int RunFolder(const fs::path& folder, const Target& target) {
   int count = 0;
   if (!fs::exists(folder)) return 0;
@@ -31,7 +31,7 @@ int RunFolder(const fs::path& folder, const Target& target) {
     bytes << in.rdbuf();
     bool accepted = false;
     EXPECT_NO_THROW(accepted = target.run(bytes.str()));
-    // The name says what should come of it.
+    // The name of the file states the expected result.
     const std::string name = entry.path().filename().string();
     const bool good = name.rfind("good_", 0) == 0, bad = name.rfind("bad_", 0) == 0;
     EXPECT_TRUE(good || bad) << "is neither good_* nor bad_*";

@@ -15,7 +15,7 @@
 namespace stg::fuzz {
 namespace {
 
-/// A file without a name on any disk.
+/// A file that has no name on any disk.
 class MemoryFile {
  public:
   explicit MemoryFile(const std::string& bytes) : file_(::memfd_create("input", MFD_CLOEXEC)) {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-/// What takes bytes from outside, each as a target for libFuzzer and for the test of what was found
-/// (docs/fuzzing.md).
+/// The loaders of bytes from outside. Each is a target for libFuzzer, and for the test of earlier
+/// findings (docs/fuzzing.md).
 namespace stg::fuzz {
 
-/// One loader. `run` takes any bytes: true when they were accepted, false when they were refused
-/// with UserError; anything else that comes of them is a bug.
+/// One loader. `run` takes any bytes. It returns true if they were accepted, and false if they were
+/// refused with UserError. Any other outcome is a bug.
 struct Target {
   const char* name;
   bool (*run)(const std::string& bytes);
@@ -47,15 +47,15 @@ inline constexpr Target kTargets[] = {
     {"track", RunTrack},
 };
 
-/// Hands `load` the path of a file in memory that holds the bytes, for loaders that take a path.
-/// True unless it throws UserError.
+/// Calls `load` with the path of a file in memory that contains the bytes. Returns true unless
+/// `load` throws UserError.
 bool LoadAsFile(const std::string& bytes, const std::function<void(const std::string&)>& load);
 
-/// Ends the program with a message: bytes were accepted that must not be, or not read as they
-/// stand.
+/// Ends the program with a message if `ok` is false: bytes were accepted that must be refused, or
+/// were read wrongly.
 void Require(bool ok, const char* what);
 
-/// Numbers from the front of the bytes; zeros past their end.
+/// Takes numbers from the front of the bytes; zeros after their end.
 class Bytes {
  public:
   explicit Bytes(const std::string& bytes) : bytes_(bytes) {}

@@ -33,8 +33,8 @@ struct HillClimbingConfig : AlgorithmConfig {
                                   const Team& team) const override;
 };
 
-/// Every environment flies a candidate of its own, the best so far with noise on its weights, for
-/// a whole collection; the candidate that earned most is the next one's best.
+/// Every environment flies its own candidate for a whole collection: the best policy so far with
+/// noise on its weights. The candidate with the highest reward is the next best policy.
 class HillClimbing : public Algorithm {
  public:
   HillClimbing(const HillClimbingConfig& config, const TrainConfig& common, const Problem& problem)
@@ -103,10 +103,11 @@ class HillClimbing : public Algorithm {
     return spec;
   }
 
-  /// Drawn by number, not from a generator's state: any shard or resumed run draws the same.
+  /// The draw depends on these numbers and not on the state of a generator. So any shard and any
+  /// resumed run get the same candidate.
   std::vector<float> Candidate(std::uint32_t collection, int env) const {
     std::vector<float> p = best_;
-    if (env == 0) return p;  // the best so far competes
+    if (env == 0) return p;  // the best policy so far also competes
     Random random(seed_, Stream::kPolicy, collection, 0, static_cast<std::uint32_t>(env));
     for (float& x : p) x += static_cast<float>(config_.step * random.Normal());
     return p;
@@ -156,7 +157,7 @@ int main() {
                                               {"time.episode_steps=100", "time.tail_steps=40"});
   TrainSetup setup("hill_climbing", "fast");
   setup.common.envs = 32;
-  setup.common.horizon = 100;  // the episode: a candidate is judged by all of it
+  setup.common.horizon = 100;  // the whole episode, by which a candidate is judged
   setup.common.stagger = false;
   setup.common.validation_episodes = 16;
   Archive one, two, first;
@@ -165,6 +166,6 @@ int main() {
   Train(scenario, setup, 12, 2, folder + "/two", &two);
   std::filesystem::remove_all(folder);
   std::printf("return %.1f after one collection, %.1f after twelve\n", untrained, trained);
-  // It climbs, and two workers climb as one does, bit for bit.
+  // The return increases, and two workers give the same result as one, bit for bit.
   return trained > untrained && one == two ? 0 : 1;
 }

@@ -56,7 +56,8 @@ int main() {
 
   AgentModel config;
   config.run.agents = 1;
-  config.control.smoothing = config.control.max_delta = 0.0;  // moves as the command says
+  // The vehicle moves exactly as commanded.
+  config.control.smoothing = config.control.max_delta = 0.0;
   config.run.time.decision_steps = 1;
   Agent agent(config, 0);
   const Vec3<double> p_WT{0.1, 0.0, 0.0};
@@ -85,6 +86,7 @@ int main() {
   }
   const double distance = Norm(nav.p_WB - p_WT);
   std::printf("circles at %.4f m, %.4f rad/s\n", distance, turned / 10.0);
-  // A step along the tangent leads outwards: a little farther than asked, turning at v / r.
+  // A step along the tangent leads outwards, so the distance is a little larger than commanded, and
+  // the turn rate is v / r.
   return std::abs(distance - 0.3) < 0.003 && std::abs(turned / 10.0 - 0.2) < 0.003 ? 0 : 1;
 }

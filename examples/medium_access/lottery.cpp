@@ -1,5 +1,5 @@
-// A medium access of your own: in every decision each node draws whether it sends. See
-// docs/how_to/add_a_medium_access.md.
+// A medium access of your own: in every decision a random draw decides for each node if it sends.
+// See docs/how_to/add_a_medium_access.md.
 
 #include <cmath>
 #include <cstdint>
@@ -68,14 +68,14 @@ int main() {
 
   NetworkConfig network;
   network.run.agents = 2;
-  // Every fifth decision, on average.
+  // On average, a node sends in every fifth decision.
   config::Override(&network,
                    {"channel.model=range", "channel.access=lottery", "channel.lottery.mean_s=0.5"});
   const TimeNs period = network.run.decision_period();
   constexpr int kDecisions = 20000;
 
   const auto channel = MakeChannel(network.channel, network.run);
-  Turns turns(network.channel, network.run);  // what a node with a modem elsewhere asks
+  Turns turns(network.channel, network.run);  // for a node whose modem is in another process
   channel->Reset(/*seed=*/1, /*episode=*/0);
   turns.Reset(1, 0);
   const std::uint8_t bytes[] = {1, 2, 3};
@@ -88,7 +88,7 @@ int main() {
     Transmission packet;
     packet.stamp = packet.generation = t;
     packet.payload = {bytes, sizeof(bytes)};
-    // A packet is offered in every decision; the one that waits is replaced until the node's turn.
+    // A packet is offered in every decision. It replaces the waiting one until the node's turn.
     channel->Step(t, static_cast<std::uint32_t>(k), nowhere, nowhere, {packet});
     const std::size_t before = received.size();
     channel->Deliver(1, t + period, &received);
@@ -98,6 +98,6 @@ int main() {
 
   const double share = static_cast<double>(received.size()) / kDecisions;
   std::printf("sent in %.3f of the decisions, after %.3f s on average\n", share, wait_s);
-  const double error = std::sqrt(0.2 * 0.8 / kDecisions);  // of a share of 0.2
+  const double error = std::sqrt(0.2 * 0.8 / kDecisions);  // standard deviation of a share of 0.2
   return agree && std::abs(share - 0.2) < 4.0 * error && wait_s == 0.0 ? 0 : 1;
 }

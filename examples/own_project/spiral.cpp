@@ -16,9 +16,10 @@ namespace {
 
 using namespace stg;
 
-/// Towards the target and around it at once: the nearer, the more around.
+/// Moves towards the target and around it at the same time. Near the target, most of the motion is
+/// around it.
 struct Spiral {
-  double speed = 0.5;  // of the largest velocity, [0, 1]
+  double speed = 0.5;  // share of the largest velocity, [0, 1]
 
   template <class T>
   void Act(const agent::ControllerInput<T>& in, T* action) const {

@@ -1,4 +1,4 @@
-// A propagation model of your own: packets get lost gradually around a range. See
+// A propagation model of your own: the loss of packets grows gradually around a range. See
 // docs/how_to/add_a_propagation_model.md.
 
 #include <cmath>
@@ -52,7 +52,7 @@ class SoftRange {
   double range_m_;
 };
 
-/// Share of the packets that node 1 receives of node 0 at distance d [m].
+/// Share of the packets of node 0 that node 1 receives at distance d [m].
 double ShareAt(double d, const NetworkConfig& network) {
   constexpr int kPackets = 4000;
   const auto channel = MakeChannel(network.channel, network.run);
@@ -86,7 +86,7 @@ int main() {
   network.channel.range_m = 100.0;
   network.channel.transmit_period_s = network.run.decision_dt_s();  // a packet in every decision
 
-  // Half of the packets arrive at the range itself, and what an agent thinks of a link agrees.
+  // Half of the packets arrive at the range itself. An agent's estimate of the link agrees.
   const double near = ShareAt(60.0, network), at = ShareAt(100.0, network);
   const double quality = MakeLinkEstimator(network.channel, 2)->Quality(100.0, 0.0);
   std::printf("arrived: %.3f at 60 m, %.3f at 100 m, %.3f at 301 m; quality at 100 m %.3f\n", near,

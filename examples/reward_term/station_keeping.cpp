@@ -1,4 +1,4 @@
-// A reward term of your own: an AUV is to move as its target does. See
+// A reward term of your own: an AUV must move with its target's velocity. See
 // docs/how_to/add_a_reward_term.md.
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 using namespace stg;
 using namespace stg::task;
 
-/// Minus the speed relative to the target, as a share of the vehicle's largest, at most 1: in
-/// [-1, 0], and 0 for an AUV that moves as its target does.
+/// Minus the speed relative to the target, as a share of the vehicle's largest speed, and at most
+/// 1. The term is in [-1, 0], and 0 for an AUV with its target's velocity.
 struct StationKeepingOptions {
   double full_share = 1.0;
 };
@@ -49,7 +49,7 @@ std::unique_ptr<const RewardTerm> MakeStationKeeping(const StationKeepingOptions
   return std::make_unique<StationKeeping>(options, config);
 }
 
-/// What one AUV earns that stands beside a target of this speed, as a share of the largest.
+/// Reward of one AUV at rest near a target with this speed, as a share of the largest speed.
 double Earned(double share, double weight) {
   Scenario config;
   config.run.agents = 1;
@@ -81,7 +81,7 @@ STG_PLUGIN { RewardTermsByName().Add("station_keeping", MakeStationKeeping); }
 int main() {
   stg_plugin_register();
 
-  // A quarter of the largest speed is half of what costs all of the weight.
+  // The full share is 0.5, so a quarter of the largest speed costs half of the weight.
   const double quarter = Earned(0.25, 0.5) - Earned(0.25, 0.0);
   const double most = Earned(3.0, 0.5) - Earned(3.0, 0.0);
   std::printf("of a weight of 0.5, a quarter of the speed costs %.4f, three times it %.4f\n",

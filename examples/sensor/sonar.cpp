@@ -14,8 +14,8 @@ using namespace stg;
 using namespace stg::dynamics;
 
 struct SonarOptions {
-  double near_std_m = 1.0;  // of each component, beside the vehicle
-  double share = 0.01;      // of the distance, which is added
+  double near_std_m = 1.0;  // of each component, close to the vehicle
+  double share = 0.01;      // share of the distance that is added
 };
 
 void Describe(SonarOptions* o, config::Table* t) {
@@ -35,7 +35,7 @@ class Sonar : public TargetSensor {
     const Vec3<double> p_WT = look.p_WT();
     const double distance = Norm(p_WT - look.p_WB());
     if (distance > config_.range_m) return false;
-    // The draws of this step, vehicle and target: every call in this step gets the same.
+    // The draws for this step, vehicle and target. Every call in this step gets the same ones.
     Random random = look.clock.Draw(Stream::kDetection, look.pair);
     if (random.Uniform() >= config_.detection_probability) return false;
     const double s = options_.near_std_m + options_.share * distance;
@@ -73,7 +73,7 @@ int main() {
   World world(config);
   world.Place(0, {{0.0, 0.0, 0.0}}, {{300.0, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
 
-  // 1 m and 2 % of 300 m: 7 m in each component.
+  // 1 m and 2 % of 300 m: the standard deviation of each component is 7 m.
   const std::vector<Wrench<Pack>> nothing(1);
   const int steps = 4000;
   double squares = 0.0;
@@ -86,5 +86,5 @@ int main() {
   }
   const double deviation = std::sqrt(squares / (3.0 * steps));
   std::printf("deviation of %d detections at 300 m: %.3f m\n", steps, deviation);
-  return std::abs(deviation - 7.0) < 0.23 ? 0 : 1;  // five deviations of the estimate
+  return std::abs(deviation - 7.0) < 0.23 ? 0 : 1;  // five standard deviations of the estimate
 }

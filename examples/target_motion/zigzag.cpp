@@ -31,8 +31,8 @@ class Zigzag : public SteeredMotion {
 
  private:
   Vec3<double> Steer(const Situation& now) override {
-    // A function of the clock, not of a counter of its own: nothing to reset, and every lane and
-    // every program agree.
+    // A function of the clock needs no counter. So there is nothing to reset, and all lanes and
+    // programs agree.
     const double time = dt() * now.clock.step;
     const bool left = std::fmod(time / options_.leg_s, 2.0) < 1.0;
     const Vec3<double> up{0.0, 0.0, left ? 1.0 : -1.0};
@@ -60,7 +60,7 @@ int main() {
   World world(config);
   world.Place(0, {{0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.02, 0.0, 0.0}});
 
-  // One turn to the left and one to the right: the course comes back to where it was.
+  // After one turn to the left and one to the right, the course is the same as before.
   const std::vector<Wrench<Pack>> nothing(1);
   double most = 0.0;
   for (int k = 0; k < 100; ++k) {

@@ -4,7 +4,7 @@
 
 #include "target.hpp"
 
-/// A bathymetry file; what is accepted has elevations everywhere.
+/// A bathymetry file. An accepted one has elevations everywhere.
 bool stg::fuzz::RunBathymetry(const std::string& bytes) {
   return LoadAsFile(bytes, [](const std::string& path) {
     const auto sea = dynamics::Bathymetry::Load(path);

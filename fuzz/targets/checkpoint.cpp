@@ -13,7 +13,7 @@
 namespace stg::fuzz {
 namespace {
 
-/// A learner so small that its checkpoints are a few kilobytes.
+/// A small learner, whose checkpoints have a few kilobytes.
 learn::Algorithm& Learner() {
   static WorkerPool pool(1);
   static learn::TrainSetup setup = [] {
@@ -33,7 +33,7 @@ learn::Algorithm& Learner() {
   return *algorithm;
 }
 
-/// The file of a payload: the checksum, which a fuzzer cannot guess, is right.
+/// The file of a payload, with the right checksum, because a fuzzer cannot guess it.
 std::string WithHeader(const std::string& payload) {
   std::uint64_t checksum = 14695981039346656037ULL;
   for (const char c : payload) {
@@ -49,7 +49,7 @@ std::string WithHeader(const std::string& payload) {
 
 }  // namespace
 
-/// What follows a checkpoint's header. What is accepted is counts that can be, and a learner.
+/// The content after a checkpoint's header. An accepted one has possible counts and a learner.
 bool RunCheckpoint(const std::string& bytes) {
   return LoadAsFile(WithHeader(bytes), [](const std::string& path) {
     const learn::TrainState state = learn::LoadCheckpoint(path);

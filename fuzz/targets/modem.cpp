@@ -8,7 +8,7 @@
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "target.hpp"
 
-/// What hosts say to emulated modems, and what modems say to drivers.
+/// Messages of hosts to emulated modems, and of modems to drivers.
 namespace stg::fuzz {
 namespace {
 
@@ -19,7 +19,7 @@ using acoustics::ModemWater;
 constexpr TimeNs kStart = 3'000'000'000;
 constexpr std::size_t kMostSaid = 64 << 20;
 
-/// Whether a modem said anything but errors.
+/// Records whether a modem sent anything except errors.
 struct Listeners : acoustics::ModemHosts {
   void Write(int /*node*/, const std::string& bytes) override {
     said += bytes.size();
@@ -32,8 +32,8 @@ struct Listeners : acoustics::ModemHosts {
   bool sound = false;
 };
 
-/// Two modems 1500 m apart; the bytes go to the first, a line every 50 ms and at most seven bytes
-/// at once, so that splits are tried as well. What they set free comes to an end.
+/// Two modems 1500 m apart. The bytes go to the first one: a line every 50 ms, and at most seven
+/// bytes at once, so that splits are tested, too. All actions that they start must end.
 bool Talk(const std::string& bytes, const char* profile, const ModemWater::MakeEngine& first,
           const ModemWater::MakeEngine& second) {
   RunConfig run;

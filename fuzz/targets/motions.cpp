@@ -1,7 +1,7 @@
 #include "auv_dynamics/playback/recorded_motion.hpp"
 #include "target.hpp"
 
-/// A table of recorded vehicle motions. Only the reading: a day of flight takes its time.
+/// A table of recorded vehicle motions. It is only read, because a simulated day takes too long.
 bool stg::fuzz::RunMotions(const std::string& bytes) {
   return LoadAsFile(bytes, [](const std::string& path) {
     for (const dynamics::RecordedMotion& motion : dynamics::LoadMotions(path)) {

@@ -1,7 +1,7 @@
 #include "acoustic_channel/offline/simulation_file.hpp"
 #include "target.hpp"
 
-/// A network that is to be simulated offline.
+/// A network for an offline simulation.
 bool stg::fuzz::RunNetwork(const std::string& bytes) {
   return LoadAsFile(bytes, [](const std::string& path) {
     const acoustics::SimulationFile file = acoustics::LoadSimulation(path);

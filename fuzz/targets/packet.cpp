@@ -3,8 +3,8 @@
 #include "auv_common/error.hpp"
 #include "target.hpp"
 
-/// Eight bytes of the receiver's clock, then a packet of any size. What is accepted can be sent on
-/// (the nearest code of what was decoded is the same state), unless it says that it was clipped.
+/// Eight bytes of the receiver's clock, then a packet of any size. An accepted one can be encoded
+/// again with the same result, unless it is marked as clipped.
 bool stg::fuzz::RunPacket(const std::string& bytes) {
   static const agent::PacketCodec codec{agent::AgentModel()};
   Bytes in(bytes);

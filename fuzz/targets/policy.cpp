@@ -4,7 +4,7 @@
 
 #include "target.hpp"
 
-/// A policy file. What is accepted takes observations.
+/// A policy file. An accepted one can act on observations.
 bool stg::fuzz::RunPolicy(const std::string& bytes) {
   return LoadAsFile(bytes, [](const std::string& path) {
     const auto policy = agent::Policy::LoadOnnx(path);

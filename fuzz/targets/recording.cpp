@@ -7,7 +7,7 @@
 namespace stg::fuzz {
 namespace {
 
-/// Up to 255 numbers; the first byte says how many.
+/// Up to 255 numbers; the first byte is their count.
 std::vector<float> TakeNumbers(Bytes* in) {
   std::vector<float> numbers(in->Take<std::uint8_t>());
   for (float& number : numbers) number = in->Take<float>();
@@ -28,8 +28,8 @@ agent::Policy MakePolicy(const Scenario& scenario) {
 
 }  // namespace
 
-/// The messages of a recorded run as the trainer's node hands them on, in any order. True when an
-/// episode was whole.
+/// The messages of a recorded run, as the trainer's node passes them on, in any order. True if an
+/// episode was complete.
 bool RunRecording(const std::string& bytes) {
   static const Scenario scenario =
       LoadNamedScenario(STG_SCENARIOS, "medium", "nominal",

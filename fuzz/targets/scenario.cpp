@@ -3,7 +3,7 @@
 #include "auv_common/config/loader.hpp"
 #include "target.hpp"
 
-/// A scenario file. What is accepted is the same when it is written and read again.
+/// A scenario file. An accepted one is the same after it is written and read again.
 bool stg::fuzz::RunScenario(const std::string& bytes) {
   return LoadAsFile(bytes, [](const std::string& path) {
     const std::string text = ToYaml(LoadScenario(path));

@@ -2,7 +2,7 @@
 
 #include "target.hpp"
 
-/// The way of a vehicle, as CSV.
+/// The path of a vehicle, as CSV.
 bool stg::fuzz::RunTrack(const std::string& bytes) {
   return LoadAsFile(bytes, [](const std::string& path) {
     const acoustics::Track track = acoustics::Track::Load(path);

@@ -1,11 +1,11 @@
-// A network of ns-3's UAN module that is given every packet: the other side of compare.py, which
-// builds it.
+// Simulates a network of ns-3's UAN module with given packets, for the comparison in compare.py,
+// which builds it.
 //
 //   uan_network NODES PACKETS DURATION_S RATE_BPS KHZ BAND_HZ LEVEL_DB ACQUISITION_DB THRESHOLD_DB
 //
-// NODES has lines `x y z` [m], PACKETS lines `time source bytes`, by time. A packet of so many
-// bytes, the module's header among them, goes to everybody by ALOHA. Prints `source receiver
-// delivered` for every pair, after a line with the number of packets that were sent.
+// NODES has lines `x y z` [m]; PACKETS has lines `time source bytes`, sorted by time. A packet has
+// this number of bytes, including the module's header, and goes to all nodes by ALOHA. Prints the
+// number of sent packets, then `source receiver delivered` for every pair.
 
 #include <ns3/core-module.h>
 #include <ns3/mobility-module.h>
@@ -28,7 +28,7 @@ std::vector<std::vector<std::uint64_t>> delivered;
 std::uint64_t sent = 0;
 
 void Send(Ptr<NetDevice> device, std::uint32_t bytes) {
-  // Refused while the modem is sending: this module has no queue.
+  // The modem refuses a packet while it is sending, because this module has no queue.
   const UanHeaderCommon header;
   const Ptr<Packet> packet = Create<Packet>(bytes - header.GetSerializedSize());
   if (device->Send(packet, device->GetBroadcast(), 0)) ++sent;

@@ -23,8 +23,7 @@ namespace stg::nodes {
 ///   pressure  absolute, for the depth of the navigation: p_atm + rho g depth
 ///   dvl       velocity over ground in body axes, from the navigation
 ///   altitude  of the body's origin above the bottom, straight down for any attitude, along x of
-///   its
-///             own frame in tf; +Inf if it is out of range (REP 117)
+///             its own frame in tf; +Inf if it is out of range (REP 117)
 ///   gps       within kSurface_m of the surface, where an aerial is out of the water
 /// It costs nothing without subscribers.
 class Instruments {
