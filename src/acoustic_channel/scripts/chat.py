@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 
 
 class Vehicle:
-    """Tells where it is, answers every question, and tells what becomes of its packets."""
+    """Reports its position, answers every question, and reports the fate of its packets."""
 
     def __init__(self, name, x):
         self.name, self.x, self.number = name, x, 0

@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
 """Joins the sound of the public tools janus-tx and janus-rx to an emulated JANUS modem.
 
-What the host's janus-tx plays is decoded here by a janus-rx and sent through the simulated water;
-what the modem hears from the water is played to the host's janus-rx by a janus-tx here. The host's
-two tools get a named pipe each (--stream-driver raw), or a TCP port where their version can
-do that:
+Here a janus-rx decodes the sound of the host's janus-tx, and the packets go through the simulated water. A
+janus-tx plays the packets that the modem receives from the water to the host's janus-rx. Each of the host's
+two tools gets a named pipe (--stream-driver raw), or a TCP port if its version supports this:
 
   janus_bridge.py --modem 127.0.0.1:9203 --from-host tx.pipe --to-host rx.pipe --tools DIR \\
                   --pset-file parameter_sets.csv
   janus-tx --stream-driver raw --stream-driver-args tx.pipe --pset-file ... --packet-cargo hello
   janus-rx --stream-driver raw --stream-driver-args rx.pipe --pset-file ... --verbose 1
 
-A packet's sound comes when its packet has ended in the water, so the host hears it by its own
-length too late. Cargo must be text without commas.
+The sound of a packet begins when the packet has ended in the water, so the host gets it too late by the
+length of the packet. Cargo must be text without commas.
 """
 
 import argparse
@@ -55,7 +54,7 @@ def parse(argv):
 
 
 def open_sound(place, mode):
-    """A stream of samples: a named pipe, made where there is none, or the next client of a port."""
+    """A stream of samples: a named pipe, which is made if necessary, or the next client of a port."""
     if place.startswith("tcp:"):
         with socket.create_server(("127.0.0.1", int(place[4:]))) as server:
             return server.accept()[0].makefile(mode)
@@ -68,7 +67,7 @@ def open_sound(place, mode):
 
 
 def crc16(data):
-    """The checksum behind the cargo of class 16, type 1."""
+    """The checksum after the cargo of class 16, type 1."""
     crc = 0
     for byte in data:
         crc ^= byte
@@ -78,7 +77,7 @@ def crc16(data):
 
 
 class Tools:
-    """The two public programs, on files of raw samples."""
+    """The two public programs; they work on files of raw samples."""
 
     def __init__(self, args):
         self._folder = pathlib.Path(args.tools) if args.tools else pathlib.Path()
@@ -103,7 +102,7 @@ class Tools:
         return done.stdout + done.stderr
 
     def decode(self, sound):
-        """Words of tx for each packet in the samples."""
+        """Words of the command tx for each packet in the samples."""
         with tempfile.NamedTemporaryFile(suffix=".raw") as file:
             file.write(sound + bytes(self._args.stream_fs * SAMPLE_BYTES))
             file.flush()
@@ -115,13 +114,13 @@ class Tools:
             command = f"tx packet={packet}"
             digits = cargo.group(1).replace(" ", "") if cargo else ""
             addressed = packet[2:4] == "10" and int(packet[4:6], 16) >> 2 == 1
-            if addressed:  # janus-rx shows zeros for the checksum, which the modem makes anew
+            if addressed:  # janus-rx shows zeros for the checksum; the modem computes it again
                 digits = digits[:-4]
             commands.append(f"{command} cargo={digits}" if digits else command)
         return commands
 
     def encode(self, words):
-        """Samples of a packet as the modem heard it."""
+        """Samples of a packet that the modem received."""
         options = []
         for name in ("class", "type"):
             options += [f"--packet-{'class-id' if name == 'class' else 'app-type'}", words[name]]
@@ -133,7 +132,7 @@ class Tools:
         if "cargo" in words:
             cargo = bytes.fromhex(words["cargo"]).rstrip(b"\0")
             fields = [f"{FIELDS[name]}={words[name]}".encode() for name in FIELDS if name in words]
-            if "destination" in words:  # janus-tx does not make the checksum
+            if "destination" in words:  # janus-tx does not compute the checksum
                 fields.append(b"PayloadSize=%d" % len(cargo))
                 cargo += crc16(cargo).to_bytes(2, "big")
             options += ["--packet-app-fields", b",".join([*fields, b"Payload=" + cargo])]
@@ -148,7 +147,7 @@ class Tools:
 
 
 def hear_host(args, tools, modem):
-    """From the host's sound into the water, for ever."""
+    """Sends packets from the host's sound into the water, forever."""
     while True:
         with open_sound(args.from_host, "rb") as stream:
             sound = stream.read()
@@ -158,7 +157,7 @@ def hear_host(args, tools, modem):
 
 
 def hear_water(tools, modem, sounds):
-    """From the water into samples, until the modem goes."""
+    """Turns packets from the water into samples, until the modem disconnects."""
     for line in modem.makefile("r", errors="replace"):
         print(f"janus_bridge: {line.strip()}", flush=True)
         words = dict(word.split("=", 1) for word in line.split()[1:] if "=" in word)
@@ -168,7 +167,7 @@ def hear_water(tools, modem, sounds):
 
 
 def play(args, sounds):
-    """Samples to the host in real time, zeros while there is nothing to hear."""
+    """Plays samples to the host in real time, and zeros if there is no packet."""
     silence = bytes(int(args.stream_fs * CHUNK_S) * SAMPLE_BYTES)
     while True:
         try:
@@ -186,7 +185,7 @@ def play(args, sounds):
 
 
 def main(argv=None):
-    """Joins until it is ended."""
+    """Connects host and modem until it is stopped."""
     args = parse(argv)
     host, port = args.modem.rsplit(":", 1)
     tools, sounds = Tools(args), queue.Queue()

@@ -21,7 +21,7 @@ NUMBERS = "offered_s generation_s transmit_s transmit_end_s begin_s arrival_s di
 NAMES = "source destination sequence fate".split()
 GOOD, PARTLY, BAD, GREY = "#2fb457", "#f5a11a", "#e23636", "#9aa3ad"
 MAX_LINKS = 40
-# What a row must tell of a packet that left, of one that found a receiver, and of one that arrived.
+# Columns that a row must have for a packet that left, for one with a receiver, and for one that arrived.
 OF_SENT, OF_RECEIVER, OF_DELIVERED = ("transmit_end_s",), ("distance_m",), ("generation_s", "arrival_s")
 
 
@@ -31,12 +31,12 @@ def number_or_nan(text):
 
 
 def in_order(names):
-    """Names of nodes, numbers in their order."""
+    """Names of nodes; numbers are sorted by value."""
     return sorted(names, key=lambda n: (not n.isdecimal(), len(n.lstrip("0")) if n.isdecimal() else 0, n))
 
 
 class Log:
-    """Columns of a packet log as arrays, one entry per packet and receiver; NaN: not known."""
+    """Columns of a packet log as arrays, with one entry per packet and receiver; NaN: unknown."""
 
     def __init__(self, path):
         columns = {name: [] for name in NAMES + NUMBERS}
@@ -61,7 +61,7 @@ class Log:
         self.end_s = max(np.nanmax(self.offered_s), np.nanmax(self.arrival_s, initial=0.0))
 
     def count_from_first(self):
-        """Has all times count from the first one: a node's log has those of its clock."""
+        """Makes all times start at the first one, because the log of a node has times of its clock."""
         first_s = min(np.nanmin(self.offered_s), np.nanmin(self.generation_s, initial=np.inf))
         for name in NUMBERS:
             if name.endswith("_s"):
@@ -69,11 +69,11 @@ class Log:
         self.end_s -= first_s
 
     def nodes(self):
-        """All names of nodes, numbers in their order."""
+        """All names of nodes; numbers are sorted by value."""
         return in_order(set(self.source) | set(self.destination))
 
     def transmissions(self):
-        """Start, end, source and share of receivers reached of every packet that left."""
+        """Start, end, source and share of reached receivers for every packet that left."""
         found = {}
         for i in np.flatnonzero(self.sent):
             key = (self.source[i], self.sequence[i], self.transmit_s[i])
@@ -84,7 +84,7 @@ class Log:
 
 
 def draw_delivery(axes, log):
-    """Share of what was sent that was delivered, by distance, with 95 % intervals of Wilson."""
+    """Draws the share of sent packets that was delivered, by distance, with 95 % intervals of Wilson."""
     axes.set_title("delivery against distance")
     axes.set_xlabel("distance [m]")
     axes.set_ylabel("delivered")
@@ -93,7 +93,7 @@ def draw_delivery(axes, log):
     distance, good = log.distance_m[there], log.delivered[there]
     if not len(distance):
         return
-    # Bins of equal numbers of packets; fixed distances make bins of their own.
+    # Bins have equal numbers of packets; each fixed distance is a bin of its own.
     edges = np.unique(np.quantile(distance, np.linspace(0.0, 1.0, 25)))
     place = np.searchsorted(edges, distance, side="right")
     for i in np.unique(place):
@@ -107,7 +107,7 @@ def draw_delivery(axes, log):
 
 
 def age_segments(log):
-    """Lowest and highest age of every piece between two deliveries of news, by link."""
+    """Lowest and highest age of each piece between two deliveries of newer data, by link."""
     links = {link: [] for link in zip(log.source[log.sent], log.destination[log.sent])}
     news = dict.fromkeys(links, (0.0, 0.0))
     order = np.flatnonzero(log.delivered)
@@ -124,14 +124,14 @@ def age_segments(log):
 
 
 def share_of_time(pieces, ages):
-    """Share of the time in which the age, a sawtooth over these pieces, was at most `ages`."""
+    """Share of the time in which the age, a sawtooth of these pieces, was at most `ages`."""
     low, high = pieces[:, :1], pieces[:, 1:]
     length = np.maximum((high - low).sum(), 1e-12)
     return np.clip(ages[None, :] - low, 0.0, high - low).sum(axis=0) / length
 
 
 def draw_ages(axes, log):
-    """Distribution of the age of information over time, of every link and of all of them."""
+    """Draws the distribution of the age of information over time, for every link and for all together."""
     axes.set_title("age of information")
     axes.set_xlabel("age [s]")
     axes.set_ylabel("share of time")
@@ -150,7 +150,7 @@ def draw_ages(axes, log):
 
 
 def draw_slots(axes, log, sent, window):
-    """Which node sent when, coloured by what became of it."""
+    """Draws which node sent when, coloured by the fate of the packet."""
     start, end = window
     axes.set_title("use of the water (window)")
     axes.set_xlabel("time [s]")
@@ -173,7 +173,7 @@ def draw_slots(axes, log, sent, window):
 
 
 def draw_drops(axes, log):
-    """Counts of fates, one for each packet and receiver."""
+    """Draws the number of each fate, counted per packet and receiver."""
     names, counts = np.unique(log.fate.astype(str), return_counts=True)
     order = np.argsort(counts)
     names, counts = names[order], counts[order]
@@ -184,7 +184,7 @@ def draw_drops(axes, log):
 
 
 def draw_energy(axes, summary):
-    """Energy by node."""
+    """Draws the energy by node."""
     axes.set_title("energy of the modems")
     energy = summary["energy_j"]
     if not energy or not any(energy.values()):
@@ -198,13 +198,13 @@ def draw_energy(axes, summary):
 
 
 def airtime_per_time(edges, begin, length, weight=1.0):
-    """Share of each span between two edges that packets fill, each with its part and its weight."""
+    """Share of each span between two edges that packets fill; each packet counts with its weight."""
     before = [(weight * np.clip(edge - begin, 0.0, length)).sum() for edge in edges]
     return np.diff(before) / np.diff(edges)
 
 
 def draw_load(axes, log, sent):
-    """Airtime that is sent, and airtime that is delivered per receiver, over the run."""
+    """Draws the sent airtime, and the delivered airtime per receiver, over the run."""
     axes.set_title("load over time")
     axes.set_xlabel("time [s]")
     axes.set_ylabel("airtime per time")
@@ -224,7 +224,7 @@ def draw_load(axes, log, sent):
 
 
 def read_summary(path):
-    """What summary.json tells, all of it checked; `energy_j` may be empty, the rest be missing."""
+    """The checked content of summary.json; `energy_j` may be empty, and the other values may be missing."""
     found = expect(path, read_json(path), dict) if os.path.exists(path) else {}
     energy = expect(path, found.get("energy_j") or {}, dict, "energy_j")
     summary = {"energy_j": {name: member(path, energy, name, float) for name in energy}}
@@ -238,11 +238,11 @@ def read_summary(path):
 
 def draw(log, summary, window, path):
     """Draws all panels into one file."""
-    # Its package is only recommended, and help goes without it.
+    # matplotlib is only a recommended package, and --help works without it.
     import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
 
-    plt.switch_backend("Agg")  # draws to files
-    plt.rcParams["text.parse_math"] = False  # names of nodes are shown as they are
+    plt.switch_backend("Agg")  # for output to files
+    plt.rcParams["text.parse_math"] = False  # names of nodes are shown unchanged
     sent = log.transmissions()
     if window is None:
         airtime = np.median([s[1] - s[0] for s in sent]) if sent else 0.0
@@ -264,12 +264,12 @@ def draw(log, summary, window, path):
         )
     try:
         figure.savefig(path, dpi=100)
-    except OSError as error:  # which of a full disk does not name the file
+    except OSError as error:  # the error of a full disk does not name the file
         raise FileError(path, error.strerror) from None
 
 
 def read(path):
-    """Returns (log, summary, picture) of the folder of a simulation, or of a node's packet log."""
+    """Returns (log, summary, picture) for the folder of a simulation, or for a node's packet log."""
     if os.path.isdir(path) or not os.path.exists(path):
         log = Log(os.path.join(path, "packets.csv"))
         summary = read_summary(os.path.join(path, "summary.json"))
@@ -303,12 +303,12 @@ def main():
         parser.error("--window: END is not after START")
     log, summary, picture = read(arguments.log)
     out = arguments.out or picture
-    out += "" if os.path.splitext(out)[1] else ".png"  # which is what would be written
+    out += "" if os.path.splitext(out)[1] else ".png"  # the file name that is written
     draw(log, summary, arguments.window, out)
     print(out)
     return 0
 
 
 if __name__ == "__main__":
-    # ValueError: a picture of a kind that there is none of.
+    # ValueError: an unknown kind of picture.
     run_program("plot_network", main, ValueError)

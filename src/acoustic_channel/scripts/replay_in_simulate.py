@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """Replays what the hosts of emulated modems sent as traffic of `simulate`, and compares the fates.
 
-Takes the file that modems.launch had and the packet log that it wrote (packet_log:=FILE). All
-vehicles must be moored, and messages be without acknowledgement: simulate knows none. With the same
-seed every packet must have the same fate and the same times; with --seed another one the shares
-agree as far as chance lets them.
+Takes the file of modems.launch and the packet log of its run (packet_log:=FILE). All vehicles must be moored,
+and messages must not ask for acknowledgements, because simulate has none. With the same seed, every packet
+must have the same fate and the same times. With another seed (--seed), the shares must agree within chance.
 """
 
 import argparse
@@ -29,7 +28,7 @@ def parse(argv):
 
 
 def read(path):
-    """{(source, sequence, receiver): row} of packets with data that left."""
+    """{(source, sequence, receiver): row} of the data packets that left."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["kind"] == "data" and row["sequence"]]
     return {(row["source"], int(row["sequence"]), row["destination"]): row for row in rows}
@@ -57,7 +56,7 @@ def network(config, rows, seed):
 
 
 def summary(rows):
-    """Messages, share that was delivered, mean delay from offer to arrival [s]."""
+    """Number of messages, delivered share, and mean delay from offer to arrival [s]."""
     delivered = [row for row in rows.values() if row["fate"] == "delivered"]
     delays = [float(row["arrival_s"]) - float(row["offered_s"]) for row in delivered]
     return {
@@ -69,7 +68,7 @@ def summary(rows):
 
 
 def main(argv=None):
-    """Prints both summaries and how many fates are equal."""
+    """Prints both summaries and the number of equal fates."""
     args = parse(argv)
     config = yaml.safe_load(pathlib.Path(args.config).read_text(encoding="utf-8"))
     emulated = read(args.log)

@@ -1,9 +1,8 @@
 #!/usr/bin/python3
-"""Writes the meshes of the vehicle that rviz shows: binary STL, length 1, bow along +x.
+"""Writes the vehicle's meshes for rviz: binary STL, length 1, bow along +x.
 
-`auv_hull.stl` takes the colour of the task phase,
-`auv_fittings.stl` (fins, propeller, mast) stays dark. Scaled by twice the collision radius, the
-whole vehicle lies inside its collision sphere.
+`auv_hull.stl` has the colour of the task phase; `auv_fittings.stl` (fins, propeller, mast) stays dark. Scaled
+by twice the collision radius, the whole vehicle is inside its collision sphere.
 """
 
 import argparse
@@ -108,7 +107,7 @@ def meshes():
 
 
 def main():
-    """Writes the files to the folder given, or to the package's meshes/."""
+    """Writes the files to the given folder, or to the package's meshes/."""
     default = pathlib.Path(__file__).resolve().parents[1] / "meshes"
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", nargs="?", type=pathlib.Path, default=default,

@@ -5,8 +5,8 @@ Writes into the output folder: poses.csv, targets.csv, tasks.csv, links.csv, ste
 episodes.csv, and report_episode_<n>.png and .svg with trajectories, distances, phases, link
 quality and age of information. A column's name ends with its unit; times are simulated.
 
-The chunks of a compressed bag carry a checksum, as record:=true writes them. In an uncompressed one
-nothing tells a number that the disk has changed from a good one; the last line says so.
+The chunks of a compressed bag, as record:=true writes them, have a checksum. In an uncompressed bag, a number
+that the disk has changed cannot be detected; the last line of output says so.
 
 Exit status: 0 done, 1 the bag holds no run, 2 wrong usage, or a file that cannot be read or written.
 """
@@ -34,7 +34,7 @@ REASONS = (
 )  # fmt: skip
 ODOM = re.compile(r"^/(auv|target)_(\d+)/odom$")
 TASK = re.compile(r"^/auv_(\d+)/task_state$")
-# Of episodes in open water; empty in others.
+# Only of episodes in open water; empty in others.
 FIELD = (
     "estimate_rmse nees estimate_known information_age band_share time_lost time_to_reacquire"
     " losses spread near_pairs min_altitude min_clearance groundings collisions packets"
@@ -64,7 +64,7 @@ TABLES = {
 }
 
 
-# What stands behind a column's name in the files.
+# Unit by the name of a column in the files.
 UNITS = {
     "_s": "t neighbour_age delay age average_age peak_age time_to_band",
     "_m": (
@@ -85,7 +85,7 @@ class Run:
         self.scenario = {}
 
     def add(self, table, **values):
-        """Appends one row; the names must be those of the table."""
+        """Appends one row. The names must be the columns of the table."""
         self.rows[table].append([values[name] for name in TABLES[table]])
 
     def column(self, table, name, rows=None):
@@ -99,13 +99,13 @@ class Run:
 
 
 class EpisodeClock:
-    """Tells the episode of a simulated time: simulated time goes on from episode to episode."""
+    """Finds the episode of a simulated time. Simulated time continues from episode to episode."""
 
     def __init__(self):
         self.starts = {}
 
     def see(self, episode, t):
-        """Notes that `episode` was running at time t."""
+        """Stores that `episode` was running at time t."""
         self.starts[episode] = min(t, self.starts.get(episode, math.inf))
 
     def lookup(self):
@@ -124,8 +124,8 @@ def read_run(bag, path):
     """Reads everything the tables need from an open bag."""
     run, clock, late = Run(), EpisodeClock(), []
     topic = ""
-    # The message definitions come with the bag: one of another program, or a damaged one, may lack
-    # any field or give it another type.
+    # The bag itself contains the definitions of its messages. Those of another program, or damaged ones, may
+    # lack a field or have another type.
     try:
         for topic, message in messages(bag, path):
             take_message(run, clock, late, topic, message)
@@ -139,7 +139,7 @@ def read_run(bag, path):
 
 
 def take_message(run, clock, late, topic, message):
-    """Adds one message to the tables; `late` takes what needs the whole run first."""
+    """Adds one message to the tables. `late` gets messages that need the whole run first."""
     odom, task = ODOM.match(topic), TASK.match(topic)
     if odom:
         late.append((odom.group(1), int(odom.group(2)), message))
@@ -157,7 +157,7 @@ def take_message(run, clock, late, topic, message):
 
 
 def read_scenario(text):
-    """Parses the recorded scenario; one that is none is left out."""
+    """Parses the recorded scenario. An invalid one is left out."""
     try:
         scenario = parse_yaml(text, "/scenario")
         sections_of(scenario, "/scenario")
@@ -168,7 +168,7 @@ def read_scenario(text):
 
 
 def add_late(run, late, episode_at):
-    """Adds what carries no episode number of its own, and each AUV's distance to its target."""
+    """Adds messages without an episode number of their own, and each AUV's distance to its target."""
     target_positions = defaultdict(dict)
     targets = 1 + max((index for kind, index, _ in late if kind == "target"), default=-1)
     for kind, index, message in late:
@@ -196,7 +196,7 @@ def add_late(run, late, episode_at):
 
 
 def name_of(names, value):
-    """Returns names[value], or the number itself where there is none."""
+    """Returns names[value], or the number itself if there is no name."""
     return names[value] if value < len(names) else str(value)
 
 
@@ -234,7 +234,7 @@ def add_step(run, m):
 
 def add_summary(run, m):
     """Adds one EpisodeSummary."""
-    # Older bags lack the newest columns.
+    # Older bags do not have the newest columns.
     values = {name: getattr(m, name) for name in EPISODE[2:-1]}
     field = getattr(m, "field", False)
     values.update({name: getattr(m, name) if field else "" for name in FIELD})
@@ -257,7 +257,8 @@ def write_report(run, folder, episodes):
     os.makedirs(folder, exist_ok=True)
     write_tables(run, folder)
     if episodes:
-        from stg_view.bag_figure import draw_episode  # matplotlib takes a second to load
+        # Imported here, because matplotlib takes a second to load.
+        from stg_view.bag_figure import draw_episode
 
         for episode in episodes:
             draw_episode(run, episode, os.path.join(folder, f"report_episode_{episode}"))

@@ -37,13 +37,13 @@ def parse_arguments(arguments):
 
 
 def read_any(path, salvage, title):
-    """The bytes of a recording of whatever `path` is."""
+    """The bytes of a recording, whatever `path` is."""
     with_magic = b""
     if os.path.isfile(path):
         with open(path, "rb") as file:
             with_magic = file.read(13)
     if path.endswith(".bag") or with_magic.startswith(b"#ROSBAG"):
-        from stg_view.from_bag import read_bag  # needs rosbag, which the others do not
+        from stg_view.from_bag import read_bag  # needs rosbag; other runs do not need it
 
         return read_bag(path, salvage, title)
     if not os.path.exists(path):
@@ -73,7 +73,7 @@ def main(arguments=None):
 
 
 def refusals():
-    """What a run that cannot be read throws; bags need ROS."""
+    """Errors of a run that cannot be read; bags need ROS."""
     try:
         from stg_view.bag_reading import BagError
     except ImportError:

@@ -6,7 +6,7 @@ says how large the region is and how far AUVs stay from their target, and the ca
 follow. Everything else is the view as shipped.
 """
 
-import stg_common.quiet_start  # first: until here Ctrl-C is blocked, see view.launch
+import stg_common.quiet_start  # first import: Ctrl-C is blocked until here, see view.launch
 import argparse
 import os
 import pathlib
@@ -24,9 +24,9 @@ import stg_common.program
 from stg_common.yaml_files import parse_yaml, read_yaml
 from stg_view.scenario_reading import sections_of
 
-ON_LOOPBACK = "libauv_common_nodes.so"  # lets rviz's XML-RPC listen where ROS_IP says
-WAIT_S = 15.0  # of wall time for a scenario to appear
-HALF_EXTENT_M, RADIUS_M = 1.0, 0.011  # of the scenario that the views are written for
+ON_LOOPBACK = "libauv_common_nodes.so"  # makes rviz's XML-RPC server listen at the address of ROS_IP
+WAIT_S = 15.0  # wall time to wait for a scenario
+HALF_EXTENT_M, RADIUS_M = 1.0, 0.011  # of the scenario for which the views are written
 TARGET_FRAME = "target_0"
 BANDS_AWAY = 26.0  # factor of the close-up's camera for each metre of the tracking band
 
@@ -43,8 +43,8 @@ def half_extent(scenario):
 
 
 def shown_half_extent(scenario):
-    """Returns half the size of what the overview shows at first, as the markers have it
-    (ShownHalfExtent): in open water a target and the AUVs where they start, else all of it."""
+    """Returns half the extent of the overview at first, as in the markers (ShownHalfExtent): in open water a
+    target and the start positions of the AUVs, otherwise the whole workspace."""
     everything = half_extent(scenario)
     reset = scenario["reset"]
     if not scenario["sea"].get("open") or scenario["target"].get("count", 1) != 1:
@@ -60,10 +60,10 @@ def shown_half_extent(scenario):
 
 
 def camera_scale(view, scenario):
-    """Returns how many times farther away than in the shipped view the camera has to be."""
+    """Returns the factor between the needed distance of the camera and that of the shipped view."""
     if view == "overview":
         return shown_half_extent(scenario) / HALF_EXTENT_M
-    # In the box the close-up shows hulls, in open water the band around the target.
+    # In the box the close-up shows hulls; in open water it shows the band around the target.
     hulls = number(scenario["vehicle"], "radius_m", RADIUS_M) / RADIUS_M
     band = scenario["reward"].get("band_m")
     if not scenario["sea"].get("open") or not band:
@@ -80,7 +80,7 @@ def fit(config, scale):
 
 
 def running_scenario():
-    """Returns the text of the scenario that the graph tells of, or of an empty one after WAIT_S."""
+    """Returns the text of the graph's scenario, or of an empty one after WAIT_S."""
     heard = threading.Event()
     text = []
 
@@ -88,7 +88,7 @@ def running_scenario():
         text.append(message.data)
         heard.set()
 
-    # A name of its own: rviz has the one that the launch file gives.
+    # A unique name, because rviz has the name from the launch file.
     rospy.init_node("view_camera", anonymous=True, argv=[], disable_signals=True)
     subscriber = rospy.Subscriber("/scenario", std_msgs.msg.String, take)
     heard.wait(WAIT_S)
@@ -113,7 +113,7 @@ def main():
     config = yaml.safe_load((package / "rviz" / f"{arguments.view}.rviz").read_text())
     fit(config, camera_scale(arguments.view, scenario))
     if arguments.view == "overview" and shown_half_extent(scenario) < half_extent(scenario):
-        # What the overview shows then moves with the target.
+        # The content of the overview then moves with the target.
         config["Visualization Manager"]["Views"]["Current"]["Target Frame"] = TARGET_FRAME
     if arguments.write:
         pathlib.Path(arguments.write).write_text(yaml.safe_dump(config))

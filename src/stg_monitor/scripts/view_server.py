@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Serves the live view of a run to browsers on the loopback.
 
-It only listens, and keeps at most rate_hz steps a second of wall time, and packets
-(stg_view/listening.py). A browser that comes late is sent all that was kept first.
+It only listens. It stores at most rate_hz steps per second of wall time, and packets (stg_view/listening.py).
+A browser that connects late first gets everything that was stored.
 ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 """
 
-import stg_common.quiet_start  # first: until here Ctrl-C is blocked, see graph.launch
+import stg_common.quiet_start  # first import: Ctrl-C is blocked until here, see graph.launch
 import asyncio
 import re
 import threading
@@ -19,12 +19,12 @@ from stg_view.page import PageError, live_page
 from stg_view.recording import encode
 
 HOST = "127.0.0.1"
-# Only this machine's own pages may ask: another site in the same browser has its own origin and host.
+# Only pages of this machine may connect. Another site in the same browser has another origin and host.
 OWN = re.compile(r"(127\.0\.0\.1|localhost|\[::1\])(:\d+)?$")
 
 
 class Server:
-    """The page and its websocket, in a thread of its own."""
+    """The page and its websocket, in their own thread."""
 
     def __init__(self, port, rate_hz):
         self.loop = asyncio.new_event_loop()
@@ -59,7 +59,7 @@ class Server:
         return web.Response(body=self.page, content_type="text/html", charset="utf-8", headers=headers)
 
     async def get_stream(self, request):
-        """A browser looks, until it leaves."""
+        """Serves a browser until it leaves."""
         socket = web.WebSocketResponse(heartbeat=20.0, compress=False)
         await socket.prepare(request)
         queue = asyncio.Queue(400)
@@ -77,7 +77,7 @@ class Server:
         return socket
 
     def later(self, seconds, action):
-        """Has the loop do something; from any thread."""
+        """Lets the loop call an action later; from any thread."""
         self.loop.call_soon_threadsafe(self.loop.call_later, seconds, action)
 
     def send(self, data):
@@ -86,14 +86,14 @@ class Server:
             self.loop.call_soon_threadsafe(self.put, data)
 
     def put(self, data):
-        """A browser that does not keep up misses messages; the run never waits."""
+        """Queues a message for all browsers. A slow browser misses messages; the run never waits."""
         for queue in list(self.sockets.values()):
             if not queue.full():
                 queue.put_nowait(data)
 
 
 async def write(socket, history, queue):
-    """Sends what was before, then what comes, in as few frames as it can."""
+    """Sends the stored messages, then new ones, in as few frames as possible."""
     await socket.send_bytes(history)
     while True:
         data = [await queue.get()]
@@ -103,13 +103,13 @@ async def write(socket, history, queue):
 
 
 async def get_alive(_request):
-    """A page asks whether a new run is there."""
+    """Answers a page that asks if a new run is there."""
     return web.Response(text="yes")
 
 
 @web.middleware
 async def own_only(request, handler):
-    """Refuses requests of other hosts' names and of other sites' pages."""
+    """Refuses requests with other host names or from pages of other sites."""
     origin = request.headers.get("Origin", "")
     if not OWN.match(request.headers.get("Host", "")) or (origin and not OWN.match(origin.partition("//")[2])):
         raise web.HTTPForbidden(text="This page is for this machine only.")
@@ -118,7 +118,7 @@ async def own_only(request, handler):
 
 def main():
     """Runs until ROS ends it."""
-    # It counts by the wall clock alone: a run in lockstep sends /clock at every step.
+    # It only uses the wall clock, because a run in lockstep sends /clock at every step.
     rospy.init_node("view_server", disable_signals=False, disable_rostime=True)
     port, rate_hz = rospy.get_param("~port", 8300), rospy.get_param("~rate_hz", 10.0)
     if not (isinstance(port, int) and 1 <= port <= 65535 and isinstance(rate_hz, (int, float)) and 0.1 <= rate_hz <= 100):

@@ -1,1 +1,1 @@
-"""What the Python programs of all packages share: files that users give, and how a program ends."""
+"""Common parts of the Python programs of all packages: files of users, and the end of a program."""

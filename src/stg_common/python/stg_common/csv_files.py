@@ -1,4 +1,4 @@
-"""Tables in CSV files, compressed or not: whole and of the right types, or Damaged."""
+"""Reads tables in CSV files, compressed or not. Incomplete tables and wrong types raise Damaged."""
 
 import csv
 import gzip
@@ -25,7 +25,7 @@ def count(text):
 
 
 def written(kind):
-    """The text as it is, where `kind` takes it."""
+    """The unchanged text, if `kind` accepts it."""
 
     def check(text):
         kind(text)
@@ -62,9 +62,9 @@ def _lines(path, file):
 def table_rows(path, columns=None, others=lambda name: str):
     """Yields the rows of a CSV file with a header, which may be compressed (.gz), as {name: value}.
 
-    columns: {name: kind} of those that must be there; others(name) is the kind of any other.
-    kind(text) returns the value of a cell and throws ValueError where the text is none. Every row
-    has a cell for every column.
+    columns: {name: kind} of the required columns; others(name) is the kind of any other column. kind(text)
+    returns the value of a cell, and raises ValueError for a wrong text. Every row must have a cell for every
+    column.
     """
     columns = columns or {}
     with opened(path) as file:

@@ -1,7 +1,7 @@
-"""Files that users give: read whole, or refused in one line, FILE:LINE: what.
+"""Files of users: they are read completely, or refused with one line, FILE:LINE: reason.
 
-A program that opens such a file in another way waits for a FIFO without a writer, or reads a device until
-the memory is full.
+Other ways to open such a file may wait for a FIFO without a writer, or read a device until the memory is
+full.
 """
 
 import codecs
@@ -11,8 +11,8 @@ import os
 import re
 import stat
 
-LARGEST = 1 << 30  # bytes of a file, and of what a compressed one holds
-LARGEST_NUMBER = 1e30  # that counts, measures or scores anything; sums of squares of it are finite
+LARGEST = 1 << 30  # bytes of a file, or of the content of a compressed file
+LARGEST_NUMBER = 1e30  # no count, measurement or score is larger; sums of squares of such numbers are finite
 _SURROGATES = re.compile("[\ud800-\udfff]")
 
 
@@ -22,14 +22,14 @@ def one_line(text):
 
 
 def reason_of(error):
-    """An error in words: which file, and what is wrong with it."""
+    """Text of an error: the file, and the reason."""
     filename = getattr(error, "filename", None)
     reason = getattr(error, "strerror", None) or error
     return str(reason) if filename is None else f"{filename}: {reason}"
 
 
 class FileError(Exception):
-    """Why a file cannot be used; the message is one line that names it, and its line if known."""
+    """The reason why a file cannot be used. The message is one line with the file and, if known, the line."""
 
     def __init__(self, path, what, line=None):
         where = str(path) if line is None else f"{path}:{line}"
@@ -37,15 +37,15 @@ class FileError(Exception):
 
 
 class Damaged(FileError):
-    """A file that was read, and is not what its name says."""
+    """A file that was read but has wrong content."""
 
 
 @contextlib.contextmanager
 def opened(path, largest=LARGEST):
-    """A regular file of at most `largest` bytes, open for its bytes; any other is a FileError, and
-    so is what goes wrong with the disk while it is read."""
+    """Opens a regular file of at most `largest` bytes for reading bytes. Any other file raises FileError, and
+    so do errors of the disk while it is read."""
     try:
-        state = os.stat(path)  # opening a FIFO would wait
+        state = os.stat(path)  # opening a FIFO would block
         if stat.S_ISDIR(state.st_mode):
             raise FileError(path, "is a folder, not a file")
         if not stat.S_ISREG(state.st_mode):
@@ -59,7 +59,7 @@ def opened(path, largest=LARGEST):
 
 
 def without_mark(data):
-    """The bytes of a text without the byte-order mark that some editors begin UTF-8 with."""
+    """The bytes of a text without the byte-order mark that some editors write at the start of UTF-8."""
     return data[len(codecs.BOM_UTF8) :] if data.startswith(codecs.BOM_UTF8) else data
 
 
@@ -93,12 +93,12 @@ KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite numb
 
 
 def is_text(value):
-    """Whether a value is a text that files and command lines can hold."""
+    """True if a value is a text that is valid in files and on command lines."""
     return isinstance(value, str) and "\0" not in value and not _SURROGATES.search(value)
 
 
 def expect(path, value, kind, key=None):
-    """`value`, which stands in the JSON file `path` under `key`; Damaged where it is not of its kind:
+    """Returns `value`, which the JSON file `path` has under `key`. Raises Damaged if it is not of this kind:
     dict, list, str, or float for any finite number."""
     if kind is float:
         good = isinstance(value, (int, float)) and not isinstance(value, bool)
@@ -111,7 +111,7 @@ def expect(path, value, kind, key=None):
 
 
 def member(path, values, key, kind):
-    """What stands under `key` of an object of a JSON file; Damaged where there is none."""
+    """Returns the value under `key` of an object in a JSON file. Raises Damaged if it is missing."""
     if key not in values:
         raise Damaged(path, f"{key}: missing")
     return expect(path, values[key], kind, key)

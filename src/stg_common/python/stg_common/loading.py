@@ -7,7 +7,7 @@ import sys
 
 
 def load_program(path):
-    """Returns the file of a program as a module. It finds the modules beside it, as when it runs."""
+    """Returns the file of a program as a module. It finds the modules in its folder, as when it runs."""
     path = os.path.realpath(path)
     name = os.path.basename(path).partition(".")[0]
     sys.path.insert(0, os.path.dirname(path))

@@ -1,5 +1,5 @@
-"""How a program of this repository ends: in one line where a file is at fault, silently where
-the output has no reader any more or Ctrl-C was pressed."""
+"""The end of a program in this repository. It reports a wrong file in one line. It ends silently if nothing
+reads its output any more, or after Ctrl-C."""
 
 import io
 import os
@@ -8,21 +8,21 @@ import sys
 
 from stg_common.files import FileError, one_line, reason_of
 
-# The exit statuses that a shell gives programs which these signals ended.
+# Exit statuses that a shell gives to programs that these signals ended.
 NOBODY_READS = 128 + signal.SIGPIPE
 INTERRUPTED = 128 + signal.SIGINT
 
 
 def discard(stream):
-    """Sends what is still written to a stream nowhere."""
+    """Discards everything that is written to a stream from now on."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
     os.close(nowhere)
 
 
 class Unread(io.TextIOWrapper):
-    """A standard stream that throws nothing when its reader leaves: when_unread() is called once, in
-    the thread that found it out, and the rest goes nowhere."""
+    """A standard stream that raises nothing when its reader disappears. It then calls when_unread() once, in
+    the thread that noticed it, and discards the rest."""
 
     def __init__(self, stream, when_unread):
         super().__init__(stream.buffer, stream.encoding, stream.errors, line_buffering=True)
@@ -47,14 +47,14 @@ class Unread(io.TextIOWrapper):
 
 
 def run_program(name, main, *refusals, status=2, system_status=None):
-    """Ends the process with what main() returns; with `status`, and one line, where it throws
-    FileError or another of the `refusals`; with `system_status`, the same by default, where it is
-    OSError, such as of a folder that is closed to us or a disk that is full; after Ctrl-C silently."""
+    """Ends the process with the result of main(). If main() raises FileError or another error in `refusals`,
+    it prints one line and uses the exit status `status`. For OSError, such as a forbidden folder or a full
+    disk, it uses `system_status` (default: `status`). After Ctrl-C it ends silently."""
     try:
         code = main()
         sys.stdout.flush()
     except BrokenPipeError:
-        discard(sys.stdout)  # which Python flushes when it ends
+        discard(sys.stdout)  # Python flushes it at the end
         code = NOBODY_READS
     except KeyboardInterrupt:
         code = INTERRUPTED

@@ -1,8 +1,8 @@
-"""Ends a program that is still loading silently when Ctrl-C comes: the first import of such a program.
+"""Ends a program silently if Ctrl-C comes while it is loading. It must be the first import of the program.
 
-Python answers a Ctrl-C while it loads with a traceback. A program that is started with the signal
-blocked (`env --block-signal=INT`) hears it only after this import, and then ends with status 130.
-Where the signal is not blocked, as in a test, this does nothing.
+Python answers a Ctrl-C during loading with a traceback. A program that is started with the signal blocked
+(`env --block-signal=INT`) receives it only after this import, and then ends with status 130. If the signal is
+not blocked, as in a test, this does nothing.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Waiting for what a running graph does, for the tests of all packages."""
+"""Waits for conditions in a running graph, for the tests of all packages."""
 
 import time
 

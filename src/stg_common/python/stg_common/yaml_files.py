@@ -1,12 +1,12 @@
-"""Strict YAML: the values of yaml.safe_load, and refused what it takes silently or stumbles over."""
+"""Strict YAML: yaml.safe_load, but things that it accepts silently or fails at are refused."""
 
 import yaml
 
 from stg_common.files import Damaged, is_text, read_text
 
-# Those of the loader of scenarios, auv_common/src/config/yaml_tree.cpp.
+# The same limits as in the loader of scenarios, auv_common/src/config/yaml_tree.cpp.
 LARGEST, DEEPEST = 1 << 20, 16  # bytes, levels
-MOST_VALUES = 1_000_000  # with those that aliases repeat
+MOST_VALUES = 1_000_000  # including values that aliases repeat
 LARGEST_NUMBER = 1 << 64
 MERGE = "tag:yaml.org,2002:merge"
 
@@ -16,7 +16,7 @@ def _refuse(node, what):
 
 
 class _StrictLoader(yaml.SafeLoader):
-    """Refuses keys that stand twice, and what would take too much time or memory."""
+    """Refuses duplicate keys, and content that would need too much time or memory."""
 
     def __init__(self, text):
         super().__init__(text)
@@ -63,7 +63,7 @@ class _StrictLoader(yaml.SafeLoader):
         try:
             value = super().construct_object(node, deep)
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
-            # What the constructors of dates, numbers and tags raise.
+            # Errors of the constructors of dates, numbers and tags.
             _refuse(node, "this value cannot be read")
         if isinstance(value, int) and abs(value) > LARGEST_NUMBER:
             _refuse(node, "the number is too large")
@@ -73,7 +73,7 @@ class _StrictLoader(yaml.SafeLoader):
 
 
 def parse_yaml(text, name):
-    """The value of a YAML text; Damaged, called `name`, where it has none."""
+    """The value of a YAML text. Raises Damaged with the name `name` if the text is invalid."""
     try:
         return yaml.load(text, Loader=_StrictLoader)
     except yaml.MarkedYAMLError as error:

@@ -1,1 +1,1 @@
-"""Recordings of runs, and the page that shows them: in a browser, live, or as one HTML file."""
+"""Recordings of runs, and the page that shows them: live in a browser, or as one HTML file."""

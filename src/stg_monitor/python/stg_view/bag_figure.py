@@ -4,7 +4,7 @@ from collections import defaultdict
 
 import matplotlib.pyplot as plt
 
-plt.switch_backend("Agg")  # draws to files
+plt.switch_backend("Agg")  # for output to files
 
 PHASE_COLOURS = {
     "search": "#4a8cff",
@@ -16,7 +16,7 @@ MAX_POINTS = 4000
 
 
 def thin(rows):
-    """Returns at most MAX_POINTS of `rows`, evenly spread, the last one always among them."""
+    """Returns at most MAX_POINTS of `rows`, evenly spread and always with the last one."""
     stride = max(1, -(-len(rows) // MAX_POINTS))
     return rows[::stride] + (rows[-1:] if rows and (len(rows) - 1) % stride else [])
 
@@ -64,7 +64,7 @@ def draw_distances(axes, run, episode, start):
 
 
 def draw_phases(axes, run, episode, start):
-    """Draws one strip per AUV: phase as colour, leading as a black line above it."""
+    """Draws one strip per AUV: the phase as colour, and a black line above it while the AUV leads."""
     groups = grouped(run, "tasks", episode, "auv")
     for auv, rows in groups.items():
         times = [t - start for t in run.column("tasks", "t", rows)]

@@ -1,4 +1,4 @@
-"""Reading of bags that may be damaged: whatever is wrong with one is a BagError, which says it in words."""
+"""Reads bags that may be damaged. Every problem is a BagError with a message for the user."""
 
 import contextlib
 import io
@@ -11,11 +11,11 @@ import rosbag
 
 
 class BagError(Exception):
-    """A bag that cannot be read, in words for the user."""
+    """The reason why a bag cannot be read, as a message for the user."""
 
 
 def open_bag(path, salvage):
-    """Opens a bag for reading; with `salvage`, what is whole of a truncated one."""
+    """Opens a bag for reading; with `salvage`, the intact part of a truncated bag."""
     if not os.path.exists(path):
         raise BagError(f"{path}: no such file")
     if os.path.isdir(path):
@@ -33,7 +33,7 @@ def open_bag(path, salvage):
             f"{path}: is truncated or was not closed (it has no index);"
             " --salvage reads its complete part"
         ) from None
-    except Exception as error:  # damage raises whatever rosbag trips over
+    except Exception as error:  # damage may raise any error in rosbag
         if salvage and looks_like_bag(path):
             return salvaged(path)
         raise BagError(
@@ -42,13 +42,13 @@ def open_bag(path, salvage):
 
 
 def looks_like_bag(path):
-    """True when a file starts as bags do."""
+    """True if a file starts as bags do."""
     with open(path, "rb") as bag:
         return bag.read(13) == b"#ROSBAG V2.0\n"
 
 
 def salvaged(path):
-    """Indexes a copy of a truncated bag and opens that; the bag itself is left as it is."""
+    """Indexes a copy of a truncated bag and opens the copy. The bag itself stays unchanged."""
     folder = tempfile.mkdtemp(prefix="bag_report_")
     try:
         copy = os.path.join(folder, "salvaged.bag")
@@ -58,7 +58,7 @@ def salvaged(path):
                 pass
         print(f"bag_report: {path} is truncated; reading its complete part", file=sys.stderr)
         return rosbag.Bag(copy)
-    except Exception as error:  # rosbag raises whatever it trips over in damaged data
+    except Exception as error:  # damaged data may raise any error in rosbag
         raise BagError(f"{path}: no part of it can be read: {error}") from None
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -68,11 +68,11 @@ def messages(bag, path):
     """Yields (topic, message); damage inside the bag becomes a BagError."""
     reader = bag.read_messages()
     while True:
-        said = io.StringIO()  # where a definition does not fit its checksum, rosbag says so, goes on
+        said = io.StringIO()  # if a definition does not fit its checksum, rosbag prints this and continues
         try:
             with contextlib.redirect_stderr(said):
                 found = next(reader, None)
-        except Exception as error:  # damaged chunks raise anything from struct.error to bz2's
+        except Exception as error:  # damaged chunks raise many errors, from struct.error to those of bz2
             raise BagError(f"{path}: is damaged: {type(error).__name__}: {error}") from None
         if said.getvalue():
             raise BagError(f"{path}: is damaged: {said.getvalue().splitlines()[0]}")

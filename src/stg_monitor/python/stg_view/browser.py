@@ -17,11 +17,11 @@ LOAD_S = 40.0
 
 
 class BrowserError(Exception):
-    """Why there is no browser, or no page in it, in words."""
+    """The reason why a browser or its page is not available."""
 
 
 def missing():
-    """What must be installed for a browser, in words; "" where all is there."""
+    """Packages that must be installed for a browser, as text; "" if nothing is missing."""
     wanted = []
     if not shutil.which(CHROMIUM):
         wanted.append("chromium")
@@ -34,7 +34,7 @@ def missing():
 
 @contextlib.contextmanager
 def started(log_requests=False):
-    """A selenium driver, ended at the end. log_requests: its log `performance` has all requests."""
+    """A selenium driver, which is closed at the end. log_requests: its log `performance` has all requests."""
     lack = missing()
     if lack:
         raise BrowserError(f"a browser is needed: {lack}")
@@ -62,15 +62,15 @@ def started(log_requests=False):
 
 
 def show(driver, url, width=1280, height=720):
-    """Loads a page of ours and waits until it is drawn; BrowserError when it never is."""
+    """Loads one of our pages and waits until it is drawn. Raises BrowserError if it is never drawn."""
     from selenium.common.exceptions import WebDriverException
     from selenium.webdriver.support.ui import WebDriverWait
 
     try:
-        # The window's own size is that with its frame.
+        # The size of the window includes its frame.
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
         driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-        driver.get("about:blank")  # another place of the same page would not be loaded anew
+        driver.get("about:blank")  # another fragment of the same page would not be loaded again
         for name in driver.log_types:
             driver.get_log(name)
         driver.get(url)
@@ -82,7 +82,7 @@ def show(driver, url, width=1280, height=720):
 
 @contextlib.contextmanager
 def opened_page(url, width=1280, height=720):
-    """A driver with a page of ours, loaded and drawn."""
+    """A driver with one of our pages, loaded and drawn."""
     with started() as driver:
         show(driver, url, width, height)
         yield driver

@@ -1,6 +1,6 @@
-"""Recordings of ROS runs: messages of the graph, from a bag or live, become the messages of a page.
+"""Recordings of ROS runs: turns messages of the graph, from a bag or live, into messages for the page.
 
-Needs no more of ROS than the messages' fields; what a message lacks (an older bag) is left out.
+It uses only the fields of ROS messages. Fields that a message does not have (an older bag) are left out.
 """
 
 import json
@@ -14,11 +14,11 @@ DELIVERED, DROPPED = 3, 4
 NO_SEQUENCE = 4294967295
 TERMS = ("r_track", "r_obs", "r_coord", "r_comm", "r_sem", "r_sep", "cost")
 MOST_AUVS = 256
-STEPS_LATE = 8  # that a message is written into a bag after the state that it belongs to
+STEPS_LATE = 8  # steps by which a message in a bag may come after the state that it belongs to
 
 
 def scene_of(scenario, tool=("rosrun", "stg_monitor", "view_scene")):
-    """What stands still in a resolved scenario, and a note where that is not known."""
+    """The static part of a resolved scenario, and a note if it is unknown."""
     try:
         done = subprocess.run(tool, input=scenario.encode(), capture_output=True, timeout=30, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:
@@ -31,24 +31,24 @@ def scene_of(scenario, tool=("rosrun", "stg_monitor", "view_scene")):
 
 
 class Collector:
-    """Takes the messages of a graph, one after the other, into a Recording.
+    """Puts the messages of a graph, one after the other, into a Recording.
 
-    wait: steps for which a state waits for what the agents say of it. Messages of different nodes come in
-    any order; what belongs together has the same stamp.
+    wait: number of steps for which a state waits for messages of the agents. Messages of different nodes come
+    in any order; messages that belong together have the same stamp.
     """
 
     def __init__(self, recording, wait=0):
         self.recording, self.wait = recording, wait
         self.episode = None
-        self.tasks, self.detections, self.reports, self.energy = {}, {}, {}, []  # the newest messages of each
+        self.tasks, self.detections, self.reports, self.energy = {}, {}, {}, []  # newest messages of each
         self.ages = {}
         self.counts = ([], [])
         self.states = []
         self.scenario = ""
-        self.seen_s = 1e-6  # how far from a step's time a detection may be to be of that step
+        self.seen_s = 1e-6  # largest time between a step and a detection that belongs to it
 
     def take(self, topic, m):
-        """Takes one message; of topics that are not shown: nothing."""
+        """Takes one message. Messages of topics that are not shown are ignored."""
         if topic == "/swarm_state":
             self.take_state(m)
         elif topic == "/acoustic_channel/packets":
@@ -69,13 +69,13 @@ class Collector:
             self.scenario = m.data
 
     def keep(self, kept, key, m):
-        """Keeps a message beside as many as may still be asked for."""
+        """Stores a message together with the others that may still be needed."""
         messages = kept.setdefault(key, [])
         messages.append(m)
         del messages[: -2 * self.wait - 2]
 
     def take_links(self, m):
-        """Keeps the energies, and how old what each AUV last heard of the others is."""
+        """Stores the energies, and the age of the newest packets that each AUV has of the others."""
         self.energy = list(getattr(m, "energy", []))
         sums = {}
         for link in m.links:
@@ -84,7 +84,7 @@ class Collector:
         self.ages = {i: total / count for i, (total, count) in sums.items()}
 
     def take_state(self, m):
-        """A step has ended: a state that has waited long enough becomes a row."""
+        """A step has ended. A state that has waited long enough becomes a row."""
         while len(self.states) > (self.wait if m.episode == self.episode else 0):
             self.add_row(*self.states.pop(0))
         meta, n = self.recording.meta, len(m.poses)
@@ -101,12 +101,12 @@ class Collector:
         self.states.append((m, self.ages, self.energy))
 
     def finish(self):
-        """Makes rows of the states that still wait."""
+        """Makes rows from the states that still wait."""
         while self.states:
             self.add_row(*self.states.pop(0))
 
     def add_row(self, m, ages, energy):
-        """Makes a row of a state, and of what the agents said about it."""
+        """Makes a row from a state and the agents' messages about it."""
         n = len(m.poses)
         t = m.header.stamp.to_sec()
         targets = [(p.x, p.y, p.z) for p in m.target_positions]
@@ -133,12 +133,12 @@ class Collector:
         self.recording.steps.add(**row)
 
     def followed(self, i, t, targets):
-        """The target that AUV i follows, as it says; older bags do not tell."""
+        """The target that AUV i follows, from its message; older bags do not contain it."""
         chosen = getattr(_at(self.tasks, i, t), "target", i % targets)
         return chosen if chosen < targets else i % targets
 
     def touches(self, m, n):
-        """Which AUVs came to the bottom (1) or to an obstacle (2) in this step; older bags do not tell."""
+        """Which AUVs touched the bottom (1) or an obstacle (2) in this step; older bags do not contain it."""
         counts = [list(getattr(m, name, ())) for name in ("groundings", "collisions")]
         before, self.counts = self.counts, counts
         found = [0] * n
@@ -153,7 +153,7 @@ class Collector:
         p, q = pose.position, pose.orientation
         row["position"] += [p.x, p.y, p.z]
         row["heading"].append(math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))
-        # Up is positive here, and negative about the body's y axis.
+        # Up is positive here, but negative about the body's y axis.
         row["pitch"].append(-math.asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x)))))
         target = targets[self.followed(i, t, len(targets))] if targets else (NAN,) * 3
         row["distance"].append(math.dist(target, (p.x, p.y, p.z)))
@@ -169,14 +169,14 @@ class Collector:
         row["range"].append(detection.range if seen and detection.kind == 1 else NAN)
 
     def take_packet(self, e):
-        """Adds one packet and receiver whose fate is known."""
+        """Adds one packet and receiver with a known fate."""
         if e.kind not in (DELIVERED, DROPPED):
             return
         fate = 0 if e.kind == DELIVERED else min(int(e.reason), len(FATES) - 1)
         stamp = lambda time: time.to_sec() if time.to_sec() > 0 else NAN
         left = e.sequence != NO_SEQUENCE
         transmit = stamp(e.transmit) if left else NAN
-        # What never left was for everybody it is addressed to.
+        # A packet that never left counts for all AUVs that it is addressed to.
         agents = self.recording.meta.get("agents", 0)
         receivers = [e.receiver] if e.receiver >= 0 else [e.destination] if e.destination >= 0 else [
             i for i in range(agents) if i != e.source
@@ -190,12 +190,12 @@ class Collector:
 
 
 def _at(kept, key, t):
-    """The kept message whose stamp is nearest to a time; None where there is none."""
+    """The stored message whose stamp is nearest to a time; None if there is none."""
     return min(kept.get(key, ()), key=lambda m: abs(m.header.stamp.to_sec() - t), default=None)
 
 
 def _auv_of(topic):
-    """The number in /auv_<i>/...; ValueError where there is none."""
+    """The number in /auv_<i>/...; raises ValueError if there is none."""
     return int(topic.split("/")[1].rpartition("_")[2])
 
 
@@ -205,8 +205,8 @@ OF_AUV = ("task_state", "target_detection")
 
 
 def read_bag(path, salvage, title):
-    """The bytes of the recording of a bag; BagError for what is damaged, LookupError for no run."""
-    # ROS is needed for this one only.
+    """The bytes of the recording of a bag. Raises BagError for damage, and LookupError if there is no run."""
+    # Only this function needs ROS.
     from stg_view.bag_reading import BagError, messages, open_bag
 
     recording = Recording(title=title)
@@ -221,7 +221,7 @@ def read_bag(path, salvage, title):
         except (AttributeError, TypeError, ValueError, LookupError, OverflowError) as error:
             raise BagError(f"{path}: {topic}: not of the form that this program records: {error}") from None
         except BagError as error:
-            # What came before the damage is whole.
+            # The messages before the damage are complete.
             if not salvage or not recording.steps.rows:
                 raise
             recording.notes.append(f"The bag is damaged; what is before the damage is shown ({error}).")

@@ -1,4 +1,4 @@
-"""Recordings of folders: of `evaluate --record`, of `simulate`, of a training; and of a packet log."""
+"""Recordings of folders (`evaluate --record`, `simulate`, a training) and of packet logs."""
 
 import csv
 import math
@@ -18,7 +18,7 @@ MOST_NODES, MOST_POSITIONS = 512, 2000
 
 
 def read_folder(path):
-    """The bytes of the recording that a folder or a packet log tells; FileError where it tells none."""
+    """The bytes of the recording of a folder or packet log. Raises FileError if there is no run in it."""
     path = pathlib.Path(path)
     if path.is_file() and path.suffix == ".csv":
         return read_log(path).encoded()
@@ -34,7 +34,7 @@ def read_folder(path):
 
 
 def read_recording(path):
-    """The bytes of a recording, which are looked through first."""
+    """The bytes of a recording, after a check."""
     with opened(path) as file:
         data = file.read()
     try:
@@ -54,7 +54,7 @@ def _fate(text):
 
 
 def read_log(path, names=None):
-    """A Recording of a packet log, as `simulate` and the channel's node write it."""
+    """A Recording of a packet log that `simulate` or the channel's node has written."""
     kinds = {**LOG, "fate": _fate, **dict.fromkeys(OPTIONAL.split(), optional(number))}
     rows = list(table_rows(path, kinds))
     if names is None:
@@ -64,7 +64,7 @@ def read_log(path, names=None):
         raise Damaged(path, f"{len(names)} nodes, more than {MOST_NODES}")
     index = {name: i for i, name in enumerate(names)}
     recording = Recording(title=f"Packets of {path.name}", agents=len(names), targets=0, names=names)
-    # A node's log has the times of its clock.
+    # The log of a node has times of its clock.
     first = min((row["offered_s"] for row in rows), default=0.0)
     start = first if first > 1e6 else 0.0
     ago = lambda x: NAN if x is None else x - start
@@ -85,8 +85,7 @@ def read_log(path, names=None):
 
 
 def read_simulation(folder):
-    """A Recording of a folder of `simulate`: packets, and the nodes on their ways where its file
-    tells them."""
+    """A Recording of a folder of `simulate`: packets, and the moving nodes if its file has them."""
     simulation, names = {}, None
     file = folder / "simulation.yaml"
     if file.is_file():
@@ -135,13 +134,13 @@ def add_ways(recording, simulation, folder):
 
 
 def is_there(node, t):
-    """Whether a node has joined and not left."""
+    """True if a node has joined and has not left."""
     joins, leaves = (node.get(key) for key in ("joins_s", "leaves_s"))
     return not (isinstance(joins, (int, float)) and t < joins) and not (isinstance(leaves, (int, float)) and t >= leaves)
 
 
 def way_of(node, folder):
-    """[(t, x, y, z)] of a node of the file; None where it tells none."""
+    """[(t, x, y, z)] of a node in the file; None if it has no positions."""
     try:
         if "track" in node:
             kinds = dict.fromkeys(("t", "x", "y", "z"), number)
@@ -157,7 +156,7 @@ def way_of(node, folder):
 
 
 def at_time(way, t):
-    """The point of a way at a time: straight lines between its points, at rest before and after."""
+    """The point of a way at a time: straight lines between its points, and at rest before and after."""
     if way is None:
         return GONE
     if t <= way[0][0]:
@@ -170,7 +169,7 @@ def at_time(way, t):
 
 
 def read_training(folder):
-    """A Recording of a training's folder: its curves."""
+    """A Recording of a training's folder, with its curves."""
     path = folder / "progress.csv"
     recording = Recording(title=f"Training in {folder.resolve().name}", agents=0, targets=0)
     with opened(path) as file:
@@ -185,7 +184,8 @@ def read_training(folder):
     across = next((n for n in ("steps", "step", "env_steps", "update") if n in columns), None)
     if across is None or len(rows) < 2:
         raise Damaged(path, "has no curves: fewer than two rows, or no column steps")
-    for name, values in sorted(columns.items(), key=lambda column: rank_of(column[0])):  # else as in the file
+    # Otherwise in the order of the file.
+    for name, values in sorted(columns.items(), key=lambda column: rank_of(column[0])):
         if name != across:
             recording.add(
                 "curves", [(across, "f8", columns[across]), (name, "f8", values)], title=name.replace("_", " "), x=across
@@ -194,7 +194,7 @@ def read_training(folder):
 
 
 def rank_of(name):
-    """Place of a curve among the others: what a training is for comes first, what it took comes last."""
+    """Place of a curve among the others: results of a training come first, and its costs come last."""
     if name.endswith("seconds") or name in ("collection", "episodes", "learning_rate"):
         return 4
     return ("return" not in name) * (1 if name.startswith("validation") else 2 if name.startswith(("train", "reward")) else 3)

@@ -1,8 +1,7 @@
-"""Listens to a run and makes messages for the page of what it hears; used by view_server.py.
+"""Listens to a run and makes messages for the page; used by view_server.py.
 
-A run in lockstep makes many more steps than a page can draw, and other nodes need the processor. The
-graph therefore sends few messages to displays, and this module decodes a message when it is shown, not
-when it arrives.
+A run in lockstep makes many more steps than a page can draw, and other nodes need the processor. So the graph
+sends few messages to displays, and this module decodes a message only when it is shown, not when it arrives.
 """
 
 import collections
@@ -18,22 +17,23 @@ from stg_view.from_bag import Collector, scene_of
 from stg_view.raw_packets import packets_message
 from stg_view.recording import Recording, encode
 
-EARLY = 0.8  # share of the pause after which a step is taken: what comes at the rate itself is not to be missed
-MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser is sent
-MOST_DETECTIONS = 256  # messages of detections that wait for a step
-AT_ONCE = 1 << 22  # bytes that are taken from a connection at once
-UNSEEN_S = 2.0  # for which packets are collected while no browser is connected
+# Share of the pause after which a step is shown; below 1, so that steps at the rate itself are not missed.
+EARLY = 0.8
+MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser gets
+MOST_DETECTIONS = 256  # waiting messages of detections
+AT_ONCE = 1 << 22  # bytes that are read from a connection at once
+UNSEEN_S = 2.0  # packets of this time are collected while no browser is connected
 
 
 class Kept:
-    """Messages for browsers that come late, in a bounded amount of memory."""
+    """Messages for browsers that connect late, in a bounded amount of memory."""
 
     def __init__(self):
         self.first, self.steps, self.packets = [], [], []
         self.bytes = {"steps": 0, "packets": 0}
 
     def add(self, kind, data):
-        """Keeps a message."""
+        """Stores a message."""
         if kind not in self.bytes:
             self.first.append(data)
             return
@@ -41,20 +41,20 @@ class Kept:
         kept.append(data)
         self.bytes[kind] += len(data)
         if self.bytes[kind] > MOST_KEPT:
-            # Of steps every second one, of packets the newer half.
+            # Keeps every second step, or the newer half of the packets.
             setattr(self, kind, kept[::2] if kind == "steps" else kept[len(kept) // 2 :])
             self.bytes[kind] = sum(map(len, getattr(self, kind)))
 
     def all(self):
-        """Everything, as one frame of a websocket."""
+        """All messages, as one frame of a websocket."""
         return b"".join([*self.first, *self.steps, *self.packets])
 
 
 class Listener:
-    """Listens to the run, and makes messages for the page of what it hears.
+    """Listens to the run, and makes messages for the page.
 
-    rate_hz: largest rate of steps on the page. send: takes the bytes of a message for the browsers.
-    later: takes seconds and an action. has_browser: tells whether a browser is connected.
+    rate_hz: largest rate of steps on the page. send: sends the bytes of a message to the browsers. later:
+    calls an action after some seconds. has_browser: returns whether a browser is connected.
     """
 
     def __init__(self, rate_hz, send, later, has_browser):
@@ -64,13 +64,13 @@ class Listener:
         self.lock = threading.Lock()
         self.recording = Recording()
         self.collector = Collector(self.recording)
-        self.collector.seen_s = math.inf  # it is given new detections only
+        self.collector.seen_s = math.inf  # it only gets new detections
         self.before = 0.0
         self.raw, self.awaited = None, False
         self.known = {}
         self.detections = collections.deque(maxlen=MOST_DETECTIONS)
         self.packets, self.basket = [], threading.Lock()
-        # What is subscribed to as AnyMsg comes undecoded.
+        # A subscription with AnyMsg gets undecoded messages.
         options = {"buff_size": AT_ONCE, "tcp_nodelay": True}
         self.subscribers = [
             rospy.Subscriber("/swarm_display", rospy.AnyMsg, self.hear_display, **options),
@@ -81,18 +81,18 @@ class Listener:
         ]
 
     def tell(self, kind, data):
-        """Keeps a message and sends it to the browsers."""
+        """Stores a message and sends it to the browsers."""
         self.kept.add(kind, data)
         self.send(data)
 
     def history(self):
-        """All that a browser needs that comes now; the caller holds the lock."""
-        if not self.has_browser():  # else packets are sent soon, to this one as well
+        """Everything that a new browser needs. The caller holds the lock."""
+        if not self.has_browser():  # otherwise the packets are sent soon, to the new browser as well
             self.tell_packets()
         return self.kept.all()
 
     def hear_display(self, raw):
-        """Takes a step, if the last one was long enough ago."""
+        """Shows a step, if the previous one was long enough ago."""
         with self.lock:
             if self.is_due():
                 self.take_step(raw)
@@ -101,17 +101,17 @@ class Listener:
             self.await_due()
 
     def is_due(self):
-        """Whether the last step was long enough ago."""
+        """True if the previous step was long enough ago."""
         return time.monotonic() - self.before >= EARLY * self.pause_s
 
     def await_due(self):
-        """Has the step that came too early taken later, if no other comes: a run may pause there."""
+        """Shows a step that came too early after the pause, if no other one comes. The run may pause there."""
         if not self.awaited:
             self.awaited = True
             self.later(self.pause_s, self.take_newest)
 
     def take_newest(self):
-        """Takes the step that came too early."""
+        """Shows the step that came too early."""
         with self.lock:
             self.awaited = False
             if self.raw is not None and self.is_due():
@@ -120,7 +120,7 @@ class Listener:
                 self.await_due()
 
     def take_step(self, raw):
-        """Makes a step of what a display is sent; the caller holds the lock."""
+        """Makes a step from a message for displays. The caller holds the lock."""
         self.before, self.raw = time.monotonic(), None
         message = auv_msgs.msg.SwarmDisplay().deserialize(raw._buff)
         collector, episode = self.collector, self.collector.episode
@@ -147,14 +147,14 @@ class Listener:
         self.send(encode("meta", meta={"sent_s": time.time()}) + steps)
 
     def take_detections(self, stamp):
-        """Decodes detections that no step has shown, and that are not later than this one."""
+        """Decodes detections that no step has shown and that are not later than this step."""
         while self.detections and stamp_of(self.detections[0]) <= stamp:
             message = auv_msgs.msg.SwarmDetections().deserialize(self.detections.popleft()._buff)
             for i, detection in zip(message.agents, message.detections):
                 self.collector.take(f"/auv_{i}/target_detection", detection)
 
     def hear_packets(self, raw):
-        """Collects packets, and has them sent soon."""
+        """Collects packets; they are sent soon."""
         with self.basket:
             self.packets.append(raw._buff)
             first = len(self.packets) == 1
@@ -162,7 +162,7 @@ class Listener:
             self.later(0.5 * self.pause_s if self.has_browser() else UNSEEN_S, self.tell_collected)
 
     def tell_collected(self):
-        """Sends the packets that came since the last time."""
+        """Sends the packets since the last call."""
         with self.lock:
             self.tell_packets()
 
@@ -186,7 +186,7 @@ class Listener:
                 self.tell("summary", part)
 
     def hear_scenario(self, message):
-        """Sends what stands still."""
+        """Sends the static part of the scene."""
         scene, note = scene_of(message.data)
         with self.lock:
             self.tell("meta", encode("meta", meta=scene))

@@ -1,7 +1,7 @@
-"""The page as one HTML file: everything inlined, nothing is asked of any host.
+"""The page as one HTML file. Everything is inlined, and it needs no other host.
 
-The content security policy names the hash of every script and style, so that the page runs nothing
-else: no text of a recording can become code. The recording is data in base64.
+The content security policy has the hash of every script and style, so the page runs nothing else: no text of
+a recording can become code. The recording is data in base64.
 """
 
 import base64
@@ -14,14 +14,14 @@ import pathlib
 __all__ = ["PageError", "live_page", "report_page"]
 
 WEB = pathlib.Path(__file__).resolve().parent / "web"
-# Where three.js is: beside the page, or where Debian's libjs-three has it.
+# Folder of three.js: beside the page, or that of Debian's libjs-three.
 THREE = (WEB / "vendor" / "three", pathlib.Path("/usr/share/javascript/three"))
 THREE_FILES = ("build/three.min.js", "examples/js/controls/OrbitControls.js")
 SCRIPTS = ("recording", "story", "shapes", "lines", "camera", "scene", "sound", "plots", "network", "table", "overlay", "app")
 
 
 class PageError(Exception):
-    """A page that cannot be made, in words."""
+    """The reason why a page cannot be made."""
 
 
 def _read(path):
@@ -43,7 +43,7 @@ def _hash(text):
 def _page(title, data, connect):
     scripts = [*_three(), _read(WEB / "vendor/uplot/uPlot.iife.min.js")]
     scripts += [_read(WEB / f"{name}.js") for name in SCRIPTS]
-    # A text that ended the element early would change the page; ours and the libraries' have none.
+    # Such a text would end the element early and change the page. Our scripts and the libraries have none.
     if any("</script" in text.lower() for text in scripts):
         raise PageError("a script holds the end of a script")
     styles = [_read(WEB / "vendor/uplot/uPlot.min.css"), _read(WEB / "style.css")]
@@ -60,7 +60,7 @@ def _page(title, data, connect):
         "@DATA@": data,
     }
     text = _read(WEB / "page.html")
-    # Once through the template: what is put in is not looked at again.
+    # Goes through the template once. Inserted text is not processed again.
     pieces = []
     while True:
         at, mark = min(((text.find(m), m) for m in parts if m in text), default=(-1, ""))
@@ -71,8 +71,8 @@ def _page(title, data, connect):
 
 
 def report_page(recording, title, is_chosen=False):
-    """HTML of a report. recording: its bytes; title: plain text, which gives way to that of the recording
-    unless it was chosen."""
+    """HTML of a report. recording: its bytes. title: plain text; unless it was chosen, the title in the
+    recording replaces it."""
     packed = base64.b64encode(gzip.compress(recording, 9, mtime=0)).decode()
     data = f'<script type="application/octet-stream" id="recording">{packed}</script>'
     return _page(title, data + '<meta id="titled">' * is_chosen, "'none'")
@@ -84,7 +84,7 @@ def live_page(title):
 
 
 def write_page(text, path):
-    """Writes the page; the old file is there until the new one is whole."""
+    """Writes the page. The old file stays until the new one is complete."""
     temporary = f"{path}.tmp"
     try:
         with open(temporary, "w", encoding="utf-8") as file:

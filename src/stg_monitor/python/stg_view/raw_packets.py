@@ -1,5 +1,5 @@
-"""Messages of packets as they came over the wire, decoded by the hundred: one by one, Python takes longer
-for them than a run in lockstep takes to make them."""
+"""Decodes undecoded messages of packets by the hundred. Python would decode them one by one more slowly than
+a run in lockstep makes them."""
 
 import struct
 
@@ -18,16 +18,16 @@ HEADER = struct.Struct("<III I")  # sequence, stamp, length of the frame's name
 
 
 def _events(raw):
-    """The events in the bytes of one auv_msgs/PacketEvents; ValueError where it is none."""
+    """The events in the bytes of one auv_msgs/PacketEvents. Raises ValueError for other bytes."""
     at = HEADER.size + HEADER.unpack_from(raw)[3]
     (count,) = struct.unpack_from("<I", raw, at)
     return np.frombuffer(raw, EVENT, count, at + 4)
 
 
 def packets_message(raws, agents):
-    """The message `packets` of the fates in the bytes of many auv_msgs/PacketEvents; b"" for none.
+    """The message `packets` with the fates in the bytes of many auv_msgs/PacketEvents; b"" if there are none.
 
-    A packet that never left is lost for each AUV that it is addressed to, as from_bag.Collector has it.
+    A packet that never left is lost for each AUV that it is addressed to, as in from_bag.Collector.
     """
     events = np.concatenate([_events(raw) for raw in raws]) if raws else np.empty(0, EVENT)
     events = events[(events["kind"] == DELIVERED) | (events["kind"] == DROPPED)]

@@ -1,4 +1,4 @@
-"""Recordings: the messages that the page eats, written and read (docs/recording.md).
+"""Recordings: writes and reads the messages for the page (docs/recording.md).
 
 A recording is a magic word and messages. A message is two little-endian uint32 (bytes of header and
 body), a JSON header, and a body of columns. stg::env::Message writes the same in C++.
@@ -14,18 +14,18 @@ __all__ = ["FATES", "MAGIC", "Recording", "RecordingError", "Packets", "Steps", 
 
 MAGIC = b"STGVIEW1"
 TYPES = {"f8": np.dtype("<f8"), "f4": np.dtype("<f4"), "i4": np.dtype("<i4"), "u1": np.dtype("u1")}
-# As acoustics::DropReason numbers them; 0 is no reason.
+# The numbers of acoustics::DropReason; 0 means no reason.
 FATES = (
     "delivered", "range", "loss", "collision", "half_duplex", "fading", "burst", "queue",
     "not_acquired", "shadow", "left",
 )  # fmt: skip
 LARGEST = 1 << 28  # bytes of a message
-# What is thinned to fit a page: numbers of all steps, rows of packets.
+# Limits of a page, beyond which data is thinned: numbers of all steps, rows of packets.
 MOST_STEP_NUMBERS, MOST_PACKETS = 3_000_000, 200_000
 
 
 class RecordingError(Exception):
-    """A recording that cannot be read, in words."""
+    """The reason why a recording cannot be read."""
 
 
 def _padded(data, blank):
@@ -33,7 +33,7 @@ def _padded(data, blank):
 
 
 def _finite(value):
-    """The value without numbers that JSON has no word for."""
+    """The value without numbers that JSON cannot represent."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     if isinstance(value, dict):
@@ -64,8 +64,8 @@ def encode(kind, columns=(), **header):
 
 
 def messages(data):
-    """Yields (header, {column: array}) of a recording's bytes; the last one may be cut off and is then
-    left out. Throws RecordingError for what is not a recording."""
+    """Yields (header, {column: array}) for the messages in a recording's bytes. The last one may be cut off
+    and is then left out. Raises RecordingError if it is not a recording."""
     if data[: len(MAGIC)] != MAGIC:
         raise RecordingError("is not a recording")
     at = len(MAGIC)
@@ -101,7 +101,7 @@ def _decoded(data, at, header_bytes, body_bytes):
 
 
 class Steps:
-    """Rows of the message `steps`, collected one after the other and thinned to fit a page."""
+    """Rows of the message `steps`. They are collected one after the other and thinned to fit a page."""
 
     WIDTHS = {"t": ("f8", 0), "reward": ("f4", 0)}
     KINDS = {"phase": "u1", "detected": "u1", "fresh": "u1", "aground": "u1", "followed": "u1"}
@@ -122,7 +122,7 @@ class Steps:
             self.keep_every *= 2
 
     def encoded(self, terms=()):
-        """The message, or b"" where there are no rows."""
+        """The message, or b"" if there are no rows."""
         if not self.rows:
             return b""
         widths = {}
@@ -142,8 +142,8 @@ class Steps:
 
 
 class Packets:
-    """Rows of the message `packets`. Of more than a page can hold, whole transmissions are left out;
-    the counts are of all."""
+    """Rows of the message `packets`. If a page cannot hold them, whole transmissions are left out. The counts
+    include all packets."""
 
     COLUMNS = {
         "source": "i4", "receiver": "i4", "sequence": "i4", "bytes": "i4", "fate": "u1",
@@ -164,7 +164,7 @@ class Packets:
         self.links.setdefault(f"{source}>{receiver}", [0] * len(FATES))[fate] += 1
 
     def encoded(self):
-        """The messages: packets, and the totals where not all of them are there."""
+        """The messages: packets, and the totals if some packets were left out."""
         rows, totals = self.rows, b""
         if len(rows) > MOST_PACKETS:
             keep_every = -(-len(rows) // MOST_PACKETS)
@@ -185,7 +185,7 @@ class Packets:
 
 
 class Recording:
-    """The messages of one run, put together by a reader."""
+    """The messages of one run, which a reader collects."""
 
     def __init__(self, **meta):
         self.meta = meta

@@ -1,4 +1,4 @@
-"""Scenarios as files and bags have them, for programs that show a run; used by view.py and bag_report.py."""
+"""Scenarios from files and bags, for programs that show a run; used by view.py and bag_report.py."""
 
 import math
 
@@ -9,13 +9,13 @@ SECTIONS = ("workspace", "vehicle", "reward", "sea", "reset", "target")
 
 
 def is_number(value):
-    """Whether a value is a finite number."""
+    """True if a value is a finite number."""
     return type(value) in (int, float) and abs(value) < math.inf
 
 
 def sections_of(scenario, name):
-    """Returns a scenario as {section: {key: value}} of the sections that pictures depend on; throws
-    Damaged, with the `name` of its source, where it is none."""
+    """Returns the sections of a scenario that pictures depend on, as {section: {key: value}}. Raises Damaged
+    with the `name` of the source if it is not a scenario."""
     if not isinstance(scenario, dict):
         raise Damaged(name, "is not a scenario")
     sections = {key: scenario.get(key) or {} for key in SECTIONS}

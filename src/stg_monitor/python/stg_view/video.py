@@ -1,4 +1,4 @@
-"""Videos of a page: frames from Chromium, put together by ffmpeg."""
+"""Videos of a page: Chromium draws the frames, and ffmpeg puts them together."""
 
 import pathlib
 import shutil
@@ -18,7 +18,7 @@ OUTPUT = {
 
 
 def write_video(page, out, seconds, size, theme="dark", camera="swarm", tab="story", span=(0.0, 1.0), rate=FRAMES_PER_S):
-    """Films a page from disk, its whole run or a part of it as two shares, in so many seconds."""
+    """Films a page from disk in `seconds`. span: the part of the run as two shares of it."""
     kind = pathlib.Path(out).suffix
     if kind not in OUTPUT:
         raise BrowserError(f"{out}: a video ends in {', '.join(OUTPUT)}")

@@ -1,4 +1,4 @@
-"""Chooses the engine for this processor, where there are several, as in a wheel.
+"""Chooses the engine for this processor if there are several, as in a wheel.
 
 $STG_INSTRUCTION_SET names one; results differ in their last
 bits between instruction sets, see docs/platforms.md.
@@ -18,7 +18,7 @@ def _file(name):
 
 
 def _load(file):
-    """Makes a file the module stg._core."""
+    """Loads a file as the module stg._core."""
     loader = importlib.machinery.ExtensionFileLoader("stg._core", str(file))
     module = importlib.util.module_from_spec(
         importlib.util.spec_from_file_location("stg._core", str(file), loader=loader)

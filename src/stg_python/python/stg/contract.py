@@ -1,5 +1,5 @@
-"""Checks of the contract of environments and wrappers, as Gymnasium's and PettingZoo's own
-testers do; an AssertionError names what is wrong."""
+"""Checks the contract of environments and wrappers, as the testers of Gymnasium and PettingZoo do. An
+AssertionError names what is wrong."""
 
 import warnings
 
@@ -9,7 +9,7 @@ __all__ = ["check_parallel", "check_vector"]
 
 
 def _same(a, b):
-    """Raises AssertionError unless two results are equal, bit for bit, however they are nested."""
+    """Raises AssertionError unless two results, nested or not, are equal bit for bit."""
     assert type(a) is type(b), (type(a), type(b))
     if isinstance(a, dict):
         assert a.keys() == b.keys(), (a.keys(), b.keys())
@@ -43,7 +43,7 @@ def check_parallel(make, cycles=30):
         assert env.action_space(name) is env.action_space(name)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        env.reset(seed=0, options={"options": 1})  # taken, whatever it is
+        env.reset(seed=0, options={"options": 1})  # any option is accepted
     for _ in range(2):
         _check_parallel_episode(env, cycles)
     _check_parallel_seed(make)
@@ -87,7 +87,7 @@ def _check_parallel_seed(make):
         draw = _sampled(env, 7)
         result = [env.reset(seed=11)]
         result += [env.step(draw()) for _ in range(5)]
-        result.append(env.reset())  # the episode after it is determined, too
+        result.append(env.reset())  # the next episode is determined, too
         return result + [env.step(draw())]
 
     a, b = make(), make()

@@ -14,7 +14,7 @@ class Members:
         """Reads the rows of `scenario`."""
         self._period = scenario.decision_dt_s
         events = [(row[0], int(row[1]), False) for row in scenario["fleet.leave"]]
-        # Of a leave and a join at the same time the join counts, as in the engine.
+        # If a leave and a join have the same time, the join counts, as in the engine.
         events += [(row[0], int(row[1]), True) for row in scenario["fleet.join"]]
         self.changes = bool(events)
         self._lives = [self._lives_of(i, sorted(events)) for i in range(scenario.agents)]

@@ -24,7 +24,7 @@ class Page:
         return path
 
     def _repr_html_(self):
-        # A document of its own, which cannot reach the notebook's.
+        # A separate document, which cannot access the notebook's.
         return (
             f'<iframe srcdoc="{html.escape(self.html)}" sandbox="allow-scripts"'
             ' style="width:100%;height:640px;border:0"></iframe>'

@@ -70,7 +70,7 @@ class ParallelEnv(_Base):
         s = self.scenario
         self._observations = np.zeros((1, s.agents, s.observation_size), np.float32)
         self._final = np.zeros_like(self._observations)
-        self._states = np.zeros((2, 1, s.state_size), np.float32)  # under way, final
+        self._states = np.zeros((2, 1, s.state_size), np.float32)  # present and final
         self._rewards = np.zeros((1, s.agents), np.float32)
         arrays = {"observations": self._observations, "final_observations": self._final}
         arrays.update(states=self._states[0], final_states=self._states[1], rewards=self._rewards)
@@ -128,7 +128,7 @@ class ParallelEnv(_Base):
         return {name: rows[self._members.auv[name]] for name in names}
 
     def _of_auvs(self, actions):
-        """The actions of all AUVs by their names; those that have left get zeros."""
+        """The actions of all AUVs by name; absent AUVs get zeros."""
         if not self._members.changes:
             return actions
         missing = [name for name in self.agents if name not in actions]

@@ -65,7 +65,7 @@ def _layers(module):
 
 
 def _check(policy, module, mean, std, clip, scale):
-    """Raises ValueError unless the policy and the module act alike."""
+    """Raises ValueError unless the policy and the module give the same actions."""
     import torch  # pylint: disable=import-outside-toplevel
 
     seen = np.random.default_rng(0).normal(size=(64, len(mean))).astype(np.float32) * std + mean

@@ -53,7 +53,7 @@ def _tell_gymnasium():
 def _tell_pettingzoo():
     try:
         from pettingzoo.env_registry import registration  # pylint: disable=import-outside-toplevel
-    except ImportError:  # not there, or older than its registry
+    except ImportError:  # not installed, or older than its registry
         return
     if SWARM in registration.parallel_registry:
         return

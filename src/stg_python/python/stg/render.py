@@ -4,17 +4,17 @@ import numpy as np
 
 __all__ = ["COLOURS", "draw", "draw_views"]
 
-# A Snapshot is what env.snapshot() returns; SI units, world axes (ENU: x east, y north, z up):
+# A Snapshot is the result of env.snapshot(), in SI units and world axes (ENU: x east, y north, z up):
 #   time [s], step; position, velocity [N, 3]; rpy [N, 3] [rad]; target_position, target_velocity
-#   [targets, 3]; estimate [N, 3], where each AUV believes its target to be, NaN where it has lost
-#   it; tracking [N, 4]: true distance [m], error [m], confidence, lost; links [N, N]: quality with
-#   which AUV i hears AUV j, in [0, 1].
+#   [targets, 3]; estimate [N, 3]: each AUV's estimate of its target, NaN if it has lost it;
+#   tracking [N, 4]: true distance [m], error [m], confidence, lost; links [N, N]: quality of the
+#   link from AUV j to AUV i, in [0, 1].
 
 COLOURS = ("#2a6fb0", "#b3641c", "#1b7f79", "#7a4fa3", "#b03a5b", "#4d6680", "#8a8a1c", "#333333")
 _VIEWS = ((0, 1, "from above", "x, east [m]", "y, north [m]"),
           (0, 2, "from the side", "x, east [m]", "z, up [m]"))  # fmt: skip
-_LEGEND_COLUMNS = 7  # that the narrowest picture of a user has room for
-_FLAT = 0.3  # a side view that is flatter has heights of its own scale
+_LEGEND_COLUMNS = 7  # fits into the narrowest picture of a user
+_FLAT = 0.3  # a flatter side view has its own scale of heights
 
 
 def _colour(i):
@@ -43,7 +43,7 @@ def _draw_view(axes, history, scenario, view):
         axes.plot(*position[i, (a, b)], "o", color=_colour(i), ms=7, zorder=6, label=f"auv_{i}")
         axes.plot(*now["estimate"][i, (a, b)], "x", color=_colour(i), ms=8, mew=1.6, zorder=7)
     axes.plot([], [], "x", color="#333333", ms=8, mew=1.6, label="estimates of it")
-    # As near as shows everything, and no wider than the water.
+    # The smallest range that shows everything, but not larger than the water.
     shown = np.concatenate([tracks.reshape(-1, 3), targets.reshape(-1, 3)])[:, (a, b)]
     extent = scenario["workspace.half_extent_m"]
     half = min(max(0.55 * np.ptp(shown, axis=0).max(), 0.05 * extent), 1.02 * extent)

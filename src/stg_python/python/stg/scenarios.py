@@ -45,7 +45,7 @@ def scenario_names():
 
 
 def _text(value, within):
-    """Returns the text of a value in a YAML file; `within` are the lists and dictionaries around it."""
+    """Returns the text of a value in a YAML file. `within` has the lists and dictionaries around it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
@@ -55,7 +55,7 @@ def _text(value, within):
 
 
 def _inside(value, within):
-    """Returns `within` and `value`; raises ValueError where the value contains itself or lies too deep."""
+    """Returns `within` and `value`. Raises ValueError if the value contains itself or is nested too deep."""
     if any(value is outer for outer in within):
         raise ValueError(f"overrides: a {type(value).__name__} contains itself")
     if len(within) >= 32:
@@ -64,7 +64,7 @@ def _inside(value, within):
 
 
 def _walk(prefix, values, within):
-    """Yields "key.path=value" of a dictionary and those in it."""
+    """Yields "key.path=value" for a dictionary and the dictionaries in it."""
     within = _inside(values, within)
     for key, value in values.items():
         if not isinstance(key, str):

@@ -14,7 +14,7 @@ class _Space:
         self.seed(seed)
 
     def seed(self, seed=None):
-        """Makes later samples a function of `seed` (an integer; None: not repeatable)."""
+        """Makes later samples depend on `seed` (an integer; None: not repeatable)."""
         self._random = np.random.default_rng(seed)
         return seed
 
@@ -45,7 +45,7 @@ class _Box(_Space):
             raise ValueError("Box: low is above high")
 
     def sample(self):
-        """An array, uniform where both bounds are finite, else normal."""
+        """An array: uniform where both bounds are finite, otherwise normal."""
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = np.where(bounded, self.low, 0.0), np.where(bounded, self.high, 1.0)
         drawn = np.where(
@@ -54,7 +54,7 @@ class _Box(_Space):
         return np.clip(drawn, self.low, self.high).astype(self.dtype)
 
     def contains(self, x):
-        """Whether `x` is an array of this shape, of a type that fits, within the bounds."""
+        """True if `x` is an array of this shape, with a suitable type, within the bounds."""
         return (
             isinstance(x, np.ndarray)
             and np.can_cast(x.dtype, self.dtype)
@@ -71,7 +71,7 @@ class _Box(_Space):
 
 
 class _Discrete(_Space):
-    """Integers start to start + n - 1."""
+    """The integers from start to start + n - 1."""
 
     def __init__(self, n, seed=None, start=0):
         if n < 1:
@@ -84,7 +84,7 @@ class _Discrete(_Space):
         return np.int64(self.start + self._random.integers(self.n))
 
     def contains(self, x):
-        """Whether `x` is one of the integers."""
+        """True if `x` is one of the integers."""
         if isinstance(x, np.ndarray) and x.shape != ():
             return False
         whole = isinstance(x, (int, np.integer)) or getattr(x, "dtype", np.dtype(float)).kind in "iu"
@@ -108,7 +108,7 @@ class _MultiDiscrete(_Space):
         return self._random.integers(0, self.nvec, dtype=self.dtype)
 
     def contains(self, x):
-        """Whether `x` is an array of integers of this shape, each in its range."""
+        """True if `x` is an array of integers of this shape, each in its range."""
         return (
             isinstance(x, np.ndarray)
             and x.dtype.kind in "iu"
@@ -121,7 +121,7 @@ class _MultiDiscrete(_Space):
 
 
 def _batch(space, n):
-    """The space of `n` elements of `space`, the first index counting them."""
+    """The space of `n` elements of `space`; the first index counts them."""
     if isinstance(space, _Box):
         low, high = (np.repeat(b[None], n, axis=0) for b in (space.low, space.high))
         return _Box(low, high, dtype=space.dtype)

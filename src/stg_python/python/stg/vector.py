@@ -33,9 +33,9 @@ except ImportError:
 
 
 def _mix(scenario, condition, overrides):
-    """Returns the list of scenarios that a mix names: any of the three may be a list."""
+    """Returns the list of scenarios of a mix. Each of the three may be a list."""
     if isinstance(overrides, (list, tuple)) and all(isinstance(x, str) for x in overrides):
-        overrides = [overrides]  # one scenario's, as texts
+        overrides = [overrides]  # overrides of one scenario, as texts
     given = [x if isinstance(x, (list, tuple)) else [x] for x in (scenario, condition, overrides)]
     count = max(map(len, given))
     if any(len(x) not in (1, count) for x in given):
@@ -110,7 +110,7 @@ class VectorEnv(_Base):
         self.action_space = spaces.batch_space(self.single_action_space, self.num_envs)
 
     def _make_arrays(self, seen, state_size, given):
-        """Returns all arrays by name: the caller's where given, else new ones."""
+        """Returns all arrays by name: given ones, or new ones."""
         n = self.num_envs
         arrays = {
             "observations": np.zeros((n, *seen), np.float32),
@@ -132,7 +132,7 @@ class VectorEnv(_Base):
         return dict(self._arrays)
 
     def _given(self, name):
-        """Returns an array as the caller gets it."""
+        """Returns an array in the form that the caller gets."""
         array = self._arrays[name]
         return array.copy() if self._copy else array
 
@@ -286,7 +286,7 @@ class VectorEnv(_Base):
     def close_extras(self, **kwargs):
         """Frees the engine; a step after it raises RuntimeError."""
         del kwargs
-        core = getattr(self, "_core", None)  # none where __init__ raised
+        core = getattr(self, "_core", None)  # there is none if __init__ raised an exception
         if core is not None:
             core.close()
 

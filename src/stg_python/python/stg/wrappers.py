@@ -23,7 +23,7 @@ except ImportError:
         render_mode = None
 
         def reset(self, *, seed=None, options=None):
-            """Gymnasium's seeds a generator here, which its tester looks for."""
+            """Gymnasium's reset seeds a generator here; its tester requires this."""
 
 
 def _from_env(name):
@@ -38,7 +38,7 @@ def _from_env(name):
 
 
 class _Wrapper:
-    """Other attributes are those of the wrapped environment."""
+    """Has all other attributes of the wrapped environment."""
 
     env = None
 
