@@ -1,1 +1,1 @@
-"""A study: many trainings and evaluations, and the tables and figures made of them."""
+"""A study: many trainings and evaluations, and the tables and figures from them."""

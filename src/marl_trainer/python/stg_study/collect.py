@@ -1,4 +1,4 @@
-"""Gathers what the jobs of a study left into the CSV files that the report is made of."""
+"""Collects the results of a study's jobs in the CSV files from which the report is made."""
 
 import csv
 import gzip
@@ -15,7 +15,7 @@ FILES = {
     "episodes": "episodes.csv.gz",  # every evaluation episode, all metrics
     "curves": "curves.csv",  # every validation of every training, all metrics
     "runs": "runs.csv",  # every training: steps, times, speed, networks
-    "options": "options.csv",  # every method's options of train, as its first training had them
+    "options": "options.csv",  # options of train for every method, from its first training
 }
 THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
 
@@ -30,7 +30,7 @@ def csv_text(header, rows):
 
 
 def _short(value, digits=6):
-    """A number with as many digits as the tables can use: results stand in repositories."""
+    """A number with the digits that the tables need, because results are stored in repositories."""
     return f"{float(value):.{digits}g}"
 
 
@@ -40,13 +40,13 @@ def read_rows(path):
 
 
 def write_rows(path, header, rows):
-    """Writes what read_rows reads; the same rows make the same file."""
+    """Writes a file for read_rows. The same rows always make the same file."""
     data = csv_text(header, rows).encode()
     write_atomically(path, gzip.compress(data, mtime=0) if path.endswith(".gz") else data)
 
 
 def _run_cells(job):
-    """What runs.csv says of a complete training: steps, times, speed, networks."""
+    """Cells of runs.csv for a complete training: steps, times, speed, networks."""
     path, summary = job.summary_file, job.summary()
     speed = [_short(member(path, summary, n, float)) for n in ("wall_seconds", "env_steps_per_second")]
     times = expect(path, summary.get("time_to_threshold", {}), dict, "time_to_threshold")
@@ -54,7 +54,7 @@ def _run_cells(job):
     for name in THRESHOLDS:
         moment = expect(path, times.get(name) or {}, dict, f"time_to_threshold.{name}")
         reached.append(_short(member(path, moment, "seconds", float)) if moment else "")
-    # Older runs do not tell the sizes.
+    # Older runs do not have the sizes.
     sizes = expect(path, summary.get("parameters", {}), dict, "parameters")
     if any(not re.fullmatch(r"\w+", name) or type(size) is not int for name, size in sizes.items()):
         raise Damaged(path, "parameters: must be a whole number for each network")
@@ -65,7 +65,7 @@ def _run_cells(job):
 
 
 def _options_of(job):
-    """{option: value} of a complete training, a list as its elements."""
+    """{option: value} of a complete training; a list is split into its elements."""
     path = os.path.join(job.folder, "config.json")
     options = expect(path, read_json(path), dict)
     texts = {}
@@ -78,13 +78,13 @@ def _options_of(job):
 
 
 class Kept:
-    """The rows that the CSV files of a folder have of some methods and controllers."""
+    """The rows of some methods and controllers in the CSV files of a folder."""
 
     def __init__(self, folder, names):
         self._folder, self._names = folder, set(names)
 
     def rows(self, kind, header):
-        """Rows of `header`'s columns, empty where an older file has none."""
+        """Rows with the columns of `header`; cells are empty if an older file does not have them."""
         path = os.path.join(self._folder, FILES[kind])
         if not self._names or not os.path.exists(path):
             return []
@@ -93,8 +93,8 @@ class Kept:
 
 
 def collect(study, trainings, evaluations, out, kept=()):
-    """Writes the CSV files into `out` from the complete jobs, and what those there have of the
-    methods and controllers named in `kept`; returns how many jobs are not complete."""
+    """Writes the CSV files into `out` from the complete jobs. Rows of the methods and controllers in `kept`
+    are taken from the existing files. Returns the number of jobs that are not complete."""
     kept = Kept(out, kept)
     places = {name: place for place, name in enumerate(study.method_names())}
     results, episodes, curves, runs, options = [], [], [], [], {}

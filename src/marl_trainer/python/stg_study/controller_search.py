@@ -1,10 +1,10 @@
-"""A search for the constants of a controller, as policies are trained: on seeds for choosing only, with
-a budget that is stated.
+"""A search for the constants of a controller. Like the training of policies, it uses only seeds for choosing
+and has a stated budget.
 
-The search flies the constants of `start`, then random ones within `space` (uniform; where a range spans
-a decade or more, of the logarithm), then constants near the best so far. The same file draws the same
-constants. A few episodes choose by luck as well: with `finals`, the best of the trials fly again, more
-episodes from another seed of the block for choosing, and what is best there is chosen.
+The search flies the constants of `start`, then random ones within `space` (uniform; in the logarithm if a
+range spans a decade or more), then constants near the best ones so far. The same file always draws the same
+constants. With few episodes, luck affects the choice, too. So with `finals`, the best trials fly again, with
+more episodes from another seed of the block for choosing, and the best of these is chosen.
 """
 
 import hashlib
@@ -20,38 +20,38 @@ from stg_study.jobs import Flight
 from stg_study.runner import Runner
 from stg_study.study import StudyError
 
-CHOOSING = "choosing"  # the block of seeds that choices are made on
+CHOOSING = "choosing"  # the block of seeds for choices
 
 
 def is_count(value):
-    """Whether a value is a whole number that is not negative."""
+    """True if a value is a whole number that is not negative."""
     return type(value) is int and value >= 0
 
 
 def is_number(value):
-    """Whether a value is a finite number."""
+    """True if a value is a finite number."""
     return type(value) in (int, float) and abs(value) < math.inf
 
 
 def are_names(value):
-    """Whether a value is a list of names, at least one."""
+    """True if a value is a list of at least one name."""
     return isinstance(value, list) and bool(value) and all(isinstance(v, str) for v in value)
 
 
 def are_constants(value):
-    """Whether a value is a mapping from names to numbers."""
+    """True if a value maps names to numbers."""
     return isinstance(value, dict) and all(
         isinstance(name, str) and is_number(number) for name, number in value.items()
     )
 
 
 def is_pair(value):
-    """Whether a value is two numbers."""
+    """True if a value is a list of two numbers."""
     return isinstance(value, list) and len(value) == 2 and all(map(is_number, value))
 
 
 def is_space(value):
-    """Whether a value maps names to ranges."""
+    """True if a value maps names to ranges."""
     return isinstance(value, dict) and all(
         isinstance(name, str) and is_pair(ends) and ends[0] <= ends[1]
         for name, ends in value.items()
@@ -59,11 +59,11 @@ def is_space(value):
 
 
 def are_starts(value):
-    """Whether a value is a list of constants."""
+    """True if a value is a list of constants."""
     return isinstance(value, list) and all(map(are_constants, value))
 
 
-KEYS = {  # what each must be: as a test, and in words
+KEYS = {  # required keys: test of the value, and its text for messages
     "controller": (lambda value: isinstance(value, str), "a name"),
     "space": (is_space, "a mapping from names to [least, most]"),
     "start": (are_starts, "a list of mappings from names to numbers"),
@@ -80,25 +80,25 @@ KEYS = {  # what each must be: as a test, and in words
 
 
 def are_overrides(value):
-    """Whether a value is a list of texts."""
+    """True if a value is a list of texts."""
     return isinstance(value, list) and all(isinstance(v, str) for v in value)
 
 
 def are_finals(value):
-    """Whether a value says how the best trials fly again."""
+    """True if a value states how the best trials fly again."""
     return (isinstance(value, dict) and set(value) == {"trials", "episodes", "seed"}
             and all(is_count(v) for v in value.values()) and value["trials"] > 0
             and value["episodes"] > 0)  # fmt: skip
 
 
-MAY = {  # keys that a file may leave out, and what they are then
-    "set": (are_overrides, "a list of KEY=VALUE", []),  # of the scenarios
+MAY = {  # optional keys, with their defaults
+    "set": (are_overrides, "a list of KEY=VALUE", []),  # overrides of the scenarios
     "finals": (are_finals, "trials, episodes, seed", None),
 }
 
 
 def checked(search, file):
-    """Returns the search that a file holds; throws Damaged where it is none."""
+    """Returns the search of a file. Raises Damaged if it is invalid."""
     wrong = set(KEYS).symmetric_difference(search) - set(MAY)
     if wrong:
         raise Damaged(file, f"missing or unknown: {', '.join(sorted(map(str, wrong)))}")
@@ -121,12 +121,12 @@ def checked(search, file):
 
 
 def is_logarithmic(ends):
-    """Whether a range is searched by the logarithm: one that spans a decade or more."""
+    """True if a range is searched in the logarithm, because it spans a decade or more."""
     return ends[0] > 0.0 and ends[1] / ends[0] >= 10.0
 
 
 def draw(space, centre, step, rng):
-    """Returns constants: anywhere, or with a centre near it, by `step` of the range."""
+    """Returns random constants: anywhere, or near a centre if there is one, by `step` of the range."""
     values = {}
     for name, (lo, hi) in space.items():
         logarithmic = is_logarithmic((lo, hi))
@@ -141,17 +141,17 @@ def draw(space, centre, step, rng):
 
 
 def text_of(controller, values):
-    """Returns how `evaluate --policy` takes them."""
+    """Returns the constants in the form that `evaluate --policy` takes."""
     constants = ",".join(f"{name}={value:g}" for name, value in values.items())
     return controller + (":" + constants if constants else "")
 
 
 class Interrupted(Exception):
-    """The search was asked to stop; the same command goes on from there."""
+    """The search was asked to stop. The same command continues it."""
 
 
 def _jobs(search, policy, work, bin_dir):
-    """The flights of one trial: a cell for each scenario and condition."""
+    """The flights of one trial: one cell for each scenario and condition."""
     jobs = []
     overrides = [word for one in search["set"] for word in ("--set", one)]
     for scenario in search["scenarios"]:
@@ -166,7 +166,7 @@ def _jobs(search, policy, work, bin_dir):
 
 
 def _fly(search, values, work, bin_dir, parallel):
-    """Returns (score, means over all cells of what is scored)."""
+    """Returns (score, means of the scored metrics over all cells)."""
     jobs = _jobs(search, text_of(search["controller"], values), work, bin_dir)
     if not all(job.complete() for job in jobs):
         runner = Runner([], jobs, parallel, io.StringIO())
@@ -204,7 +204,7 @@ def _trials(search, work, bin_dir, parallel):
 
 
 def _row(search, trial, score, means, values):
-    """A line of the tables; an empty cell is the controller's own constant."""
+    """A row of the tables. An empty cell means the controller's own constant."""
     return [trial, f"{score:.4f}", *(f"{mean:.6g}" for mean in means.values()),
             *(values.get(name, "") for name in search["space"])]  # fmt: skip
 
@@ -216,7 +216,7 @@ def _write(search, out, name, rows):
 
 
 def _finals(search, trials, out, work, bin_dir, parallel):
-    """Flies the best trials again, and the first one; writes OUT/finals.csv, the best of them first."""
+    """Flies the best trials and the first one again. Writes OUT/finals.csv, the best one first."""
     again = dict(search, episodes=search["finals"]["episodes"], seed=search["finals"]["seed"])
     order = sorted(trials, key=lambda one: -one[1])[: search["finals"]["trials"]]
     if trials[0] not in order:
@@ -233,7 +233,7 @@ def _finals(search, trials, out, work, bin_dir, parallel):
 
 
 def run_search(search, out, work, bin_dir, parallel):
-    """Flies the search and writes OUT/trials.csv, a row for each trial in the order they were flown, and
+    """Flies the search. Writes OUT/trials.csv, with one row per trial in the order of the flights, and
     OUT/finals.csv."""
     trials = []
     for one in _trials(search, work, bin_dir, parallel):

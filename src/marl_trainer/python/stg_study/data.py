@@ -1,4 +1,4 @@
-"""The results of a study and the paper's figures, read back from their CSV files."""
+"""Reads the results of a study and the paper's figures from their CSV files."""
 
 import os
 import re
@@ -16,7 +16,7 @@ NETWORKS = re.compile(r"(\w+:\d{1,12}( \w+:\d{1,12})*)?")
 
 
 def networks(text):
-    """Networks and the numbers of their parameters, as runs.csv has them: "actor:12 critic:34"."""
+    """Networks and the numbers of their parameters in the form of runs.csv: "actor:12 critic:34"."""
     if not NETWORKS.fullmatch(text):
         raise ValueError
     return text
@@ -29,7 +29,7 @@ RUN = {
     **{f"seconds_to_{name}": optional(number) for name in THRESHOLDS},
 }  # fmt: skip
 OPTION = {"method": str, "option": str, "value": str}
-# By another reward than `return`; a row of before these were measured has none.
+# Returns by another reward than `return`; older rows have none.
 OTHER_RETURNS = ("training_return", "scenario_return")
 CURVE = {"scenario": str, "method": str, "seed": count}  # and numbers
 EPISODE = {**CURVE, "condition": str}  # and numbers
@@ -37,7 +37,7 @@ EPISODE = {**CURVE, "condition": str}  # and numbers
 
 
 def _kind(name):
-    """Of a column of episodes or curves: a number, or with `return` and its kin perhaps none."""
+    """Kind of a column of episodes or curves: a number, which may be missing for returns."""
     return optional(number) if name == "return" or name in OTHER_RETURNS else number
 
 
@@ -57,7 +57,7 @@ class Paper:
                 names.append(row["algorithm"])
 
     def get(self, table, algorithm, metric, condition="nominal", seed=""):
-        """(mean, std) or None; std is None where the paper gives none."""
+        """(mean, std) or None. std is None if the paper gives none."""
         return self._values.get((table, algorithm, condition, str(seed), metric))
 
     def algorithms(self, table):
@@ -70,7 +70,7 @@ class Paper:
 
 
 class Results:
-    """Everything the report says, from the CSV files of one study."""
+    """All data of the report, from the CSV files of one study."""
 
     def __init__(self, folder):
         self._scores = {}  # (scenario, condition, method, seed) -> {metric: values by episode}
@@ -99,7 +99,7 @@ class Results:
         return columns[name]
 
     def scores(self, scenario, condition, method, metric):
-        """[seeds, episodes] of an evaluation, or None where there is none."""
+        """[seeds, episodes] of an evaluation, or None if there is none."""
         rows = [
             self._column("episodes", columns, metric)
             for key, columns in sorted(self._scores.items())
@@ -112,11 +112,11 @@ class Results:
         return np.array([row[:episodes] for row in rows])
 
     def evaluated_seeds(self, scenario, condition, method):
-        """The seeds of the rows of scores()."""
+        """The seeds for the rows of scores()."""
         return sorted(key[3] for key in self._scores if key[:3] == (scenario, condition, method))
 
     def option(self, method, name):
-        """An option of a method's training as text, empty where it has none of that name."""
+        """An option of a method's training as text; empty if the method does not have it."""
         return self._options.get(method, {}).get(name, "")
 
     def runs_of(self, scenario, method):
@@ -124,12 +124,12 @@ class Results:
         return [r for r in self.runs if r["scenario"] == scenario and r["method"] == method]
 
     def over_episodes(self, scenario, condition, method, metric):
-        """(mean, std) over all episodes of all seeds, as Tables S7 and S8; or None."""
+        """(mean, std) over all episodes of all seeds, as in Tables S7 and S8; or None."""
         scores = self.scores(scenario, condition, method, metric)
         return None if scores is None else mean_std(scores.ravel())
 
     def over_seeds(self, scenario, condition, method, metric):
-        """(mean, std) of the seeds' means, as the distances of Tables 1 and 2; or None."""
+        """(mean, std) of the seeds' means, like the distances in Tables 1 and 2; or None."""
         scores = self.scores(scenario, condition, method, metric)
         return None if scores is None else mean_std(scores.mean(axis=1))
 
@@ -142,7 +142,7 @@ class Results:
         return sorted({key[2] for key in self._curves if key[0] == scenario})
 
     def curve(self, scenario, method, seed, column):
-        """Values of a validation column, one per validation; None where one is not known."""
+        """Values of a validation column, one per validation; None if they are unknown."""
         columns = self._curves[(scenario, method, seed)]
         if column in OTHER_RETURNS and column not in columns:
             return None
@@ -155,7 +155,7 @@ class Results:
         return None if values is None else final_stage(values)
 
     def final_over_seeds(self, scenario, method, column):
-        """(mean, std) over seeds of the final-stage means, as Tables S3, S5, S9; or None."""
+        """(mean, std) over seeds of the final-stage means, as in Tables S3, S5 and S9; or None."""
         seeds = self.seeds(scenario, method)
         if not seeds:
             return None

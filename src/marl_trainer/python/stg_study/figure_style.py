@@ -1,4 +1,4 @@
-"""Colours, sizes and files of the figures; importing this selects a backend without display."""
+"""Colours, sizes and files of the figures. Importing this module selects a backend without display."""
 
 import io
 import os
@@ -11,12 +11,12 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from stg_study.files import write_atomically
 from stg_study.study import StudyError
 
-plt.switch_backend("Agg")  # draws to files
+plt.switch_backend("Agg")  # for output to files
 
-# Okabe and Ito's colours, which the colour-blind can tell apart.
+# Okabe and Ito's colours, which people with colour blindness can distinguish.
 OTHER_COLOURS = ["#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9"]
 OTHER_GREYS = ["#222222", "#777777", "#999999", "#bbbbbb"]
-# The shipped studies' methods and controllers look the same in all of them.
+# The methods and controllers of the shipped studies have the same colours in all studies.
 KNOWN = {
     "stg": "#0072B2",
     "semantic": "#009E73",
@@ -26,7 +26,7 @@ KNOWN = {
     "separated": "#CC79A7",
     "silent": "#56B4E9",
     "no_links_roles": "#332288",
-    # Algorithms: the paper's baselines, and on equal terms, where mappo is what stg is.
+    # Algorithms: the paper's baselines, and the study on equal terms, in which mappo is the same as stg.
     "mappo": "#0072B2",
     "ippo": "#332288",
     "happo": "#44AA99",
@@ -57,7 +57,7 @@ plt.rcParams.update(
 
 
 def colours(study):
-    """Colour of every method and controller by its name, the same in every study."""
+    """Colour of every method and controller by name. It is the same in every study."""
     table = {}
     for entries, others in ((study.methods, OTHER_COLOURS), (study.controllers, OTHER_GREYS)):
         free = [c for c in others if c not in [KNOWN.get(e.name) for e in entries]] or others
@@ -68,7 +68,7 @@ def colours(study):
 
 
 def check_labels(study, name):
-    """Refuses labels with formulas that cannot be drawn; `name` is that of the study's file."""
+    """Refuses labels with formulas that cannot be drawn. `name` is the name of the study's file."""
     for key, entries in (("methods", study.methods), ("controllers", study.controllers)):
         for entry in entries:
             try:
@@ -95,12 +95,12 @@ def logarithmic(axis, low, high):
 
 
 def title(figure, text):
-    """The figure's title, with the unit of all its distances below."""
+    """The figure's title, and the unit of all its distances below."""
     figure.suptitle(f"{text}\n{UNIT}", fontsize=10)
 
 
 def save(figure, folder, name):
-    """Writes the figure as PNG, the same bytes for the same content; returns its name."""
+    """Writes the figure as PNG; the same content gives the same bytes. Returns the name."""
     os.makedirs(folder, exist_ok=True)
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png", dpi=150, metadata={"Software": None})
@@ -110,7 +110,8 @@ def save(figure, folder, name):
 
 
 def legend_below(figure, handles, labels, columns=4):
-    """One legend for all panels, whole, under them, or none of nothing; lays the figure out above it."""
+    """One complete legend for all panels, below them; none if it would be empty. Lays out the figure above
+    it."""
     if not labels:
         figure.tight_layout()
         return

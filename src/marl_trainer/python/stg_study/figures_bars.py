@@ -43,7 +43,7 @@ def _bars(axis, rows, number):
 
 
 def final_stage(study, results, paper, scenario, table, folder):
-    """Bars of the last fifth of the training, ours, the controllers' and the paper's."""
+    """Bars of the last fifth of the training: our methods, the controllers, and the paper's algorithms."""
     colour, labels = colours(study), study.labels()
     count = len(study.method_names()) + len(paper.algorithms(table))
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 1.6 + 0.27 * count), sharey=True)
@@ -64,12 +64,12 @@ def final_stage(study, results, paper, scenario, table, folder):
 
 
 def _share_rows(axes, count):
-    """Sharing an axis inverts it once for every panel; this fixes the first row on top."""
+    """A shared axis is inverted once for every panel; this puts the first row on top."""
     axes[0].set_ylim(count - 0.4, -0.6)
 
 
 def ablation(study, results, paper, scenario, folder, with_paper):
-    """Bars of Table S9: every variant, the paper's figure of it below."""
+    """Bars of Table S9: every variant, with the paper's figure below it."""
     colour = colours(study)
     rows_of = {}
     for name, metric, _ in ABLATION:

@@ -21,12 +21,11 @@ COMPONENTS = [
     ("communication", "reward_communication"),
     ("semantic", "reward_semantic"),
 ]
-FLOOR = 1e-4  # of logarithmic axes
+FLOOR = 1e-4  # smallest value of logarithmic axes
 
 
 def curve_band(results, scenario, method, metric, scale=1.0):
-    """Steps, mean and std over seeds at the validations that all seeds have; None where there are
-    none."""
+    """Steps, mean and std over seeds, at the validations that all seeds have; None if there are none."""
     seeds = results.seeds(scenario, method)
     if not seeds:
         return None
@@ -53,8 +52,8 @@ def step_axis(axis):
 
 
 def comparable(methods, metric):
-    """The methods whose trainings' validations can stand on one axis: those that tell of a return
-    by the scenario's reward."""
+    """The methods whose validations are comparable on one axis: those with a return by the scenario's
+    reward."""
     if metric not in RETURNS:
         return list(methods)
     return [m for m in methods if m.reward() != "own"]
@@ -65,7 +64,8 @@ def _scale(study, metric):
 
 
 def _focus_returns(axis, bands, references):
-    """Keeps one early collapse from squeezing all curves: the axis starts near the 2 % quantile."""
+    """Chooses the range of the axis: it starts near the 2 % quantile, so that one early collapse does not
+    squeeze all curves."""
     values = np.concatenate([mean - std for _, mean, std in bands])
     top = max([float((mean + std).max()) for _, mean, std in bands] + references)
     low = float(np.quantile(values, 0.02))
@@ -73,7 +73,7 @@ def _focus_returns(axis, bands, references):
 
 
 def convergence(study, results, paper, scenario, table, folder):
-    """Return, error, tail distance and loss against steps: mean and std over seeds; as lines the
+    """Return, error, tail distance and loss against steps: mean and std over seeds. Lines show the
     controllers and the final stage of the paper's STG-MAPPO."""
     colour, labels = colours(study), study.labels()
     figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.6))
@@ -109,7 +109,7 @@ def convergence(study, results, paper, scenario, table, folder):
         axis.set_title(name)
         axis.set_ylabel(label)
         if is_logarithmic and bands:
-            # By the means: one seed that strays early would stretch the axis over decades.
+            # Uses the means, because one seed that is far off early would stretch the axis over decades.
             means = np.concatenate([mean for _, mean, _ in bands] + [references])
             logarithmic(axis, max(float(means.min()), FLOOR), float(means.max()))
         elif metric == "whole_lost_rate":
@@ -124,8 +124,8 @@ def convergence(study, results, paper, scenario, table, folder):
 
 
 def per_seed(study, results, scenario, folder):
-    """Return and tail distance of every training of the methods that stand in the paper's tables or
-    see what STG-MAPPO sees: a colour for each method, a line style for each of up to four seeds."""
+    """Return and tail distance of every training, for the methods that are in the paper's tables or have the
+    observation of STG-MAPPO. Each method has a colour; each of up to four seeds has a line style."""
     methods = [m for m in study.methods if m.paper or m.variant == "stg"] or study.methods[:2]
     colour = colours(study)
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.2))
@@ -165,7 +165,7 @@ def per_seed(study, results, scenario, folder):
 
 
 def reward_components(study, results, scenario, folder):
-    """The reward's terms before weighting, and what the controls cost, for the first method."""
+    """The terms of the reward before weighting, and the cost of the controls, for the first method."""
     method = study.methods[0]
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8), gridspec_kw={"width_ratios": [3, 2]})
     palette = ["#0072B2", "#56B4E9", "#009E73", "#E69F00", "#CC79A7"]

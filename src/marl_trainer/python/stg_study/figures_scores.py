@@ -1,4 +1,4 @@
-"""Figures of what a comparison costs and how it spreads: profiles, time, actions."""
+"""Figures of the cost of a comparison and of its spread: profiles, time, actions."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ PROFILE_POINTS = 200
 
 
 def profiles(study, results, scenario, folder):
-    """Share of the episodes, of all seeds and conditions, that return more than x."""
+    """Share of the episodes, of all seeds and conditions, with a return above x."""
     colour, labels = colours(study), study.labels()
     scores = {}
     for name in study.method_names():
@@ -42,7 +42,7 @@ def profiles(study, results, scenario, folder):
 
 
 def _against_seconds(axis, study, results, scenario, handles):
-    """Returns of the validations against wall time, every training a line."""
+    """Returns of the validations against wall time, with one line per training."""
     colour = colours(study)
     for method in comparable(study.methods, "scenario_return"):
         for seed in results.seeds(scenario, method.name):

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, and folders that one program at a time writes into."""
+"""Files that are either complete or absent, and folders that only one program at a time writes."""
 
 import contextlib
 import errno
@@ -7,9 +7,9 @@ import os
 
 
 def write_atomically(path, content):
-    """Writes a file, of text or bytes, that exists either whole or not at all.
+    """Writes a file of text or bytes. The file is either complete or absent.
 
-    An OSError has the file's name, also where the disk is full.
+    An OSError has the file's name, even if the disk is full.
     """
     temporary = f"{path}.{os.getpid()}.part"
     try:
@@ -24,9 +24,9 @@ def write_atomically(path, content):
 
 @contextlib.contextmanager
 def locked(path):
-    """Keeps other programs, train among them, out of a folder meanwhile; OSError when one has it.
+    """Keeps other programs (also train) out of a folder as long as it is held. OSError if one has the folder.
 
-    The kernel lets go of the lock however this process ends.
+    The kernel releases the lock when this process ends in any way.
     """
     with open(os.path.join(path, ".lock"), "a", encoding="utf-8") as file:
         try:

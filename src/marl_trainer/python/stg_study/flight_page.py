@@ -14,7 +14,7 @@ from stg_study.tables import NOTHING, cell, markdown
 PLACE = ("section", "scenario", "condition", "variant")
 KEY = (*PLACE, "pilot", "knows", "seeds", "episodes")
 PAIRED = ("difference", "difference_low", "difference_high")
-LEAST_GAP = 0.02  # of what truth is worth, below which no share of it is given
+LEAST_GAP = 0.02  # if truth is worth less than this, no share of it is given
 TITLES = {"scenario": "Scenario", "condition": "Condition", "variant": "Variant", "pilot": "Flown by",
           "knows": "Knows", "seeds": "Seeds", "episodes": "Episodes"}  # fmt: skip
 READING = """\
@@ -30,7 +30,7 @@ READING_GAP = (" Gap closed: 0 is the best law on its own estimates, 1 the same 
 
 
 def rows_of(study, cells):
-    """One dictionary for each cell; those that are not complete are left out."""
+    """One dictionary per cell. Incomplete cells are left out."""
     rows, episodes = [], {}
     for one in cells:
         if not all(job.complete() for job in one.jobs):
@@ -51,13 +51,13 @@ def rows_of(study, cells):
 
 
 def place_of(row):
-    """What rows that fly the same episodes have in common."""
+    """The values that rows with the same episodes have in common."""
     return tuple(row[name] for name in PLACE)
 
 
 def _compare(study, rows, episodes):
-    """Sets the paired differences of the rows from the pilot that they are compared with."""
-    ours = {}  # the pilot's row by place, and by place and what it knows
+    """Sets the paired differences between the rows and the pilot that they are compared with."""
+    ours = {}  # the pilot's row by place, and by place and knowledge
     for k, row in enumerate(rows):
         if row["pilot"] == study.compare:
             ours.setdefault(place_of(row), k)
@@ -72,8 +72,8 @@ def _compare(study, rows, episodes):
 
 
 def _close_gaps(rows):
-    """Sets gap_closed: how far a row's share in the band is from that of the best law on own estimates
-    towards that of the same law on true states."""
+    """Sets gap_closed: the position of a row's share in the band between the best law on its own estimates
+    (0) and the same law on true states (1)."""
     for place in {place_of(row) for row in rows}:
         here = [row for row in rows if place_of(row) == place]
         own = {row["pilot"]: row["band_share"] for row in here if row["knows"] == "own"}
@@ -99,7 +99,7 @@ def write_table(study, rows, folder):
 
 
 def write_seeds(study, cells, folder):
-    """Writes NAME_by_seed.csv, where a pilot has several seeds of training."""
+    """Writes NAME_by_seed.csv if a pilot has several training seeds."""
     names = [column.metric for column in study.columns if column.metric != "gap_closed"]
     rows = [
         [one.section, one.scenario, one.condition, one.variant, one.pilot, seed,
@@ -130,12 +130,12 @@ def _value(column, row):
 
 
 def _pilot(study, name):
-    """How a page writes a pilot: as code where it is what --policy takes."""
+    """The text for a pilot on a page: code if it is an argument of --policy."""
     return name if name in study.pilots else f"`{name}`"
 
 
 def section_table(study, rows):
-    """The Markdown table of a section's rows. A column that says the same in every row is left out."""
+    """The Markdown table of a section's rows. Columns with the same value in every row are left out."""
     shown = [name for name in KEY[1:] if name == "pilot" or len({row[name] for row in rows}) > 1]
     header = [TITLES[name] for name in shown] + [column.title for column in study.columns]
     header += [f"{study.compare} − it"] if study.compare else []
@@ -152,7 +152,8 @@ def section_table(study, rows):
 
 
 def beside_table(study, rows):
-    """The first pilot of `beside` and the best of the others by the first column, place by place."""
+    """Compares, for each place, the first pilot of `beside` with the best of the others by the first
+    column."""
     ours, *others = study.beside
     columns = [column for column in study.columns if column.beside]
     header = ["Scenario", "Condition", "Beside"] + [column.title for column in columns]
@@ -167,8 +168,8 @@ def beside_table(study, rows):
 
 
 def training_table(path):
-    """Every task's share in the band at each validation of a training, and how the last one compares
-    with the best."""
+    """Every task's share in the band at each validation of a training, and a comparison of the last
+    validation with the best one."""
     kinds = {"steps": count, "seconds": number, "task": str, "band_share": number}
     steps = {}  # {steps: {task: row}}
     for row in table_rows(path, kinds):

@@ -1,7 +1,7 @@
-"""A study of flights: controllers and finished policies side by side, without a training.
+"""A study of flights: compares controllers and finished policies without a training.
 
-Its file has `kind: flights`. A section is a table: scenarios x conditions x variants, each flown by the
-section's pilots, and by each of them with what it knows. All fly the same episodes.
+Its file has `kind: flights`. A section is a table of scenarios x conditions x variants. Each of the section's
+pilots flies them, with each of its kinds of knowledge. All fly the same episodes.
 """
 
 import dataclasses
@@ -21,7 +21,8 @@ SHIPPED_POLICIES = ("../../../stg_bringup/policies", "../../../../share/stg_brin
 
 @dataclasses.dataclass
 class Knowledge:
-    """What a pilot decides on: overrides of the scenario, or true states for a built-in controller."""
+    """Information for a pilot's decisions: overrides of the scenario, or true states for a built-in
+    controller."""
 
     set: List[str] = dataclasses.field(default_factory=list)
     privileged: bool = False
@@ -29,48 +30,48 @@ class Knowledge:
 
 @dataclasses.dataclass
 class Pilot:
-    """What flies: a controller with its constants, or a policy file.
+    """A pilot: a controller with its constants, or a policy file.
 
-    In a file's name {shipped} is the folder of the policies that ship, {policies} that of --policies,
-    {scenario} the scenario and {seed} each of `seeds`, which are trainings: the row then has mean and
-    standard deviation over them.
+    In the name of a file, {shipped} is the folder of the shipped policies, {policies} the folder of
+    --policies, {scenario} the scenario, and {seed} each of `seeds`. The seeds are those of trainings; the row
+    then has mean and standard deviation over them.
     """
 
     policy: str
     seeds: List[int] = dataclasses.field(default_factory=list)
 
     def is_file(self):
-        """Whether it is a policy file."""
+        """True if it is a policy file."""
         return self.policy.endswith(".onnx")
 
 
 @dataclasses.dataclass
 class Section:
-    """One table. `pilots` has for each what it knows; `variants` for each its overrides."""
+    """One table. `pilots` has the kinds of knowledge of each pilot; `variants` has the overrides of each."""
 
     title: str
     conditions: List[str]
     pilots: dict
     scenarios: List[str]
     variants: dict = dataclasses.field(default_factory=lambda: {"": []})
-    episodes: int = 0  # 0: the study's
+    episodes: int = 0  # 0: the number of the study
 
 
 @dataclasses.dataclass
 class Column:
-    """A metric of `evaluate`, its heading, its digits, and the factor that its unit has in the page."""
+    """A metric of `evaluate`: its heading, its digits, and the factor of its unit on the page."""
 
     metric: str
     title: str
     digits: int = 2
     scale: float = 1.0
-    std: bool = False  # whether the page has the standard deviation, too
-    beside: bool = False  # whether it stands in the table of one pilot beside the best of others
+    std: bool = False  # the page also has the standard deviation
+    beside: bool = False  # the table of one pilot beside the best of the others has it, too
 
 
 @dataclasses.dataclass
 class FlightStudy:
-    """What is flown, and how it is shown."""
+    """The flights of a study, and how they are shown."""
 
     kind: str
     name: str
@@ -80,22 +81,22 @@ class FlightStudy:
     sections: List[object]
     pilots: dict = dataclasses.field(default_factory=dict)
     knows: dict = dataclasses.field(default_factory=lambda: {"own": {}})
-    seed: int = 5000000  # of the first episode, in the reporting block
+    seed: int = 5000000  # seed of the first episode, in the reporting block
     notes: str = ""
-    # The pilot that the others are compared with by this metric, episode by episode.
+    # The other pilots are compared with this pilot by this metric, episode by episode.
     compare: str = ""
     compare_metric: str = "band_share"
-    # Whether a column says how much of the gap to true states a row closes.
+    # True: a column has the share of the gap to true states that a row closes.
     gap_closed: bool = False
-    # Folders, beside the table, of trainings whose validation.csv the page shows.
+    # Folders of trainings, in the folder of the table. The page shows their validation.csv.
     trainings: List[str] = dataclasses.field(default_factory=list)
-    # A second table: the first pilot beside the best of the others.
+    # A second table: the first of these pilots, and the best of the others.
     beside: List[str] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass
 class Cell:
-    """One row of a table: what is flown, and the jobs that fly it, one for each seed of training."""
+    """One row of a table, and the jobs that fly it, one for each seed of training."""
 
     section: str
     scenario: str
@@ -106,17 +107,17 @@ class Cell:
     jobs: List[Flight]
 
     def key(self):
-        """What the rows that fly the same episodes have in common."""
+        """The values that rows with the same episodes have in common."""
         return (self.section, self.scenario, self.condition, self.variant)
 
 
 def is_flight_study(data):
-    """Whether a file's content says that it is a study of flights."""
+    """True if the content of a file is a study of flights."""
     return isinstance(data, dict) and data.get("kind") == "flights"
 
 
 def flight_study_from(data, where):
-    """Makes a FlightStudy of a mapping; StudyError where it cannot be one."""
+    """Makes a FlightStudy from a mapping. Raises StudyError if it is invalid."""
     study = build(FlightStudy, where, data)
     study.columns = [build(Column, f"{where}: columns[{i}]", c) for i, c in enumerate(study.columns)]
     study.sections = [build(Section, f"{where}: sections[{i}]", s) for i, s in enumerate(study.sections)]
@@ -140,12 +141,12 @@ def flight_study_from(data, where):
 
 
 def save_flight_study(study, path):
-    """Writes the study, which the reader reads back."""
+    """Writes the study in the form that the reader reads."""
     write_atomically(path, yaml.safe_dump(dataclasses.asdict(study), sort_keys=False, width=96))
 
 
 def shipped_policies():
-    """The folder of the policies that ship."""
+    """The folder of the shipped policies."""
     here = os.path.dirname(os.path.realpath(__file__))
     for relative in SHIPPED_POLICIES:
         folder = os.path.normpath(os.path.join(here, relative))
@@ -172,7 +173,7 @@ def _policy(pilot, scenario, seed, policies):
 
 
 def plan_flights(study, work, bin_dir, policies=None):
-    """Returns the cells of all tables, in their order. policies: the folder that --policies names."""
+    """Returns the cells of all tables, in order. policies: the folder of --policies."""
     cells = []
     for number, section in enumerate(study.sections):
         places = itertools.product(section.scenarios, section.conditions, section.variants.items())
@@ -199,7 +200,7 @@ def plan_flights(study, work, bin_dir, policies=None):
 
 
 def flown(cell, metric):
-    """(mean, std) of a metric over episodes, or over the seeds' means; None where it has no value."""
+    """(mean, std) of a metric over episodes, or over the means of seeds; None if it has no value."""
     if any(job.summary().get(metric) is None for job in cell.jobs):
         return None
     means = [job.summary()[metric] for job in cell.jobs]

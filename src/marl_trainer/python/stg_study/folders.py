@@ -1,4 +1,4 @@
-"""Where the programs are that a study runs, and where its runs may lie."""
+"""Folders of the programs that a study runs, and of its runs."""
 
 import contextlib
 import os
@@ -9,7 +9,7 @@ from stg_study.study import StudyError
 
 
 def program_folder(given):
-    """Folder that holds the programs train and evaluate."""
+    """Folder of the programs train and evaluate."""
     if given:
         candidates = [given]
     else:
@@ -27,7 +27,7 @@ def program_folder(given):
 
 @contextlib.contextmanager
 def own_folder(path):
-    """Makes a folder that git ignores, and keeps other studies out of it meanwhile."""
+    """Makes a folder that git ignores, and keeps other studies out of it as long as it is held."""
     os.makedirs(path, exist_ok=True)
     with locked(path):
         write_atomically(os.path.join(path, ".gitignore"), "*\n")

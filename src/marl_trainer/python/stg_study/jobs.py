@@ -1,4 +1,4 @@
-"""The trainings and evaluations of a study: their command lines and when they are complete."""
+"""The trainings and evaluations of a study: their command lines, and the checks if they are complete."""
 
 import glob
 import hashlib
@@ -10,13 +10,13 @@ from stg_common.csv_files import number, optional, table_rows, written
 from stg_common.files import Damaged, FileError, expect, member, opened, read_json
 from stg_study.files import locked, write_atomically
 
-# Of stg_env/env/seed_blocks.hpp, as evaluate names it: no choice has seen these episodes.
+# Block of stg_env/env/seed_blocks.hpp, as named by evaluate. No choice has used these episodes.
 REPORTING = "reporting"
 
 
 def read_record(path):
-    """The object in a JSON file, or None where a job that was cut off left none, or part of it; a
-    FileError where the file holds anything else."""
+    """The object in a JSON file. None if a job that was cut off left no file or a part of one. Raises
+    FileError if the file has other content."""
     if not os.path.exists(path):
         return None
     try:
@@ -27,7 +27,7 @@ def read_record(path):
 
 
 def policy_files(path):
-    """The policy file, or those of each AUV where every one has its own, or none."""
+    """The policy file, or one file for each AUV if every AUV has its own; empty if there are none."""
     if os.path.isfile(path):
         return [path]
     stem, extension = os.path.splitext(path)
@@ -35,7 +35,7 @@ def policy_files(path):
 
 
 def policy_hash(path):
-    """SHA-256 of the policy's files, or None where there are none."""
+    """SHA-256 of the policy's files, or None if there are none."""
     digest = hashlib.sha256()
     files = policy_files(path)
     for name in files:
@@ -54,10 +54,10 @@ def _overrides(values):
 
 
 class Training:
-    """One training run: a scenario, a method and a seed; its folder holds all it writes."""
+    """One training run: a scenario, a method and a seed. All its files are in its folder."""
 
     kind = "training"
-    RECORD = "study_job.json"  # the options the folder's run was started with
+    RECORD = "study_job.json"  # the options with which the folder's run was started
 
     def __init__(self, study, scenario, method, seed, work, bin_dir):
         self.name = f"train {scenario.name} {method.name} seed {seed}"
@@ -77,7 +77,7 @@ class Training:
         self._program = os.path.join(bin_dir, "train")
 
     def conflict(self):
-        """Why the folder cannot be used, or None: what it holds was made otherwise."""
+        """The reason why the folder cannot be used, because it has other content; None if it can."""
         record = self._arguments()
         if record is None and os.path.isdir(self.folder) and os.listdir(self.folder):
             return f"{self.folder} is neither empty nor the folder of a run of a study"
@@ -89,7 +89,7 @@ class Training:
         return None
 
     def _arguments(self):
-        """The options that the folder's run was started with, or None."""
+        """The options with which the folder's run was started, or None."""
         path = os.path.join(self.folder, self.RECORD)
         record = read_record(path)
         if record is None:
@@ -98,7 +98,7 @@ class Training:
         return [expect(path, text, str, "arguments") for text in arguments]
 
     def summary(self):
-        """What the finished run says of itself, or None."""
+        """The summary of the finished run, or None."""
         summary = read_record(self.summary_file)
         if summary is not None:
             expect(self.summary_file, summary.get("stopped", ""), str, "stopped")
@@ -106,8 +106,8 @@ class Training:
         return summary
 
     def validations(self, metrics=()):
-        """What progress.csv tells of every validation: `env_steps` as it stands there, and as numbers
-        `wall_seconds` and validation_<metric>, with all of the `metrics`, by such names."""
+        """The content of progress.csv at every validation: the text `env_steps`, and the numbers
+        `wall_seconds` and validation_<metric> including all of the `metrics`, under these names."""
         needed = ["validation_return", "validation_lost_rate", *metrics]
         columns = {
             "env_steps": written(number), "wall_seconds": number, "validation_seconds": str,
@@ -128,7 +128,7 @@ class Training:
         return found
 
     def complete(self):
-        """Whether the run reached its last step and left its policy."""
+        """True if the run reached its last step and wrote its policy."""
         summary = self.summary()
         return (
             summary is not None
@@ -139,11 +139,11 @@ class Training:
         )
 
     def prepare(self):
-        """Command to start or continue the run. A run without a checkpoint starts afresh."""
+        """Command that starts or continues the run. A run without a checkpoint starts again."""
         resume = bool(glob.glob(os.path.join(self.folder, "checkpoint_*.ckpt")))
         if not resume and os.path.isdir(self.folder):
             with locked(self.folder):
-                pass  # a training whose study was killed may still save
+                pass  # a training whose study was killed may still be saving
             shutil.rmtree(self.folder)
         os.makedirs(self.folder, exist_ok=True)
         write_atomically(
@@ -153,10 +153,10 @@ class Training:
         return command + (["--resume"] if resume else [])
 
     def finish(self, output):
-        """Training leaves nothing to be done."""
+        """Nothing to do after a training."""
 
     def fraction_done(self):
-        """Share of the steps that the progress file tells of."""
+        """Share of the steps, from the progress file."""
         try:
             with opened(self.progress_file) as file:
                 file.seek(0, os.SEEK_END)
@@ -168,10 +168,10 @@ class Training:
 
 
 class Flight:
-    """Episodes of `evaluate`: one policy or controller on one condition, from one seed on.
+    """Episodes of `evaluate`: one policy or controller under one condition, from one seed on.
 
-    base: the path of the files that it leaves, without their endings. is_file: the policy is a file,
-    whose content the result depends on. block: the block of seeds that the episodes must be of.
+    base: path of its files, without their endings. is_file: the policy is a file, and the result depends on
+    its content. block: the episodes must be in this block of seeds.
     """
 
     kind = "evaluation"
@@ -184,18 +184,18 @@ class Flight:
         self._is_file, self._block = is_file, block
 
     def _identity(self):
-        """What the result depends on: the options and the policy's content."""
+        """Everything that the result depends on: the options and the policy's content."""
         return {
             "arguments": self.arguments,
             "policy": policy_hash(self.policy) if self._is_file else self.policy,
         }
 
     def conflict(self):
-        """An evaluation of other options is simply repeated."""
+        """There are no conflicts: an evaluation with other options is repeated."""
         return None
 
     def complete(self):
-        """Whether the result is there, whole, and of this policy and these options."""
+        """True if the result exists, is complete, and is for this policy and these options."""
         result = read_record(self.json)
         if result is None or result.get("identity") != self._identity():
             return False
@@ -213,7 +213,7 @@ class Flight:
         return command + ["--csv", self.csv + ".part", "--workers", "1"]
 
     def summary(self):
-        """What the complete result says of its metrics."""
+        """The metrics of the complete result."""
         return member(self.json, read_json(self.json), "summary", dict)
 
     def episode_values(self, metric):
@@ -221,7 +221,7 @@ class Flight:
         return [row[metric] for row in table_rows(self.csv, {metric: number})]
 
     def finish(self, output):
-        """Keeps the result: `output` ends with the JSON object of the evaluate command."""
+        """Stores the result. `output` ends with the JSON object of the evaluate command."""
         summary = json.loads(output.strip().splitlines()[-1])
         block = summary.get("seed_block")
         if block != self._block:
@@ -233,12 +233,12 @@ class Flight:
         write_atomically(self.json, json.dumps(result, indent=1))
 
     def fraction_done(self):
-        """Evaluations are short."""
+        """Always 0, because evaluations are short."""
         return 0.0
 
 
 class Evaluation(Flight):
-    """A method or controller of a study on one condition and one block of evaluation seeds."""
+    """A method or controller of a study, under one condition and with one block of evaluation seeds."""
 
     def __init__(self, study, scenario, condition, entry, seed, work, bin_dir, training=None):
         base = os.path.join(
@@ -264,7 +264,7 @@ class Evaluation(Flight):
 
 
 def plan(study, work, bin_dir):
-    """All trainings and all evaluations of a study, each list in the order to be done."""
+    """All trainings and all evaluations of a study, each list in the order of execution."""
     trainings, evaluations = [], []
     for scenario in study.scenarios:
         for controller in study.controllers:
@@ -273,7 +273,7 @@ def plan(study, work, bin_dir):
                     evaluations.append(
                         Evaluation(study, scenario, condition, controller, seed, work, bin_dir)
                     )
-    # A seed of all methods after the other: a study that is cut short has whole comparisons.
+    # One seed of all methods, then the next one: a study that is cut short has complete comparisons.
     runs = [
         (k, scenario, seed)
         for scenario in study.scenarios

@@ -7,12 +7,12 @@ import time
 
 from stg_common.files import FileError, reason_of
 
-# What tells a process that mpirun or srun started it; our jobs are started by us.
+# Variables that show a process that mpirun or srun started it; they must not reach our jobs.
 LAUNCHERS = ("OMPI_", "PMIX_", "PMI_")
 
 
 def job_environment():
-    """The environment of a job: a program of its own that keeps one core busy."""
+    """The environment of a job: a separate program that uses one core."""
     kept = {k: v for k, v in os.environ.items() if not k.startswith(LAUNCHERS)}
     return dict(kept, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
 
@@ -26,13 +26,13 @@ class Running:
         self.start_fraction = job.fraction_done()
 
     def seconds(self):
-        """Since it was started."""
+        """Time since the start [s]."""
         return time.monotonic() - self.start
 
 
 class JobProcess(Running):
-    """A job whose process runs. It leads its own session, so that Ctrl-C reaches only us, and is
-    interrupted when we die, so that no process goes on writing where the job is done again."""
+    """A job in a running process. It leads its own session, so that Ctrl-C only reaches this program. It is
+    interrupted when this program ends, so that no process writes where the job is done again."""
 
     def __init__(self, job):
         super().__init__(job)
@@ -54,7 +54,7 @@ class JobProcess(Running):
             self._outcome = f"it cannot be started: {reason_of(error)}"
 
     def outcome(self):
-        """None while it runs; then what went wrong, nothing where it left all it should."""
+        """None while it runs; then the error, or an empty text if all results exist."""
         if self._outcome is None and self._process.poll() is not None:
             self._outcome = self._conclude(self._process.returncode)
         return self._outcome
@@ -70,7 +70,7 @@ class JobProcess(Running):
             return f"its output cannot be read: {reason_of(error)}"
 
     def signal(self, number):
-        """Tells the process and its children, if it still runs."""
+        """Sends a signal to the process and its children, if it still runs."""
         if self._process is not None and self._process.poll() is None:
             try:
                 os.killpg(self._process.pid, number)
@@ -79,9 +79,9 @@ class JobProcess(Running):
 
 
 def heed(handler):
-    """Has `handler` called when this process is asked to stop; the handlers that were there before.
+    """Calls `handler` when this process is asked to stop. Returns the previous handlers.
 
-    A hangup that nohup has it ignore stays ignored.
+    A SIGHUP that is ignored because of nohup stays ignored.
     """
     numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGUSR1]
     if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
@@ -90,12 +90,12 @@ def heed(handler):
 
 
 class Alone:
-    """The one process that carries out jobs where no others help."""
+    """The only process that does jobs, if there are no others."""
 
     def starters(self):
-        """One function for each process, which starts a job in it and returns what runs."""
+        """One function for each process. It starts a job in the process and returns the running job."""
         return [JobProcess]
 
     def listen(self):
-        """Hears of the others' jobs; returns whether one of them was asked to stop."""
+        """Receives reports about jobs of others. Returns True if one of them was asked to stop."""
         return False

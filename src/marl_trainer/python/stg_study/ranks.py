@@ -1,7 +1,7 @@
-"""Jobs spread over the MPI processes of one mpirun: rank 0 plans and reports, all carry out jobs.
+"""Jobs on the MPI processes of one mpirun: rank 0 plans and reports, and all ranks do jobs.
 
-All see the same folders, as on a cluster. The rank that carries out a job writes all of its files; rank 0
-hears how it went.
+All ranks have access to the same folders, as on a cluster. The rank that does a job writes all of its files,
+and reports the result to rank 0.
 """
 
 import functools
@@ -19,28 +19,28 @@ _crew = Alone()
 
 
 def crew():
-    """The crew that carries out the jobs of this command."""
+    """The crew that does the jobs of this command."""
     return _crew
 
 
 def default_jobs():
-    """Jobs of a process at once: one for each core, or one where others help."""
+    """Number of simultaneous jobs of a process: one for each core, or one if there are other ranks."""
     return 1 if started_by_mpi() else os.cpu_count() or 1
 
 
 def started_by_mpi():
-    """Whether mpirun or srun has started this process."""
-    # As the train command decides.
+    """True if mpirun or srun has started this process."""
+    # The same test as in the train command.
     return any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"))
 
 
 def led(main, argv):
-    """main(argv) in rank 0 or in the only process; the other ranks do what rank 0 asks."""
+    """Runs main(argv) in rank 0 or in the only process. The other ranks do jobs for rank 0."""
     global _crew
     if not started_by_mpi():
         return main(argv)
     try:
-        from mpi4py import MPI  # starts MPI
+        from mpi4py import MPI  # the import starts MPI
     except ImportError as error:
         raise RuntimeError("started by mpirun: needs python3-mpi4py") from error
     if MPI.COMM_WORLD.rank != 0:
@@ -53,7 +53,7 @@ def led(main, argv):
 
 
 class _Elsewhere(Running):
-    """A job that another rank carries out."""
+    """A job that another rank does."""
 
     def __init__(self, comm, rank, jobs, job):
         super().__init__(job)
@@ -64,15 +64,15 @@ class _Elsewhere(Running):
         self._tell((START, self._key, job))
 
     def outcome(self):
-        """As JobProcess."""
+        """See JobProcess."""
         return self._outcome
 
     def conclude(self, outcome):
-        """Notes what the other rank says."""
+        """Stores the report of the other rank."""
         self._outcome = outcome
 
     def signal(self, number):
-        """As JobProcess."""
+        """See JobProcess."""
         if self._outcome is None:
             self._tell((SIGNAL, self._key, number))
 
@@ -82,7 +82,7 @@ class _Leader(Alone):
 
     def __init__(self, comm):
         self._comm = comm
-        self._jobs = []  # all that were ever given to others
+        self._jobs = []  # all jobs that were given to others
 
     def starters(self):
         others = range(1, self._comm.size)
@@ -100,7 +100,7 @@ class _Leader(Alone):
         return asked
 
     def dismiss(self):
-        """Lets the others end."""
+        """Ends the other ranks."""
         for rank in range(1, self._comm.size):
             self._comm.send((END,), dest=rank)
 
@@ -117,13 +117,13 @@ class _Helper:
         self._asked = True
 
     def serve(self):
-        """Carries out jobs until rank 0 says that it was the last one; returns 0."""
-        heed(self._on_signal)  # rank 0 decides what is interrupted, and when
+        """Does jobs until rank 0 ends it. Returns 0."""
+        heed(self._on_signal)  # rank 0 decides which jobs are interrupted, and when
         try:
             while self._obey():
                 self._report()
                 time.sleep(POLL_S)
-        except Exception:  # whatever it is, the others must not wait for this rank
+        except Exception:  # after any error, the others must not wait for this rank
             traceback.print_exc()
             self._comm.Abort(1)
         return 0

@@ -49,7 +49,7 @@ def _figure(name, text):
 
 
 def scenario_page(study, results, paper, scenario, folder):
-    """Markdown of one scenario, its figures written to `folder`/figures."""
+    """Markdown of one scenario. Its figures are written to `folder`/figures."""
     name, figures = scenario.name, os.path.join(folder, "figures")
     main, final, seeds, stress = PAPER_TABLES.get(scenario.paper, ("", "", "", ""))
     medium = scenario.paper == "medium"

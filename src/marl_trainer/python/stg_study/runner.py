@@ -1,4 +1,4 @@
-"""Runs the jobs of a study in parallel processes, can be interrupted, and says how it goes."""
+"""Runs the jobs of a study in parallel processes. It can be interrupted, and it reports the progress."""
 
 import os
 import signal
@@ -10,11 +10,11 @@ from stg_study.processes import heed
 
 POLL_S = 0.05
 SHOWN_LOG_LINES = 15
-PATIENCE_S = 120.0  # for a training to save after the first Ctrl-C
+PATIENCE_S = 120.0  # time for a training to save after the first Ctrl-C
 
 
 def duration(seconds):
-    """A duration for people: 42 s, 3 min 20 s, 1 h 05 min."""
+    """A duration as text: 42 s, 3 min 20 s, 1 h 05 min."""
     seconds = int(round(seconds))
     if seconds < 60:
         return f"{seconds} s"
@@ -24,7 +24,7 @@ def duration(seconds):
 
 
 class Estimate:
-    """Time left, from how long finished jobs took and how far the running ones are."""
+    """Remaining time, from the times of finished jobs and the progress of the running ones."""
 
     DEFAULT_S = {"training": None, "evaluation": 1.0}
 
@@ -32,11 +32,11 @@ class Estimate:
         self._seconds = {"training": [], "evaluation": []}
 
     def add(self, kind, seconds):
-        """Notes a finished job."""
+        """Stores the time of a finished job."""
         self._seconds[kind].append(seconds)
 
     def mean(self, kind, running):
-        """Mean seconds of a job of `kind`, or None where nothing is known yet."""
+        """Mean seconds of a job of `kind`, or None if it is unknown."""
         known = self._seconds[kind]
         if known:
             return sum(known) / len(known)
@@ -48,7 +48,7 @@ class Estimate:
         return len(rates) / sum(rates) if rates else self.DEFAULT_S[kind]
 
     def left(self, waiting, running, parallel):
-        """Seconds until all is done, or None."""
+        """Seconds until all jobs are done, or None."""
         total = 0.0
         for kind in self._seconds:
             mine = [r for r in running if r.job.kind == kind]
@@ -63,19 +63,19 @@ class Estimate:
 
 
 class Runner:
-    """Does what is missing of a study. A training's evaluations follow as soon as it is done.
+    """Does the missing jobs of a study. A training's evaluations follow as soon as the training is done.
 
-    Each process of the crew (ranks.crew) does `parallel` jobs at a time.
+    Each process of the crew (ranks.crew) does `parallel` jobs at the same time.
     """
 
     def __init__(self, trainings, evaluations, parallel, stream=sys.stdout):
         self._trainings, self._evaluations = trainings, evaluations
         self._crew = ranks.crew()
-        # Each process has a place for every job that it does at once; all get one before any gets
-        # two.
+        # One place for each job that a process does at the same time. All processes get one place before any
+        # gets a second one.
         self._places = self._crew.starters() * parallel
         self._stream = stream
-        # What mpirun shows its ranks as a terminal has no width.
+        # The terminal of ranks under mpirun has no width.
         self._live = stream.isatty() and os.get_terminal_size(stream.fileno()).columns > 0
         self._last_line = 0.0
         self._stops = 0
@@ -84,7 +84,7 @@ class Runner:
         self.failed = []
 
     def run(self):
-        """Returns True when everything ran, False when interrupted; see also `failed`."""
+        """Returns True if everything ran, and False if it was interrupted; see also `failed`."""
         conflicts = [text for text in (job.conflict() for job in self._trainings) if text]
         if conflicts:
             raise RuntimeError(conflicts[0])
@@ -110,7 +110,7 @@ class Runner:
                 signal.signal(number, handler)
 
     def _loop(self, trainings, evaluations, finished):
-        at_work = {}  # what runs in which place
+        at_work = {}  # running job by place
         while (trainings or evaluations or at_work) and not self._stops:
             for place, start in enumerate(self._places):
                 if place in at_work:
@@ -120,7 +120,7 @@ class Runner:
                     break
                 at_work[place] = start(job)
             if not at_work:
-                break  # what is left waits for trainings that failed
+                break  # the remaining jobs wait for trainings that failed
             self._progress(trainings + evaluations, list(at_work.values()))
             self._wait()
             for place, item in list(at_work.items()):
@@ -137,7 +137,7 @@ class Runner:
         return True
 
     def _next(self, trainings, evaluations, finished):
-        """Takes the next job that can start: evaluations first, they are short."""
+        """Takes the next job that can start. Evaluations come first, because they are short."""
         for job in evaluations:
             if job.training is None or finished[id(job.training)]:
                 evaluations.remove(job)
@@ -163,7 +163,7 @@ class Runner:
             pass  # it was not started
 
     def _on_signal(self, number, frame):
-        # A terminal that is closed may hang up twice, itself and its shell.
+        # A terminal that closes may send SIGHUP twice: the terminal itself and its shell.
         self._stops = max(self._stops, 1) if number == signal.SIGHUP else self._stops + 1
 
     def _wait(self):
@@ -185,12 +185,12 @@ class Runner:
             self._wait()
 
     def _standing(self):
-        """How many of the jobs are done."""
+        """Number of finished jobs."""
         share = 100 * self._done // self._total if self._total else 100
         return f"{self._done}/{self._total} jobs ({share} %), {len(self.failed)} failed"
 
     def _progress(self, waiting, running):
-        """One line, rewritten in place on a terminal and every half minute elsewhere."""
+        """One line: on a terminal it is updated in place; elsewhere there is a new one every half minute."""
         now = time.monotonic()
         if now - self._last_line < (0.5 if self._live else 30.0):
             return
@@ -218,4 +218,4 @@ class Runner:
         except OSError:
             if not self._stops:
                 raise
-            # The terminal may be gone, which is why we stop: trainings are to save all the same.
+            # The terminal may be closed, which is the reason for the stop. Trainings must save in any case.

@@ -1,4 +1,4 @@
-"""A random search of every algorithm's options with equal trials, chosen by validation returns."""
+"""A random search of every algorithm's options with equal trials. Validation returns decide the choice."""
 
 import dataclasses
 import math
@@ -18,28 +18,28 @@ from stg_study.statistics import final_stage, mean_std
 from stg_study.study import Method, ScenarioEntry, Study, StudyError, build, is_name, is_option
 from stg_study.study import shipped_studies
 
-LOG_DIGITS = 2  # significant digits of a value drawn from an interval, where they lie in it
+LOG_DIGITS = 2  # significant digits of a value from an interval, if this keeps it in the interval
 
 
 @dataclasses.dataclass
 class Search:
-    """What is searched. `algorithms` has for each the options and what they are drawn from: a list
-    of values, or {"log": [least, most]}."""
+    """The content of a search. `algorithms` has the options of each algorithm and their sources: a list of
+    values, or {"log": [least, most]}."""
 
     scenario: str
     algorithms: dict
     preset: str = "fast"
     steps: int = 256000  # environment steps of a trial
-    trials: int = 10  # of each algorithm; the first is the preset as it is
+    trials: int = 10  # of each algorithm; the first one is the unchanged preset
     training_seeds: List[int] = dataclasses.field(default_factory=lambda: [1000, 1001, 1002])
     draw_seed: int = 1
     train: Dict[str, object] = dataclasses.field(default_factory=dict)  # options of every trial
-    fixed: dict = dataclasses.field(default_factory=dict)  # options of all of an algorithm's trials
-    spaces: dict = dataclasses.field(default_factory=dict)  # anchors for `algorithms`, not read
+    fixed: dict = dataclasses.field(default_factory=dict)  # options of all trials of an algorithm
+    spaces: dict = dataclasses.field(default_factory=dict)  # anchors for `algorithms`; not read
 
 
 def find_search(name_or_path):
-    """Path of a search given as a file or by the name of a shipped one."""
+    """Path of a search, given as a file or by the name of a shipped search."""
     if os.path.exists(name_or_path) and not os.path.isdir(name_or_path):
         return name_or_path
     folder = os.path.join(shipped_studies(), "search")
@@ -51,7 +51,7 @@ def find_search(name_or_path):
 
 
 def load_search(path):
-    """Reads a search from a YAML file; StudyError where it cannot be one."""
+    """Reads a search from a YAML file. Raises StudyError if it is invalid."""
     search = build(Search, path, read_yaml(path))
     seeds = search.training_seeds
     if search.trials < 1 or search.steps < 1:
@@ -76,7 +76,7 @@ def load_search(path):
 
 
 def _check_source(where, source):
-    """Refuses what nothing can be drawn from."""
+    """Refuses a source from which nothing can be drawn."""
     if isinstance(source, list) and source and all(is_option("", value) for value in source):
         return
     ends = source.get("log") if isinstance(source, dict) and len(source) == 1 else None
@@ -88,8 +88,8 @@ def _check_source(where, source):
 
 
 def draw(source, generator):
-    """One value of a list, or of an interval evenly in the logarithm, with LOG_DIGITS significant
-    digits unless they lie outside of the interval."""
+    """One value from a list, or from an interval, uniform in the logarithm. It has LOG_DIGITS significant
+    digits unless this moves it out of the interval."""
     if isinstance(source, list):
         return generator.choice(source)
     low, high = source["log"]
@@ -99,9 +99,9 @@ def draw(source, generator):
 
 
 def trials_of(search, algorithm):
-    """The options of every trial of an algorithm. Draws are paired: an option that algorithms draw
-    from the same source has the same value in the same trial of all of them, and with equal epochs
-    and minibatches they make as many gradient steps an update."""
+    """The options of every trial of an algorithm. Draws are paired: algorithms that draw an option from the
+    same source get the same value in the same trial. So with equal epochs and minibatches, they make the same
+    number of gradient steps per update."""
     space = search.algorithms[algorithm]
     drawn = [
         {
@@ -114,7 +114,7 @@ def trials_of(search, algorithm):
 
 
 def plan_search(search, algorithms, work, bin_dir):
-    """Returns {algorithm: [[Training]]}: of all trials, those of each seed."""
+    """Returns {algorithm: [[Training]]}: for each trial, one training per seed."""
     study = Study(
         name="search",
         title="",
@@ -148,10 +148,11 @@ def plan_search(search, algorithms, work, bin_dir):
 
 @dataclasses.dataclass
 class Score:
-    """What a trial is judged by: means over its seeds and the last fifth of their validations."""
+    """The results by which a trial is judged: means over its seeds and the last fifth of their
+    validations."""
 
     value: float  # return, summed over the AUVs
-    std: float  # of the return, over seeds; 0 of one
+    std: float  # of the return, over seeds; 0 for one seed
     lost_rate: float
     wall_seconds: float  # of one training
 
@@ -170,7 +171,7 @@ def _training_score(training):
 
 
 def score_of(trainings):
-    """Score of a trial whose trainings are all finished, or None."""
+    """Score of a trial, or None if a training is not finished."""
     if not all(training.complete() for training in trainings):
         return None
     returns, lost, seconds = zip(*map(_training_score, trainings))
@@ -179,13 +180,13 @@ def score_of(trainings):
 
 
 def choose_best(scores):
-    """Index of the trial to choose: the highest return; the earlier of equal ones; None of none."""
+    """Index of the best trial: highest return, the earlier one if equal; None if there is none."""
     known = [k for k, score in enumerate(scores) if score is not None]
     return max(known, key=lambda k: (scores[k].value, -k)) if known else None
 
 
 def write_search(search, trainings, out):
-    """Writes trials.csv, chosen.yaml and report.md into `out`; returns how many trials lack."""
+    """Writes trials.csv, chosen.yaml and report.md into `out`. Returns the number of missing trials."""
     rows, chosen, missing = [], {}, 0
     page = [
         "# The search before the study of equal terms\n",
@@ -205,7 +206,7 @@ def write_search(search, trainings, out):
         missing += scores.count(None)
         for k, (options, score) in enumerate(zip(trials_of(search, algorithm), scores)):
             text = " ".join(f"--{name} {value}" for name, value in options.items())
-            # The table keeps the digits that the choice was made from; the page rounds.
+            # The table has the digits that the choice used; the page rounds.
             figures, cells = [""] * 4, [""] * 3
             if score is not None:
                 figures = [f"{value:.9g}" for value in dataclasses.astuple(score)]

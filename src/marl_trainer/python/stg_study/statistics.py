@@ -2,13 +2,13 @@
 
 import numpy as np
 
-TRIM = 0.25  # share cut off at each end by the interquartile mean
+TRIM = 0.25  # share that the interquartile mean cuts off at each end
 RESAMPLES = 2000
 FINAL_SHARE = 0.2  # of the validations of a training
 
 
 def mean_std(values):
-    """Mean and sample standard deviation; None for that of a single value."""
+    """Mean and sample standard deviation. The deviation of a single value is None."""
     values = np.asarray(values, dtype=float)
     return float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else None
 
@@ -24,10 +24,10 @@ def interquartile_mean(values, axis=-1):
 def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
     """Interquartile mean over runs and its stratified bootstrap interval (Agarwal et al. 2021).
 
-    scores[condition] is [seeds, episodes], the same seeds in each. A run on a condition scores the
-    mean of its episodes, and the middle half of all those scores is averaged. A resample draws
-    seeds, the same in every condition because they are one training run. With one seed there is no
-    interval: its ends are the mean.
+    scores[condition] is [seeds, episodes], with the same seeds in each. The score of a run under a condition
+    is the mean of its episodes, and the middle half of all these scores is averaged. A resample draws seeds,
+    the same ones in every condition, because they belong to one training run. With one seed there is no
+    interval, and its ends are the mean.
 
     Returns (interquartile mean, lower end, upper end), percentiles of the resamples.
     """
@@ -47,7 +47,7 @@ def iqm_interval(scores, resamples=RESAMPLES, confidence=0.95, seed=0):
 def paired_interval(ours, theirs, resamples=2 * RESAMPLES, confidence=0.95, seed=0):
     """Mean of ours - theirs over episodes that both flew, and its bootstrap interval over episodes.
 
-    Where one has more episodes, its first ones are compared. Returns (mean, lower end, upper end).
+    If one of them has more episodes, its first ones are compared. Returns (mean, lower end, upper end).
     """
     count = min(len(ours), len(theirs))
     difference = np.asarray(ours[:count], dtype=float) - np.asarray(theirs[:count], dtype=float)
@@ -62,7 +62,7 @@ def hierarchical_interval(ours, theirs, resamples=RESAMPLES, confidence=0.95, se
     """Mean of ours - theirs and its interval by a bootstrap over trainings and then over episodes.
 
     ours and theirs are [trainings, episodes]; a controller counts as one training. All flew the same
-    episodes, and a resample draws the same ones of both sides. Where one has more episodes, its first
+    episodes, and a resample draws the same ones for both sides. If one of them has more episodes, its first
     ones are compared. Returns (mean, lower end, upper end).
     """
     count = min(len(values) for values in (*ours, *theirs))
@@ -81,11 +81,11 @@ def hierarchical_interval(ours, theirs, resamples=RESAMPLES, confidence=0.95, se
 
 
 def probability_of_improvement(ours, theirs, resamples=RESAMPLES, confidence=0.95, seed=0):
-    """How likely a training of ours scores more than one of theirs, and its bootstrap interval.
+    """Probability that one of our trainings scores more than one of theirs, and its bootstrap interval.
 
-    ours[condition] and theirs[condition] are scores of trainings, one for each seed: the number of
-    seeds may differ. Mean over conditions of P(x > y) + P(x = y) / 2 over all pairs (Agarwal et al.
-    2021, Eq. 3); a resample draws trainings anew, the same in every condition.
+    ours[condition] and theirs[condition] are scores of trainings, one for each seed; the numbers of seeds may
+    differ. Mean over conditions of P(x > y) + P(x = y) / 2 over all pairs (Agarwal et al. 2021, Eq. 3). A
+    resample draws trainings again, the same ones in every condition.
 
     Returns (probability, lower end, upper end).
     """

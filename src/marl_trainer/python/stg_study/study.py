@@ -1,4 +1,4 @@
-"""What a study consists of, and the strict reader of its YAML file."""
+"""The content of a study, and the strict reader of its YAML file."""
 
 import dataclasses
 import os
@@ -12,25 +12,25 @@ from stg_study.files import write_atomically
 
 
 class StudyError(Exception):
-    """A mistake in a file or an option; the message names both."""
+    """An error in a file or an option. The message names both."""
 
 
 @dataclasses.dataclass
 class ScenarioEntry:
-    """A scenario and the paper's scenario, if any, whose tables it is compared with."""
+    """A scenario and, if any, the paper's scenario with whose tables it is compared."""
 
     name: str
     paper: Optional[str] = None  # medium | hard
-    seeds: List[int] = dataclasses.field(default_factory=list)  # instead of the study's, if any
+    seeds: List[int] = dataclasses.field(default_factory=list)  # seeds instead of the study's, if any
 
 
 @dataclasses.dataclass
 class Method:
-    """A way to train. `paper` and `ablation` name its rows in the paper's tables, if any; what has
-    an `ablation` stands in ours.
+    """A way to train. `paper` and `ablation` name its rows in the paper's tables, if any. A method with
+    `ablation` is in our ablation table.
 
-    `set` overrides scenario keys in training and evaluation, `train_set` in training only (a
-    reward), `train` adds options of the train command, `evaluate_set` applies in evaluation only.
+    `set` overrides scenario keys in training and evaluation, `train_set` only in training (a reward), and
+    `evaluate_set` only in evaluation. `train` adds options of the train command.
     """
 
     name: str
@@ -44,8 +44,8 @@ class Method:
     train: Dict[str, object] = dataclasses.field(default_factory=dict)
 
     def reward(self):
-        """What the training rewards: "scenario" (the scenario's own reward), "variant" (that of its
-        variant) or "own" (one that `train_set` makes)."""
+        """The reward of the training: "scenario" (the scenario's own), "variant" (that of its variant) or
+        "own" (one that `train_set` makes)."""
         if any(key.startswith("reward.") for key in self.train_set):
             return "own"
         return "scenario" if self.variant == "stg" else "variant"
@@ -53,7 +53,7 @@ class Method:
 
 @dataclasses.dataclass
 class Reference:
-    """A built-in controller, with further options of the evaluate command."""
+    """A built-in controller, with additional options of the evaluate command."""
 
     name: str
     label: str
@@ -63,7 +63,7 @@ class Reference:
 
 @dataclasses.dataclass
 class Study:
-    """Seeds x methods x scenarios x conditions, and how each is trained and evaluated."""
+    """Seeds x methods x scenarios x conditions, and the settings of training and evaluation."""
 
     name: str
     title: str
@@ -75,14 +75,14 @@ class Study:
     seeds: List[int] = dataclasses.field(default_factory=lambda: [0, 1, 2])
     steps: int = 1000000  # environment steps of each training
     episodes: int = 30  # of each evaluation
-    evaluation_seed: int = 5000000  # of training seed 0, in the reporting block
-    evaluation_seed_stride: int = 10000  # from one training seed to the next
-    agents: int = 4  # divides returns where the paper averages the agents
+    evaluation_seed: int = 5000000  # for training seed 0, in the reporting block
+    evaluation_seed_stride: int = 10000  # between two training seeds
+    agents: int = 4  # divides returns where the paper averages over the agents
     train: Dict[str, object] = dataclasses.field(default_factory=dict)
     notes: str = ""
 
     def evaluation_seed_of(self, seed):
-        """First evaluation seed of training seed `seed`; episode e uses this + e."""
+        """First evaluation seed for the training seed `seed`; episode e has this seed + e."""
         return self.evaluation_seed + self.evaluation_seed_stride * seed
 
     def seeds_of(self, scenario):
@@ -103,17 +103,17 @@ def _fail(where, message):
 
 
 def is_option(name, value):
-    """Whether an option of the train command can have such a name and value."""
+    """True if an option of the train command can have this name and value."""
     return isinstance(name, str) and isinstance(value, (int, float, str))
 
 
 def is_name(text):
-    """Whether a text can be a part of the names of files."""
+    """True if a text can be part of the name of a file."""
     return bool(text) and all(c.isalnum() or c in "_-" for c in text)
 
 
 def _check_type(where, value, expected):
-    """Refuses a value of the wrong type; a whole number passes for no other type, nor a bool."""
+    """Refuses a value of the wrong type. A whole number is accepted only as such, and so is a bool."""
     if expected is int:
         good = isinstance(value, int) and not isinstance(value, bool)
     elif expected == Optional[str]:
@@ -183,7 +183,7 @@ def _check(study, path):
 
 
 def study_from(data, where):
-    """Makes a Study of the mapping `data`; `where` names its source in errors."""
+    """Makes a Study from the mapping `data`. `where` names its source in errors."""
     if not isinstance(data, dict):
         _fail(where, "must be a mapping")
     data = dict(data)
@@ -204,12 +204,12 @@ def load_study(path):
 
 
 def save_study(study, path):
-    """Writes the resolved study, which load_study reads back."""
+    """Writes the resolved study in the form that load_study reads."""
     write_atomically(path, yaml.safe_dump(dataclasses.asdict(study), sort_keys=False, width=96))
 
 
 def shipped_studies():
-    """Folder of the studies that come with the package, in the source or the install space."""
+    """Folder of the shipped studies, in the source or the install space."""
     here = os.path.dirname(os.path.realpath(__file__))
     for relative in ("../../studies", "../../../../share/marl_trainer/studies"):
         folder = os.path.normpath(os.path.join(here, relative))
@@ -219,7 +219,7 @@ def shipped_studies():
 
 
 def find_study(name_or_path):
-    """Path of a study given as a file or by the name of a shipped one."""
+    """Path of a study, given as a file or by the name of a shipped study."""
     if os.path.exists(name_or_path) and not os.path.isdir(name_or_path):
         return name_or_path
     names = []

@@ -1,4 +1,4 @@
-"""The report's tables as Markdown, laid out like the paper's with its rows below ours."""
+"""The report's tables as Markdown. Their layout is the paper's, with the paper's rows below ours."""
 
 from stg_study.statistics import iqm_interval, mean_std
 
@@ -18,8 +18,8 @@ STRESS = [
     ("Control", "control_cost", 3),
     ("Comm.", "communication_quality", 3),
 ]
-# Training curves: the paper averages the agents' returns and takes the error and the lost rate
-# over the whole episode (its final errors of .012 go with tail distances of .014).
+# Training curves: the paper averages the returns of the agents, and takes error and lost rate over the whole
+# episode (its final errors of .012 belong to tail distances of .014).
 FINAL = [
     ("Return", "scenario_return", 2),
     ("Training's return", "return", 2),
@@ -46,8 +46,8 @@ TEXT_COLUMNS |= {"of these", "Beside", "Knows"}
 
 
 def paper_value(paper, table, algorithm, metric, *key):
-    """The paper's figure of a metric. Its release tabulates returns by the reward that each
-    algorithm trained with, which for STG-MAPPO alone is the scenario's."""
+    """The paper's figure of a metric. Its release tabulates returns by the reward of each algorithm's
+    training. Only for STG-MAPPO this is the scenario's reward."""
     training = "return" if table in FINAL_TABLES else "training_return"
     if metric in RETURNS:
         if metric != training and not algorithm.startswith("STG-MAPPO"):
@@ -57,8 +57,8 @@ def paper_value(paper, table, algorithm, metric, *key):
 
 
 def training_metric(study, name, metric):
-    """Which column holds a metric of a method or controller: where both returns are one, only
-    `return` is measured; None where it is not measured."""
+    """The column of a metric for a method or controller. If both returns are the same, only `return` is
+    measured. None if it is not measured."""
     rewards = {method.name: method.reward() for method in study.methods}
     if metric not in RETURNS[1:]:
         return metric
@@ -66,17 +66,17 @@ def training_metric(study, name, metric):
     if reward == "variant":
         return metric
     if name not in rewards and metric == "training_return":
-        return None  # a controller is trained with no reward
+        return None  # a controller is not trained with a reward
     return "return" if reward == "scenario" else None
 
 
 def condition_label(condition):
-    """A condition as the paper writes it."""
+    """A condition in the paper's words."""
     return CONDITION_LABELS.get(condition, condition.replace("_", " ").capitalize())
 
 
 def cell(value, digits, scale=1.0):
-    """`mean ± std`, only the mean where there is no std, a dash where there is no value."""
+    """`mean ± std`; only the mean if there is no std; a dash if there is no value."""
     if value is None:
         return NOTHING
     mean, std = value
@@ -87,7 +87,7 @@ def cell(value, digits, scale=1.0):
 
 
 def _line(cells):
-    """A line of a Markdown table; a label may hold the sign that ends a cell."""
+    """A line of a Markdown table. A label may contain the sign that ends a cell, so this is escaped."""
     return "| " + " | ".join(str(value).replace("|", "\\|") for value in cells) + " |"
 
 
@@ -112,7 +112,7 @@ def over_seeds(study, results, scenario, conditions, name, metric):
 
 
 def main_table(study, results, paper, scenario, table):
-    """Tables 1 and 2: distances, losses and returns averaged over all conditions, mean ± std of the
+    """Tables 1 and 2: distances, losses and returns, averaged over all conditions, as mean ± std of the
     seeds' means."""
     header = ["Algorithm", "Nominal dist.", "Combined dist.", "Nominal lost", "Combined lost"]
     header += ["Avg. return", "Avg. training's return"]
@@ -141,8 +141,8 @@ def main_table(study, results, paper, scenario, table):
 
 
 def final_value(study, results, scenario, name, metric):
-    """(mean, std) over seeds of the final stage of a method, or of a controller's nominal
-    evaluation; None where there is none. Returns are averaged over the AUVs."""
+    """(mean, std) over seeds of the final stage of a method, or of a controller's nominal evaluation; None if
+    there is none. Returns are averaged over the AUVs."""
     column = training_metric(study, name, metric)
     value = column and results.final_over_seeds(scenario, name, column)
     if not value and column and not results.seeds(scenario, name):
@@ -163,7 +163,7 @@ def _final_row(study, results, scenario, name, columns):
 
 
 def final_table(study, results, paper, scenario, table):
-    """Tables S3 and S5: the last fifth of the validations, mean ± std over seeds."""
+    """Tables S3 and S5: the last fifth of the validations, as mean ± std over seeds."""
     columns = FINAL + CONTACT
     rows = []
     for name in study.method_names():
@@ -180,8 +180,8 @@ def final_table(study, results, paper, scenario, table):
 
 
 def seed_table(study, results, paper, scenario, table):
-    """Tables S4 and S6: the final stage of every training, the controllers' evaluations by block
-    of evaluation seeds."""
+    """Tables S4 and S6: the final stage of every training, and the controllers' evaluations by block of
+    evaluation seeds."""
     columns = FINAL + CONTACT
     rows = []
     for method in study.methods:
@@ -220,7 +220,7 @@ def seed_table(study, results, paper, scenario, table):
 
 
 def stress_table(study, results, paper, scenario, table):
-    """Tables S7 and S8: best checkpoints under every condition, mean ± std over all episodes."""
+    """Tables S7 and S8: best checkpoints under every condition, as mean ± std over all episodes."""
     columns = STRESS + CONTACT
     rows = []
     for name in study.method_names():
@@ -247,7 +247,7 @@ def ablated(study):
 
 
 def ablation_table(study, results, paper, scenario, with_paper):
-    """Table S9: the variants over the final stage; the paper's is of its medium scenario."""
+    """Table S9: the variants in the final stage. The paper's values are for its medium scenario."""
     columns = [c for c in FINAL if c[1] != "mean_error"] + CONTACT
     rows = []
     for method in reversed(ablated(study)):
@@ -270,7 +270,7 @@ IQM_METRICS += [("Lost", "lost_rate", 3)] + CONTACT
 
 
 def iqm_table(study, results, scenario):
-    """Interquartile means of every condition and of all together, 95 % bootstrap intervals."""
+    """Interquartile means for every condition and for all together, with 95 % bootstrap intervals."""
     rows = []
     groups = [(condition_label(c), [c]) for c in study.conditions]
     if len(study.conditions) > 1:
@@ -310,7 +310,7 @@ def comparison_table(study, results, paper, scenario, table):
 
 
 def runs_table(study, results):
-    """How long every training took, and when it first reached each return without a loss."""
+    """Duration of every training, and the times at which it first reached each return without a loss."""
     times = [("no loss", "no_loss")] + [(t, t) for t in ("1000", "1020", "1030", "1040")]
     header = ["Scenario", "Method", "Seed", "Steps", "Wall s", "Steps/s"]
     header += [f"s to {label}" for label, _ in times]

@@ -1,4 +1,4 @@
-"""Tables of what makes a comparison fair: options, networks, cost, and which is how likely better."""
+"""Tables about the fairness of a comparison: options, networks, cost, and probabilities to be better."""
 
 import re
 
@@ -8,7 +8,7 @@ from stg_study.collect import THRESHOLDS
 from stg_study.statistics import mean_std, probability_of_improvement
 from stg_study.tables import NOTHING, cell, markdown
 
-# Title, option of train or several, of which a method has one or none.
+# Title, and one or several options of train, of which a method has at most one.
 OPTIONS = [
     ("γ", "gamma"),
     ("Learning rate", "lr"),
@@ -26,7 +26,7 @@ OPTIONS = [
 
 
 def options_table(study, results):
-    """What every method was trained with; the methods' names and labels in front."""
+    """The training options of every method, after the names and labels of the methods."""
     rows = []
     for method in study.methods:
         row = [method.label, results.option(method.name, "algorithm") or NOTHING, method.variant]
@@ -38,8 +38,8 @@ def options_table(study, results):
 
 
 def parameters(text):
-    """Parameters of all networks together, and of each in words, from runs.csv; alike ones, such as
-    actor_0 and actor_1, are counted together. (0, "") of an empty text."""
+    """Number of parameters of all networks together, and a text with each network, from runs.csv. Similar
+    ones, such as actor_0 and actor_1, are counted together. (0, "") for an empty text."""
     total, alike = 0, {}
     for name, count in (part.rsplit(":", 1) for part in text.split()):
         total += int(count)
@@ -50,7 +50,8 @@ def parameters(text):
 
 
 def cost_table(study, results, scenario):
-    """Networks, arithmetic and time of every method; how many of its trainings reached what."""
+    """Networks, arithmetic and time of every method, and the number of its trainings that reached each
+    threshold."""
     header = ["Method", "Seeds", "Parameters", "of these", "MFLOP/step", "Steps", "Wall s"]
     header += ["Lose nothing"] + [f"Reach {t}" for t in THRESHOLDS[1:]] + ["s to 1030, median"]
     rows = []
@@ -68,7 +69,7 @@ def cost_table(study, results, scenario):
         for name in THRESHOLDS:
             reached = sum(run[f"seconds_to_{name}"] is not None for run in runs)
             row.append(f"{reached}/{len(runs)}")
-        # A training that never gets there takes longer than any that does.
+        # A training that never reaches it takes longer than any that does.
         times = [run["seconds_to_1030"] for run in runs]
         times = sorted(np.inf if time is None else time for time in times)
         middle = float(np.median(times)) if times[-1] < np.inf else times[len(times) // 2]
@@ -78,7 +79,7 @@ def cost_table(study, results, scenario):
 
 
 def _training_scores(study, results, scenario, name, metric="return"):
-    """[conditions, seeds], the mean over episodes of each training, or None."""
+    """[conditions, seeds]: mean over the episodes of each training, or None."""
     scores = [results.scores(scenario, c, name, metric) for c in study.conditions]
     if any(s is None or len(s) != len(scores[0]) for s in scores):
         return None
@@ -86,8 +87,8 @@ def _training_scores(study, results, scenario, name, metric="return"):
 
 
 def improvement_table(study, results, scenario):
-    """Probability that a training of the row returns more than one of the column, all conditions.
-    A controller's blocks of episodes stand for its trainings."""
+    """Probability, over all conditions, that a training of the row's method has a higher return than one of
+    the column's. For a controller, blocks of episodes take the place of trainings."""
     names = [n for n in study.method_names() if n != "idle"]
     scores = {n: _training_scores(study, results, scenario, n) for n in names}
     names = [n for n in names if scores[n] is not None]
