@@ -17,8 +17,8 @@ from stg_common.program import run_program
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
-ALGORITHMS = "ippo,happo,maddpg,matd3,masac,madqn"  # beside MAPPO, the default
-# What an algorithm needs beside the preset to get to the goal (docs/algorithms).
+ALGORITHMS = "ippo,happo,maddpg,matd3,masac,madqn"  # in addition to MAPPO, the default
+# Options that an algorithm needs in addition to the preset, to reach the goal (docs/algorithms).
 BESIDE = {"madqn": ["--reward", "own", "--gamma", "0.8"]}
 PARTS = ("environment", "training", "algorithms", "ros")
 GOAL = ("1030", 60.0)  # return and seconds that every seed should reach
@@ -29,7 +29,7 @@ class BenchError(Exception):
 
 
 def positive(text):
-    """An argument that counts or lasts."""
+    """A positive number, e.g. a duration."""
     value = float(text)
     if not 0.0 < value < 1e9:
         raise argparse.ArgumentTypeError("must be positive")
@@ -115,7 +115,7 @@ def heading(text):
 
 
 def machine():
-    """What the figures were measured on, and how busy it was."""
+    """The machine of the measurement, and its load."""
     model = platform.processor() or "unknown"
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         for line in file:
@@ -132,7 +132,7 @@ def machine():
 
 
 def bench_environment(options):
-    """Environment steps per second of the two modes, and against the number of AUVs."""
+    """Environment steps per second in the two modes, and against the number of AUVs."""
     heading("Environment (observations and rewards included)")
     tool = program(options.bin, "bench_env")
     results = {}
@@ -166,7 +166,7 @@ def bench_environment(options):
 
 
 def time_to(summary, name):
-    """Seconds until a threshold, or None where it was not reached."""
+    """Seconds until a threshold, or None if it was not reached."""
     moment = summary.get("time_to_threshold", {}).get(name)
     return moment["seconds"] if moment else None
 
@@ -205,7 +205,7 @@ def bench_training(options):
 
 
 def bench_algorithms(options):
-    """The same for every other algorithm, with one seed."""
+    """The same measurement for every other algorithm, with one seed."""
     if not options.algorithms or not options.seeds:
         return {}
     heading(f"Algorithms (--preset fast, medium_release, {options.workers} workers)")
@@ -228,7 +228,7 @@ def bench_algorithms(options):
 
 
 def report_training(summaries):
-    """Where the time went, and whether the goal was met."""
+    """Prints the time of each phase, and if the goal was reached."""
     total = sum(s["wall_seconds"] for s in summaries)
     phases = summaries[0]["phase_seconds"]
     spent = {name: sum(s["phase_seconds"][name] for s in summaries) for name in phases}
@@ -244,7 +244,7 @@ def report_training(summaries):
 
 
 def make_room(path):
-    """Makes the folder of a file, and refuses what cannot be written before anything is measured."""
+    """Makes the folder of a file. Refuses a path that cannot be written before anything is measured."""
     folder = os.path.dirname(path) or "."
     os.makedirs(folder, exist_ok=True)
     if os.path.isdir(path) or not os.access(path if os.path.exists(path) else folder, os.W_OK):
@@ -252,7 +252,7 @@ def make_room(path):
 
 
 def bench_ros():
-    """Runs the ROS graph's own benchmark, whose last line is a JSON object."""
+    """Runs the benchmark of the ROS graph. Its last line is a JSON object."""
     heading("ROS graph")
     command = [os.path.join(HERE, "bench_ros.sh")]
     result = last_json(run(command), command)

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Measures how fast emulated S2C modems answer and what they cost; prints one JSON object.
 
-Needs a sourced workspace. Starts modems.launch with so many modems in one water, asks them in turn
-(AT?CLOCK, each 37th time a message to all), and compares the time of each question with that of
-its answer. Reply times depend on what else the machine does, and `load` is given with them; the
-processor time of the node hardly does.
+Needs a sourced workspace. Starts modems.launch with a number of modems in one water, asks them in turn
+(AT?CLOCK; every 37th time a message to all), and measures the time from each question to its answer. Reply
+times depend on the load of the machine, so `load` is reported, too; the processor time of the node hardly
+depends on it.
 """
 
 import argparse
@@ -18,7 +18,7 @@ import subprocess
 import tempfile
 import time
 
-EVERY = 37  # so many questions for each message
+EVERY = 37  # one message after this number of questions
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
@@ -46,7 +46,7 @@ def write_config(path, modems, port):
 
 
 def connected(port, until):
-    """A stream to a port, as soon as somebody listens there."""
+    """A connection to a port, as soon as a program listens there."""
     while True:
         try:
             return socket.create_connection(("127.0.0.1", port))
@@ -57,11 +57,11 @@ def connected(port, until):
 
 
 def node_below(pid):
-    """The process of the node that roslaunch started."""
+    """The process id of the node that roslaunch started."""
     for entry in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             name, _, rest = entry.read_text().rpartition(")")
-        except OSError:  # it has ended
+        except OSError:  # the process has ended
             continue
         if name.endswith("(modems") and int(rest.split()[1]) == pid:
             return int(entry.parent.name)
@@ -69,13 +69,13 @@ def node_below(pid):
 
 
 def work_of(pid):
-    """Seconds that a process has worked."""
+    """Processor time of a process [s]."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / TICKS
 
 
 def answer_to(stream, begin):
-    """Seconds from `begin` to an answer; notifications that come before it do not count."""
+    """Time from `begin` to an answer [s]; notifications before it do not count."""
     text = b""
     while True:
         if not select.select([stream], [], [], 5.0)[0]:
@@ -88,7 +88,7 @@ def answer_to(stream, begin):
 
 
 def ask(streams, rate, seconds):
-    """Reply times [s], a question at a time."""
+    """Reply times [s], with one question at a time."""
     times, begin = [], time.monotonic()
     for k in range(int(rate * seconds)):
         time.sleep(max(0.0, begin + k / rate - time.monotonic()))

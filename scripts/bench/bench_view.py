@@ -27,7 +27,7 @@ from stg_view.browser import show, started
 
 MASTER_PORT = 11818
 PORT, AGENTS, RATE_HZ = 8318, 20, 10.0
-SETTLED_S = 3.0  # that a browser works on after its start, which is no part of opening a page
+SETTLED_S = 3.0  # a browser still works for this time after its start; it does not count as opening a page
 FRAMES = """const done = arguments[1], seconds = arguments[0], times = [];
 const next = (now) => { times.push(now);
   if (now - times[0] < 1000 * seconds) requestAnimationFrame(next); else done((times.length - 1) * 1000 / (now - times[0])); };
@@ -35,18 +35,18 @@ requestAnimationFrame(next);"""
 
 
 def frames_per_s(driver, seconds):
-    """How often the page draws."""
+    """Number of frames per second that the page draws."""
     driver.set_script_timeout(seconds + 30.0)
     return driver.execute_async_script(FRAMES, seconds)
 
 
 def work_of(pid):
-    """Seconds that a process and those below it have worked."""
+    """Processor time of a process and its descendants [s]."""
     parents, work = {}, {}
     for entry in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = entry.read_text().rpartition(")")[2].split()
-        except OSError:  # it has ended
+        except OSError:  # the process has ended
             continue
         one = int(entry.parent.name)
         parents[one], work[one] = int(fields[1]), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
@@ -57,7 +57,7 @@ def work_of(pid):
 
 
 def measure_page(page, seconds):
-    """Figures of a report."""
+    """Measurements of a report."""
     with started() as driver:
         driver.get("about:blank")
         time.sleep(SETTLED_S)
@@ -76,7 +76,7 @@ def measure_page(page, seconds):
 
 
 def publish(seconds):
-    """Plays a swarm that circles, as /swarm_display, in a process of its own."""
+    """Publishes a circling swarm as /swarm_display, in a process of its own."""
     import math
 
     import auv_msgs.msg
@@ -97,7 +97,7 @@ def publish(seconds):
 
 
 def wait_for(port):
-    """Waits until a program listens there."""
+    """Waits until a program listens at the port."""
     for _ in range(600):
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
             return
@@ -131,7 +131,7 @@ def measure_live(seconds):
 
 
 def look(stop):
-    """Reads the stream of a live page as a browser on another machine does, until `stop` is set."""
+    """Reads the stream of a live page, like a browser on another machine, until `stop` is set."""
     import asyncio
 
     import aiohttp
@@ -144,19 +144,19 @@ def look(stop):
                         while not stop.is_set():
                             await asyncio.wait_for(stream.receive_bytes(), 1.0)
                 except (OSError, TypeError, aiohttp.ClientError, asyncio.TimeoutError):
-                    await asyncio.sleep(0.1)  # not there yet, or there no more
+                    await asyncio.sleep(0.1)  # the server is not there yet, or not any more
 
     asyncio.run(read())
 
 
 def work_of_ended():
-    """Seconds that all processes below this one have worked and ended."""
+    """Processor time of all child processes that have ended [s]."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def run_lockstep(kind, episodes):
-    """Decisions a second of a run in lockstep, as the world tells at its end, and its work."""
+    """Decisions per second of a run in lockstep, as reported by the world at its end, and its work."""
     import multiprocessing
 
     stop = multiprocessing.Event()
@@ -171,7 +171,7 @@ def run_lockstep(kind, episodes):
     try:
         own = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
         done = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=own)
-        work += work_of_ended()  # the eye works on, and is none of the run
+        work += work_of_ended()  # the viewer still runs and is not a part of the run
     finally:
         stop.set()
         if kind == "watched":
@@ -181,7 +181,7 @@ def run_lockstep(kind, episodes):
 
 
 def measure_lockstep(repeats, episodes):
-    """Runs without the view, with it, and with somebody who looks, in turns."""
+    """Runs without the view, with it, and with a viewer, in turns."""
     rates, works = ({kind: [] for kind in ("plain", "viewed", "watched")} for _ in range(2))
     for _ in range(repeats):
         for kind, found in rates.items():

@@ -41,7 +41,7 @@ plugins: [search]
 markdown_extensions: [tables, admonition, toc: {permalink: true}, pymdownx.superfences]
 """
 EXTRA = {False: "extra: {generator: false}\n", True: "extra: {generator: false, version: {provider: mike}}\n"}
-# The menu asks for a file; in a page from disk a script has brought what stands in it.
+# The menu requests a file. In a page from disk, a script contains the content of this file.
 VERSIONS_FROM_DISK = """if (window.__versions) {
   const asked = window.fetch;
   window.fetch = (url, ...more) => String(url.url || url).endsWith("/versions.json")
@@ -51,7 +51,7 @@ VERSIONS_FROM_DISK = """if (window.__versions) {
 
 
 def rebased(text, folder):
-    """A page's text with its links out of docs/ turned to the repository's files as text."""
+    """The text of a page, in which links out of docs/ point to the repository's files as text."""
 
     def turn(match):
         label, target = match.group(1), match.group(2)
@@ -70,7 +70,7 @@ def rebased(text, folder):
 
 
 def copy_pages(to):
-    """Copies docs/ and the README, which begins the site."""
+    """Copies docs/ and the README, which is the first page."""
     for file in sorted((ROOT / "docs").rglob("*")):
         inside = file.relative_to(ROOT / "docs")
         if file.is_dir():
@@ -87,8 +87,9 @@ def copy_pages(to):
 
 
 def search_from_disk(site, several):
-    """Lets search and the menu of versions work in pages that are opened from disk, where a browser reads no
-    other file but a script: the index and the searching program become one, which such a page loads first."""
+    """Makes search and the menu of versions work in pages from disk. There a browser can load scripts but no
+    other files. So the index and the search program are put into one script, which such a page loads
+    first."""
     index = (site / "search/search_index.json").read_text().replace("</", "<\\/")
     (worker,) = (site / "assets/javascripts/workers").glob("search.*.js")
     program = f'new Blob([{json.dumps(worker.read_text())}], {{type: "text/javascript"}})'
@@ -103,15 +104,16 @@ def search_from_disk(site, several):
 
 
 def version():
-    """The newest version that the changelog names."""
+    """The newest version in the changelog."""
     found = re.search(r"^## \[([^\]]+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
     return found.group(1) if found else "unknown"
 
 
 def list_versions(folder):
-    """Writes what the pages' menu of versions reads, and a first page that leads to the newest."""
+    """Writes the list for the menu of versions, and a first page that leads to the newest version."""
     found = [one.name for one in folder.iterdir() if (one / "index.html").is_file()]
-    numbers = lambda name: [int(part) for part in re.findall(r"\d+", name)] or [1 << 30]  # what is not released yet is newest
+    # A version that is not released yet is the newest.
+    numbers = lambda name: [int(part) for part in re.findall(r"\d+", name)] or [1 << 30]
     found.sort(key=numbers, reverse=True)
     entries = [{"version": name, "title": name, "aliases": []} for name in found]
     (folder / "versions.json").write_text(json.dumps(entries))

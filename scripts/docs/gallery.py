@@ -19,7 +19,7 @@ from stg_view.video import write_video
 
 DOCS = ROOT / "docs"
 IMAGES = DOCS / "images"
-# run: title of its page, command; OUT is the folder that is recorded
+# run: title of its page, and command; OUT stands for the folder of the recording
 EVALUATE = "rosrun marl_trainer evaluate --episodes 1 --record OUT"
 RUNS = {
     "field20": ("Twenty over a ridge", f"{EVALUATE} --scenario field20 --policy encircle"),
@@ -32,7 +32,7 @@ RUNS = {
     "training": ("A training", "rosrun marl_trainer train --scenario medium_separated --steps 200000 --out OUT"),
 }
 LOSS = "[...document.querySelectorAll('.event')].filter(b => b.textContent.includes('loses'))[1].click();"
-# name: run, place in the page, width, height, script that runs first, title, what one sees
+# name: run, place in the page, width, height, script that runs first, title, caption
 PICTURES = {
     "view_field20": ("field20", "t=200&theme=dark&tab=network", 1280, 720, "", "Twenty over a ridge",
         "Twenty torpedoes over the bathymetry of the paper's Fig. 6. Colours are phases: AUVs search for the target (blue), approach it (yellow) and "
@@ -56,7 +56,7 @@ PICTURES = {
     "view_training": ("training", "theme=light", 1280, 720, "", "A training", "The curves of a training's folder."),
     "view_phone": ("field20", "t=300&theme=dark&tab=plots&auv=3", 390, 780, "", "On a telephone", "The same page, 390 pixels wide."),
 }  # fmt: skip
-# name: run, seconds, theme, camera, tab, part of the run as two shares, title, what one sees
+# name: run, seconds, theme, camera, tab, part of the run as two shares, title, caption
 FILMS = {
     "film_medium": ("medium", 2.54, "light", "swarm", "plots", (0.0, 0.1), "The paper's box", "The first five seconds, at twice their speed."),
 }
@@ -69,7 +69,7 @@ These pictures show the page of the view, as `./stg report` makes it from a reco
 
 
 def told(run):
-    """The commands of a run as a block, in lines that a page of the site has room for."""
+    """The commands of a run as a block, in lines that fit a page of the site."""
     command = RUNS[run][1].replace("OUT", f"runs/{run}").replace(" --scenario", " \\\n    --scenario")
     return f"```\n{command}\n./stg report runs/{run}\n```\n"
 
@@ -92,7 +92,7 @@ def page_text():
 
 
 def fly(run, folder):
-    """Returns the page of a run."""
+    """Returns the path of a run's page."""
     title, command = RUNS[run]
     page, out = folder / f"{run}.html", folder / run
     if page.is_file():
@@ -105,7 +105,7 @@ def fly(run, folder):
 
 
 def take_pictures(names, folder):
-    """Writes pictures, all by one browser."""
+    """Writes pictures with one browser."""
     pages = {name: fly(PICTURES[name][0], folder) for name in names}
     with started() as driver:
         for name, page in pages.items():
@@ -119,7 +119,7 @@ def take_pictures(names, folder):
 
 
 def main():
-    """Makes what was asked for."""
+    """Makes the requested files."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help="names of pictures and videos in docs/images; page: only the page")
     parser.add_argument("--keep", type=pathlib.Path, help="folder that keeps runs and pages for the next call")

@@ -8,7 +8,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
-# The page of the site that leads to them.
+# The page of the site with links to the headers.
 PAGE = """# C++ headers
 
 Of all classes and functions that another package may use, made by doxygen from `include/` of each package:
@@ -57,7 +57,8 @@ VERBATIM_HEADERS = NO
 
 
 def overview():
-    """The first page, and what each namespace is for: a name in a comment is none of theirs."""
+    """The first page, with the purpose of each namespace. Names in comments do not refer to these
+    namespaces."""
     rows = "\n".join(f"<tr><td>@ref {name} \"{name}\"</td><td>{text}</td></tr>" for name, text in NAMESPACES.items())
     spaces = "\n".join(f"/** @namespace {name}\n@brief {text} */" for name, text in NAMESPACES.items())
     return (f"/** @mainpage C++ headers\nWhat another package may use of each package, one folder per subject.\n"
@@ -65,7 +66,7 @@ def overview():
 
 
 def write_headers(site):
-    """Writes them into the folder cpp of the site."""
+    """Writes the pages of the headers into the folder cpp of the site."""
     if not shutil.which("doxygen"):
         print("docs: without doxygen the C++ headers are left out", file=sys.stderr)
         return
@@ -78,5 +79,5 @@ def write_headers(site):
         back = '<navindex>\n    <tab type="user" visible="yes" url="../index.html" title="Back to the site"/>'
         (pages / "layout.xml").write_text(layout.replace("<navindex>", back, 1))
         settings = DOXYFILE.format(input=inputs, out=site, pages=pages, here=HERE)
-        # It remarks on words of comments that look like its commands, and has no option against it.
+        # doxygen warns about words in comments that look like its commands, and no option switches this off.
         subprocess.run(["doxygen", "-"], input=settings, text=True, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

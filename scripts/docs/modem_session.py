@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt  # noqa: E402  after the choice of a backend
 
 from stg_common.program import run_program  # noqa: E402
 
-# Host, seconds after the beginning, what it writes.
+# Host, seconds after the beginning, text that it sends.
 SCRIPT = (
     (0, 0.0, "+++AT@ZX1"),
     (1, 0.0, "+++AT@ZX1"),
@@ -41,7 +41,7 @@ def parse(argv):
 
 
 def talk(ports):
-    """(host, time [s], '>' or '<', line) for everything that was said."""
+    """(host, time [s], '>' or '<', line) for every line that was sent or received."""
     streams = [socket.create_connection(("127.0.0.1", port)) for port in ports]
     begin, said, rest = time.monotonic(), [], [b"", b""]
     waiting = list(SCRIPT)
@@ -85,7 +85,7 @@ def draw(said, out):
         axes.fill([host, there, there, host], [begin, first, last, end], COLOURS[host], alpha=0.25)
     below = [-1.0, -1.0]
     for host, t, way, line in said:
-        # Lines that come together stand below each other.
+        # Lines at nearly the same time are drawn below each other.
         below[host] = max(t, below[host] + 0.155)
         side = -1 if host == 0 else 1
         text = re.sub(r"[^\x20-\x7e]", "?", line)
@@ -110,7 +110,7 @@ def draw(said, out):
 
 
 def main(argv):
-    """Talks and draws."""
+    """Runs the conversation and draws it."""
     args = parse(argv)
     draw(talk(args.ports), args.out)
     return 0

@@ -1,9 +1,9 @@
-"""Where each page of the site stands: the tabs at its top, and the pages below each of them."""
+"""The place of each page of the site: the tabs at its top, and the pages below each of them."""
 
 import json
 
-# tab: pages and folders of docs/ in their order; of a folder README.md comes first. Pages without a
-# place here come last, below More.
+# tab: pages and folders of docs/ in order; in a folder, README.md comes first. Pages that are not listed here
+# come last, in the tab More.
 TABS = {
     "Start": ["install.md", "tutorials", "gallery.md", "view.md", "platforms.md", "security.md"],
     "Fly": ["scenarios.md", "field.md", "waters.md", "recording.md", "soak.md", "faults.md", "fly_your_own_vehicle.md"],

@@ -1,4 +1,5 @@
-"""References of the site that are made from the code: topics and messages, command lines, the module stg."""
+"""Reference pages of the site that are made from the code: topics and messages, command lines, the module
+stg."""
 
 import ast
 import pathlib
@@ -7,7 +8,7 @@ import subprocess
 import xml.etree.ElementTree as ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# What is compiled, and what is run from its sources.
+# Compiled programs, and programs that run from their sources.
 PROGRAMS = {
     "marl_trainer": ["train", "train_swarm", "evaluate", "bench_env", "check_trace"],
     "acoustic_channel": ["simulate"],
@@ -22,7 +23,7 @@ TITLES = {"__init__": "stg", "_core": "stg: types of the engine"}
 
 
 def write_topics(to):
-    """All messages, as their files describe them, and all names of topics."""
+    """All messages, as described in their files, and all names of topics."""
     lines = ["# Topics, messages and services", "", "Made from the headers `topics.hpp` and the message files.", ""]
     lines += ["## Names", "", "| name | package |", "|---|---|"]
     for header in sorted((ROOT / "src").rglob("topics.hpp")):
@@ -35,7 +36,8 @@ def write_topics(to):
 
 
 def write_commands(to):
-    """What every program says of itself; those that are not built are named. Arguments of launch files."""
+    """The help of every program (programs that are not built are marked), and the arguments of launch
+    files."""
     lines = ["# Command lines", "", "## ./stg", "", "```", output([ROOT / "stg", "help"]), "```"]
     for package, names in PROGRAMS.items():
         for name in names:
@@ -62,7 +64,7 @@ def launch_arguments(file):
 
 
 def output(command):
-    """What a command prints."""
+    """The output of a command."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, timeout=300)
     return done.stdout.rstrip()
 
@@ -95,11 +97,11 @@ def described(node, depth=3, of=""):
 
 
 def told(text):
-    """A docstring: as text, or with its own lines where these are more than paragraphs."""
+    """A docstring: as text, or with its own line breaks if it has more than paragraphs."""
     if not text:
         return []
     if re.search(r"^([ \t]|[-*>] )", text.replace("\n\n", "\n"), re.MULTILINE):
         return ["```text", text, "```"]
-    parts = text.split("`")  # every second one is code, and stays as it is
+    parts = text.split("`")  # every second part is code and stays unchanged
     parts[::2] = [re.sub(r"([\\*_\[\]<>#|~])", r"\\\1", part) for part in parts[::2]]
     return ["`".join(parts)]

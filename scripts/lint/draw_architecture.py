@@ -25,7 +25,7 @@ COLOURS = ("#4d6680", "#1b7f79", "#2a6fb0", "#b3641c", "#7a4fa3", "#b03a5b", "#6
 
 
 class House:
-    """What the code says: packages, their folders and what includes what."""
+    """The structure of the code: packages, their folders, and their includes."""
 
     def __init__(self, source):
         self.folders = collections.defaultdict(collections.Counter)  # package: {folder: files}
@@ -55,7 +55,7 @@ class House:
 
     @staticmethod
     def _place(path):
-        """Returns (package, folder) of a path as an #include names it; nodes are one folder."""
+        """Returns (package, folder) of a path in the form of an #include. All nodes are one folder."""
         package, folders = path.parts[0], path.parts[1:-1]
         return package, "nodes" if folders[:1] == ("nodes",) else "/".join(folders)
 
@@ -95,7 +95,7 @@ class House:
         return order
 
     def shape(self):
-        """Returns what the picture shows besides numbers, for comparing."""
+        """Returns the content of the picture without numbers, for a comparison."""
         return {
             "folders": {p: sorted(f) for p, f in sorted(self.folders.items())},
             "arrows": sorted(f"{a} -> {b}" for a, b in self.arrows),
@@ -103,7 +103,7 @@ class House:
 
 
 def tint(colour, share):
-    """Returns `colour`, mixed with white so that `share` of it is left."""
+    """Returns `colour` mixed with white; `share` of the colour is left."""
     parts = [int(colour[i : i + 2], 16) for i in (1, 3, 5)]
     return "#" + "".join(f"{round(255 - (255 - part) * share):02x}" for part in parts)
 
@@ -112,7 +112,7 @@ class Picture:
     """Places and draws a House. Lengths are points, y grows upwards."""
 
     WIDTH, CHIP, LINE, PAD, GAP, BETWEEN = 640, 17, 22, 9, 32, 24
-    LANE, NEAREST = 17, 22  # between lines that pass packages on their left; and the packages
+    LANE, NEAREST = 17, 22  # distances between lines that pass packages on their left, and from the packages
     MESSAGES_WIDTH = 150
 
     def __init__(self, house):
@@ -133,7 +133,8 @@ class Picture:
         coloured = [p for p in lowest_first if p != MESSAGES]
         self.colour = {p: COLOURS[i % len(COLOURS)] for i, p in enumerate(coloured)}
         self.colour[MESSAGES] = "#5f5f5f"
-        # Arrows past a layer run down a lane of their package, the highest package outermost.
+        # Arrows past a layer go down in a lane of their package. The lane of the highest package is the
+        # outermost.
         self.far = {
             p: [q for a, q in sorted(house.arrows) if a == p and self._is_far(p, q)]
             for p in lowest_first
@@ -174,7 +175,7 @@ class Picture:
         return rows
 
     def place(self):
-        """Finds the place of every box, from the bottom up; returns the height of all."""
+        """Finds the position of every box, from the bottom up. Returns the total height."""
         y = 44
         for layer in self.layers:
             free = self.WIDTH - 10 - self.left - self.BETWEEN * (len(layer) - 1)
@@ -184,20 +185,20 @@ class Picture:
                 width[MESSAGES] = self.MESSAGES_WIDTH
             self.chips.update({p: self.fill(p, width[p]) for p in layer})
             height = 27 + self.LINE * max(len(self.chips[p]) for p in layer)
-            # The first box of a layer takes the arrows from afar on its left side.
+            # Arrows from distant packages end at the left side of the first box in a layer.
             arrivals = sum(layer[0] in far for far in self.far.values())
             height = max(height, 12 + 14 * arrivals)
             x = self.left
             for package in layer:
                 self.box[package] = (x, y, width[package], height)
                 x += width[package] + self.BETWEEN
-            beside = set(layer[1:])  # the arrows from afar come to these from above
+            beside = set(layer[1:])  # at these boxes, arrows from distant packages end at the top
             self.crossing[layer[0]] = sum(len(beside & set(far)) for far in self.far.values())
             y += height + self.GAP + 9 * self.crossing[layer[0]]
         return y - self.GAP + 10
 
     def arrow(self, points, colour, count):
-        """Draws a line through the points with an arrow head, and its number at the head."""
+        """Draws a line through the points with an arrow head, and its number near the head."""
         xs, ys = zip(*points)
         self.axes.plot(xs[:-1], ys[:-1], color=colour, lw=1.3, solid_capstyle="butt", zorder=1)
         style = self.patches.ArrowStyle("-|>", head_length=4.5, head_width=2.4)
@@ -252,8 +253,8 @@ class Picture:
             self.arrow([(middle, y0), (middle, y1 + height1)], self.colour[package], count)
 
     def draw_far(self):
-        """Draws the arrows past a layer: out to the left, down, and in from the left, or from above
-        where another package of the layer is in the way."""
+        """Draws the arrows past a layer: out to the left, down, and in from the left; or in from above, if
+        another package of the layer is in the way."""
         into, above = collections.Counter(), collections.Counter()
         for package, others in self.far.items():
             lane, (x0, y0, _, height0) = self.lane.get(package), self.box[package]
@@ -296,7 +297,7 @@ class Picture:
 
 
 def drawn_shape(svg):
-    """Returns the shape that draw() left in the picture."""
+    """Returns the shape that draw() stored in the picture."""
     # pylint: disable=import-outside-toplevel
     import xml.etree.ElementTree as ElementTree
 
@@ -305,7 +306,7 @@ def drawn_shape(svg):
 
 
 def main(argv):
-    """Draws or checks; returns the exit status."""
+    """Draws or checks the picture; returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="only compare with the picture")
     parser.add_argument("--source", type=pathlib.Path, default=ROOT / "src", help="packages")

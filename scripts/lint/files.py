@@ -11,7 +11,7 @@ _SKIPPED = {"build", "devel", "install", "results", "runs", "out", "logs", "__py
 
 
 def _walk():
-    """Yields the files below ROOT as relative paths, where there is no git to ask."""
+    """Yields the files below ROOT as relative paths, without git."""
     for folder, folders, names in os.walk(ROOT):
         skipped = _SKIPPED if folder == str(ROOT) else {"__pycache__"}
         folders[:] = [f for f in folders if f not in skipped and not f.startswith(".")]
@@ -20,7 +20,7 @@ def _walk():
 
 
 def _known_to_git():
-    """Returns the files as relative paths; none where there is no git, or no repository."""
+    """Returns the files as relative paths; empty without git or without a repository."""
     if shutil.which("git") is None:
         return []
     done = subprocess.run(

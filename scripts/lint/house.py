@@ -1,6 +1,6 @@
-"""The rules of the house that no other program knows: what may include what, sizes and names.
+"""Rules of this repository that no other program checks: allowed includes, sizes and names.
 
-Each rule takes the folder of the packages and returns (what was looked at, list of findings).
+Each rule takes the folder of the packages and returns (what was checked, list of findings).
 """
 
 import collections
@@ -13,9 +13,9 @@ SOURCE = ROOT / "src"
 LONGEST_FILE = 350  # lines
 FULLEST_FOLDER = 12  # sources and headers
 REASON = re.compile(r"(//|#) Long because: \w")
-HEAD = 5  # lines, in which the reason stands
+HEAD = 5  # the reason must be in these first lines
 
-# What a package may include besides itself.
+# Other packages that a package may include.
 MAY_INCLUDE = {
     "auv_common": set(),
     "auv_dynamics": {"auv_common"},
@@ -27,7 +27,7 @@ MAY_INCLUDE = {
     "stg_monitor": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "stg_env"},
     "stg_bringup": {"auv_common", "auv_dynamics", "acoustic_channel", "stg_agent", "stg_env"},
 }
-# The namespaces of a package's core, and of all nodes; each may have namespaces within.
+# The namespaces of a package's core, and of all nodes. They may contain other namespaces.
 CORE_NAMESPACES = {
     "auv_common": ("stg",),
     "auv_dynamics": ("stg::dynamics",),
@@ -37,10 +37,10 @@ CORE_NAMESPACES = {
     "marl_trainer": ("stg::learn",),
     "stg_python": ("stg::python",),
 }
-# What composes the sections of all packages belongs to all of them.
+# The code that composes the sections of all packages may use the namespaces of all.
 SHARED_NAMESPACES = {("stg_env", "scenario"): ("stg",)}
-# What puts things together out of a whole scenario, as `logical` names it; everything else takes the
-# sections that it needs. docs/architecture.md says what each does.
+# Parts that build things from a whole scenario, named as by `logical`. All other code takes only the sections
+# that it needs. docs/architecture.md describes each of them.
 COMPOSITION_ROOTS = (
     "stg_env/scenario/",
     "stg_env/env/environment",
@@ -54,15 +54,15 @@ COMPOSITION_ROOTS = (
     "stg_python/env/env_pool",
 )
 NODE_NAMESPACES = ("stg::nodes", "stg::topics", "stg::frames")
-# Headers that a core must not see.
+# Headers that a core must not include.
 ROS = re.compile(
     r"(ros|rosbag|rosgraph_msgs|diagnostic_updater|tf2|tf2_\w+|std_srvs|\w+_msgs)/|.*/nodes/"
 )
 
 
 def part_of(file):
-    """Returns "core", "nodes", "test" or "bench": the part of its package that a file, as a path
-    from the folder of the packages, belongs to."""
+    """Returns "core", "nodes", "test" or "bench": the part of its package that a file belongs to. `file` is a
+    path from the folder of the packages."""
     parts = file.parts
     if parts[1] in ("test", "bench"):
         return parts[1]
@@ -70,7 +70,7 @@ def part_of(file):
 
 
 def check_includes(source=SOURCE):
-    """Looks for includes against the order of the packages, and of ROS or messages by a core."""
+    """Finds includes against the order of the packages, and includes of ROS or messages in a core."""
     findings = []
     for include in includes(source):
         package, other = include.file.parts[0], include.header.split("/")[0]
@@ -85,7 +85,7 @@ def check_includes(source=SOURCE):
 
 
 def _circles(graph):
-    """Returns one path [a, b, ..., a] for each circle that a walk through {node: nodes} meets."""
+    """Returns one path [a, b, ..., a] for each circle that a walk through {node: nodes} finds."""
     found, state, path = [], {}, []
 
     def visit(node):
@@ -106,9 +106,9 @@ def _circles(graph):
 
 
 def check_circles(source=SOURCE):
-    """Looks for folders of one parent that include each other in circles.
+    """Finds folders with the same parent that include each other in circles.
 
-    What lies directly in the parent is common ground: it ties the folders together.
+    Files directly in the parent are excluded, because they connect its folders.
     """
     graphs = collections.defaultdict(lambda: collections.defaultdict(set))
     where = {}
@@ -119,7 +119,7 @@ def check_circles(source=SOURCE):
         depth = 0
         while depth < min(len(ours), len(theirs)) and ours[depth] == theirs[depth]:
             depth += 1
-        # The first step at which the two part ways must be a folder for both.
+        # The first parts that differ must be folders in both paths.
         if 0 < depth < min(len(ours), len(theirs)) - 1:
             graphs[ours[:depth]][ours[depth]].add(theirs[depth])
             place = f"src/{include.file}:{include.line}"
@@ -133,7 +133,7 @@ def check_circles(source=SOURCE):
 
 
 def check_sizes(source=SOURCE):
-    """Looks for files that are too long without a reason, and folders that are too full."""
+    """Finds files that are too long without a reason, and folders with too many files."""
     findings = []
     folders = collections.Counter(path.parent for path in cpp_files(source))
     scripts = [p.relative_to(source) for p in source.rglob("*.py")]
@@ -149,14 +149,14 @@ def check_sizes(source=SOURCE):
 
 
 def _code(text):
-    """Returns C++ text without its comments, line by line; strings stay."""
+    """Returns C++ text without its comments, line by line. Strings stay."""
     pattern = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
     keep = lambda m: m.group(0) if m.group(0)[0] == '"' else "\n" * m.group(0).count("\n")
     return pattern.sub(keep, text).splitlines()
 
 
 def _product(source):
-    """Yields (path, lines of code) of everything but tests and benchmarks."""
+    """Yields (path, lines of code) for all files except tests and benchmarks."""
     for path in cpp_files(source):
         if part_of(path) not in ("test", "bench"):
             yield path, _code(read(source / path))
@@ -169,7 +169,7 @@ CONSTANT = re.compile(r'constexpr char k\w+\[\] = "([^"]+)"')
 
 
 def check_topics(source=SOURCE):
-    """Looks for names of topics and services outside the headers called topics.hpp."""
+    """Finds names of topics and services outside of headers called topics.hpp."""
     product = list(_product(source))
     named = set()
     for path, lines in product:
@@ -181,7 +181,7 @@ def check_topics(source=SOURCE):
         if path.name == "topics.hpp":
             continue
         for number, line in enumerate(lines, start=1):
-            # The name may stand on the line after the call.
+            # The name may be on the line after the call.
             call = CONNECT.search(line + (lines[number].strip() if number < len(lines) else ""))
             if call and call.start() < len(line):
                 findings.append(f"src/{path}:{number}: {call.group(0)}...: a name is not in topics.hpp")
@@ -194,8 +194,8 @@ FORWARD = re.compile(r"namespace \w[\w:]* \{(\s*(class|struct) \w+;)+\s*\}")
 
 
 def _outer_namespaces(lines):
-    """Yields (line number, name) of each namespace that is not within another and holds more than
-    forward declarations."""
+    """Yields (line number, name) of each namespace that is not in another one and contains more than forward
+    declarations."""
     depth = 0
     for number, line in enumerate(lines, start=1):
         match = re.match(r"namespace (\w[\w:]*) \{", line)
@@ -206,7 +206,7 @@ def _outer_namespaces(lines):
 
 
 def check_namespaces(source=SOURCE):
-    """Looks for code outside the namespaces of its package."""
+    """Finds code outside of the namespaces of its package."""
     findings = []
     looked_at = 0
     for path, lines in _product(source):
@@ -227,7 +227,7 @@ ENTRY = re.compile(r'\{\s*"(\w+)",\s*(?:&?[A-Z]\w*|\[)')
 
 
 def registered(source=SOURCE):
-    """Returns {name: the file whose registry lists it}."""
+    """Returns {name: file of the registry that lists it}."""
     names = {}
     texts = {path: "\n".join(lines) for path, lines in _product(source)}
     defined = {f: name for text in texts.values() for f, name in ENTRY_FUNCTION.findall(text)}
@@ -239,8 +239,8 @@ def registered(source=SOURCE):
 
 
 def check_registries(source=SOURCE):
-    """Looks for comparisons with a name that a registry lists: what it stands for is made by the
-    registry, and decided nowhere else."""
+    """Finds comparisons with a name that a registry lists. Only the registry may decide what a name stands
+    for."""
     names = registered(source)
     compared = re.compile(r'[!=]=\s*"(\w+)"|"(\w+)"\s*[!=]=')
     findings = []
@@ -259,7 +259,7 @@ WHOLE = re.compile(
 
 
 def check_scenarios(source=SOURCE):
-    """Looks for parameters that are a whole scenario, or several, outside the composition roots."""
+    """Finds parameters that are a whole scenario, or several, outside of the composition roots."""
     findings, looked_at = [], 0
     for path, lines in _product(source):
         looked_at += 1
@@ -276,7 +276,7 @@ ALONE = re.compile(r"\branks?\w*(?:\(\))?(?:\.|->)size\(\)\s*(?:[=!]=|[<>]=?)\s*
 
 
 def check_ranks(source=SOURCE):
-    """Looks for questions whether a process trains alone: it is the one rank of one."""
+    """Finds checks if a process trains alone. Such a process must be treated as the only rank."""
     findings, looked_at = [], 0
     for path, lines in _product(source):
         looked_at += 1

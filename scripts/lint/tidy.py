@@ -1,9 +1,8 @@
-"""clang-tidy over everything that is compiled but the tests, remembering what was clean.
+"""Runs clang-tidy on all compiled files except tests, and remembers units without findings.
 
-It looks at the translation units of build/compile_commands.json, which merge a dozen sources each,
-so that the headers of libraries are read once for all of them. A unit that was clean is not looked
-at again until it, a header of this repository that it includes, its compile command or .clang-tidy
-changes.
+It checks the translation units of build/compile_commands.json. Each merges about a dozen sources, so that the
+headers of libraries are read once for all of them. A unit without findings is checked again only if it, a
+header of this repository that it includes, its compile command or .clang-tidy changes.
 """
 
 import concurrent.futures
@@ -17,9 +16,9 @@ import subprocess
 
 from files import CPP, ROOT
 
-# Flags of g++ that clang does not know, or that only say where the output goes.
+# Flags of g++ that clang does not know, or that only set the output.
 DROPPED = {"-fno-semantic-interposition", "-MD", "-c"}
-DROPPED_PREFIXES = ("-mmove-max=", "-mstore-max=", "-mmemcpy-strategy=")  # of GCC alone
+DROPPED_PREFIXES = ("-mmove-max=", "-mstore-max=", "-mmemcpy-strategy=")  # only GCC has these
 DROPPED_WITH_ARGUMENT = {"-o", "-MT", "-MF"}
 INCLUDE = re.compile(rb"^\s*#\s*include\s*\"([^\"]+)\"", re.MULTILINE)
 FINDING = re.compile(r"(\S+?):(\d+:\d+: (?:warning|error): .*)")
@@ -40,12 +39,12 @@ class Unit:
                 continue
             elif word != entry["file"]:
                 self.arguments.append(word)
-        # What precedes the first option is the compiler and what launches it.
+        # Before the first option are the compiler and its launcher.
         while self.arguments and not self.arguments[0].startswith("-"):
             self.arguments.pop(0)
 
     def sources(self):
-        """Returns the sources of this repository that the unit is made of."""
+        """Returns the sources of this repository in the unit."""
         if self.file.suffix == ".cpp" and ROOT / "src" in self.file.parents:
             return [self.file]
         included = INCLUDE.findall(self.file.read_bytes()) if self.file.is_file() else []
@@ -53,7 +52,7 @@ class Unit:
         return [p for p in paths if p.suffix == ".cpp" and ROOT / "src" in p.parents]
 
     def name(self):
-        """Returns a name for a file: auv_dynamics.unity_0_cxx, or the source with dots."""
+        """Returns a name that is valid for a file: auv_dynamics.unity_0_cxx, or the source with dots."""
         match = re.search(r"CMakeFiles/([^/]+)\.dir/", str(self.file))
         if match:
             return f"{match.group(1)}.{self.file.stem}"
@@ -61,7 +60,7 @@ class Unit:
 
 
 def wanted_units(build):
-    """Returns the units of `build` to look at: all but tests and benchmarks."""
+    """Returns the units of `build` to check: all except tests and benchmarks."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     units = []
     for unit in map(Unit, entries):
@@ -72,7 +71,7 @@ def wanted_units(build):
 
 
 class Includes:
-    """Which files of this repository a file includes, in the end."""
+    """Finds the files of this repository that a file includes directly or indirectly."""
 
     def __init__(self):
         self.known = {}
@@ -81,7 +80,7 @@ class Includes:
             self.by_name.setdefault(path.name, []).append(path)
 
     def direct(self, path):
-        """Returns the files that `path` includes; all candidates where a name is ambiguous."""
+        """Returns the files that `path` includes; all candidates if a name is ambiguous."""
         if path not in self.known:
             found = set()
             for name in INCLUDE.findall(path.read_bytes()):
@@ -95,7 +94,7 @@ class Includes:
         return self.known[path]
 
     def closure(self, path):
-        """Returns `path` and every file of this repository below it."""
+        """Returns `path` and all files of this repository that it includes."""
         seen, todo = set(), [path]
         while todo:
             file = todo.pop()
@@ -106,7 +105,7 @@ class Includes:
 
 
 def key_of(unit, includes, version):
-    """Returns a digest of everything of ours that a verdict on `unit` depends on."""
+    """Returns a digest of all our files on which the result for `unit` depends."""
     digest = hashlib.sha256(version.encode())
     digest.update("\0".join(unit.arguments).encode())
     files = {ROOT / ".clang-tidy", *(ROOT / "src" / "auv_msgs").rglob("*.msg")}
@@ -147,7 +146,7 @@ def tidy(unit):
 
 
 def check_tidy(build):
-    """clang-tidy on every unit of `build` that changed since it was clean."""
+    """Runs clang-tidy on every unit of `build` that changed since its last check without findings."""
     stamps = build / "lint"
     stamps.mkdir(parents=True, exist_ok=True)
     version = subprocess.run(
@@ -162,7 +161,7 @@ def check_tidy(build):
         return stamp.is_file() and stamp.read_text() == keys[unit.name()]
 
     todo = [unit for unit in units if not is_clean(unit)]
-    # The largest first, so that no core waits for one at the end.
+    # The largest ones come first, so that no core waits for one of them at the end.
     todo.sort(key=lambda unit: -len(includes.closure(unit.file)))
     findings = []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -1,4 +1,4 @@
-"""The checks that other programs do: each returns (what was looked at, list of findings)."""
+"""Checks by other programs. Each returns (what was checked, list of findings)."""
 
 import collections
 import re
@@ -22,7 +22,7 @@ def run(command):
 
 
 def _judge(command, looked_at):
-    """Runs a command whose every line of output is a finding when it fails."""
+    """Runs a command. If it fails, every line of its output is a finding."""
     status, lines = run(command)
     findings = [line for line in lines if line.strip()] if status else []
     if status and not findings:
@@ -31,7 +31,7 @@ def _judge(command, looked_at):
 
 
 def check_format(fix=False):
-    """clang-format, as .clang-format says; `fix` rewrites the files."""
+    """Runs clang-format with the settings of .clang-format; `fix` rewrites the files."""
     files = cpp_files()
     if fix:
         return _judge(["clang-format", "-i", *files], f"{len(files)} files")
@@ -45,19 +45,19 @@ def check_format(fix=False):
 
 
 def check_shell():
-    """shellcheck."""
+    """Runs shellcheck."""
     files = shell_files()
     return _judge(["shellcheck", "--format=gcc", *files], f"{len(files)} scripts")
 
 
 def check_python():
-    """pyflakes: names that are not used, not defined, or defined twice."""
+    """Runs pyflakes: names that are unused, undefined, or defined twice."""
     files = python_files()
     return _judge(["/usr/bin/python3", "-m", "pyflakes", *files], f"{len(files)} files")
 
 
 def check_catkin():
-    """catkin_lint, with its notices."""
+    """Runs catkin_lint, including its notices."""
     looked_at, findings = _judge(
         ["catkin_lint", "-W2", "--strict", "--offline", ROOT / "src"], "the packages"
     )

@@ -1,4 +1,4 @@
-"""The C++ sources below src/: to which package and subject each belongs, and what it includes."""
+"""The C++ sources below src/: the package and subject of each, and its includes."""
 
 import pathlib
 import re
@@ -9,7 +9,7 @@ INCLUDE = re.compile(r"\s*#\s*include\s*[<\"]([^>\"]+)[>\"]")
 
 
 class Include(typing.NamedTuple):
-    """One line `#include`: in `file`, a path from src/, of `header` as the line names it."""
+    """One line `#include` in `file` (a path from src/), with `header` as written in the line."""
 
     file: pathlib.Path
     line: int
@@ -17,7 +17,7 @@ class Include(typing.NamedTuple):
 
 
 def read(path):
-    """Returns the text of a file, whatever its bytes."""
+    """Returns the text of a file; invalid bytes are replaced."""
     return path.read_text(encoding="utf-8", errors="replace")
 
 
@@ -36,7 +36,7 @@ def includes(source):
 
 
 def logical(file):
-    """Returns a file's path as an #include names it: package, subjects, name.
+    """Returns a file's path in the form of an #include: package, subjects, name.
 
     `p/include/p/a/x.hpp`, `p/src/a/x.cpp` and `p/src/nodes/include/p/nodes/x.hpp` become
     `p/a/x.hpp`, `p/a/x.cpp` and `p/nodes/x.hpp`; tests and benchmarks keep their folder's name.
@@ -50,12 +50,12 @@ def logical(file):
 
 
 def included(include, source):
-    """Returns what `include` names as `logical` does, whether given from the package or from the
-    file's own folder."""
+    """Returns the path of an include in the form of `logical`. The include may be relative to the package or
+    to the folder of its file."""
     beside = source / include.file.parent / include.header
     if beside.is_file():
         file, inside = beside.resolve(), source.resolve()
         if inside not in file.parents:
-            return pathlib.PurePosixPath(file.relative_to(inside.parent))  # such as cmake/x.h
+            return pathlib.PurePosixPath(file.relative_to(inside.parent))  # e.g. cmake/x.h
         return logical(file.relative_to(inside))
     return pathlib.PurePosixPath(include.header)

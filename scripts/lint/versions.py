@@ -1,4 +1,4 @@
-"""The version stands in the file VERSION, and in what other programs read by themselves."""
+"""The version is in the file VERSION, and in files that other programs read directly."""
 
 import re
 import xml.etree.ElementTree as ElementTree
@@ -7,7 +7,7 @@ from files import ROOT
 
 
 def _first(path, pattern):
-    """Returns what `pattern` finds first in a file, or None."""
+    """Returns the first match of `pattern` in a file, or None."""
     found = re.search(pattern, path.read_text(encoding="utf-8"), re.MULTILINE)
     return found.group(1) if found else None
 

@@ -1,7 +1,7 @@
 """Words that are never right for a program: a node, a packet or a function is "it", never "who".
 
-Looked at are comments and texts, not names: of C++ what stands behind // and in quotes, of Python
-comments and strings, of other files whole lines without `code`.
+It checks comments and texts, not names: in C++ the text after // and in quotes, in Python comments and
+strings, in other files whole lines without `code`.
 """
 
 import io
@@ -18,7 +18,7 @@ PEOPLE = re.compile(
     re.IGNORECASE,
 )
 ADVICE = "a program is \"it\": name what does it"
-# Where the sentences have not been gone through yet.
+# The sentences of these files have not been revised yet.
 PENDING = ("src/{package}/test/", "scripts/lint/words.py")
 PROSE = {".md", ".launch", ".msg", ".srv", ".test", ".xml", ".yaml"}
 QUOTED = re.compile(r'"((?:[^"\\]|\\.)*)"')
@@ -57,7 +57,7 @@ def _prose(text):
 
 
 def texts_of(name, text):
-    """Yields (line number, text) of what a person reads in a file of this name."""
+    """Yields (line number, text) of the texts for people in a file with this name."""
     suffix = name.suffix
     if suffix in (".cpp", ".hpp"):
         yield from _cpp_texts(text)
@@ -78,7 +78,7 @@ def _pending(path):
 
 
 def check_words(root=ROOT, files=None):
-    """Looks for words that are wrong for a program in `files`, paths from `root`."""
+    """Finds words that are wrong for a program in `files`, which are paths from `root`."""
     findings, count = [], 0
     for path in all_files() if files is None else files:
         if files is None and _pending(path):

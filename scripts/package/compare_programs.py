@@ -18,7 +18,7 @@ import tempfile
 
 
 def jobs(policy):
-    """Returns {name: (program, arguments)}; FOLDER in them is a new folder for what is written."""
+    """Returns {name: (program, arguments)}. FOLDER in the arguments stands for a new output folder."""
     evaluate = ["--policy", policy, "--episodes", "1000", "--seed", "3000"]
     field = ["--policy", "encircle", "--scenario", "field", "--episodes", "40", "--seed", "3000", "--workers", "1"]
     train = ["--scenario", "medium_separated", "--steps", "300000", "--workers", "1", "--seed", "1", "--out", "FOLDER"]
@@ -31,7 +31,8 @@ def jobs(policy):
 
 
 def digest(output, folder):
-    """Returns what the programs must agree on: the last line, and the policies that were written."""
+    """Returns a digest of the results that must be equal: the last line, and the policies that were
+    written."""
     found = hashlib.sha256(output.strip().split(b"\n")[-1] if not any(folder.iterdir()) else b"")
     for file in sorted(folder.rglob("*.onnx")):
         found.update(file.name.encode() + file.read_bytes())
@@ -54,7 +55,7 @@ def fly(program, arguments):
 
 
 def main(argv):
-    """Prints a line for each job."""
+    """Compares the programs and prints a line for each job."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("built", type=pathlib.Path, help="folder of PACKAGE/PROGRAM of the source build")
     parser.add_argument("installed", type=pathlib.Path, help="the same folder of the packages")

@@ -21,10 +21,10 @@ import zipfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NAME = "stg_swarm"
 TAG = "cp311-cp311-manylinux_2_36_x86_64"
-# Those that a Python wheel for Linux may expect (PEP 600).
+# Libraries that a Python wheel for Linux may expect on every system (PEP 600).
 EVERYWHERE = re.compile(r"(ld-linux-x86-64|libc|libm|libdl|libpthread|librt|libstdc\+\+|libgcc_s|libz)\.so")
-# Of this repository: they are of the engine's instruction set and lie beside it, where the scenarios
-# are looked for first.
+# Libraries of this repository. They have the engine's instruction set and are in its folder, where scenarios
+# are searched first.
 OURS = re.compile(r"lib(acoustic|auv|stg)_")
 METADATA = """Metadata-Version: 2.1
 Name: stg-swarm
@@ -49,7 +49,7 @@ Tag: {tag}
 
 
 def run(*command):
-    """Returns the output of a command; raises SystemExit with its errors."""
+    """Returns the output of a command. Raises SystemExit with its errors if it fails."""
     done = subprocess.run(
         [str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         universal_newlines=True, check=False,
@@ -60,7 +60,7 @@ def run(*command):
 
 
 def libraries_of(engine):
-    """Returns {name: path} of the libraries that the wheel must bring for an engine."""
+    """Returns {name: path} of the libraries that the wheel must contain for an engine."""
     found = {}
     for line in run("ldd", engine).splitlines():
         match = re.match(r"\s*(\S+) => (.*?)(?: \(0x|$)", line)
@@ -73,7 +73,7 @@ def libraries_of(engine):
 
 
 def place(source, target, rpath):
-    """Copies a shared object, without symbols, and has it look for others below `rpath`."""
+    """Copies a shared object without symbols. It will search for others below `rpath`."""
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(source, target)
     run("strip", "--strip-unneeded", target)
@@ -82,7 +82,7 @@ def place(source, target, rpath):
 
 
 def gather(folder, engines):
-    """Fills `folder` with what the wheel installs."""
+    """Fills `folder` with the content of the wheel."""
     package = folder / "stg"
     shutil.copytree(
         ROOT / "src/stg_python/python/stg", package, ignore=shutil.ignore_patterns("__pycache__")
@@ -100,7 +100,8 @@ def gather(folder, engines):
         rpath = f"$ORIGIN:$ORIGIN/{'../' * len(own.relative_to(folder).parts)}{NAME}.libs"
         place(engine, own / engine.name, rpath)
         if name == "baseline":
-            # A module beside the engine asks the processor which engine it can run; every processor runs this one.
+            # A module beside the engine asks the processor which engine it supports. This engine runs on
+            # every processor.
             askers = list(engine.parent.glob("_processor.*.so"))
             if not askers and len(engines) > 1:
                 raise SystemExit(f"make_wheel: {engine.parent} holds no _processor.*.so, which chooses among engines")
@@ -114,7 +115,7 @@ def gather(folder, engines):
 
 
 def write(folder, out, version):
-    """Packs `folder` into the wheel; returns its path. The same files give the same bytes."""
+    """Packs `folder` into the wheel and returns its path. The same files give the same bytes."""
     info = folder / f"{NAME}-{version}.dist-info"
     info.mkdir()
     readme = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
@@ -143,7 +144,7 @@ def write(folder, out, version):
 
 
 def main(argv):
-    """Makes the wheel; prints its name."""
+    """Makes the wheel and prints its name."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("engines", nargs="+", metavar="INSTRUCTION_SET=FILE")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "dist", help="folder (default: dist)")

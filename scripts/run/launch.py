@@ -1,17 +1,16 @@
 #!/usr/bin/env -S --block-signal=INT /usr/bin/python3
-"""roslaunch that tells by its exit status whether the run went well.
+"""Runs roslaunch. The exit status says if the run went well.
 
-Takes roslaunch's arguments and does what it does, with these differences. What can be known not to
-work is refused before anything starts, in one line (run_arguments.py, run_checks.py). A node that
-exits with status 2 refuses its configuration (stg::RunNode): the run ends at once, where respawning
-would repeat it for ever. So it does, without a word, when its output has no reader any more. The exit
-status is 1 after that, when a required node, the recorder or the master died, or when a file that
-was asked for was not written; it is 130 after a Ctrl-C that came before everything was started. And
-nothing is left running when the start ends early, where roslaunch gives up before its monitor has
-stopped what runs.
+It takes roslaunch's arguments and does the same, with these differences. Problems that can be known in
+advance are refused before anything starts, in one line (run_arguments.py, run_checks.py). If a node exits
+with status 2, it refuses its configuration (stg::RunNode), and the run ends at once; respawning would repeat
+this forever. The run also ends, silently, if nothing reads its output any more. The exit status is 1 after
+that, if a required node, the recorder or the master died, or if a requested file was not written. It is 130
+after a Ctrl-C before everything was started. Nothing stays running if the start ends early; roslaunch itself
+would exit before its monitor has stopped all processes.
 """
 
-import stg_common.quiet_start  # first: until here Ctrl-C is blocked
+import stg_common.quiet_start  # first import: Ctrl-C is blocked until here
 import argparse
 import os
 import re
@@ -29,7 +28,7 @@ import stg_common.program
 from stg_common.program import INTERRUPTED, NOBODY_READS
 
 REFUSED, LOST_OUTPUT = 2, 4
-ON_LOOPBACK = "libauv_common_nodes.so"  # lets XML-RPC of roscpp listen where ROS_IP says
+ON_LOOPBACK = "libauv_common_nodes.so"  # makes the XML-RPC server of roscpp listen at the address of ROS_IP
 MONITOR_ENDS_S = 30  # a node has 15 s after SIGINT and 2 s after SIGTERM
 # Each AUV includes the launch file of the next one.
 sys.setrecursionlimit(100 * run_arguments.MOST_AGENTS)
@@ -40,29 +39,29 @@ class Interrupted(BaseException):
 
 
 def node_of(process_name):
-    """Returns the node of a process, which is named as it is, with a number behind."""
+    """Returns the node of a process. Its name is that of the node and a number."""
     return re.sub(r"-[0-9]+$", "", process_name)
 
 
 class Watch(roslaunch.pmon.ProcessListener):
-    """Hears of every process that dies by itself."""
+    """Is notified of every process that dies by itself."""
 
     def __init__(self):
         self.required = {"master"}
         self.recorders = set()
         self.failure = ""
-        self.over = False  # a node refused its configuration, or its output has no reader
+        self.over = False  # a node refused its configuration, or nothing reads the output
         self.unread = False
         self.started = False
-        self.interrupted = False  # by Ctrl-C, before all was started
+        self.interrupted = False  # by Ctrl-C, before everything was started
         self.names = []
         self.monitor = None
         self.processes = []
-        self.popens = {}  # {name: the newest}, which roslaunch forgets with the process
+        self.popens = {}  # {name: newest process}; roslaunch forgets it together with its process
         self.outputs = None
 
     def take(self, config):
-        """Notes what a launch is about to start; refuses what cannot work."""
+        """Stores what a launch is about to start. Refuses what cannot work."""
         nodes = {(node.namespace + node.name).strip("/"): node for node in config.nodes}
         parameters = {name: parameter.value for name, parameter in config.params.items()}
         self.names = ["/" + name for name in nodes]
@@ -70,7 +69,7 @@ class Watch(roslaunch.pmon.ProcessListener):
         run_checks.check_bags_are_there(config.nodes)
         if run_checks.master_is_online(config.master.uri):
             run_checks.check_names_are_free(config.master.uri, self.names)
-        for node in config.nodes_core:  # rosout, to which launch files have nothing to say
+        for node in config.nodes_core:  # rosout, which launch files cannot configure
             node.env_args.append(("LD_PRELOAD", ON_LOOPBACK))
         self.required |= {name for name, node in nodes.items() if node.required}
         self.recorders = {name for name, node in nodes.items() if run_checks.bag_of(node)}
@@ -78,15 +77,15 @@ class Watch(roslaunch.pmon.ProcessListener):
         self.outputs.check_before()
 
     def observe(self, monitor):
-        """Remembers what the monitor is given to look after."""
+        """Remembers the processes that the monitor gets."""
         self.monitor = monitor
-        # roslaunch does the same with its first process, and would call what was there before.
+        # roslaunch does the same at its first process, and would call the previous handler.
         signal.signal(signal.SIGINT, roslaunch.pmon.rl_signal)
         for name in ("register", "register_core_proc"):
             setattr(monitor, name, self.remembering(getattr(monitor, name)))
 
     def remembering(self, register):
-        """Returns the function, made to remember the processes it is given."""
+        """Returns the function, extended to remember the processes that it gets."""
 
         def remember(process):
             self.end_if_interrupted()
@@ -98,7 +97,7 @@ class Watch(roslaunch.pmon.ProcessListener):
         return remember
 
     def keep_popen(self, process):
-        """Keeps what tells the exit status, of every life of a process."""
+        """Keeps the object with the exit status for every start of a process."""
         start = process.start
 
         def started(*arguments):
@@ -113,12 +112,13 @@ class Watch(roslaunch.pmon.ProcessListener):
         """Waits for the monitor to stop its processes, then stops those that started too late."""
         if self.monitor:
             self.monitor.join(MONITOR_ENDS_S)
-        for process in reversed(self.processes):  # the master came first and ends last
+        for process in reversed(self.processes):  # the master was started first and ends last
             if process.started and process.is_alive():
                 process.stop([])
 
     def stopping(self, stop):
-        """Returns roslaunch's answer to signals, made not to leave behind what is just starting."""
+        """Returns roslaunch's signal handler, extended so that a process that is just starting is stopped,
+        too."""
 
         def stop_or_wait(number, frame):
             if number == signal.SIGINT and not self.started:
@@ -134,7 +134,7 @@ class Watch(roslaunch.pmon.ProcessListener):
             raise Interrupted
 
     def start_ended(self):
-        """Called when roslaunch has started all; does what could not be done meanwhile."""
+        """Called when roslaunch has started everything. Does what had to wait for this."""
         self.end_if_interrupted()
         self.started = True
         self.end_if_over()
@@ -145,7 +145,7 @@ class Watch(roslaunch.pmon.ProcessListener):
             os.kill(os.getpid(), signal.SIGINT)
 
     def output_unread(self):
-        """Called when what reads the output has left."""
+        """Called when the reader of the output has disappeared."""
         self.over = self.unread = True
         self.end_if_over()
 
@@ -167,7 +167,7 @@ class Watch(roslaunch.pmon.ProcessListener):
             self.failure = f"/{node} died with exit status {exit_code}"
 
     def judge(self):
-        """Looks for what the run was asked to write and has not written."""
+        """Checks the files that the run had to write."""
         if self.failure or self.unread or not self.outputs or not self.started:
             return
         for name, popen in self.popens.items():
@@ -181,9 +181,10 @@ class Watch(roslaunch.pmon.ProcessListener):
 
 
 def master_of(words):
-    """Returns the address of the master that a command line means, and has roslaunch mean it.
+    """Returns the address of the master of a command line, and makes roslaunch use it.
 
-    It would ask the master of the environment, whatever the port, which run it belongs to.
+    Without this, it would use the master of the environment for any port, even if that belongs to another
+    run.
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("-p", "--port")
@@ -194,9 +195,9 @@ def master_of(words):
 
 
 def check_before_loading(words):
-    """Refuses what roslaunch would stumble over or hang on; returns the address of the master."""
+    """Refuses input at which roslaunch would fail or hang. Returns the address of the master."""
     run_arguments.check(words)
-    # Nodes run in ROS_HOME: what is relative to where we are would be another folder to them.
+    # Nodes run in ROS_HOME, so a path relative to the present folder would be another folder for them.
     for name in ("ROS_HOME", "ROS_LOG_DIR"):
         if os.environ.get(name):
             os.environ[name] = os.path.abspath(os.environ[name])
@@ -209,11 +210,11 @@ def check_before_loading(words):
 def launch(watch, turn):
     """Runs roslaunch under watch; returns its exit status.
 
-    @param turn  to start on the master; given up when all is started
+    @param turn  the turn to start on the master; released when everything is started
     """
 
     class Parent(roslaunch.parent.ROSLaunchParent):
-        """The parent of a launch, watched from its first process on."""
+        """The parent of a launch. It is watched from its first process on."""
 
         def _load_config(self):
             super()._load_config()

@@ -1,9 +1,8 @@
-"""The arguments of a launch: which its file has, what each takes, and whether it is given that.
+"""The arguments of a launch: which arguments its file has, their kinds, and a check of the given values.
 
-What an argument takes shows in its default: `true` and `false` are switches, digits a whole number,
-digits with a point a number, and everything else text. A default that is another argument takes
-what that one does. roslaunch hands on whatever it is given, and stumbles over it later or not at
-all.
+The default of an argument shows its kind: `true` and `false` are switches, digits are a whole number, digits
+with a point are a number, and everything else is text. If the default is another argument, the kind is that
+of the other one. roslaunch accepts any value; a wrong one causes an error later or none at all.
 """
 
 import difflib
@@ -18,13 +17,13 @@ from run_checks import Refusal
 MOST_AGENTS = 255
 OTHER = re.compile(r"^\$\(arg (\w+)\)$")
 SEEDS = ("seed", "train_seed")
-ANY_SEED = -1  # a default that stands for the scenario's
-# Numbers that are left to the scenario where nothing is given.
+ANY_SEED = -1  # this default means the scenario's seed
+# Numbers that come from the scenario if they are not given.
 NUMBERS_OR_NOTHING = ("latitude", "longitude")
 
 
 def declared(file):
-    """Returns {name: default, or None where it must be given} of a launch file's arguments."""
+    """Returns {name: default, or None if it is required} of a launch file's arguments."""
     arguments = ElementTree.parse(file).getroot().findall("arg")
     return {arg.get("name"): arg.get("default") for arg in arguments if arg.get("value") is None}
 
@@ -43,7 +42,7 @@ def _is_number(value):
 
 
 def _what_it_takes(name, text, default):
-    """Returns what an argument takes where `text` is something else, or an empty string."""
+    """Returns the kind of an argument if `text` is not of this kind; otherwise an empty string."""
     given, usual = _as_roslaunch_reads(text), _as_roslaunch_reads(default)
     if name in NUMBERS_OR_NOTHING:
         fits, takes = not text or _is_number(given), "a number, such as 54.5, or nothing"
@@ -63,10 +62,10 @@ def _what_it_takes(name, text, default):
 
 
 def check(words):
-    """Refuses arguments that the launch file does not have, and what is not of their kind.
+    """Refuses arguments that the launch file does not have, and values of another kind.
 
     @param words  a roslaunch command line: [OPTIONS] PACKAGE FILE NAME:=TEXT ...
-    @throws Refusal  which names the argument and what it takes
+    @throws Refusal  names the argument and its kind
     """
     names = [word for word in words if ":=" not in word and not word.startswith("-")]
     found = roslib.packages.find_resource(*names[-2:]) if len(names) > 1 else []

@@ -1,4 +1,4 @@
-"""What can be known of a run before it starts, and what must be there when it has ended."""
+"""Checks before a run starts, and checks of its files after its end."""
 
 import http.client
 import os
@@ -13,13 +13,13 @@ import xmlrpc.client
 import rosbag
 import rospkg
 
-PATIENCE_S = 3.0  # with a master or a node that does not answer
-RECORDER_STOPS_AT = 2**30  # bytes free: rosbag record ends its recording below
-WHOLE = (-(2**31), 2**31 - 1)  # numbers that a parameter of ROS can be
+PATIENCE_S = 3.0  # longest wait for an answer of a master or a node
+RECORDER_STOPS_AT = 2**30  # free bytes; with less space, rosbag record ends its recording
+WHOLE = (-(2**31), 2**31 - 1)  # numbers that fit into a parameter of ROS
 
 
 class Refusal(Exception):
-    """Why a run cannot start, or what is missing at its end, in words for the user."""
+    """The reason why a run cannot start, or what is missing at its end, as a message for the user."""
 
 
 class _Transport(xmlrpc.client.Transport):
@@ -30,7 +30,7 @@ class _Transport(xmlrpc.client.Transport):
 
 
 def _call(uri, name, *arguments):
-    """Calls an XML-RPC method; returns (code, message, value) as ROS has it."""
+    """Calls an XML-RPC method. Returns (code, message, value) as in ROS."""
     with xmlrpc.client.ServerProxy(uri, transport=_Transport()) as server:
         answer = getattr(server, name)("/stg", *arguments)
     if not (isinstance(answer, list) and len(answer) == 3):
@@ -39,7 +39,7 @@ def _call(uri, name, *arguments):
 
 
 def master_is_online(uri):
-    """True when a ROS master listens at `uri`, False when no program does; refuses another program."""
+    """True if a ROS master listens at `uri`, False if no program does. Refuses any other program."""
     address = urllib.parse.urlparse(uri)
     try:
         if not address.hostname or not address.port:
@@ -53,7 +53,7 @@ def master_is_online(uri):
     try:
         if _call(uri, "getPid")[0] == 1:
             return True
-    except Exception:  # whatever speaks there
+    except Exception:  # any other program may answer
         pass
     raise Refusal(
         f"{uri}: a program that is not a ROS master uses this port; end it, or choose a free port"
@@ -62,13 +62,13 @@ def master_is_online(uri):
 
 
 def check_names_are_free(uri, names):
-    """Refuses to displace nodes that are alive: ROS would end them in favour of new ones."""
+    """Refuses names of running nodes, because ROS would end these nodes."""
     for name in names:
         try:
             code, _, node = _call(uri, "lookupNode", name)
             if code == 1 and _call(node, "getPid")[0] == 1:
                 break
-        except Exception:  # registered, and dead
+        except Exception:  # registered, but the node is dead
             pass
     else:
         return
@@ -79,16 +79,16 @@ def check_names_are_free(uri, names):
 
 
 class Turn:
-    """The right to start on a master: a run that starts at the same moment waits until it is given up.
+    """The turn to start on a master. A run that starts at the same time waits until the turn is released.
 
-    Two that start their masters on one port, or their nodes of one name, would end each other.
+    Otherwise two runs that start masters on the same port, or nodes with the same name, would end each other.
     """
 
-    PATIENCE_S = 30.0  # longer than any start; then this one goes on as if it were alone
-    KNOWN_S = 5.0  # for the nodes that were started to tell the master their names
+    PATIENCE_S = 30.0  # longer than any start; after this time the run starts as if it were alone
+    KNOWN_S = 5.0  # time for the started nodes to register at the master
 
     def __init__(self, uri):
-        # The name of a socket without a file goes with its process, however that ends.
+        # The name of a socket without a file disappears with its process in any case.
         self._name = f"\0stg-start-{urllib.parse.urlparse(uri).port}"
         self._socket = socket.socket(socket.AF_UNIX)
 
@@ -106,7 +106,7 @@ class Turn:
         self._socket.close()
 
     def give_up_when_known(self, uri, names):
-        """Lets others start as soon as they could see, at the master, what was started."""
+        """Lets others start as soon as they can see at the master what was started."""
 
         def wait():
             end = time.monotonic() + self.KNOWN_S
@@ -120,12 +120,12 @@ class Turn:
 def _is_known(uri, name):
     try:
         return _call(uri, "lookupNode", name)[0] == 1
-    except Exception:  # it has ended
+    except Exception:  # the process has ended
         return False
 
 
 def check_file_can_be_written(what, path):
-    """Refuses a file whose folder is not there or closed to us."""
+    """Refuses a file whose folder is missing or cannot be written."""
     folder = os.path.dirname(path) or "."
     if os.path.isdir(path):
         raise Refusal(f"{what} '{path}' is a folder")
@@ -136,14 +136,14 @@ def check_file_can_be_written(what, path):
 
 
 def check_numbers(parameters):
-    """Refuses whole numbers that ROS cannot carry; `parameters` are {name: value}."""
+    """Refuses whole numbers that do not fit into a parameter of ROS. `parameters` are {name: value}."""
     for name, value in sorted(parameters.items()):
         if isinstance(value, int) and not WHOLE[0] <= value <= WHOLE[1]:
             raise Refusal(f"{name.rsplit('/', 1)[1]}: {value} is more than {WHOLE[1]}")
 
 
 def check_log_folder():
-    """Refuses to start where no node could write its log: roslaunch would start none of them."""
+    """Refuses to start if no node could write its log, because roslaunch would then start none of them."""
     folder = rospkg.get_log_dir()
     try:
         os.makedirs(folder, exist_ok=True)
@@ -156,7 +156,7 @@ def check_log_folder():
 
 
 def bag_of(node):
-    """Returns the bag that a node is to record, or None."""
+    """Returns the bag that a node records, or None."""
     if (node.package, node.type) != ("rosbag", "record"):
         return None
     for argument in shlex.split(node.args):
@@ -166,7 +166,7 @@ def bag_of(node):
 
 
 def check_bags_are_there(nodes):
-    """Refuses to play bags that are no files."""
+    """Refuses to play bags that are not files."""
     for node in nodes:
         if (node.package, node.type) != ("rosbag", "play"):
             continue
@@ -176,7 +176,7 @@ def check_bags_are_there(nodes):
 
 
 class Outputs:
-    """The files that a run is asked for."""
+    """The files that a run must write."""
 
     def __init__(self, nodes, parameters):
         bags = [bag_of(node) for node in nodes]
@@ -186,7 +186,7 @@ class Outputs:
         self.began = time.time()
 
     def check_before(self):
-        """Refuses what is known not to work, and tells what will be lost."""
+        """Refuses files that cannot be written, and warns about files that will be lost."""
         for bag in self.bags:
             check_file_can_be_written("bag", bag)
             if os.path.exists(bag):
@@ -196,14 +196,14 @@ class Outputs:
             check_file_can_be_written("summary_file", self.summary)
 
     def check_after(self):
-        """Refuses to call a run done when files of it are missing or cut off."""
+        """Raises an error if files of the run are missing or cut off at its end."""
         for bag in self.bags:
             self._check_bag(bag)
         if self.summary:
             self._check_summary()
 
     def full_disks(self):
-        """Returns what to add where a recorder ended early: the bags whose disks are full, if any."""
+        """Returns a text for a recorder that ended early: the bags whose disks are full, if any."""
         full = [f"'{bag}'" for bag in self.bags if self._is_short(bag)]
         return f"; too little space is free on the disk of {', '.join(full)}" if full else ""
 
@@ -231,7 +231,7 @@ class Outputs:
 
     def _check_summary(self):
         if os.path.exists(self.summary) and not os.path.isfile(self.summary):
-            return  # a device or a pipe cannot be read again
+            return  # a device or a pipe cannot be read afterwards
         try:
             with open(self.summary, encoding="utf-8") as file:
                 lines = sum(1 for line in file if line.strip())

@@ -15,7 +15,7 @@ from stg_common.program import run_program
 from stg_common.yaml_files import read_yaml
 
 SHIPPED = SOURCE / "stg_bringup" / "scenarios"
-LONGEST_CHAIN = 20  # of bases
+LONGEST_CHAIN = 20  # largest number of bases
 
 
 def agents_of(scenario):

@@ -66,7 +66,7 @@ def run(target, options):
         command.append(f"-runs={options.runs}")
     environment = dict(os.environ, STG_FUZZ_TARGET=target, LD_LIBRARY_PATH="",
                        STG_SCENARIOS=str(ROOT / "src" / "stg_bringup" / "scenarios"))  # fmt: skip
-    # Inputs are short, and so are the lives of what they allocate.
+    # Inputs are short, and their memory is freed soon.
     environment.setdefault("ASAN_OPTIONS", "quarantine_size_mb=8:malloc_context_size=6")
     log = options.build / "findings" / f"{target}.log"
     with open(log, "wb") as output:

@@ -49,7 +49,7 @@ CONTROLLERS = ("pursuit", "pursuit_separated", "encircle", "idle")
 MOTIONS = ("constant_velocity", "coordinated_turn", "random_waypoint", "evasive")
 MODEMS = ("ideal", "micromodem_fsk_r0", "micromodem_psk_r1", "janus", "evologics_s2c")
 ACCESS = ("periodic", "tdma", "aloha", "slotted_aloha", "csma")
-# What a key may become: a choice, or a number between two; lengths grow with the scenario.
+# Possible values of a key: a choice, or a number between two limits. Lengths are scaled with the scenario.
 CHOICES = {
     "target.motion": MOTIONS,
     "reset.stage": ("easy", "medium", "hard"),
@@ -88,7 +88,7 @@ NUMBERS = {
     "track.measurements.memory_s": (1.0, 60.0),
     "track.neighbour_max_age_s": (0.5, 20.0),
 }
-# Sections of things, each with the key that chooses the thing and the names that read the section.
+# Sections of things: the key that chooses the thing, and the names of the things that read the section.
 THINGS = {
     "channel.physical": ("channel.model", ("physical",)),
     "channel.extended": ("channel.model", ("extended",)),
@@ -131,11 +131,11 @@ def draw(seed):
         keys["vehicle.models"] = r.choices(("torpedo", "kinematic"), k=r.randint(1, 3))
     agents = r.randint(2, 6)
     keys["target.count"] = r.randint(1, 2)
-    if r.random() < 0.3:  # long decisions
+    if r.random() < 0.3:  # with long decisions
         keys.update({"time.decision_steps": r.choice((20, 60, 120)), "sensing.period_s": 0.0,
                      "channel.periodic.transmit_period_s": 120.0})
     for section, (chooser, names) in THINGS.items():
-        if keys.get(chooser) not in names:  # what nothing reads is refused
+        if keys.get(chooser) not in names:  # keys that nothing reads would be refused
             keys = {k: v for k, v in keys.items() if not k.startswith(section + ".")}
     if base.startswith(OF_SEA):
         keys.pop("vehicle.fully_actuated.added_mass_coriolis", None)
@@ -159,7 +159,7 @@ def run(*command):
 
 
 def fly(seed, folder):
-    """Flies one draw, with what it needs in a folder; returns what came of it and its last words."""
+    """Flies one draw in a folder. Returns its result and its last output."""
     tree, controller, autopilot, first = draw(seed)
     file = folder / "drawn.yaml"
     file.write_text(yaml.safe_dump(tree, default_flow_style=None), encoding="utf-8")

@@ -28,7 +28,7 @@ SHOWN_LINES = 80
 
 
 class Test:
-    """One program to run: its name, command, result file, and other names it goes by."""
+    """One program to run: its name, command and result file, and other names for it."""
 
     def __init__(self, name, command, result_file, labels=()):
         self.name = name
@@ -37,7 +37,7 @@ class Test:
         self.labels = labels
 
     def matches(self, pattern):
-        """Whether the name, or that of a source file, contains `pattern`."""
+        """True if the name, or the name of a source file, contains `pattern`."""
         return any(pattern in name for name in (self.name, *self.labels))
 
 
@@ -66,7 +66,7 @@ def lint_test(build_dir):
 
 
 def session_members(session):
-    """Returns the ids of the processes in `session`, which is how nodes of a rostest are found."""
+    """Returns the ids of the processes in `session`; this finds the nodes of a rostest."""
     members = []
     for entry in os.listdir("/proc"):
         if entry.isdigit():
@@ -81,7 +81,7 @@ def session_members(session):
 
 
 def end_session(session):
-    """Interrupts what is left of a test, and kills what does not leave within ten seconds."""
+    """Interrupts the remaining processes of a test, and kills those that still run after ten seconds."""
     for number, patience_s in ((signal.SIGINT, 10.0), (signal.SIGKILL, 2.0)):
         deadline = time.monotonic() + patience_s
         for process in session_members(session):
@@ -94,15 +94,15 @@ def end_session(session):
 
 
 def environment_of(command):
-    """Returns the environment of a test. A Python test finds what lies beside it, which catkin's
-    `nosetests -P` keeps from it."""
+    """Returns the environment of a test. A Python test must find the modules in its folder, which catkin's
+    `nosetests -P` prevents."""
     folders = {os.path.dirname(file) for file in re.findall(r"/\S+\.py(?= )", " ".join(command[4:]))}
     path = os.pathsep.join([*sorted(folders), os.environ.get("PYTHONPATH", "")])
     return dict(os.environ, PYTHONPATH=path)
 
 
 def execute(command, log_path):
-    """Runs `command` in a session of its own; returns its exit status, or None past the limit."""
+    """Runs `command` in its own session. Returns its exit status, or None beyond the time limit."""
     with open(log_path, "wb") as log:
         process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
@@ -118,7 +118,7 @@ def execute(command, log_path):
 
 
 def count_cases(path):
-    """Returns (passed, failures) of a JUnit file, `failures` naming each failed case."""
+    """Returns (passed, failures) of a JUnit file; `failures` names each failed case."""
     passed, failures = 0, []
     for case in ElementTree.parse(path).getroot().iter("testcase"):
         name = f"{case.get('classname', '')}.{case.get('name', '')}"
@@ -130,14 +130,14 @@ def count_cases(path):
 
 
 def skips(path):
-    """Whether a JUnit file has a case that was skipped, which says why nothing ran."""
+    """True if a JUnit file has a skipped case, which explains why nothing ran."""
     return any(case.find("skipped") is not None for case in ElementTree.parse(path).iter("testcase"))
 
 
 def inner_results(result_file):
-    """Returns the files with the cases of each test node, where `result_file` is a rostest's own.
+    """Returns the files with the cases of each test node, if `result_file` is of a rostest.
 
-    A rostest's own file says only whether each node left results, not what they say.
+    The rostest's own file only says if each node left results, and does not contain them.
     """
     if not os.path.basename(result_file).startswith("rostest-"):
         return []
@@ -145,7 +145,7 @@ def inner_results(result_file):
 
 
 def remove_results(result_file):
-    """Removes what an earlier run of a test left, lest it be counted again."""
+    """Removes the results of an earlier run of a test, so that they are not counted again."""
     for path in [result_file] + inner_results(result_file):
         if os.path.exists(path):
             os.remove(path)
@@ -187,7 +187,7 @@ def parse(argv):
 
 
 def main(argv):
-    """Runs the tests that the command line asks for; returns the exit status."""
+    """Runs the tests of the command line; returns the exit status."""
     options = parse(argv)
     build_dir = options.build_dir
     log_dir = os.path.join(build_dir, "test_logs")

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Runs the same networks in `simulate` and in ns-3's UAN module and prints both as a table.
 
-Needs libns3-dev and a compiler; nothing else of the repository does. Both are given the same
-places, the same packets at the same times, the same modem (WHOI Micromodem PSK at rate 3) and the
-same water (Thorp, spreading 1.5, 1500 m/s, Wenz noise), and send by ALOHA.
+Needs libns3-dev and a compiler; nothing else in the repository needs them. Both simulations have the same
+positions, the same packets at the same times, the same modem (WHOI Micromodem PSK at rate 3) and the same
+water (Thorp, spreading 1.5, 1500 m/s, Wenz noise), and use ALOHA.
 """
 
 import argparse
@@ -19,19 +19,19 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 LIBRARIES = [f"-lns3-{name}" for name in ("uan", "mobility", "network", "energy", "core")]
 BYTES = 256
-AIRTIME_S = 3.07 / 2  # one of the two frames of a packet
+AIRTIME_S = 3.07 / 2  # duration of one of the two frames of a packet
 RATE_BPS = round(8 * BYTES / AIRTIME_S)
 KHZ, BAND_HZ, LEVEL_DB, ACQUISITION_DB = 25, 5000, 185, -10
-# ns-3 knows one threshold of the ratio of signal to noise and interference. Ours: half of the
-# frames are lost at -1.5 dB and the receiver is 3 dB worse; other packets of its kind count times
-# bandwidth over bit rate.
+# ns-3 has one threshold for the ratio of signal to noise and interference. In this model, half of the frames
+# are lost at -1.5 dB, and the receiver is 3 dB worse; other packets of the same kind count times bandwidth
+# over bit rate.
 NOISE_DB = 1.5
 INTERFERENCE_DB = NOISE_DB + 10 * math.log10(BAND_HZ / (8 * 512 / 3.07))
 STEADY = "propagation: {shadowing_db: 0.0, rician_k: 1.0e+9}"
 
 
 def build(folder):
-    """Compiles the program on ns-3's side."""
+    """Compiles the program that uses ns-3."""
     program = folder / "uan_network"
     source = HERE / "uan_network.cpp"
     command = ["g++", "-std=c++17", "-O1", str(source), "-o", str(program), *LIBRARIES]
@@ -41,7 +41,7 @@ def build(folder):
 
 
 def poisson(rng, sources, load, packets):
-    """Times and sources of about so many packets at this load of airtime."""
+    """Times and sources of about `packets` packets at this load of airtime."""
     duration = packets * AIRTIME_S / load
     calls, t = [], 0.0
     while True:
@@ -90,7 +90,7 @@ def run_ours(program, folder, places, calls, duration, fading):
 
 
 class Comparison:
-    """Runs networks and prints a row for each."""
+    """Runs networks and prints a row for each of them."""
 
     def __init__(self, simulate, folder):
         self.simulate = simulate
@@ -98,7 +98,7 @@ class Comparison:
         self.program = build(folder)
 
     def row(self, name, places, calls, duration, pairs, threshold, value):
-        """value(sent, delivered) is what is compared; `pairs` are the links that count."""
+        """value(sent, delivered) is the compared number; `pairs` are the links that count."""
         results = [run_ns3(self.program, self.folder, places, calls, duration, threshold)]
         for fading in (False, True):
             results.append(
@@ -109,7 +109,7 @@ class Comparison:
 
 
 def compare(comparison):
-    """All networks."""
+    """Compares all networks."""
     rng = random.Random(1)
     print("| | ns-3 | ours, steady | ours, fading |\n|---|---|---|---|")
     around = [(0.0, 0.0, -20.0)]
