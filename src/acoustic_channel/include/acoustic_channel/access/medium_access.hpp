@@ -64,7 +64,7 @@ MediumAccessRegistry& MediumAccesses();
 /// The rule that the section names, for the nodes and the clock of the run. Throws UserError.
 std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, const RunConfig& run);
 
-/// From one turn of a node to its next one; 0 where that depends on what it sent.
+/// Time between two turns of a node; 0 if it depends on what the node sent.
 TimeNs RoundOf(const ChannelConfig& config, const RunConfig& run);
 
 /// The times at which packets that are offered at decisions can leave. Modems and agents compute

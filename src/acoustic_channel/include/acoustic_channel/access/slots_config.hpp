@@ -10,7 +10,7 @@ struct SlotsConfig {
   double guard_s = 0.6;           ///< of a slot, for the way to the farthest node
   double send_probability = 1.0;  ///< slotted_aloha: chance to send in a slot
 };
-/// The keys of both, and those of slotted_aloha alone.
+/// Adds the keys of both rules, and the keys that only slotted_aloha has.
 void Describe(SlotsConfig* c, config::Table* t);
 void DescribeDraw(SlotsConfig* c, config::Table* t);
 

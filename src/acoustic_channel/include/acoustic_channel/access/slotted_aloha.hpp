@@ -7,9 +7,10 @@
 
 namespace stg::acoustics {
 
-/// Slotted ALOHA (L. G. Roberts 1972): slots of Tdma without owners; a packet that waits
-/// leaves at the start of a slot with probability q. Throughput G exp(-G) at load G where the guard
-/// covers the differences of the ways; without, it falls towards that of pure ALOHA.
+/// Slotted ALOHA (L. G. Roberts 1972): slots of Tdma without owners. A waiting packet leaves at the
+/// start of a slot with probability q. The throughput is G exp(-G) at load G if the guard covers
+/// the differences between the paths. Without a guard it falls towards the throughput of pure
+/// ALOHA.
 class SlottedAloha : public MediumAccess {
  public:
   explicit SlottedAloha(const SlotsConfig& config);

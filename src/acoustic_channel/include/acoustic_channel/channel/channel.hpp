@@ -41,8 +41,8 @@ class Channel {
   virtual bool continuous() const { return false; }
 
   virtual int nodes() const = 0;
-  /// Positions and velocities that Step takes: those of the nodes, and after them those of what
-  /// answers the nodes' pings.
+  /// Number of positions and velocities that Step takes: the nodes, and then the bodies that answer
+  /// the nodes' pings.
   virtual int bodies() const { return nodes(); }
   /// Longest payload of a packet [bytes].
   virtual std::size_t max_payload() const = 0;

@@ -30,9 +30,9 @@ struct PacketInfo {
 struct PacketFate {
   int receiver = 0;
   DropReason reason = DropReason::kNone;  ///< kNone: delivered
-  TimeNs begin = 0, arrival = 0;  ///< of the sound at the receiver; equal where there is no airtime
-  double distance_m = 0.0;        ///< at transmission
-  double travel_time_s = 0.0;     ///< true
+  TimeNs begin = 0, arrival = 0;          ///< of the sound at the receiver; equal without airtime
+  double distance_m = 0.0;                ///< at transmission
+  double travel_time_s = 0.0;             ///< true
   double received_level_db = 0.0;  ///< re 1 uPa; this and the next two are 0 when a model has none
   double noise_level_db = 0.0;     ///< in the receiver's band, without other packets
   double sinr_db = 0.0;            ///< mean over the packet for delivered and garbled ones; else

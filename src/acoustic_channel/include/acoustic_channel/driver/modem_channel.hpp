@@ -14,21 +14,21 @@
 
 namespace stg::acoustics {
 
-/// Where the modems of a swarm are.
+/// The modems of a swarm.
 struct ModemChannelConfig {
   std::string protocol = "s2c";
-  std::vector<std::string> ports;  ///< one a node: tcp://HOST:PORT or a serial device
+  std::vector<std::string> ports;  ///< one per node: tcp://HOST:PORT or a serial device
   std::vector<int> addresses;      ///< of the modems; empty: the nodes and one
   int broadcast = -1;              ///< address of all; -1: the protocol's
   double rssi_offset_db = -190.0;  ///< of s2c
   int baud = 19200;
 };
 
-/// Modems with ports of their own as the channel of a swarm, in real time: a packet offered at a
-/// step goes to its modem when the medium access of the section says so, and what modems receive is
-/// given out in the next step. Where packets come from, how strong they are and when they came is
-/// what modems tell. The distance of a link is not known and stays 0, nor how many packets are
-/// lost: its quality is its freshness.
+/// The channel of a swarm whose modems have ports of their own, in real time. A packet that is
+/// offered at a step goes to its modem when the section's medium access allows it. Received packets
+/// are delivered in the next step. Source, level and time of a packet are the modem's statements.
+/// The distance of a link and the number of lost packets are unknown: the distance is 0, and the
+/// quality of a link is its freshness.
 class ModemChannel : public Channel {
  public:
   /// Opens the ports and starts the thread that serves them. Throws UserError.
@@ -36,7 +36,7 @@ class ModemChannel : public Channel {
   ~ModemChannel() override;
 
   void Reset(std::uint64_t seed, std::uint32_t episode) override;
-  /// No observer: a modem does not know what becomes of its packets.
+  /// There is no observer, because a modem does not know the fate of its packets.
   void Observe(PacketObserver* /*observer*/) override {}
   void SetPresent(int /*node*/, bool /*present*/) override {}
   int nodes() const override { return static_cast<int>(ports_.size()); }
@@ -78,11 +78,11 @@ class ModemChannel : public Channel {
   std::vector<std::unique_ptr<ModemPort>> ports_;  ///< of the thread
   LinkTable table_;
   std::vector<std::uint32_t> sequences_;      ///< [source * nodes + receiver], of packets received
-  std::vector<std::vector<Incoming>> given_;  ///< [nodes], what Deliver handed out last
-  TimeNs offset_ = 0;                         ///< of the channel's time, to the steady clock's
+  std::vector<std::vector<Incoming>> given_;  ///< [nodes], last result of Deliver
+  TimeNs offset_ = 0;  ///< difference between the channel's time and the steady clock
   TimeNs stepped_ = 0;
 
-  mutable std::mutex mutex_;                       ///< of what follows
+  mutable std::mutex mutex_;                       ///< protects the members below
   std::vector<std::optional<Outgoing>> outgoing_;  ///< [nodes]
   std::vector<std::vector<DriverReception>> received_;
   std::vector<Health> health_;

@@ -88,7 +88,7 @@ class ModemDriver {
   virtual std::string CommandFor(const DriverPacket& packet) const = 0;
   virtual std::string PingFor(int address) const = 0;
 
-  // For what is read.
+  // For input.
   void Ask(const std::string& command, TimeNs t);
   /// The unanswered command, without its end of line; empty: none.
   const std::string& asked() const { return asked_; }

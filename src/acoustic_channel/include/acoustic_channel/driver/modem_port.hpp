@@ -10,7 +10,7 @@
 
 namespace stg::acoustics {
 
-/// A driver behind a real port. Times are those of SteadyNow().
+/// A driver behind a real port. All times are from SteadyNow().
 class ModemPort : private DriverWorld {
  public:
   /// An event of one packet at the modem.
@@ -31,7 +31,7 @@ class ModemPort : private DriverWorld {
   ModemPort(const std::string& protocol, const DriverOptions& options, const std::string& where,
             int baud);
 
-  /// Waits for bytes of the ports, or `until`, and processes what is due.
+  /// Waits for bytes of the ports, or for the time `until`, and processes them and all due events.
   static void Serve(const std::vector<ModemPort*>& ports, TimeNs until);
 
   /// For a loop that waits for other streams as well: watch this one, then call Work at next().

@@ -29,8 +29,8 @@ struct ModemPlace {
   double rssi_offset_db = -190.0;
 };
 
-/// A real modem as a node of the simulated water: it sends what the node receives, and the node
-/// sends what it receives.
+/// A real modem as a node of the simulated water. It sends the packets that the node receives, and
+/// the node sends the packets that the modem receives.
 struct GatewayPlace {
   std::string protocol = "s2c";  ///< of DriverProtocols()
   std::string port;              ///< tcp://HOST:PORT or a serial device
@@ -56,9 +56,9 @@ struct ModemFile {
   std::vector<ModemVehicle> vehicles;
 };
 
-/// Reads a file with the list `vehicles`, the address `listen` and what a network's file has: seed,
-/// time, channel. Throws UserError with file, line and key; also where two vehicles share a name,
-/// an id or a port.
+/// Reads a file with the list `vehicles`, the address `listen`, and the keys of a network file:
+/// seed, time, channel. Throws UserError with file, line and key, also if two vehicles share a
+/// name, an id or a port.
 ModemFile LoadModemFile(const std::string& path);
 
 /// Names of protocols; and the reason why a modem with a protocol cannot have the profile (empty:

@@ -26,8 +26,8 @@ class ModemServer : private ModemHosts {
   ModemServer(const ModemFile& file, const std::string& command_log);
 
   ModemWater& water() { return water_; }
-  /// Waits for bytes, the next event of the water, or `until` (time of the network), and processes
-  /// what is due.
+  /// Waits for bytes, for the next event of the water, or for the time `until` (of the network),
+  /// and processes all due events.
   void Serve(TimeNs until);
   /// Whether a vehicle is in the water. The modem of a vehicle outside the water has no power: its
   /// TCP port is closed, its serial line is silent, and it restarts when the vehicle is back.

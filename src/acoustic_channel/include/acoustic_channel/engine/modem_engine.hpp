@@ -27,7 +27,7 @@ struct ModemEvent {
   std::vector<std::uint8_t> payload;  ///< of a packet that the modem could read
 };
 
-/// Connects a modem to its host and to the water. Times are those of the network.
+/// Connects a modem to its host and to the water, in the times of the network.
 class ModemSurroundings {
  public:
   virtual ~ModemSurroundings() = default;
@@ -51,7 +51,7 @@ class ModemSurroundings {
   virtual int AddressOf(int node) const = 0;
 
   virtual const ModemProfile& profile() const = 0;
-  /// Waveforms that the modem decodes besides that of its profile.
+  /// Waveforms that the modem decodes in addition to its profile's.
   virtual void SetWaveforms(std::vector<std::string> waveforms) = 0;
   /// Time of the modem's own clock [s].
   virtual double ClockS(TimeNs t) const = 0;

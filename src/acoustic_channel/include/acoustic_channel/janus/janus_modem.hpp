@@ -32,8 +32,8 @@ class LineReader {
   bool skipping_ = false;
 };
 
-/// A JANUS modem behind lines of words `name=value`, whose names are those of the options of the
-/// public tools janus-tx and janus-rx. JANUS itself defines sound and no protocol with a host.
+/// A JANUS modem whose host sends lines of words `name=value`. The names are options of the public
+/// tools janus-tx and janus-rx. JANUS itself defines only the sound, and no protocol with a host.
 class JanusModem : public ModemEngine {
  public:
   /// @param world must live as long as this object

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-/// JANUS (NATO STANAG 4748): what stands in a packet, and where.
+/// JANUS (NATO STANAG 4748): the content of packets and its layout.
 namespace stg::acoustics::janus {
 
 inline constexpr std::size_t kBaselineBytes = 8;

@@ -18,8 +18,8 @@ T LossProbability(const T& d, const ExtendedConfig& config) {
   return T(1.0) - T(1.0 - config.loss_probability) * Exp(-(x * x));
 }
 
-/// Extended link quality of Eq. 6: attenuation, packet loss and freshness at distance d [m] and
-/// age of information age_s [s], whatever the range.
+/// Extended link quality of Eq. 6 without a limit of the range: attenuation, packet loss and
+/// freshness at distance d [m] and age of information age_s [s].
 template <class T>
 T ExtendedQuality(const T& d, const T& age_s, const ExtendedConfig& config) {
   return (T(1.0) - LossProbability(d, config)) *

@@ -23,8 +23,8 @@ struct ModemConfig {
   double clock_offset_std_s = 0.0;      ///< of a node's clock at the start of an episode
   double clock_drift_std_ppm = 0.0;     ///< of its rate
   double timing_std_s = 0.0;            ///< of a travel time that a modem measures
-  double late_probability = 0.0;        ///< that the travel time is that of a later arrival
-  double late_max_s = 0.1;              ///< largest delay of that arrival
+  double late_probability = 0.0;        ///< probability that a later arrival is measured
+  double late_max_s = 0.1;              ///< largest delay of this arrival
   double freshness_s = 30.0;            ///< decay time of link quality with the age of information
   double source_level_offset_db = 0.0;  ///< added to the source level of every profile
 };

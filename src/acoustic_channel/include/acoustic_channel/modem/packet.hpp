@@ -50,9 +50,9 @@ struct Transmission {
   // For modems with a protocol of their own; only Network reads it.
   PacketKind kind = PacketKind::kData;  ///< kData, kAck or kControl
   const ModemProfile* mode = nullptr;   ///< of the transmission; null: the node's. Outlives the run
-  std::size_t air_bytes = 0;            ///< bytes whose airtime it takes; 0: those of the payload
-  double level_db = 0.0;                ///< added to the source level of the mode
-  std::uint64_t header = 0;             ///< carried along; it has no airtime
+  std::size_t air_bytes = 0;  ///< number of bytes that defines the airtime; 0: the payload's
+  double level_db = 0.0;      ///< added to the source level of the mode
+  std::uint64_t header = 0;   ///< carried along; it has no airtime
 };
 
 /// A packet from a receiver's modem. Every number is finite.

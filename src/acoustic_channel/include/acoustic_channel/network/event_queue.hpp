@@ -49,7 +49,7 @@ class EventQueue {
   TimeNs first() const { return heap_.front().t; }
   bool empty() const { return heap_.empty(); }
 
-  /// @param source, receiver nodes, 0 where there is none
+  /// @param source, receiver nodes; 0 if there is none
   void Push(TimeNs t, EventKind kind, int source, int receiver, int index) {
     const auto order = static_cast<std::uint64_t>(kind) << 56 |
                        static_cast<std::uint64_t>(source) << 28 |

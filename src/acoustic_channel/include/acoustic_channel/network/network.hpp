@@ -60,7 +60,7 @@ class Network {
   /// Discards (kQueue) a packet that still waits in the modem of `source`. False: no packet with
   /// this tag waits there.
   bool Cancel(int source, std::uint32_t tag);
-  /// More waveforms in its band that a node can decode, besides that of its profile.
+  /// More waveforms in its band that a node can decode, in addition to its profile's.
   void SetWaveforms(int node, std::vector<std::string> waveforms);
   /// An absent node neither sends nor receives. Packets that wait in its modem and packets that it
   /// was receiving are lost. Sound that is already in the water continues.

@@ -18,11 +18,11 @@ inline constexpr double kSteadyRicianK = 1e6;
 
 /// Propagation of a signal from one point to another, before any draw.
 struct PathSum {
-  double distance_m = 0.0;      ///< straight
-  double travel_time_s = 0.0;   ///< of the straight path, which is the first
-  double gain_db = 0.0;         ///< minus the transmission loss: sum of the powers of all paths
-  double rician_k = 0.0;        ///< power of the straight path to that of all others, bounded above
-                                ///< by kSteadyRicianK
+  double distance_m = 0.0;     ///< straight
+  double travel_time_s = 0.0;  ///< of the straight path, which is the first
+  double gain_db = 0.0;        ///< minus the transmission loss: sum of the powers of all paths
+  /// Power of the straight path divided by the power of all others, at most kSteadyRicianK.
+  double rician_k = 0.0;
   double delay_spread_s = 0.0;  ///< standard deviation of the delay over the power
   bool blocked = false;         ///< the line is not free; its loss is in gain_db
 };

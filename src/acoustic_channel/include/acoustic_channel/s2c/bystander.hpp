@@ -6,8 +6,8 @@
 
 namespace stg::acoustics::s2c {
 
-/// The modem's side of a further connection beside that of the commanding host: it gets all
-/// notifications, and its commands are refused until it takes control with AT@CTRL.
+/// The modem's side of an additional connection, beside the one of the host with control. It gets
+/// all notifications. Its commands are refused until it takes control with AT@CTRL.
 class Bystander {
  public:
   /// @param net the interpreter of the port: NET, else AT

@@ -13,8 +13,8 @@
 
 namespace stg::acoustics::s2c {
 
-/// Bits of a burst in the second [1/s]. The vendor's documents give no figure for this water; half
-/// of the most that the data sheet of an S2C R 18/34 promises.
+/// Bit rate of a burst [1/s]. The vendor's documents state no rate for this water; it is half of
+/// the largest rate in the data sheet of an S2C R 18/34.
 inline constexpr double kBurstBitrate = 6900.0;
 inline constexpr std::size_t kLongestBurst = 1024;
 
@@ -27,9 +27,10 @@ struct ConnectionSettings {
   std::size_t pool_bytes = 0;  ///< AT!PS, of waiting data
 };
 
-/// The acoustic connection of a modem with another one: it is established when there is data, each
-/// burst of data is acknowledged and repeated, both ends may close it. The rules are ours, since
-/// the vendor's are not public. It has no clock and sends nothing: its modem asks what is to leave.
+/// The acoustic connection of a modem with another one. It is established when there is data. Each
+/// burst of data is acknowledged or repeated, and both ends may close the connection. The rules are
+/// our own, because the vendor's rules are not public. This class has no clock and sends nothing:
+/// the modem asks it for the next packet.
 class Connection {
  public:
   enum class State { kOffline, kEstablish, kOnline, kBackoff };
@@ -47,7 +48,7 @@ class Connection {
   int peer() const { return peer_; }
   std::size_t free_bytes() const;
 
-  // The host. Answers are those of commands.
+  // Calls for the host. They return answers to commands.
   std::string Add(int destination, int pid, const std::string& data, TimeNs t);
   /// Adds bytes of data mode to the waiting ones.
   std::string AddRaw(int destination, const std::string& data, TimeNs t);

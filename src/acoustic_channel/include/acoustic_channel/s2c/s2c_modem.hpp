@@ -32,7 +32,7 @@ ModemProfile BurstMode(const ModemProfile& own);
 
 /// An emulated EvoLogics S2C modem: interpreters AT and NET, instant messages with and without
 /// acknowledgement, synchronous and piggyback messages, bursts over a connection, settings and
-/// queries. Times in notifications are those of the first sound, by the modem's clock.
+/// queries. Times in notifications are the times of the first sound, by the modem's clock.
 class S2cModem : public ModemEngine {
  public:
   /// @param world must live as long as this object

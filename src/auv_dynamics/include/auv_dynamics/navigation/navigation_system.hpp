@@ -39,7 +39,7 @@ class NavigationSystem {
   /// An episode starts in this lane with vehicle i in this state.
   virtual void Reset(int lane, int i, const EpisodeClock& clock,
                      const VehicleState<Pack>& vehicle) = 0;
-  /// After each physics step: clocks and state are those of its end.
+  /// Called after each physics step, with clocks and state at its end.
   /// @param v_WC current at the vehicle, world axes [m/s]
   virtual void Step(int i, const EpisodeClocks& clocks, const VehicleState<Pack>& vehicle,
                     const Vec3<Pack>& v_WC, const Terrain& terrain) = 0;

@@ -43,7 +43,7 @@ struct MotionError {
     double lo = 0.0, hi = 0.0;  ///< of the recorded values
     int motion = 0;             ///< motion of the largest error, 0-based, and its line
     int line = 0;
-    /// The error as a share of the range; 0 where there is no error at all.
+    /// The error as a share of the range; 0 without an error.
     double share() const;
   };
   std::array<Column, kMotionColumns> columns;

@@ -26,10 +26,10 @@ struct SeaConfig {
 
 /// Keys, units and ranges of the section `sea`, which a file may leave out.
 void Describe(SeaConfig* c, config::Table* t);
-/// The file of a bathymetry: the name itself where it ends in .nc; else <name>.nc in a folder of
-/// $STG_TERRAINS (several with
-/// colons between them), else in `terrain` beside the folder of the shipped scenarios. Throws
-/// UserError that names the folders when there is none.
+/// The file of a bathymetry. A name that ends in .nc is the file itself. Otherwise <name>.nc is
+/// searched in the folders of $STG_TERRAINS (separated by colons), and then in `terrain` beside the
+/// folder of the shipped scenarios. Throws UserError that names the folders if there is no such
+/// file.
 std::string TerrainFile(const std::string& name);
 /// Contradictions between its keys.
 std::optional<config::Violation> FindConflict(const SeaConfig& c);

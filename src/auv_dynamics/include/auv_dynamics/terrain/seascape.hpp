@@ -23,7 +23,7 @@ struct Seascape {
 
   /// Height of a point above the bottom [m]; negative inside it.
   double Altitude(const Vec3<double>& p_W) const { return terrain.Altitude(p_W); }
-  /// Distance to the nearest obstacle [m], negative inside one; 1e9 where there is none.
+  /// Distance to the nearest obstacle [m], negative inside one; 1e9 without obstacles.
   double Clearance(const Vec3<double>& p_W) const;
   /// Whether nothing can be between two points in the water.
   bool clear() const { return terrain.flat() && obstacles.empty(); }

@@ -41,7 +41,7 @@ class Terrain {
   /// Throws UserError when the grid does not cover the square.
   Terrain(const Bathymetry& grid, const Datum& datum, double half_size_m);
 
-  /// Height of the bottom [m]; beyond the square that of its edge.
+  /// Height of the bottom [m]. Outside of the square it is the height at the edge.
   double Height(double x, double y) const;
   /// Height of a point above the bottom, straight down [m]; negative inside it.
   double Altitude(const Vec3<double>& p_W) const { return p_W.z - Height(p_W.x, p_W.y); }

@@ -9,9 +9,10 @@ namespace stg::dynamics {
 /// largest rpm.
 bool TurnsPropeller(const VehicleConfig& config, int i);
 
-/// Mechanical power of a torpedo's shaft, P = 2 pi n Q with Q = rho n^2 D^5 K_Q(J) [W]. K_Q is that
-/// of TorpedoModel: linear in the advance number J = inflow speed / (n D) ahead, and that of J = 0
-/// astern. Where the water turns the propeller the power is 0: no energy is recovered.
+/// Mechanical power of a torpedo's shaft, P = 2 pi n Q with Q = rho n^2 D^5 K_Q(J) [W]. K_Q is the
+/// same as in TorpedoModel: ahead it is linear in the advance number J = inflow speed / (n D), and
+/// astern it has the value at J = 0. If the water turns the propeller, the power is 0, because no
+/// energy is recovered.
 /// @param rpm   shaft speed, positive ahead [rpm]
 /// @param speed through the water [m/s]
 template <class T>

@@ -7,9 +7,9 @@
 namespace stg::dynamics {
 
 /// Constants of a torpedo-shaped vehicle: a prolate spheroid, neutrally buoyant, with a propeller,
-/// a rudder and a stern plane at its tail. The defaults are the REMUS 100 of T. I. Fossen's Python
-/// Vehicle Simulator (remus100.py), whose drag and propeller are those of Allen, Vorus and
-/// Prestero, OCEANS 2000, and whose lift of a fin and time constants are his estimates.
+/// a rudder and a stern plane at its tail. The defaults are the REMUS 100 in T. I. Fossen's Python
+/// Vehicle Simulator (remus100.py). Its drag and propeller are from Allen, Vorus and Prestero,
+/// OCEANS 2000; the lift of a fin and the time constants are Fossen's estimates.
 struct TorpedoConfig {
   double length_m = 1.6;     ///< L; the semi-axes are L / 2 and D / 2
   double diameter_m = 0.19;  ///< D

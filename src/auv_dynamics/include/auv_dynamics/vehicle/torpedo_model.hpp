@@ -122,7 +122,7 @@ BodyVelocity<T> TorpedoModel::Acceleration(const Mat3<T>& R_WB, const BodyVeloci
   Vec3<T> n = w.moment - Cross(nu.w, Scale(nu.w, I_G_));
   n.x += z * rigid.y;
   n.y = n.y - z * rigid.x;
-  // Added mass: what is left of C_A.
+  // Added mass: the remaining terms of C_A.
   const T momentum_y = T(A_[1]) * v.y, momentum_z = T(A_[2]) * v.z;
   f.y += momentum_z * p;
   f.z = f.z - momentum_y * p;

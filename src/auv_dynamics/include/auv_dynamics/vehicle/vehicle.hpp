@@ -43,7 +43,7 @@ class Vehicle {
   /// for a vehicle without a controller.
   virtual const Space& actions() const = 0;
 
-  /// Number of packs for the state that is not in VehicleState, such as that of the actuators
+  /// Number of packs for the state that is not in VehicleState, such as the state of the actuators
   /// (shaft speed, fin angles). They are zero when an episode starts.
   virtual int internal_size() const { return 0; }
 

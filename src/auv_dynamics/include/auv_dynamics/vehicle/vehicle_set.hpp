@@ -8,7 +8,7 @@
 namespace stg::dynamics {
 
 /// The vehicles of a world, which may be of several kinds (`vehicle.models`). Their commands and
-/// internal states are in rows of equal length, that of the kind that needs most.
+/// internal states are in rows of equal length: the length that the largest kind needs.
 class VehicleSet {
  public:
   /// @param vehicles number of vehicles

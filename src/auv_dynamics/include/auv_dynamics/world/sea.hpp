@@ -16,7 +16,7 @@ namespace stg::dynamics {
 /// or an obstacle counts once, until the vehicle is free again.
 class Sea {
  public:
-  /// @param region_m as for Seascape, which says what it throws
+  /// @param region_m see Seascape, also for its errors
   Sea(const SeaConfig& config, int vehicles, double region_m);
 
   /// An episode starts in one lane.

@@ -41,7 +41,7 @@ class Separations {
   }
   /// Pairs in contact.
   const T& colliding_pairs() const { return colliding_pairs_; }
-  /// Smallest distance of any two [m]; 1e9 where there is one vehicle only.
+  /// Smallest distance of any two [m]; 1e9 if there is only one vehicle.
   const T& smallest() const { return smallest_; }
 
  private:

@@ -23,8 +23,9 @@ struct Start {
 void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
 
-/// The same in open water: distances and directions in the horizontal plane, depths uniform within
-/// those of `sea`, targets level. All start 5 m or more off the bottom and obstacles.
+/// The same in open water: distances and directions are horizontal, depths are uniform in the
+/// ranges of `sea`, and targets move horizontally. All start 5 m or more from the bottom and
+/// obstacles.
 /// With reset.deploy, vehicles may also start in one place or anywhere.
 void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascape& scape,
                   ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start);

@@ -35,7 +35,7 @@ class ErrorWindow {
     T sum(0.0), slot(0.0);
     for (T& e : errors_) {
       e = Select(slot == next_, error, e);
-      sum += e;  // zero where there is no history yet
+      sum += e;  // zero before the history begins
       slot += one;
     }
     next_ += one;
@@ -54,7 +54,7 @@ class ErrorWindow {
   }
 
  private:
-  /// Keeps the errors from the oldest to the newest; zero where there is no history yet.
+  /// Stores the errors from the oldest to the newest; zero before the history begins.
   T AddInOrder(const T& error) {
     const bool release = mean_ == ErrorMean::kRelease;
     const T one(1.0), length(static_cast<double>(errors_.size()));

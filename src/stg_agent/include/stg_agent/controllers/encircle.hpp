@@ -31,7 +31,7 @@ struct EncircleOptions {
   double smallest_circle = 0.5;    ///< smallest radius far below or above the target, share of d*
   double dodge = 1.5;           ///< largest sideways speed to avoid an AUV, share of the own speed
   double on_circle = 0.5;       ///< an AUV closer to the circle than this share of d* is on it
-  double mate_on_circle = 0.6;  ///< the same for other AUVs, where there is one circle
+  double mate_on_circle = 0.6;  ///< the same for other AUVs, if there is only one circle
   double keep_off_m = 20.0;     ///< horizontal distance to obstacles
   double keep_off_doubt = 1.0;  ///< added to it: so many standard deviations of the own position
   double hurry_from = 0.3;      ///< farther outside than this share of d* it speeds up
@@ -104,7 +104,7 @@ Circler<T> CircleOn(const NeighbourSight<T>& n, const Vec3<T>& p_WT, const Level
       n.p_WN.z};
 }
 
-/// The largest u for which |v_T + u direction| is `speed`; `otherwise` where there is none.
+/// The largest u for which |v_T + u direction| is `speed`; `otherwise` if there is none.
 template <class T>
 T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, const T& otherwise) {
   const T b = Dot(v_T, direction);

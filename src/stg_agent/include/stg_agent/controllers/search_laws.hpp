@@ -36,7 +36,7 @@ struct SearchMapOptions : FoundOptions {
   int courses = 16;
 };
 
-/// The same, tuned for what the next looks can find.
+/// The same, with values for the next looks only.
 struct GreedySearchOptions : SearchMapOptions {
   GreedySearchOptions() {
     horizon_s = 60.0;

@@ -18,7 +18,7 @@ struct Decider {
   std::vector<std::shared_ptr<const Policy>> policies;  ///< one for all AUVs, or one for each AUV
   std::shared_ptr<const EntityPolicy> entities;         ///< acoustic mode only
   std::shared_ptr<const Controller> builtin;
-  bool privileged = false;  ///< a built-in controller reads true states where there are any
+  bool privileged = false;  ///< a built-in controller reads true states, if available
 
   /// True: it decides from the observation; false: from all that the agent knows.
   bool observes() const { return !policies.empty(); }

@@ -50,22 +50,24 @@ struct EntityInput {
   int other_count = 0;
 };
 
-/// Writes the rows; allocates nothing. Their order is that of the input for neighbours, and by
-/// distance for obstacles. The first row of a target is of the one that the AUV is tasked with or
-/// follows, where it has a belief of it; those of the others follow by distance, up to kTargetRows.
+/// Writes the rows; allocates nothing. Neighbours have the order of the input, and obstacles are
+/// sorted by distance. The first row of a target is for the target that the AUV follows, if it has
+/// an estimate of it. The rows of the other targets are sorted by distance. There are at most
+/// kTargetRows.
 ///
-/// Always zero today, because nothing in the agent tells them: of a target the second mixture
-/// component and the last innovation, of a neighbour the share of its packets missed and their
-/// SINR, of an edge the share of the information, and of self the site's noise.
+/// Some numbers are always zero, because the agent does not compute them yet: for a target, the
+/// second mixture component and the last innovation; for a neighbour, the share of its packets
+/// missed and their SINR; for an edge, the share of the information; for the AUV itself, the site's
+/// noise.
 void BuildEntities(const EntityInput& input, Entities* out);
 
 /// The same of an agent after Observe, with its nearest neighbours.
 void BuildEntities(const AgentView& agent, Entities* out);
 
 /// The row about the search: square roots of the map's mass in eight sectors of the frame K, the
-/// first one straight ahead, then to port, of three rings (0 to 400, 900, 2000 m); the mass within
-/// the sensor's reach; entropy over that of an even map; cos, sin of the bearing of the cell with
-/// the largest mass.
+/// first one straight ahead, the next ones to port, for three rings (0 to 400, 900, 2000 m); the
+/// mass within the sensor's reach; the entropy divided by the entropy of a uniform map; cos and sin
+/// of the bearing of the cell with the largest mass.
 /// @param cos_course, sin_course the x axis of K in the world
 /// @param out [kSearchNumbers]
 void BuildSearchRow(const SearchMap& map, const Vec3<double>& p_WB, double cos_course,

@@ -11,10 +11,10 @@
 
 namespace stg::agent {
 
-/// What the numbers of a command mean (docs/packages/stg_agent.md), named in the policy file.
+/// Meaning of the numbers in a command (docs/packages/stg_agent.md). The policy file names it.
 enum class EntityAction {
-  kGuidance,  ///< five: how the law `encircle` is to circle. All zero: as it does by itself
-  kLaw5,      ///< five: the same of the law that the situation asks for
+  kGuidance,  ///< five: guidance of the law `encircle`; all zero: the law without changes
+  kLaw5,      ///< five: the same for the law that fits the situation
   kCourse3    ///< three: change of course, speed and climb; no law
 };
 inline constexpr int CommandSize(EntityAction action) {

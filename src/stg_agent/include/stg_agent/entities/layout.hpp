@@ -1,7 +1,7 @@
 #pragma once
 
-/// The observation layout `stg-2:entities`: what one AUV knows, as a row about itself and any
-/// number of rows about others. docs/packages/stg_agent.md lists every number.
+/// The observation layout `stg-2:entities`: the knowledge of one AUV, as one row about itself and
+/// any number of rows about others. docs/packages/stg_agent.md lists all numbers.
 ///
 /// Frame K of an AUV: origin its own navigated position, x along its course over ground (its
 /// heading below 0.3 m/s), y to port, z up. No number depends on where north is.

@@ -9,7 +9,7 @@ namespace stg::agent {
 /// one that was offered first comes first.
 template <class T>
 struct NearestSlots {
-  Vec3<T> offset[kNeighbourSlots];  ///< zero where there is none
+  Vec3<T> offset[kNeighbourSlots];  ///< zero if there is none
   T distance[kNeighbourSlots] = {T(1e9), T(1e9), T(1e9)};
 
   void Offer(Vec3<T> r, T d) {
@@ -30,7 +30,7 @@ struct NearestSlots {
 /// An AUV's neighbours, from received packets (SeeNeighbours) or from true states (truth mode).
 template <class T>
 struct NeighbourView {
-  Vec3<T> offset[kNeighbourSlots];  ///< in the order of the observation; zero where there is none
+  Vec3<T> offset[kNeighbourSlots];  ///< in the order of the observation; zero if there is none
   T effective = T(0.0);             ///< number of effective neighbours
   T quality = T(0.0);               ///< sum of the link qualities
   T best = T(0.0);                  ///< largest link quality
@@ -41,7 +41,7 @@ struct NeighbourView {
 /// The view of the known neighbours of AUV `self`, whose target is at p_WT [m], in the order of
 /// their indices.
 /// @param sights [agents]
-/// @param own tracking of the AUV itself; its error is the mean error where no neighbour is known
+/// @param own tracking of the AUV itself; its error is the mean error if no neighbour is known
 template <class T>
 NeighbourView<T> SeeNeighbours(const AgentModel& s, int self,
                                const std::vector<NeighbourSight<T>>& sights, const Vec3<T>& p_WT,

@@ -53,9 +53,9 @@ class SightReader {
   int lane_ = 0;
 };
 
-/// Stores all neighbours of an AUV. Each lane has a table of the packets' contents; the sights hold
-/// what a decision needs of all tables, side by side. Both always change together. Fixed capacity
-/// (the swarm); allocates nothing after construction.
+/// Stores all neighbours of an AUV. Each lane has a table with the contents of packets. The sights
+/// have the values of all tables that a decision needs, side by side. Both always change together.
+/// The capacity is fixed (the swarm), and nothing is allocated after construction.
 template <class T>
 class Neighbourhood {
  public:

@@ -24,11 +24,12 @@ namespace stg::agent {
 ///
 /// With task.assignment free the version is 3, and these fields replace the two measurements: the
 /// target that the sender follows 4 (one more than its index; 0: not stated); then
-/// - range: looks 2, of which there is one with five ranges, or two with one range of the first and
-///   two of the second, or two and one. Of a look age 10 (of the second 9: so much earlier), where
-///   the observer was 9 + 9 + 7; of a range the target 4, as above, range 12;
-/// - else two measurements, each its target 4, age 10 and the rest as above; of a sensor that
-///   cannot tell port from starboard one.
+/// - range: looks 2. A look is a time of measurement: there is one with five ranges, or there are
+///   two, with one range of the first and two of the second, or two and one. Each look has age 10
+///   (the second 9, relative to the first) and the position of the observer 9 + 9 + 7. Each range
+///   has the target 4, as above, and range 12;
+/// - otherwise two measurements, each with its target 4, age 10 and the rest as above; or only one,
+///   with a sensor that does not distinguish port from starboard.
 ///
 /// Ranges follow the scenario: positions 1.25 workspace half extents, velocities the vehicle's
 /// limit plus the current, offsets the vehicle's way in the largest age, deviation 1e-5 to 1 half

@@ -102,8 +102,9 @@ class Policy {
   std::vector<Packed> packed_;
 };
 
-/// The policy of AUV `agent`: `path` where it is a file, else <path without .onnx>_<agent>.onnx
-/// where that is one, else `path`. UserError where it has none of its own and AUV 0 has.
+/// The policy file of AUV `agent`: `path` if it is a file, otherwise <path without
+/// .onnx>_<agent>.onnx if this is a file, otherwise `path`. Throws UserError if the AUV has no file
+/// of its own but AUV 0 has one.
 std::string PolicyFileOf(const std::string& path, int agent);
 
 }  // namespace stg::agent

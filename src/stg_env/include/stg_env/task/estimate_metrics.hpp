@@ -7,11 +7,10 @@
 
 namespace stg::task {
 
-/// Errors of the AUVs' own estimates of their targets, where there are estimates [m]. "Own": the
+/// Errors of the AUVs' own estimates of their targets, if there are estimates [m]. "Own": the
 /// vector from the AUV to its target, without the AUV's navigation error. "World": the position in
-/// the world, with that error. Horizontal and vertical errors are separate, because ranges contain
-/// little information about depths. The 95 % values are those of a histogram whose bins are 5 %
-/// wide.
+/// the world, with this error. Horizontal and vertical errors are separate, because ranges contain
+/// little information about depths. The 95 % values are from a histogram whose bins are 5 % wide.
 struct EstimateMetrics {
   double own_rmse = 0.0, own_rmse_tail = 0.0, own_95 = 0.0;        ///< horizontal
   double world_rmse = 0.0, world_rmse_tail = 0.0, world_95 = 0.0;  ///< horizontal

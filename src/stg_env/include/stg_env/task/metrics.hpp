@@ -111,9 +111,9 @@ struct MetricSummary {
   std::vector<double> mean, std;
   int episodes = 0;
 
-  /// Mean of the metric called `name`; 0 where there is none.
+  /// Mean of the metric called `name`; 0 if there is none.
   double Mean(const std::string& name) const;
-  /// Standard deviation of the metric called `name`; 0 where there is none.
+  /// Standard deviation of the metric called `name`; 0 if there is none.
   double Std(const std::string& name) const;
   void Append(const std::string& name, double its_mean, double its_std);
 };

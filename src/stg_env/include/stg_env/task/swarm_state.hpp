@@ -27,8 +27,8 @@ struct FieldState {
   /// Its estimate of the vector from itself to the target, world axes [m]: the offset by which it
   /// steers. Errors of its own navigation are in p_WT, but not in this.
   Vec3<T> r_BT_W;
-  /// Covariance of p_WT, xx xy xz yy yz zz [m^2], with the uncertainty of its navigation; all zero
-  /// where it knows the truth.
+  /// Covariance of p_WT, xx xy xz yy yz zz [m^2], including the uncertainty of its navigation; all
+  /// zero if it knows the truth.
   T covariance[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
   T age_s = T(0.0);  ///< age of the newest observation in the estimate
   // For an AUV with a localizer: the remaining errors of its position and its neighbours'

@@ -22,8 +22,8 @@ class Task {
  public:
   explicit Task(const JudgeConfig& scenario);
 
-  /// Starts an episode of `episode_steps` decisions in some lanes; `swarm` is its first state. The
-  /// state of other lanes must be that of the last Start or Step.
+  /// Starts an episode of `episode_steps` decisions in some lanes; `swarm` is its first state. In
+  /// other lanes, the state must be the same as in the last Start or Step.
   void Start(const Mask<T>& lanes, const SwarmState<T>& swarm, const T& episode_steps);
   /// Judges the decision that led to `swarm`.
   void Step(const SwarmState<T>& swarm);
