@@ -87,7 +87,7 @@ TEST(Attitude, RotationTransposeIsItsInverse) {
 }
 
 TEST(Attitude, RoundTripSurvivesPitch90) {
-  // At the vertical roll and yaw are not unique, the rotation is.
+  // At the vertical, roll and yaw are not unique, but the rotation is.
   for (const double pitch : {kPi / 2, -kPi / 2}) {
     for (const double off : {0.0, 1e-12, -1e-10, 1e-8, 1e-5, -1e-3}) {
       for (const double roll : {-2.0, 0.0, 0.4}) {
@@ -141,7 +141,7 @@ TEST(Attitude, PacksAndScalarsRoundAlike) {
   for (int n = 0; n < 5000; ++n) {
     alignas(64) double a[kLanes], b[kLanes];
     for (int l = 0; l < kLanes; ++l) {
-      // Lanes of very different size take different branches of one evaluation.
+      // Lanes with numbers of very different size need different branches of one evaluation.
       a[l] = angle(random) * (n % 3 == 0 && l % 2 == 0 ? 1e-3 : 1.0);
       b[l] = small(random);
     }

@@ -27,7 +27,7 @@ TEST(IsText, RefusesControlCharactersAndWhatUnicodeCallsIllFormed) {
   EXPECT_FALSE(IsText(std::string(1, '\0')));
 }
 
-/// By the definition, without a table and without an end that comes early.
+/// The distance by its definition, without a table and without an early end.
 std::size_t SlowDistance(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
   const std::string c = a.substr(1), d = b.substr(1);

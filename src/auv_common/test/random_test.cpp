@@ -77,7 +77,7 @@ TEST(Random, NormalHasTheMomentsOfTheStandardNormal) {
       power *= x;
     }
   }
-  // Variances of x, x^2, x^3, x^4 are 1, 2, 15, 96; five deviations.
+  // The variances of x, x^2, x^3, x^4 are 1, 2, 15, 96. The test allows five deviations.
   const double root = 5.0 / std::sqrt(static_cast<double>(kDraws));
   EXPECT_NEAR(sum[1], 0.0, root);
   EXPECT_NEAR(sum[2], 1.0, root * std::sqrt(2.0));

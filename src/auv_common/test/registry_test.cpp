@@ -72,7 +72,7 @@ TEST(Registry, RefusesDuplicatesBadNamesAndEmptyFactories) {
   EXPECT_THROW(shapes.Add("two words", MakeShape<Square>), std::logic_error);
   EXPECT_THROW(shapes.Add("nothing", nullptr), std::logic_error);
   EXPECT_EQ(shapes.Names().size(), 2u);
-  EXPECT_EQ(shapes.Make("disc", 1.0)->area(), 3.0);  // the first one stays
+  EXPECT_EQ(shapes.Make("disc", 1.0)->area(), 3.0);  // the first entry stays
 }
 
 TEST(Registry, FactoryThatMakesNothingIsABug) {

@@ -23,7 +23,7 @@ World PlacedWorld(const WorldScenario& scenario, const std::vector<Vec3<double>>
   return world;
 }
 
-/// World momentum that one step from rest gives to vehicle i, at zero attitude [N s].
+/// World momentum that vehicle i gets in one step from rest, at zero attitude [N s].
 Vec3<double> Momentum(const World& world, int i) {
   const Vec3<double> v = Lane(world.vehicle(i).v_WB, 0);
   return {v.x * kSurgeMass, v.y * kSwayMass, v.z * kSwayMass};
@@ -65,7 +65,7 @@ TEST(Contact, VehiclesApartFeelNothing) {
 }
 
 TEST(Contact, ForceIsFeltInBodyAxesOfATurnedVehicle) {
-  // Bow of vehicle 0 along world y, so that a push along x is a sway force.
+  // The bow of vehicle 0 points along world y, so a push along x is a sway force.
   WorldScenario scenario = ContactScenario(2);
   World world = PlacedWorld(scenario, {{0.0, 0.0, 0.0}, {0.02, 0.0, 0.0}});
   VehicleState<Pack>& s = world.mutable_vehicle(0);
@@ -81,8 +81,8 @@ TEST(Contact, ForceIsFeltInBodyAxesOfATurnedVehicle) {
 TEST(Contact, JoinsTheCommandBeforeTheActuatorLimit) {
   World world = PlacedWorld(ContactScenario(2), {{0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}});
   std::vector<Wrench<Pack>> tau = NoForce(2);
-  tau[0].force.x = Pack(-35.0);  // away from contact at full thrust: contact adds nothing
-  tau[1].force.x = Pack(-35.0);  // into contact: contact takes from it
+  tau[0].force.x = Pack(-35.0);  // full thrust away from the contact: contact adds nothing
+  tau[1].force.x = Pack(-35.0);  // full thrust into the contact: contact takes from it
   world.Step(tau);
   const double force = 0.1 * std::log1p(std::exp(12.0));
   EXPECT_NEAR(Momentum(world, 0).x, -3.5, 1e-13);
@@ -93,7 +93,7 @@ TEST(Contact, PairsCloserThanTwoRadiiAreCounted) {
   const std::vector<Vec3<double>> p{
       {0.0, 0.0, 0.0}, {0.0219, 0.0, 0.0}, {0.0, 0.0221, 0.0}, {0.0, 0.0, -0.010}};
   const World world = PlacedWorld(ContactScenario(4), p);
-  EXPECT_EQ(Lane(world.colliding_pairs(), 0), 2.0);  // 0-1 and 0-3
+  EXPECT_EQ(Lane(world.colliding_pairs(), 0), 2.0);  // the pairs 0-1 and 0-3
   EXPECT_NEAR(Lane(world.smallest_separation(), 0), 0.010, 1e-15);
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {

@@ -1,4 +1,4 @@
-// Numbers from outside that a node would trip over are told from those it can use.
+// A node must refuse numbers from outside that it cannot use, and take the others.
 
 #include "auv_dynamics/nodes/conversions.hpp"
 
@@ -55,7 +55,8 @@ TEST(FinitePose, RefusesAQuaternionThatIsNoRotation) {
 TEST(UsableDetection, TakesWhatASensorOfTheLongestRangeTells) {
   Detection d;
   d.kind = MeasurementKind::kRange;
-  d.range_m = d.std_m = 1e5;  // a range says nothing of the direction: anywhere around
+  // A range says nothing about the direction, so the target may be anywhere around.
+  d.range_m = d.std_m = 1e5;
   d.range_std_m = 1e4;
   auv_msgs::TargetDetection m;
   nodes::SetDetection(d, &m);

@@ -9,7 +9,7 @@
 namespace stg::dynamics {
 namespace {
 
-/// What one world does in one lane: every number that a caller may read.
+/// All numbers of one world in one lane that a caller may read.
 using Record = std::vector<double>;
 
 void Append(const Vec3<double>& v, Record* out) { out->insert(out->end(), {v.x, v.y, v.z}); }
@@ -114,7 +114,7 @@ TEST(Lanes, OrderOfTheLanesDoesNotMatter) {
 }
 
 TEST(Lanes, ScalarIntegratorEqualsTheWorldBitForBit) {
-  // A program that steps one vehicle with doubles gets the World's numbers.
+  // A program that steps one vehicle with doubles gets the same numbers as the World.
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
     WorldScenario scenario = QuietScenario(1);
     scenario.world.vehicle.integrator = integrator;

@@ -1,4 +1,4 @@
-// Dead reckoning against the closed forms of its error model, over many episodes.
+// Compares dead reckoning with the closed forms of its error model, over many episodes.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace stg::dynamics {
 namespace {
 
-/// A vehicle that flies as told in open water with dead reckoning that has no errors yet.
+/// Open water, a vehicle that moves as commanded, and dead reckoning without errors.
 WorldScenario DriftScenario() {
   WorldScenario s = QuietScenario(1);
   s.world.vehicle.model = "kinematic";
@@ -29,7 +29,7 @@ WorldScenario DriftScenario() {
   return s;
 }
 
-/// Horizontal error along and across the way, and what was stated, of every episode.
+/// Horizontal error along and across the way, and the stated error, of every episode.
 struct Drift {
   std::vector<double> along, across, stated, squared;  ///< squared: error over variance, 2 numbers
   double distance_m = 0.0;
@@ -41,7 +41,7 @@ double Rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Flies `seconds` at 2 m/s and a turn rate in `rounds` times kLanes episodes.
+/// Flies `seconds` at 2 m/s with a given turn rate, in `rounds` times kLanes episodes.
 Drift Fly(const WorldScenario& s, double seconds, double turn_radps, int rounds,
           double depth = 40.0) {
   Drift drift;
@@ -74,7 +74,7 @@ Drift Fly(const WorldScenario& s, double seconds, double turn_radps, int rounds,
 }
 
 constexpr int kRounds = 100;
-/// Five standard deviations of a standard deviation that is estimated from so many episodes.
+/// Five standard deviations of a standard deviation that kRounds * kLanes episodes estimate.
 double Tolerance(double std) { return 5.0 * std / std::sqrt(2.0 * kRounds * kLanes); }
 
 TEST(DeadReckoning, WithoutErrorsItIsTheTruth) {
@@ -130,7 +130,8 @@ TEST(DeadReckoning, GyroWalkGrowsWithThePowerThreeHalvesOfTime) {
   WorldScenario s = DriftScenario();
   s.world.navigation.gyro_walk_deg_per_sqrt_h = 2.0;
   const Drift drift = Fly(s, 400.0, 0.0, kRounds);
-  // Integral of a Wiener process of the heading times the speed: q v T^(3/2) / sqrt(3).
+  // The error is the speed times the integral of the heading's Wiener process: q v T^(3/2) /
+  // sqrt(3).
   const double expected = 2.0 * kPi / 180.0 / 60.0 * 2.0 * std::pow(400.0, 1.5) / std::sqrt(3.0);
   EXPECT_NEAR(Rms(drift.across), expected, Tolerance(expected) + 0.01 * expected);
   EXPECT_NEAR(drift.stated.front(), expected, 0.02 * expected);
@@ -168,7 +169,7 @@ TEST(DeadReckoning, AFixThatIsToldComesOnceForEachTimeAtTheSurface) {
       errors.push_back(nav.p_WF.y - truth.y);
     }
     if (round > 0) continue;
-    // It stays the newest one for ten minutes, or until the vehicle has been under.
+    // The vehicle keeps this fix for ten minutes, or until it has dived.
     for (int k = 0; k < steps(599.0); ++k) world.Step(ahead);
     EXPECT_EQ(world.Nav(0, 0).fix_stamp, 71'000'000'000);
     for (int k = 0; k < steps(1.0); ++k) world.Step(ahead);
@@ -178,7 +179,7 @@ TEST(DeadReckoning, AFixThatIsToldComesOnceForEachTimeAtTheSurface) {
     p_WB.z = Pack(-0.1);
     for (int k = 0; k < steps(31.0); ++k) world.Step(ahead);
     EXPECT_EQ(world.Nav(0, 0).fix_stamp, 712'000'000'000);
-    // No fix has corrected what the navigation reckons.
+    // No fix has corrected the position that navigation reckons.
     const Vec3<double> still = world.Nav(0, 0).p_WB - world.Truth(0, 0).p_WB;
     EXPECT_NEAR(still.x, off.x, 1e-9);
     EXPECT_NEAR(still.y, off.y, 1e-9);
@@ -196,7 +197,7 @@ TEST(DeadReckoning, CurrentDriftsItWhereTheLogHasNoBottom) {
   };
   const Drift over_ground = drifted(100.0), in_water = drifted(50.0);
   EXPECT_NEAR(std::hypot(over_ground.along[0], over_ground.across[0]), 0.0, 1e-9);
-  // It finds out with its first ping.
+  // The first ping of the log, at 1 s, shows that there is no bottom. The drift lasts from then on.
   EXPECT_NEAR(std::hypot(in_water.along[0], in_water.across[0]), 0.2 * 99.0, 1e-9);
   EXPECT_NEAR(in_water.stated[0], 0.2 * 99.0, 1e-9);
 }
@@ -206,7 +207,7 @@ TEST(DeadReckoning, AFixAtTheSurfaceBoundsTheError) {
   s.world.navigation.start_std_m = 100.0;
   s.world.navigation.gps_std_m = 3.0;
   const Drift drift = Fly(s, 10.0, 0.0, kRounds, 0.1);
-  // Ten fixes and a prior.
+  // Ten fixes of 3 m and the prior of 100 m.
   const double expected = 1.0 / std::sqrt(10.0 / 9.0 + 1e-4);
   EXPECT_NEAR(Rms(drift.along), expected, Tolerance(expected));
   EXPECT_NEAR(drift.stated.front(), expected, 1e-9);
@@ -229,8 +230,8 @@ TEST(DeadReckoning, DepthIsThePressureGauges) {
 }
 
 TEST(DeadReckoning, StatesWhatItIsOffBy) {
-  // Everything at once, straight on and in circles; the stated deviation is that of the worst
-  // direction, so the squared error over it is at most two on the mean.
+  // All errors act at once, on a straight way and in circles. The stated deviation is the one of
+  // the worst direction, so the mean squared error over its square is at most two.
   WorldScenario s = DriftScenario();
   NavigationConfig defaults;
   defaults.kind = "dead_reckoning";
@@ -271,7 +272,7 @@ TEST(DeadReckoning, LanesAreEpisodesOfTheirOwn) {
   const std::vector<Pack> command{Pack(2.0), Pack(0.05), Pack(0.1)};
   for (int lane = 0; lane < kLanes; ++lane) together.Reset(lane, 7, 0, ResetStage::kMedium);
   for (int k = 0; k < 33; ++k) together.Step(command);
-  together.Reset(0, 11, 2, ResetStage::kMedium);  // the others are in the middle of a ping
+  together.Reset(0, 11, 2, ResetStage::kMedium);  // the other lanes are between two pings
   for (int k = 0; k < 57; ++k) together.Step(command);
   for (int lane = 0; lane < kLanes; ++lane) alone.Reset(lane, 11, 2, ResetStage::kMedium);
   for (int k = 0; k < 57; ++k) alone.Step(command);

@@ -8,12 +8,12 @@
 #include "auv_dynamics/vehicle/fully_actuated.hpp"
 #include "physics.hpp"
 
-/// Vehicles, target motions and sensors of another program, flown by World.
+/// World flies vehicles, target motions and sensors of another program.
 namespace stg::dynamics {
 namespace {
 
-/// Moves at the commanded velocity over ground, pushed by contact and disturbance; its internal
-/// state counts the steps of the episode and the sum of the commanded x.
+/// Moves at the commanded velocity over ground. Contact and disturbance push it. Its internal state
+/// counts the steps of the episode and adds up the commanded x.
 class Cart : public Vehicle {
  public:
   const Space& actuators() const override { return actuators_; }
@@ -27,7 +27,7 @@ class Cart : public Vehicle {
     s->v_WB_B = s->R_WB.TransposeTimes(v + around.v_WC);
     FollowQuaternion(s);
     s->p_WB += s->v_WB * Pack(dt) + around.contact_W * Pack(0.01);
-    s->rpy.x = internal[0];  // where a test can read it
+    s->rpy.x = internal[0];  // a test can read it there
     s->rpy.y = internal[1];
   }
 
@@ -35,7 +35,7 @@ class Cart : public Vehicle {
   Space actuators_{{"v_x", "m/s", -9.0, 9.0}, {"v_y", "m/s", -9.0, 9.0}, {"v_z", "m/s", -9.0, 9.0}};
 };
 
-/// Straight up, the faster the higher its index; counts the starts of each lane.
+/// Moves straight up. A target with a higher index is faster. Counts the resets of each lane.
 class Lift : public SteeredMotion {
  public:
   explicit Lift(const MotionSetup& setup) : SteeredMotion(setup) {}
@@ -50,7 +50,7 @@ class Lift : public SteeredMotion {
 };
 std::array<int, kLanes> Lift::resets{};
 
-/// Sees every second step, and says where the target is from the vehicle.
+/// Senses in every second step. Tells the vector from the vehicle to the target.
 class Blinker : public TargetSensor {
  public:
   MeasurementKind kind() const override { return MeasurementKind::kPosition; }
@@ -64,7 +64,7 @@ class Blinker : public TargetSensor {
   }
 };
 
-/// Adds them once, however many tests run.
+/// Registers them once, however many tests run.
 void AddOutsiders() {
   if (Vehicles().Has("cart")) return;
   Vehicles().Add("cart", [](const VehicleConfig&) { return std::make_unique<const Cart>(); });
@@ -105,11 +105,12 @@ TEST(Outside, VehicleFeelsContactAndWalls) {
   world.Place(0, {{0.0, 0.0, 0.0}, {1.5, 0.0, 9.99}}, {{0.0, 5.0, 0.0}}, {{0.0, 0.0, 0.0}});
   const std::vector<Pack> still(6, Pack(0.0));
   world.Step(still);
-  EXPECT_EQ(Lane(world.vehicle(0).p_WB.x, 0), 0.0);   // 10 m apart
-  EXPECT_EQ(Lane(world.vehicle(1).p_WB.z, 0), 10.0);  // the current's 0.05 m end at the wall
+  EXPECT_EQ(Lane(world.vehicle(0).p_WB.x, 0), 0.0);  // 10 m apart
+  // The current would add 0.05 m, but the wall stops it.
+  EXPECT_EQ(Lane(world.vehicle(1).p_WB.z, 0), 10.0);
   world.Place(0, {{0.0, 0.0, 0.0}, {1.5, 0.0, 0.0}}, {{0.0, 5.0, 0.0}}, {{0.0, 0.0, 0.0}});
   world.Step(still);
-  // 0.5 m of overlap at 100 N/m, 0.01 m per newton.
+  // The overlap of 0.5 m gives 50 N at 100 N/m. A cart moves 0.01 m per newton.
   EXPECT_NEAR(Lane(world.vehicle(0).p_WB.x, 0), -0.5, 1e-9);
   EXPECT_NEAR(Lane(world.vehicle(1).p_WB.x, 0), 2.0, 1e-9);
 }
@@ -161,7 +162,7 @@ TEST(Outside, SensorSeesWhatItLooksAt) {
   ASSERT_TRUE(world.Sense(0, 1, 1, &detection));
   EXPECT_EQ(Norm(detection.p_WT - Vec3<double>{-3.0, -5.0, 0.0}), 0.0);
   EXPECT_EQ(detection.target, 1);
-  EXPECT_EQ(detection.std_m, 3.0);  // pair 1 * 2 + 1, at time 0
+  EXPECT_EQ(detection.std_m, 3.0);  // the index of the pair is 1 * 2 + 1, and the time is 0
   const std::vector<Pack> still(6, Pack(0.0));
   world.Step(still);
   EXPECT_FALSE(world.Sense(0, 1, 1, &detection));

@@ -11,14 +11,14 @@
 /// What the physics tests share.
 namespace stg::dynamics {
 
-/// REMUS 100 without velocity limits: the equations alone.
+/// REMUS 100 without velocity limits, so that the equations act alone.
 inline VehicleConfig FreeVehicle() {
   VehicleConfig c;
   c.clip_velocity = false;
   return c;
 }
 
-/// The simulator of the authors' release.
+/// The vehicle of the simulator that the authors released.
 inline VehicleConfig ReleaseVehicle() {
   VehicleConfig c;
   c.profile = "release";

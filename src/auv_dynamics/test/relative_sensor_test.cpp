@@ -1,4 +1,4 @@
-// Sensors of range and bearing: their statistics, their geometry and the frame they tell it in.
+// Sensors of range and bearing: their statistics, their geometry, and the frame of what they tell.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class RelativeSensorTest : public ::testing::Test {
     s_.world.sensing.range_m = 600.0;
   }
 
-  /// Looks `looks` times, with new draws each.
+  /// Takes `looks` detections, each with new random draws.
   std::vector<Detection> Look(const Vec3<double>& r, int looks) {
     std::vector<Detection> all;
     World world(s_);
@@ -103,7 +103,7 @@ TEST_F(RelativeSensorTest, OutliersAndFalseAlarmsAreUniformInRange) {
 
   config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".outlier_probability=0.0"});
   config::Override(&s_, {"sensing." + s_.world.sensing.sensor + ".false_alarm_probability=0.3"});
-  const auto alarms = Look({900.0, 0.0, 0.0}, 3000);  // nothing is there
+  const auto alarms = Look({900.0, 0.0, 0.0}, 3000);  // no target is within range
   EXPECT_NEAR(static_cast<double>(alarms.size()), 900.0, 5.0 * std::sqrt(3000.0 * 0.21));
   EXPECT_NEAR(Of(alarms, [](const Detection& d) { return d.range_m; }).mean, 300.0,
               5.0 * 600.0 / std::sqrt(12.0 * 900.0));
@@ -171,7 +171,7 @@ TEST_F(RelativeSensorTest, TellsInTheFrameOfItsOwnNavigation) {
     ASSERT_TRUE(world.Sense(0, 0, 0, &d));
     EXPECT_LT(Norm(d.p_WO - nav.p_WB), 1e-12);
     EXPECT_EQ(d.p_WO_std_m, nav.position_std_m);
-    // At rest the true attitude is level and east, so the told one is the heading's error.
+    // At rest the true attitude is level and east. The stated one differs by the heading's error.
     const Vec3<double> told = RotationOf(nav.q_WB) * r + nav.p_WB;
     EXPECT_LT(Norm(d.p_WT - told), 1e-6) << sensor;
   }

@@ -17,7 +17,7 @@ void ExpectWithin(double value, const config::Interval& interval) {
 }
 
 TEST(Reset, DrawsLieInTheIntervalsOfEachStage) {
-  // Table S2 and the release's easy stage, written out.
+  // The numbers of Table S2 and of the release's easy stage.
   const config::Interval radius[3] = {{0.05, 0.20}, {0.25, 0.55}, {0.45, 0.75}};
   const config::Interval distance[3] = {{0.08, 0.20}, {0.25, 0.45}, {0.40, 0.70}};
   const config::Interval speed[3] = {{0.001, 0.004}, {0.003, 0.008}, {0.006, 0.014}};
@@ -75,7 +75,7 @@ struct Directions {
   void ExpectUniform() const {
     const double five = 5.0 * std::sqrt(n / 3.0);
     EXPECT_LT(std::max({std::abs(sum.x), std::abs(sum.y), std::abs(sum.z)}), five);
-    // Of a uniform direction z is uniform in [-1, 1]: z^2 has mean 1/3, variance 4/45.
+    // The z of a uniform direction is uniform in [-1, 1], so z^2 has mean 1/3, variance 4/45.
     EXPECT_NEAR(z2, n / 3.0, 5.0 * std::sqrt(n * 4.0 / 45.0));
     double chi2 = 0.0;
     for (const int count : octant) chi2 += (count - n / 8.0) * (count - n / 8.0) / (n / 8.0);

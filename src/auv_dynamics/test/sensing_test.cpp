@@ -56,9 +56,9 @@ TEST(Sensing, DetectionCarriesStampTargetAndStatedNoise) {
   EXPECT_EQ(detection.std_m, 0.01);
   Detection again;
   ASSERT_TRUE(world.Sense(0, 0, 1, &again));
-  EXPECT_EQ(Norm(again.p_WT - detection.p_WT), 0.0);  // asking twice is one measurement
+  EXPECT_EQ(Norm(again.p_WT - detection.p_WT), 0.0);  // two questions give one measurement
   ASSERT_TRUE(world.Sense(0, 1, 1, &again));
-  EXPECT_GT(Norm(again.p_WT - detection.p_WT), 0.0);  // another sensor, another error
+  EXPECT_GT(Norm(again.p_WT - detection.p_WT), 0.0);  // another sensor has another error
 }
 
 TEST(Sensing, DetectionProbabilityIsMetWithinBinomialBounds) {

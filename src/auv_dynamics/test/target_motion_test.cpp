@@ -77,7 +77,7 @@ void CheckLimits(const WorldScenario& scenario, World* world, int steps) {
 TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
   for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
     WorldScenario scenario = TargetScenario(motion);
-    // As fast as the reset stage may start it: fast enough to meet every wall.
+    // The reset stage may start it this fast. It then meets every wall.
     scenario.world.reset.stages[2].target_speed_mps = {0.01, 0.05};
     if (motion == "evasive") config::Override(&scenario, {"target.evasive.range_m=1"});
     World world(scenario);
@@ -104,7 +104,7 @@ TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
     world.Step(NoForce(1));
     turned += AngleBetween(before, Lane(world.target(0).v_WT, 0));
   }
-  // Rates are uniform in [0, 0.2] rad/s, 4000 of them; five deviations.
+  // The 4000 rates are uniform in [0, 0.2] rad/s. The test allows five deviations.
   EXPECT_NEAR(turned / (0.1 * kSteps), 0.1, 5.0 * 0.2 / std::sqrt(12.0 * 4000.0));
 }
 
@@ -151,7 +151,7 @@ struct Tour {
   int visited = 0, skipped = 0, longest_wait = 0;
 };
 
-/// Follows a target through its waypoints, in order; it may skip a few of them.
+/// Follows a target through its waypoints in order. The target may skip a few of them.
 Tour FollowTour(const WorldScenario& scenario, std::uint64_t seed, int steps) {
   World world(scenario);
   world.Reset(0, seed, 0, ResetStage::kHard);
@@ -178,10 +178,11 @@ TEST(TargetMotion, WaypointTargetVisitsItsWaypointsInOrderAndNeverOrbitsOne) {
   WorldScenario scenario = TargetScenario("random_waypoint");
   for (const double speed : {0.02, 0.05}) {
     scenario.world.reset.stages[2].target_speed_mps = {speed, speed};
-    // Two ways along the diagonal of the waypoint cube, and a turn.
+    // Time for two ways along the diagonal of the waypoint cube and a turn, in steps.
     const int patience = static_cast<int>(2.0 * 1.6 * std::sqrt(3.0) / speed / 0.1) + 300;
     Tour sum;
-    // At 0.05 m/s a turn is wider than the arrival radius: some of these seeds would orbit.
+    // At 0.05 m/s the turning circle is wider than the arrival radius. In some of these seeds a
+    // target would circle a waypoint for ever.
     for (std::uint64_t seed = 20; seed < 60; ++seed) {
       const Tour tour = FollowTour(scenario, seed, 16000);
       EXPECT_LT(tour.longest_wait, patience) << "seed " << seed << " speed " << speed;

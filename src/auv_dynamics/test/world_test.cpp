@@ -77,7 +77,7 @@ TEST(World, NamesTheVehicleWhoseStateIsNotFinite) {
   }
 }
 
-/// Vehicle 0 of a release world, moved to p with body velocity v at zero attitude.
+/// Vehicle 0 of the release, at p with body velocity v and zero attitude.
 World AtWall(const Vec3<double>& p, const Vec3<double>& v) {
   WorldScenario scenario = QuietScenario(1);
   scenario.world.vehicle = ReleaseVehicle();
@@ -195,7 +195,7 @@ TEST(World, DisturbanceHasItsStationaryDeviationAndCorrelationTime) {
     world.Step(NoForce(1));
     for (int l = 0; l < kLanes; ++l) {
       const auto i = static_cast<size_t>(l);
-      // Without damping or turning, the change of surge speed is the force.
+      // Without damping or turning, the change of surge speed shows the force.
       const double speed = Lane(world.vehicle(0).v_WB_B.x, l);
       const double z = (speed - previous_speed[i]) * 33.9 / 0.1 / 3.0;
       squares += z * z;
@@ -218,7 +218,7 @@ TEST(World, DisturbanceIsNotLimitedByTheActuators) {
   World world(scenario);
   world.Reset(0, 12, 0, ResetStage::kMedium);
   world.Step(NoForce(1));
-  EXPECT_EQ(std::abs(Lane(world.vehicle(0).v_WB_B.x, 0)), 1.5);  // beyond 35 N in one step
+  EXPECT_EQ(std::abs(Lane(world.vehicle(0).v_WB_B.x, 0)), 1.5);  // 35 N would give less in one step
 }
 
 TEST(World, StepAllocatesNothing) {
@@ -245,7 +245,7 @@ TEST(World, StepAllocatesNothing) {
       EXPECT_EQ(Lane(world.vehicle(0).p_WB.x, 0), 1.0);
     }
   }
-  EXPECT_GT(allocations, 0U);  // the counter counts
+  EXPECT_GT(allocations, 0U);  // the counter works
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Agents that explore: what they record is what they flew, with the probability that their policy
-// gives it, and a seed makes the same episode whenever it is flown.
+// Agents that explore. They record what they flew, with the probability that their policy gives it.
+// A seed makes the same episode whenever it is flown.
 
 #include <auv_msgs/AgentStep.h>
 #include <auv_msgs/Reset.h>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kTolerance = 1e-9;
 
-/// What AUVs recorded and where they were.
+/// What the AUVs recorded, and where they were.
 struct Episode {
   std::map<std::uint32_t, std::vector<auv_msgs::AgentStep>> records;  ///< [step][agents]
   std::map<std::uint32_t, std::vector<dynamics::NavState>> states;    ///< [step][agents]
@@ -57,7 +57,7 @@ class Listener {
     }
   }
 
-  /// The episode of a number, as far as all AUVs' messages of a step are in.
+  /// The episode of this number. A step is in it if the messages of all AUVs have come.
   Episode Find(std::uint32_t number) const {
     Episode episode;
     for (const auto& [stamp, row] : steps_) {
@@ -75,7 +75,7 @@ class Listener {
     return episode;
   }
 
-  /// Listens until `number` is whole, or 20 s have passed.
+  /// Listens until the episode `number` is complete or 20 s have passed.
   Episode WaitFor(std::uint32_t number, int steps) const {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(20.0);
     Episode episode;
@@ -94,7 +94,7 @@ class Listener {
   std::vector<ros::Subscriber> subscribers_;
 };
 
-/// Two episodes of one seed: the run's first one, and one that a reset asks for later.
+/// Two episodes of one seed: the first one of the run, and one that a reset asks for later.
 class Explore : public testing::Test {
  protected:
   static void SetUpTestSuite() {

@@ -1,4 +1,4 @@
-// The graph of nodes in lockstep flies the very same episodes as the environment in one process.
+// The nodes in lockstep fly exactly the same episodes as the environment in one process.
 
 #include <auv_msgs/AgentStep.h>
 #include <auv_msgs/EpisodeSummary.h>
@@ -26,11 +26,12 @@ namespace stg::nodes {
 namespace {
 
 constexpr TimeNs kFirstStamp = 1'000'000'000;
-/// Of metrics: the share of the limits is found again from a wrench by a division, which rounds.
+/// Tolerance of metrics. The nodes divide a wrench by the limits to get the shares back, and this
+/// rounds.
 constexpr double kTolerance = 1e-12;
 constexpr int kEpisodes = 2;
 
-/// What the graph published, by index of the stamp (steps 0 to T of each episode in a row).
+/// What the nodes published, by the index of the stamp (steps 0 to T of each episode in a row).
 struct Flight {
   std::map<int, std::vector<dynamics::NavState>> states;
   std::map<int, std::vector<auv_msgs::AgentStep>> decisions;
@@ -38,7 +39,7 @@ struct Flight {
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries;
 };
 
-/// Listens until all of kEpisodes is in, or a minute has passed.
+/// Listens until all messages of kEpisodes have come or a minute has passed.
 /// @param silent AUV whose agent does not tell what it sees and decides; -1: none
 Flight Listen(const Scenario& s, int silent) {
   Flight flight;
@@ -49,8 +50,9 @@ Flight Listen(const Scenario& s, int silent) {
   const auto agents = static_cast<std::size_t>(s.run.agents);
   const int telling = silent < 0 ? s.run.agents : s.run.agents - 1;
   int missing = kEpisodes * s.run.time.episode_steps * (s.run.agents + telling);
-  // Not compared: the state after the last step, which decides nothing, and the episodes after
-  // these, which may come from one AUV before the last of these come from another.
+  // The test does not compare the state after the last step, because nothing is decided there. It
+  // does not compare later episodes: one AUV may begin them before the last messages of another AUV
+  // come.
   const auto count = [&](int index) {
     const bool compared = index < kEpisodes * (s.run.time.episode_steps + 1) &&
                           index % (s.run.time.episode_steps + 1) < s.run.time.episode_steps;
@@ -61,13 +63,14 @@ Flight Listen(const Scenario& s, int silent) {
   for (int i = 0; i < s.run.agents; ++i) {
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> callback =
         [&, i](const nav_msgs::Odometry::ConstPtr& m) {
-          // Between two decisions navigation goes to autopilots alone.
+          // Odometry between two decisions is for autopilots only.
           if ((NsOf(m->header.stamp) - kFirstStamp) % s.run.decision_period() != 0) return;
           const int index = index_of(m->header.stamp);
           auto& states = flight.states[index];
           states.resize(agents);
           dynamics::NavState& state = states[static_cast<std::size_t>(i)];
-          if (state.stamp == 0) count(index);  // who connects just then gets a step twice
+          // An AUV that connects at this time gets a step twice.
+          if (state.stamp == 0) count(index);
           state = NavOf(*m, 0);
         };
     subscribers.push_back(
@@ -106,7 +109,7 @@ Flight Listen(const Scenario& s, int silent) {
 
 double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
 
-/// What an AUV saw and did in one step, and what it sees and does in the environment.
+/// Compares what an AUV saw and did in one step with what it sees and does in the environment.
 void ExpectDecision(const auv_msgs::AgentStep& flown, const env::VectorEnv& env, int i,
                     const std::vector<float>& observations, const std::vector<double>& actions) {
   const int width = env.observation_size(), size = env.action_size();
@@ -177,7 +180,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
     EXPECT_EQ(summary.deadline_misses, 0U);
     EXPECT_EQ(summary.seed, env_options.seed);
     auto items = m.Items();
-    // The metrics node hears neither what an AUV knows of its own position, nor pings.
+    // The metrics node hears no pings, and not what an AUV knows of its own position.
     const std::set<std::string> unheard{"navigation_rmse",
                                         "navigation_rmse_tail",
                                         "navigation_nees",
@@ -192,7 +195,7 @@ TEST(Parity, GraphInLockstepFliesTheEpisodesOfTheEnvironment) {
                                [&](const auto& item) { return unheard.count(item.first) > 0; }),
                 items.end());
     ASSERT_EQ(summary.metric_names.size(), items.size());
-    // An environment counts what stations and AUVs exchange, the graph's links are those of AUVs.
+    // The environment also counts packets of stations. The nodes count those among AUVs only.
     const bool stations = FlagParameter("stations", false);
     for (std::size_t k = 0; k < items.size(); ++k) {
       EXPECT_EQ(summary.metric_names[k], items[k].first);

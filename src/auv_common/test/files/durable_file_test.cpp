@@ -24,7 +24,7 @@ class DurableFileTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// What writing "new" there is refused with, less the path; "" when it is written.
+  /// Writes "new" to `path`. Returns the end of the error message; "" if the file was written.
   std::string Refusal(const std::string& path) const {
     const std::string start = path + ": cannot write the table: ";
     try {
@@ -71,7 +71,7 @@ TEST_F(DurableFileTest, WhatIsWrittenByOthersCountsOnceItIsCommitted) {
   std::ofstream(file.temporary()) << "whole";
   file.Commit();
   EXPECT_EQ(Read(path_), "whole");
-  EXPECT_THROW(file.Commit(), UserError);  // nothing was written since
+  EXPECT_THROW(file.Commit(), UserError);  // nothing was written since the first commit
   EXPECT_EQ(Read(path_), "whole");
 }
 

@@ -21,7 +21,7 @@ class FolderLockTest : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// What a lock of the folder says; nothing where it is taken.
+  /// The message with which a lock of the folder is refused; "" if the lock was taken.
   std::string Refusal() const {
     try {
       FolderLock lock(folder_);

@@ -8,9 +8,9 @@ namespace stg {
 namespace {
 
 constexpr double kNobody = std::numeric_limits<double>::infinity();
-constexpr double kStart_s = 1000.0;  // the clock's value is of no importance
+constexpr double kStart_s = 1000.0;  // the value of the clock does not matter
 
-/// A tenth of a second per step, or as much divided by the real time factor.
+/// The period of a step is 0.1 s, divided by the real time factor.
 Pacer::Options OptionsOf(double real_time_factor) {
   Pacer::Options options;
   options.period_s = 0.1;
@@ -71,7 +71,7 @@ TEST(Pacer, DelaysDoNotAddUp) {
 
 TEST(Pacer, AShortDelayIsCaughtUp) {
   Pacer pacer = Running(1.0);
-  const double late_s = kStart_s + 0.1 + 0.45;  // 4.5 periods late with step 1
+  const double late_s = kStart_s + 0.1 + 0.45;  // 4.5 periods after step 1 was due
   for (int k = 2; k <= 5; ++k) {
     pacer.Open(late_s);
     EXPECT_TRUE(pacer.Due(late_s)) << k;

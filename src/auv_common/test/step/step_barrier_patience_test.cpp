@@ -8,12 +8,13 @@
 namespace stg::step_barrier_test {
 
 TEST(StepBarrier, NewStepsDoNotRenewThePatienceWithTheSilent) {
-  // Each step is open for 0.1 s before the world moves on, less than the patience of 0.25 s.
+  // Each step is open for 0.1 s, which is shorter than the patience of 0.25 s.
   StepBarrier barrier(3);
   int given_up_at = -1;
   for (int k = 0; k < 10; ++k) {
     const double now_s = 0.1 * k;
-    if (k % 2 == 1 && barrier.open()) barrier.Close();  // whether closed or replaced
+    // Every second step is closed, the others are replaced.
+    if (k % 2 == 1 && barrier.open()) barrier.Close();
     barrier.Open(kFirst + k * kStep, now_s + 0.25);
     HearAll(&barrier, {1});
     barrier.Hear(2, kFirst + (k - 1) * kStep);  // always one step late, but alive
@@ -54,7 +55,7 @@ TEST(StepBarrier, AWordAboutAnotherStepIsAnsweredWithThePatienceOfTheOpenOne) {
 }
 
 TEST(StepBarrier, TheStartIsOverWhenAStepIsClosed) {
-  // The caller waits longer for nodes that are only starting, for ever if need be.
+  // The caller waits longer for nodes that are still starting, for ever if necessary.
   StepBarrier barrier(2);
   EXPECT_FALSE(barrier.started());
   barrier.Open(kFirst, kForever);

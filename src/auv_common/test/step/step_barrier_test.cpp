@@ -183,7 +183,7 @@ TEST(StepBarrier, AnExcusedPartyIsNotWaitedForAndMissesNothing) {
 }
 
 TEST(StepBarrier, WhoIsAskedNowAndThenOwesAnAnswerInBetween) {
-  // Asked in each third step; every step is left behind before patience with it ends.
+  // The party is asked in every third step. Each step is closed before its patience has passed.
   StepBarrier barrier(1);
   for (int k = 0; k < 9; ++k) {
     const double now = 1.0 * k;

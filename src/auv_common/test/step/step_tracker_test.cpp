@@ -14,7 +14,7 @@ constexpr TimeNs kPeriod = kSecond / 10;
 constexpr int kSteps = 40;
 constexpr std::uint64_t kRun = 7;
 
-/// Place of a run whose first step is at 1 s and whose episodes are all flown to their end.
+/// Place of a run. Its first step is at 1 s, and each of its episodes is complete.
 RunPlace At(std::uint32_t episode, std::uint32_t step, std::uint64_t run = kRun) {
   return {run, episode, step,
           kSecond + (static_cast<TimeNs>(episode) * (kSteps + 1) + step) * kPeriod};
@@ -59,7 +59,7 @@ TEST_F(StepTrackerTest, RefusesAnyStampThatTheStepNumberContradicts) {
   tracker_.Hear(At(2, 10));
   for (const TimeNs by : {-58 * kSecond, -kPeriod, TimeNs{-1}, TimeNs{1}, kPeriod, 58 * kSecond,
                           2'147'483'647 * kSecond, 4'294'967'295 * kSecond}) {
-    // Twice, as a second one must not confirm the first.
+    // The tracker hears it twice, because the second one must not confirm the first one.
     EXPECT_EQ(tracker_.Hear(Later(At(2, 11), by)), Verdict::kRefused) << by;
     EXPECT_EQ(tracker_.Hear(Later(At(2, 11), by)), Verdict::kRefused) << by;
   }

@@ -11,9 +11,9 @@ namespace {
 constexpr TimeNs kTick = 100'000'000;
 constexpr double kPatience_s = 1.0;
 
-/// Who has spoken of a step, of two that have something to say.
+/// The voices that have spoken of a step. A step is complete when both voices have spoken.
 using Voices = std::set<int>;
-/// The voice that tells where the run is.
+/// This voice tells where the run is.
 constexpr int kTrusted = 0;
 
 class StepWindowTest : public testing::Test {
@@ -33,7 +33,7 @@ class StepWindowTest : public testing::Test {
     return window_.Take(
         now_s_, kPatience_s, [](const Voices& v) { return v.size() == 2; }, &taken_);
   }
-  /// Takes all there is to take. Returns their stamps.
+  /// Takes all complete steps. Returns their stamps.
   std::vector<TimeNs> TakeAll() {
     std::vector<TimeNs> stamps;
     while (Take()) stamps.push_back(window_.taken());
@@ -97,7 +97,7 @@ TEST_F(StepWindowTest, TheOldestIsGivenUpAfterItsPatienceOnlyForALaterOne) {
 }
 
 TEST_F(StepWindowTest, PatienceWithManyStepsRunsSideBySide) {
-  // A voice that is missing for good delays what is said, by the same time for each step.
+  // A voice that is missing for good delays each step by the same time.
   for (int k = 1; k <= 50; ++k) {
     Say(0, k * kTick);
     const std::vector<TimeNs> taken = TakeAll();
@@ -115,7 +115,7 @@ TEST_F(StepWindowTest, WordsAboutStepsThatAreOverAreRefused) {
   EXPECT_FALSE(Say(0, 1 * kTick));
   EXPECT_EQ(window_.late(), 2u);
   EXPECT_EQ(window_.size(), 0u);
-  // However old: one party that was asleep is not the beginning of another run.
+  // The age does not matter: a party that was asleep does not begin another run.
   EXPECT_FALSE(Say(0, -10000 * kTick));
   SayAll(3 * kTick);
   EXPECT_TRUE(Take());

@@ -81,8 +81,9 @@ Vec3<double> Towards(double course_deg, double speed, double climb) {
 }
 
 TEST(Autopilot, BettersThePublishedRunToThirtyMetresAndFiftyDegrees) {
-  // The public model's own autopilot: 26.20, 29.70, 30.04 m at 100, 200, 300 s, never above 30.05;
-  // 17.94, 43.09, 49.64 degrees at 20, 50, 100 s. The other way round it must do as well.
+  // The autopilot of the public model is 26.20, 29.70, 30.04 m deep at 100, 200, 300 s, and never
+  // deeper than 30.05 m. Its heading is 17.94, 43.09, 49.64 degrees at 20, 50, 100 s. A turn to the
+  // other side must be as good.
   for (const double side : {1.0, -1.0}) {
     Helmsman h;
     double deepest = 0.0, depth_100 = 0.0, heading_20 = 0.0, heading_50 = 0.0, worst_late = 0.0;
@@ -137,7 +138,7 @@ TEST(Autopilot, TurnsWithLittleOvershootAndSettles) {
         if (std::abs(h.course_deg() - course_deg) > 1.0) settled_s = h.time_s();
       }
       EXPECT_LT(most, course_deg + 6.0) << speed;
-      // The fins turn it at 5 deg/s, at 0.8 m/s at 2.
+      // The fins turn it at 5 deg/s, and at 2 deg/s if its speed is 0.8 m/s.
       EXPECT_LT(settled_s - 30.0, course_deg / (speed < 1.0 ? 2.0 : 5.0) + 40.0) << speed;
     }
   }
@@ -157,14 +158,14 @@ TEST(Autopilot, KeepsSteerageWayWhateverIsAsked) {
   h.Hold({}, 60.0);
   EXPECT_NEAR(h.state().v_WB_B.x, 0.8, 0.02);
   EXPECT_NEAR(h.heading_deg(), 0.0, 0.5);
-  // Also with the current behind it, where it is fast enough over ground without a propeller.
+  // It also keeps steerage way when the current alone carries it over ground fast enough.
   Helmsman carried(Slow(), {1.5, 0.0, 0.0});
   carried.Hold(Towards(0.0, 1.0, 0.0), 120.0);
   EXPECT_GT(carried.state().v_WB_B.x - 1.5, 0.75);
 }
 
 TEST(Autopilot, RecoversAtOnceFromWhatItCannotDo) {
-  // Two minutes of a climb and a speed out of reach wind nothing up.
+  // Two minutes of commands that it cannot follow must leave nothing wound up.
   Helmsman h;
   h.Hold(Towards(0.0, 9.0, -5.0), 120.0);
   EXPECT_LE(h.command().rpm, 1525.0);

@@ -60,7 +60,8 @@ TEST(Control, FullActionAsksForMaximumSpeedAndForce) {
 TEST(Control, VelocityControllerMatchesHandValues) {
   const VehicleConfig v;
   const ControlConfig c;
-  // Bow along world y: world errors (-0.1, 0.3, 0.05) are (0.3, 0.1, 0.05) in body axes.
+  // The bow points along world y, so the world errors (-0.1, 0.3, 0.05) are (0.3, 0.1, 0.05) in
+  // body axes.
   const Vec3<double> rpy{0.0, 0.0, kPi / 2};
   const Mat3<double> R = RotationOf(TrigOf(rpy));
   double fraction[6];
@@ -106,7 +107,7 @@ TEST(Control, NavigationStateGivesTheSameCommandAsTheStateItDescribes) {
   }
 }
 
-/// State after `steps` decisions of a vehicle that is commanded a world velocity.
+/// State of a vehicle after `steps` decisions with one commanded world velocity.
 VehicleState<double> Follow(const VehicleConfig& v, const ControlConfig& c,
                             const Vec3<double>& wanted, int steps) {
   const VehicleModel model(v);
@@ -177,7 +178,7 @@ TEST(ExecuteAction, AForceInterfaceClipsAndAVelocityInterfaceGoesThroughItsContr
   VelocityController(c, v, DesiredVelocity(v, smooth), R_WB, v_WB, rpy, w_WB_B, expected);
   EXPECT_EQ(v_des_W.y, DesiredVelocity(v, smooth).y);
   for (int k = 0; k < kWrenchSize; ++k) EXPECT_EQ(fraction[k], expected[k]);
-  // Asking for that velocity: itself, or the same force.
+  // The action for that velocity is the velocity itself, or under tau6 the force of the controller.
   double action[kMaxActionSize];
   ActionForVelocity(c, v, smooth, R_WB, v_WB, never, w_WB_B, action);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(action[k], smooth[k]);

@@ -40,7 +40,7 @@ TEST(WaitingCommands, OneBeyondReachWaitsForTheNextOdometryAlone) {
   waiting.Advance(Step(600));
   waiting.Add(At(Step(1200)));
   EXPECT_EQ(waiting.Advance(Step(601)), 1);
-  waiting.Add(At(Step(0)));  // of another run, faster than its odometry
+  waiting.Add(At(Step(0)));  // it belongs to another run, and came before the odometry of that run
   EXPECT_EQ(waiting.Current(), nullptr);
   EXPECT_EQ(waiting.Advance(Step(0)), 0);
   EXPECT_EQ(waiting.Current()->stamp, Step(0));
@@ -58,7 +58,7 @@ TEST(WaitingCommands, WhenTooManyWaitTheFirstOneGoes) {
   WaitingCommands waiting(kPeriod, 0);
   for (int k = 0; k < static_cast<int>(WaitingCommands::kMost); ++k) waiting.Add(At(Step(k)));
   EXPECT_EQ(waiting.Add(At(Step(100))), 1);
-  EXPECT_EQ(waiting.Advance(Step(0)), 1);  // the one a hundred steps ahead
+  EXPECT_EQ(waiting.Advance(Step(0)), 1);  // the refused command is a hundred steps ahead
   EXPECT_EQ(waiting.Current(), nullptr);
 }
 

@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a grid of the plane h = 10 lat - 20 lon - 3000 is laid out in a file.
+/// Layout of a file with a grid of the plane h = 10 lat - 20 lon - 3000.
 struct Layout {
   int format = NC_CLASSIC_MODEL;
   nc_type type = NC_SHORT;
   const char *lat = "lat", *lon = "lon", *name = "elevation";
   const char *lat_units = "degrees_north", *lon_units = "degrees_east";
-  std::string positive, units;  // of the elevations; empty: not said
+  std::string positive, units;  // of the elevations; empty: not stated
   bool descending = false, transposed = false, coordinates = true, uneven = false;
   double scale = 1.0, offset = 0.0, fill = 0.0, sign = 1.0;
   bool packed = false, has_fill = false;
@@ -141,7 +141,7 @@ TEST_F(GridFile, EveryLayoutHoldsTheSamePlane) {
     EXPECT_EQ(part.latitudes(), (std::vector<double>{21.0, 22.0, 23.0})) << "layout " << k;
     EXPECT_EQ(part.longitudes(), (std::vector<double>{121.0, 122.0, 123.0}));
     EXPECT_NEAR(part.At(22.1, 121.7), Plane(22.1, 121.7), 1e-3);
-    // The same turn of longitude told the other way.
+    // The same longitude, less a full turn.
     EXPECT_NEAR(part.At(22.1, 121.7 - 360.0), Plane(22.1, 121.7), 1e-3);
     EXPECT_NEAR(Bathymetry::Load(file_, {21.2, 22.5, -238.4, -237.1}).At(22.0, -238.0),
                 Plane(22.0, 122.0), 1e-3);
@@ -189,12 +189,12 @@ TEST_F(GridFile, SaysWhatIsWrongWithAFile) {
   says(Refusal(), "is empty");
   std::ofstream(file_) << "lat,lon,elevation\n1,2,3\n";
   says(Refusal(), "not a readable NetCDF file");
-  // Cut off behind its header.
+  // The file ends soon after its header.
   Write(Layout());
   fs::resize_file(file_, fs::file_size(file_) - 60);
   says(Refusal(), "damaged");
-  // A header that promises more than the file holds, for which libnetcdf would take memory first:
-  // the number of dimensions, then the length of the first one's name.
+  // The header promises more than the file holds: the number of dimensions, then the length of the
+  // first one's name. libnetcdf would take memory for them before it reads.
   for (const int at : {12, 16}) {
     Write(Layout());
     std::fstream(file_, std::ios::in | std::ios::out | std::ios::binary)
@@ -284,7 +284,7 @@ TEST_F(GridFile, FilesOfBothFormatsThatAreCutOffAnywhereAreRefused) {
     Write(l);
     const auto whole = fs::file_size(file_);
     EXPECT_EQ(Refusal(), "accepted");
-    // Of NetCDF 4 the end may be unused.
+    // A NetCDF 4 file may have an unused end.
     const auto slack = format == NC_NETCDF4 ? whole / 3 : 4;
     for (auto size = whole - slack; size > 8; size = size * 4 / 5) {
       Write(l);
@@ -316,7 +316,8 @@ TEST(ShippedBathymetry, ManyThreadsReadItAtOnce) {
 }
 
 TEST_F(GridFile, AHugeGridIsRefusedAtOnceAndCroppedWithoutReadingIt) {
-  // The world at 1/60 degree, never written: classic files of holes.
+  // A grid of the world at 1/60 degree. Its values are never written, so the classic file has
+  // holes.
   int nc = 0, dims[2] = {}, lat = 0, lon = 0, var = 0;
   const size_t rows = 10801, columns = 21601;
   Ok(nc_create(file_.c_str(), NC_CLOBBER | NC_64BIT_OFFSET, &nc));

@@ -1,4 +1,4 @@
-// Crops of a bathymetry file, and what may not be lost by writing one.
+// Crops of a bathymetry file, and the files that they must not destroy.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -26,7 +26,7 @@ class Crop : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Whether the tool writes this file, and its result.
+  /// Runs the tool, which writes the file `out` and prints into `result`. True if it succeeded.
   bool Tool(const std::string& out, const std::string& result = "/dev/null") const {
     const std::string command = "'" STG_CROP_TERRAIN "' '" + file_ + "' --out '" + out + "' > '" +
                                 result + "' 2> /dev/null";
@@ -43,7 +43,7 @@ TEST_F(Crop, APipeIsNotReplacedAndAFileNotByHalfOfOne) {
   EXPECT_THROW(grid.Save(pipe, ""), UserError);
   EXPECT_TRUE(fs::is_fifo(pipe));
   std::ofstream(old) << "old";
-  fs::create_directory(old + ".tmp");  // the new file cannot be begun
+  fs::create_directory(old + ".tmp");  // the temporary file cannot be created
   EXPECT_THROW(grid.Save(old, ""), UserError);
   EXPECT_EQ(fs::file_size(old), 3u);
   fs::remove(old + ".tmp");

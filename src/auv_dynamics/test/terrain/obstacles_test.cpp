@@ -66,7 +66,7 @@ TEST(Obstacles, HoldAVehicleAtTheirSurfaceAndCountItOnceUntilItIsOff) {
   }
   EXPECT_TRUE(touched);
   EXPECT_EQ(Lane(world.sea().collisions(0), 0), 1.0);
-  // It slid along the side that it came to and is off again, behind.
+  // The vehicle slid along the obstacle and has left it behind.
   EXPECT_GT(Lane(world.vehicle(0).p_WB.x, 0), 70.0);
   EXPECT_EQ(Lane(world.sea().touching(0), 0), 0.0);
   world.Reset(0, 1, 0, ResetStage::kMedium);

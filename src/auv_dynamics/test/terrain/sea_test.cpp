@@ -61,7 +61,7 @@ TEST(Current, TideCarriesADriftingVehicleToAndFro) {
   World world(s);
   world.Place(0, {{0.0, 0.0, -30.0}}, {{50.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
   const std::vector<Pack> still(3, Pack(0.0));
-  for (int k = 0; k < 500; ++k) world.Step(still);  // a quarter of the tide
+  for (int k = 0; k < 500; ++k) world.Step(still);  // a quarter of the tide's period
   const double amplitude = 0.5 * 200.0 / (2.0 * kPi);
   EXPECT_NEAR(world.Nav(0, 0).p_WB.x, amplitude, 0.05);
   EXPECT_NEAR(world.Nav(0, 0).p_WB.y, -0.4 * amplitude, 0.05);
@@ -82,7 +82,7 @@ TEST(Sea, StopsAtSurfaceAndBottomAndCountsGroundings) {
   EXPECT_EQ(world.Nav(0, 1).p_WB.z, 0.0);
   EXPECT_EQ(Lane(world.vehicle(0).v_WB.z, 0), 0.0);
   EXPECT_EQ(Lane(world.vehicle(1).v_WB.z, 0), 0.0);
-  EXPECT_GT(world.Nav(0, 0).v_WB_B.x, 0.9);  // along the bottom it goes on
+  EXPECT_GT(world.Nav(0, 0).v_WB_B.x, 0.9);  // it goes on along the bottom
   EXPECT_EQ(Lane(world.sea().groundings(0), 0), 1.0);
   EXPECT_EQ(Lane(world.sea().aground(0), 0), 1.0);
   EXPECT_EQ(Lane(world.sea().groundings(1), 0), 0.0);
@@ -165,7 +165,7 @@ TEST(Sea, DeployedInAnAreaVehiclesStartAnywhereInIt) {
       far += std::hypot(p.x - t.x, p.y - t.y) > 150.0 ? 1 : 0;
     }
   }
-  // The ring around the target is a small part of the square.
+  // The ring around the target, where AUVs start otherwise, is a small part of the square.
   EXPECT_GT(far, 300);
   EXPECT_LT(least, -450.0);
   EXPECT_GT(most, 450.0);
@@ -173,7 +173,7 @@ TEST(Sea, DeployedInAnAreaVehiclesStartAnywhereInIt) {
 
 TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
   for (const std::string& motion : TargetMotions().Names()) {
-    if (motion == "lift") continue;  // of another test
+    if (motion == "lift") continue;  // another test registers it
     WorldScenario s = OpenWater(1);
     s.world.target.motion = motion;
     if (motion == "evasive") config::Override(&s, {"target.evasive.range_m=300"});
@@ -190,7 +190,8 @@ TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
   }
 }
 
-/// A folder with `slope.nc`: 10 m of depth at its southern edge, 210 m at its northern, 22 km on.
+/// A folder with `slope.nc`. Its sea is 10 m deep at the southern edge and 210 m at the northern
+/// edge, 22 km away.
 class SeaOverAFile : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -234,7 +235,7 @@ class SeaOverAFile : public ::testing::Test {
 TEST_F(SeaOverAFile, TheBottomIsThatOfTheFile) {
   World world(Slope(10.1));
   EXPECT_NEAR(world.sea().terrain().Height(0.0, 0.0), -110.0, 0.1);
-  // 10 m deeper with every hundredth of a degree, 1106 m, to the north.
+  // Each hundredth of a degree to the north, 1106 m, adds 10 m of depth.
   EXPECT_NEAR(world.sea().terrain().Height(0.0, 400.0), -110.0 - 4.0 / 1.106, 0.1);
   world.Place(0, {{0.0, 300.0, -105.0}}, {{50.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
   for (int k = 0; k < 300; ++k) world.Step({Pack(1.0), Pack(0.0), Pack(-1.0)});
@@ -245,7 +246,7 @@ TEST_F(SeaOverAFile, TheBottomIsThatOfTheFile) {
 }
 
 TEST_F(SeaOverAFile, EpisodesStartClearOfTheBottomOrSayThatTheyCannot) {
-  WorldScenario s = Slope(10.05);  // 60 m
+  WorldScenario s = Slope(10.05);  // the water is 60 m deep
   s.world.sea.auv_depth_m = s.world.sea.target_depth_m = {20.0, 80.0};
   World world(s);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -262,7 +263,7 @@ TEST_F(SeaOverAFile, EpisodesStartClearOfTheBottomOrSayThatTheyCannot) {
 }
 
 TEST_F(SeaOverAFile, TakesAFileByItsPathWhateverItsName) {
-  // As GEBCO names what it cuts out for a user.
+  // GEBCO gives a file of this form of name to a user who cuts out a part.
   const std::string file = folder_ + "/gebco_2024_n10.5_s9.5.nc";
   std::filesystem::copy_file(folder_ + "/slope.nc", file);
   WorldScenario s = Slope(10.1);
@@ -275,7 +276,7 @@ TEST_F(SeaOverAFile, TakesAFileByItsPathWhateverItsName) {
     EXPECT_NE(Refusal(s).find("is not a name"), std::string::npos) << bad;
   }
   s = Slope(10.1);
-  s.run.name = file;  // other texts are names only
+  s.run.name = file;  // other texts must be plain names
   EXPECT_NE(Refusal(s).find("is not a name"), std::string::npos);
 }
 

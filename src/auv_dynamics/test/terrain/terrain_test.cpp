@@ -55,7 +55,7 @@ TEST(Terrain, IsTheGridInTheWorldsFrame) {
   EXPECT_NEAR(terrain.Altitude({0.0, 1000.0, -60.0}), 50.0, 0.05);
   EXPECT_LE(terrain.spacing_m(), 600.0);
   EXPECT_NEAR(terrain.highest(), -50.0, 0.1);
-  // Beyond its square the edge goes on.
+  // Beyond its square, the terrain goes on as at its edge.
   EXPECT_EQ(terrain.Height(0.0, 9000.0), terrain.Height(0.0, 5000.0));
 }
 
@@ -73,23 +73,25 @@ TEST(Obstacle, DistancesAndSegmentsOfSphereAndCylinder) {
   EXPECT_TRUE(sphere.Blocks({0.0, 0.0, -50.0}, {20.0, 0.0, -50.0}));
   EXPECT_TRUE(sphere.Blocks({0.0, 4.9, -50.0}, {20.0, 4.9, -50.0}));
   EXPECT_FALSE(sphere.Blocks({0.0, 5.1, -50.0}, {20.0, 5.1, -50.0}));
-  EXPECT_FALSE(sphere.Blocks({0.0, 0.0, -50.0}, {4.9, 0.0, -50.0}));  // ends before it
+  // The line ends before the sphere.
+  EXPECT_FALSE(sphere.Blocks({0.0, 0.0, -50.0}, {4.9, 0.0, -50.0}));
   const Obstacle pile{Obstacle::Kind::kCylinder, {0.0, 0.0, -120.0}, 3.0, 80.0};
   EXPECT_NEAR(pile.Distance({7.0, 0.0, -100.0}), 4.0, 1e-12);
   EXPECT_NEAR(pile.Distance({0.0, 0.0, -30.0}), 10.0, 1e-12);
   EXPECT_NEAR(pile.Distance({6.0, 0.0, -36.0}), 5.0, 1e-12);
   EXPECT_LT(pile.Distance({1.0, 0.0, -100.0}), 0.0);
   EXPECT_TRUE(pile.Blocks({-10.0, 0.0, -100.0}, {10.0, 0.0, -100.0}));
-  EXPECT_FALSE(pile.Blocks({-10.0, 0.0, -39.0}, {10.0, 0.0, -39.0}));  // over its top
+  // The line passes over its top.
+  EXPECT_FALSE(pile.Blocks({-10.0, 0.0, -39.0}, {10.0, 0.0, -39.0}));
   EXPECT_FALSE(pile.Blocks({-10.0, 3.1, -100.0}, {10.0, 3.1, -100.0}));
-  // Comes down through the top, or passes it before it is low enough.
+  // The first line comes down through the top. The second one has passed before it is low enough.
   EXPECT_TRUE(pile.Blocks({-10.0, 0.0, -20.0}, {10.0, 0.0, -70.0}));
   EXPECT_FALSE(pile.Blocks({-10.0, 0.0, -10.0}, {10.0, 0.0, -50.0}));
   EXPECT_TRUE(pile.Blocks({0.0, 0.0, -30.0}, {0.0, 0.0, -60.0}));
 }
 
 TEST(LineOfSight, IsBlockedByARidgeAndByObstaclesTheSameBothWays) {
-  // A ridge from west to east at the equator, 40 m below the surface, else 140 m.
+  // A ridge from west to east at the equator, 40 m below the surface. Elsewhere the depth is 140 m.
   std::vector<double> lats, lons{29.9, 30.1};
   std::vector<float> elevations;
   for (int k = -20; k <= 20; ++k) {

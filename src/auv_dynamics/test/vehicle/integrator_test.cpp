@@ -143,8 +143,7 @@ TEST(Integrator, TranslationOfTheWorldChangesNothing) {
 }
 
 TEST(Integrator, AttitudeSurvivesPitch90) {
-  // Spun about one axis without damping, the vehicle turns by w t, whatever the
-  // Euler angles do on the way.
+  // A vehicle that spins about one axis without damping turns by w t, whatever the Euler angles do.
   VehicleConfig c = FreeVehicle();
   c.restoring = false;
   c.linear_damping = {};
@@ -152,7 +151,7 @@ TEST(Integrator, AttitudeSurvivesPitch90) {
   const VehicleModel model(c);
   VehicleState<double> s = AtAttitude({});
   s.w_WB_B = {0.0, 1.0, 0.0};
-  const double dt = kPi / 200.0;  // step 100 is the vertical to rounding
+  const double dt = kPi / 200.0;  // step 100 is the vertical, apart from rounding
   for (int k = 1; k <= 1000; ++k) {
     Advance(model, kNoForce, kStill, dt, 1, &s);
     const double norm2 = s.q_WB[0] * s.q_WB[0] + s.q_WB[1] * s.q_WB[1] + s.q_WB[2] * s.q_WB[2] +
@@ -181,13 +180,14 @@ TEST(Integrator, SemiImplicitAttitudeStaysFiniteAndOrthonormalThroughPitch90) {
   }
 }
 
-/// Errors at dt and dt / 2 after 1.6 s of a manoeuvre smooth enough to show the order.
+/// Error at dt over error at dt / 2, after 1.6 s of a manoeuvre that is smooth enough to show the
+/// order.
 double ErrorRatio(Integrator integrator, double dt) {
   VehicleConfig c = FreeVehicle();
   c.integrator = integrator;
   c.added_mass_coriolis = AddedMassCoriolis::kFull;
   c.r_BG_m = {0.0, 0.0, -0.02};
-  // |x| x has a kink at 0, which only surge does not cross here.
+  // |x| x has a kink at 0. Only surge does not cross 0 here.
   for (size_t k = 1; k < 6; ++k) c.quadratic_damping[k] = 0.0;
   const Wrench<double> tau{{8.0, -3.0, 2.0}, {0.2, 0.4, -0.3}};
   const Vec3<double> current{0.1, -0.05, 0.02};
@@ -266,11 +266,11 @@ TEST(Integrator, ReleaseStepMatchesHandComputation) {
   EXPECT_NEAR(s.w_WB_B.x, p, 1e-14);
   EXPECT_NEAR(s.w_WB_B.y, q, 1e-14);
   EXPECT_NEAR(s.w_WB_B.z, r, 1e-14);
-  // New velocity through the old attitude: the bow points along world y.
+  // The old attitude turns the new velocity: the bow points along world y.
   EXPECT_NEAR(s.p_WB.x, 0.1 - 0.1 * v, 1e-14);
   EXPECT_NEAR(s.p_WB.y, 0.2 + 0.1 * u, 1e-14);
   EXPECT_NEAR(s.p_WB.z, 0.3 + 0.1 * w, 1e-14);
-  // Level before the step, so that the Euler rates are the new body rates.
+  // The vehicle was level before the step, so the Euler rates are the new body rates.
   EXPECT_NEAR(s.rpy.x, 0.1 * p, 1e-14);
   EXPECT_NEAR(s.rpy.y, 0.1 * q, 1e-14);
   EXPECT_NEAR(s.rpy.z, kPi / 2 + 0.1 * r, 1e-14);

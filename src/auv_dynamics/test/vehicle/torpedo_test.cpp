@@ -6,8 +6,8 @@
 #include "auv_dynamics/vehicle/shaft_power.hpp"
 #include "physics.hpp"
 
-// Published values are those of T. I. Fossen's REMUS 100 model (remus100.py at c717e07), run
-// unmodified; test/data holds motions of it.
+// The published values come from T. I. Fossen's REMUS 100 model (remus100.py at c717e07), which was
+// run unmodified. test/data holds its motions.
 namespace stg::dynamics {
 namespace {
 
@@ -72,12 +72,12 @@ TEST(Torpedo, PropellerPullsAndDrivesAsPublished) {
   const TorpedoModel model{TorpedoConfig()};
   double thrust = 0.0, torque = 0.0;
   model.Propeller(1525.0, 0.0, &thrust, &torque);
-  // What is published at rest is the propeller alone; under way the hull takes back a tenth.
+  // The published thrust at rest is the propeller's alone. The hull takes back a tenth of it.
   EXPECT_NEAR(thrust, 0.9 * 116.26, 5e-3);
   model.Propeller(1525.0, 0.944 * 2.5536, &thrust, &torque);
   EXPECT_NEAR(thrust, 39.84, 5e-3);
   EXPECT_GT(torque, 0.0);
-  // Astern the coefficients at advance number 0 hold.
+  // Astern, the coefficients of advance number 0 apply.
   model.Propeller(-1525.0, 0.944 * 2.5536, &thrust, &torque);
   EXPECT_NEAR(thrust, -0.9 * 116.26, 5e-3);
 }
@@ -85,7 +85,7 @@ TEST(Torpedo, PropellerPullsAndDrivesAsPublished) {
 TEST(Torpedo, ShaftPowerIsThatOfTheTorqueAtTheAdvanceNumber) {
   const TorpedoConfig c;
   const TorpedoModel model{c};
-  // P = 2 pi n rho n^2 D^5 K_Q(J), by hand at 1000 rpm: at rest, and at the speed of that shaft.
+  // P = 2 pi n rho n^2 D^5 K_Q(J), by hand at 1000 rpm: at rest, and at the speed of that rate.
   const double n = 1000.0 / 60.0, D = c.propeller_diameter_m;
   const auto power = [&](double speed) {
     const double J = c.propeller_inflow * speed / (n * D);
@@ -94,11 +94,11 @@ TEST(Torpedo, ShaftPowerIsThatOfTheTorqueAtTheAdvanceNumber) {
   };
   EXPECT_NEAR(ShaftPower(c, 1000.0, 0.0), power(0.0), 1e-9);
   EXPECT_NEAR(ShaftPower(c, 1000.0, 1.6741), power(1.6741), 1e-9);
-  // It is the torque on the hull over its share, times the rate.
+  // The power is the torque on the hull, over its share, times the rate.
   double thrust = 0.0, torque = 0.0;
   model.Propeller(1000.0, 0.944 * 1.6741, &thrust, &torque);
   EXPECT_NEAR(ShaftPower(c, 1000.0, 1.6741), 2.0 * kPi * n * torque / c.torque_share, 1e-9);
-  // Thrust times speed is less than what goes into the shaft, and a stopped shaft takes nothing.
+  // Thrust times speed is less than the power of the shaft. A stopped shaft takes no power.
   EXPECT_LT(thrust * 1.6741, ShaftPower(c, 1000.0, 1.6741));
   EXPECT_EQ(ShaftPower(c, 0.0, 2.0), 0.0);
   EXPECT_EQ(ShaftPower(c, 50.0, 2.5), 0.0) << "the water turns the propeller";
@@ -111,7 +111,8 @@ TEST(Torpedo, TurnsAtThePublishedRateAndRadius) {
   for (const auto& [rudder_deg, rate_degps, radius_m] : table) {
     Boat boat;
     boat.Run(120.0, {1525.0, rudder_deg * kDeg, 0.0});
-    // Positive rudder turns to starboard: clockwise from above, against ENU's yaw.
+    // Positive rudder turns to starboard: clockwise from above, which is a negative yaw rate in
+    // ENU.
     const double rate = -boat.state.w_WB_B.z;
     EXPECT_NEAR(rate / kDeg, rate_degps, 2e-3) << rudder_deg;
     const double speed = std::hypot(boat.state.v_WB.x, boat.state.v_WB.y);
@@ -134,22 +135,22 @@ TEST(Torpedo, FliesThePublishedMotions) {
   }
   ASSERT_EQ(motions.size(), 8u);
   ASSERT_EQ(still.size(), 7u);
-  // By the public model's own step the equations are told from others to five digits ...
+  // With the step of the public model, the equations agree to five digits ...
   VehicleConfig config;
   config.integrator = Integrator::kSemiImplicit;
   const MotionError same = Compare(config, still, 0.02);
   EXPECT_TRUE(same.Within(5e-5));
   EXPECT_EQ(same.rows, 54);
-  // ... in its current, too, where its propeller takes in the speed over ground, but for what its
-  // current lacks at pitch: u sin(pitch) across the bow.
+  // ... also in its current. There its propeller takes in the speed over ground, and its current
+  // lacks one part at pitch: u sin(pitch) across the bow.
   config.torpedo.advance_over_ground = true;
   const MotionError moved = Compare(config, motions, 0.02);
   EXPECT_LT(moved.columns[kU].share(), 1e-3);
   EXPECT_LT(moved.columns[kV].share(), 1e-3);
   EXPECT_LT(moved.columns[kPsi].max_abs_error, 2e-4);
   EXPECT_LT(moved.position_share, 1e-3);
-  // The product's step, which has no error of its own to speak of, keeps within 1 % of all but the
-  // quickest rate, roll in the first second of a hard turn.
+  // The product's step has almost no error of its own. It keeps within 1 % of all rates except the
+  // quickest one, roll in the first second of a hard turn.
   config = VehicleConfig();
   const MotionError exact = Compare(config, still, 0.05);
   EXPECT_TRUE(exact.Within(0.014));
@@ -215,7 +216,7 @@ TEST(Torpedo, CurrentMovesTheFrameAndNothingElse) {
 }
 
 TEST(Torpedo, LosesEnergyWithoutPropulsion) {
-  // Hull, fins and damping brake; the terms of C do next to no work here.
+  // Hull, fins and damping brake. The terms of C do almost no work here.
   Boat boat;
   boat.state.v_WB_B = {2.0, 0.1, -0.1};
   boat.state.w_WB_B = {0.1, 0.05, 0.1};

@@ -6,7 +6,7 @@
 #include "auv_dynamics/vehicle/torpedo.hpp"
 #include "physics.hpp"
 
-// What holds for every kind of vehicle that is registered, and the closed forms of `kinematic`.
+// Facts that hold for every registered kind of vehicle, and the closed forms of `kinematic`.
 namespace stg::dynamics {
 namespace {
 
@@ -31,7 +31,7 @@ void Launch(World* world, int lane) {
   world->Place(lane, Line(world->agents()), {{100.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
 }
 
-/// Any command, also beyond the limits, that changes every 20 steps.
+/// A command, also beyond the limits, that changes every 20 steps.
 double Command(int id, int k, int axis, const Axis& limits) {
   std::mt19937_64 random(static_cast<std::uint64_t>(1000 * (k / 20) + 10 * id + axis));
   return std::uniform_real_distribution<double>(1.2 * limits.lo, 1.2 * limits.hi)(random);
@@ -39,7 +39,7 @@ double Command(int id, int k, int axis, const Axis& limits) {
 
 using Numbers = std::vector<double>;
 
-/// Runs world ids[l] in lane l for 20 s; what each lane comes to.
+/// Runs world ids[l] in lane l for 20 s. Returns the numbers of each lane.
 std::vector<Numbers> Fly(const WorldScenario& scenario, const std::vector<int>& ids) {
   World world(scenario);
   const Space& axes = world.model().actuators();
@@ -161,7 +161,8 @@ TEST(VehicleKinds, TorpedoFeelsContactAndDisturbance) {
   world.Place(0, {{0.0, 0.0, -30.0}, {0.0, 1.5, -30.0}}, {{100.0, 0.0, -30.0}}, {{0.0, 0.0, 0.0}});
   const std::vector<Pack> still(6, Pack(0.0));
   world.Step(still);
-  // 0.5 m of overlap push with 50 N against the mass and added mass of sway, less what rolls.
+  // The overlap of 0.5 m pushes with 50 N against the mass and added mass of sway. Roll takes a
+  // part of the push.
   EXPECT_LT(Lane(world.vehicle(0).v_WB.y, 0), -0.02);
   EXPECT_GT(Lane(world.vehicle(1).v_WB.y, 0), 0.02);
 }

@@ -45,7 +45,7 @@ TEST(Vehicle, MassMatrixHoldsTableS2AndFossensCoupling) {
 
 TEST(Vehicle, MassMatrixThatIsNotPositiveDefiniteIsRefused) {
   VehicleConfig c = FreeVehicle();
-  c.added_mass[0] = 40.0;  // Fossen's sign: this would make the surge mass negative
+  c.added_mass[0] = 40.0;  // in Fossen's sign this would make the surge mass negative
   EXPECT_THROW(VehicleModel{c}, UserError);
 }
 
@@ -93,14 +93,14 @@ TEST(Vehicle, CoriolisDoesNoWork) {
           EXPECT_NEAR(Power(nu, force), 0.0, 1e-12);
           largest = std::max(largest, Norm(force.v));
         }
-        EXPECT_GT(largest, 10.0);  // the term is there
+        EXPECT_GT(largest, 10.0);  // the forces are not zero
       }
     }
   }
 }
 
 TEST(Vehicle, CoriolisWithoutMunkMomentDoesTheWorkOfThatMoment) {
-  // Dropping the Munk moment v x A v leaves a C that is not skew-symmetric.
+  // Without the Munk moment v x A v, C is not skew-symmetric.
   std::mt19937_64 random(2);
   const VehicleModel model(FreeVehicle());
   double largest = 0.0;
@@ -176,7 +176,7 @@ TEST(Vehicle, DampingMatchesHandValues) {
 TEST(Vehicle, RestoringMomentMatchesTheClosedForm) {
   const VehicleConfig c = FreeVehicle();
   const VehicleModel model(c);
-  const double arm = c.buoyancy_n * 0.02;  // centre of buoyancy above the origin
+  const double arm = c.buoyancy_n * 0.02;  // the centre of buoyancy is above the origin
   for (const double roll : {-2.0, -0.3, 0.0, 0.3, 1.0}) {
     for (const double pitch : {-1.2, 0.0, 0.4}) {
       const Mat3<double> R = RotationOf(TrigOf(Vec3<double>{roll, pitch, 0.7}));

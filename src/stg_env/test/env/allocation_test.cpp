@@ -8,7 +8,7 @@
 #include "stg_agent/entities/entity_pilot.hpp"
 
 namespace {
-std::atomic<long> g_allocations{0};  // other tests here have threads
+std::atomic<long> g_allocations{0};  // other tests of this program have threads
 
 void* Allocate(std::size_t size, std::size_t alignment) {
   ++g_allocations;
@@ -42,7 +42,7 @@ TEST(Allocation, TheCounterCountsPlainAndAlignedMemory) {
   EXPECT_EQ(g_allocations - before, 2);
 }
 
-/// Allocations of three episodes, restarts included, after a first one.
+/// Counts the allocations of three episodes and their restarts, after a first episode.
 long AllocationsAfterWarmUp(Scenario s) {
   VectorEnvOptions o;
   TestEnv env(Short(std::move(s), 60), o);

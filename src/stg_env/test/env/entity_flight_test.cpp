@@ -8,11 +8,11 @@
 #include "stg_env/env/decide.hpp"
 #include "stg_env/env/evaluation.hpp"
 
-/// Policies over entities, flown.
+/// Flights of policies over entities.
 namespace stg::env {
 namespace {
 
-/// A policy whose commands are 0, or, with a spread, depend on all it sees.
+/// A policy. Without a spread its commands are 0. With a spread they depend on all that it sees.
 std::shared_ptr<const agent::EntityPolicy> PolicyOf(
     agent::EntityAction action, double spread,
     agent::EntityNetwork network = agent::EntityNetwork::kPool) {
@@ -32,7 +32,8 @@ std::vector<double> Decided(const agent::Decider& c, TestEnv* env) {
   return a;
 }
 
-/// Flies two copies of the same waters, because a law that searches writes its plan into the agent.
+/// Commands of zero must give exactly the actions of `law`. The test flies two copies of the same
+/// waters, because a law that searches writes its plan into the agent.
 void ExpectZerosAre(agent::EntityAction action, const std::string& law, const Scenario& s,
                     agent::EntityNetwork network = agent::EntityNetwork::kPool) {
   agent::Decider guided;
@@ -84,7 +85,7 @@ TEST(EntityFlight, WhileItSearchesACommandTurnsTheCourse) {
     agent::FollowCommand(env.agent(0, 0), agent::EntityAction::kLaw5, action);
     return std::atan2(static_cast<double>(action[1]), static_cast<double>(action[0]));
   };
-  // 0.5 stands for 30 deg; what keeps AUVs apart may turn it a little more or less.
+  // 0.5 stands for 30 deg. The rule that keeps AUVs apart may change the turn a little.
   EXPECT_NEAR(std::remainder(course_of(0.5F) - course_of(0.0F), 2.0 * kPi), kPi / 6.0, 0.05);
 }
 
@@ -100,7 +101,7 @@ TEST(EntityFlight, APolicyThatChoosesToSearchLeavesATargetThatIsSeen) {
   EXPECT_FALSE(view.memory().search);
   agent::TakeChoice(view, entities, 1);
   EXPECT_TRUE(view.memory().search);
-  entities.targets = 0;  // there is nothing to leave
+  entities.targets = 0;  // there is no target to leave
   agent::TakeChoice(view, entities, 0);
   EXPECT_FALSE(view.memory().search);
 }
@@ -112,7 +113,7 @@ TEST(EntityFlight, EveryNumberOfACommandChangesTheFlight) {
         agent::EntityAction::kCourse3}) {
     TestEnv env(s);
     env.Reset();
-    // On the circle, where all of them matter.
+    // The AUVs fly to the circle first, because all numbers matter there.
     agent::Decider law = agent::MakeDecider("encircle", s.model());
     for (int k = 0; k < 50; ++k) {
       env.VectorEnv::Step(Decided(law, &env).data(), env.memory.arrays());

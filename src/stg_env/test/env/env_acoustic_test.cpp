@@ -11,7 +11,7 @@
 namespace stg::env {
 namespace {
 
-/// Nobody senses a target that starts 0.25 m away or farther.
+/// No AUV senses a target that starts 0.25 m away or farther.
 Scenario Blind() { return Short(Shipped("medium", "nominal", {"sensing.range_m=0.02"}), 200); }
 
 TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
@@ -35,7 +35,7 @@ TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
         EXPECT_NEAR(x[1], r.y, 1e-6);
         EXPECT_NEAR(x[2], r.z, 1e-6);
         EXPECT_EQ(Row(env, e, i)[kShownConfidence], 0.0F);
-        // A cue says nothing of the target's velocity.
+        // A cue says nothing about the target's velocity.
         for (int k = 0; k < 3; ++k) EXPECT_EQ(Row(env, e, i)[kTargetVelocity + k], 0.0F);
       }
     }
@@ -48,8 +48,8 @@ TEST(Cue, IsWhatAnAgentThatNeverDetectsStartsFrom) {
 const std::vector<Vec3<double>> kSquare = {
     {-0.6, -0.1, 0.0}, {-0.6, 0.1, 0.0}, {-0.7, -0.1, 0.2}, {-0.7, 0.1, 0.2}};
 
-/// Two swarms with the same start, cue and actions, and targets of different velocity; true if
-/// all observations agree, bit for bit, while the targets part by 0.4 m.
+/// Flies two swarms with the same start, cue and actions, and targets of different velocity. The
+/// targets part by more than 0.4 m. True if all observations agree, bit for bit.
 bool SameForBothTargets(const Scenario& s) {
   const VectorEnvOptions o;
   TestEnv a(s, o), b(s, o);
@@ -72,7 +72,7 @@ TEST(NoLeak, ATargetBeyondEverybodysRangeChangesNoObservation) {
   Scenario s = Short(Shipped("medium"), 200);
   s.world.sensing.range_m = 0.25;
   EXPECT_TRUE(SameForBothTargets(s));
-  // The same pair does differ where the target may be seen, and on true states.
+  // The observations do differ where the target is within range, and in truth mode.
   s.world.sensing.range_m = 1.5;
   EXPECT_FALSE(SameForBothTargets(s));
   s.world.sensing.range_m = 0.25;
@@ -80,7 +80,8 @@ TEST(NoLeak, ATargetBeyondEverybodysRangeChangesNoObservation) {
   EXPECT_FALSE(SameForBothTargets(s));
 }
 
-/// As above for the actions of AUV 3, which is `gap` metres from the others.
+/// Flies two swarms with different actions of AUV 3, which starts `gap` metres from AUV 0. True if
+/// the observations of the others differ.
 bool OthersNoticeTheFourth(InformationMode mode, double gap) {
   Scenario s = Short(Blind(), 200);
   s.mode = mode;
@@ -120,7 +121,7 @@ TEST(Sharing, AnAgentOutOfSightLearnsTheTargetFromItsNeighbours) {
   s.channel.loss_probability = 0.0;
   const VectorEnvOptions o;
   std::vector<Vec3<double>> p = kSquare;
-  p[0] = {0.1, 0.0, 0.0};  // 0.2 m from the target; the others more than 0.9 m
+  p[0] = {0.1, 0.0, 0.0};  // 0.2 m from the target; the other AUVs are more than 0.9 m away
   TestEnv env(s, o), alone(s, o);
   env.Place(p, {{0.3, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
   alone.Place(kSquare, {{0.3, 0.0, 0.0}}, {{0.0, 0.0, 0.0}});
@@ -180,7 +181,7 @@ TEST(DegradedCommunication, ReallyDegradesTheLinks) {
       EXPECT_LT(bad.shown, 0.6 * good.shown) << stage;
     }
     EXPECT_GT(good.share, 0.6);
-    // Conditions that are not about links leave them alone.
+    // Conditions that are not about links do not change them.
     EXPECT_NEAR(Fly(stage, "limited_sensing").share, good.share, 0.1);
   }
 }
@@ -192,7 +193,7 @@ TEST(PhysicalChannel, BringsTheAgentsOfTheFieldTheirNeighboursOverModems) {
   for (int k = 0; k < 30; ++k) env.Step(Idle(env));
   for (int e = 0; e < kEnvs; ++e) {
     const acoustics::ChannelTotals& t = env.channel(e).totals();
-    // Everybody sends once in a decision, to three others.
+    // Every AUV sends once in a decision, to three others.
     EXPECT_NEAR(static_cast<double>(t.delivered + t.dropped), 30.0 * 12.0, 24.0);
     EXPECT_GT(t.delivered, 30u * 6u);
     for (int i = 0; i < s.run.agents; ++i) {
@@ -237,7 +238,8 @@ TEST(AcousticReward, CommunicationIsTheQualityThatTheAgentsKnow) {
 }
 
 TEST(AcousticMode, RewardAndCriticStateComeFromTheTruth) {
-  // Same flight in both modes under tau6 (no controller between): only the actor's input differs.
+  // Under tau6 both modes fly the same way, because no controller is between. Only the input of the
+  // actor differs.
   Scenario s = Short(Shipped("medium", "nominal", {"control.interface=tau6"}), 60);
   Scenario t = s;
   t.mode = InformationMode::kTruth;

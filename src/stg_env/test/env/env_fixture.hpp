@@ -23,9 +23,9 @@ inline Scenario Short(Scenario s, int steps) {
   return s;
 }
 
-inline constexpr int kEnvs = 4;  ///< of a TestEnv, unless its options say otherwise
+inline constexpr int kEnvs = 4;  ///< environments of a TestEnv, unless its options say otherwise
 
-/// Environments with arrays of their own.
+/// Environments that own their arrays.
 class TestEnv : public VectorEnv {
  public:
   explicit TestEnv(const Scenario& s, const VectorEnvOptions& o = {})
@@ -44,8 +44,8 @@ class TestEnv : public VectorEnv {
   EnvMemory memory;
 };
 
-/// A different random action for every AUV, decision and global reset r = first_env + env +
-/// round * total_envs, whoever runs it. [envs, agents, action_size].
+/// A random action for every AUV, decision and global reset r = first_env + env + round *
+/// total_envs. It does not depend on who runs the reset. Shape [envs, agents, action_size].
 inline std::vector<float> ActionsOf(const TestEnv& env, const VectorEnvOptions& o) {
   const int total = o.total_envs > 0 ? o.total_envs : o.envs;
   std::vector<float> actions;
@@ -63,7 +63,7 @@ inline std::vector<float> ActionsOf(const TestEnv& env, const VectorEnvOptions& 
   return actions;
 }
 
-/// Zero for everybody: AUVs at rest stay where they are.
+/// Zero for every AUV: AUVs at rest stay where they are.
 inline std::vector<float> Idle(const TestEnv& env) {
   return std::vector<float>(static_cast<size_t>(env.envs() * env.agents() * env.action_size()),
                             0.0F);

@@ -69,7 +69,7 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
         EXPECT_EQ(env.state_size(), 19 * c.agents + 6 * c.targets);
         EXPECT_EQ(env.action_size(), interface == dynamics::ActionInterface::kTau6 ? 6 : 3);
         env.Reset();
-        for (int k = 0; k < 60; ++k) {  // over two truncations
+        for (int k = 0; k < 60; ++k) {  // longer than two episodes
           env.Step(ActionsOf(env, o));
           for (const float v : env.memory.observations) ASSERT_LE(std::abs(v), 2.0F + 1e-6F);
           for (const float v : env.memory.states) ASSERT_LE(std::abs(v), 4.0F);
@@ -83,7 +83,7 @@ TEST(Observation, AnySwarmRunsWithFiniteBoundedNumbersAndOneSize) {
   }
 }
 
-/// Offsets of the neighbours of AUV i in one environment, in the order of `closer`.
+/// Offsets of the neighbours of AUV i in one environment, in order of index or of distance.
 std::vector<Vec3<double>> Offsets(const TestEnv& env, int e, int i, bool by_distance) {
   std::vector<Vec3<double>> offsets;
   for (int j = 0; j < env.agents(); ++j) {
@@ -177,7 +177,7 @@ TEST(Observation, LostStepsCountUpAndTheReleaseCountsOneTooMany) {
     Scenario s = Short(Shipped("medium_release", "nominal", {"agents=1"}), 50);
     s.agent.observation.release_bookkeeping = release;
     TestEnv env(s, VectorEnvOptions{});
-    // At 1 mm a step the target is lost, beyond 0.65 m, from decision 5 on.
+    // The target moves 1 mm a step. It is beyond 0.65 m, and so lost, from decision 5 on.
     env.Place({{0.0, 0.0, 0.0}}, {{0.6455, 0.0, 0.0}}, {{0.01, 0.0, 0.0}});
     for (int k = 1; k <= 40; ++k) {
       env.Step(Idle(env));
@@ -197,7 +197,7 @@ TEST(Observation, ReleaseBookkeepingHidesProgress) {
     env.Place({{0.0, 0.0, 0.0}}, {{0.4, 0.0, 0.0}}, {{-0.04, 0.0, 0.0}});
     for (int k = 1; k <= 3; ++k) {
       env.Step(Idle(env));
-      // The target comes 4 mm a step: a tenth of the progress scale.
+      // The target comes 4 mm closer in a step, which is a tenth of the progress scale.
       EXPECT_NEAR(Row(env, 0, 0)[kTracking + 2], release ? 0.0 : 0.1, 1e-5);
       EXPECT_EQ(Row(env, 0, 0)[kSemantic + agent::kApproach], release ? 0.0F : 1.0F);
     }
@@ -217,7 +217,7 @@ TEST(CriticState, HoldsEveryAuvThenEveryTarget) {
           << static_cast<size_t>(first) + k;
     }
   };
-  // AUV i follows target i modulo 2: offsets, and the same at twenty times the scale, clipped.
+  // AUV i follows target i modulo 2. The offset comes first, then twenty times the offset, clipped.
   expect(0, {0.3, 0.1, 0.0, 1.0, 1.0, 0.0, 0.02, 0.0, 0.0});
   expect(19, {0.0, 0.01, 0.0, 0.0, 0.2, 0.0, 0.0, 0.04, 0.0});
   expect(38, {0.4, 0.1, -0.3, 1.0, 1.0, -1.0});

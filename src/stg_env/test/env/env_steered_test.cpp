@@ -1,4 +1,4 @@
-// Vehicles that autopilots steer, in the environment.
+// Flights in the environment with vehicles that autopilots steer.
 
 #include <gtest/gtest.h>
 
@@ -41,8 +41,8 @@ TEST(SteeredEnv, PursuersReachTheirTargetAndKeepGoing) {
         for (int i = 0; i < env.agents(); ++i) {
           const float* row = Row(env, e, i);
           for (int f = 0; f < env.observation_size(); ++f) ASSERT_TRUE(std::isfinite(row[f]));
-          // Under way, all of them: fins need flow. Full rudder takes a third of the slowest speed,
-          // and only a hull in contact may be stopped.
+          // All AUVs must be under way, because fins need flow. Full rudder takes a third of the
+          // slowest speed. Only contact may stop a hull.
           if (k > 20 && Norm(env.nav(e, i).v_WB_B) < 0.55) {
             EXPECT_LT(k - touched[static_cast<std::size_t>(4 * e + i)], 20) << model;
           }
@@ -58,7 +58,7 @@ TEST(SteeredEnv, PursuersReachTheirTargetAndKeepGoing) {
     first /= 8 * 4;
     last /= 8 * 4 * 100;
     EXPECT_GT(first, 100.0) << model;
-    // They cannot stop there: they circle it.
+    // AUVs cannot stop at the target, so they circle it.
     EXPECT_LT(last, first) << model;
     EXPECT_LT(last, 130.0) << model;
   }
@@ -78,7 +78,7 @@ TEST(SteeredEnv, AnEnvironmentIsTheSameInAnyCompanyBitForBit) {
       alone.Reset();
       VectorEnvOptions all = Few(6, 5);
       all.total_envs = 6;
-      for (int k = 0; k < 40; ++k) {  // into the third episode
+      for (int k = 0; k < 40; ++k) {  // up to the third episode
         together.Step(ActionsOf(together, all));
         alone.Step(ActionsOf(alone, o));
         for (int i = 0; i < s.run.agents; ++i) {

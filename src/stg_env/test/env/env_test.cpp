@@ -10,7 +10,7 @@
 namespace stg::env {
 namespace {
 
-/// Everything random at once: noise, missed detections, disturbance, moving targets.
+/// All random effects at once: noise, missed detections, disturbance, moving targets.
 Scenario Noisy(InformationMode mode, dynamics::ActionInterface interface) {
   Scenario s = Short(Shipped("medium"), 40);
   s.mode = mode;
@@ -27,7 +27,7 @@ Scenario Noisy(InformationMode mode, dynamics::ActionInterface interface) {
   return s;
 }
 
-/// What reset r of a run gives: all observations, states and rewards of its episode.
+/// By reset r of a run: all observations, states and rewards of the episode after it.
 using Episodes = std::map<std::uint64_t, std::vector<float>>;
 
 Episodes Record(const Scenario& s, VectorEnvOptions o, int rounds) {
@@ -117,7 +117,7 @@ TEST(Truncation, FinalObservationsAreThoseOfALongerEpisode) {
     const auto expected = longer.memory.observations, state = longer.memory.states;
     EXPECT_TRUE(SameBits(brief.memory.final_observations, expected));
     EXPECT_TRUE(SameBits(brief.memory.final_states, state));
-    // What comes next belongs to the next episode.
+    // The arrays now belong to the next episode.
     EXPECT_EQ(brief.step(0), 0);
     EXPECT_EQ(brief.round(0), 1u);
     fresh.RestartAt(1);
@@ -155,7 +155,8 @@ TEST(Restart, AtARoundEqualsHavingRunUpToIt) {
 TEST(Restart, AShortFirstEpisodeIsFollowedByFullOnes) {
   VectorEnvOptions o;
   o.stagger = true;
-  o.total_envs = 8;  // the first of two blocks: half of 7 decisions
+  // This is the first of two blocks, so its first episode has half of 7 decisions.
+  o.total_envs = 8;
   TestEnv env(Short(Shipped("medium_release"), 7), o);
   env.Reset();
   std::vector<int> lengths;
@@ -222,7 +223,7 @@ TEST(Rewards, TheTeamRewardIsTheMeanOverAuvsAndTheReturnTheirSum) {
 }
 
 TEST(Decision, OfSeveralPhysicsStepsHoldsItsActionForAllOfThem) {
-  // tau6 has no filter: one decision of five steps is five decisions of one step.
+  // tau6 has no filter, so one decision of five steps equals five decisions of one step.
   Scenario one = Short(Shipped("medium_release"), 50);
   one.world.control.interface = dynamics::ActionInterface::kTau6;
   Scenario five = one;
@@ -242,12 +243,13 @@ TEST(Decision, OfSeveralPhysicsStepsHoldsItsActionForAllOfThem) {
   EXPECT_DOUBLE_EQ(Seconds(b.time(0)), 2.0);
 }
 
-/// At rest around a target at rest: every metric has a closed form.
+/// The swarm and the target are at rest, so every metric has a closed form.
 TEST(Metrics, OfASwarmAtRestAreItsGeometry) {
   Scenario s = Short(Shipped("medium_release", "nominal", {"agents=3", "contact.stiffness=0"}), 10);
   s.run.time.tail_steps = 4;
   TestEnv env(s, VectorEnvOptions{});
-  // In the band at 0.014 m, in contact with it at 0.018 m, and lost at 0.7 m.
+  // The first AUV is in the band at 0.014 m. The second one touches it at 0.018 m. The third one
+  // has lost the target at 0.7 m.
   env.Place({{0.014, 0.0, 0.0}, {0.032, 0.0, 0.0}, {0.7, 0.0, 0.0}}, {{0.0, 0.0, 0.0}},
             {{0.0, 0.0, 0.0}});
   double total = 0.0;
@@ -269,7 +271,7 @@ TEST(Metrics, OfASwarmAtRestAreItsGeometry) {
   EXPECT_NEAR(m.colliding_pairs, 1.0, 1e-12);
   EXPECT_NEAR(m.tail_colliding_pairs, 1.0, 1e-12);
   EXPECT_NEAR(m.min_separation, 0.018, 1e-12);
-  // One AUV is in the band after the first decision, two never: 0.1 s, 1 s, 1 s.
+  // One AUV is in the band after the first decision, two AUVs never: 0.1 s, 1 s, 1 s.
   EXPECT_NEAR(m.time_to_band, 2.1 / 3.0, 1e-12);
   EXPECT_EQ(m.action_norm, 0.0);
   EXPECT_EQ(m.saturation_rate, 0.0);
@@ -284,7 +286,7 @@ TEST(Metrics, TheTailIsTheLastStepsOnly) {
   const double speed = 0.01;
   env.Place({{0.1, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{-speed, 0.0, 0.0}});
   for (int k = 0; k < 20; ++k) env.Step(Idle(env));
-  // The target leaves at 1 mm a step; the tail is steps 16 to 20, mean 18.
+  // The target leaves at 1 mm a step. The tail is steps 16 to 20, with mean 18.
   EXPECT_NEAR(env.metrics(0).tail_distance, 0.1 + 18.0 * 0.001, 1e-9);
   EXPECT_NEAR(env.metrics(0).mean_error, 0.085 + 10.5 * 0.001, 1e-9);
 }
@@ -302,7 +304,8 @@ TEST(Metrics, SaturationCountsExecutedComponentsAndTheNormIsOfTau) {
   EXPECT_NEAR(env.metrics(0).saturation_rate, 2.0 / 6.0, 1e-12);
   const double norm = std::sqrt(0.96 * 0.96 + 1.0 + 0.25 + 0.94 * 0.94);
   EXPECT_NEAR(env.metrics(0).action_norm, norm, 1e-6);
-  // Constant after the first step: level 0.6 and, once, change 0.4 of the mean square.
+  // The action is constant after the first step. The level counts 0.6 of the mean square in each
+  // step, the change 0.4 of it once.
   EXPECT_NEAR(env.metrics(0).control_cost, norm * norm / 6.0 * (0.6 + 0.4 / 4.0), 1e-6);
 }
 

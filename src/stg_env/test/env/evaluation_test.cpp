@@ -14,7 +14,7 @@
 namespace stg::env {
 namespace {
 
-/// `episodes` episodes from `seed` on `workers` threads.
+/// Flies `episodes` episodes from `seed` on, on `workers` threads.
 std::vector<task::EpisodeMetrics> Fly(const Scenario& s, const agent::Decider& c, int episodes,
                                       std::uint64_t seed, int workers = 1) {
   WorkerPool pool(workers);
@@ -72,7 +72,7 @@ TEST(MakeDecider, AnUnknownNameOrMissingFileIsAUserError) {
   EXPECT_THROW(agent::MakeDecider("/nonexistent/policy.onnx", s.model()), UserError);
 }
 
-/// A policy that always does tanh(bias).
+/// A policy that always answers tanh(bias).
 agent::Policy ConstantPolicy(const Scenario& s, float bias) {
   agent::Policy::Parameters p;
   p.input_mean = Eigen::VectorXf::Zero(s.agent.observation_size());
@@ -110,7 +110,7 @@ TEST(MakeDecider, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   }
   std::filesystem::remove(file(2));
   EXPECT_THROW(agent::MakeDecider(folder + "/p.onnx", s.model()), UserError);
-  // One for all goes first.
+  // A policy for all AUVs is preferred to one for each.
   ConstantPolicy(s, 1.0F).SaveOnnx(folder + "/p.onnx");
   EXPECT_EQ(agent::MakeDecider(folder + "/p.onnx", s.model()).policies.size(), 1U);
   std::filesystem::remove_all(folder);
@@ -174,7 +174,7 @@ TEST(PursuitSeparated, HoldsTheBandWithoutContactOnTrueStates) {
 }
 
 TEST(Pursuit, InAcousticModeUsesTheAgentsEstimatesOnly) {
-  // With a useless cue and no sensing the same controller cannot find the target.
+  // With a useless cue and without sensing, the controller cannot find the target.
   const std::vector<std::string> blind = {"sensing.range_m=0.02", "sensing.cue_std_m=0.2"};
   const Scenario acoustic = Short(Shipped("medium", "nominal", blind), 150);
   Scenario truth = acoustic;
@@ -197,7 +197,7 @@ TEST(Pursuit, InAcousticModeStillHoldsTheTargetInTheShippedScenarios) {
         task::Summarise(Fly(s, agent::MakeDecider("pursuit", s.model()), 12, 3000));
     const auto k = static_cast<size_t>(std::find(m.names.begin(), m.names.end(), "tail_distance") -
                                        m.names.begin());
-    EXPECT_NEAR(m.mean[k], 0.0125, 0.0005) << name;  // its standoff, and the error of the track
+    EXPECT_NEAR(m.mean[k], 0.0125, 0.0005) << name;  // the standoff, and the error of the track
   }
 }
 
@@ -210,7 +210,7 @@ TEST(Shipped, PoliciesDoWhatTheyAreShippedFor) {
     SCOPED_TRACE(row.name);
     const Scenario s = Shipped(row.name);
     const std::string file = config::ScenarioFolder() + "/../policies/" + row.name + ".onnx";
-    // A test that could refuse a policy chooses, so the reporting block is not for it.
+    // This test can refuse a policy, so it chooses. It must not use the reporting block.
     const auto episodes = Fly(s, agent::MakeDecider(file, s.model()), 28, 3000);
     ASSERT_EQ(SeedBlockOf(3000, 28), "choosing");
     const task::MetricSummary m = task::Summarise(episodes);
@@ -257,7 +257,7 @@ TEST(Evaluation, APrivilegedControllerActsOnTrueStatesInAcousticMode) {
     return a;
   };
   EXPECT_EQ(actions("acoustic", true), actions("truth", false));
-  EXPECT_NE(actions("acoustic", false), actions("truth", false));  // a cue is 5 cm off
+  EXPECT_NE(actions("acoustic", false), actions("truth", false));  // a cue is wrong by 5 cm
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ const Scenario& Release() {
   return release;
 }
 
-/// Columns that drive the replay instead of being compared.
+/// True for columns that drive the replay. The test does not compare them.
 bool IsDriven(const std::string& column) {
   return column == "step" || column == "agent" || (column.size() == 2 && column[0] == 'a');
 }
@@ -107,7 +107,7 @@ TEST(GoldenTrace, AnotherActionOrStartOrSettingIsFound) {
     bad.scenario.world.vehicle.reversed_coriolis = false;
     coriolis = std::max(coriolis, ReplayTrace(bad, 1e-5).max_abs_error);
   }
-  // Of the release's sign error only the trace that turns its AUVs tells.
+  // Only the trace that turns its AUVs shows the sign error of the release.
   EXPECT_GT(coriolis, 1e-5);
 }
 
@@ -117,7 +117,7 @@ TEST(GoldenTrace, AnEmptyCellIsNotCompared) {
   EXPECT_LE(ReplayTrace(trace, 1e-5).max_abs_error, 1e-5);
 }
 
-/// A small copy of a golden trace in a folder of its own, for spoiling.
+/// A small copy of a golden trace, in its own folder, which a test spoils.
 class BadTrace : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -148,7 +148,7 @@ class BadTrace : public ::testing::Test {
     ASSERT_NE(at, std::string::npos) << from;
     config_.replace(at, from.size(), to);
   }
-  /// The message of the UserError that loading and replaying gives.
+  /// The message of the UserError from loading or replaying the trace.
   std::string Error() const {
     try {
       ReplayTrace(LoadTrace(folder_, Release()), 1e-5);

@@ -13,10 +13,10 @@
 namespace stg::env {
 namespace {
 
-/// What one environment gives in one decision: observation, state, rewards and the rest.
+/// What one environment gives in each decision: observation, state, rewards and the rest.
 using Story = std::vector<std::vector<float>>;
 
-/// A random action of environment `env` in round k, the same whoever runs it.
+/// A random action of environment `env` in round k. It does not depend on who runs the environment.
 std::vector<float> ActionOf(const Scenario& s, int env, std::uint64_t round, int step) {
   std::vector<float> a;
   for (int i = 0; i < s.run.agents; ++i) {
@@ -29,7 +29,7 @@ std::vector<float> ActionOf(const Scenario& s, int env, std::uint64_t round, int
   return a;
 }
 
-/// All environments of a VectorEnv.
+/// The stories of all environments of a VectorEnv.
 std::vector<Story> Together(const std::vector<Scenario>& mix, const VectorEnvOptions& o,
                             int steps) {
   VectorEnv env(mix, o);
@@ -69,7 +69,7 @@ std::vector<Story> Together(const std::vector<Scenario>& mix, const VectorEnvOpt
   return stories;
 }
 
-/// Environment e of a run, alone in an object of its own.
+/// The story of environment e of a run, in an object of its own.
 Story Alone(const Scenario& s, VectorEnvOptions o, int e, int steps) {
   o.envs = 1;
   o.first_env = e;
@@ -162,14 +162,15 @@ TEST(VectorEnv, StaggeredFirstEpisodesEndAtTimesSpreadOverAnEpisode) {
     }
   }
   for (std::size_t e = 0; e < 18; ++e) {
-    // Five blocks, the last one of two: 2, 4, 6, 8, 10 decisions, then whole episodes.
+    // There are five blocks, and the last one has two environments. First episodes have 2, 4, 6, 8,
+    // 10 decisions. All later ones are whole.
     const int first = 2 * (static_cast<int>(e) / kMixBlock + 1);
     EXPECT_EQ(ends[e], (std::vector<int>{first, first + 10})) << e;
   }
 }
 
-/// Environment 1 is reset twice in the middle of others' episodes: they do not notice, and its
-/// episodes are those that the seeds give whoever flies beside it.
+/// Environment 1 is reset twice in the middle of the others' episodes. The others do not notice it.
+/// The episodes of environment 1 depend on its seeds only, and not on its neighbours.
 TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
   for (const char* name : {"medium", "medium_release"}) {
     for (const char* mode : {"mode=truth", "mode=acoustic"}) {
@@ -233,7 +234,7 @@ TEST(VectorEnv, AResetOfOneEnvironmentIsNoticedByNoOther) {
           EXPECT_EQ(mixed.metrics(0).Items(), calm.metrics(0).Items());
         }
       }
-      // The episode after a reset is the one that would have followed the one given up.
+      // The next episode is the one that would have followed the broken one.
       EXPECT_EQ(mixed.round(1), 1u);
       EXPECT_EQ(mixed.seed(1), 70u + 1u + 4u);
     }

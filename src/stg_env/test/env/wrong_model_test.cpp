@@ -1,4 +1,4 @@
-// Agents that take the world for another one than it is.
+// Agents whose model of the world differs from the world.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ Scenario TestScenario(const std::string& name, const std::vector<std::string>& o
                            "nominal", overrides);
 }
 
-/// Where the AUVs are after some decisions, and what they see and say on the way.
+/// Where the AUVs are after some decisions, and what they see and state on the way.
 std::vector<double> Flight(const Scenario& s, const std::string& law, int decisions) {
   TestEnv env(s);
   env.Reset();
@@ -56,7 +56,7 @@ void ExpectEachMatters(const std::vector<Case>& cases, const Scenario& s, const 
 const std::vector<std::string> kDrifting{"track.measurements.observers=rates",
                                          "time.episode_steps=40", "sea.auv_depth_m=[0.0,0.1]",
                                          "sensing.detection_probability=0.9"};
-/// What torpedoes read that drift, range their target and search it.
+/// The keys of the model that torpedoes read when they drift, range their target and search it.
 const std::vector<Case> kTorpedoCases{
     {"vehicle.max_velocity_mps", "[2.0,2.3,0.5]"},
     {"vehicle.torpedo.length_m", "1.9"},
@@ -116,7 +116,7 @@ TEST(WrongModel, EachKeyOfForceAndMomentAndOfTheChartMatters) {
                     STG_SCENARIO_FOLDER "/../policies/field.onnx", 12);
 }
 
-/// The keys above are all that there are.
+/// The cases above are all keys of the model.
 TEST(WrongModel, EveryKeyIsTried) {
   std::vector<std::string> untried = agent::KeysOfModel();
   const auto tried = [&](const std::string& key) {
@@ -131,7 +131,7 @@ TEST(WrongModel, EveryKeyIsTried) {
   EXPECT_EQ(untried, std::vector<std::string>());
 }
 
-/// Force and moment are commanded alike, and what agents believe changes no true state.
+/// The command is force and moment, so what agents believe changes no true state.
 TEST(WrongModel, LeavesTheTruthAlone) {
   const Scenario s =
       Short(Shipped("medium", "nominal", {"control.interface=tau6", "control.smoothing=0"}), 30);
@@ -153,7 +153,8 @@ TEST(WrongModel, LeavesTheTruthAlone) {
   }
 }
 
-/// Instruments are as good as they are; what is stated of them is what the vehicle takes them for.
+/// The errors of the instruments do not change. The stated deviation follows what the vehicle
+/// believes.
 TEST(WrongModel, NavigationErrsAsBeforeAndStatesAnotherDeviation) {
   const Scenario s = TestScenario("drifting", kDrifting);
   Scenario wrong = s;

@@ -5,7 +5,7 @@
 #include "env/env_fixture.hpp"
 #include "stg_env/env/decide.hpp"
 
-/// Targets that are chosen freely, and members that leave and join, flown.
+/// Flights in which AUVs choose their targets freely, and in which AUVs leave and join.
 namespace stg::env {
 namespace {
 
@@ -52,7 +52,7 @@ TEST(FreeFlight, WhoDoesNotChooseFollowsByNumberAndKnowsAllTargets) {
 }
 
 TEST(FreeFlight, SharedMeasurementsReachWhoSeesNothing) {
-  // Of a target that an AUV cannot range it knows what the others tell.
+  // An AUV that cannot range a target knows only what the others tell about it.
   TestEnv env(Short(Shipped("many8"), 400));
   env.Reset();
   Fly(&env, "assign", 300);

@@ -1,5 +1,5 @@
-// Whole flights without bottom lock: what ranges among AUVs, a craft and beacons are worth, and
-// that nobody pretends to know more than that.
+// Whole flights without bottom lock. They show how good ranges among AUVs, a craft and beacons are.
+// They also show that no AUV claims to know more than that.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kFlights = 8;
 
-/// Mean over the flights of a quarter of an hour.
+/// The mean metrics of flights of a quarter of an hour.
 task::MetricSummary Fly(const std::string& condition, const std::vector<std::string>& keys = {}) {
   Scenario s = Short(Shipped("deep", condition, keys), 900);
   s.run.time.tail_steps = 300;
@@ -30,7 +30,7 @@ task::MetricSummary Fly(const std::string& condition, const std::vector<std::str
   return m;
 }
 
-/// It knows where it is, as well as it says.
+/// The AUV knows where it is, and its stated error is right.
 void ExpectLocated(const task::MetricSummary& m) {
   EXPECT_LT(m.Mean("navigation_rmse_tail"), 8.0);
   EXPECT_LT(m.Mean("navigation_nees"), 5.0);
@@ -66,8 +66,7 @@ TEST(LocalizationFlight, BeaconsOnTheEdgeAreTakenForWhereTheyAre) {
   ExpectLocated(Fly("beacons", {"stations.beacons=[[1900, 1900, -100], [-1900, -1900, -100]]"}));
 }
 
-// The clocks of craft_ping are off by a second. Pings do not notice; the travel times of packets
-// do.
+// The clocks of craft_ping are off by a second. This changes travel times of packets, and no ping.
 TEST(LocalizationFlight, PingsNeedNoCommonClock) {
   const task::MetricSummary pings = Fly("craft_ping");
   ExpectLocated(pings);
@@ -76,7 +75,7 @@ TEST(LocalizationFlight, PingsNeedNoCommonClock) {
   EXPECT_GT(Fly("craft_ping", {"localization.ranges.by=one_way"}).Mean("navigation_nees"), 20.0);
 }
 
-// Nothing is heard of clocks: the same flights, whatever they show, but for the last bits of half a
+// Ranges by ping do not depend on the clocks. The flights differ only by rounding, half a
 // nanosecond.
 TEST(LocalizationFlight, ADriftingClockMovesARangeByLessThanAMillimetre) {
   const task::MetricSummary drifting = Fly("craft_ping");
@@ -118,11 +117,12 @@ TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
   EXPECT_NE(error({"localization.kind=uncorrected"}).find("localization.kind"), std::string::npos);
   EXPECT_NE(error({"agents=28", "stations.crafts=[[0,0],[1,1],[2,2],[3,3]]"}).find("31 AUVs"),
             std::string::npos);
-  // Keys of what was not chosen.
+  // These keys belong to things that the scenario did not choose.
   EXPECT_NE(error({"localization.ranges.ping_period_s=20.0"}).find("localization.ranges.by"),
             std::string::npos);
   EXPECT_NE(error({"stations.gps_std_m=1.0"}).find("stations.crafts"), std::string::npos);
-  // Periods between decisions, and of less than a turn and the way there and back.
+  // Refused are a period that is no whole number of decisions, and one that is too short for a turn
+  // and for the way there and back.
   const std::string by = "localization.ranges.by=ping";
   EXPECT_NE(error({by, "localization.ranges.ping_period_s=20.5"}).find("whole"), std::string::npos);
   EXPECT_NE(error({by, "localization.ranges.ping_period_s=9.0"}).find("ping_period_s"),
@@ -133,7 +133,7 @@ TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
             std::string::npos);
   EXPECT_THROW(Shipped("field", "nominal", {"navigation.dead_reckoning.fixes=reported"}),
                UserError);
-  // A station without anybody who makes use of it.
+  // Nobody makes use of this station.
   EXPECT_THROW(Shipped("field", "nominal", {"stations.crafts=[[0,0]]"}), UserError);
 }
 

@@ -1,5 +1,5 @@
-// Ranges to targets by pings of the AUVs' modems: what they cost, when they fail, and flights that
-// live on them.
+// AUVs measure the range to a target with pings of their modems: the cost of a ping, the ways in
+// which it fails, and whole flights.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using acoustics::Reception;
 constexpr double kDepth_m = 40.0;
 constexpr TimeNs kSecond = 1'000'000'000;
 
-/// Two AUVs and a target at rest, ranges without an error of their own.
+/// Two AUVs and a target at rest. The ranges have no error of their own.
 class PingTest : public ::testing::Test {
  protected:
   void Make(double target_m, const std::vector<std::string>& more = {}) {
@@ -41,8 +41,8 @@ class PingTest : public ::testing::Test {
     channel_->Reset(7, 0);
   }
 
-  /// Decisions from the start up to a time, at which AUV `talker` (-1: none) offers a packet; what
-  /// each of the two AUVs was answered.
+  /// Steps the channel until a time. In each step AUV `talker` offers a packet (-1: none). Returns
+  /// the answers to pings that each of the two AUVs got.
   std::vector<std::vector<Reception>> Run(double seconds, int talker = -1) {
     std::vector<std::vector<Reception>> answers(2);
     const std::vector<Vec3<double>> still(p_W_.size());
@@ -106,7 +106,7 @@ TEST_F(PingTest, EachCostsItsSoundAndTheHearingOfTheAnswers) {
   ASSERT_EQ(answers[0].size(), static_cast<std::size_t>(pings));
   const double airtime_s = modem_.airtime_s(1);
   EXPECT_NEAR(channel_->SentS(0, 300 * kSecond), pings * airtime_s, 1e-6);
-  // It hears its own answers, and the other's request and answer, whoever they are for.
+  // It hears the answers to itself, and the request and the answer of the other AUV.
   const double heard_s = 3.0 * pings * airtime_s;
   const double sent_s = pings * airtime_s;
   EXPECT_NEAR(channel_->EnergyJ(0, 300 * kSecond),
@@ -116,7 +116,7 @@ TEST_F(PingTest, EachCostsItsSoundAndTheHearingOfTheAnswers) {
 }
 
 TEST_F(PingTest, ItTakesTheTurnOfAPacket) {
-  // Of AUV 0 the slots at 0, 2.5, ... 27.5 s.
+  // AUV 0 has the twelve slots at 0, 2.5, ... 27.5 s.
   Make(450.0);
   Run(30.0, 0);
   EXPECT_EQ(channel_->totals().delivered, 11U);
@@ -127,7 +127,7 @@ TEST_F(PingTest, ItTakesTheTurnOfAPacket) {
 
 TEST_F(PingTest, ACollisionKillsTheRange) {
   const std::vector<std::string> at_once{"channel.access=aloha", "channel.contention.rest_s=25.0"};
-  // The request of the AUV that is nearer to the target is there when the other's comes.
+  // The request of the nearer AUV is still at the target when the other one's comes.
   Make(450.0, at_once);
   EXPECT_TRUE(Run(2.0)[0].empty());
   EXPECT_EQ(channel_->pings().sent, 2U);
@@ -144,7 +144,7 @@ TEST_F(PingTest, NothingComesFromOutOfReach) {
   EXPECT_EQ(channel_->pings().sent, 2U);
   EXPECT_EQ(channel_->pings().answered, 0U);
   EXPECT_NEAR(channel_->SentS(0, 30 * kSecond), modem_.airtime_s(1), 1e-9);
-  // Nor where the water does not carry it.
+  // No answer comes either where the noise is too loud.
   Make(450.0, {"channel.physical.noise.site_db=140"});
   EXPECT_TRUE(Run(30.0)[0].empty());
 }
@@ -163,7 +163,7 @@ TEST_F(PingTest, TheSensorsChanceAndErrorAreThoseOfTheTransponder) {
   EXPECT_NEAR(square / static_cast<double>(answers.size()) / (kStd_m * kStd_m), 1.0, 0.2);
 }
 
-// The time of a request and the time of its answer are each wrong by the modems' timing.
+// The times of a request and of its answer each have the modems' timing error.
 TEST_F(PingTest, TheModemsTimingCountsTwiceAndByHalf) {
   constexpr double kTiming_s = 0.001, kPings = 800.0;
   Make(300.0, {"channel.physical.modem.timing_std_s=0.001", "sensing.period_s=7.0"});
@@ -192,12 +192,12 @@ TEST(PingFlight, TheFieldIsFlownOnPings) {
   const task::MetricSummary ping = fly({});
   const task::MetricSummary free = fly({"sensing.ranging=free"});
   EXPECT_NEAR(ping.Mean("pings"), 30.0, 0.5);
-  EXPECT_GT(ping.Mean("ping_loss"), 0.05);  // chance 0.9 at hand, less far off
+  EXPECT_GT(ping.Mean("ping_loss"), 0.05);  // the chance is 0.9 close by, and lower far away
   EXPECT_LT(ping.Mean("ping_loss"), 0.5);
   EXPECT_GT(ping.Mean("band_share"), free.Mean("band_share") - 0.05);
   EXPECT_LT(ping.Mean("nees"), 5.0);
   EXPECT_EQ(free.Mean("pings"), 0.0);
-  // A slot holds a packet or a ping: in the same airtime there are fewer packets.
+  // A slot holds a packet or a ping, so pings leave less room for packets.
   EXPECT_LT(ping.Mean("packets"), 0.9 * free.Mean("packets"));
 }
 
@@ -215,7 +215,7 @@ TEST(PingFlight, WhatDoesNotGoTogetherIsRefusedByName) {
   EXPECT_NE(error({"sensing.range.outlier_probability=0.1"}).find("outlier_probability"),
             std::string::npos);
   EXPECT_NE(error({"channel.model=range"}).find("only modems can ping"), std::string::npos);
-  // A round of slots is 5 s: each turn of an AUV would be a ping, and no packet would leave.
+  // A round of slots takes 5 s. Each turn of an AUV would be a ping, and no packet would leave.
   EXPECT_NE(error({"sensing.period_s=5.0"}).find("sensing.period_s"), std::string::npos);
   EXPECT_EQ(error({"sensing.period_s=7.0"}), "");
 }

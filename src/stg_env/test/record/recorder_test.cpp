@@ -39,7 +39,7 @@ std::uint32_t LengthAt(const std::string& bytes, std::size_t at) {
   return length;
 }
 
-/// A reader of its own, by the description in docs/recording.md.
+/// Reads the file as docs/recording.md describes it, without code of the product.
 std::vector<Read> ReadAll(const std::string& bytes) {
   static const std::map<std::string, std::size_t> kSizes = {
       {"f8", 8}, {"f4", 4}, {"i4", 4}, {"u1", 1}};
@@ -131,7 +131,7 @@ TEST_F(RecorderTest, HasEveryPacketOfItsLogOnce) {
   std::istringstream log(FileText(folder_ + "/packets.csv"));
   std::string line;
   std::getline(log, line);
-  // Fields of a line before that of the fate; none of them holds a comma.
+  // The number of fields before the fate. No field holds a comma.
   const auto before = std::count(line.begin(), line.begin() + line.find(",fate"), ',') + 1;
   while (std::getline(log, line)) {
     std::istringstream fields(line);

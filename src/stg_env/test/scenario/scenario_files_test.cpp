@@ -100,7 +100,7 @@ TEST(ShippedScenarios, ReleaseProfileIsTheReleasesSimulator) {
   EXPECT_EQ(s.agent.observation_size(), 74);
 }
 
-/// Tables S7-S8 with the numbers of the release.
+/// The numbers of Tables S7-S8 as the release has them.
 TEST(StressConditions, HaveTheReleasesNumbers) {
   const auto speed = [](const Scenario& s) {
     return s.world.reset.stages[static_cast<std::size_t>(s.world.reset.stage)].target_speed_mps;
@@ -201,7 +201,7 @@ TEST(ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
   unsetenv("ROS_PACKAGE_PATH");
 }
 
-/// The headers with the sections of a scenario.
+/// The headers that hold the sections of a scenario.
 const char* const kSections[] = {
     "auv_common/include/auv_common/config/run_config",
     "auv_dynamics/include/auv_dynamics/autopilot/autopilot_config",
@@ -233,12 +233,12 @@ const char* const kSections[] = {
     "stg_env/include/stg_env/scenario/scenario",
 };
 
-/// Members of the structs in those headers, by their text.
+/// Finds the members of the structs in the text of these headers.
 TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
   std::set<std::string> keys, optional;
   Scenario scenario;
   for (const config::Field& field : ScenarioFields(&scenario)) {
-    // An optional one may be of something that is registered, and no member.
+    // An optional key may belong to a registered thing. Then it is no member of a struct.
     std::istringstream parts(field.path);
     for (std::string part; std::getline(parts, part, '.');) {
       (field.fallback ? optional : keys).insert(part);
@@ -271,7 +271,7 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
     }
   }
   for (const char* end : {"lo", "hi"}) members.erase(end);
-  // What puts sections together, and what follows from other keys.
+  // These put sections together or follow from other keys.
   for (const char* part : {"run", "world", "agent", "max_current_mps", "has_range", "has_bearing",
                            "estimate_freshness_s", "accesses", "transponders"}) {
     members.erase(part);
@@ -282,8 +282,9 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
   for (const std::string& key : keys) EXPECT_EQ(members.count(key), 1u) << key << " is no member";
 }
 
-/// A key that files need not state, of no thing: at most of a mode or a kind of world; and what
-/// agents believe, which is the truth where no file says otherwise.
+/// True for a key that a file may leave out and that belongs to no registered thing, at most to an
+/// information mode or a kind of world. True for what agents believe, which is the truth where no
+/// file says otherwise.
 bool IsOptional(const config::Field& field) {
   if (field.path.rfind("believed.", 0) == 0) return true;
   return field.fallback && std::all_of(field.owners.begin(), field.owners.end(), [](const auto& o) {
@@ -319,7 +320,7 @@ TEST(ShippedScenarios, MediumStatesEveryKeyWithItsUnit) {
                                  << fields[std::min(next, fields.size() - 1)].path;
 }
 
-/// Tables of docs/scenarios.md, one per top-level section.
+/// The tables of docs/scenarios.md, one for each top-level section.
 std::string KeyTables() {
   Scenario scenario;
   std::string text, open = "?";

@@ -12,8 +12,8 @@
 #include "scenario/scenario_input.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
-/// Files that are no scenario at all: the loader refuses each with UserError,
-/// quickly, and never in another way.
+/// Files that are no scenario at all. The loader refuses each of them quickly, and always with
+/// UserError.
 namespace stg {
 namespace {
 
@@ -32,7 +32,7 @@ class HostileFile : public scenario_test::ScenarioFolder {
       EXPECT_NE(message.find(what), std::string::npos) << message;
     }
   }
-  /// True when loaded, false when refused; any other exception fails.
+  /// True if the file was loaded, false if it was refused. Any other exception fails the test.
   static bool LoadsOrRefuses(const std::string& file) {
     try {
       LoadScenario(file);
@@ -74,7 +74,7 @@ TEST_F(HostileFile, UnreadableFileIsRefused) {
   const std::string file = Write("secret.yaml", ToYaml(Scenario{}));
   ASSERT_EQ(chmod(file.c_str(), 0), 0);
   ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);
-  // Root reads every file, so it reads as somebody else for a moment.
+  // Root can read every file, so the test becomes another user for a moment.
   const bool root = geteuid() == 0;
   ASSERT_EQ(root ? seteuid(65534) : 0, 0);
   ExpectRefused(file, ": ", "cannot be read: Permission denied");

@@ -15,7 +15,7 @@ namespace stg::scenario_test {
 
 namespace fs = std::filesystem;
 
-/// Message of the UserError that `call` throws; fails when it throws none.
+/// The message of the UserError that `call` throws. It is a failure if `call` throws none.
 template <class F>
 std::string ErrorOf(F call) {
   try {
@@ -27,7 +27,7 @@ std::string ErrorOf(F call) {
   return "";
 }
 
-/// A folder for each test with files that the test writes.
+/// Each test has its own folder with files that it writes.
 class ScenarioFolder : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -45,10 +45,11 @@ class ScenarioFolder : public ::testing::Test {
   fs::path folder_;
 };
 
-/// Scenarios with one line replaced.
+/// Tests that replace one line of a scenario file.
 class ScenarioInput : public ScenarioFolder {
  protected:
-  /// The whole file with the line of `key` (its leaf) replaced; `line` is told.
+  /// The whole file with the line of `key` (its leaf) replaced. Sets `line` to the number of that
+  /// line.
   static std::string WithLine(const std::string& key, const std::string& replacement, int* line) {
     std::istringstream in(ToYaml(Scenario{}));
     std::string out;
@@ -67,8 +68,8 @@ class ScenarioInput : public ScenarioFolder {
     return out;
   }
 
-  /// Loads the file with one line replaced and expects an error that names
-  /// file, line, key and says `what`.
+  /// Loads the file with one line replaced. Expects an error that names file, line and key, and
+  /// says `what`.
   void ExpectRefused(const std::string& leaf, const std::string& replacement,
                      const std::string& path, const std::string& what) {
     int line = 0;

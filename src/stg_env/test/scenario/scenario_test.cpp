@@ -17,7 +17,7 @@ namespace {
 
 TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
   Scenario scenario;
-  scenario.world.vehicle.mass_kg = 0.1 + 0.2;  // needs all 17 digits
+  scenario.world.vehicle.mass_kg = 0.1 + 0.2;  // this number needs all 17 digits
   scenario.run.seed = std::numeric_limits<std::uint64_t>::max();
   scenario.world.sensing.noise_std_m = 1e-300;
   scenario.world.vehicle.added_mass_coriolis = dynamics::AddedMassCoriolis::kOff;
@@ -35,7 +35,7 @@ TEST_F(ScenarioInput, RoundTripThroughYamlKeepsEveryValueExactly) {
   EXPECT_EQ(ToYaml(loaded), ToYaml(scenario));
 }
 
-/// Another allowed value of the same type; false when there is none.
+/// Sets another allowed value of the same type. False if there is none.
 bool Change(const config::Field& field) {
   const auto other = [&](double v) {
     const double middle = 0.5 * (field.limits.lo + field.limits.hi);
@@ -93,7 +93,7 @@ TEST(Scenario, HashAndFileChangeWithEveryKey) {
 TEST_F(ScenarioInput, EveryMissingKeyIsNamedWithTheLineOfItsSection) {
   Scenario scenario;
   for (const config::Field& field : ScenarioFields(&scenario)) {
-    if (field.fallback) continue;  // need not be stated
+    if (field.fallback) continue;  // a file may leave it out
     const std::string yaml = ToYaml(scenario);
     std::istringstream in(yaml);
     std::string without, section;
@@ -108,13 +108,13 @@ TEST_F(ScenarioInput, EveryMissingKeyIsNamedWithTheLineOfItsSection) {
       std::string path;
       for (const std::string& part : open) path += (path.empty() ? "" : ".") + part;
       if (field.path.rfind(path + ".", 0) == 0) section_line = number;
-      // An emptied line keeps the numbers of the others.
+      // An emptied line keeps the line numbers of the others.
       without += (path == field.path ? "" : text) + "\n";
     }
     const std::string file = Write("missing.yaml", without);
     const std::string message = ErrorOf([&] { LoadScenario(file); });
     const std::string start = file + ":" + std::to_string(section_line) + ": " + field.path;
-    if (field.path != "name") {  // there the document starts one line later
+    if (field.path != "name") {  // without `name` the document starts one line later
       EXPECT_EQ(message.substr(0, start.size()), start);
     }
     EXPECT_NE(message.find(field.path + ": missing key"), std::string::npos) << message;
@@ -172,7 +172,7 @@ TEST_F(ScenarioInput, RefusedOverrideIsNamed) {
   }
 }
 
-/// A key of an earlier version is refused with the name that it has now.
+/// A key of an earlier version is refused, and the message names the key of today.
 TEST_F(ScenarioInput, AMovedKeyNamesItsNewPlace) {
   const std::string base = Write("base.yaml", ToYaml(Scenario{}));
   const std::pair<const char*, const char*> moved[] = {
@@ -195,7 +195,8 @@ TEST_F(ScenarioInput, AMovedKeyNamesItsNewPlace) {
   }
 }
 
-/// Every key of every thing that a scenario did not choose, of four scenarios with other choices.
+/// A scenario must not set a key of a thing that it did not choose. The scenarios here choose
+/// differently.
 TEST_F(ScenarioInput, AKeyOfAThingThatWasNotChosenIsRefusedWithTheChoice) {
   for (const char* name : {"medium", "field", "physical", "utracking", "medium_release"}) {
     const Scenario scenario = LoadNamedScenario(STG_SCENARIO_FOLDER, name);
@@ -244,10 +245,10 @@ TEST_F(ScenarioInput, WhatNeitherTheModeNorTheWorldNorTheTrainingReadsIsRefused)
 }
 
 TEST_F(ScenarioInput, KeysOfABaseArePassedOverWhereAnotherThingIsChosenOnTopOfIt) {
-  const std::string base = Write("base.yaml", ToYaml(Scenario{}));  // chooses extended
+  const std::string base = Write("base.yaml", ToYaml(Scenario{}));  // it chooses `extended`
   const std::string choice = "base: base.yaml\nchannel:\n  model: range\n";
   EXPECT_EQ(LoadScenario(Write("other.yaml", choice)).channel.model, "range");
-  // In the file that chooses, in an overlay and in an override they would have no effect.
+  // These keys have no effect in the file that chooses, in an overlay and in an override.
   const std::string key = "  extended:\n    loss_probability: 1.0\n";
   const std::string said =
       "channel.extended.loss_probability: belongs to the propagation model "

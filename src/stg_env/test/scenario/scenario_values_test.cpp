@@ -60,7 +60,7 @@ TEST_F(ScenarioInput, NonFiniteNumbersAreRefused) {
   }
 }
 
-/// Every number just outside each of its bounds, in the file.
+/// Sets every number in the file just outside each of its bounds.
 TEST_F(ScenarioInput, EveryNumberIsRefusedOutsideItsRange) {
   int checked = 0;
   for (const bool above : {false, true}) {

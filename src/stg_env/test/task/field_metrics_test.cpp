@@ -6,7 +6,7 @@
 #include "auv_dynamics/vehicle/shaft_power.hpp"
 #include "stg_env/task/task.hpp"
 
-/// What a task judges of AUVs in open water beside the paper's terms.
+/// How a task judges AUVs in open water, beside the paper's terms.
 namespace stg::task {
 namespace {
 
@@ -69,7 +69,7 @@ TEST(Spread, IsOneMinusTheLengthOfTheMeanBearing) {
 }
 
 TEST(NormalisedSquare, IsThatOfTheInverseCovariance) {
-  // P = L L^T with known L: r^T P^-1 r = |L^-1 r|^2 by forward substitution.
+  // P = L L^T with a known L, so r^T P^-1 r = |L^-1 r|^2 by forward substitution.
   for (std::uint32_t k = 0; k < 200; ++k) {
     Random random(1, Stream::kReset, 0, 0, k);
     const double a = random.Uniform(0.5, 9.0), b = random.Uniform(-5.0, 5.0),
@@ -94,14 +94,14 @@ TEST(FieldMetrics, CountErrorsSpellsOfLossAndNearness) {
   swarm.vehicles[0].p_WB = {90.0, 0.0, -40.0};
   swarm.vehicles[1].p_WB = {-130.0, 0.0, -40.0};
   for (FieldState<double>& f : swarm.field) {
-    f.p_WT = {3.0, 0.0, -36.0};  // 5 m off
+    f.p_WT = {3.0, 0.0, -36.0};  // the estimate is wrong by 5 m
     for (const int k : {0, 3, 5}) f.covariance[k] = 4.0;
     f.age_s = 2.0;
     f.altitude_m = 80.0;
     f.clearance_m = 300.0;
   }
   task.Start(true, swarm.State(), 100.0);
-  // AUV 0 believes something else in decisions 3 to 7 and 10 to 11, AUV 1 nothing in the last.
+  // AUV 0 has a wrong estimate in decisions 3 to 7 and 10 to 11. AUV 1 has none in the last one.
   for (int k = 1; k <= 20; ++k) {
     const bool astray = (k >= 3 && k <= 7) || (k >= 10 && k <= 11);
     swarm.field[0].p_WT.x = astray ? 103.0 : 3.0;
@@ -144,7 +144,7 @@ TEST(FieldMetrics, CountErrorsSpellsOfLossAndNearness) {
   EXPECT_EQ(m.packets, 60.0);
   EXPECT_NEAR(m.packet_loss, 0.25, 1e-12);
   EXPECT_EQ(m.modem_energy, 400.0);
-  // A second episode begins anew.
+  // A second episode counts from zero.
   for (FieldState<double>& f : swarm.field) f = FieldState<double>();
   task.Start(true, swarm.State(), 100.0);
   task.Step(swarm.State());
@@ -159,7 +159,7 @@ TEST(FieldMetrics, CountTheWorkOfPropellers) {
   Swarm swarm(s);
   swarm.efforts[0][0] = 0.5;
   swarm.efforts[1][0] = -0.25;
-  swarm.efforts[2][0] = 1.0;  // without a propeller
+  swarm.efforts[2][0] = 1.0;  // this vehicle has no propeller
   swarm.vehicles[0].v_WB = {0.0, 1.2, 0.0};
   task.Start(true, swarm.State(), 100.0);
   for (int k = 0; k < 10; ++k) task.Step(swarm.State());
@@ -194,8 +194,8 @@ TEST(CriticState, TellsInOpenWaterHowWrongTheEstimateIs) {
   std::vector<double> row = state();
   ASSERT_EQ(row.size(), static_cast<std::size_t>(CriticStateSize(s.run, s.world)));
   ASSERT_EQ(row.size(), 19U + 7U + 6U);
-  EXPECT_NEAR(row[0], 0.1, 1e-12);  // by far_scale_m
-  EXPECT_NEAR(row[3], 0.5, 1e-12);  // by near_scale_m
+  EXPECT_NEAR(row[0], 0.1, 1e-12);  // scaled by far_scale_m
+  EXPECT_NEAR(row[3], 0.5, 1e-12);  // scaled by near_scale_m
   EXPECT_NEAR(row[15], 10.0 / 200.0, 1e-12) << "d - d*";
   const double expected[] = {1.0, 0.25, -0.1, 0.05, 0.2, 0.5, 0.5};
   for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(row[19 + k], expected[k], 1e-12) << k;
@@ -250,8 +250,8 @@ TEST(FieldTerms, AreWhatTheirNamesSay) {
 }
 
 TEST(FieldMetrics, AreOfTheOwnFrameAndOfTheWorldApart) {
-  // An AUV whose navigation is off by 300 m, and whose vector to the target is off by (3, 4, 12):
-  // it has not lost the target, although it does not know where in the world both are.
+  // The navigation of the AUV is wrong by 500 m, and its vector to the target by (3, 4, 12). It has
+  // not lost the target, although it does not know where in the world both are.
   const JudgeConfig s = Sea(1);
   Task<double> task(s);
   Swarm swarm(s);
@@ -262,7 +262,7 @@ TEST(FieldMetrics, AreOfTheOwnFrameAndOfTheWorldApart) {
   for (int k = 1; k <= 100; ++k) {
     swarm.field[0].r_BT_W = swarm.targets[0].p_WT - swarm.vehicles[0].p_WB + off;
     swarm.field[0].p_WT = swarm.targets[0].p_WT + off + drift;
-    // In the tail the vector is twice as far off; beyond 100 m for one decision before.
+    // In the tail the error of the vector is twice as large. Before the tail it exceeds 100 m once.
     if (k > 90) swarm.field[0].r_BT_W = swarm.field[0].r_BT_W + off;
     if (k == 50) swarm.field[0].r_BT_W.x += 120.0;
     task.Step(swarm.State());

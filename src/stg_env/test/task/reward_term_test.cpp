@@ -9,7 +9,7 @@
 namespace stg::task {
 namespace {
 
-/// The index of the AUV: what it earns shows which AUV was asked, in both number types.
+/// Gives the index of the AUV, so that a test sees which AUV was asked, in both number types.
 struct Index : TermOf<Index> {
   template <class T>
   T Of(const TermInput<T>& in) const {
@@ -17,7 +17,7 @@ struct Index : TermOf<Index> {
   }
 };
 
-/// How far the executed action has moved since the decision before.
+/// The change of the executed action since the last decision.
 struct Change : TermOf<Change> {
   template <class T>
   T Of(const TermInput<T>& in) const {
@@ -36,7 +36,7 @@ Scenario With(const std::vector<std::string>& overrides) {
   return env::Short(env::Shipped("medium", "nominal", overrides), 20);
 }
 
-/// AUV totals after three random decisions, [env, agent].
+/// The total reward of each AUV after three random decisions, [env, agent].
 std::vector<double> Totals(const Scenario& s) {
   const env::VectorEnvOptions o;
   env::TestEnv env(s, o);
@@ -83,7 +83,7 @@ TEST(RewardTerms, EffortIsTheMeanSquareOfTheForces) {
     env::TestEnv env(k == 0 ? s : without);
     env.Reset();
     std::vector<float> actions = env::Idle(env);
-    actions[0] = 0.5F;  // of environment 0: surge and yaw
+    actions[0] = 0.5F;  // surge and yaw of environment 0
     actions[5] = -1.0F;
     env.Step(actions);
     total[k] = env.terms(0, 0).total;

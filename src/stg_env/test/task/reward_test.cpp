@@ -27,7 +27,7 @@ RewardInput<double> Input(double previous, double distance, double closing, doub
   return in;
 }
 
-// Every expected number below is Eqs. 28-36 done by hand with the band [0.010, 0.015] m,
+// Every expected number below is computed by hand from Eqs. 28-36, with the band [0.010, 0.015] m,
 // e_max 0.8 m, progress scale 0.04 m, closing scale 0.08 m/s.
 
 TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
@@ -60,7 +60,7 @@ TEST(Reward, ApproachingOutsideTheBandMatchesTheEquationsByHand) {
 }
 
 TEST(Reward, StablePhaseIsWhereThePaperAndTheReleaseDiffer) {
-  // Near but above the band: P = 0, C = -0.5, b = 0.035, B = 0.95625.
+  // Above the band, but near it: P = 0, C = -0.5, b = 0.035, B = 0.95625.
   const RewardInput<double> in = Input(0.05, 0.05, -0.04, 0.8);
   const RewardTerms<double> paper = Reward(With(RewardKind::kPaper).judge(), in, 0.0, 0.0);
   EXPECT_NEAR(paper.track, 0.2596875, 1e-12);
@@ -115,7 +115,7 @@ TEST(Reward, EveryTermAndTheTotalStayWithinTheirLimits) {
   r = Reward(s.judge(), in, 0.0, 0.0);
   EXPECT_EQ(r.track, -1.0);
   EXPECT_EQ(r.total, -2.0);
-  // Progress and closing saturate at one unit of their scales.
+  // Progress and closing are limited to one unit of their scales.
   const agent::ObservationConfig o;
   EXPECT_EQ(agent::Progress(o, 1.0, 0.0), 1.0);
   EXPECT_EQ(agent::Progress(o, 0.0, 1.0), -1.0);
@@ -211,12 +211,13 @@ TEST(SwarmReward, CoordinationIsTheMeanBandDeviationOfTheSwarm) {
   const env::TestEnv release = Line(env::Shipped("medium_release"));
   EXPECT_NEAR(paper.terms(0, 0).coordination, 1.0 - deviation / 0.8, 1e-9);
   EXPECT_NEAR(release.terms(0, 3).coordination, 1.0 - deviation / 0.8, 1e-9);
-  // The release's "communication" is a function of target distance, here out of range.
+  // The "communication" of the release depends on the distance to the target, which is too large
+  // here.
   EXPECT_EQ(release.terms(0, 0).communication, 0.0);
   EXPECT_NEAR(ReleaseCommunication(0.09, 0.45), 0.8, 1e-12);
 }
 
-/// Two AUVs 0.012 m apart, which is half the separation distance, and one away.
+/// Two AUVs are 0.012 m apart, half the separation distance. A third AUV is far from them.
 env::TestEnv Crowd(const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {"mode=truth", "agents=3", "contact.stiffness=0"};
   all.insert(all.end(), overrides.begin(), overrides.end());

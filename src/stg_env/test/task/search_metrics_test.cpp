@@ -4,7 +4,7 @@
 
 #include "stg_env/task/field_totals.hpp"
 
-/// How a search and its gathering are judged, by hand-made swarms.
+/// How a task judges a search and the gathering after it. The tests set the swarms by hand.
 namespace stg::task {
 namespace {
 
@@ -74,7 +74,7 @@ TEST(SearchMetrics, FoundAndGatheredAreTheFirstTimes) {
   totals.Start(true);
   for (int t = 1; t <= 100; ++t) {
     swarm.Stand({0.0, 90.0}, t < 70 ? 300.0 : 90.0);
-    // From 40 s on the second has an observation of 10 s before.
+    // From 40 s on, the second AUV knows an observation that was made at 30 s.
     swarm.field[0].age_s = t;
     swarm.field[1].age_s = t < 40 ? t : t - 30.0;
     swarm.AddTo(&totals);
@@ -94,7 +94,7 @@ TEST(SearchMetrics, WithoutAnObservationNothingIsFoundOrFollowed) {
     swarm.Stand({0.0, 90.0}, 90.0);
     for (FieldState<double>& f : swarm.field) {
       f.age_s = t;
-      f.r_BT_W.x += 25.0;  // off by more than a good estimate
+      f.r_BT_W.x += 25.0;  // the error exceeds that of a good estimate
     }
     swarm.AddTo(&totals);
   }
@@ -110,7 +110,7 @@ TEST(SearchMetrics, NetSpeedIsOneOnAStraightWayAndLessOnACircle) {
     Swarm swarm(1);
     swarm.Stand({0.0}, 90.0);
     totals.Start(true);
-    // A quarter of a circle in each window of 600 s: chord / arc is sin(pi / 4) / (pi / 4).
+    // Each window of 600 s is a quarter of a circle: chord / arc is sin(pi / 4) / (pi / 4).
     for (int t = 0; t <= 1300; ++t) {
       const double a = 0.5 * kPi * t / 600.0;
       swarm.targets[0].p_WT = straight

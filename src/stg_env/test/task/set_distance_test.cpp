@@ -4,7 +4,7 @@
 
 #include <vector>
 
-/// Distances of sets by hand.
+/// Distances of sets, computed by hand.
 namespace stg::task {
 namespace {
 
@@ -21,21 +21,21 @@ TEST(SetDistance, EqualSetsInAnyOrderAreNotApart) {
 }
 
 TEST(SetDistance, IsTheMeanOrTheSumOfTheCheapestPairs) {
-  // Target to nearest estimate: 30 and 40; crosswise 70 and 60.
+  // The cheapest pairs are 30 and 40 apart, the other two pairs 70 and 140.
   const SetDistance d = Of({{30, 0, 0}, {140, 0, 0}}, {{100, 0, 0}, {0, 0, 0}});
   EXPECT_DOUBLE_EQ(d.ospa_m, 35.0);
   EXPECT_DOUBLE_EQ(d.gospa_m, 70.0);
 }
 
 TEST(SetDistance, WhatIsMissedCostsTheCutoffOrHalfOfIt) {
-  // One of three targets is known, off by 12.
+  // One of three targets is known, with an error of 12.
   const SetDistance d = Of({{0, 12, 0}}, {{0, 0, 0}, {900, 0, 0}, {0, 900, 0}});
   EXPECT_DOUBLE_EQ(d.ospa_m, (12.0 + 2.0 * 100.0) / 3.0);
   EXPECT_DOUBLE_EQ(d.gospa_m, 12.0 + 2.0 * 50.0);
   const SetDistance none = Of({}, {{0, 0, 0}, {1, 0, 0}});
   EXPECT_DOUBLE_EQ(none.ospa_m, 100.0);
   EXPECT_DOUBLE_EQ(none.gospa_m, 100.0);
-  // A false one costs as much.
+  // A false estimate costs as much as a missed target.
   EXPECT_DOUBLE_EQ(Of({{0, 0, 0}, {700, 0, 0}}, {{0, 0, 0}}).gospa_m, 50.0);
 }
 
