@@ -23,7 +23,7 @@ TEST(Periodic, GivesEveryNodeItsSlotForAnySwarmAndPeriod) {
   for (const int nodes : {1, 2, 4, 7, 20, 53}) {
     for (const int decision_steps : {1, 3}) {
       const double dt_s = 0.1 * decision_steps;
-      // In decisions; the fractions are rounded.
+      // Periods in decisions. The channel rounds the ones that are not whole.
       for (const double period : {1.0, 1.4, 1.6, 2.0, 2.4, 3.0, 4.7, 5.0, 9.6, 10.0, 37.0}) {
         const NetworkConfig s = Slotted(nodes, period * dt_s, decision_steps);
         const int slots = std::max(1, static_cast<int>(std::floor(period + 0.5)));
@@ -79,7 +79,7 @@ TEST(Periodic, RefusesAPeriodShorterThanADecision) {
   EXPECT_FALSE(config::FindViolation(s));
 }
 
-/// One packet in `bytes` bytes, whose first says k.
+/// A packet with its bytes in `bytes`, whose first byte is k.
 Transmission Numbered(int source, std::uint32_t k, std::vector<std::uint8_t>* bytes) {
   bytes->assign(1 + k % 7, 0);
   bytes->front() = static_cast<std::uint8_t>(k);
@@ -88,7 +88,8 @@ Transmission Numbered(int source, std::uint32_t k, std::vector<std::uint8_t>* by
   return packet;
 }
 
-/// Receptions of node 1 when node 0 offers a packet in the given steps of 30.
+/// Node 0 offers a packet in each of 30 steps, or only in those in which it is due. Returns the
+/// receptions of node 1.
 std::vector<Reception> Heard(const NetworkConfig& s, Channel* channel, bool only_when_due,
                              std::vector<int>* numbers) {
   std::vector<Reception> all, got;
@@ -100,7 +101,7 @@ std::vector<Reception> Heard(const NetworkConfig& s, Channel* channel, bool only
     if (!only_when_due || channel->Due(0, t)) offered.push_back(Numbered(0, k, &bytes));
     StepAtRest(channel, t, k, std::vector<Vec3<double>>(static_cast<std::size_t>(s.run.agents)),
                offered);
-    bytes.assign(1, 255);  // what waits was copied
+    bytes.assign(1, 255);  // the channel has its own copy of what waits
     got.clear();
     channel->Deliver(1, t + kDt, &got);
     for (const Reception& r : got) {
@@ -116,7 +117,7 @@ TEST(Outbox, ANewerPacketReplacesTheOneThatWaits) {
   const auto channel = MakeChannel(s.channel, s.run);
   std::vector<int> every, due;
   const auto offered_always = Heard(s, channel.get(), false, &every);
-  // Packets 1 to 4 waited and were replaced, by the receiver's count twice (two receivers) each.
+  // In each round packets 1 to 4 waited and were replaced. Each counts twice, once per receiver.
   EXPECT_EQ(channel->totals().drops[static_cast<std::size_t>(DropReason::kQueue)], 2u * 23u)
       << "30 offered, 6 sent, one waits";
   const auto offered_when_due = Heard(s, channel.get(), true, &due);
@@ -153,7 +154,7 @@ TEST(Outbox, APacketWaitsForItsTurnAndKeepsItsGeneration) {
   EXPECT_EQ(got[0].payload.size, 3u);
   EXPECT_EQ(got[0].generation, 2 * kDt);
   EXPECT_EQ(got[0].transmit, 5 * kDt);
-  // Age counts in the quality: 0.3 s of 2 s.
+  // The age counts in the quality: it is 0.3 s, and freshness is 2 s.
   EXPECT_NEAR(got[0].link_quality, std::exp(-0.15), 1e-14);
 }
 
@@ -163,7 +164,7 @@ TEST(Outbox, ResetForgetsWhatWaitsAndCountsFromZero) {
   const std::vector<Vec3<double>> p(2);
   channel->Reset(1, 0);
   StepAtRest(channel.get(), 0, 0, p, {From(0, 0)});
-  StepAtRest(channel.get(), kDt, 1, p, {From(0, kDt)});  // waits
+  StepAtRest(channel.get(), kDt, 1, p, {From(0, kDt)});  // this one waits
   channel->Reset(1, 1);
   for (std::uint32_t k = 0; k < 6; ++k) {
     StepAtRest(channel.get(), k * kDt, k, p, {});
@@ -175,7 +176,7 @@ TEST(Outbox, ResetForgetsWhatWaitsAndCountsFromZero) {
   EXPECT_EQ(got[0].sequence, 0u);
 }
 
-/// Every packet begins to leave at a time of its own in the middle of the step.
+/// Each node's packets begin to leave in the middle of a step, at a time of the node's own.
 class Late : public MediumAccess {
  public:
   explicit Late(const RunConfig& run) : nodes_(run.agents), period_(run.decision_period()) {}
@@ -190,7 +191,7 @@ class Late : public MediumAccess {
 };
 
 TEST(MediumAccess, OneFromOutsideIsARegisteredName) {
-  if (!MediumAccesses().Has("late")) {  // tests may run repeatedly
+  if (!MediumAccesses().Has("late")) {  // the test may run repeatedly
     MediumAccesses().Add("late", [](const ChannelConfig&, const RunConfig& run) {
       return std::make_unique<Late>(run);
     });

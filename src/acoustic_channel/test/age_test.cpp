@@ -63,8 +63,8 @@ TEST(Age, AskingDoesNotChangeTheAnswer) {
   EXPECT_EQ(table.At(0, 1, 9 * kSecond).average_age_s, asked.At(0, 1, 9 * kSecond).average_age_s);
 }
 
-/// Periodic transmission, frame T, independent loss p, delay D (fresh packets at transmission):
-/// average age D + T (1 + p) / (2 (1 - p)), peak age D + T / (1 - p).
+/// Periodic transmission with frame T, independent loss p, delay D, and packets that are made when
+/// they leave: average age D + T (1 + p) / (2 (1 - p)), peak age D + T / (1 - p).
 void CheckPeriodic(double p, double delay_s, int frame_steps) {
   constexpr TimeNs kDt = kSecond / 10;
   constexpr int kFrames = 100000;
@@ -94,8 +94,9 @@ void CheckPeriodic(double p, double delay_s, int frame_steps) {
   }
   const LinkStatistics link = channel->Link(0, 1, t);
   const double T = 0.1 * frame_steps;
-  // Inter-delivery times are geometric; five standard errors of their mean, and of the ratio of
-  // their second to first moment, with room for the transient of the first frames.
+  // The times between deliveries are geometric. The tolerance is five standard errors of their
+  // mean, and of the ratio of their second to their first moment, and some more for the first
+  // frames.
   const double error = T * (std::sqrt(p) / (1 - p)) / std::sqrt(kFrames * (1 - p));
   EXPECT_NEAR(link.peak_age_s, delay_s + T / (1 - p), 5 * error + 20 * T / kFrames);
   EXPECT_NEAR(link.average_age_s, delay_s + T * (1 + p) / (2 * (1 - p)),

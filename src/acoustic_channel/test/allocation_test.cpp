@@ -15,7 +15,7 @@ long g_allocations = 0;
   if (void* p = std::malloc(size)) return p;
   throw std::bad_alloc();
 }
-// std::stable_sort of other tests in this program asks like this.
+// std::stable_sort, which other tests of this program use, allocates with this one.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++g_allocations;
   return std::malloc(size);
@@ -32,8 +32,8 @@ TEST(Allocation, TheCounterCounts) {
   EXPECT_EQ(g_allocations - before, 1);
 }
 
-/// Steps of an episode in which node i sends 1 to 200 bytes, another number every time.
-/// @param always every node offers a packet in every step, else only when it is due
+/// Steps of an episode in which node i sends 1 to 200 bytes, each time another number of them.
+/// @param always every node offers a packet in every step; else it offers one only when it is due
 struct Traffic {
   Traffic(Channel* channel, bool always)
       : channel(channel),

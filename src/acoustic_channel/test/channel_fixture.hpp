@@ -7,9 +7,9 @@
 
 namespace stg::acoustics {
 
-inline constexpr TimeNs kDt = 100'000'000;  ///< of the default clock
+inline constexpr TimeNs kDt = 100'000'000;  ///< decision period of the default clock
 
-/// A lossless network in which whoever offers a packet sends it at once.
+/// A network without losses. A packet leaves as soon as it is offered.
 inline NetworkConfig LosslessNetwork(int nodes) {
   NetworkConfig s;
   s.run.agents = nodes;
@@ -23,7 +23,7 @@ inline NetworkConfig LosslessNetwork(int nodes) {
 
 inline constexpr std::uint8_t kAnyBytes[] = {17, 0, 255, 4};
 
-/// A packet for all, true when it is offered.
+/// A packet for all nodes. It holds the state at the time at which it is offered.
 inline Transmission From(int source, TimeNs t) {
   Transmission packet;
   packet.source = source;
@@ -32,7 +32,7 @@ inline Transmission From(int source, TimeNs t) {
   return packet;
 }
 
-/// A step in which nobody moves.
+/// A step in which no node moves.
 inline void StepAtRest(Channel* channel, TimeNs t, std::uint32_t step,
                        const std::vector<Vec3<double>>& p,
                        const std::vector<Transmission>& offered) {

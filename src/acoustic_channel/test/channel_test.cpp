@@ -32,7 +32,7 @@ std::vector<Vec3<double>> RandomPositions(int agents, std::uint64_t seed) {
   return p;
 }
 
-/// What a run delivered, in full.
+/// Everything that a run delivered.
 struct Record {
   int source, destination;
   std::uint32_t sequence;
@@ -43,7 +43,7 @@ struct Record {
   }
 };
 
-/// `steps` steps in which every AUV with a true entry in `sends` transmits, in the order that
+/// Runs `steps` steps. Every AUV with a true entry in `sends` transmits, in the order that
 /// `shuffle` gives.
 std::vector<Record> Play(const NetworkConfig& scenario, std::uint64_t seed, std::uint32_t episode,
                          int steps, const std::vector<bool>& sends, std::uint64_t shuffle,
@@ -81,7 +81,7 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
   s.channel.range_m = 0.5;
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
-  // 0-1: 0.3 m; 0-2: exactly the range, so q = 0.
+  // Link 0-1 is 0.3 m long. Link 0-2 is exactly as long as the range, so q = 0.
   StepAtRest(channel.get(), kDt, 1, {{0, 0, 0}, {0.3, 0, 0}, {0, 0.5, 0}}, {From(0, kDt)});
   const std::vector<Reception> got = DeliverAll(channel.get(), kDt);
   ASSERT_EQ(got.size(), 1u);
@@ -138,7 +138,7 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
   std::vector<Reception> got;
   Transmission packet = From(0, 3 * kDt);
   packet.generation = 2 * kDt;
-  for (std::uint64_t seed = 0; got.empty(); ++seed) {  // until one is not lost
+  for (std::uint64_t seed = 0; got.empty(); ++seed) {  // until a packet is not lost
     channel->Reset(seed, 0);
     EXPECT_EQ(channel->Link(0, 1, 0).quality, 0.0);
     StepAtRest(channel.get(), 3 * kDt, 3, {{0, 0, 0}, {1, 0, 0}}, {packet});
@@ -147,7 +147,7 @@ TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
   }
   const double loss = 1.0 - std::exp(-0.25);
   EXPECT_NEAR(got[0].loss_probability, loss, 1e-14);
-  // Generated 0.2 s before arrival: 0.1 s before transmission, 0.1 s under way.
+  // The state is 0.2 s old on arrival: 0.1 s before transmission and 0.1 s under way.
   EXPECT_NEAR(got[0].link_quality, std::exp(-0.5) * std::exp(-0.25) * std::exp(-0.1), 1e-14);
   const LinkStatistics link = channel->Link(0, 1, 10 * kDt);
   EXPECT_NEAR(link.age_s, 0.8, 1e-12);
@@ -200,7 +200,7 @@ TEST(ExtendedChannel, LossesOfDifferentLinksAndStepsAreUncorrelated) {
   NetworkConfig s = LosslessNetwork(3);
   s.channel.loss_probability = 0.5;
   const std::vector<Record> got = Play(s, 3, 0, 20000, {true, true, false}, 0);
-  // +1 received, -1 lost, per step, of the links 0-1, 0-2, 1-0.
+  // In each step, of the links 0-1, 0-2, 1-0: +1 is received, -1 is lost.
   std::vector<std::vector<double>> x(3, std::vector<double>(20000, -1.0));
   for (const Record& r : got) {
     const int link = r.source == 0 ? r.destination - 1 : (r.destination == 0 ? 2 : -1);
@@ -238,7 +238,7 @@ TEST(ExtendedChannel, SilenceOfOthersDoesNotChangeALink) {
 }
 
 TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
-  // Same draws, all distances doubled: the survivors are a true subset.
+  // The draws are the same and all distances are doubled, so the survivors are a true subset.
   const NetworkConfig s = ExtendedScenario(4);
   const auto near = Play(s, 1, 1, 500, std::vector<bool>(4, true), 0, nullptr, 0.5);
   const auto far = Play(s, 1, 1, 500, std::vector<bool>(4, true), 0, nullptr, 1.0);
@@ -256,7 +256,7 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
   s.channel.sound_speed_mps = 1.0;
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
-  // Sources 1..8 around receiver 0 at four distances, two each, farthest first.
+  // Sources 1 to 8 around receiver 0, two at each of four distances, the farthest first.
   std::vector<Vec3<double>> p(9);
   std::vector<Transmission> sent;
   for (int i = 1; i <= 8; ++i) {
@@ -278,7 +278,7 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
 
 TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
   NetworkConfig s = ExtendedScenario(4);
-  s.channel.sound_speed_mps = 3.0;  // packets of the last steps are still under way
+  s.channel.sound_speed_mps = 3.0;  // the packets of the last steps are still under way
   const auto used = MakeChannel(s.channel, s.run);
   Play(s, 9, 0, 50, std::vector<bool>(4, true), 0, used.get());
   ASSERT_GT(used->totals().delivered, 0u);

@@ -32,7 +32,7 @@ TEST(ReceivedPacket, RoundTripKeepsAllThatAModemKnows) {
   for (const int destination : {5, acoustics::kToAll}) {
     r.destination = destination;
     auv_msgs::ReceivedPacket m;
-    m.data.assign(100, 9);  // of the packet before
+    m.data.assign(100, 9);  // bytes of an earlier packet
     SetReceivedPacket(r, start, &m);
     EXPECT_EQ(NsOf(m.arrival), start + r.arrival);
     const acoustics::Reception back = ReceptionOf(m, r.receiver, start);

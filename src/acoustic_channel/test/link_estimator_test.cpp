@@ -77,7 +77,7 @@ TEST(LinkEstimator, OfPhysicalLearnsFromGapsAndLevels) {
   EXPECT_EQ(links->Learnt(1)[0], 1.0);
   hear(0, 5, 40.0);
   EXPECT_NEAR(links->Learnt(1)[0], 1.0, 1e-9) << "what was before it came is unknown";
-  hear(0, 8, 40.0);  // two are missing
+  hear(0, 8, 40.0);  // two packets are missing
   EXPECT_NEAR(links->Learnt(1)[0], 1.0 - 0.2 * 0.0 - (1.0 - 0.64) * 0.8, 1e-9);
   for (std::uint32_t k = 9; k < 60; ++k) hear(0, k, 40.0);
   EXPECT_NEAR(links->Learnt(1)[0], 1.0, 1e-4);
@@ -86,7 +86,7 @@ TEST(LinkEstimator, OfPhysicalLearnsFromGapsAndLevels) {
   hear(kLanes - 1, 0, -5.0);
   EXPECT_LT(links->Learnt(1)[kLanes - 1], 0.01) << "hardly above what is lost";
   links->Reset(1);
-  hear(1, 0, 0.0);  // a modem that measures neither ratio nor noise
+  hear(1, 0, 0.0);  // this modem measures neither ratio nor noise
   EXPECT_EQ(links->Learnt(1)[1], 1.0);
   EXPECT_EQ(links->Learnt(2)[0], 1.0);
   EXPECT_NEAR(links->Quality(777.0, 10.0, 0.6), 0.6 * std::exp(-0.5), 1e-12);
@@ -116,7 +116,7 @@ TEST(LinkEstimator, MeansWhatTheChannelMeans) {
   }
 }
 
-/// Half of all packets arrive, wherever; the quality is what the distance leaves of 1.
+/// Half of all packets arrive, at any distance. The quality falls with the distance.
 struct Coin {
   template <class T>
   T DelayS(const T& /*d*/) const {
@@ -132,14 +132,14 @@ struct Coin {
 };
 
 TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
-  if (!PropagationModels().Has("coin")) {  // tests may run repeatedly
+  if (!PropagationModels().Has("coin")) {  // the test may run repeatedly
     PropagationModels().Add("coin", [](const ChannelConfig&) {
       return std::make_unique<IndependentModel<Coin>>(Coin());
     });
   }
   NetworkConfig s = LosslessNetwork(2);
   s.channel.model = "coin";
-  s.channel.loss_distance_m = 1e6;  // in range, and of no effect
+  s.channel.loss_distance_m = 1e6;  // the AUVs are in range, and this has no effect
   EXPECT_FALSE(config::FindViolation(s));
   EXPECT_EQ(MakeLinkEstimator(s.channel, s.run.agents)->Quality(3.0, 0.0), 0.25);
   const auto channel = MakeChannel(s.channel, s.run);

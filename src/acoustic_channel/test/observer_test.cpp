@@ -5,7 +5,7 @@
 #include "channel_fixture.hpp"
 #include "network/network_fixture.hpp"
 
-/// What every model of channel tells an observer, and how nodes come and go.
+/// What every channel model tells an observer, and what happens when nodes come and go.
 namespace stg::acoustics {
 namespace {
 
@@ -113,7 +113,7 @@ TEST(ChannelPresence, AnAbsentNodeNeitherSendsNorHearsInAnyModel) {
     for (std::uint32_t k = 0; k < 60; ++k) {
       const bool there = k < 20 || k >= 40;
       auto p = Line(4);
-      if (!there) p[1] = {nan, nan, nan};  // nobody knows where
+      if (!there) p[1] = {nan, nan, nan};  // the place of an absent node is unknown
       channel->SetPresent(1, there);
       std::vector<Transmission> offered;
       if (k % 10 == 5) offered.push_back(From(0, k * kDt));

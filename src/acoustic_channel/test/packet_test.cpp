@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 Bytes BytesOf(const ByteView& view) { return {view.data, view.data + view.size}; }
 
-/// Any bytes; another content for every seed.
+/// Random bytes, which differ for every seed.
 Bytes RandomBytes(std::size_t size, unsigned seed) {
   std::mt19937 generator(seed);
   Bytes bytes(size);
@@ -44,7 +44,7 @@ TEST(Payload, BytesOfAnySizeUpToAFrameArriveUnchanged) {
       packets[0].payload = ViewOf(first);
       packets[1].payload = ViewOf(second);
       StepAtRest(channel.get(), t, k, kTriangle, {packets[0], packets[1]});
-      std::fill(first.begin(), first.end(), 0);  // the channel has copies
+      std::fill(first.begin(), first.end(), 0);  // the channel has its own copies
       std::fill(second.begin(), second.end(), 0);
       const auto got = DeliverAll(channel.get(), t + kDt);
       ASSERT_EQ(got.size(), 4u);
@@ -56,7 +56,7 @@ TEST(Payload, BytesOfAnySizeUpToAFrameArriveUnchanged) {
 
 TEST(Payload, IsKeptWhilePacketsAreUnderWayAndAfterDeliveryUntilTheNextStep) {
   NetworkConfig s = LosslessNetwork(3);
-  s.channel.sound_speed_mps = 1.0;  // three and four steps to the receivers
+  s.channel.sound_speed_mps = 1.0;  // a packet takes three and four steps to the receivers
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   std::vector<Bytes> sent;
@@ -121,7 +121,7 @@ TEST(Destination, AnAddressedPacketReachesThatNodeOnly) {
 }
 
 TEST(Destination, DoesNotChangeWhetherAPacketArrives) {
-  // One link, the same losses, whether the others are meant too or not.
+  // A link has the same losses, whether the packet is also for other nodes or not.
   NetworkConfig s = LosslessNetwork(3);
   s.channel.loss_probability = 0.4;
   const auto channel = MakeChannel(s.channel, s.run);
@@ -189,7 +189,8 @@ TEST(Doppler, IsTheClosingSpeedAlongTheLine) {
   const NetworkConfig s = LosslessNetwork(4);
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
-  // Receivers ahead, at right angles, and at the sender's own place, which moves at 2 m/s along x.
+  // One receiver is ahead, one abeam, one at the place of the sender. The sender moves at 2 m/s
+  // along x.
   const std::vector<Vec3<double>> p = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {0, 0, 0}};
   const std::vector<Vec3<double>> v = {{2, 0, 0}, {0.5, 7, 0}, {0, -0.25, 0}, {-9, 0, 0}};
   channel->Step(0, 0, p, v, {From(0, 0)});

@@ -16,9 +16,9 @@ namespace stg::acoustics {
 namespace {
 
 constexpr TimeNs kFleetMs = 1'000'000;
-constexpr TimeNs kEpoch = 1'700'000'000'000'000'000;  // of a wall clock
+constexpr TimeNs kEpoch = 1'700'000'000'000'000'000;  // a time of a wall clock
 
-/// Writes down what it is told.
+/// Writes down everything that it hears.
 struct Scribe : FleetListener {
   std::vector<std::string> lines;
   TimeNs start = -1;
@@ -56,7 +56,7 @@ struct Scribe : FleetListener {
   }
 };
 
-/// Three vehicles on links that lose every fifth packet or so.
+/// Three vehicles on links that lose about every fifth packet.
 NetworkConfig FleetNetwork(double loss = 0.2) {
   NetworkConfig n;
   n.run.agents = 3;
@@ -78,19 +78,19 @@ Transmission Saying(int source, std::uint32_t tag, TimeNs stamp, const std::stri
   return t;
 }
 
-/// Vehicle i stands 100 i metres from the origin and moves north at i m/s.
+/// Vehicle i is 100 i metres from the origin and moves north at i m/s.
 Motion Cruise(int i, TimeNs t) {
   const double speed = i;
   return {{100.0 * i, speed * Seconds(t - kEpoch), 0.0}, {0.0, speed, 0.0}};
 }
 
-/// A word to the channel, and the clock when it comes in.
+/// A call of the channel, and the time of the clock at the call.
 struct Spoken {
   TimeNs clock;
   std::function<void(FleetChannel*)> say;
 };
 
-/// Twenty seconds of odometry at 10 Hz that jitters, and of packets.
+/// Calls for 20 s of packets, and of odometry at 10 Hz with jitter.
 std::vector<Spoken> Traffic() {
   std::vector<Spoken> words;
   std::mt19937 draw(3);
@@ -110,7 +110,7 @@ std::vector<Spoken> Traffic() {
   return words;
 }
 
-/// Says the words in order of the clock and lets the channel go on after each.
+/// Makes the calls in order of the clock. The channel runs up to each of them first.
 void Play(std::vector<Spoken> words, FleetChannel* channel) {
   std::stable_sort(words.begin(), words.end(),
                    [](const Spoken& a, const Spoken& b) { return a.clock < b.clock; });
@@ -121,7 +121,7 @@ void Play(std::vector<Spoken> words, FleetChannel* channel) {
   channel->Finish();
 }
 
-/// Modems that wait for each other and collide all the same.
+/// Modems that listen before they send, and that collide all the same.
 NetworkConfig PhysicalNetwork() {
   NetworkConfig n = FleetNetwork();
   n.channel.model = "physical";
@@ -129,7 +129,7 @@ NetworkConfig PhysicalNetwork() {
   return n;
 }
 
-/// Names the first line that differs.
+/// Fails with the first line that differs.
 void ExpectSame(const std::vector<std::string>& lines, const std::vector<std::string>& wanted) {
   const auto [a, b] = std::mismatch(lines.begin(), lines.end(), wanted.begin(), wanted.end());
   EXPECT_TRUE(a == lines.end() && b == wanted.end())
@@ -143,7 +143,7 @@ void ExpectFunctionOfTheStamps(const NetworkConfig& network, int least) {
   Play(Traffic(), &channel);
   ASSERT_GT(first.heard, least);
 
-  // Every word comes up to 90 ms late, and the channel is looked after at other moments.
+  // Every call comes up to 90 ms late, and so the channel runs up to other times.
   std::vector<Spoken> late = Traffic();
   std::mt19937 draw(11);
   for (Spoken& word : late) word.clock += static_cast<TimeNs>(draw() % 90) * kFleetMs;
@@ -152,7 +152,7 @@ void ExpectFunctionOfTheStamps(const NetworkConfig& network, int least) {
   Play(late, &other);
   ExpectSame(second.lines, first.lines);
 
-  // Started anew, it repeats itself.
+  // After a restart it repeats itself.
   second.lines.clear();
   other.Restart();
   Play(Traffic(), &other);

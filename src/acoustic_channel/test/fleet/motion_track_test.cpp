@@ -12,7 +12,7 @@ Motion Along(double x, double vx) { return {{x, 0.0, -5.0}, {vx, 0.0, 0.0}}; }
 
 TEST(MotionTrack, AStraightLineIsFollowedExactlyWhateverTheStampsAreSpacedLike) {
   MotionTrack track(kTrackLimits);
-  // Stamps that jitter and come out of order, of a vehicle at 2 m/s.
+  // Samples of a vehicle at 2 m/s. Their stamps jitter and are not in order.
   for (const TimeNs ms : {0, 130, 95, 310, 180, 555}) {
     ASSERT_TRUE(track.Add(ms * kTrackMs, Along(2e-3 * static_cast<double>(ms), 2.0)));
   }
@@ -45,7 +45,7 @@ TEST(MotionTrack, AWordThatNobodyWaitedForDoesNotChangeThePast) {
   const TimeNs t = 700 * kTrackMs;
   const double before = track.At(t)->p_W.x;
   EXPECT_NEAR(before, 0.7, 1e-12);
-  // Farther than the patience from the sample before: the vehicle turned back meanwhile.
+  // This sample comes longer than the patience after the one before. The vehicle has turned back.
   track.Add(1500 * kTrackMs, Along(-3.0, -1.0));
   EXPECT_EQ(track.At(t)->p_W.x, before);
 }

@@ -1,11 +1,11 @@
 #include "auv_common/config/loader.hpp"
 #include "network_fixture.hpp"
 
-/// Medium access on modems that take their time.
+/// Medium access on modems whose packets take time.
 namespace stg::acoustics {
 namespace {
 
-/// Every node always has something to say, for so long.
+/// Every node always has a packet to send, for this long.
 void Chatter(Bench* b, double duration_s) {
   for (double t = 0.0; t < duration_s; t += 0.5) {
     for (int i = 0; i < b->run.agents; ++i) b->Offer(i, t);
@@ -19,7 +19,7 @@ TEST(TdmaNetwork, NothingIsLostWhileTheGuardCoversTheWay) {
   b.config.slots.length_s = 1.4;
   b.config.slots.guard_s = 0.4;
   for (int i = 0; i < 4; ++i) {
-    for (int j = i + 1; j < 4; ++j) b.medium->SetDelay(i, j, 0.1 * (i + j - 1));  // to 0.4 s
+    for (int j = i + 1; j < 4; ++j) b.medium->SetDelay(i, j, 0.1 * (i + j - 1));  // up to 0.4 s
   }
   b.Start();
   Chatter(&b, 200.0);
@@ -51,7 +51,7 @@ TEST(Slots, ThatCannotHoldAPacketAreAConfigurationError) {
     NetworkConfig s;
     s.channel.model = "physical";
     s.channel.access = access;
-    s.channel.modem.packet_bytes = 32;  // 0.5035 s
+    s.channel.modem.packet_bytes = 32;  // a packet takes 0.5035 s
     s.channel.slots.length_s = 1.0;
     s.channel.slots.guard_s = 0.5;
     const auto violation = config::FindViolation(s);
@@ -84,7 +84,7 @@ TEST(Configuration, APacketThatNoFrameTakesIsRefused) {
   ASSERT_TRUE(violation);
   EXPECT_EQ(violation->keys.front(), "channel.physical.modem.packet_bytes");
   s.channel.modem.packet_bytes = 0;
-  s.channel.modem.profiles = {"janus", "evologics_s2c"};  // of 4 nodes
+  s.channel.modem.profiles = {"janus", "evologics_s2c"};  // these are shared out to 4 nodes
   violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
   EXPECT_EQ(violation->keys.front(), "channel.physical.modem.profiles");
@@ -104,7 +104,7 @@ TEST(CsmaNetwork, WaitsWhileItHearsACarrierAndSendsAfterwards) {
   Bench b(2);
   b.config.access = "csma";
   b.medium->SetDelay(0, 1, 0.1);
-  // Node 0's: at node 1 from 1.1 to 2.1.
+  // The packet of node 0 is at node 1 from 1.1 to 2.1 s.
   b.Play({{0, 1.0}, {1, 1.5}});
   EXPECT_EQ(b.log.Of(0, 1).reason, DropReason::kNone);
   EXPECT_EQ(b.log.Of(1, 0).reason, DropReason::kNone);
@@ -129,8 +129,8 @@ TEST(AlohaNetwork, RestsForTheStatedTimeOnAverage) {
   b.Start();
   for (int k = 0; k < 80000; ++k) b.Offer(0, 0.05 * k);
   b.network->Advance(Ns(4000.0));
-  // A second of airtime, rest with mean 2 s but not below the turnaround of 0.25 s, and up to
-  // 0.05 s until the next packet comes; E max(x, 0.25) = 2 exp(-0.125) + 0.25.
+  // A cycle has a second of airtime, a rest with mean 2 s that is not below the turnaround of 0.25
+  // s, and up to 0.05 s until the next packet comes. E max(x, 0.25) = 2 exp(-0.125) + 0.25.
   const double cycle_s = 1.0 + 2.0 * std::exp(-0.125) + 0.25;
   EXPECT_NEAR(static_cast<double>(b.log.sent.size()), 4000.0 / cycle_s, 90.0);
 }

@@ -5,7 +5,7 @@
 #include "acoustic_channel/log/packet_log.hpp"
 #include "network_fixture.hpp"
 
-/// What modems with a protocol of their own need of the network.
+/// Events that the network gives to modems with a protocol of their own.
 namespace stg::acoustics {
 namespace {
 
@@ -78,7 +78,7 @@ TEST(ModemEvents, EveryNodeThatAcquiresHearsTheEndWhoeverThePacketIsFor) {
   EXPECT_EQ(bench.modem_log.ended[0].t, Ns(2.25));
   ASSERT_EQ(bench.modem_log.send_ends.size(), 1u);
   EXPECT_EQ(bench.modem_log.send_ends[0].transmit_end, Ns(2.0));
-  // Only the addressee is given it.
+  // The network gives the packet to its addressee only.
   EXPECT_EQ(bench.modem_log.fates.size(), 1u);
   std::vector<Reception> received;
   network.Take(2, Ns(5.0), &received);
@@ -87,7 +87,7 @@ TEST(ModemEvents, EveryNodeThatAcquiresHearsTheEndWhoeverThePacketIsFor) {
 
 TEST(ModemEvents, ALostPacketEndsWithItsReasonAndWithoutItsBytes) {
   ModemBench bench(2);
-  bench.medium->SetLevel(0, 1, 5.0);  // acquired at 3 dB; 2^-2154 of packets survive 5 dB
+  bench.medium->SetLevel(0, 1, 5.0);  // acquired above 3 dB; at 5 dB 2^-2154 of the packets survive
   Network& network = bench.Start();
   network.Offer(bench.Packet(0, 1.0, 1, "hello"));
   network.Advance(Ns(5.0));
@@ -150,7 +150,7 @@ TEST(ModemEvents, AirtimeIsThatOfTheStatedBytesAndMode) {
   ASSERT_EQ(bench.modem_log.sent.size(), 1u);
   EXPECT_EQ(bench.modem_log.sent[0].transmit_end, Ns(3.0));
   EXPECT_EQ(bench.modem_log.sent[0].bytes, 3u);
-  // Node 1 has the mode, node 2 has not.
+  // Node 1 has the mode of the packet, node 2 has not.
   EXPECT_EQ(bench.modem_log.Of(0, 1).reason, DropReason::kNone);
   EXPECT_EQ(bench.modem_log.Of(0, 2).reason, DropReason::kNotAcquired);
   std::vector<Reception> received;
@@ -196,7 +196,7 @@ TEST(ModemEvents, APacketThatWaitsIsTakenBack) {
     network.Offer(packet);
   }
   network.Advance(Ns(1.5));
-  EXPECT_FALSE(network.Cancel(0, 7));  // it is under way
+  EXPECT_FALSE(network.Cancel(0, 7));  // it is already leaving
   EXPECT_TRUE(network.Cancel(0, 8));
   EXPECT_FALSE(network.Cancel(0, 8));
   network.Advance(Ns(9.0));

@@ -16,7 +16,7 @@ namespace stg::acoustics {
 inline constexpr TimeNs kSecond = 1'000'000'000;
 inline TimeNs Ns(double s) { return std::llround(s * 1e9); }
 
-/// Water whose every link and noise a test states.
+/// A medium in which the test sets every link and all noise.
 class StatedMedium : public Medium {
  public:
   explicit StatedMedium(int nodes)
@@ -70,7 +70,7 @@ class StatedMedium : public Medium {
   std::vector<Hearing> links_;
 };
 
-/// Everything that was reported.
+/// Keeps everything that the network reports.
 struct Log : PacketObserver {
   struct Discarded {
     PacketInfo packet;
@@ -89,7 +89,7 @@ struct Log : PacketObserver {
   void OnFate(const PacketInfo& p, const PacketFate& f) override { fates.push_back({p, f}); }
   void OnPing(const PingResult& r) override { pings.push_back(r); }
 
-  /// What became of a packet of `source` at `receiver`; the test fails unless it is told once.
+  /// The fate of a packet of `source` at `receiver`. The test fails unless it is reported once.
   PacketFate Of(int source, int receiver, std::uint32_t sequence = 0) const {
     PacketFate found;
     int times = 0;
@@ -111,8 +111,8 @@ struct Log : PacketObserver {
   std::vector<PingResult> pings;
 };
 
-/// A modem whose packets take a second: acquisition at 3 dB; of a whole packet at 10 dB one half is
-/// lost, 2^-x survive with x = 10^((10 - SINR) / 1.5).
+/// A modem whose packets take a second. It acquires at 3 dB. Half of the whole packets are lost at
+/// 10 dB: 2^-x of them survive, with x = 10^((10 - SINR) / 1.5).
 inline const char* SecondModem() {
   static const bool added = [] {
     ModemProfiles().Add("second", [] {
@@ -140,7 +140,8 @@ inline const char* SecondModem() {
   return "second";
 }
 
-/// A network of such modems in stated water, ALOHA unless a test says otherwise.
+/// A network of these modems in a medium that the test sets. Access is ALOHA unless a test sets
+/// another.
 struct Bench {
   explicit Bench(int nodes) {
     run.agents = nodes;
@@ -151,7 +152,7 @@ struct Bench {
     medium = stated.get();
     medium_ = std::move(stated);
   }
-  /// After the configuration is set.
+  /// Builds the network. The configuration must be complete.
   Network& Start(std::uint64_t seed = 1) {
     network = std::make_unique<Network>(config, run, std::move(medium_));
     network->Reset(seed, 0);

@@ -2,15 +2,16 @@
 
 #include "network_fixture.hpp"
 
-/// Half-duplex, collisions, capture, interference by pieces: cases that can be worked out by hand.
+/// Half-duplex, collisions, capture and interference of parts of packets, in cases with a result by
+/// hand.
 namespace stg::acoustics {
 namespace {
 
 TEST(HalfDuplex, WhoSendsHearsNothingThatBegins) {
   Bench b(2);
   b.medium->SetDelay(0, 1, 0.5);
-  // Node 0's: at node 1 from 1.5 to 2.5.
-  // Node 1's: leaves until 2.2.
+  // The packet of node 0 is at node 1 from 1.5 to 2.5 s.
+  // The packet of node 1 leaves until 2.2 s.
   b.Play({{0, 1.0}, {1, 1.2}});
   EXPECT_EQ(b.log.Of(0, 1).reason, DropReason::kHalfDuplex);
   EXPECT_EQ(b.log.Of(1, 0).reason, DropReason::kHalfDuplex) << "from 1.7, node 0 sends until 2.0";
@@ -19,8 +20,8 @@ TEST(HalfDuplex, WhoSendsHearsNothingThatBegins) {
 TEST(HalfDuplex, OwnTransmissionAbortsAReception) {
   Bench b(2);
   b.medium->SetDelay(0, 1, 0.5);
-  // Node 0's: at node 1 from 1.5 to 2.5.
-  // Node 1's: at node 0 from 2.9.
+  // The packet of node 0 is at node 1 from 1.5 to 2.5 s.
+  // The packet of node 1 is at node 0 from 2.9 s on.
   b.Play({{0, 1.0}, {1, 2.4}});
   const PacketFate lost = b.log.Of(0, 1);
   EXPECT_EQ(lost.reason, DropReason::kHalfDuplex);
@@ -37,7 +38,7 @@ TEST(HalfDuplex, ATransmissionAtTheVeryEndOfAReceptionCostsNothing) {
 }
 
 TEST(Collision, IsWhereBothArriveTogetherAndNowhereElse) {
-  Bench b(4);  // 0 and 1 send together; 2 is in the middle, 3 far behind 1
+  Bench b(4);  // 0 and 1 send together; 2 is in the middle, 3 far beyond 1
   b.medium->SetDelay(0, 2, 1.0);
   b.medium->SetDelay(1, 2, 1.0);
   b.medium->SetDelay(0, 3, 4.0);
@@ -67,7 +68,7 @@ TEST(Capture, TheFirstThatWasAcquiredIsKeptAgainstAWeakerOne) {
   b.Play({{0, 1.0}, {1, 1.5}});
   const PacketFate kept = b.log.Of(0, 2);
   EXPECT_EQ(kept.reason, DropReason::kNone);
-  // Noise of power 1, and of 10 for half of the packet.
+  // The noise has power 1. The other packet adds 10 for half of this packet.
   EXPECT_NEAR(kept.sinr_db, 40.0 - 10.0 * std::log10(1.0 + 0.5 * 10.0), 1e-9);
   EXPECT_EQ(b.log.Of(1, 2).reason, DropReason::kCollision) << "the receiver is busy";
 }
@@ -81,19 +82,19 @@ TEST(Capture, AStrongerOneThatComesLaterDestroysTheFirstAndIsLostToo) {
   EXPECT_EQ(b.log.Of(1, 2).reason, DropReason::kCollision);
 }
 
-/// Exponent of a whole packet at this ratio of powers.
+/// Exponent of the success of a whole packet at this ratio of powers.
 double Exponent(double ratio) {
   return -std::log(2.0) * std::pow(10.0, (10.0 - 10.0 * std::log10(ratio)) / 1.5);
 }
 
 TEST(Interference, ExponentsOfPiecesAddUp) {
   Bench b(4);
-  // Powers at node 3: 100 of the packet, 9 and 4 of two others, noise 1.
+  // Powers at node 3: 100 of the packet, 9 and 4 of the two others, 1 of the noise.
   b.medium->SetLevel(0, 3, 20.0);
   b.medium->SetLevel(1, 3, 10.0 * std::log10(9.0));
   b.medium->SetLevel(2, 3, 10.0 * std::log10(4.0));
-  // Node 1's: from 0.5 of the packet on.
-  // Node 2's: from 0.75 on.
+  // The packet of node 1 is there for the second half of the packet, and
+  // the packet of node 2 for its last quarter.
   b.Play({{0, 1.0}, {1, 1.5}, {2, 1.75}});
   const double expected = 1.0 - std::exp(0.5 * Exponent(100.0) + 0.25 * Exponent(100.0 / 10.0) +
                                          0.25 * Exponent(100.0 / 14.0));
@@ -126,7 +127,7 @@ TEST(Interference, ABurstThatBeginsWithinAPacketCountsFromThere) {
 }
 
 TEST(Interference, OfTheSameWaveformIsNotSpreadIntoNoise) {
-  // Two packets of equal levels far above the noise: none survives, whatever the profile.
+  // Two packets have equal levels far above the noise. None survives, whatever the profile.
   for (const std::string& name : ModemProfiles().Names()) {
     if (name == "ideal") continue;
     Bench b(3);
@@ -143,7 +144,7 @@ TEST(Interference, OfTheSameWaveformIsNotSpreadIntoNoise) {
   }
 }
 
-/// The only packet's fate on a link of these levels.
+/// The fate of a single packet on a link with these levels.
 DropReason Reason(double level_db, double steady_db, double clear_db, double burst_db = 0.0) {
   Bench b(2);
   Hearing& h = b.medium->link(0, 1);
@@ -161,17 +162,17 @@ DropReason Reason(double level_db, double steady_db, double clear_db, double bur
 
 TEST(Reasons, NameWhatWouldHaveSavedThePacket) {
   EXPECT_EQ(Reason(60.0, 60.0, 60.0), DropReason::kNone);
-  // Too weak to be acquired, at 3 dB.
+  // These are too weak for acquisition, which needs 3 dB.
   EXPECT_EQ(Reason(2.0, 2.0, 2.0), DropReason::kNotAcquired);
   EXPECT_EQ(Reason(2.0, 8.0, 8.0), DropReason::kFading);
   EXPECT_EQ(Reason(2.0, 2.0, 8.0), DropReason::kShadow);
   EXPECT_EQ(Reason(60.0, 60.0, 60.0, 59.0), DropReason::kBurst);
-  // Acquired, but garbled: below 6 dB nothing survives.
+  // These are acquired, but garbled: below 6 dB no packet survives.
   EXPECT_EQ(Reason(4.0, 4.0, 4.0), DropReason::kLoss);
   EXPECT_EQ(Reason(4.0, 60.0, 60.0), DropReason::kFading);
   EXPECT_EQ(Reason(4.0, 4.0, 60.0), DropReason::kShadow);
   EXPECT_EQ(Reason(60.0, 60.0, 60.0, 56.0), DropReason::kBurst);
-  // Not even noise.
+  // These are not even noise.
   EXPECT_EQ(Reason(-40.0, -40.0, -40.0), DropReason::kRange);
   EXPECT_EQ(Reason(-40.0, 8.0, 8.0), DropReason::kFading);
   EXPECT_EQ(Reason(-40.0, -40.0, 8.0), DropReason::kShadow);
@@ -201,7 +202,7 @@ TEST(Waveforms, AreUnderstoodByTheirOwnKindAndNoiseToOthers) {
   b.Play({{2, 0.5}, {0, 1.0}});
   EXPECT_EQ(b.log.Of(2, 1).reason, DropReason::kNotAcquired);
   EXPECT_EQ(b.log.Of(2, 0).reason, DropReason::kNotAcquired);
-  // 22.5 to 24 kHz of its 4 kHz fall into the band.
+  // Of its band, 22.5 to 24 kHz fall into the band of the packet, 1.5 of 4 kHz.
   const double interference = 0.375 * std::pow(10.0, 1.5);
   EXPECT_NEAR(b.log.Of(0, 1).sinr_db, 20.0 - 10.0 * std::log10(1.0 + interference), 1e-9);
 }

@@ -7,7 +7,7 @@
 #include "auv_common/error.hpp"
 #include "network_fixture.hpp"
 
-/// Queues, presence, order of calls, energy, clocks and ranging.
+/// Queues, presence of nodes, order of calls, energy, clocks and ranging.
 namespace stg::acoustics {
 namespace {
 
@@ -49,7 +49,7 @@ TEST(Presence, WhoIsAbsentNeitherSendsNorHears) {
   b.Start();
   b.network->SetPresent(2, Ns(0.5), false);
   b.Offer(0, 1.0);                           // at node 1 from 1.5
-  b.network->SetPresent(1, Ns(2.0), false);  // leaves while it listens
+  b.network->SetPresent(1, Ns(2.0), false);  // it leaves while it hears the packet
   b.Offer(1, 3.0);
   b.network->SetPresent(1, Ns(4.0), true);
   b.Offer(0, 5.0);
@@ -76,7 +76,7 @@ TEST(Presence, WhatWaitsInAModemThatLeavesIsLost) {
   EXPECT_EQ(b.log.discarded[0].packet.tag, 2u);
 }
 
-/// A busy network in real water; calls of one time in any order.
+/// A busy network in real water. Calls at one time come in any order.
 std::vector<Log::Fate> Busy(std::uint64_t shuffle, const char* access) {
   RunConfig run;
   run.agents = 5;
@@ -112,7 +112,7 @@ std::vector<Log::Fate> Busy(std::uint64_t shuffle, const char* access) {
         network.Offer(packet);
       }
     }
-    // In pieces, as if somebody looked in between; shuffled runs look elsewhere.
+    // The network advances in pieces, as if somebody looked at it. Shuffled runs use other pieces.
     if (shuffle % 2 == 0) network.Advance(t + kSecond / 7);
     network.Advance(t + kSecond / 5 - 1);
     network.Forget();
@@ -254,7 +254,7 @@ TEST(Ping, ADriftingClockMeasuresAShareOfTheRoundTripWrongly) {
   const double rate_0 = network.ClockS(0, kSecond) - network.ClockS(0, 0) - 1.0;
   const double rate_1 = network.ClockS(1, kSecond) - network.ClockS(1, 0) - 1.0;
   EXPECT_NE(rate_0, 0.0);
-  // Three seconds and a quarter pass, the quarter by the other's clock.
+  // A round trip takes 3.25 s. Of these, 0.25 s are by the other node's clock.
   const double expected = (3.0 + 0.25 / (1.0 + rate_1)) * (1.0 + rate_0) - 2.25;
   EXPECT_NEAR(b.log.pings[0].round_trip_s, expected, 2e-9);
 }

@@ -8,7 +8,7 @@
 
 #include "simulate_fixture.hpp"
 
-/// How the program ends before its time, and what is in the folder then.
+/// The program is stopped before its end. The tests check what is in the folder then.
 namespace stg::acoustics {
 namespace {
 
@@ -18,7 +18,7 @@ class SimulateEnds : public Simulate {
     Simulate::SetUp();
     out_ = folder_ + "/out";
     small_ = Write(Network(20.0, "{source: 0, kind: at, times_s: [1.0], bytes: 32}"), "small.yaml");
-    // Longer than any machine takes until the signal, which follows the first packets.
+    // It runs longer than any machine takes until the signal, which follows the first packets.
     endless_ = Write(Network(9e7, "{source: 0, kind: periodic, period_s: 1000.0, bytes: 32}"),
                      "long.yaml");
   }
@@ -35,14 +35,14 @@ class SimulateEnds : public Simulate {
            flow + "\n";
   }
 
-  /// Starts the endless simulation, its output into a file, and waits for its first rows.
+  /// Starts the endless simulation, with its output in a file. Waits for its first rows.
   void Start(const std::function<void()>& prepare = [] {}) {
     const std::string text = folder_ + "/text", rows = out_ + "/packets.csv.tmp";
     child_ = ::fork();
     ASSERT_GE(child_, 0);
     if (child_ == 0) {
       ::dup2(::open(text.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 1);
-      ::signal(SIGHUP, SIG_DFL);  // the tests may run under nohup
+      ::signal(SIGHUP, SIG_DFL);  // somebody may run the tests under nohup
       prepare();
       ::execl(STG_SIMULATE, STG_SIMULATE, endless_.c_str(), "--out", out_.c_str(), "--quiet",
               static_cast<char*>(nullptr));
@@ -54,7 +54,7 @@ class SimulateEnds : public Simulate {
     }
   }
 
-  /// It has ended as one that was stopped, with what it had in its folder.
+  /// Expects that the program has ended as a stopped one, and that its folder holds what it had.
   void ExpectStopped() {
     int status = 0;
     ASSERT_EQ(::waitpid(child_, &status, 0), child_);

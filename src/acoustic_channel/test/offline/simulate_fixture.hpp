@@ -21,8 +21,8 @@ class Simulate : public ::testing::Test {
   struct Result {
     int code = -1;
     std::string out, err;
-    nlohmann::json json;                         ///< last line of out
-    std::vector<std::vector<std::string>> rows;  ///< of packets.csv, the header first
+    nlohmann::json json;                         ///< the last line of `out`
+    std::vector<std::vector<std::string>> rows;  ///< of packets.csv; the header comes first
 
     std::string Cell(std::size_t row, const std::string& column) const {
       for (std::size_t i = 0; i < rows[0].size(); ++i) {
@@ -34,7 +34,7 @@ class Simulate : public ::testing::Test {
     double Number(std::size_t row, const std::string& column) const {
       return std::strtod(Cell(row, column).c_str(), nullptr);
     }
-    /// Fate of a packet at a receiver, "" if there is no such row.
+    /// The fate of a packet at a receiver, "" if no row has it.
     std::string Fate(int source, int destination, int sequence = 0) const {
       for (std::size_t i = 1; i < rows.size(); ++i) {
         if (Cell(i, "source") == std::to_string(source) &&
@@ -100,14 +100,14 @@ class Simulate : public ::testing::Test {
   std::string folder_;
 };
 
-/// A line of the list of nodes.
+/// One line of the list of nodes.
 inline std::string NodeAt(int id, double x, double y) {
   char text[120];
   std::snprintf(text, sizeof(text), "  - {id: %d, position_m: [%.9f, %.9f, -20.0]}\n", id, x, y);
   return text;
 }
 
-/// Node 0 in the middle and `senders` around it.
+/// Node 0 in the middle of a ring of `senders` nodes.
 inline std::string Ring(int senders, double radius_m) {
   std::string text = "nodes:\n" + NodeAt(0, 0.0, 0.0);
   for (int i = 0; i < senders; ++i) {
@@ -117,7 +117,7 @@ inline std::string Ring(int senders, double radius_m) {
   return text;
 }
 
-/// In `channel.physical`: water in which nothing fades and sound takes 1500 m/s.
+/// Part of `channel.physical`: water in which nothing fades and sound travels at 1500 m/s.
 inline const char* kSteadyWater =
     "    water: {sound_speed: profile}\n"
     "    propagation: {shadowing_db: 0.0, rician_k: 1.0e+9}\n";

@@ -1,11 +1,11 @@
 #include "acoustic_channel/water/absorption.hpp"
 #include "simulate_fixture.hpp"
 
-/// What single packets go through, and how the program treats its user.
+/// What happens to single packets, and what the program tells its user.
 namespace stg::acoustics {
 namespace {
 
-/// 32 bytes of this modem take 0.5035 s, and sound does 1500 m/s.
+/// With this modem 32 bytes take 0.5035 s. Sound travels at 1500 m/s.
 std::string Head(const std::string& more = "", double duration_s = 20.0) {
   return "duration_s: " + std::to_string(duration_s) +
          "\nseed: 1\nchannel:\n  model: physical\n  access: aloha\n"
@@ -43,19 +43,19 @@ TEST_F(Simulate, APacketArrivesAfterItsWayAndItsAirtime) {
 }
 
 TEST_F(Simulate, WhoSendsDoesNotHear) {
-  // 150 m are 0.1 s: each packet comes while the other one's receiver is sending.
+  // 150 m take 0.1 s. Each packet arrives while its receiver is sending.
   Result r = Run(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 150, 0) + "traffic:\n" +
                  At(0, "1.0") + At(1, "1.1"));
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_EQ(r.Fate(0, 1), "half_duplex");
   EXPECT_EQ(r.Fate(1, 0), "half_duplex");
   EXPECT_EQ(r.json["drops"]["half_duplex"], 2);
-  // Sending in the middle of a reception ends it.
+  // A node that sends in the middle of a reception loses it.
   r = Run(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 150, 0) + "traffic:\n" + At(0, "1.0") +
           At(1, "1.5"));
   EXPECT_EQ(r.Fate(0, 1), "half_duplex");
   EXPECT_EQ(r.Fate(1, 0), "delivered");
-  // The packets of two who are 1 s of sound apart cross in the water.
+  // Two packets cross in the water, as their senders are 1 s of sound apart.
   r = Run(Head() + "nodes:\n" + NodeAt(0, 0, 0) + NodeAt(1, 1500, 0) + "traffic:\n" + At(0, "1.0") +
           At(1, "1.0"));
   EXPECT_EQ(r.Fate(0, 1), "delivered");

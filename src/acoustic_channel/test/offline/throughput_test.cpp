@@ -9,7 +9,7 @@
 namespace stg::acoustics {
 namespace {
 
-/// 32 bytes of evologics_s2c.
+/// Airtime of 32 bytes of evologics_s2c [s].
 constexpr double kAirtimeS = 0.1515 + 32 * 0.011;
 
 std::string Sources(int senders, int bytes, const std::string& kind) {
@@ -30,7 +30,8 @@ std::string Head(double duration_s, const std::string& access, const std::string
 
 class Throughput : public Simulate {
  protected:
-  /// Of node 0 in the middle of a ring, with this load of airtime and about so many packets.
+  /// Throughput of node 0 in the middle of a ring, with this load of airtime and about this many
+  /// packets.
   double Of(const std::string& access, int senders, double radius_m, double load, double packets,
             const std::string& slots = "") {
     const double duration_s = packets * airtime_s_ / load;
@@ -48,9 +49,9 @@ class Throughput : public Simulate {
   int bytes_ = 32;
 };
 
-/// Senders of which each keeps one packet while it sends another and turns around: M/D/1 with one
-/// place to wait. Idle share p0; a packet meets no other when each other sender does not send as it
-/// begins, nor begins until it ends. For N to infinity S = G exp(-2 G).
+/// Each sender sends one packet and turns around, while it keeps at most one more: M/D/1 with one
+/// place to wait. The share of idle time is p0. A packet meets no other one if no other sender is
+/// sending at its beginning, and none begins before its end. For N to infinity S = G exp(-2 G).
 double FiniteAloha(double load, int senders, double turnaround) {
   const double rate = load / senders;  // per airtime
   const double busy = 1.0 + turnaround, waits = rate * busy;
@@ -60,7 +61,7 @@ double FiniteAloha(double load, int senders, double turnaround) {
   return senders * sent * std::pow((idle + turning) * std::exp(-rate), senders - 1);
 }
 
-/// A sender sends in a slot when anything came in the one before: q = 1 - exp(-G / N). For N to
+/// A sender sends in a slot if any packet came in the slot before: q = 1 - exp(-G / N). For N to
 /// infinity S = G exp(-G).
 double FiniteSlottedAloha(double load, int senders) {
   const double q = 1.0 - std::exp(-load / senders);
@@ -86,7 +87,7 @@ TEST_F(Throughput, PureAloha) {
 }
 
 TEST_F(Throughput, SlottedAloha) {
-  // A guard in which a modem turns around, so that it can use the next slot as well.
+  // A modem turns around within the guard, so it can also use the next slot.
   const std::string slots = "  slots: {length_s: 0.53, guard_s: 0.025}\n";
   const double used = airtime_s_ / 0.53;
   for (const auto& [load, packets] : {std::pair{0.1, 2e4}, {0.5, 4e4}, {1.0, 6e4}, {2.0, 8e4}}) {
@@ -99,15 +100,16 @@ TEST_F(Throughput, ListeningHelpsWhereSoundIsQuickerThanAPacket) {
   const double near_aloha = Of("aloha", 8, 20.0, 1.0, 2e4);
   const double near_csma = Of("csma", 8, 20.0, 1.0, 2e4);
   EXPECT_GT(near_csma, 2.0 * near_aloha);
-  // Neighbours on this ring are 1.3 s apart, more than two airtimes. At the load that suits ALOHA
-  // best; above it, whoever waits for anything at all sends less and so loses less.
+  // Neighbours on this ring are 1.3 s apart, which is more than two airtimes. The load is the one
+  // that suits ALOHA best. At higher loads, a sender that waits sends less and so loses less.
   const double far_aloha = Of("aloha", 8, 2500.0, 0.4, 2e4);
   const double far_csma = Of("csma", 8, 2500.0, 0.4, 2e4);
   EXPECT_LT(far_csma, 1.03 * far_aloha);
 }
 
-/// Non-coherent FSK of 256 bits through noise, slow fading and fading of packets: what the program
-/// delivers over distance against the mean of the same formulas over draws of another generator.
+/// Non-coherent FSK of 256 bits through noise, slow fading and fading of packets. The test compares
+/// what the program delivers over distance with the mean of the same formulas over the draws of
+/// another generator.
 TEST_F(Throughput, DeliveryOverDistanceIsTheMeanOverTheFading) {
   const double site_db = 99.0;
   const std::vector<double> distances = {500.0, 1000.0, 1500.0, 2000.0};
@@ -145,7 +147,7 @@ TEST_F(Throughput, DeliveryOverDistanceIsTheMeanOverTheFading) {
 
 class Age : public Simulate {
  protected:
-  /// Means over the links to node 0: average and peak.
+  /// Mean of the average ages and mean of the peak ages over the links to node 0.
   static std::pair<double, double> ToNode0(const Result& r) {
     double average = 0.0, peak = 0.0;
     int links = 0;
@@ -158,7 +160,7 @@ class Age : public Simulate {
     return {average / links, peak / links};
   }
 
-  /// 8 nodes with slots of 5 s, packets of 3.2 s that travel for 1 s and are made as they leave.
+  /// 8 nodes with slots of 5 s. Packets take 3.2 s, travel for 1 s and are made when they leave.
   Result Tdma(double duration_s, double site_db) {
     std::string text = "duration_s: " + std::to_string(duration_s) +
                        "\nseed: 2\nstep_s: 10.0\nchannel:\n  model: physical\n  access: tdma\n"
@@ -188,8 +190,8 @@ TEST_F(Age, OfTdmaWithoutLosses) {
 }
 
 TEST_F(Age, OfTdmaWithThreeOfTenPacketsLostInNoise) {
-  // The noise that gives this error: bits of non-coherent FSK at 17 dB of processing gain, 3 dB of
-  // implementation loss; 22 kHz over 1500 m.
+  // The noise that causes this loss: bits of non-coherent FSK with 17 dB of processing gain and 3
+  // dB of implementation loss, at 22 kHz over 1500 m.
   const double gamma = -2.0 * std::log(2.0 * (1.0 - std::pow(0.7, 1.0 / 256.0)));
   const double f2 = 22.0 * 22.0;
   const double absorbed_db =
@@ -207,7 +209,8 @@ TEST_F(Age, OfTdmaWithThreeOfTenPacketsLostInNoise) {
 }
 
 TEST_F(Age, OfSlottedAloha) {
-  // A slot is the airtime and the way of 1500 m: what is sent at its begin is there at its end.
+  // A slot is the airtime and the travel time over 1500 m. A packet that leaves at its beginning
+  // has arrived at its end.
   const double slot_s = kAirtimeS + 1.0;
   const std::string slots = "  slots: {length_s: 1.5035, guard_s: 1.0, send_probability: 0.1}\n";
   const Result r =

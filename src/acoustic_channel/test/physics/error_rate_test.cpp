@@ -62,14 +62,14 @@ TEST(PacketError, HalfOfTheCodedFramesPassAtThePagesLevels) {
     EXPECT_NEAR(std::exp(curve.LogSuccess(row.half_db, row.bits)), 0.5, 1e-12);
     EXPECT_GT(std::exp(curve.LogSuccess(row.half_db + 1.5, row.bits)), 0.9);
     EXPECT_LT(std::exp(curve.LogSuccess(row.half_db - 1.5, row.bits)), 0.1);
-    // Two frames, each one half.
+    // Two frames: each of them passes with one half.
     EXPECT_NEAR(std::exp(curve.LogSuccess(row.half_db, 2 * row.bits)), 0.25, 1e-12);
   }
   EXPECT_THROW(CodedPskCurve(2), std::invalid_argument);
 }
 
-/// The page's table: NC-BFSK, 256 bits, R_b = B = 4 kHz, density 60, penalty 10 dB, K 10, sigma 3
-/// dB.
+/// The table of the page, for NC-BFSK: 256 bits, R_b = B = 4 kHz, density 60, penalty 10 dB, K 10,
+/// sigma 3 dB.
 TEST(PacketError, SuccessOverDistanceOfTheWholeLink) {
   const struct {
     double level, distance, success;
@@ -86,7 +86,7 @@ TEST(PacketError, SuccessOverDistanceOfTheWholeLink) {
     shadowing.Reset(1, 0);
     double sum = 0.0;
     for (int i = 0; i < kPackets; ++i) {
-      // Packets so far apart that the slow fading forgets.
+      // The packets are so far apart that their slow fading is independent.
       const double fade_db = shadowing.LevelDb(0, 1, i * TimeNs{100'000'000'000}) +
                              RicianDb(path.rician_k, 1, 0, static_cast<std::uint32_t>(i), 0, 1);
       sum += std::exp(curve.LogSuccess(snr_db + fade_db, 256));

@@ -29,7 +29,7 @@ TEST(Shadowing, HasTheVarianceAndMemoryOfTheSection) {
     square += x[k] * x[k];
     if (k >= kLag) product += x[k] * x[k - kLag];
   }
-  // 20,000 independent values' worth.
+  // The values are worth 20,000 independent ones.
   EXPECT_NEAR(sum / kSteps, 0.0, 0.08);
   EXPECT_NEAR(square / kSteps, 9.0, 0.3);
   EXPECT_NEAR(product / square, std::exp(-0.5), 0.02);
@@ -127,7 +127,7 @@ TEST(Bursts, SpansAreExponentialWithTheMeansOfTheSection) {
   }
   EXPECT_NEAR(sum[0] / count[0], 4.0, 0.06);
   EXPECT_NEAR(sum[1] / count[1], 1.0, 0.015);
-  // An exponential's mean square is twice the square of its mean: no memory.
+  // For an exponential distribution (no memory) the mean square is twice the square of the mean.
   EXPECT_NEAR(square[0] / count[0], 32.0, 1.5);
   EXPECT_NEAR(square[1] / count[1], 2.0, 0.1);
 }

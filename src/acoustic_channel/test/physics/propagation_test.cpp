@@ -58,7 +58,7 @@ TEST(Multipath, WithoutBoundariesInReachItIsTheLinkBudget) {
   config.spreading = 2.0;
   const Propagation straight(deep, config);
   config.paths = 16;
-  config.wave_height_rms_m = 10.0;  // the surface scatters everything
+  config.wave_height_rms_m = 10.0;  // the surface scatters all sound
   const Propagation layer(deep, config);
   for (double r : {10.0, 300.0, 5000.0}) {
     const Point a{0, 0, -500}, b{r, 0, -700};
@@ -113,7 +113,7 @@ TEST(Multipath, EnergyFallsAsInAWaveguideFarOutAndAsInOpenWaterBefore) {
   config.paths = 1024;
   config.wave_height_rms_m = 0.0;
   config.bottom_loss_db = 0.0;
-  config.bottom_speed_ratio = 1.5;  // total reflection up to 48 degrees
+  config.bottom_speed_ratio = 1.5;  // the bottom reflects totally up to 48 degrees
   const Propagation layer(water, config);
   const auto gain_db = [&](double r) {
     return layer.At({0, 0, -25}, {r, 0, -25}, 0.5).gain_db + ThorpAbsorption(0.5) * r / 1000.0;
@@ -149,16 +149,18 @@ TEST(Boundaries, SurfaceIsAPerfectMirrorWhenCalm) {
 }
 
 TEST(Boundaries, RayleighsFormulaForABottom) {
-  // Upright: ratio of impedances.
+  // At normal incidence only the ratio of impedances counts.
   EXPECT_NEAR(BottomReflection(1.0, 2.0, 1.25, 0.0).real(), 1.5 / 3.5, 1e-12);
-  // Sand (1.9, 1.1): critical angle acos(1/1.1) = 24.6 degrees; total below, less above.
+  // Sand (1.9, 1.1) has a critical angle of acos(1/1.1) = 24.6 degrees. Reflection is total below
+  // it and weaker above it.
   EXPECT_NEAR(std::abs(BottomReflection(std::sin(0.40), 1.9, 1.1, 0.0)), 1.0, 1e-12);
   EXPECT_LT(std::abs(BottomReflection(std::sin(0.47), 1.9, 1.1, 0.0)), 0.8);
-  // Angle of intromission of a dense, slow bottom, at which nothing is reflected.
+  // The angle of intromission of a dense, slow bottom, where nothing is reflected.
   const double m = 1.5, n = 1.0 / 0.9;
   const double sin2 = (n * n - 1.0) / (m * m - 1.0);
   EXPECT_NEAR(std::abs(BottomReflection(std::sqrt(sin2), m, 0.9, 0.0)), 0.0, 1e-7);
-  // Loss takes from total reflection, and grazing incidence reflects everything upside down.
+  // Loss weakens total reflection. At grazing incidence everything is reflected with its sign
+  // turned.
   EXPECT_LT(std::abs(BottomReflection(std::sin(0.3), 1.9, 1.1, 0.8)), 0.99);
   EXPECT_NEAR(BottomReflection(1e-9, 1.9, 1.1, 0.8).real(), -1.0, 1e-6);
 }
