@@ -19,9 +19,10 @@ void Write(const std::vector<Number>& numbers, std::ofstream* out) {
 
 }  // namespace
 
-/// What C++ makes of given actions: reads float32 [steps, envs, agents, action_size] from a file,
-/// and writes to another, after the reset and after each step, observations, states, rewards, team
-/// rewards, truncated, final observations, final states. One object, one thread.
+/// What C++ makes of given actions. The program reads float32 [steps, envs, agents, action_size]
+/// from a file. It writes observations, states, rewards, team rewards, truncated, final
+/// observations and final states to another file, after the reset and after each step. It has one
+/// object and one thread.
 int main(int argc, char** argv) {
   if (argc < 7) {
     std::cerr << "usage: reference SCENARIO CONDITION[,CONDITION] ENVS SEED ACTIONS OUT [KEY=VALUE "

@@ -12,7 +12,7 @@ namespace stg::agent {
 
 inline constexpr TimeNs kStep = 100'000'000;
 
-/// What a neighbour at a position says.
+/// The report of a neighbour at a position.
 inline NeighbourState Report(int source, TimeNs generation, const Vec3<double>& p_W,
                              const Vec3<double>& v_W = {}) {
   NeighbourState s;
@@ -23,7 +23,7 @@ inline NeighbourState Report(int source, TimeNs generation, const Vec3<double>& 
   return s;
 }
 
-/// A level, unturned AUV at a position with a world velocity.
+/// Navigation of a level, unturned AUV at a position, with a world velocity.
 inline dynamics::NavState Nav(TimeNs stamp, const Vec3<double>& p_WB,
                               const Vec3<double>& v_WB = {}) {
   dynamics::NavState nav;
@@ -44,7 +44,7 @@ inline dynamics::Navigation<Pack> InAllLanes(const dynamics::NavState& nav) {
   return all;
 }
 
-/// A reception with its payload.
+/// A reception that owns its payload.
 struct HeardPacket {
   acoustics::Reception reception;
   Packet data;
@@ -55,7 +55,7 @@ struct HeardPacket {
   }
 };
 
-/// A packet as the channel would give it at its time of generation.
+/// The packet of a state, as the channel delivers it at `arrival`.
 inline HeardPacket Heard(const AgentModel& s, const NeighbourState& state, TimeNs arrival) {
   acoustics::Reception r;
   r.source = state.source;
@@ -64,7 +64,7 @@ inline HeardPacket Heard(const AgentModel& s, const NeighbourState& state, TimeN
   return {r, PacketCodec(s).Encode(state)};
 }
 
-/// Everything one agent is given in one step.
+/// All inputs of one agent in one step.
 struct Input {
   dynamics::NavState nav;
   std::vector<dynamics::Detection> detections;
@@ -72,8 +72,8 @@ struct Input {
   float action[6];
 };
 
-/// A seeded episode for one agent: neighbours that wander and report, a target that comes
-/// and goes, arbitrary attitudes and actions. All positions are moved by `shift`.
+/// A seeded episode for one agent: neighbours that wander and report, a target that comes and goes,
+/// arbitrary attitudes and actions. All positions are moved by `shift`.
 inline std::vector<Input> RandomEpisode(const AgentModel& s, int id, int steps, unsigned seed,
                                         const Vec3<double>& shift = {}, double extent = 0.9,
                                         bool reports_targets = true) {
@@ -123,7 +123,7 @@ inline std::vector<Input> RandomEpisode(const AgentModel& s, int id, int steps, 
   return inputs;
 }
 
-/// One step; the observation goes to `observation`.
+/// Runs one step. The observation goes to `observation`.
 inline AgentOutput Drive(Agent* agent, const Input& in, std::vector<float>* observation) {
   for (const HeardPacket& r : in.receptions) agent->Receive(r);
   for (const dynamics::Detection& d : in.detections) agent->Detect(d);

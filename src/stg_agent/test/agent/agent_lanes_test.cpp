@@ -17,7 +17,8 @@ bool SameBits(const T& a, const T& b) {
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-/// AUV 1 in a different episode in every lane: alone, one agent for each, and side by side.
+/// Flies AUV 1 in a different episode in every lane, in two ways: with one agent for each lane, and
+/// with all lanes side by side.
 class TwoWays {
  public:
   TwoWays(const AgentModel& s, unsigned seed)
@@ -30,7 +31,7 @@ class TwoWays {
     }
   }
 
-  /// Starts an episode in one lane.
+  /// Starts a new episode in one lane.
   void Start(int lane) {
     const dynamics::Cue cue = CueAt({0.1 * lane, 0.01 * started_, 0.0});
     episodes_[Index(lane)] = RandomEpisode(scenario_, 1, kSteps, seed_ + started_);
@@ -40,7 +41,8 @@ class TwoWays {
     ++started_;
   }
 
-  /// Hands all messages of this step to a lane's agents; none of neighbours in times of silence.
+  /// Gives all messages of this step to the agents of a lane. In times of silence it leaves out the
+  /// packets of neighbours.
   void Tell(int lane) {
     const bool silence = steps_[Index(lane)] % 40 >= 20;
     for (const HeardPacket& r : in(lane).receptions) {
@@ -62,7 +64,7 @@ class TwoWays {
     beside_.Observe(Beside());
   }
 
-  /// One lane only; the others' navigation is nonsense meanwhile.
+  /// Observes in one lane. The navigation of the other lanes is nonsense at this time.
   void ObserveIn(int lane) {
     Tell(lane);
     ObserveAlone(lane);
@@ -200,7 +202,8 @@ TEST(AgentLanes, OneLaneMayStartAnEpisodeWhileTheOthersGoOn) {
     for (int step = 0; step < kSteps; ++step) {
       SCOPED_TRACE(step);
       ways.Observe();
-      // Lanes start anew after different times, as environments do whose episodes end so.
+      // Lanes start anew after different times, as environments do whose episodes end at different
+      // times.
       for (int lane = 0; lane < kLanes; ++lane) {
         if (step == 0 || step % (17 + 9 * lane) != 0) continue;
         ways.Start(lane);

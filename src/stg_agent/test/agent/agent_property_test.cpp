@@ -22,7 +22,7 @@ long allocations = 0;
 namespace stg::agent {
 namespace {
 
-/// Observations of a whole episode, one after the other, and the outputs.
+/// The observations of a whole episode in a row. The outputs go to `outputs`.
 std::vector<float> RunEpisode(Agent* agent, const std::vector<Input>& inputs,
                               std::vector<AgentOutput>* outputs = nullptr) {
   std::vector<float> all, observation;
@@ -83,8 +83,8 @@ TEST(AgentProperty, ObservationsAreFiniteAndWithinTheirBounds) {
         const AgentOutput out = Drive(&agent, in, &o);
         ASSERT_EQ(o.size(), 74U);
         for (std::size_t k = 0; k < o.size(); ++k) {
-          // Positions, offsets, relative velocities and normalised d and e are clipped at 2;
-          // all other features are fractions. The target's speed is bounded by physics only.
+          // Positions, offsets, relative velocities and normalised d and e are clipped at 2. All
+          // other features are fractions, except the target's speed, which only physics bounds.
           if (k >= 30 && k < 33) {
             ASSERT_TRUE(std::isfinite(o[k]));
             continue;
@@ -103,7 +103,7 @@ TEST(AgentProperty, ObservationsAreFiniteAndWithinTheirBounds) {
 
 TEST(AgentProperty, TranslatingTheWorldChangesOnlyPositionAndWallFeatures) {
   const AgentModel s;
-  // A multiple of the packet's position steps, so that packets round alike.
+  // The shift is a multiple of the packet's position steps, so that packets round alike.
   const auto fields = PacketCodec(s).fields();
   const double resolution = fields[0].resolution;
   ASSERT_DOUBLE_EQ(resolution, fields[5].resolution);
@@ -111,7 +111,7 @@ TEST(AgentProperty, TranslatingTheWorldChangesOnlyPositionAndWallFeatures) {
   Agent here(s, 1), there(s, 1);
   here.Reset(0, CueAt({0.1, 0.1, 0.1}));
   there.Reset(0, CueAt(Vec3<double>{0.1, 0.1, 0.1} + shift));
-  // In the middle, so that dead reckoning meets no wall before a neighbour reports again.
+  // The AUVs stay in the middle, so dead reckoning meets no wall before a neighbour reports again.
   const auto a = RandomEpisode(s, 1, 200, 31, {}, 0.2);
   const auto b = RandomEpisode(s, 1, 200, 31, shift, 0.2);
   std::vector<float> x, y;
@@ -133,7 +133,7 @@ TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
   AgentModel s;
   s.run.agents = 6;
   const int permutation[] = {0, 4, 5, 1, 3, 2};
-  // Without target estimates: fusing them in another order rounds and weighs differently.
+  // There are no target estimates, because the order in which they are fused changes the result.
   const auto inputs = RandomEpisode(s, 0, 200, 41, {}, 0.9, false);
   Agent a(s, 0), b(s, 0);
   a.Reset(0, CueAt({}));
@@ -149,7 +149,7 @@ TEST(AgentProperty, NearestOrderDoesNotDependOnTheNeighboursIndices) {
       r.data = codec.Encode(n);
     }
     Drive(&b, in, &y);
-    // Sums over neighbours run in another order: equal up to rounding.
+    // Sums over neighbours run in another order, so they are equal up to rounding.
     for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(x[k], y[k], 1e-6) << k;
   }
 }
@@ -167,7 +167,7 @@ TEST(AgentProperty, AStepAllocatesNothing) {
     for (int episode = 0; episode < 2; ++episode) {
       agent.Reset(static_cast<std::uint32_t>(episode), CueAt({}));
       for (const Input& in : inputs) {
-        const bool refused = &in == &inputs[damaged];  // an exception needs memory of its own
+        const bool refused = &in == &inputs[damaged];  // the exception allocates memory
         counting = !refused;
         Drive(&agent, in, &observation);
         counting = false;

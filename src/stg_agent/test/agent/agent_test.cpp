@@ -13,7 +13,7 @@ namespace {
 
 const float kZero[6] = {};
 
-/// Observes without reading the numbers.
+/// Observes, and does not use the numbers.
 void Look(Agent* agent, const dynamics::NavState& nav) {
   float observation[128];
   agent->Observe(nav, observation);
@@ -184,7 +184,7 @@ TEST(Agent, ActionIsRateLimitedSmoothedAndScaledToSpeed) {
   const float full[] = {5.0F, -1.0F, 0.1F};
   Look(&agent, Nav(0, {}));
   const AgentOutput out = agent.Act(full);
-  // From rest: limited to 0.35, of which 0.8 is taken.
+  // The AUV is at rest. The change is limited to 0.35, and 0.8 of this is taken.
   EXPECT_NEAR(out.action[0], 0.28, 1e-12);
   EXPECT_NEAR(out.action[1], -0.28, 1e-12);
   EXPECT_NEAR(out.cmd_vel_W.x, 0.28 * 1.5, 1e-12);
@@ -323,7 +323,8 @@ TEST(Agent, PursuitSteersByTheAgentsOwnEstimates) {
     Look(&agent, Nav(0, {}));
     float action[6];
     MakeController("pursuit")->Act(agent.view(), action);
-    EXPECT_FLOAT_EQ(action[2], 0.75F);  // tau6: gain 1, so the same fraction of the force
+    // Tau6 has gain 1, so this is the same fraction of the force.
+    EXPECT_FLOAT_EQ(action[2], 0.75F);
     EXPECT_NEAR(action[0], 0.0F, 1e-7F);
     MakeController("idle")->Act(agent.view(), action);
     for (int k = 0; k < s.control.action_size(); ++k) EXPECT_EQ(action[k], 0.0F);

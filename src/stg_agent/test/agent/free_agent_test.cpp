@@ -1,4 +1,4 @@
-// An agent that keeps a belief of every target and follows the one that it chooses.
+// An agent that keeps a belief of every target and chooses the target that it follows.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST(FreeAgents, FollowAnotherTargetFromTheNextDecisionOnWithoutAJumpInProgress)
   EXPECT_EQ(f.agent.knowledge().previous_distance, f.agent.knowledge().distance);
   f.Observe(2, {0.0, 0.2, 0.0});
   EXPECT_NEAR(f.agent.knowledge().previous_distance, 0.4, 1e-9);
-  f.agent.view().Follow(7);  // there is none
+  f.agent.view().Follow(7);  // this target does not exist
   f.Observe(3, {0.0, 0.2, 0.0});
   EXPECT_EQ(f.agent.target(), 2);
   f.Start(kTargets);
@@ -125,7 +125,7 @@ TEST(FreeAgents, FollowTheTargetWhoseRowAPolicyChooses) {
   EXPECT_EQ(f.agent.target(), 1) << "a search changes no target";
 }
 
-/// A neighbour that follows a target, heard now.
+/// The report of a neighbour that follows a target. It is heard at once.
 NeighbourState Following(int source, int step, const Vec3<double>& p_W, int target) {
   NeighbourState n = Report(source, step * kStep, p_W);
   n.has_target = true;
@@ -173,7 +173,7 @@ TEST(Assign, EveryTargetHasTwoBeforeAnotherHasThree) {
   AgentModel s = FreeModel(4, 2);
   const std::vector<Vec3<double>> targets{{0.5, 0.0, 0.0}, {-0.5, 0.0, 0.0}};
   const Assign law((AssignOptions()));
-  // All four at target 0; who is the nearest to the other one goes.
+  // All four follow target 0. The AUV that is nearest to the other target goes there.
   std::vector<int> chosen;
   for (int id = 0; id < 4; ++id) {
     Flown f(s, id);
@@ -205,7 +205,7 @@ TEST(Members, WhoHasLeftForgetsAndStandsStill) {
     const bool away = step == 2 || step == 3;
     EXPECT_EQ(f.agent.present(), !away) << step;
     EXPECT_EQ(Norm(f.agent.Act(action).cmd_vel_W) == 0.0, away) << step;
-    // The detection of the step in which it joins comes before it has.
+    // The detection of step 4 comes before the AUV has joined in that step.
     EXPECT_EQ(f.agent.belief().started, step != 4) << step;
   }
 }

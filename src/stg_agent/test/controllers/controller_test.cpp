@@ -13,7 +13,7 @@ const std::vector<std::string> kBuiltIn = {
     "assign", "contain",        "encircle", "expanding_square",  "formation", "greedy_search",
     "idle",   "parallel_sweep", "pursuit",  "pursuit_separated", "search_map"};
 
-/// An agent that has flown a while among neighbours.
+/// An agent that has flown for a while among neighbours.
 Agent Experienced(const AgentModel& s) {
   Agent agent(s, 0);
   agent.Reset(0, CueAt({0.2, 0.1, 0.0}));
@@ -22,7 +22,7 @@ Agent Experienced(const AgentModel& s) {
   return agent;
 }
 
-/// The error that making this controller ends with; empty for none.
+/// The error message when this controller is made; empty for no error.
 std::string ErrorOf(const std::string& text) {
   try {
     MakeController(text);
@@ -103,7 +103,8 @@ TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
 
 TEST(Controllers, AForceInterfaceIsGivenWhatTheVelocityControllerWouldDo) {
   AgentModel velocity, force;
-  velocity.control.smoothing = velocity.control.max_delta = 0.0;  // executed as asked
+  // The wanted velocity is executed unchanged.
+  velocity.control.smoothing = velocity.control.max_delta = 0.0;
   force.control.interface = dynamics::ActionInterface::kTau6;
   Agent a(velocity, 0), b(force, 0);
   for (Agent* agent : {&a, &b}) {

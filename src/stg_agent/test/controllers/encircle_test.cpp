@@ -20,11 +20,12 @@ AgentModel Sea() {
   s.target.max_speed_mps = 1.0;
   s.task.desired_distance_m = 90.0;
   s.control.max_delta = s.control.smoothing = 0.0;
-  s.run.time.dt_s = 1e-9;  // of a decision
+  s.run.time.dt_s = 1e-9;  // duration of a decision
   return s;
 }
 
-/// AUV 1 of four, at its depth and that of its target, `p` from it, with velocity v.
+/// What AUV 1 of four knows. It is at its depth, at `p` from the target and with velocity v. The
+/// target is at the same depth.
 Knowledge<double> Near(const Vec3<double>& p, const Vec3<double>& v, const Vec3<double>& v_T = {}) {
   Knowledge<double> k;
   k.p_WB = {p.x, p.y, -20.0 - 40.0 / 3.0};
@@ -36,7 +37,7 @@ Knowledge<double> Near(const Vec3<double>& p, const Vec3<double>& v, const Vec3<
   return k;
 }
 
-/// Of AUV `id` [m/s], world axes.
+/// Velocity that the law gives AUV `id` [m/s], world axes.
 Vec3<double> Velocity(const AgentModel& s, const Knowledge<double>& k, EncircleOptions o = {},
                       const std::vector<NeighbourSight<double>>& neighbours = {}, int id = 1) {
   double a[3];
@@ -104,7 +105,7 @@ TEST(Encircle, MakesForTheMiddleBetweenThoseAheadAndBehind) {
   EXPECT_NEAR(Velocity(Sea(), k, o, {at(120.0), at(-120.0)}).y, 1.0, 1e-9);
   EXPECT_NEAR(Velocity(Sea(), k, o, {at(150.0), at(-110.0)}).y, 1.0 + 0.5 * 20.0 * kPi / 180.0,
               1e-9);
-  // One that follows closely, whose packet is as old as it takes to get here.
+  // An old packet of a neighbour: since then, the neighbour has come closer on the circle.
   const double lap_s = 2.0 * kPi * 90.0;
   NeighbourSight<double> old = at(-40.0);
   old.age_s = 20.0 / 360.0 * lap_s;
@@ -141,7 +142,8 @@ TEST(Encircle, KeepsOffByTheDeviationOfItsOwnPosition) {
 }
 
 TEST(Encircle, NeverComesIntoADiscFromWhichItCanTurnAway) {
-  // A point that turns at 5 deg/s towards the velocity that is wanted: into the disc, whatever way.
+  // A point wants to fly into the disc. It turns at 5 deg/s towards the velocity that the law
+  // gives.
   const double rate = 0.0873, speed = 2.0, dt = 0.1, radius = 70.0;
   for (std::uint32_t n = 0; n < 300; ++n) {
     Random random(5, Stream::kReset, n, 0, 0);
@@ -149,7 +151,8 @@ TEST(Encircle, NeverComesIntoADiscFromWhichItCanTurnAway) {
     double least = 1e9, aim = 0.0;
     for (int k = 0; k < 6000; ++k) {
       if (k % 400 == 0) aim = random.Uniform(-kPi, kPi);
-      const bool through = n % 2 == 0;  // at the centre for ever, or anywhere for a while
+      // To the centre all the time, or in a random direction for a while.
+      const bool through = n % 2 == 0;
       const Level<double> there{-x, -y};
       const Level<double> wanted =
           through ? there * (speed / Norm(there))
@@ -173,7 +176,7 @@ TEST(Encircle, LeavesAVelocityThatLeadsPast) {
     EXPECT_EQ(same.x, v.x);
     EXPECT_EQ(same.y, v.y);
   }
-  // At the distance of two turning radii even the way to the centre is free.
+  // At a distance of two turning radii even the way to the centre is free.
   const Level<double> in{2.0, 0.0};
   EXPECT_EQ(TurnedOff(in, in, {70.0 + 46.1, 0.0}, 70.0, 23.0).x, 2.0);
   EXPECT_LT(TurnedOff(in, in, {70.0, 0.0}, 70.0, 23.0).x, 1e-9);

@@ -11,7 +11,7 @@
 namespace stg::agent {
 namespace {
 
-/// Four torpedoes in open water, d* 90 m, all in the target's depth.
+/// Four torpedoes in open water, d* 90 m, all at the depth of the target.
 AgentModel Sea() {
   AgentModel s;
   s.run.agents = 4;
@@ -21,13 +21,13 @@ AgentModel Sea() {
   s.target.max_speed_mps = 2.0;
   s.task.desired_distance_m = 90.0;
   s.control.max_delta = s.control.smoothing = 0.0;
-  s.run.time.dt_s = 1e-9;  // of a decision
+  s.run.time.dt_s = 1e-9;  // duration of a decision
   return s;
 }
 
 using Places = std::array<Level<double>, 4>;
 
-/// Of AUV `id` [m/s], world axes, with the target at the origin.
+/// Velocity that the law gives AUV `id` [m/s], world axes. The target is at the origin.
 Level<double> Velocity(const AgentModel& s, const FormationOptions& o, const Places& p,
                        const Level<double>& v_T, int id) {
   Knowledge<double> k;
@@ -83,7 +83,7 @@ TEST(Contain, StandsBesideTheCourse) {
     EXPECT_NEAR(v.x, v_T.x, 1e-6) << i;
     EXPECT_NEAR(v.y, v_T.y, 1e-6) << i;
   }
-  // Turned by 20 deg, all of them go back.
+  // The AUVs are turned by 20 deg from their places, so all of them go back.
   const Places off = Ring({course + 65.0, course - 25.0, course + 155.0, course - 115.0}, 90.0);
   for (int i = 0; i < 4; ++i) {
     const Level<double> v = Velocity(s, ContainOptions(), off, v_T, i);
@@ -92,7 +92,7 @@ TEST(Contain, StandsBesideTheCourse) {
 }
 
 TEST(Formation, AHeapBecomesARingWithoutAnybodyPassingAnother) {
-  // Point vehicles that do as they are told.
+  // The vehicles are points that move as commanded.
   const AgentModel s = Sea();
   FormationOptions o;
   o.lead_s = o.clearance_m = o.doubt_mps = 0.0;
@@ -119,8 +119,8 @@ TEST(Formation, KeepsOffTheChartAsEncircleDoes) {
   s.control.autopilot.max_turn_rate_radps = 0.1;
   FormationOptions o;
   o.weave_below_mps = 0.0;
-  // Straight ahead on the way to its place stands something upright, whose edge is 1 m beyond what
-  // is kept clear.
+  // A cylinder is straight ahead on the way to the AUV's place. The AUV is 1 m from the zone that
+  // it must not enter.
   const Places p = Ring({180.0, 0.0, 90.0, 270.0}, 400.0);
   const Level<double> free = Velocity(s, o, p, {0.5, 0.0}, 0);
   EXPECT_GT(free.x, 2.0);
@@ -128,7 +128,7 @@ TEST(Formation, KeepsOffTheChartAsEncircleDoes) {
   const Level<double> off = Velocity(s, o, p, {0.5, 0.0}, 0);
   EXPECT_LT(off.x, 0.6) << "it does not fly in any more";
   EXPECT_NEAR(Norm(off), Norm(free), 1e-9) << "it turns, and does not stop";
-  s.sea.cylinders[0][2] = -200.0;  // far below
+  s.sea.cylinders[0][2] = -200.0;  // its top is far below
   EXPECT_EQ(Velocity(s, o, p, {0.5, 0.0}, 0).x, free.x);
 }
 

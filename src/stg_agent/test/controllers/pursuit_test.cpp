@@ -10,7 +10,7 @@ namespace {
 
 using V = Vec3<double>;
 
-/// Neighbours at these offsets.
+/// Neighbours at these offsets from the AUV.
 template <class T>
 std::vector<NeighbourSight<T>> At(const std::vector<Vec3<T>>& offsets) {
   std::vector<NeighbourSight<T>> sights(offsets.size());
@@ -98,7 +98,7 @@ TEST(Pursuit, ApproachIsUnhurriedAndTheHoldStaysStiff) {
   o.approach_speed_mps = 0.01;
   o.approach_gain_per_s = 0.5;
   const dynamics::VehicleConfig vehicle;
-  // Distance beyond the standoff and the speed it asks for; 0.004 m is where the two meet.
+  // Distance beyond the standoff, and the speed that it leads to. The two laws meet at 0.004 m.
   for (const auto& [error, speed] : {std::pair{-0.002, -0.006}, {0.002, 0.006}, {0.1, 0.06}}) {
     double a[3];
     PursuitAction<double>(o, vehicle, V{0.0, o.standoff_m + error, 0.0}, V{}, nullptr, 0, a);
@@ -110,7 +110,7 @@ TEST(Pursuit, ATargetAtTheWallIsTakenToStandOffIt) {
   const V p_WB{0.97, 0.0, -0.99};
   V r_BT_W{0.025, 0.4, -0.01}, v_WT{0.02, 0.01, -0.03};
   KeepFromWalls(1.0, 0.015, p_WB, &r_BT_W, &v_WT);
-  // The target is at (0.995, 0.4, -1): x and z lie beyond 0.985, y does not.
+  // The target is at (0.995, 0.4, -1). Its x and z are beyond 0.985, its y is not.
   EXPECT_NEAR(r_BT_W.x, 0.985 - 0.97, 1e-15);
   EXPECT_NEAR(r_BT_W.y, 0.4, 1e-15);
   EXPECT_NEAR(r_BT_W.z, 0.99 - 0.985, 1e-15);

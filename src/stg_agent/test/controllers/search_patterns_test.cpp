@@ -22,7 +22,7 @@ TEST(ExpandingSquare, HasLegsOfOneOneTwoTwoSpacings) {
     EXPECT_NEAR(p.x, 100.0 + 200.0 * expected[leg][0], 1e-9) << leg;
     EXPECT_NEAR(p.y, 50.0 + 200.0 * expected[leg][1], 1e-9) << leg;
   }
-  // The second of four begins a quarter turn on.
+  // The square of the second of four AUVs is turned by a quarter turn.
   EXPECT_NEAR(SquareWaypoint(datum, 200.0, 1, 4, 1).y, 250.0, 1e-9);
 }
 
@@ -56,7 +56,7 @@ TEST(CourseToMass, PointsAtThePartOfARingThatNobodyHasLookedAt) {
   m.track.search_cell_m = 100.0;
   SearchMap map(m);
   map.Start({0, {0.0, 0.0, -40.0}, 600.0});
-  // It has come from the west, looking in vain, and then has one range of 350 m.
+  // The AUV has come from the west without a detection. Then it has one range of 350 m.
   for (double x = -800.0; x < -99.0; x += 50.0) map.LookInVain({x, 0.0, -40.0});
   dynamics::Detection d;
   d.kind = dynamics::MeasurementKind::kRange;
@@ -68,7 +68,7 @@ TEST(CourseToMass, PointsAtThePartOfARingThatNobodyHasLookedAt) {
   for (const double old : {0.0, 2.0, -3.0}) {
     EXPECT_NEAR(CourseToMass(map, p_WB, 500.0, old, 1.0), 0.0, 0.5 * kPi / 8.0) << old;
   }
-  // A course that is nearly as good is kept.
+  // The law keeps a course that is nearly as good.
   EXPECT_EQ(CourseToMass(map, p_WB, 500.0, 0.3, 1.2), 0.3);
 }
 

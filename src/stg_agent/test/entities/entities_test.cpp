@@ -12,7 +12,7 @@
 namespace stg::agent {
 namespace {
 
-/// All numbers of the rows that there are.
+/// The numbers of all rows in a row.
 std::vector<float> Flat(const Entities& e) {
   std::vector<float> all(e.self, e.self + kSelfNumbers);
   all.insert(all.end(), e.search, e.search + kSearchNumbers);
@@ -37,7 +37,7 @@ Entities Build(const EntityExample& x) {
   return e;
 }
 
-/// Any network, its weights drawn from a seed.
+/// Weights of a network, drawn from a seed.
 std::vector<float> Weights(const PoolSpec& spec, unsigned seed) {
   std::vector<float> p(PoolBlocks(spec).size);
   Random random(seed, Stream::kInit, 0, 0, 0);
@@ -106,8 +106,8 @@ TEST(Entities, ScalesReadAsStated) {
   EXPECT_NEAR(DeviationScale(1000.0), 1.0, 0.005);
 }
 
-/// The search row of an AUV at (200, 100) m on a course of 90 deg, whose target has a datum of the
-/// given deviation `ahead` and `port` of it.
+/// The search row of an AUV at (200, 100) m on a course of 90 deg. The datum of its target has the
+/// given deviation. It is `ahead` in front of the AUV and `port` to its left.
 std::vector<float> SearchRow(double ahead, double port, double std_m) {
   AgentModel m = FieldModel();
   m.workspace.half_extent_m = 6000.0;
@@ -141,7 +141,7 @@ TEST(SearchRow, TellsInWhichSectorAndRingTheMassIs) {
 
 TEST(SearchRow, EntropyIsOneOfAnEvenMapAndThatOfAGaussianElse) {
   EXPECT_NEAR(SearchRow(0.0, 0.0, 1e5)[25], 1.0, 1e-3);
-  // ln(2 pi e s^2) of a Gaussian in the plane, in cells of 100 m.
+  // The entropy of a Gaussian in the plane is ln(2 pi e s^2), with s in cells of 100 m.
   const double s = 3.0;
   EXPECT_NEAR(SearchRow(0.0, 0.0, 300.0)[25],
               std::log(2.0 * kPi * std::exp(1.0) * s * s) / std::log(1024.0), 2e-3);
@@ -153,7 +153,7 @@ TEST(Entities, OpposedObserversAreOneAxisAndSpreadOnesAreNone) {
   x.memory.now = 70'000'000'000;
   x.memory.own_detection[0] = 65'000'000'000;
   for (EntityNeighbour& n : x.neighbours) {
-    n.sight.r_BN_W = {200.0, 0.0, 0.0};  // on the other side of the target
+    n.sight.r_BN_W = {200.0, 0.0, 0.0};  // it is on the other side of the target
   }
   for (NeighbourState& r : x.reports) r.sightings = 1;
   x.reports[1].sightings = 0;
@@ -176,7 +176,7 @@ TEST(PoolNetwork, DoesNotCareForTheOrderOfRows) {
   std::reverse(x.neighbours.begin(), x.neighbours.end());
   const std::vector<float> ours = OutputOf(network, e), theirs = OutputOf(network, Build(x));
   for (std::size_t k = 0; k < ours.size(); ++k) EXPECT_NEAR(ours[k], theirs[k], 2e-5F);
-  // In the agent's order, nearest first, bit for bit.
+  // In the agent's order, nearest first, the outputs are equal bit for bit.
   std::sort(x.neighbours.begin(), x.neighbours.end(),
             [](const auto& a, const auto& b) { return a.sight.distance_m < b.sight.distance_m; });
   const std::vector<float> sorted = OutputOf(network, Build(x));
@@ -209,13 +209,15 @@ TEST(PoolNetwork, ARowTwiceChangesMeansAsOneMoreRowAndMaximaNotAtAll) {
   x.neighbours.push_back(copy);
   const std::vector<float> four = pool(Build(x));
   for (std::size_t k = 64; k < 96; ++k) {
-    const float row = 2.0F * alone[k] - nobody[k];  // the mean of two is of it and of nobody
+    // The mean of `alone` is over two rows, its own and `nobody`.
+    const float row = 2.0F * alone[k] - nobody[k];
     EXPECT_NEAR(four[k], (4.0F * three[k] + row) / 5.0F, 1e-5);
     EXPECT_EQ(four[k + 32], three[k + 32]);
   }
 }
 
-/// Weights set by hand: mean and max of (q, effective, e) yield the six numbers of Eq. 18.
+/// With these weights, the mean and the maximum of (q, effective, e) give the six numbers of Eq.
+/// 18.
 TEST(PoolNetwork, WithWeightsSetByHandPoolingYieldsTheGraphSummary) {
   const PoolSpec spec = EntityActorSpec(5);
   std::vector<float> p(PoolBlocks(spec).size, 0.0F);
@@ -226,7 +228,8 @@ TEST(PoolNetwork, WithWeightsSetByHandPoolingYieldsTheGraphSummary) {
   const PoolBlocks::Set& set = blocks.sets[1];
   constexpr float kSteep = 4096.0F;
   at(set.first.weight, 0, kNeighbourQuality) = 1.0F;
-  at(set.first.weight, 1, kNeighbourQuality) = kSteep;  // two of which the difference is a step
+  // The difference of two steep ramps is a step.
+  at(set.first.weight, 1, kNeighbourQuality) = kSteep;
   at(set.first.bias, 1, 0) = -0.1F * kSteep;
   at(set.first.weight, 2, kNeighbourQuality) = kSteep;
   at(set.first.bias, 2, 0) = -0.1F * kSteep - 1.0F;
@@ -238,7 +241,7 @@ TEST(PoolNetwork, WithWeightsSetByHandPoolingYieldsTheGraphSummary) {
   const PoolNetwork network(spec, p);
 
   EntityExample x = MakeExample(6, 4);
-  x.neighbours[2].sight.link_quality = 0.05;  // no effective one
+  x.neighbours[2].sight.link_quality = 0.05;  // this link is not effective
   const double others = x.model.run.agents - 1.0;
   double quality = 0.0, best = 0.0, error = 0.0, effective = 0.0;
   for (const EntityNeighbour& n : x.neighbours) {
@@ -263,7 +266,7 @@ TEST(PoolNetwork, WithWeightsSetByHandPoolingYieldsTheGraphSummary) {
   network.Pool(sets, pooled.data());
   const float* mean = pooled.data() + 64;
   const float* most = mean + 32;
-  const double rows = 4.0 + 1.0;  // nobody is zero, and counts
+  const double rows = 4.0 + 1.0;  // the row `nobody` is zero, and the mean counts it
   EXPECT_NEAR(mean[1] * rows / others, graph[kGraphEffective], 1e-6);
   EXPECT_NEAR(mean[0] * rows / others, graph[kGraphMeanQuality], 1e-6);
   EXPECT_NEAR(most[0], graph[kGraphBestQuality], 1e-6);

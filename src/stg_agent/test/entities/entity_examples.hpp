@@ -7,7 +7,7 @@
 #include "auv_common/numbers/random.hpp"
 #include "stg_agent/entities/entities.hpp"
 
-/// A made-up AUV of the field with everything around it, for the tests of entities.
+/// A made-up AUV of the field and everything around it, for the tests of entities.
 namespace stg::agent {
 
 inline AgentModel FieldModel(int agents = 6) {
@@ -27,7 +27,7 @@ inline AgentModel FieldModel(int agents = 6) {
   return m;
 }
 
-/// What an AUV knows; memory, neighbours and packets with it.
+/// Everything that an AUV knows: memory, neighbours and packets are a part of it.
 struct EntityExample {
   AgentModel model = FieldModel();
   Knowledge<double> knowledge;
@@ -53,7 +53,7 @@ inline void Orient(double yaw, Knowledge<double>* k) {
   k->v_WB = k->R_WB * k->v_WB_B;
 }
 
-/// The example of a seed, turned by `turn` about the z axis of the world through its origin.
+/// The example of a seed. The world is turned by `turn` about the z axis through its origin.
 inline EntityExample MakeExample(unsigned seed, int neighbours, double turn = 0.0) {
   EntityExample x;
   Random random(seed, Stream::kReset, 0, 0, 0);
@@ -79,7 +79,7 @@ inline EntityExample MakeExample(unsigned seed, int neighbours, double turn = 0.
   x.memory.own_detection[0] = 90'000'000'000;
   x.memory.command = {0.1F, -0.2F, 0.3F, 0.0F, -0.4F};
   x.belief.started = true;
-  // Covariance with an axis of its own, turned with the world.
+  // The covariance has an axis of its own, which turns with the world.
   const double a = 0.4 + turn, l1 = 144.0, l2 = 16.0;
   x.belief.P_WT = {l1 * std::cos(a) * std::cos(a) + l2 * std::sin(a) * std::sin(a),
                    (l1 - l2) * std::cos(a) * std::sin(a),

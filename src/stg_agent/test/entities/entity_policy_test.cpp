@@ -57,7 +57,8 @@ class EntityPolicyFile : public ::testing::TestWithParam<EntityNetwork> {
     EXPECT_TRUE(model.ParseFromString(bytes.str()));
     return model;
   }
-  /// What the loader says to the file after a change.
+  /// Changes the model of the file. Returns the message with which the loader refuses it, or
+  /// "accepted".
   std::string Refusal(const std::function<void(onnx::ModelProto*)>& change) const {
     onnx::ModelProto model = Model();
     change(&model);

@@ -9,7 +9,7 @@
 #include "stg_agent/entities/entity_policy.hpp"
 #include "stg_agent/graph/features.hpp"
 
-/// The network over the task graph, fed with what an AUV knows.
+/// Tests of the network over the task graph with the knowledge of an AUV.
 namespace stg::agent {
 namespace {
 
@@ -22,7 +22,7 @@ std::vector<float> DrawnNumbers(unsigned seed) {
   return p;
 }
 
-/// What an AUV with some neighbours knows of some targets.
+/// What an AUV knows of some neighbours and targets.
 Entities MakeEntities(unsigned seed, int neighbours, int targets) {
   Entities e;
   BuildEntities(MakeExample(seed, neighbours).input(), &e);
@@ -42,7 +42,7 @@ Entities MakeEntities(unsigned seed, int neighbours, int targets) {
   return e;
 }
 
-/// The rows in another order, edges with them.
+/// The same rows and edges in another order.
 Entities Reordered(const Entities& e, const std::vector<int>& targets,
                    const std::vector<int>& neighbours) {
   Entities y = e;
@@ -79,7 +79,8 @@ TEST(GraphNetwork, AnotherOrderOfRowsIsTheSameInThatOrder) {
   const Output ours = OutputOf(network, e);
   const Output theirs = OutputOf(network, Reordered(e, targets, neighbours));
   for (std::size_t t = 0; t < 5; ++t) {
-    const std::size_t from = t < 4 ? static_cast<std::size_t>(targets[t]) : 4;  // search: last
+    // The row of the search is the last one.
+    const std::size_t from = t < 4 ? static_cast<std::size_t>(targets[t]) : 4;
     EXPECT_NEAR(theirs.choices[t], ours.choices[from], 5e-5F);
     for (std::size_t k = 0; k < kOutputs; ++k) {
       EXPECT_NEAR(theirs.commands[t * kOutputs + k], ours.commands[from * kOutputs + k], 5e-5F);
@@ -98,8 +99,8 @@ TEST(GraphNetwork, TurningTheWorldAboutTheVerticalChangesNothing) {
   }
 }
 
-/// Every neighbour twice changes no maximum and no share of attention among them: only nobody's
-/// part of means and shares shrinks. Where nobody has no part, nothing changes.
+/// A second row for every neighbour changes no maximum, and no share of attention among neighbours.
+/// It only makes the part of the row `nobody` smaller. If that row has no part, nothing changes.
 TEST(GraphNetwork, EveryNeighbourTwiceChangesNothingWhereNobodyHasNoPart) {
   const GraphSpec spec = EntityGraphSpec(kOutputs);
   const GraphBlocks b(spec);
@@ -107,7 +108,7 @@ TEST(GraphNetwork, EveryNeighbourTwiceChangesNothingWhereNobodyHasNoPart) {
   const auto at = [&p](const PoolBlock& block, int row, int col) -> float& {
     return p[block.offset + static_cast<std::size_t>(row * block.cols + col)];
   };
-  // Attention gives nobody a share of e^-50: number 0 of its row, which is that of no other.
+  // Attention gives the row `nobody` a share of e^-50. Only in this row number 0 is zero.
   const PoolBlocks::Set& set = b.sets[1];
   for (int c = 0; c < spec.width; ++c) at(set.second.weight, 0, c) = 0.0F;
   at(set.second.bias, 0, 0) = 1.0F;
@@ -118,7 +119,7 @@ TEST(GraphNetwork, EveryNeighbourTwiceChangesNothingWhereNobodyHasNoPart) {
     for (int c = 0; c < spec.hidden; ++c) at(a.query, first, c) = 10.0F;
     for (int c = 0; c < spec.width; ++c) at(a.key, first, c) = c == 0 ? 10.0F : 0.0F;
   }
-  // Means of messages are left out; maxima stay.
+  // The network leaves out the means of messages and keeps the maxima.
   for (int r = 0; r < spec.width; ++r) {
     for (int c = spec.width; c < 2 * spec.width; ++c) at(b.update.weight, r, c) = 0.0F;
   }
@@ -146,9 +147,9 @@ TEST(GraphNetwork, ALinkOfNoQualityHasNextToNoShare) {
   const auto zero = [&p](const PoolBlock& block) {
     std::fill_n(p.begin() + static_cast<std::ptrdiff_t>(block.offset), block.size(), 0.0F);
   };
-  // Attention alone tells of neighbours, and by the prior alone.
+  // Neighbours come in by attention only, and its shares depend on the prior only.
   for (const PoolBlock& block : {b.edge_neighbour, b.edge_row, b.attention[1].query}) zero(block);
-  for (int r = 0; r < spec.hidden; ++r) {  // their maxima
+  for (int r = 0; r < spec.hidden; ++r) {  // weights of the maxima over neighbours
     for (int c = spec.joined() - spec.width; c < spec.joined(); ++c) {
       p[b.trunk1.weight.offset + static_cast<std::size_t>(r * spec.joined() + c)] = 0.0F;
     }
@@ -156,7 +157,7 @@ TEST(GraphNetwork, ALinkOfNoQualityHasNextToNoShare) {
   std::fill_n(p.begin() + static_cast<std::ptrdiff_t>(b.prior.offset), b.prior.size(), 8.0F);
   const GraphNetwork network(spec, p);
   Entities e = MakeEntities(5, 2, 1), other = e;
-  other.neighbour[1][0] += 1.0F;  // a row says something else
+  other.neighbour[1][0] += 1.0F;  // this row has another number
   const auto differ = [&](float quality) {
     e.neighbour[1][kNeighbourQuality] = other.neighbour[1][kNeighbourQuality] = quality;
     return std::abs(OutputOf(network, e).commands[0] - OutputOf(network, other).commands[0]);
@@ -165,8 +166,8 @@ TEST(GraphNetwork, ALinkOfNoQualityHasNextToNoShare) {
   EXPECT_LT(differ(0.0F), 1e-6F);
 }
 
-/// Weights set by hand: the messages' mean and maximum of (q, effective, e) yield the six numbers
-/// of Eq. 18, as the target's row after them.
+/// With these weights, the mean and the maximum of (q, effective, e) over messages give the six
+/// numbers of Eq. 18 in the row of the target.
 TEST(GraphNetwork, WithWeightsSetByHandMessagesYieldTheGraphSummary) {
   const GraphSpec spec = EntityGraphSpec(kOutputs);
   const GraphBlocks b(spec);
@@ -176,11 +177,11 @@ TEST(GraphNetwork, WithWeightsSetByHandMessagesYieldTheGraphSummary) {
   };
   constexpr float kSteep = 4096.0F;
   EntityExample x = MakeExample(6, 4);
-  x.neighbours[2].sight.link_quality = 0.05;  // no effective one
+  x.neighbours[2].sight.link_quality = 0.05;  // this link is not effective
   const PoolBlocks::Set& set = b.sets[1];
   at(set.first.weight, 0, kNeighbourQuality) = 1.0F;
   at(set.first.weight, 1, kNeighbourError) = 1.0F;
-  // A step at the threshold is the difference of two ramps.
+  // The difference of two ramps is a step at the threshold.
   at(set.first.weight, 2, kNeighbourQuality) = kSteep;
   at(set.first.bias, 2, 0) = -0.1F * kSteep;
   at(set.first.weight, 3, kNeighbourQuality) = kSteep;
@@ -190,7 +191,7 @@ TEST(GraphNetwork, WithWeightsSetByHandMessagesYieldTheGraphSummary) {
   at(set.second.weight, 1, 3) = -1.0F;
   at(set.second.weight, 2, 1) = 1.0F;
   for (int k = 0; k < spec.width; ++k) at(b.edge_neighbour, k, k) = 1.0F;
-  // The target's row takes the means of all three, and the largest quality; the command shows them.
+  // The row of the target takes the three means and the largest quality. The command shows them.
   for (int k = 0; k < 3; ++k) at(b.update.weight, k, spec.width + k) = 1.0F;
   at(b.update.weight, 3, 2 * spec.width) = 1.0F;
   for (int k = 0; k < 4; ++k) at(b.head_row, k, k) = 1.0F;
@@ -213,8 +214,9 @@ TEST(GraphNetwork, WithWeightsSetByHandMessagesYieldTheGraphSummary) {
   BuildEntities(x.input(), &e);
   const GraphNetwork network(spec, p);
   const Output y = OutputOf(network, e);
-  const double rows = 4.0 + 1.0;  // nobody is zero, and counts
-  // The advantage, and the role by its sign, are the mean error less the own one, which is in self.
+  const double rows = 4.0 + 1.0;  // the row `nobody` is zero, and the mean counts it
+  // The advantage is the mean error of the neighbours less the AUV's own error, which is in `self`.
+  // The role is its sign.
   EXPECT_NEAR(y.commands[1] * rows / others, graph[kGraphEffective], 1e-6);
   EXPECT_NEAR(y.commands[0] * rows / others, graph[kGraphMeanQuality], 1e-6);
   EXPECT_NEAR(y.commands[3], graph[kGraphBestQuality], 1e-6);

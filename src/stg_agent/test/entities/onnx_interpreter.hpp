@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-/// Evaluates an ONNX graph by the operators' definitions, in double, whatever graph it is: a reader
-/// that shares nothing with the writer's networks.
+/// Evaluates any ONNX graph by the definitions of its operators, in double precision. It shares no
+/// code with the networks that write the files.
 namespace stg::agent {
 
 struct OnnxTensor {
@@ -24,7 +24,7 @@ struct OnnxTensor {
     for (const int d : shape) n *= d;
     return n;
   }
-  /// Of an axis the numbers before it and behind it.
+  /// The size of all axes before an axis (outer) and of all axes after it (inner).
   int outer(int axis) const {
     int n = 1;
     for (int k = 0; k < axis; ++k) n *= shape[static_cast<std::size_t>(k)];
@@ -43,7 +43,7 @@ class OnnxInterpreter {
  public:
   using Values = std::map<std::string, OnnxTensor>;
 
-  /// Returns all values by name.
+  /// Runs a model. Returns all values by name.
   static Values Run(const onnx::ModelProto& model, Values values) {
     for (const onnx::TensorProto& t : model.graph().initializer()) {
       OnnxTensor m;
@@ -100,7 +100,7 @@ class OnnxInterpreter {
     return y;
   }
 
-  /// [..., k] times [k, n].
+  /// Product of [..., k] and [k, n].
   static OnnxTensor MatMul(const OnnxTensor& a, const OnnxTensor& b) {
     EXPECT_EQ(b.shape.size(), 2u);
     EXPECT_EQ(a.shape.back(), b.shape[0]);
@@ -164,7 +164,7 @@ class OnnxInterpreter {
     return y;
   }
 
-  /// Of a matrix, along its rows.
+  /// Softmax of a matrix along its rows.
   static OnnxTensor Softmax(const OnnxTensor& a, int axis) {
     EXPECT_EQ(a.shape.size(), 2u);
     EXPECT_EQ(axis, 1);

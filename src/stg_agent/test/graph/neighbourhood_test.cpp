@@ -9,7 +9,7 @@
 namespace stg::agent {
 namespace {
 
-/// Carries one lane's neighbours to a time, seen from p_WB.
+/// Predicts the neighbours of one lane to a time. The AUV is at p_WB.
 void Predict(Neighbourhood<double>* neighbours, TimeNs now, const Vec3<double>& p_WB,
              const AgentModel& s = AgentModel()) {
   neighbours->Age(static_cast<double>(now));
@@ -37,7 +37,7 @@ TEST(Neighbourhood, DeadReckoningStopsAtTheWalls) {
 }
 
 TEST(Neighbourhood, TellsWhenAReportIsTooOldUntilItIsForgotten) {
-  Neighbourhood<Pack> neighbours{AgentModel(), 0};  // 10 s
+  Neighbourhood<Pack> neighbours{AgentModel(), 0};  // it forgets after 10 s
   const int last = kLanes - 1;
   neighbours.Update(last, Report(1, 0, {}));
   const auto old = [&](TimeNs now) {
@@ -84,7 +84,7 @@ TEST(AgentView, NearestAreSortedAndTiesGoToTheLowerIndex) {
   const double x[] = {0.0, 0.5, 0.2, 0.9, 0.2, 0.1, 0.7, 0.4};
   for (int i = 1; i < 8; ++i) {
     NeighbourState n = Report(i, 0, {x[i], 0.0, 0.0});
-    n.tracking_error = 0.01 * i;  // tells them apart
+    n.tracking_error = 0.01 * i;  // this number shows which neighbour it is
     agent.Receive(Heard(s, n, 0));
   }
   std::vector<float> observation(static_cast<std::size_t>(s.observation_size()));

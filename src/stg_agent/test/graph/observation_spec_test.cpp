@@ -41,7 +41,7 @@ TEST(ObservationSpec, NameTellsWhatAPolicyFileMustMatch) {
   EXPECT_EQ(ObservationSpec(c).name(), "stg-1:raw+tracking+graph-links-roles:index");
 }
 
-/// Numbers that stand in one block, as the observation of this knowledge shows them.
+/// The numbers of one block in the observation of this knowledge.
 std::vector<double> Shown(const AgentModel& s, const Knowledge<double>& k, Block block) {
   std::vector<double> all;
   BuildObservation(s, k, [&](int index, double value) {
@@ -54,7 +54,7 @@ std::vector<double> Shown(const AgentModel& s, const Knowledge<double>& k, Block
   return {first, first + spec.size(block)};
 }
 
-/// Every block is where the description says: what is put into it comes out there.
+/// Every block must be at the place that the description says.
 TEST(ObservationSpec, BuildObservationKeepsToIt) {
   using Numbers = std::vector<double>;
   for (const bool tracking : {true, false}) {
@@ -64,7 +64,7 @@ TEST(ObservationSpec, BuildObservationKeepsToIt) {
     s.vehicle.max_velocity_mps = {1.0, 1.0, 1.0};
     s.vehicle.max_rate_radps = {1.0, 1.0, 1.0};
     Knowledge<double> k{};
-    k.R_WB = RotationOf(TrigOf(Vec3<double>{0.0, 0.0, 0.5 * kPi}));  // x ahead is world y
+    k.R_WB = RotationOf(TrigOf(Vec3<double>{0.0, 0.0, 0.5 * kPi}));  // ahead is world y
     k.trig = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
     k.p_WB = {0.1, -0.2, 0.3};
     k.v_WB_B = {0.4, 0.5, 0.6};
@@ -126,7 +126,7 @@ TEST(ObservationSpec, TheDocumentationsTableIsThisOne) {
   EXPECT_NE(page.find(table + "\n"), std::string::npos) << "it should read\n" << table;
 }
 
-/// Eqs. 18-19 by hand, whole and with what an ablation leaves out.
+/// Eqs. 18-19 by hand, with everything and without what an ablation leaves out.
 TEST(ObservationSpec, AnAblatedLinkOrRoleReadsZero) {
   AgentModel model;
   Knowledge<double> k;

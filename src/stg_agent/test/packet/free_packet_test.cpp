@@ -1,4 +1,4 @@
-// The packet of measurements where targets are chosen freely.
+// The packet of measurements for AUVs that choose their targets freely.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ dynamics::Detection RangeOf(int target, TimeNs stamp, double range_m, const Vec3
   return d;
 }
 
-/// A sender at 100 s with the given (target, age [s]) as ranges, 100 m and 10 m more for each.
+/// A sender at 100 s. Its ranges have the given (target, age [s]). The first one is 110 m long, and
+/// each further one is 10 m longer.
 NeighbourState Sender(std::initializer_list<std::pair<int, int>> sightings) {
   NeighbourState n;
   n.source = 2;

@@ -1,5 +1,5 @@
-// Version 5 of the packet: reckoned positions that have left the region, whether the log has
-// bottom, and two ranges in the place of the second measurement.
+// Version 5 of the packet: reckoned positions outside of the region, whether the log has bottom,
+// and two ranges in the place of the second measurement.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ NeighbourState Example() {
   NeighbourState s;
   s.source = 2;
   s.generation = 50'000'000'000;
-  s.p_W = {3100.0, -2700.0, -40.0};  // carried out of the region
+  s.p_W = {3100.0, -2700.0, -40.0};  // the current has carried it out of the region
   s.v_W = {0.5, 0.25, 0.0};
   s.position_std_m = 800.0;
   s.adrift = true;
@@ -124,7 +124,7 @@ TEST(LocatedPacket, CarriesAFixInPlaceOfTheRanges) {
   EXPECT_LT(layout.told_fix_error_m(), 0.04);
   s.fix.stamp = s.generation + 1;
   EXPECT_THROW(codec.Encode(s), std::invalid_argument);
-  // A station gets no such fixes.
+  // A station cannot have a fix.
   s.fix.stamp = s.generation;
   s.source = 4;
   const Packet packet = codec.Encode(s);

@@ -1,4 +1,4 @@
-// The packet of measurements: what goes in comes out, within the resolutions it states.
+// The packet of measurements keeps its numbers within the stated resolutions.
 
 #include "stg_agent/packet/measurement_packet.hpp"
 
@@ -92,7 +92,7 @@ TEST_P(MeasurementPackets, ComeOutWithinTheirResolution) {
     EXPECT_NEAR(out.v_W.y, in.v_W.y, 0.02);
     EXPECT_NEAR(out.confidence, in.confidence, 0.034);
     EXPECT_NEAR(out.tracking_error, in.tracking_error, 0.05 * in.tracking_error + 0.2);
-    // A deviation is never understated.
+    // A deviation is never rounded down.
     EXPECT_GE(out.position_std_m, in.position_std_m * (1.0 - 1e-6));
     EXPECT_LE(out.position_std_m, 1.25 * in.position_std_m);
     ASSERT_EQ(out.sightings, in.sightings);

@@ -14,7 +14,7 @@ inline AgentModel TestScenario() {
   return s;
 }
 
-/// A state well inside every range.
+/// A state whose numbers are well inside every range.
 inline agent::NeighbourState Example() {
   agent::NeighbourState s;
   s.source = 5;
@@ -34,7 +34,7 @@ inline agent::NeighbourState Example() {
   return s;
 }
 
-/// CRC-8 bit by bit, reflected polynomial 0x1D, initial value 0xFF: the definition.
+/// The definition of the checksum: CRC-8 bit by bit, reflected polynomial 0x1D, initial value 0xFF.
 inline void Seal(agent::Packet* packet) {
   unsigned crc = 0xFF;
   for (std::size_t i = 0; i + 1 < packet->size(); ++i) {

@@ -17,7 +17,7 @@ void Flip(Packet* packet, int bit) {
   (*packet)[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1 << (bit % 8));
 }
 
-/// Overwrites `bits` bits from position `first`, then repairs the checksum.
+/// Overwrites `bits` bits from position `first`, and corrects the checksum.
 void Overwrite(Packet* packet, int first, int bits, unsigned code) {
   for (int i = 0; i < bits; ++i) {
     const int bit = first + i;
@@ -77,10 +77,10 @@ TEST(PacketRefusal, ForeignVersionsIndicesAndCodesAreRefusedEvenWithAValidChecks
     EXPECT_THROW(codec.Decode(p.data(), p.size(), 10 * kSecond), UserError) << first;
   };
   refused(0, 4, 2);         // version
-  refused(4, 8, 7);         // source, of 7 AUVs
-  refused(28, 15, 0x7FFF);  // spare position code
-  refused(73, 12, 0xFFF);   // spare velocity code
-  refused(141, 6, 3);       // target, of 3
+  refused(4, 8, 7);         // source; there are 7 AUVs
+  refused(28, 15, 0x7FFF);  // a position code that means nothing
+  refused(73, 12, 0xFFF);   // a velocity code that means nothing
+  refused(141, 6, 3);       // target; there are 3
   Packet p = intact;
   Overwrite(&p, 4, 8, 6);
   EXPECT_EQ(codec.Decode(p.data(), p.size(), 10 * kSecond).source, 6);

@@ -39,7 +39,7 @@ TEST(Packet, BitCountsFollowTheClosedForm) {
     AgentModel s;
     s.workspace.half_extent_m = half_extent;
     for (const PacketField& f : PacketCodec(s).fields()) {
-      // The subtraction keeps rounding in the quotient from adding a bit.
+      // The small number is subtracted because rounding of the quotient must not add a bit.
       const double levels = (f.hi - f.lo) / f.resolution + 1.0;
       EXPECT_EQ(f.bits, static_cast<int>(std::ceil(std::log2(levels) - 1e-9))) << f.name;
     }
@@ -144,7 +144,8 @@ TEST(Packet, AbsentTargetTravelsAsZeros) {
   NeighbourState s = Example();
   s.has_target = false;
   const Packet packet = codec.Encode(s);
-  for (std::size_t i = 18; i < 31; ++i) EXPECT_EQ(packet[i], 0) << i;  // from bit 144 of 141
+  // The target begins at bit 141.
+  for (std::size_t i = 18; i < 31; ++i) EXPECT_EQ(packet[i], 0) << i;
   const NeighbourState r = codec.Decode(packet.data(), packet.size(), 10 * kSecond);
   EXPECT_FALSE(r.has_target);
   EXPECT_EQ(r.target, 0);

@@ -7,7 +7,7 @@
 #include "auv_common/error.hpp"
 #include "policy/policy_files.hpp"
 
-/// Policies of Q-networks, and policies of each AUV.
+/// Policies of Q-networks, and policies with one network per AUV.
 namespace stg::agent {
 namespace {
 

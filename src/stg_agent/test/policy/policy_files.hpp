@@ -55,7 +55,7 @@ inline std::vector<float> RandomObservation(int size, unsigned seed) {
   return o;
 }
 
-/// A folder of its own for each test.
+/// Each test has its own folder.
 class PolicyTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -76,7 +76,8 @@ class PolicyTest : public ::testing::Test {
     std::ofstream(path, std::ios::binary) << bytes;
   }
 
-  /// Changes a byte of the policy's file, a thousand times: what is still read flies as before.
+  /// Changes a byte of the policy's file, a thousand times. A file that can still be read must fly
+  /// as before.
   void ExpectChangedBytesRefusedOrHarmless(const Policy& good) const {
     good.SaveOnnx(Path("good.onnx"));
     const std::string bytes = Bytes(Path("good.onnx"));

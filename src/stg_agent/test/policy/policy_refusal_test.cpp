@@ -1,4 +1,4 @@
-// Files that are not policies, or are spoiled ones, are refused with their name and the reason.
+// A file that is no policy, or a spoiled one, is refused. The message has its name and the reason.
 
 #include <gtest/gtest.h>
 #include <onnx/onnx_pb.h>
@@ -20,8 +20,8 @@ namespace {
 
 class PolicyRefusal : public PolicyTest {
  protected:
-  /// Saves a good policy, lets `change` spoil the model, and expects a refusal
-  /// that names the file and contains `reason`.
+  /// Saves a good policy and lets `change` spoil the model. Expects a refusal that names the file
+  /// and contains `reason`.
   void ExpectRefused(const std::function<void(onnx::ModelProto*)>& change,
                      const std::string& reason) {
     Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
@@ -120,7 +120,7 @@ TEST_F(PolicyRefusal, RefusesAFlippedBitAnywhereInTheMetadata) {
         Write(Path("bad.onnx"), bad.SerializeAsString());
         try {
           const Policy policy = Policy::LoadOnnx(Path("bad.onnx"));
-          // A digit of a number may differ and the number not.
+          // A digit may differ where the number stays the same.
           EXPECT_EQ(policy.metadata().id, "test") << k << " " << i << " " << bit;
           EXPECT_EQ(policy.metadata().metrics.at("return"), "1040.5");
           EXPECT_TRUE(std::strpbrk(value.c_str(), "0123456789") != nullptr)
@@ -142,7 +142,7 @@ TEST_F(PolicyRefusal, RefusesMetadataThatIsNoTextOrThereTwice) {
 }
 
 TEST_F(PolicyRefusal, TakesTheChecksumOfOlderFiles) {
-  // Made by the writer of 0.1: the numbers alone are covered, so that any id goes with it.
+  // Version 0.1 wrote this checksum. It covers the numbers only, so any id is accepted.
   Policy(RandomParameters({6, 4, 3}, Policy::Activation::kTanh, 1)).SaveOnnx(Path("good.onnx"));
   onnx::ModelProto model;
   ASSERT_TRUE(model.ParseFromString(Bytes(Path("good.onnx"))));

@@ -16,9 +16,9 @@
 namespace {
 std::atomic<long> allocations{0};
 }
-// Eigen allocates by malloc, so counting operator new would miss it.
+// Eigen allocates with malloc, so the test counts calls of malloc and not of operator new.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-// They have a malloc of their own, which is needed before ours could be called.
+// A sanitizer has its own malloc, which runs before ours could.
 extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t) { ++allocations; }
 #else
 extern "C" void* __libc_malloc(std::size_t);
@@ -31,7 +31,7 @@ extern "C" void* malloc(std::size_t size) {
 namespace stg::agent {
 namespace {
 
-/// The definition in double precision, written without the class under test.
+/// The definition of a policy in double precision, without the class under test.
 std::vector<double> Reference(const Policy::Parameters& p, const std::vector<float>& observation) {
   Eigen::VectorXd x(p.input_mean.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -150,14 +150,14 @@ TEST_F(PolicyTest, MeanAllocatesNothing) {
   const long before = allocations;
   for (int i = 0; i < 500; ++i) policy.Mean(o.data(), action);
   EXPECT_EQ(allocations, before);
-  void* volatile kept = std::malloc(1);  // or the compiler does without
+  void* volatile kept = std::malloc(1);  // volatile: else the compiler drops it
   std::free(kept);
   EXPECT_GT(allocations, before) << "the counter does not count";
 }
 
 TEST_F(PolicyTest, ThreadsAndCopiesGetTheSameBits) {
   const Policy policy(RandomParameters({74, 64, 64, 3}, Policy::Activation::kTanh, 2));
-  // A buffer one float off any alignment must not change the sum's order.
+  // The buffer is one float off any alignment. This must not change the order of the sum.
   std::vector<float> storage = RandomObservation(75, 1);
   float expected[3], shifted[4];
   const std::vector<float> aligned(storage.begin() + 1, storage.end());

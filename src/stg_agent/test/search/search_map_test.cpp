@@ -88,7 +88,7 @@ TEST(SearchMap, SpreadsAsAWalkDoes) {
   SearchMap map = At(s, 200.0);
   const double before = MomentsOf(map).xx;
   for (int k = 1; k <= 20; ++k) map.Advance(Ns(25.0 * k));
-  // 2 s^2 m t = 2 0.25 80 500.
+  // The variance grows by 2 s^2 m t = 2 0.25 80 500.
   EXPECT_NEAR(MomentsOf(map).xx - before, 20000.0, 200.0);
   EXPECT_NEAR(MomentsOf(map).total, 1.0, 1e-12);
 }
@@ -109,7 +109,8 @@ TEST(SearchMap, ARangeLeavesARing) {
       }
     }
   }
-  EXPECT_GT(near_ring, 0.8);  // the detection may be a false one
+  // The rest of the mass is there because the detection may be a false one.
+  EXPECT_GT(near_ring, 0.8);
 }
 
 TEST(SearchMap, NothingLiesOutsideOfTheWorkspace) {
@@ -146,7 +147,7 @@ TEST(SearchMemory, APacketWithoutAMeasurementIsALookInVain) {
       ASSERT_NEAR(told.map().mass(r, c), looked.map().mass(r, c), 1e-12);
     }
   }
-  // Once: the same packet says nothing new.
+  // The same packet a second time changes nothing.
   const double before = told.map().mass(15, 15);
   told.Update(Ns(10.0), far, table);
   EXPECT_NEAR(told.map().mass(15, 15), before, 1e-12);
