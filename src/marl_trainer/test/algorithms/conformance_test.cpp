@@ -10,7 +10,7 @@
 #include "marl_trainer/learn/collect/imitation.hpp"
 #include "marl_trainer/learn/nn/gaussian_actor.hpp"
 
-/// What every registered algorithm promises, whatever it learns.
+/// Properties that every registered algorithm must have, whatever it learns.
 namespace stg::learn {
 namespace {
 
@@ -90,14 +90,14 @@ TEST(Export, AFileHasTheLeastSpreadWhereTheScaleMakesItSmaller) {
     Training training(game, GameSetup(name, options));
     return training.algorithm().Policies(metadata).front().parameters().log_std[0];
   };
-  game.scale = 0.05;  // log: -3.0
+  game.scale = 0.05;  // its log is -3.0
   EXPECT_EQ(spread("masac", {{"min-log-std", -20.0}, {"max-log-std", -19.9}}), kNoSpread);
   EXPECT_NEAR(spread("masac", {{"min-log-std", -10.0}, {"max-log-std", -9.9}}), -12.95F, 0.06F);
   game.scale = 1e-8;
   EXPECT_EQ(spread("maddpg", {{"noise-min", 1e-3}}), kNoSpread);
 }
 
-/// As GameSetup, but that all environments explore alike.
+/// The setup of GameSetup, but all environments explore with the same strength.
 TrainSetup ExploringSetup(const std::string& name) {
   nlohmann::json options;
   for (const char* option : {"noise-min", "noise-max"}) {
@@ -114,7 +114,7 @@ TEST_P(Conformance, EveryAuvOfEveryEnvironmentExploresOnItsOwn) {
   constexpr int kEnvs = 12, kSteps = 20;
   const std::vector<float> seen(static_cast<std::size_t>(kEnvs * game.agents), 0.3F);
   Training training(game, ExploringSetup(GetParam()));
-  for (const int collections : {1, 9}) {  // the first ones of off-policy methods are random
+  for (const int collections : {1, 9}) {  // off-policy methods act at random in the first ones
     training.Run(collections);
     std::set<std::vector<float>> sequences;
     for (const int first_env : {0, kEnvs}) {
@@ -129,7 +129,7 @@ TEST_P(Conformance, EveryAuvOfEveryEnvironmentExploresOnItsOwn) {
         training.algorithm().Act(decision, {actions.data(), log_prob.data()});
         for (std::size_t r = 0; r < seen.size(); ++r) by_row[r].push_back(actions[r]);
       }
-      // One for each collection, of which no two may be the same.
+      // There is one sequence for each collection. No two may be the same.
       for (const std::vector<float>& row : by_row) {
         for (const auto from : {row.begin(), row.begin() + kSteps}) {
           sequences.insert({from, from + kSteps});
@@ -169,7 +169,7 @@ TEST(Exploration, GrowsByEqualFactorsFromTheFirstEnvironmentToTheLast) {
           others += (miss != 0.0 ? 1.0 : 0.0) / (kSteps * static_cast<double>(actions.size()));
         }
       }
-      // A random one of five bins is the same again at times.
+      // The random one of five bins is sometimes the same bin again.
       const double found = bins ? others * 5.0 / 4.0 : std::sqrt(squares);
       const double expected = kLeast * std::pow(kMost / kLeast, env / (setup.common.envs - 1.0));
       EXPECT_NEAR(found, expected, 0.1 * expected) << name << " in environment " << env;
@@ -183,7 +183,7 @@ TEST_P(Conformance, LearningRatesFallLinearlyToTheirShareAtTheEnd) {
   for (const char* rate : {"lr", "critic-lr", "alpha-lr"}) {
     if (was.contains(rate)) less[rate] = 0.625 * was[rate].get<double>();
   }
-  // Half-way from 1 to a quarter.
+  // This is half-way from 1 to a quarter.
   Training falling(AnyGame(), GameSetup(GetParam(), {{"lr-final", 0.25}}));
   Training lower(AnyGame(), GameSetup(GetParam(), less));
   falling.Run(12, 0.5);
@@ -196,15 +196,15 @@ TEST_P(Conformance, LearningRatesFallLinearlyToTheirShareAtTheEnd) {
   }
 }
 
-/// Numbers of a network with two hidden layers of h: weights and biases.
+/// Parameters of a network with two hidden layers of h: weights and biases.
 std::size_t Numbers(std::size_t inputs, std::size_t h, std::size_t outputs) {
   return (inputs + 1) * h + (h + 1) * h + (h + 1) * outputs;
 }
 
 TEST_P(Conformance, TellsTheSizesOfWhatItTrains) {
   const std::string name = GetParam();
-  // An observation, a state and an action are one number each; actor-hidden and critic-hidden are
-  // GameSetup's. A Gaussian actor has its spread beside the network.
+  // An observation, a state and an action are one number each. GameSetup gives actor-hidden and
+  // critic-hidden. A Gaussian actor has its spread in addition to the network.
   constexpr std::size_t kAgents = 3, kBins = 5;
   const std::size_t gaussian = Numbers(1, 16, 1) + 1, joint = Numbers(1 + kAgents, 32, 1);
   const std::map<std::string, std::map<std::string, std::size_t>> expected = {

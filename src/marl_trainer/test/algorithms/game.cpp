@@ -24,7 +24,7 @@ TrainSetup GameSetup(const std::string& algorithm, const nlohmann::json& options
   nlohmann::ordered_json json;
   const config::Table table = setup.Options();
   DumpOptions(table, &json);
-  json["envs"] = 24;  // a full shard and a part of one
+  json["envs"] = 24;  // one full shard and one part of a shard
   json["horizon"] = 8;
   nlohmann::json small = {{"actor-hidden", {16, 16}},
                           {"critic-hidden", {32, 32}},
@@ -81,7 +81,7 @@ void Training::PlayShard(const Collection& collection, int index, int worker, do
     const std::int64_t step = now % game_.episode;
     for (int e = 0; e < shard.envs; ++e) {
       const auto i = static_cast<std::size_t>(e);
-      // What ends and what begins are told apart by who looks at the wrong one.
+      // The next state differs from the final one, so an algorithm that takes the wrong one fails.
       truncated[i] = step + 1 == game_.episode ? 1 : 0;
       states[i] = Context(shard.first_env + e, 2 * now, step);
       next_states[i] = Context(shard.first_env + e, 2 * now + 2, (step + 1) % game_.episode);

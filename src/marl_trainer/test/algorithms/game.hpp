@@ -12,19 +12,20 @@
 
 namespace stg::learn {
 
-/// A cooperative game with a known optimum. Everybody sees the same number x, which does not depend
-/// on what was done; nobody is told who it is.
+/// A cooperative game with a known optimum. All agents see the same number x, which does not depend
+/// on their actions. No agent knows which one it is.
 struct Game {
   int agents = 2;
   int episode = 5;  ///< steps until truncation
   double scale = 1.0;
-  /// x after so many steps of an episode, the last one's included; empty: drawn anew in [-1, 1].
+  /// x after so many steps of an episode, its last step included. Empty: x is drawn anew in [-1,
+  /// 1].
   std::function<double(int step)> path;
-  /// Of the actions [agents] at x.
+  /// The reward of the actions [agents] at x.
   std::function<double(double x, const float* actions)> reward;
-  /// What an agent calls its own of it; empty: all of it. For methods that learn from that.
+  /// An agent's own part of the reward, for methods that learn from it. Empty: the whole reward.
   std::function<double(double x, const float* actions, int agent)> own_reward;
-  /// What a teacher would do at x as this agent; empty: nobody teaches.
+  /// What the teacher of this agent would do at x. Empty: there is no teacher.
   std::function<double(double x, int agent)> teacher;
 
   Problem problem() const;
@@ -33,26 +34,26 @@ struct Game {
 /// The third of [-scale, scale] that an action lies in: 0, 1, 2.
 int Third(float action, double scale = 1.0);
 
-/// The named algorithm with options for small games, over which those of `options` go.
+/// The named algorithm with options for small games. The entries of `options` replace them.
 TrainSetup GameSetup(const std::string& algorithm, const nlohmann::json& options = {});
 
-/// A training at a game: algorithm, threads, and how far it is.
+/// The training of an algorithm at a game, with its threads and its progress.
 class Training {
  public:
   Training(const Game& game, const TrainSetup& setup, int workers = 1);
 
-  /// Plays and updates; returns the mean reward of the last collection.
+  /// Plays and updates. Returns the mean reward of the last collection.
   /// @param progress share of the run that is over, see UpdateContext
   double Run(int collections, double progress = 0.0);
   /// Actions [agents] of the deterministic policy at x.
   std::vector<float> Act(double x);
-  /// What the last update reported under this name.
+  /// The number that the last update reported by this name.
   double Reported(const std::string& column) const;
 
-  /// Bit for bit what a checkpoint holds.
+  /// The content of a checkpoint, bit for bit.
   Archive Save() const;
   void Load(const Archive& archive) { algorithm_->Load(archive); }
-  /// As a resumed run: goes on with this collection.
+  /// Goes on with this collection, as a resumed run does.
   void ContinueAt(std::uint32_t collection) { collection_ = collection; }
 
   Algorithm& algorithm() { return *algorithm_; }

@@ -9,7 +9,7 @@
 #include "algorithms/game.hpp"
 #include "marl_trainer/learn/algorithms/madqn/madqn.hpp"
 
-/// Games with known optima: what an algorithm must be able to learn.
+/// Games with known optima, which an algorithm must be able to learn.
 namespace stg::learn {
 namespace {
 
@@ -22,7 +22,7 @@ Game PenaltyGame() {
   return game;
 }
 
-/// Everybody gets 1 when the two do different things.
+/// Both agents get 1 when they do different things.
 Game DifferingGame() {
   Game game;
   game.reward = [](double, const float* a) { return (a[0] > 0.0F) != (a[1] > 0.0F) ? 1.0 : 0.0; };
@@ -32,8 +32,8 @@ Game DifferingGame() {
 constexpr int kTeam = 3;
 constexpr double kEffort = 0.5;
 
-/// Three share the work of reaching x: r = -(sum a - x)^2 - rho sum a^2, whose optimum is
-/// a = x / (n + rho) for all, worth -rho x^2 / (n + rho).
+/// Three agents share the work of reaching x: r = -(sum a - x)^2 - rho sum a^2. The optimum is a =
+/// x / (n + rho) for all, and its value is -rho x^2 / (n + rho).
 Game QuadraticTeam() {
   Game game;
   game.agents = kTeam;
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, Quadratic,
 
 TEST(Imitation, OnPolicyActorsDoWhatTheTeacherDoes) {
   for (const char* algorithm : {"mappo", "ippo", "happo"}) {
-    // Only actors of their own can tell who they are.
+    // Only an algorithm with one actor per agent can tell the agents apart.
     const bool own = std::string(algorithm) == "happo";
     Game game;
     game.reward = [](double, const float*) { return 0.0; };
@@ -117,7 +117,7 @@ TEST(Quadratic, TheBestBinsAreChosen) {
   const Game game = QuadraticTeam();
   Training training(game, GameSetup("madqn", {{"bins", 5}}));
   training.Run(300);
-  // All choose alike: of -0.75, -0.375, 0, 0.375, 0.75, zero is best up to |x| = 0.66.
+  // All agents choose alike. Of -0.75, -0.375, 0, 0.375, 0.75, zero is best up to |x| = 0.66.
   for (const double x : {-0.95, -0.3, 0.0, 0.3, 0.95}) {
     const float best = std::abs(x) < 0.66 ? 0.0F : x > 0 ? 0.375F : -0.375F;
     for (const float a : training.Act(x)) EXPECT_EQ(a, best) << x;
@@ -140,8 +140,8 @@ TEST(Codebook, ForcesAndMomentsShareTheirLevels) {
     EXPECT_EQ(book.Nearest(0, code), k);
     codes.insert({code, code + 3});
   }
-  EXPECT_EQ(codes.size(), 125U);  // all of them, and each once
-  // Of three velocities it is every combination.
+  EXPECT_EQ(codes.size(), 125U);  // each combination is there once
+  // For three velocities the book has every combination.
   Problem velocities;
   velocities.action_size = 3;
   QOptions joint;
@@ -150,8 +150,8 @@ TEST(Codebook, ForcesAndMomentsShareTheirLevels) {
 }
 
 TEST(OwnReward, IsWhatTheAgentsLearnFromWhereTheyAreTold) {
-  // What one gains the other loses: the team's reward is zero whatever they do, and each would have
-  // the most alone.
+  // One agent's gain is the other's loss. The team's reward is always zero, but each agent would
+  // gain most if the other did nothing.
   Game game;
   game.reward = [](double, const float*) { return 0.0; };
   game.own_reward = [](double x, const float* a, int agent) {
@@ -174,7 +174,7 @@ TEST(OwnReward, IsWhatTheAgentsLearnFromWhereTheyAreTold) {
 
 TEST(Differing, AnActorThatAllShareCannotAndActorsOfTheirOwnCan) {
   Training shared(DifferingGame(), GameSetup("mappo"));
-  // Two that are alike differ half of the time at best, by chance.
+  // Two agents that act alike differ at best half of the time, by chance.
   EXPECT_LT(shared.Run(60), 0.6);
   const std::vector<float> alike = shared.Act(0.3);
   EXPECT_EQ(alike[0], alike[1]);

@@ -9,7 +9,7 @@
 #include "algorithms/game.hpp"
 #include "stg_agent/policy/gaussian.hpp"
 
-/// What AUVs that learn one after the other know of each other.
+/// AUVs learn one after the other. The tests check what each of them knows of the earlier ones.
 namespace stg::learn {
 namespace {
 
@@ -22,7 +22,8 @@ TEST(Happo, TheFactorIsTheRatioOfTheJointDensities) {
   Training training(game, GameSetup("happo"));
   training.Run(5);
   const auto& happo = dynamic_cast<Happo&>(training.algorithm());
-  // The buffers hold what the networks saw and did; the parameters are those after the update.
+  // The buffers hold what the networks saw and did before the update. The parameters are those
+  // after it.
   const std::vector<double>& factors = happo.ratio().factors();
   const Mlp& mean = happo.networks().actor.mean();
   Mlp::Workspace workspace(mean, 1);
@@ -57,7 +58,7 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
   game.reward = [](double x, const float* a) {
     return -std::abs(static_cast<double>(a[0] + 2.0F * a[1] - a[2]) - x);
   };
-  // One step for each AUV, so that Adam's memory tells the gradient.
+  // There is one step for each AUV, so that Adam's moments show the gradient.
   Training training(
       game,
       GameSetup(
@@ -72,7 +73,7 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
     training.Run(1);
     orders.insert(happo.order());
     if (c >= 4) continue;
-    std::vector<double> weights;  // advantage times M
+    std::vector<double> weights;  // the advantage times M
     for (const RolloutBuffer* b : happo.rollouts().buffers()) {
       weights.insert(weights.end(), b->advantages.begin(), b->advantages.end());
     }
@@ -86,7 +87,7 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
       const float* old = before[i].numbers.data();
       const float* now = happo.actors()[i].numbers.data();
       Mlp::Workspace workspace(mean, 1);
-      // d / d log sigma of -weight log pi is weight (1 - z^2), the mean over samples.
+      // The gradient of -weight log pi in log sigma is weight (1 - z^2), as a mean over samples.
       double gradient = 0.0;
       std::size_t sample = 0;
       for (const RolloutBuffer* b : happo.rollouts().buffers()) {
@@ -107,7 +108,7 @@ TEST(Happo, EveryAuvLearnsOnTheAdvantageTimesTheRatioOfThoseBeforeIt) {
       EXPECT_NEAR(10.0F * remembered, gradient, 1e-4) << "AUV " << agent << " of update " << c;
     }
   }
-  EXPECT_EQ(orders.size(), 6U);  // all that there are
+  EXPECT_EQ(orders.size(), 6U);  // all orders have come
 }
 
 TEST(Happo, SmallStepsDoNotCostReturn) {

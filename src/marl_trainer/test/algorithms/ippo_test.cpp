@@ -3,11 +3,11 @@
 #include "algorithms/game.hpp"
 #include "learn/draw.hpp"
 
-/// IPPO is MAPPO where each AUV is a swarm of one.
+/// IPPO equals MAPPO with every AUV as a swarm of one.
 namespace stg::learn {
 namespace {
 
-/// What environments [envs] tell, told to each of their AUVs [envs, agents].
+/// Repeats the numbers of environments [envs] for each of their AUVs [envs, agents].
 template <class T>
 std::vector<T> ToEachAuv(const std::vector<T>& of_envs, std::size_t agents) {
   std::vector<T> told;
@@ -47,7 +47,7 @@ TEST(Ippo, IsMappoOfSwarmsOfOneWithTheTeamsReward) {
       const std::vector<float> team = Draw(kEnvs, 1.0F, ++seed), own = Draw(kRows, 1.0F, ++seed);
       std::vector<std::uint8_t> truncated(kEnvs, 0);
       truncated[number + static_cast<std::size_t>(t)] = 1;
-      // In shards that do not begin with the first environment draws differ, too.
+      // The draws also differ in shards that do not begin with the first environment.
       std::vector<float> actions(kRows), log_prob(kRows), same(kRows), same_log_prob(kRows);
       DrawKeys keys{7, number, static_cast<std::uint32_t>(t), 2};
       Decision decision;

@@ -29,7 +29,7 @@ Problem Pair() {
   return problem;
 }
 
-/// Of so many numbers with mean 0 and deviation 1 that a few more change nothing.
+/// Moments of numbers with mean 0 and deviation 1. They are so many that a few more change nothing.
 std::vector<double> PlainMoments(int size) {
   constexpr double kMany = 1e12;
   std::vector<double> moments(static_cast<std::size_t>(1 + size), 0.0);
@@ -51,7 +51,7 @@ std::vector<float> ForAll(const std::vector<float>& one, float factor = 1.0F) {
 OneStep::OneStep(const std::string& algorithm, int batch, const nlohmann::json& options)
     : seen(Draw(kAgents * kSeen, 1.0F, 1)),
       state(Draw(kState, 1.0F, 2)),
-      actions{0.0F, 1.0F, -1.0F, 0.0F},  // bins of three
+      actions{0.0F, 1.0F, -1.0F, 0.0F},  // these are bins of three
       next_seen(Draw(kAgents * kSeen, 1.0F, 3)),
       next_state(Draw(kState, 1.0F, 4)),
       final_seen(Draw(kAgents * kSeen, 1.0F, 5)),

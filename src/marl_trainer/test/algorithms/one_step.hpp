@@ -13,34 +13,34 @@
 namespace stg::learn {
 
 /// An off-policy algorithm that takes one gradient step per update, on a batch of equal samples of
-/// one step: what it reports is then that of one sample. Its networks are the test's, and its
-/// normalisers change nothing but that rewards count 1 - gamma of what they are.
+/// one step. What it reports is therefore about one sample. The test sets its networks. Its
+/// normalisers change nothing, except that a reward counts 1 - gamma times.
 struct OneStep {
   static constexpr double kGamma = 0.75;
   static constexpr int kEnvs = 64, kAgents = 2, kSeen = 3, kState = 4, kAction = 2;
   static constexpr int kJoint = kAgents * kAction;
 
-  /// @param options over GameSetup's and those of a step that hardly moves anything
+  /// @param options replace those of GameSetup and those of a step that moves almost nothing
   OneStep(const std::string& algorithm, int batch, const nlohmann::json& options);
 
-  /// Numbers of the networks that a checkpoint holds by this name; the next Load gives them.
+  /// The numbers of the networks that a checkpoint holds by this name. The next Load takes them.
   std::vector<float>& operator[](const std::string& name) {
     return std::get<std::vector<float>>(arrays_.at(name));
   }
-  /// Other numbers for these networks, none of them alike.
+  /// Sets other numbers for these networks, all different.
   void Shake(const std::vector<std::string>& names);
   void Load();
-  /// Sees the sample in all environments, and learns.
+  /// Sees the sample in all environments, and learns from it.
   void Update();
   double Reported(const std::string& column) const;
   Archive Save() const;
 
-  // The sample. Actions [kJoint] are in +-1, half of which is the algorithm's +-kScale.
+  // The sample. Actions [kJoint] are within +-1. Half of this is the algorithm's +-kScale.
   static constexpr double kScale = 0.5;
   std::vector<float> seen, state, actions, next_seen, next_state, final_seen, final_state;
   float reward = 0.8F;
   bool truncated = false;
-  /// What follows it: after the last step, what was seen before the restart.
+  /// What follows the sample. After the last step this is what was seen before the restart.
   const std::vector<float>& after_seen() const { return truncated ? final_seen : next_seen; }
   const std::vector<float>& after_state() const { return truncated ? final_state : next_state; }
 

@@ -12,8 +12,8 @@ namespace {
 constexpr double kGamma = 0.5;
 constexpr int kSteps = 4;
 
-/// Two shards of 2 and 1 environments; every number tells where it is from: collection, step,
-/// environment. Environment 2's episodes end with the second step of every collection.
+/// Two shards of 2 and 1 environments. Every number shows its collection, step and environment. The
+/// episodes of environment 2 end with the second step of every collection.
 class ReplayTest : public ::testing::Test {
  protected:
   ReplayTest() {
@@ -116,7 +116,7 @@ TEST_F(ReplayTest, SamplesStopAtEpisodesAndCollectionsAndDiscountWhatTheyHave) {
 }
 
 TEST_F(ReplayTest, ForgetsTheOldestCollectionAndDrawsEveryStep) {
-  ReplayBuffer replay(problem_, 30, 2, kGamma);  // room for two collections of twelve
+  ReplayBuffer replay(problem_, 30, 2, kGamma);  // there is room for two collections of twelve
   for (int number = 1; number <= 5; ++number) Fill(&replay, number);
   EXPECT_EQ(replay.size(), 24);
   std::set<float> seen;
@@ -137,7 +137,7 @@ TEST_F(ReplayTest, TakesOneDivisionOfTheEnvironmentsOnly) {
   Fill(&replay, 0);
   Collection other;
   other.steps = kSteps;
-  other.shards = {{0, 1}, {1, 2}};  // as many steps, in others' places
+  other.shards = {{0, 1}, {1, 2}};  // the same number of steps with other shards
   EXPECT_THROW(replay.Begin(other), UserError);
 }
 
@@ -166,7 +166,8 @@ void ReplayTest::SaveAndLoad(bool own) {
 }
 
 TEST_F(ReplayTest, ShiftedAndScaledRewardsMoveEveryValueAlike) {
-  // A constant reward c is worth c / (1 - gamma) at any n: in the networks' units, exactly zero.
+  // A constant reward c has the value c / (1 - gamma) for any n. In the networks' units this is
+  // zero.
   ReplayBatch batch(problem_, 1);
   ReplayScales scales;
   for (Normaliser* n : {&scales.observations, &scales.states}) {

@@ -5,7 +5,7 @@
 
 #include "algorithms/one_step.hpp"
 
-/// What off-policy critics and actors are trained towards, in closed form.
+/// The targets of off-policy critics and actors, in closed form.
 namespace stg::learn {
 namespace {
 
@@ -30,7 +30,7 @@ Mlp CriticNetwork() {
   return Mlp(spec);
 }
 
-/// What the actor with these parameters does at what all see, one after the other.
+/// The actions of all agents, one after the other, of the actor with these parameters.
 std::vector<float> JointAction(const std::vector<float>& parameters,
                                const std::vector<float>& seen) {
   std::vector<float> joint;
@@ -43,7 +43,7 @@ std::vector<float> JointAction(const std::vector<float>& parameters,
   return joint;
 }
 
-/// Of the critic number k.
+/// Value of the critic number k.
 double Q(const std::vector<float>& critics, std::size_t k, std::vector<float> state,
          const std::vector<float>& actions) {
   const Mlp network = CriticNetwork();
@@ -58,7 +58,8 @@ const std::vector<std::string> kDeterministic = {"actor", "target_actor", "criti
                                                  "target_critics"};
 const std::vector<std::string> kSoft = {"actor", "critics", "target_critics"};
 
-/// The lower bound whatever is seen, of an actor whose last layer says means, then deviations.
+/// Makes the deviation of an actor the lower bound for everything that it sees. Its last layer
+/// gives means, then deviations.
 void SetSmallestDeviation(std::vector<float>* actor) {
   const Mlp network = ActorNetwork(2 * OneStep::kAction, 0.0F);
   const int last = network.layers() - 1, inputs = network.spec().layer_inputs(last);
@@ -73,7 +74,7 @@ TEST(Targets, FollowTheNextStateTheSmallestCriticAndTheTargetNetworks) {
     for (const bool truncated : {false, true}) {
       nlohmann::json options = kGains;
       if (name == "matd3") options["target-noise"] = 0.0;
-      // So small a deviation that the action is the mean, and no weight on the entropy.
+      // The deviation is so small that the action is the mean, and the entropy has no weight.
       if (name == "masac") options.update({{"min-log-std", -20.0}, {"initial-alpha", 1e-9}});
       OneStep step(name, 64, options);
       step.truncated = truncated;
@@ -110,8 +111,8 @@ TEST(Targets, FollowTheNextStateTheSmallestCriticAndTheTargetNetworks) {
   }
 }
 
-/// Minus the value of what each AUV would do, the others' actions being those that were taken or
-/// those that all would take now.
+/// Minus the value of what each AUV would do now. The others' actions are the ones that they took,
+/// or the ones that they would take now.
 double ActorLoss(OneStep& step, const std::vector<float>& actor, bool others_as_taken) {
   const std::vector<float> now = JointAction(actor, step.seen);
   if (!others_as_taken) return -Q(step["critics"], 0, step.state, now);
@@ -160,7 +161,7 @@ TEST(Targets, DeterministicActorsClimbTheSumOverAuvsOfTheFirstCritic) {
 }
 
 TEST(Targets, NoiseOfTheirActionsIsDrawnAndClippedAndTheActionsAre) {
-  // Critics that say the first action: (q - y)^2 is the mean square of it, times gamma^2.
+  // The critics return the first action, so (q - y)^2 is its mean square, times gamma^2.
   const auto mean_square = [](float mean, double noise, double clip) {
     OneStep step("matd3", 16000,
                  {{"critic-hidden", {1}},
@@ -180,7 +181,7 @@ TEST(Targets, NoiseOfTheirActionsIsDrawnAndClippedAndTheActionsAre) {
     for (std::size_t from : {std::size_t{0}, critics.size() / 2}) {
       float* p = critics.data() + from;
       p[OneStep::kState] = 1.0F;
-      p[kInputs] = 16.0F;  // where the hinge is straight
+      p[kInputs] = 16.0F;  // here the hinge is straight
       p[kInputs + 1] = 1.0F;
       p[kInputs + 2] = -16.0F;
     }
@@ -190,7 +191,8 @@ TEST(Targets, NoiseOfTheirActionsIsDrawnAndClippedAndTheActionsAre) {
   };
   EXPECT_NEAR(mean_square(0.5F, 0.0, 0.5), 0.25, 1e-4);
   EXPECT_NEAR(mean_square(0.0F, 0.1, 0.5), 0.01, 3e-4);
-  // As good as always at its bounds: 0.6, and 1.2 that is 1.
+  // The noise almost always reaches its bounds. The actions are 0.6, and 1.2, which is clipped to
+  // 1.
   EXPECT_NEAR(mean_square(0.9F, 10.0, 0.3), (0.36 + 1.0) / 2.0, 0.015);
 }
 
@@ -212,7 +214,7 @@ TEST(Targets, FollowByTauAtEveryStepOrWithTheDelayedActor) {
       step.Update();
       const Archive after = step.Save();
       for (const std::string& network : networks) {
-        // The last layer also follows the scale of the rewards; the first number does not.
+        // The last layer also follows the scale of the rewards. The first number does not.
         const float online = after.Floats(network)[0], was = before.Floats(network)[0];
         const float target = before.Floats("target_" + network)[0];
         const bool moves = k % delay == 0;
@@ -236,7 +238,7 @@ TEST(Targets, OfSoftActorsHaveTheEntropyOfAllAuvs) {
   for (const std::string& name : kSoft) {
     std::fill(step[name].begin(), step[name].end(), 0.0F);
   }
-  // Small Gaussians around zero, where the squash is straight.
+  // The Gaussians are small and around zero, where the squash is straight.
   SetSmallestDeviation(&step["actor"]);
   const auto value = [&](const char* name, float first, float second) {
     step[name][step[name].size() / 2 - 1] = first;
@@ -256,7 +258,7 @@ TEST(Targets, OfSoftActorsHaveTheEntropyOfAllAuvs) {
   }
   EXPECT_NEAR(step.Reported("critic_loss"), loss, 0.01 * loss);
   EXPECT_NEAR(step.Reported("value"), 0.7 / (1.0 - kG), 1e-3);
-  // The target is for each action; below it, the weight rises.
+  // The target is per action. The entropy is below it, so the weight rises.
   const double entropy = step.Reported("entropy");
   EXPECT_NEAR(entropy, -log_pi / OneStep::kAgents, 0.02);
   const Archive after = step.Save();

@@ -10,11 +10,12 @@
 #include "marl_trainer/learn/algorithms/mappo/mappo.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/central_critic_learner.hpp"
 
-/// What critics learn, against closed forms.
+/// Compares what critics learn with closed forms.
 namespace stg::learn {
 namespace {
 
-/// Reward 1 for ever: worth 1 / (1 - gamma), although every episode ends after five steps.
+/// The reward is 1 for ever, so the value is 1 / (1 - gamma), although every episode ends after
+/// five steps.
 Game ConstantGame() {
   Game game;
   game.reward = [](double, const float*) { return 1.0; };
@@ -32,7 +33,7 @@ TEST_P(Endless, TruncationIsNoEnd) {
 INSTANTIATE_TEST_SUITE_P(OffPolicy, Endless, ::testing::Values("maddpg", "matd3", "madqn"));
 
 TEST(Endless, TruncationIsNoEndForSoftValues) {
-  // With hardly any weight on the entropy.
+  // The entropy has almost no weight.
   Training training(
       ConstantGame(),
       GameSetup("masac", {{"gamma", 0.9}, {"initial-alpha", 1e-6}, {"alpha-lr", 0.0}}));
@@ -41,7 +42,7 @@ TEST(Endless, TruncationIsNoEndForSoftValues) {
 }
 
 TEST(Masac, TheWeightDrivesTheEntropyToItsTarget) {
-  Game game;  // the better the closer to x: without the bonus the entropy would fall for ever
+  Game game;  // without the bonus for entropy, the entropy would fall for ever
   game.reward = [](double x, const float* a) {
     return -std::pow(static_cast<double>(a[0]) - 0.5 * x, 2.0) -
            std::pow(static_cast<double>(a[1]) - 0.5 * x, 2.0);
@@ -92,9 +93,10 @@ TEST(Endless, TruncationIsNoEndForAnOnPolicyCritic) {
   }
 }
 
-/// Reward 1 at x = 1 and 0 at x = -1, which take turns whatever is done: V(1) = 1 / (1 - gamma^2)
-/// and V(-1) = gamma V(1). An episode of five steps ends at the second and begins at the first, so
-/// that only the state that follows gives these, before a restart the final one.
+/// The reward is 1 at x = 1 and 0 at x = -1. These two take turns, whatever the agents do: V(1) = 1
+/// / (1 - gamma^2) and V(-1) = gamma V(1). An episode of five steps begins at x = 1, and its final
+/// state is x = -1. Only the state that follows gives these values; before a restart this is the
+/// final state.
 Game TakingTurns() {
   Game game;
   game.path = [](int step) { return step % 2 == 0 ? 1.0 : -1.0; };
@@ -102,8 +104,8 @@ Game TakingTurns() {
   return game;
 }
 
-/// What the networks of values and their targets say, in units of reward: of all actions where the
-/// outputs are a value and advantages of bins.
+/// The values of the networks and of their targets, in units of reward. If the outputs are a value
+/// and advantages of bins, these are the values of all actions.
 std::vector<double> ReplayedValues(Training* training, const std::vector<float>& inputs) {
   const auto& learner = dynamic_cast<const ReplayLearner&>(training->algorithm());
   const auto* q = dynamic_cast<const Madqn*>(&learner);
@@ -130,7 +132,7 @@ std::vector<double> ReplayedValues(Training* training, const std::vector<float>&
   return values;
 }
 
-/// MASAC's with hardly any weight on the entropy.
+/// Options for values in which the entropy of MASAC has almost no weight.
 nlohmann::json PlainValues(const std::string& algorithm, nlohmann::json options) {
   if (algorithm == "masac") options.update({{"initial-alpha", 1e-6}, {"alpha-lr", 0.0}});
   return options;
@@ -150,7 +152,7 @@ TEST_P(Replayed, ValuesAreThoseOfTheStateThatFollows) {
       float seen = 0.0F;
       (GetParam() == "madqn" ? scales.observations : scales.states).Apply(&x, 1, &seen);
       const double expected = (x > 0.0F ? 1.0 : kGamma) / (1.0 - kGamma * kGamma);
-      // A critic's other inputs are actions of zero.
+      // The other inputs of a critic are actions of zero.
       for (const double value : ReplayedValues(&training, {seen, 0.0F, 0.0F})) {
         EXPECT_NEAR(value, expected, 0.1) << x << " of " << n << " steps";
       }

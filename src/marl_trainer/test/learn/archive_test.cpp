@@ -36,7 +36,7 @@ class ArchiveTest : public ::testing::Test {
     return text.str();
   }
 
-  /// Writes a payload under a header that fits it.
+  /// Writes a payload with a header that is right for it.
   void Write(const std::string& payload, std::uint32_t version = 3) const {
     std::uint64_t checksum = 14695981039346656037ULL;
     for (const char c : payload) {
@@ -52,7 +52,7 @@ class ArchiveTest : public ::testing::Test {
     std::ofstream(path_, std::ios::binary) << bytes << payload;
   }
 
-  /// What the refusal of the file says.
+  /// The message with which the file is refused.
   std::string Refusal() const {
     try {
       ReadArchive(path_);
@@ -68,7 +68,7 @@ class ArchiveTest : public ::testing::Test {
   std::string path_;
 };
 
-/// One array as it stands in a file.
+/// The bytes of one array in a file.
 std::string Entry(char type, const std::string& name, std::uint64_t count,
                   const std::string& data) {
   std::string bytes(1, type);
@@ -188,7 +188,7 @@ TEST_F(ArchiveTest, LyingSizesWithARightChecksumAreRefusedWithoutAllocating) {
   }
 }
 
-/// What Load says of the archive; "accepted" when it says nothing.
+/// The message with which Load refuses the archive, or "accepted".
 template <class Load>
 std::string RefusalOf(const Load& load) {
   try {

@@ -23,7 +23,7 @@ struct Seen {
   std::vector<std::uint8_t> truncated;
 };
 
-/// Acts at random by the keys alone and records what it is shown.
+/// Acts at random, by the keys alone, and records what it sees.
 class Recorder : public Algorithm {
  public:
   explicit Recorder(const Problem& problem) : problem_(problem) {}
@@ -90,12 +90,12 @@ class CollectorTest : public ::testing::Test {
       : scenario_(LoadNamedScenario(config::ScenarioFolder(), "medium_release", "nominal",
                                     {"time.episode_steps=40", "time.tail_steps=10"})),
         problem_(ProblemOf(scenario_.run, scenario_.world, scenario_.agent)) {
-    config_.envs = 22;  // blocks of four and a part of one
+    config_.envs = 22;  // blocks of four, and one part of a block
     config_.horizon = kHorizon;
     config_.stagger = false;
   }
 
-  /// All shards of the second of two collections.
+  /// What all shards saw in the second of two collections.
   std::vector<Seen> SecondCollection(int workers, bool teach) {
     WorkerPool pool(workers);
     Collector collector(env::EnvFactory(scenario_), config_, &imitation_, &pool);
@@ -114,7 +114,7 @@ class CollectorTest : public ::testing::Test {
   Collection collection_;
 };
 
-/// The curriculum is the collection's, so any algorithm learns along it.
+/// The collector sets the stage of the curriculum, so any algorithm learns along it.
 TEST_F(CollectorTest, EpisodesStartInTheStageOfTheCurriculum) {
   using dynamics::ResetStage;
   const auto observations = [&](bool curriculum, ResetStage stage, int easy_until,
@@ -134,7 +134,8 @@ TEST_F(CollectorTest, EpisodesStartInTheStageOfTheCurriculum) {
     }
     return seen;
   };
-  // 22 environments reset twice: of each, the first episode and a part of the second are seen.
+  // 22 environments are reset twice. Each of them shows its first episode and a part of its second
+  // one.
   const auto easy = observations(false, ResetStage::kEasy, 0, 0);
   const auto medium = observations(false, ResetStage::kMedium, 0, 0);
   const auto hard = observations(false, ResetStage::kHard, 0, 0);
@@ -142,7 +143,7 @@ TEST_F(CollectorTest, EpisodesStartInTheStageOfTheCurriculum) {
   EXPECT_EQ(observations(true, ResetStage::kHard, 44, 44), easy);
   EXPECT_EQ(observations(true, ResetStage::kHard, 0, 44), medium);
   EXPECT_EQ(observations(true, ResetStage::kEasy, 0, 0), hard);
-  // Easy first episodes, medium second ones: only what comes after the reset differs.
+  // First episodes are easy and second ones medium. They differ only after the reset.
   const auto both = observations(true, ResetStage::kHard, 22, 44);
   const std::size_t shards = both.size() / 2;
   for (std::size_t s = 0; s < shards; ++s) {
@@ -175,7 +176,7 @@ TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
     for (std::size_t t = 0; t < kHorizon; ++t) {
       EXPECT_EQ(s.steps[t], static_cast<int>(t));
       for (std::size_t e = 0; e < envs; ++e) {
-        // The first collection made 30 of an episode's 40 steps.
+        // The first collection made 30 of the 40 steps of an episode.
         EXPECT_EQ(s.truncated[t * envs + e], t == 9 ? 1 : 0);
         double sum = 0.0;
         for (std::size_t i = 0; i < agents; ++i) {
@@ -185,7 +186,7 @@ TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
         reward += static_cast<double>(s.team_rewards[t * envs + e]) / (22.0 * kHorizon);
       }
       if (t + 1 == kHorizon) break;
-      // What comes next is what is decided on next, across the end of an episode, too.
+      // The next state is the one of the next decision, also across the end of an episode.
       EXPECT_TRUE(std::equal(s.next_states.begin() + static_cast<std::ptrdiff_t>(t * state),
                              s.next_states.begin() + static_cast<std::ptrdiff_t>((t + 1) * state),
                              s.states.begin() + static_cast<std::ptrdiff_t>((t + 1) * state)));
@@ -194,7 +195,7 @@ TEST_F(CollectorTest, ShowsEveryStepOfEveryEnvironmentOnceAndInOrder) {
           s.next_observations.begin() + static_cast<std::ptrdiff_t>((t + 1) * observation),
           s.observations.begin() + static_cast<std::ptrdiff_t>((t + 1) * observation)));
     }
-    // The state before the restart is another one than the state after it.
+    // The state before the restart differs from the state after it.
     ASSERT_EQ(s.final_states.size(), state);
     EXPECT_FALSE(std::equal(s.final_states.begin(), s.final_states.end(),
                             s.next_states.begin() + static_cast<std::ptrdiff_t>(9 * state)));
@@ -223,7 +224,7 @@ TEST_F(CollectorTest, AsksTheTeacherAtTheStatesThatAreVisited) {
   const std::vector<Seen> idle = SecondCollection(1, true);
   imitation_.controller = "pursuit";
   const std::vector<Seen> pursuit = SecondCollection(1, true);
-  // Taught or not, the swarm does what the algorithm says.
+  // With or without a teacher, the swarm does what the algorithm decides.
   EXPECT_EQ(idle[0].states, pursuit[0].states);
   EXPECT_NE(idle[0].teacher, pursuit[0].teacher);
 }
@@ -246,9 +247,10 @@ TEST_F(CollectorTest, RestartsWhereItIsTold) {
   fresh.Collect(1, false, &recorder);
   for (std::size_t k = 0; k < first.size(); ++k)
     EXPECT_EQ(first[k].states, recorder.shards[k].states);
-  // Staggered: not all environments end in the same step.
+  // The ends are staggered, so not all environments end in the same step.
   std::set<std::vector<std::uint8_t>> ends;
-  for (std::size_t k = 0; k < 5; ++k) ends.insert(first[k].truncated);  // of four each
+  // Each shard has four environments.
+  for (std::size_t k = 0; k < 5; ++k) ends.insert(first[k].truncated);
   EXPECT_GT(ends.size(), 1U);
 }
 

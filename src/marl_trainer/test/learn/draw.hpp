@@ -5,7 +5,7 @@
 
 namespace stg::learn {
 
-/// `count` normal numbers of standard deviation `scale`.
+/// `count` normal numbers with mean zero and standard deviation `scale`.
 inline std::vector<float> Draw(std::size_t count, float scale, unsigned seed) {
   std::mt19937 rng(seed);
   std::normal_distribution<float> normal;

@@ -73,7 +73,7 @@ TEST(Adam, FirstStepsAreThoseOfTheFormula) {
   double m = 0.0, v = 0.0, expected = 1.0;
   for (int step = 1; step <= 3; ++step) {
     Adam(eps, &state).Apply(0, 2, lr, 0.5F, gradient, p.data());
-    const double g = 0.25;  // shrunk
+    const double g = 0.25;  // half of the gradient
     m = 0.9 * m + 0.1 * g;
     v = 0.999 * v + 0.001 * g * g;
     expected -= lr * (m / (1.0 - std::pow(0.9, step))) /
@@ -90,13 +90,13 @@ TEST(Adam, FirstStepsAreThoseOfTheFormula) {
 }
 
 TEST(Gae, MatchesHandComputedSegmentWithTruncation) {
-  // gamma = 0.5, lambda = 0.5. Step 1 ends an episode whose last state is worth 8.
+  // gamma = 0.5, lambda = 0.5. Step 1 ends an episode. The value of its last state is 8.
   const float rewards[] = {1, 2, 3}, values[] = {10, 20, 30}, final_values[] = {-99, 8, -99};
   const std::uint8_t done[] = {0, 1, 0};
   float advantages[3];
   GeneralisedAdvantages(rewards, values, done, final_values, 40.0F, 3, 1, 0.5F, 0.5F, advantages);
   EXPECT_FLOAT_EQ(advantages[2], 3 + 0.5F * 40 - 30);                // -7
-  EXPECT_FLOAT_EQ(advantages[1], 2 + 0.5F * 8 - 20);                 // -14, nothing of step 2
+  EXPECT_FLOAT_EQ(advantages[1], 2 + 0.5F * 8 - 20);                 // -14, without step 2
   EXPECT_FLOAT_EQ(advantages[0], 1 + 0.5F * 20 - 10 + 0.25F * -14);  // -2.5
 }
 
@@ -123,7 +123,7 @@ TEST(Gae, LambdaOneIsTheDiscountedReturn) {
 TEST(RunningMoments, AnyGroupingGivesTheMomentsOfAllData) {
   const int size = 3, rows = 1000;
   std::vector<float> x = Draw(size * rows, 1.0F, 1);
-  // Far from zero, where the naive sum of squares fails in single precision.
+  // The numbers are far from zero. There the naive sum of squares fails in single precision.
   for (float& v : x) v += 1000.0F;
   RunningMoments a(size), b(size), c(size);
   a.Add(x.data(), 1);

@@ -5,7 +5,7 @@
 
 namespace stg::learn {
 
-/// MAPPO's own part of a setup.
+/// The options of MAPPO in a setup.
 inline MappoConfig& Own(TrainSetup& setup) { return dynamic_cast<MappoConfig&>(*setup.own); }
 
 }  // namespace stg::learn

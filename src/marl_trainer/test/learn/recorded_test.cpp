@@ -41,7 +41,7 @@ class RecordedTest : public ::testing::Test {
     own.actor_hidden = {8};
     own.critic_hidden = {8};
     own.lr = own.critic_lr = 1e-2;
-    own.gamma = 0.0;  // each action is rewarded at once
+    own.gamma = 0.0;  // each action gets its reward at once
     return setup;
   }
   static Scenario Short() {
@@ -56,7 +56,7 @@ class RecordedTest : public ::testing::Test {
     return options;
   }
 
-  /// Actions drawn from the policy; the reward is largest where the first component is 0.5.
+  /// A record with actions from the policy. The reward is largest if the first component is 0.5.
   AgentRecord Step(const agent::Policy& policy, std::uint32_t episode, std::uint32_t t,
                    int agent) const {
     Random random(7, Stream::kPolicy, episode, t, static_cast<std::uint32_t>(agent));
@@ -65,7 +65,7 @@ class RecordedTest : public ::testing::Test {
     for (int i = 0; i < policy.observation_size(); ++i) {
       r.observation.push_back(static_cast<float>(random.Normal()));
     }
-    r.observation[0] = 0.25F;  // never moves
+    r.observation[0] = 0.25F;  // this number is always the same
     r.action.resize(static_cast<std::size_t>(policy.action_size()));
     policy.Mean(r.observation.data(), r.action.data());
     double density = 1.0;
@@ -177,7 +177,7 @@ TEST_F(RecordedTest, ARepeatedMessageIsFineAndAContradictoryOneIsNot) {
   EpisodeAssembler assembler(scenario_.run, "test");
   Record(0, 0, &assembler);
   Record(0, 0, &assembler);
-  assembler.Add(0, 0, kSteps, 0, AgentRecord());  // the decision after the end leads nowhere
+  assembler.Add(0, 0, kSteps, 0, AgentRecord());  // the decision after the end has no effect
   EXPECT_EQ(trainer_->Check(assembler.TakeAll().front()).flaw, Flaw::kNone);
   Record(0, 0, &assembler);
   AgentRecord other = Step(trainer_->policy(), 0, 3, 1);
@@ -211,7 +211,7 @@ TEST_F(RecordedTest, StepsFromTheFutureTakeNoEpisodesPlace) {
   }
   for (std::uint32_t number = 0; number < 5; ++number) {
     Record(number, number * 100 * kSecond, &assembler, kSteps / 2);
-    // A poll in the middle of each episode, as a live trainer does.
+    // A live trainer also asks in the middle of each episode.
     for (const RecordedEpisode& e : assembler.TakeDone()) EXPECT_GE(e.number, 900U);
     Record(number, number * 100 * kSecond, &assembler);
     const std::vector<RecordedEpisode> done = assembler.TakeDone();
@@ -245,7 +245,7 @@ TEST_F(RecordedTest, LearnsWhichActionIsRewarded) {
     }
     return sum;
   };
-  EXPECT_LT(std::abs(mean_action()), 0.1);  // untrained
+  EXPECT_LT(std::abs(mean_action()), 0.1);  // the policy is not trained yet
   std::uint32_t number = 0;
   for (int update = 0; update < 30; ++update) {
     std::vector<RecordedEpisode> episodes;
@@ -283,12 +283,12 @@ TEST_F(RecordedTest, GoesOnFromItsFolderAsIfItHadNeverStopped) {
 
 TEST_F(RecordedTest, StartsFromAPolicyAndKeepsItsFunction) {
   TrainSetup scaled = MakeSetup();
-  Own(scaled).std_scale = 0.3;  // known to the policy file only by what it did
+  Own(scaled).std_scale = 0.3;  // the policy file does not hold this option, only its effect
   trainer_ = std::make_unique<RecordedTrainer>(scenario_, scaled, Options("scaled"));
   trainer_->Update({Episode(0), Episode(1)});
   const RecordedEpisode episode = Episode(2);
   TrainSetup setup = MakeSetup();
-  Own(setup).actor_hidden = {32, 32};  // the policy's own shape counts
+  Own(setup).actor_hidden = {32, 32};  // the shape of the policy counts
   {
     RecordedTrainer other(scenario_, setup, Options("other", trainer_->policy_path()));
     EXPECT_EQ(other.policy_id(), trainer_->policy_id());

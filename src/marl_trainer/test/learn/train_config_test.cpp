@@ -13,7 +13,7 @@
 namespace stg::learn {
 namespace {
 
-/// What the refusal of a setup says; fails when there is none.
+/// The message with which the setup is refused. It is a failure if it is accepted.
 std::string Refusal(const TrainSetup& setup) {
   try {
     setup.ValidateOrThrow();
@@ -84,7 +84,7 @@ TEST(TrainSetup, WhatAnOptionCannotHoldIsRefusedByName) {
 
   nlohmann::ordered_json json = good;
   json["seed"] = 18446744073709551615ULL;
-  json["steps"] = 1e6;  // as one writes it by hand
+  json["steps"] = 1e6;  // people write it like this by hand
   EXPECT_EQ(TrainSetupFromJson(json).common.seed, 18446744073709551615ULL);
   EXPECT_EQ(TrainSetupFromJson(json).common.steps, 1000000);
 }
@@ -140,7 +140,7 @@ TEST(TrainSetup, NamesTheOptionWithABadValue) {
   Own(setup).critic_hidden = {};
   EXPECT_NE(Refusal(setup).find("--critic-hidden"), std::string::npos);
   setup = TrainSetup("mappo", "fast");
-  Own(setup).initial_log_std = -5.0;  // below the lower bound
+  Own(setup).initial_log_std = -5.0;  // this is below the lower bound
   EXPECT_NE(Refusal(setup).find("--initial-log-std"), std::string::npos);
   setup = TrainSetup("mappo", "fast");
   Own(setup).imitation.steps = 100;

@@ -11,7 +11,7 @@
 namespace stg::learn {
 namespace {
 
-/// The actor's, then the critic's.
+/// The parameters of the actor, then those of the critic.
 std::vector<float> Parameters(Trainer& trainer) {
   const auto& mappo = dynamic_cast<Mappo&>(trainer.algorithm());
   std::vector<float> all = mappo.actor().numbers;
@@ -40,8 +40,8 @@ TEST_F(TrainerTest, WeightsDoNotDependOnTheNumberOfWorkers) {
 }
 
 TEST_F(TrainerTest, ResumedRunEqualsTheUninterruptedOneBitForBit) {
-  // Aligned episodes, a horizon that does not divide the episode, and staggered ends; stopped where
-  // all environments start an episode, and in the middle of episodes.
+  // Aligned episodes, a horizon that does not divide the episode, and staggered ends. The runs are
+  // stopped where all environments start an episode, and in the middle of episodes.
   for (int kind = 0; kind < 6; ++kind) {
     TrainSetup setup = SmallSetup();
     if (kind % 3 == 1) setup.common.horizon = 15;
@@ -175,7 +175,7 @@ TEST_F(TrainerTest, RefusesToMixRuns) {
   EXPECT_THROW(Trainer(ShortScenario("hard_release"), setup, resume), UserError);
   resume.out = (folder_ / "empty").string();
   EXPECT_THROW(Trainer(scenario, setup, resume), UserError);
-  // A run that ended before its first checkpoint is no obstacle.
+  // A run that ended before its first checkpoint does not prevent a new one.
   fs::create_directories(folder_ / "early");
   std::ofstream(folder_ / "early" / "config.json") << "{}";
   EXPECT_NO_THROW(Trainer(scenario, setup, Options("early")));
@@ -203,9 +203,9 @@ TEST_F(TrainerTest, ATrainingThatDivergesSaysSoAndKeepsItsLastGoodCheckpoint) {
   auto& own = dynamic_cast<MasacConfig&>(*setup.own);
   own.warmup = 0;
   own.batch = 16;
-  own.replayed = 16.0;  // a gradient step each step
+  own.replayed = 16.0;  // one gradient step per step
   own.alpha_lr = 1.0;
-  own.target_entropy = 1.0;  // more than the uniform density has: alpha grows without end
+  own.target_entropy = 1.0;  // a uniform density has less entropy, so alpha grows without end
   own.actor_hidden = own.critic_hidden = {8};
   setup.common.envs = 4;
   setup.common.horizon = 20;
@@ -257,12 +257,12 @@ TEST_F(TrainerTest, TheSummaryTellsSizesAndWorkOfTheNetworks) {
   Trainer(scenario, SmallSetup(), options).Run();
   const auto json = nlohmann::json::parse(Bytes(folder_ / "run" / "summary.json"));
   const int o = problem.observation_size, s = problem.state_size, a = problem.action_size;
-  // Two hidden layers of 16 and a spread; one hidden layer of 16.
+  // The actor has two hidden layers of 16 and a spread. The critic has one hidden layer of 16.
   const nlohmann::json parameters = {{"actor", (o + 1) * 16 + 17 * 16 + 17 * a + a},
                                      {"critic", (s + 1) * 16 + 17}};
   EXPECT_EQ(json.at("parameters"), parameters);
-  // Multiply-adds of a row. Backward costs a forward pass for the weights and one for the inputs,
-  // which the first layer needs not.
+  // Multiply-adds of a row. The backward pass costs one forward pass for the weights and one for
+  // the inputs. The first layer needs no gradient of its inputs.
   const double actor = o * 16 + 16 * 16 + 16 * a, critic = s * 16 + 16;
   const double epoch = problem.agents * (3 * actor - o * 16) + (3 * critic - s * 16);
   EXPECT_DOUBLE_EQ(json.at("update_flops_per_env_step"), 2 * (2 * epoch + critic));
@@ -276,7 +276,7 @@ TEST_F(TrainerTest, ARunCanStartFromTheNetworksOfAnother) {
 
   setup.common.start_from = (folder_ / "first").string();
   Own(setup).lr = Own(setup).critic_lr =
-      1e-8;  // no step to speak of: what it starts with is what remains
+      1e-8;  // it takes almost no step, so it keeps what it starts with
   setup.common.seed = 1;
   setup.common.steps = 2560;
   Trainer second(scenario, setup, Options("second"));

@@ -44,7 +44,7 @@ class WallUnits : public ::testing::Test {
     return Mlp(spec);
   }
 
-  /// First-layer units that the placement changed.
+  /// The units of the first layer that the placement changed.
   std::vector<int> Placed() const {
     std::vector<int> units;
     for (int u = 0; u < kUnits; ++u) {
@@ -57,7 +57,7 @@ class WallUnits : public ::testing::Test {
     return units;
   }
 
-  /// Activations of the placed units at a position and a target offset [m], ascending.
+  /// Activations of the placed units at a position and a target offset [m], in ascending order.
   std::vector<double> Activations(const Vec3<double>& p_WB, const Vec3<double>& r_BT_W) const {
     agent::Knowledge<double> k;
     k.p_WB = p_WB;
@@ -92,7 +92,7 @@ class WallUnits : public ::testing::Test {
 
 TEST_F(WallUnits, RiseWithTheTargetsRoomToEachWall) {
   ASSERT_EQ(Placed().size(), static_cast<std::size_t>(kWallUnits));
-  // A target 1 cm off the wall +x, 2 m off its opposite and 5 cm off the wall -z.
+  // The target is 1 cm from the wall +x, 2 m from the opposite wall and 5 cm from the wall -z.
   const std::vector<double> y = Activations({1.95, 0.3, -1.9}, {0.04, -0.1, -0.05});
   std::vector<double> expected(kWallUnits, 0.0);
   std::size_t n = 0;
@@ -103,12 +103,12 @@ TEST_F(WallUnits, RiseWithTheTargetsRoomToEachWall) {
   }
   std::sort(expected.begin(), expected.end());
   ASSERT_GT(expected.back(), 0.8);  // 1 - 0.01 / 0.06
-  // Single precision at the scale of 2 m / 7.5 mm.
+  // This is single precision at the scale of 2 m / 7.5 mm.
   for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], expected[i], 1e-3) << i;
 }
 
 TEST_F(WallUnits, AreSilentFarFromWallsWhereverTheAuvIs) {
-  // The AUV near a wall, the target not.
+  // The AUV is near walls, the target is not.
   for (const double y : Activations({1.99, -1.99, 1.99}, {-0.2, 0.2, -0.2})) EXPECT_EQ(y, 0.0);
 }
 
@@ -141,7 +141,7 @@ TEST_F(WallUnits, TakeThePlaceOfTheUnitsThatSayLeastAndStartUnheard) {
     }
   }
   EXPECT_LE(loudest_placed, quietest_kept * (1.0 + 1e-6));
-  // Nothing beyond the two layers changes.
+  // Nothing behind the two layers changes.
   EXPECT_TRUE(std::equal(placed_.begin() + static_cast<std::ptrdiff_t>(actor.bias_offset(1)),
                          placed_.end(),
                          untouched_.begin() + static_cast<std::ptrdiff_t>(actor.bias_offset(1))));

@@ -9,7 +9,7 @@
 #include "marl_trainer/learn/nn/normaliser.hpp"
 #include "oracle/torch_network.hpp"
 
-/// The kernels against libtorch's automatic differentiation.
+/// Compares the kernels with libtorch's automatic differentiation.
 namespace stg::learn {
 namespace {
 
@@ -24,8 +24,8 @@ TorchNetwork Reference(const Mlp& mlp, const float* parameters) {
   return network;
 }
 
-/// Largest difference between a flat gradient and libtorch's, relative to the
-/// largest component.
+/// The largest difference between a flat gradient and the one of libtorch, relative to the largest
+/// component.
 double GradientError(TorchNetwork network, const float* gradient) {
   std::vector<float> theirs(CountParameters(*network), 0.0F);
   AddGradients(network.get(), theirs.data());
@@ -84,7 +84,7 @@ TEST(BackEnds, AgreeOnOutputsAndGradientsOfEveryShape) {
       EXPECT_NEAR(workspace.output()[i], flat.data_ptr<float>()[i], 2e-5) << i;
     }
     EXPECT_LT(GradientError(reference, gradient.data()), 1e-5);
-    // Of all inputs, and of some in the middle.
+    // The gradient in all inputs, and in some in the middle.
     for (const auto& [first, count] : {std::pair(0, spec.inputs), std::pair(2, 3)}) {
       std::vector<float> d_input(static_cast<std::size_t>(rows * count));
       mlp.InputGradient(p.data(), d.data(), rows, first, count, &workspace, d_input.data());
@@ -107,7 +107,7 @@ TEST(BackEnds, ExchangeParameters) {
   EXPECT_EQ(back, p);
 }
 
-/// The loss of Eqs. 41-44 in libtorch operations, by automatic differentiation.
+/// The loss of Eqs. 41-44, written in libtorch operations.
 TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
   for (const auto& [activation, imitation] :
        {std::pair(HiddenActivation::kTanh, 0.0F), std::pair(HiddenActivation::kRelu, 0.0F),
@@ -130,7 +130,7 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     const std::vector<float> fresh = networks.NewCritic(3).numbers;
     const std::size_t split = p.size();
     p.insert(p.end(), fresh.begin(), fresh.end());
-    // Away from the special initial point, so that no term vanishes.
+    // The parameters are away from the special initial point, so that no term vanishes.
     const std::vector<float> noise = Draw(p.size(), 0.1F, 4);
     for (std::size_t i = 0; i < p.size(); ++i) p[i] += noise[i];
 
@@ -147,7 +147,7 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     const torch::Tensor mean = actor->forward(View(obs, {count * agents, features}));
     const torch::Tensor z = (View(act, {count * agents, actions}) - mean) / log_std.exp();
     const torch::Tensor log_prob = (-0.5 * z * z - log_std - 0.5 * std::log(2 * M_PI)).sum(1);
-    // Old probabilities around the new ones, so that both sides of the clip occur.
+    // Old probabilities are around the new ones, so that both sides of the clip occur.
     std::vector<float> old = Draw(count * agents, 0.3F, 10);
     for (int r = 0; r < count * agents; ++r) {
       old[static_cast<std::size_t>(r)] += log_prob[r].item<float>();
@@ -159,7 +159,7 @@ TEST(PpoLoss, GradientIsThatOfAutomaticDifferentiation) {
     const torch::Tensor entropy = (log_std + 0.5 * std::log(2 * M_PI * M_E)).sum();
     const torch::Tensor value = critic->forward(View(states, {count, state})).squeeze(1);
     const torch::Tensor value_loss = (value - View(targets, {count})).pow(2).sum() / minibatch;
-    // The miss in sigmas, against the size of the teacher's action.
+    // The miss is in sigmas, and relative to the size of the teacher's action.
     std::vector<float> teacher = Draw(count * agents * actions, 0.5F, 11);
     const torch::Tensor sigma = log_std.detach().exp();
     const torch::Tensor taught = View(teacher, {count * agents, actions});

@@ -8,8 +8,8 @@
 #include "oracle/torch_blocks.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
-/// The network over the task graph against libtorch's automatic differentiation, and against the
-/// agent's.
+/// Compares the network over the task graph with libtorch's automatic differentiation and with the
+/// network of the agent.
 namespace stg::learn {
 namespace {
 
@@ -30,7 +30,7 @@ agent::GraphSpec SmallGraph() {
   return spec;
 }
 
-/// One AUV's rows, drawn, with the memory that they point to.
+/// Random rows of one AUV, with the memory that they point to.
 struct DrawnRows {
   DrawnRows(const agent::GraphSpec& spec, int targets, int neighbours, int obstacles,
             unsigned seed) {
@@ -67,7 +67,7 @@ std::vector<DrawnRows> DrawMany(const agent::GraphSpec& spec, int auvs) {
   return many;
 }
 
-/// The network in libtorch's words, one AUV at a time.
+/// The network in operations of libtorch, for one AUV at a time.
 struct TorchGraph : TorchBlocks<agent::GraphBlocks> {
   TorchGraph(const agent::GraphSpec& spec, const std::vector<float>& p)
       : TorchBlocks(spec, p), spec_(spec) {}

@@ -8,7 +8,8 @@
 #include "oracle/torch_blocks.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 
-/// The network over sets against libtorch's automatic differentiation, and against the agent's.
+/// Compares the network over sets with libtorch's automatic differentiation and with the network of
+/// the agent.
 namespace stg::learn {
 namespace {
 
@@ -23,7 +24,7 @@ agent::PoolSpec SmallSpec() {
   return spec;
 }
 
-/// AUVs with 0, 1, ... rows in a set, drawn.
+/// Random rows of AUVs that have 0, 1, ... rows in a set.
 PackedRows DrawRows(const agent::PoolSpec& spec, int rows) {
   PackedRows packed{RowSizes(spec)};
   for (int r = 0; r < rows; ++r) {
@@ -45,7 +46,7 @@ PackedRows DrawRows(const agent::PoolSpec& spec, int rows) {
   return packed;
 }
 
-/// The network in libtorch's words.
+/// The network in operations of libtorch.
 struct TorchPool : TorchBlocks<agent::PoolBlocks> {
   TorchPool(const agent::PoolSpec& spec, const std::vector<float>& p)
       : TorchBlocks(spec, p), spec_(spec) {}

@@ -8,7 +8,8 @@
 #include "marl_trainer/learn/algorithms/off_policy/joint_critics.hpp"
 #include "oracle/torch_network.hpp"
 
-/// What off-policy methods differentiate by hand, against libtorch's automatic differentiation.
+/// Compares the hand-made derivatives of off-policy methods with libtorch's automatic
+/// differentiation.
 namespace stg::learn {
 namespace {
 
@@ -105,7 +106,7 @@ TEST(JointCritics, GradientsAreThoseOfAutomaticDifferentiation) {
     SetParameters(critics.parameters().data() + k * size, networks[k].get());
     values.push_back(networks[k]->forward(inputs).squeeze(1));
   }
-  // Of the smaller value, with respect to the actions.
+  // The derivative of the smaller value in the actions.
   const float weight = -0.25F;
   const torch::Tensor smallest = torch::min(values[0], values[1]);
   (weight * smallest.sum()).backward({}, true);
@@ -120,7 +121,7 @@ TEST(JointCritics, GradientsAreThoseOfAutomaticDifferentiation) {
                   actions.grad()[r][a].item<float>(), 1e-5 * largest);
     }
   }
-  // Of the squared misses, with respect to the parameters.
+  // The derivative of the squared errors in the parameters.
   for (auto& network : networks) network->zero_grad();
   const torch::Tensor t = torch::from_blob(targets.data(), {rows}, torch::kFloat).clone();
   const torch::Tensor squares = ((values[0] - t).pow(2) + (values[1] - t).pow(2)).sum();

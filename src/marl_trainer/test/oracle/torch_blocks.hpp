@@ -12,7 +12,7 @@ inline torch::Tensor TensorOf(const float* data, at::IntArrayRef shape) {
   return torch::from_blob(const_cast<float*>(data), shape, torch::kFloat).clone();
 }
 
-/// The parameters of a network over entities as libtorch's tensors, which gather gradients.
+/// The parameters of a network over entities as tensors of libtorch, which collect gradients.
 /// @param Blocks agent::PoolBlocks or agent::GraphBlocks
 template <class Blocks>
 struct TorchBlocks {

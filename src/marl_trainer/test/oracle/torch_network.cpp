@@ -39,7 +39,7 @@ std::size_t CountParameters(const torch::nn::Module& module) {
 void SetParameters(const float* flat, torch::nn::Module* module) {
   const torch::NoGradGuard no_grad;
   for (torch::Tensor& p : module->parameters()) {
-    // from_blob takes a pointer that it could write to; it is only read here.
+    // from_blob takes a pointer to writable memory. Here libtorch only reads it.
     p.copy_(torch::from_blob(const_cast<float*>(flat), p.sizes(), torch::kFloat));
     flat += p.numel();
   }

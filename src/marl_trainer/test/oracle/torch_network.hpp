@@ -8,16 +8,16 @@
 
 #include "marl_trainer/learn/nn/network_spec.hpp"
 
-/// Networks in libtorch, whose automatic differentiation the kernels are tested against. Nothing
-/// but tests and a benchmark needs libtorch.
+/// Networks in libtorch. Its automatic differentiation tests the kernels. Only tests and a
+/// benchmark need libtorch.
 namespace stg::learn {
 
-/// The network that a spec describes, as a module.
+/// The network of a spec, as a module.
 class TorchNetworkImpl : public torch::nn::Module {
  public:
   explicit TorchNetworkImpl(const NetworkSpec& spec);
 
-  /// [rows, outputs] from [rows, inputs].
+  /// Gives [rows, outputs] for [rows, inputs].
   torch::Tensor forward(torch::Tensor x);
 
  private:
@@ -26,13 +26,13 @@ class TorchNetworkImpl : public torch::nn::Module {
 };
 TORCH_MODULE(TorchNetwork);
 
-/// Any module's parameters as one flat array, in the order in which they were registered: what
-/// optimiser, checkpoint and exporter work on, whichever back end computes. A TorchNetwork's is
-/// laid out as NetworkSpec says, so the two back ends exchange parameters.
+/// The parameters of any module as one flat array, in the order in which they were registered.
+/// Optimiser, checkpoint and exporter work on this array with either back end. A TorchNetwork has
+/// the layout of NetworkSpec, so the two back ends exchange parameters.
 std::size_t CountParameters(const torch::nn::Module& module);
 void SetParameters(const float* flat, torch::nn::Module* module);
 void GetParameters(const torch::nn::Module& module, float* flat);
-/// Adds the gradients that backward() left, and clears them.
+/// Adds the gradients that backward() has left, and clears them.
 void AddGradients(torch::nn::Module* module, float* flat);
 
 }  // namespace stg::learn

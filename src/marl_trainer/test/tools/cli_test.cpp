@@ -140,7 +140,7 @@ TEST_F(CommandLine, EvaluateEndsWithTheMetricsOfTheContract) {
   EXPECT_EQ(json["episodes"], 5);
   EXPECT_EQ(json["seed"], 3000);
   EXPECT_GT(json["return_std"], 0.0);
-  // One row per episode, whose mean is the JSON's.
+  // The table has one row per episode. Its mean is the one in the JSON.
   std::ifstream in(csv);
   std::string line;
   ASSERT_TRUE(std::getline(in, line));
@@ -207,7 +207,7 @@ TEST_F(CommandLine, EvaluateKeepsTheOldTableWhereTheNewOneCannotBeWritten) {
   EXPECT_EQ(Read(csv), "old");
   EXPECT_EQ(evaluate(csv).code, 0);
   EXPECT_EQ(Read(csv).rfind("episode,seed,return,", 0), 0U);
-  // Before the first episode is flown.
+  // The error comes before the first episode is flown.
   r = evaluate(folder_ + "/none/x.csv");
   EXPECT_EQ(r.code, 2);
   EXPECT_EQ(r.err, start + "/none/x.csv: cannot write the table: No such file or directory\n");
@@ -219,7 +219,7 @@ TEST_F(CommandLine, EvaluateWritesItsTableIntoPipesAndDevicesAndReplacesNone) {
   const Result piped = Run(STG_EVALUATE, arguments + "/dev/stdout | cat");
   EXPECT_EQ(piped.out.rfind("episode,seed,return,", 0), 0U) << piped.err;
   EXPECT_TRUE(piped.Json().is_object()) << piped.out;
-  // Run sends it into a file, which --csv would replace.
+  // Run sends the standard output into a file, which --csv would replace.
   EXPECT_EQ(Run(STG_EVALUATE, arguments + "/dev/stdout").err,
             "evaluate: /dev/stdout: cannot write the table: standard output goes there\n");
   const std::string full = folder_ + "/full";
@@ -259,7 +259,7 @@ TEST_F(CommandLine, BenchEnvEndsWithItsRate) {
   const nlohmann::json json = r.Json();
   ASSERT_TRUE(json.is_object()) << r.out;
   const double rate = json["env_steps_per_second"];
-  EXPECT_TRUE(std::isfinite(rate) && rate > 0.0) << rate;  // how fast is the benchmarks' business
+  EXPECT_TRUE(std::isfinite(rate) && rate > 0.0) << rate;  // the benchmarks check how fast it is
 }
 
 TEST_F(CommandLine, CheckTraceSucceedsWithinAndFailsPastTheTolerance) {
@@ -268,7 +268,7 @@ TEST_F(CommandLine, CheckTraceSucceedsWithinAndFailsPastTheTolerance) {
   ASSERT_EQ(r.code, 0) << r.out << r.err;
   EXPECT_LE(r.Json()["max_abs_error"], 1e-5);
   EXPECT_EQ(r.Json()["traces"].size(), 2u);
-  // One number of one row changed.
+  // One number of one row is changed.
   const std::string bad = folder_ + "/trace";
   fs::create_directory(bad);
   fs::copy_file(STG_TEST_DATA "/golden/velocity_medium/config.yaml", bad + "/config.yaml");
@@ -276,7 +276,7 @@ TEST_F(CommandLine, CheckTraceSucceedsWithinAndFailsPastTheTolerance) {
   std::ofstream out(bad + "/steps.csv");
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
-    // The last cells of a row are the distance and the lost flag.
+    // A row ends with the distance and the flag `lost`.
     if (number == 100) line.back() = line[line.size() - 1] == '1' ? '0' : '1';
     out << line << '\n';
   }

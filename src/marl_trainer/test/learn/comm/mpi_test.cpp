@@ -4,12 +4,12 @@
 
 #include "learn/trainer_fixture.hpp"
 
-/// The command line among processes, as a user starts them.
+/// Runs the program among several processes, as a user starts it.
 namespace stg::learn {
 namespace {
 
-// Open MPI leaves memory behind, in plug-ins that are gone by the end and so cannot be named to
-// the leak sanitizer.
+// Open MPI leaks memory in plug-ins. They are unloaded at the end, so the leak sanitizer cannot
+// suppress them by name.
 const std::string kMpirun =
     "ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 "
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 STG_SCENARIOS=" STG_SCENARIO_FOLDER " " STG_MPIRUN
@@ -25,7 +25,7 @@ class MpiTest : public TrainerTest {
            " --actor-hidden 16 --critic-hidden 16 --validation-interval 100000 --out " +
            (folder_ / name).string() + " " + more;
   }
-  /// Exit status.
+  /// Runs the command. Returns its exit status.
   int Run(const std::string& command) const {
     const std::string log = (folder_ / "log").string();
     const int status = std::system(("( " + command + " ) > " + log + " 2>&1").c_str());
@@ -50,7 +50,7 @@ TEST_F(MpiTest, OneAndTwoRanksAndTwoWorkersGiveTheSamePolicy) {
 TEST_F(MpiTest, ALostRankEndsTheRunAndResumeGoesOn) {
   const std::string options = "--checkpoint-interval 1280 --workers 1 ";
   ASSERT_EQ(Run(Command(2, "whole", options + "--steps 32000")), 0) << output_;
-  // One is killed when there is a checkpoint.
+  // One process is killed as soon as there is a checkpoint.
   const std::string checkpoints = (folder_ / "lost" / "checkpoint_*").string();
   const std::string lose = " & run=$!; until ls " + checkpoints +
                            "; do kill -0 $run || exit 9; sleep 0.02; done;"

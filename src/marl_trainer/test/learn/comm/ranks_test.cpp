@@ -5,7 +5,7 @@
 #include "learn/trainer_fixture.hpp"
 #include "marl_trainer/learn/algorithms/off_policy/replay_config.hpp"
 
-/// Training among several ranks, which here are threads; mpi_test.cpp has processes.
+/// Training among several ranks. Here they are threads; mpi_test.cpp has processes.
 namespace stg::learn {
 namespace {
 
@@ -19,18 +19,18 @@ class RanksTest : public TrainerTest {
       *ppo = dynamic_cast<const PpoOptions&>(*small.own);
     } else {
       auto& replay = dynamic_cast<ReplayConfig&>(*setup.own);
-      replay.replay = 1280;  // two collections of three
+      replay.replay = 1280;  // two collections, of the three
       replay.warmup = 0;
-      replay.batch = 100;  // slices of 6 and 7
+      replay.batch = 100;  // in slices of 6 and 7
       replay.actor_hidden = replay.critic_hidden = {8};
     }
     setup.common = small.common;
     setup.common.steps = 1920;
-    setup.common.validation_episodes = 20;  // a block and a part of one
+    setup.common.validation_episodes = 20;  // a block and a part of a block
     return setup;
   }
 
-  /// Trains among so many ranks; the state of rank 0.
+  /// Trains among this many ranks. Returns the state of rank 0.
   TrainState Train(const TrainSetup& setup, int ranks, int workers, Trainer::Options options) {
     TrainState first;
     options.workers = workers;
@@ -52,7 +52,7 @@ class RanksTest : public TrainerTest {
     return "";
   }
 
-  /// progress.csv without the columns that tell times.
+  /// progress.csv without the columns of times.
   std::string Progress(const std::string& name) const {
     std::istringstream rows(Bytes(folder_ / name / "progress.csv"));
     std::vector<bool> kept;
@@ -95,7 +95,7 @@ TEST_F(RanksTest, ARunThatWasStoppedGoesOnWithAnyNumberOfRanks) {
       const std::string name = algorithm + (stagger ? "_staggered" : "");
       Trainer alone(ShortScenario(), setup, Options(name));
       ASSERT_TRUE(alone.Run());
-      // A third by a process alone, a third among two ranks, the rest by a process alone.
+      // A process alone runs a third, two ranks run a third, and a process alone runs the rest.
       Trainer::Options options = Options(name + "_thirds");
       options.halt_after = 1;
       EXPECT_FALSE(Trainer(ShortScenario(), setup, options).Run());

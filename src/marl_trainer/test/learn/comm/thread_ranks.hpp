@@ -10,12 +10,12 @@
 
 namespace stg::learn {
 
-/// Ranks that are threads of one process: what the logic of several ranks is tested with.
+/// Ranks that are threads of one process. They test the logic of several ranks.
 class ThreadRanks {
  public:
   explicit ThreadRanks(int size) : brought_(static_cast<std::size_t>(size)) {}
 
-  /// Runs `work` as every rank, each in a thread, and waits for all.
+  /// Runs `work` in one thread for every rank, and waits for all.
   void Run(const std::function<void(Communicator*)>& work) {
     std::vector<std::thread> threads;
     for (int rank = 0; rank < static_cast<int>(brought_.size()); ++rank) {
@@ -57,7 +57,7 @@ class ThreadRanks {
     const int rank_;
   };
 
-  /// What all bring, when all have come.
+  /// Waits until all ranks have come. Returns what each of them brings.
   std::vector<std::vector<char>> Meet(int rank, const std::vector<char>& mine) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return leaving_ == 0; });
@@ -76,7 +76,7 @@ class ThreadRanks {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::vector<char>> brought_;  // by rank
+  std::vector<std::vector<char>> brought_;  // index: rank
   int come_ = 0, leaving_ = 0;
 };
 

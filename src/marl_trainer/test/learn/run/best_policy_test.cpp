@@ -35,7 +35,7 @@ TEST_F(TrainerTest, TheBestPolicyIsChosenByTheTrainingsOwnReward) {
     best = std::max(best, last);
   }
   EXPECT_NEAR(trainer.state().best_return, best, 1e-6 * std::abs(best));
-  // The two returns are of the last policy by the two rewards, flown here once more.
+  // The two returns belong to the last policy, by two rewards. The test flies it again here.
   WorkerPool pool(1);
   const auto fly = [&](const Scenario& s) {
     return task::Summarise(Validate(env::EnvFactory(s), 4, &trainer.algorithm(), &pool));

@@ -7,11 +7,11 @@
 #include "auv_common/error.hpp"
 #include "learn/trainer_fixture.hpp"
 
-/// What a training does about a disk that is full.
+/// What a training does when the disk is full.
 namespace stg::learn {
 namespace {
 
-/// No file of this process grows past so many bytes; as on a full disk, writes fail.
+/// No file of this process can grow beyond a number of bytes. Writes fail as on a full disk.
 class FileLimit {
  public:
   explicit FileLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

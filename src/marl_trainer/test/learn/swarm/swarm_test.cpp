@@ -11,7 +11,7 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
 
-/// Trainings with swarms of several sizes, in miniature.
+/// Small trainings with swarms of several sizes.
 namespace stg::learn {
 namespace {
 
@@ -48,7 +48,7 @@ class SwarmTraining : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Whether the training came to its end.
+  /// True if the training came to its end.
   bool Train(const std::string& name, int workers, bool resume,
              const std::atomic<int>* stop = nullptr) const {
     SwarmTrainer::Options options;
@@ -87,7 +87,8 @@ TEST_F(SwarmTraining, DoesNotDependOnTheNumberOfWorkers) {
 TEST_F(SwarmTraining, ResumedEqualsUninterruptedBitForBit) {
   config_.network = agent::EntityNetwork::kGraph;
   ASSERT_TRUE(Train("whole", 1, false));
-  const std::atomic<int> stop{1};  // asked to end from the start: it ends at the first checkpoint
+  // It must end from the start on, so it ends at the first checkpoint.
+  const std::atomic<int> stop{1};
   EXPECT_FALSE(Train("halves", 1, false, &stop));
   EXPECT_LT(Last("halves").metadata().training_step, config_.steps);
   ASSERT_TRUE(Train("halves", 1, true));
