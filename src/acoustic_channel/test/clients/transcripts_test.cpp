@@ -2,13 +2,13 @@
 
 #include "modems/modem_fixture.hpp"
 
-/// What third-party clients wrote to emulated modems, byte for byte and in their rhythm, and what
-/// they must hear. Recorded with modems.launch command_log:=FILE; docs/modems.md names the
-/// versions.
+/// Replays what third-party clients wrote to emulated modems, byte for byte and at their times, and
+/// checks what they must hear. modems.launch command_log:=FILE recorded it. docs/modems.md names
+/// the versions.
 namespace stg::acoustics {
 namespace {
 
-/// A client's words: seconds, host, bytes.
+/// Bytes of a client: time, host, bytes.
 struct Spoken {
   double t_s;
   int host;
@@ -20,7 +20,7 @@ void Replay(ModemBench* bench, const std::vector<Spoken>& words) {
   bench->water->Advance(Ns(words.back().t_s + 30.0));
 }
 
-/// Whether text has the parts, in this order.
+/// Expects that the text has these parts in this order.
 void ExpectInOrder(const std::string& text, const std::vector<std::string>& parts) {
   std::size_t at = 0;
   for (const std::string& part : parts) {
@@ -68,7 +68,7 @@ TEST(Transcripts, Evins) {
                              {65.795, 0, "+++AT*SENDIMS,p0,3,2,,now\n"},
                              {69.803, 0, "+++ATZ3\n"}});
   Replay(&bench, words);
-  // Its parser wants OK to all settings of the start-up, and four fields of RECVEND.
+  // The parser of the client needs OK to all settings of the start, and four fields of RECVEND.
   ExpectInOrder(bench.hosts.all[0], {"+++AT?MODE:2:AT\r\n",
                                      "+++AT?AL:1:1\r\n",
                                      "+++AT?AM:3:254\r\n",
@@ -107,7 +107,8 @@ TEST(Transcripts, Evins) {
 TEST(Transcripts, Pyacomms) {
   ModemBench bench(2);
   bench.StartMicromodems();
-  Replay(&bench, {{5.0, 0, "$CCCFG,SRC,3*33\r\n"},  // its modems had the addresses 3 and 4
+  // The modems of the client had the addresses 3 and 4.
+  Replay(&bench, {{5.0, 0, "$CCCFG,SRC,3*33\r\n"},
                   {5.0, 1, "$CCCFG,SRC,4*34\r\n"},
                   {6.0, 0, "$CCCFQ,SRC*3A\r\n"},
                   {7.1, 1, "$CCCFQ,SRC*3A\r\n"},
@@ -160,8 +161,8 @@ TEST(Transcripts, Pyacomms) {
                  "$CATXP,2*40\r\n", "$CARXD,3,4,0,1,66736B206672616D65*67\r\n"});
 }
 
-/// What its program goby_test_mmdriver1 does with Micromodems-2: a ping, a frame at rate 0, three
-/// at rate 2, flexible data. Its frames were longer.
+/// The program goby_test_mmdriver1 uses Micromodems-2 like this: a ping, a frame at rate 0, three
+/// frames at rate 2, flexible data. Its own frames were longer.
 TEST(Transcripts, Goby) {
   ModemBench bench(2);
   bench.StartMicromodems();
@@ -177,7 +178,8 @@ TEST(Transcripts, Goby) {
           std::string("$CCCFG,REV,1*32"), std::string("$CCCFG,RXP,1*29"), boot}) {
       words.push_back({t_s += 0.1, host, word + "\r\n"});
     }
-    words.push_back({10.1, host, "$CCCFQ,SRC*3A\r\n"});  // into the reboot, so it comes again
+    // This falls into the reboot, so it comes again.
+    words.push_back({10.1, host, "$CCCFQ,SRC*3A\r\n"});
     words.push_back({15.1, host, "$CCCFQ,SRC*3A\r\n"});
     words.push_back({15.3, host, "$CCTMS,2026-11-26T11:05:35Z,0*75\r\n"});
     words.push_back({15.4, host, "$CCCFQ,TOP*33\r\n"});

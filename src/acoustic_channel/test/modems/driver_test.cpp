@@ -12,11 +12,11 @@
 #include "auv_common/error.hpp"
 #include "modem_fixture.hpp"
 
-/// Drivers against emulated modems: over byte pipes in simulated time, and over TCP.
+/// Drivers with emulated modems: over byte pipes in simulated time, and over TCP.
 namespace stg::acoustics {
 namespace {
 
-/// A driver whose bytes go to the modem of one node.
+/// What one driver tells. Its bytes go to the modem of one node.
 struct Wire : DriverWorld {
   void Write(const std::string& bytes) override { to_modem += bytes; }
   void HangUp() override { ++hung_up; }
@@ -41,7 +41,7 @@ struct Wire : DriverWorld {
   std::vector<std::pair<int, double>> ranges;
 };
 
-/// Two drivers, two modems, and time.
+/// Two drivers with their modems, and the time.
 struct Pair {
   explicit Pair(const std::string& protocol, const std::string& firmware = "2.0.35490") : bench(2) {
     if (protocol == "s2c") {
@@ -59,7 +59,7 @@ struct Pair {
     for (const auto& driver : drivers) driver->Connect(t);
     Run(0.5);
   }
-  /// Bytes take no time; time passes in steps of 1 ms.
+  /// Time passes in steps of 1 ms. Bytes take no time.
   void Run(double seconds) {
     const TimeNs end = t + Ns(seconds);
     for (; t < end; t += 1'000'000) {
@@ -115,7 +115,7 @@ TEST_P(Drivers, APacketArrivesAsItWasSent) {
   EXPECT_EQ(r.destination, kToAll);
   EXPECT_EQ(r.payload, AnyBytes());
   EXPECT_NEAR(r.received_level_db, 60.0, 0.5);
-  // The last sound arrives a second after it has left.
+  // The end of the sound arrives one second after it has left.
   EXPECT_NEAR(Seconds(r.arrival), Seconds(pair.bench.log.sent[0].transmit_end) + 1.0, 2e-3);
 }
 
@@ -136,7 +136,7 @@ TEST_P(Drivers, APingMeasuresTheOneWayTime) {
   ASSERT_EQ(pair.wires[0].ranges.size(), 1u);
   EXPECT_EQ(pair.wires[0].ranges[0].first, 2);
   EXPECT_NEAR(pair.wires[0].ranges[0].second, 1.0, 1e-4);
-  EXPECT_TRUE(pair.wires[1].received.empty());  // it is no packet
+  EXPECT_TRUE(pair.wires[1].received.empty());  // the driver delivers no packet
   pair.Send(0, 1, kToAll, "next");
   pair.Run(10.0);
   EXPECT_EQ(pair.wires[1].received.size(), 1u);
@@ -160,7 +160,7 @@ TEST_P(Drivers, ASilentModemIsAskedThreeTimesAndThenHungUp) {
   pair.Run(0.2);
   EXPECT_EQ(pair.wires[0].hung_up, 1);
   EXPECT_FALSE(pair.drivers[0]->ready());
-  // A new connection sets it up again and sends what is newest.
+  // After a new connection, the driver sets the modem up again and sends the newest packet.
   pair.drivers[0]->Disconnect(pair.t);
   pair.deaf = false;
   pair.drivers[0]->Connect(pair.t);
@@ -192,7 +192,8 @@ TEST(MicromodemDriver, AModemOfTheFirstGenerationGetsCycles) {
   EXPECT_NEAR(pair.wires[0].ended[0].second, 3.2, 2e-3);
 }
 
-/// Nobody knows what a modem did not hear: no receiver may take what others heard for a loss.
+/// No receiver knows which packets its modem did not hear. It must not count a packet as lost
+/// because others heard it.
 TEST(ModemChannel, EveryReceiverCountsThePacketsThatItHears) {
   const std::string path = testing::TempDir() + "/channel_" + std::to_string(getpid()) + ".yaml";
   std::ofstream file(path);
@@ -249,7 +250,7 @@ TEST(DriverOptions, AnUnknownProtocolIsRefused) {
 }
 
 TEST(AnswerReader, TheSplitOfAStreamDoesNotMatter) {
-  // As an R 18/34 prints it: lengths, addresses, duration, level, integrity, velocity, payload.
+  // An R 18/34 prints this: lengths, addresses, duration, level, integrity, velocity, payload.
   const std::string stream =
       "OK\r\nRECVIM,5,1,2,noack,206500,-42,160,0.0310,a\r\n,b\r\nSENDEND,2,im,1,2\r\n"
       "RECVPBM,2,1,2,206500,-42,160,0.0310,\r\n\r\n[*]OK\r\n";

@@ -8,8 +8,8 @@
 #include "acoustic_channel/emulator/modem_server.hpp"
 #include "auv_common/error.hpp"
 
-/// A modem with a port as a node of the simulated water, and modems with ports as a swarm's
-/// channel. The modems that exist are emulated ones, each in a tank of its own.
+/// A modem with a port is a node of the simulated water, and modems with ports are the channel of a
+/// swarm. The modems here are emulated ones, each in its own tank.
 namespace stg::acoustics {
 namespace {
 
@@ -88,7 +88,7 @@ TEST(ModemChannel, AStepsPacketIsHeardInALaterStep) {
   run.agents = 2;
   ModemChannelConfig modems;
   modems.ports = {AddressOf(*tank.port(0))};
-  EXPECT_THROW(ModemChannel(config, run, modems), UserError);  // one modem for two agents
+  EXPECT_THROW(ModemChannel(config, run, modems), UserError);  // there is one modem for two agents
   modems.ports.push_back(AddressOf(*tank.port(1)));
   ModemChannel channel(config, run, modems);
   channel.Reset(1, 0);
@@ -111,7 +111,7 @@ TEST(ModemChannel, AStepsPacketIsHeardInALaterStep) {
   ASSERT_EQ(received.size(), 1u);
   EXPECT_EQ(received[0].source, 0);
   EXPECT_EQ(std::string(received[0].payload.data, received[0].payload.data + 5), text);
-  // It left at 0, took .2065 s and 10 ms of water, and came before the step began.
+  // It left at 0, took .2065 s and 10 ms in the water, and arrived before the step began.
   EXPECT_GT(received[0].arrival, 200'000'000);
   EXPECT_LE(received[0].arrival, kStep);
   EXPECT_EQ(channel.totals().delivered, 1u);

@@ -1,8 +1,8 @@
 #include "acoustic_channel/engine/text.hpp"
 #include "modem_fixture.hpp"
 
-/// JANUS: bits as janus-tx 3.0.5 of the public janus-c writes them for the same options, and what
-/// two modems make of packets over 1500 m.
+/// JANUS: the bits are those that janus-tx 3.0.5 of the public janus-c writes with the same
+/// options. Two modems exchange packets over 1500 m.
 namespace stg::acoustics {
 namespace {
 
@@ -47,7 +47,7 @@ TEST(JanusPacket, WhatIsWrittenIsRead) {
     ASSERT_TRUE(read);
     EXPECT_EQ(janus::Encode(*read), bytes);
     EXPECT_EQ(read->app_data, p.app_data);
-    // The checksum finds every single wrong bit.
+    // The checksum detects every single wrong bit.
     bytes[k % 8] = static_cast<std::uint8_t>(bytes[k % 8] ^ 1u << (k / 8 % 8));
     EXPECT_FALSE(janus::Decode(bytes));
   }
@@ -89,7 +89,8 @@ TEST_F(JanusModems, ABaselinePacketTakesElevenTenthsOfASecond) {
 }
 
 TEST_F(JanusModems, CargoFollowsAsTheToolPadsIt) {
-  // janus-tx --packet-app-fields "StationIdentifier=3,ParameterSetIdentifier=5,Payload=hello"
+  // Made with janus-tx --packet-app-fields
+  // "StationIdentifier=3,ParameterSetIdentifier=5,Payload=hello"
   EXPECT_EQ(bench.Ask(0, 10.0, "tx station=3 set=5 text=hello\n"),
             "ok packet=321000000C014461\r\nsending airtime=2.000\r\n");
   bench.water->Advance(Ns(20.0));
@@ -102,7 +103,7 @@ TEST_F(JanusModems, AddressedCargoHasAChecksum) {
   bench.water->Advance(Ns(20.0));
   EXPECT_NE(bench.hosts.all[1].find(" station=3 destination=9 ack=1 cargo=68656C6C6F crc=ok "),
             std::string::npos);
-  // A host may give the bits itself.
+  // A host may also give the bits of a packet.
   bench.Ask(0, 30.0, "tx packet=321004000C2607E5 cargo=68656c6c6f0000\n");
   bench.water->Advance(Ns(40.0));
   EXPECT_NE(bench.hosts.all[1].find(" cargo=68656C6C6F crc=bad "), std::string::npos);

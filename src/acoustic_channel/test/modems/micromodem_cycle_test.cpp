@@ -1,15 +1,15 @@
 #include "acoustic_channel/micromodem/sentence.hpp"
 #include "modem_fixture.hpp"
 
-/// What Micromodems make of packets, over 1500 m: a mini-packet takes .9 s, a set of frames about
-/// three, the turnaround .05 s.
+/// Micromodems exchange packets over 1500 m. A mini-packet takes .9 s, a set of frames about three
+/// seconds, and the turnaround .05 s.
 namespace stg::acoustics {
 namespace {
 
 using micromodem::Seal;
 using State = micromodem::Micromodem::State;
 
-/// Names of the sentences that a host was told, in order.
+/// Names of the sentences that a host got, in order.
 std::string NamesOf(const std::string& all) {
   std::string names;
   for (std::size_t at = all.find('$'); at != std::string::npos; at = all.find('$', at + 1)) {
@@ -40,8 +40,8 @@ TEST_F(Cycles, ACycleAtRateZeroIsToldInTheDocumentedOrder) {
   EXPECT_TRUE(Told(1, Seal("CACYC,0,1,2,0,1,1")));
   EXPECT_TRUE(Told(1, Seal("CARXD,1,2,1,1,48656C6C6F")));
   EXPECT_TRUE(Told(0, Seal("CAACK,2,1,1,1")));
-  // The start of the cycle is over at 10.9, the frame leaves at 11 and takes 3.2 s; the answer
-  // comes 1 + .05 + .9 + 1 s later.
+  // The start of the cycle ends at 10.9. The frame leaves at 11 and takes 3.2 s. The answer comes 1
+  // + .05 + .9 + 1 s later.
   EXPECT_NEAR(bench.When(1, Seal("CARXD,1,2,1,1,48656C6C6F")), 15.2, 1e-9);
   EXPECT_NEAR(bench.When(0, Seal("CAACK,2,1,1,1")), 17.15, 1e-9);
   EXPECT_EQ(bench.micromodems[0]->state(), State::kIdle);
@@ -60,7 +60,7 @@ TEST_F(Cycles, APskCycleAsksForEveryFrame) {
   EXPECT_TRUE(
       Told(1, Seal("CARXD,1,2,1,1,AA") + Seal("CARXD,1,2,0,2,BBBB") + Seal("CARXD,1,2,1,3,CC")));
   EXPECT_TRUE(Told(0, Seal("CAACK,2,1,1,1") + Seal("CAACK,2,1,3,1")));
-  // Three frames of 64 bytes, however little is in them.
+  // There are three frames of 64 bytes, even if they hold less.
   EXPECT_NEAR(bench.When(1, Seal("CARXD,1,2,1,1,AA")), 14.07, 1e-9);
 }
 
@@ -94,8 +94,8 @@ TEST_F(Cycles, APingMeasuresTheOneWayTime) {
   EXPECT_NEAR(bench.When(0, Seal("CAMPR,2,1,1.0000")), 13.85, 1e-9);
 }
 
-/// One-way ranging: what leaves at a full second of a common clock tells its travel time by the
-/// fraction of the second at which it arrives.
+/// One-way ranging: a packet leaves at a full second of a common clock. The fraction of the second
+/// at which it arrives is its travel time.
 TEST_F(Cycles, SynchronousPacketsLeaveAtFullSeconds) {
   for (const int node : {0, 1}) {
     bench.Ask(node, 9.3, "$CCTMS,2023-11-14T22:13:30Z,1\r\n");
@@ -106,9 +106,10 @@ TEST_F(Cycles, SynchronousPacketsLeaveAtFullSeconds) {
   bench.water->Advance(Ns(20.0));
   ASSERT_EQ(bench.log.sent.size(), 1u);
   EXPECT_NEAR(bench.log.sent[0].transmit * 1e-9, 11.0, 1e-6);
-  EXPECT_TRUE(Told(1, Seal("CATOA,221331.4000,14")));  // time by command, tick from outside
+  // The time is set by command, the tick comes from outside.
+  EXPECT_TRUE(Told(1, Seal("CATOA,221331.4000,14")));
   EXPECT_EQ(Names(1).substr(Names(1).find("RXP")), "RXP MUA TOA CST");
-  // A ping, whose answer comes after the turnaround as ever.
+  // A ping follows. Its answer comes after the turnaround, as always.
   bench.Ask(0, 20.5, "$CCMPC,1,2\r\n");
   bench.water->Advance(Ns(30.0));
   EXPECT_TRUE(Told(0, Seal("CAMPR,2,1,0.4000")));
@@ -155,10 +156,12 @@ TEST_F(Cycles, TextPassesAsText) {
 
 TEST_F(Cycles, AFrameThatIsLostHasABadChecksum) {
   bench.Ask(0, 5.0, "$CCCYC,0,1,2,5,0,1\r\n");
-  bench.medium->SetLevel(0, 1, -5.0);  // acquired at -10; 9 dB below what half of them survive
+  // It is acquired at -10 dB; half of the frames survive at 9 dB more.
+  bench.medium->SetLevel(0, 1, -5.0);
   bench.Ask(0, 10.0, "$CCTXD,1,2,0,AA\r\n");
   bench.water->Advance(Ns(20.0));
-  // The cycle comes first, from the header; error 3 is that of the published example.
+  // The cycle comes first, because the header is intact. Error 3 is the one of the published
+  // example.
   EXPECT_EQ(Names(1), "RXP CYC MSG CST");
   EXPECT_TRUE(Told(1, Seal("CAMSG,BAD_CRC,1")));
   EXPECT_TRUE(Told(1, ",5,1,2,3,3,1,1,"));

@@ -2,14 +2,14 @@
 #include "acoustic_channel/micromodem/sentence.hpp"
 #include "modem_fixture.hpp"
 
-/// What one Micromodem answers its host.
+/// What a single Micromodem answers to its host.
 namespace stg::acoustics {
 namespace {
 
 using micromodem::Seal;
 
 TEST(Sentence, TheChecksumIsThatOfTheDocuments) {
-  // $CCCFG,SRC,1*31 and its answer $CACFG,SRC,1*33 stand in public documents.
+  // Public documents have $CCCFG,SRC,1*31 and its answer $CACFG,SRC,1*33.
   EXPECT_EQ(Seal("CCCFG,SRC,1"), "$CCCFG,SRC,1*31\r\n");
   EXPECT_EQ(Seal("CACFG,SRC,1"), "$CACFG,SRC,1*33\r\n");
 }
@@ -102,7 +102,7 @@ TEST(Micromodem, TheClockIsTheHostsOnceItIsSet) {
 TEST(Micromodem, WithATickItsClockIsThatOfUtc) {
   ModemBench bench(1);
   bench.StartMicromodems();
-  // From the full second after 7.4 s on, whatever the fraction was before.
+  // The clock is set at the first full second after 7.4 s, whatever its fraction was before.
   EXPECT_EQ(bench.Ask(0, 7.4, "$CCTMS,2024-02-29T23:59:59Z,1\r\n"),
             Seal("CATMS,0,2024-02-29T23:59:59Z"));
   EXPECT_EQ(bench.Ask(0, 7.99, "$CCTMQ,0\r\n"), Seal("CATMQ,2024-02-29T23:59:58Z,USER_CMD,EXT"));
@@ -111,7 +111,7 @@ TEST(Micromodem, WithATickItsClockIsThatOfUtc) {
             std::string::npos);
 }
 
-/// Host software that has no command for the tick relies on the line that is connected.
+/// Some host software has no command for the tick, so a connected line must be enough.
 TEST(Micromodem, WithALineThatTicksEveryCommandSetsTheClockAtTheNextTick) {
   for (const std::string firmware : {"2.0.35490", "0.94.0.0"}) {
     ModemBench bench(1);
@@ -125,7 +125,7 @@ TEST(Micromodem, WithALineThatTicksEveryCommandSetsTheClockAtTheNextTick) {
     EXPECT_EQ(bench.Ask(0, 8.01, "$CCCLQ\r\n"), Seal("CACLK,2024,02,29,23,59,59"));
     bench.Ask(0, 8.2, "$CCMUC,1,0,0123\r\n");
     bench.water->Advance(Ns(10.0));
-    // CAXST names the quality of the clock behind date and time of the start.
+    // CAXST has the quality of the clock after the date and time of the start.
     const std::string clock =
         newer ? "CAXST,6,20240229,235959.2000,14," : "CAXST,20240229,235959.2000,3,";
     EXPECT_NE(bench.hosts.all[0].find(clock), std::string::npos) << bench.hosts.all[0];
@@ -157,14 +157,14 @@ TEST(Micromodem, WrongSentencesHaveTheirErrorsAndDoNothing) {
   fails("$CCCFQ,NONE");
   fails("$CCCLK,2024,13,01,00,00,00");
   fails("$CCCYC,0,1,2,7,0,1");
-  fails("$CCCYC,0,1,2,1,0,4");  // three frames at most
-  fails("$CCCYC,0,1,1,0,0,1");  // to itself
+  fails("$CCCYC,0,1,2,1,0,4");  // three frames are allowed
+  fails("$CCCYC,0,1,1,0,0,1");  // it is for itself
   fails("$CCCYC,0,1,2,0,0");
   fails("$CCMPC,1,1");
   fails("$CCMPC,1,0");
-  fails("$CCMUC,1,2,2000");  // 14 bits
+  fails("$CCMUC,1,2,2000");  // this has 14 bits
   fails("$CCMUC,1,2,");
-  fails("$CCTDP,2,1,0,0,ABC");  // odd
+  fails("$CCTDP,2,1,0,0,ABC");  // the number of digits is odd
   fails("$CCTDP,2,1,0,0,");
   EXPECT_TRUE(bench.log.queued.empty());
 }
@@ -177,7 +177,7 @@ TEST(Micromodem, ADataRequestEndsWhenTheHostIsSilent) {
             Seal("CACYC,0,1,2,1,0,2") + Seal("CADRQ,221330,1,2,0,64,1"));
   EXPECT_EQ(bench.Ask(0, 11.0, "$CCCYC,0,1,2,1,0,2\r\n"),
             Seal("CAERR,221331,BUSY,6,busy with another command"));
-  // What cannot be a frame leaves the request open.
+  // The request stays open after a line that cannot be a frame.
   for (const char* frame : {"1,1,0,AA", "1,2,0,A", "1,2,2,AA", "1,2,0"}) {
     EXPECT_EQ(bench.Ask(0, 11.0, "$CCTXD," + std::string(frame) + "\r\n").rfind("$CAERR", 0), 0u);
   }

@@ -14,7 +14,7 @@
 
 namespace stg::acoustics {
 
-/// What the hosts of some modems saw, with the times.
+/// Everything that the hosts of the modems saw, with the times.
 struct Hosts : ModemHosts {
   struct Said {
     int node;
@@ -34,8 +34,8 @@ struct Hosts : ModemHosts {
   std::vector<int> hung_up, shared;
 };
 
-/// Modems in stated water: every link is 1500 m long at 1500 m/s and loses nothing, unless a test
-/// says otherwise.
+/// Modems in water that the test sets. Every link is 1500 m long, has 1500 m/s and loses nothing,
+/// unless a test sets something else.
 struct ModemBench {
   explicit ModemBench(int nodes) {
     run.agents = nodes;
@@ -50,7 +50,7 @@ struct ModemBench {
     }
     stated_ = std::move(stated);
   }
-  /// All nodes get an S2C modem with NET interpreters and addresses from 1.
+  /// Gives every node an S2C modem with a NET interpreter. Addresses begin with 1.
   ModemWater& StartS2c(s2c::ModemOptions options = NetOptions()) {
     Make();
     for (int i = 0; i < run.agents; ++i) {
@@ -63,7 +63,7 @@ struct ModemBench {
     }
     return Begin();
   }
-  /// All nodes get a Micromodem with addresses from 1; the modems have booted at 2.5 s.
+  /// Gives every node a Micromodem. Addresses begin with 1. The modems have booted at 2.5 s.
   ModemWater& StartMicromodems(const std::string& firmware = "2.0.35490") {
     config.modem.profile = "micromodem_psk_r1";
     Make();
@@ -85,7 +85,7 @@ struct ModemBench {
     hosts.said.clear();
     return *water;
   }
-  /// All nodes get a JANUS modem with stations from 1.
+  /// Gives every node a JANUS modem. Stations begin with 1.
   ModemWater& StartJanus() {
     config.modem.profile = "janus";
     Make();
@@ -103,7 +103,7 @@ struct ModemBench {
     water = std::make_unique<ModemWater>(config, run, std::move(stated_), &hosts);
     hosts.water = water.get();
   }
-  /// @param hosts_count of the first nodes; -1: of all
+  /// @param hosts_count so many first nodes have a host; -1: all nodes
   ModemWater& Begin(int hosts_count = -1) {
     water->Observe(&log);
     water->Reset(1, 0);
@@ -119,14 +119,14 @@ struct ModemBench {
   void Say(int node, double t_s, const std::string& text) const {
     water->Read(node, Ns(t_s), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
-  /// What a host is answered at once.
+  /// What the host gets as an immediate answer.
   std::string Ask(int node, double t_s, const std::string& text) {
     water->Advance(Ns(t_s));
     const std::size_t before = hosts.all[node].size();
     Say(node, t_s, text);
     return hosts.all[node].substr(before);
   }
-  /// When a host was told this; the test fails unless it was once.
+  /// The time at which a host got this. The test fails unless it came exactly once.
   double When(int node, const std::string& bytes) const {
     double t_s = -1.0;
     int times = 0;
@@ -141,7 +141,7 @@ struct ModemBench {
 
   RunConfig run;
   ChannelConfig config;
-  bool pps = false;  ///< of the Micromodems: a line that ticks is connected
+  bool pps = false;  ///< a line with ticks is connected to the Micromodems
   StatedMedium* medium;
   Hosts hosts;
   std::unique_ptr<ModemWater> water;

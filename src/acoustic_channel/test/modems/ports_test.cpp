@@ -40,7 +40,7 @@ sockaddr_in PlaceOf(const BytePort& port) {
   return place;
 }
 
-/// A client of one port.
+/// The client of one port.
 struct Client {
   explicit Client(const BytePort& port) {
     const sockaddr_in place = PlaceOf(port);
@@ -52,7 +52,7 @@ struct Client {
   void Say(const std::string& text) const {
     EXPECT_EQ(write(stream, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  /// Whether this is heard within ten seconds.
+  /// True if this text is heard within ten seconds.
   bool Hears(ModemServer* server, const std::string& text) {
     const TimeNs end = SteadyNow() + 10'000'000'000;
     while (heard.find(text) == std::string::npos && SteadyNow() < end && !gone) {
@@ -119,7 +119,7 @@ TEST(ModemPorts, OneOfManyClientsIsObeyedAndAllAreTold) {
   EXPECT_TRUE(second.Hears(&server, "RECVIM,5,2,1,noack,"));
   EXPECT_EQ(second.heard.find("1\r\n"), std::string::npos) << "an answer to another host";
 
-  // What stands behind the command that takes control is the modem's to answer.
+  // The modem must answer what comes after the command that takes control.
   second.Say("AT@CTRL\nAT?RT\n");
   EXPECT_TRUE(second.Hears(&server, "OK\r\n5000\r\n"));
   first.heard.clear();
@@ -192,14 +192,14 @@ TEST(ModemPorts, AFloodDisturbsNobodyElse) {
   EXPECT_TRUE(quiet.Hears(&server, "2\r\n"));
 }
 
-/// One client misbehaves at the first modem; the hosts of the two others talk to each other.
+/// One client misbehaves at the first modem. The hosts of the two others talk to each other.
 struct Disturbance : testing::Test {
   Disturbance()
       : server(LoadModemFile(FileWith(kNet, kNet, kNet)), ""),
         alpha(std::make_unique<Client>(*server.port(0))),
         beta(*server.port(1)),
         gamma(*server.port(2)) {}
-  /// Meanwhile both others are answered, and a message passes.
+  /// Both others are still answered, and a message passes.
   void OthersTalk() {
     beta.heard.clear();
     gamma.heard.clear();
@@ -209,7 +209,7 @@ struct Disturbance : testing::Test {
     EXPECT_TRUE(beta.Hears(&server, "DELIVEREDIM,3\r\n"));
     EXPECT_EQ(server.port(1)->dropped() + server.port(2)->dropped(), dropped);
   }
-  /// The first port answers whoever comes next.
+  /// The first port serves the next client.
   void TheNextIsServed() {
     alpha.reset();
     for (int k = 0; k < 5000 && server.port(0)->connected(); ++k) {
@@ -259,7 +259,7 @@ TEST_F(Disturbance, AClientThatVanishesWithMuchToRead) {
     (void)!send(alpha->stream, ask.data(), ask.size(), MSG_NOSIGNAL);
     server.Serve(server.Now());
   }
-  // The connection is reset instead of closed.
+  // This resets the connection instead of closing it.
   const linger at_once{1, 0};
   setsockopt(alpha->stream, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
   alpha.reset();
@@ -283,7 +283,7 @@ TEST(ModemPorts, ASerialDeviceIsOneMorePort) {
   EXPECT_EQ(std::string(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))),
             "OK\r\n");
   close(host);
-  // The device has gone: the server goes on, and looks for it again.
+  // The device is gone. The server goes on and looks for it again.
   beta.heard.clear();
   beta.Say("AT?AL\n");
   EXPECT_TRUE(beta.Hears(&server, "2\r\n"));

@@ -13,7 +13,8 @@ ByteView Bytes(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// What a reader makes of a text that comes in pieces of these lengths; pieces of data are joined.
+/// The items that a reader finds in a text that comes in pieces of these lengths. Pieces of data
+/// are joined.
 std::vector<std::string> Items(const std::string& text, Reader::Mode mode,
                                const std::vector<std::size_t>& pieces) {
   Reader reader;

@@ -1,7 +1,7 @@
 #include "modem_fixture.hpp"
 
-/// Bursts over a connection of 1500 m: what calls, answers and acknowledges takes .1625 s, the
-/// turnaround .02 s, a burst of five bytes .1515 + 40 / 6900 s.
+/// Bursts over a connection of 1500 m. A call, an answer and an acknowledgement take .1625 s each,
+/// the turnaround takes .02 s, and a burst of five bytes takes .1515 + 40 / 6900 s.
 namespace stg::acoustics {
 namespace {
 
@@ -18,7 +18,7 @@ std::size_t Count(const std::string& text, const std::string& part) {
 
 struct Bursts : testing::Test {
   Bursts() : bench(2) {}
-  /// Both ends are connected at 10 s.
+  /// At 10 s both ends are connected.
   void Connect() {
     bench.StartS2c();
     bench.Ask(0, 1.0, Burst("hello", 2));
@@ -69,7 +69,7 @@ TEST_F(Bursts, WhereNobodyAnswersAllDataFailsAndTheModemBacksOff) {
   bench.Ask(0, 0.5, "AT!RC2\nAT!RT1000\n");
   bench.Ask(0, 1.0, Burst("hello", 2));
   bench.Ask(0, 1.1, Burst("again", 2));
-  // Three calls of .1625 s, each with 1.125 s of patience.
+  // There are three calls of .1625 s. The modem waits 1.125 s after each.
   const double failed = 1.0 + 3 * 1.2875;
   bench.water->Advance(Ns(failed + 0.1));
   EXPECT_NEAR(bench.When(0, "FAILED,1,2\r\n"), failed, 1e-9);
@@ -88,7 +88,7 @@ TEST_F(Bursts, ARepeatedBurstIsTakenOnce) {
   bench.water->Advance(Ns(60.0));
   EXPECT_EQ(Count(bench.hosts.all[1], "twice"), 1u);
   EXPECT_NE(bench.hosts.all[0].find("FAILED,2,2\r\n"), std::string::npos);
-  // It left four times, as AT!RC3 says.
+  // It left four times, because AT!RC3 allows three repeats.
   const auto& sent = bench.log.sent;
   EXPECT_EQ(std::count_if(sent.begin(), sent.end(),
                           [](const PacketInfo& p) {

@@ -1,7 +1,7 @@
 #include "modem_fixture.hpp"
 
-/// What two modems make of messages: times are those of the vendor-independent time line of 32
-/// bytes over 1500 m (airtime .5035 s, acknowledgement .1625 s, turnaround .02 s).
+/// Two modems exchange messages. The times are those of 32 bytes over 1500 m, for any vendor:
+/// airtime .5035 s, acknowledgement .1625 s, turnaround .02 s.
 namespace stg::acoustics {
 namespace {
 
@@ -28,7 +28,7 @@ TEST_F(Messages, AnAcknowledgedMessageTakesItsTime) {
   bench.water->Advance(Ns(15.0));
   EXPECT_NEAR(bench.When(0, "SENDEND,2,im,10000000,503500\r\n"), 10.5035, 1e-9);
   EXPECT_NEAR(bench.When(1, "RECVSTART\r\n"), 11.0, 1e-9);
-  // Level 60 less 190 dB; the signal is 60 dB above noise, 68 above acquisition.
+  // -130 is the level of 60 less 190 dB. The signal is 60 dB above noise, 68 dB above acquisition.
   EXPECT_NEAR(bench.When(1, "RECVEND,11000000,503500,-130,508\r\n"), 11.5035, 1e-9);
   EXPECT_NEAR(bench.When(1, "RECVIM,32,1,2,ack,503500,-130,508,0.0000," + payload + "\r\n"),
               11.5035, 1e-9);
@@ -38,7 +38,7 @@ TEST_F(Messages, AnAcknowledgedMessageTakesItsTime) {
   EXPECT_NEAR(bench.When(0, "DELIVEREDIM,2\r\n"), 12.686, 1e-9);
   EXPECT_EQ(bench.Ask(0, 15.0, "AT?T\n"), "1000000\r\n");
   EXPECT_EQ(bench.Ask(0, 15.0, "AT?DI\n"), "DELIVERED,2\r\n");
-  // The log knows the acknowledgement for what it is.
+  // The log marks the acknowledgement as one.
   ASSERT_EQ(bench.log.sent.size(), 2u);
   EXPECT_EQ(bench.log.sent[1].kind, PacketKind::kAck);
 }
@@ -48,7 +48,7 @@ TEST_F(Messages, ANewEpisodeEndsThem) {
   bench.Ask(0, 10.0, Im("hello", 2, "ack"));
   bench.Ask(1, 10.0, "AT*SENDIMS,2,1,20000000,hi\n");
   bench.water->Advance(Ns(10.1));
-  bench.water->Reset(1, 1);  // in the middle of the sound
+  bench.water->Reset(1, 1);  // this is in the middle of the sound
   EXPECT_NEAR(bench.When(0, "FAILEDIM,2\r\n"), 0.0, 1e-9);
   EXPECT_NEAR(bench.When(1, "CANCELEDIMS,1\r\n"), 0.0, 1e-9);
   EXPECT_EQ(bench.Ask(0, 1.0, "AT?S\n"), "INITIATION LISTEN\n\r\n");
@@ -104,7 +104,7 @@ TEST_F(Messages, ALostAcknowledgementBringsTheMessageTwice) {
 
 TEST_F(Messages, WhatIsLostAfterAcquisitionFailsAudibly) {
   Start();
-  // 4 dB below what half of the frames survive, and above acquisition.
+  // Half of the frames survive at 4 dB more. Acquisition still succeeds.
   bench.medium->SetLevel(0, 1, -7.5);
   bench.Ask(0, 1.0, Im(std::string(64, 'x'), 2, "noack"));
   bench.water->Advance(Ns(5.0));
@@ -139,7 +139,7 @@ TEST_F(Messages, APiggybackRidesOnTheNextAcknowledgement) {
   EXPECT_EQ(bench.Ask(1, 0.6, "AT*SENDPBM,6,1,second\n"), "BUSY DELIVERING MESSAGE\r\n");
   bench.Ask(0, 1.0, Im("hello", 2, "ack"));
   bench.water->Advance(Ns(9.0));
-  // Seven bytes of airtime: .1515 + 7 x .011 s.
+  // Seven bytes have an airtime of .1515 + 7 x .011 s.
   EXPECT_GT(bench.When(0, "RECVPBM,6,2,1,228500,-130,508,0.0000,answer\r\n"), 0.0);
   EXPECT_NEAR(bench.When(0, "DELIVEREDIM,2\r\n"), 1.0 + 0.2065 + 2.0 + 0.02 + 0.2285, 1e-9);
   EXPECT_EQ(bench.Ask(0, 9.0, "AT?T\n"), "1000000\r\n");
@@ -216,7 +216,7 @@ TEST(S2cForeign, AnOrdinaryVehiclesPacketIsAnInstantMessage) {
   bench.water->Offer(packet, Ns(1.0));
   bench.water->Advance(Ns(5.0));
   EXPECT_EQ(bench.hosts.all[0], "RECVIM,5,2,255,noack,206500,-130,508,0.0000,hello\r\n");
-  // And the other way round.
+  // A message also goes in the other direction.
   bench.Ask(0, 6.0, Im("hi", 2, "noack"));
   bench.water->Advance(Ns(9.0));
   std::vector<Reception> received;

@@ -2,7 +2,7 @@
 
 #include "modem_fixture.hpp"
 
-/// What one modem answers its host.
+/// What a single modem answers to its host.
 namespace stg::acoustics {
 namespace {
 
@@ -26,7 +26,7 @@ TEST(S2cModem, AnswersOfManyLinesEndOnlyOnceWithACarriageReturn) {
   EXPECT_EQ(all.rfind("Source Level: 0\n", 0), 0u);
 }
 
-/// As dune's driver reads them; a version that it cannot read stops it.
+/// The driver of dune reads the versions like this. It stops at a version that it cannot read.
 TEST(S2cModem, VersionsAreReadAsDuneDoes) {
   ModemBench bench(1);
   bench.StartS2c();
@@ -66,7 +66,7 @@ TEST(S2cModem, CommandModeIsEnteredBySilenceOrByCommandAndLeftByAto) {
   EXPECT_EQ(bench.hosts.all[0], "OK\r\n");
   EXPECT_EQ(bench.Ask(0, 2.1, "AT?AL\n"), "1\r\n");
   EXPECT_EQ(bench.Ask(0, 2.2, "ATO\n"), "");
-  EXPECT_EQ(bench.Ask(0, 2.3, "AT?AL\n"), "");  // data now
+  EXPECT_EQ(bench.Ask(0, 2.3, "AT?AL\n"), "");  // this is data now
   EXPECT_EQ(bench.Ask(0, 2.4, "+++ATC\n"), "OK\r\n");
   EXPECT_EQ(bench.Ask(0, 2.5, "AT?AL\n"), "1\r\n");
 }
@@ -119,7 +119,7 @@ TEST(S2cModem, StoredSettingsSurviveARebootThatHangsUp) {
   bench.water->Connect(0, Ns(2.0));
   EXPECT_EQ(bench.Ask(0, 2.0, "AT?RI\n"), "3\r\n");
   EXPECT_EQ(bench.Ask(0, 2.0, "AT?RT\n"), "5000\r\n");
-  EXPECT_EQ(bench.Ask(0, 3.5, "AT?CLOCK\n"), "2500000\r\n");  // since the reboot
+  EXPECT_EQ(bench.Ask(0, 3.5, "AT?CLOCK\n"), "2500000\r\n");  // time since the reboot
 }
 
 TEST(S2cModem, HalfALineDiesWithItsConnection) {

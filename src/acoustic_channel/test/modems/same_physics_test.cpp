@@ -5,12 +5,12 @@
 #include "auv_common/numbers/random.hpp"
 #include "modem_fixture.hpp"
 
-/// Messages of emulated modems meet the same physics as packets of `simulate`.
+/// Messages of emulated modems have the same physics as packets of `simulate`.
 namespace stg::acoustics {
 namespace {
 
-/// Two senders 1800 m apart, and one between them that sends, too: some packets are lost to range,
-/// fading and each other.
+/// Three senders in a line, 900 m apart. Some packets are lost to range, to fading and to each
+/// other.
 constexpr std::array<double, 3> kPlaces{0.0, 900.0, 1800.0};
 constexpr std::size_t kBytes = 32;
 constexpr int kNodes = static_cast<int>(kPlaces.size());
@@ -21,13 +21,13 @@ ChannelConfig Water() {
   config.access = "aloha";
   config.modem.queue = QueuePolicy::kFifo;
   config.modem.profile = "evologics_s2c";
-  // So loud a site that the neighbour is at the edge of what is understood, with bursts on top.
+  // The site is so loud that a neighbour is just understood. Bursts come in addition.
   config.noise.site_db = 92.0;
   config.noise.burst_every_s = 20.0;
   return config;
 }
 
-/// Times at which each node sends: at random, and no message before the last one has left.
+/// Random times at which each node sends. A message leaves before the next one comes.
 std::vector<std::vector<double>> Times(int messages, std::uint64_t seed) {
   std::vector<std::vector<double>> times(kNodes);
   for (int node = 0; node < kNodes; ++node) {
@@ -42,7 +42,7 @@ std::vector<std::vector<double>> Times(int messages, std::uint64_t seed) {
   return times;
 }
 
-/// What hosts cause that write AT*SENDIM at these times.
+/// Hosts of emulated modems write AT*SENDIM at these times.
 void Emulate(const std::vector<std::vector<double>>& times, std::uint64_t seed, Log* log) {
   RunConfig run;
   run.agents = kNodes;
@@ -74,7 +74,7 @@ void Emulate(const std::vector<std::vector<double>>& times, std::uint64_t seed, 
   EXPECT_EQ(hosts.all[0].find("BUSY"), std::string::npos);
 }
 
-/// The same traffic in `simulate`.
+/// The same traffic runs in `simulate`.
 void Simulate(const std::vector<std::vector<double>>& times, std::uint64_t seed, Log* log) {
   SimulationFile file;
   file.seed = seed;
@@ -133,7 +133,7 @@ TEST(SamePhysics, WithOneSeedEveryMessageHasTheFateOfItsPacket) {
     return all;
   };
   EXPECT_EQ(rows(emulated), rows(simulated));
-  // Packets are lost for several reasons, else this says little.
+  // Packets must be lost for several reasons. Otherwise the test would show little.
   std::map<DropReason, int> reasons;
   for (const Log::Fate& f : emulated.fates) ++reasons[f.fate.reason];
   EXPECT_GE(reasons.size(), 4u);
