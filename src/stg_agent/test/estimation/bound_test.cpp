@@ -1,7 +1,7 @@
-// How close the filter of measurements comes to what is possible: the posterior Cramer-Rao bound
-// (Tichavsky, Muravchik, Nehorai 1998) of the target's position, evaluated along each episode's
-// truth with the measurements of all observers, as if nothing took time to be told. With perfect
-// navigation, a prior of the cue, and the filter's own model of the target.
+// Compares the filter of measurements with the posterior Cramer-Rao bound of the target's position
+// (Tichavsky, Muravchik, Nehorai 1998). The bound follows each episode's truth. It uses the
+// measurements of all observers without any delay. Navigation is perfect, the prior is the cue, and
+// the model of the target is the filter's own.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kFlights = 200, kSeconds = 150, kEvery = 50;
 constexpr int kTimes = kSeconds / kEvery;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;  // of position and velocity
+using Matrix6 = Eigen::Matrix<double, 6, 6>;  // over position and velocity
 
-/// One second of the target's model: an Ornstein-Uhlenbeck velocity on the level, a constant depth.
+/// One second of the target's model: an Ornstein-Uhlenbeck velocity in the plane, a constant depth.
 void Predict(double std_mps, double memory_s, Matrix6* P) {
   const double phi = std::exp(-1.0 / memory_s), var = std_mps * std_mps;
   Matrix6 F = Matrix6::Identity(), Q = Matrix6::Zero();
@@ -47,7 +47,8 @@ Bounded Compare(int observers) {
   const double depth = s.world.sea.target_depth_m.hi - s.world.sea.target_depth_m.lo;
   Matrix6 prior = Matrix6::Identity() * speed * speed;
   prior.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * o.cue_std_m * o.cue_std_m;
-  prior(2, 2) = depth * depth / 12.0;  // what the filter knows beforehand: an even spread
+  // The filter knows that the depth is uniform in this interval.
+  prior(2, 2) = depth * depth / 12.0;
   prior(5, 5) = 1e-9;
   const dynamics::RelativeOptions sensor = s.world.sensing.relative();
   Fleet fleet(s, o);
@@ -91,7 +92,8 @@ TEST_P(Bound, OfRangesIsApproachedAndNotUndercut) {
   for (std::size_t k = 0; k < kTimes; ++k) {
     std::printf("%d AUVs, %3zu s: error %.2f m, bound %.2f m\n", GetParam(), (k + 1) * kEvery,
                 r.error_m[k], r.bound_m[k]);
-    // 200 errors of two components tell their root mean square to 1 / sqrt(800), three of them.
+    // The root mean square of 200 errors of two components has a relative error of 1 / sqrt(800).
+    // Three of these are allowed.
     EXPECT_GT(r.error_m[k], (1.0 - 3.0 / std::sqrt(800.0)) * r.bound_m[k]);
   }
 }

@@ -1,6 +1,7 @@
-// The filter of measurements knows how wrong it is: over 200 episodes the mean squared error in
-// units of the stated covariance stays below the upper 99 % bound of chi-squared, for every sensor,
-// loss and age, with dead reckoning and targets that turn. Conservative is allowed, boasting not.
+// The filter of measurements knows how large its error is. Over 200 episodes, the mean squared
+// error in units of the stated covariance stays below the upper 99 % bound of chi-squared. This
+// holds for every sensor, loss and age, with dead reckoning and targets that turn. The stated error
+// may be too large, but not too small.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ namespace {
 constexpr int kEpisodes = 200;
 /// 99.5 % quantile of chi-squared with 3 * 200 degrees of freedom, over 200 (Wilson, Hilferty).
 constexpr double kUpper = 3.468;
-/// Nobody needs a filter that knows nothing.
+/// A filter must not state much larger errors than it has.
 constexpr double kLower = 0.8;
 constexpr int kChecks = 3;
 
@@ -74,7 +75,7 @@ TEST_P(Sensors, TwoThatShareAreHonestWhateverIsLostOrLate) {
 }
 
 TEST_P(Sensors, OutliersAndFalseAlarmsAreSetAside) {
-  if (std::string(GetParam()) == "position") return;  // has none
+  if (std::string(GetParam()) == "position") return;  // this sensor has none
   const FleetOptions o = Options(2);
   AgentScenario s = FleetScenario(o);
   config::Override(&s, {"sensing." + s.world.sensing.sensor + ".outlier_probability=0.02"});
@@ -109,7 +110,7 @@ TEST(Consistency, TwoObserversThatShareBeatOneByWhatGeometrySays) {
   const Consistency two = Judge(o, FleetScenario(o));
   o.observers = 4;
   const Consistency four = Judge(o, FleetScenario(o));
-  // One range leaves an arc, two leave a point, more of them average.
+  // One range leaves an arc and two leave a point. More ranges reduce the error by averaging.
   EXPECT_LT(two.error_m[2], 0.5 * one.error_m[2]);
   EXPECT_LT(four.error_m[2], two.error_m[2]);
   EXPECT_LT(four.error_m[2], 6.0);
@@ -127,8 +128,8 @@ TEST(Consistency, AnAmbiguousBearingIsResolvedByTwo) {
   EXPECT_LT(c.error_m[2], 15.0);
 }
 
-/// Root mean square of what AUV 0 steers by being off, and mean NEES, after a quarter of an hour in
-/// which no log saw the bottom.
+/// Returns the root mean square error of the vector that AUV 0 steers by, and the mean NEES. The
+/// flight takes a quarter of an hour, in which no log sees the bottom.
 std::pair<double, double> Adrift(ObserverErrors errors, const std::array<double, 3>& current) {
   FleetOptions o;
   o.observers = 4;
@@ -160,7 +161,7 @@ TEST(Consistency, ACurrentThatCarriesAllBlursNothingThatIsSteeredBy) {
   EXPECT_NEAR(moved_m, still_m, 0.5 * still_m);
   EXPECT_GT(steps_m, 1.5 * still_m) << "steps do as well: what are rates for?";
   EXPECT_LT(still, kUpper);
-  // One current is one error of all flights: (0.1^2 + 0.06^2) / 0.1^2 is its own share of NEES.
+  // All flights have the same current. Its own share of NEES is (0.1^2 + 0.06^2) / 0.1^2.
   EXPECT_LT(moved, 1.36 + kUpper);
 }
 

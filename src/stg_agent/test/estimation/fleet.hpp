@@ -11,23 +11,24 @@
 #include "auv_dynamics/world/world.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 
-/// AUVs that follow a target and share what they measure, for judging filters by many episodes.
+/// AUVs that follow a target and share what they measure. Tests judge filters over many episodes.
 namespace stg::agent {
 
 struct FleetOptions {
   std::string sensor = "range";
   int observers = 2;
-  double loss = 0.0;           ///< share of packets that never come
-  double longest_age_s = 2.0;  ///< packets come after a time between 0 and this, in any order
-  double interval_s = 4.0;     ///< between two packets of one AUV
-  bool drift = true;           ///< dead reckoning
+  double loss = 0.0;  ///< share of packets that are lost
+  /// A packet takes between 0 and this time, so packets may change their order.
+  double longest_age_s = 2.0;
+  double interval_s = 4.0;  ///< time between two packets of one AUV
+  bool drift = true;        ///< true: dead reckoning, false: perfect navigation
   double seconds = 240.0;
   std::string motion = "coordinated_turn";
   double turn_rate_radps = 0.02;
   double turn_period_s = 60.0;
   double cue_std_m = 50.0;
-  int look_steps = 1;  ///< decisions between two looks
-  bool pile = false;   ///< all AUVs keep to one side of the target, in one place
+  int look_steps = 1;  ///< decisions between two looks of the sensor
+  bool pile = false;   ///< all AUVs keep to one place on one side of the target
 };
 
 /// A field of 4 km by 4 km with kinematic AUVs that measure every second.
@@ -65,16 +66,16 @@ inline AgentScenario FleetScenario(const FleetOptions& o) {
   return s;
 }
 
-/// An estimate of AUV 0 against the truth.
+/// Compares an estimate of AUV 0 with the truth.
 struct Judgement {
   double nees = 0.0;        ///< squared error in units of the covariance, 3 degrees of freedom
   double error_m = 0.0;     ///< horizontal, in the world
   double relative_m = 0.0;  ///< horizontal, of the vector that the AUV steers by
-  double std_m = 0.0;       ///< stated, of each component
+  double std_m = 0.0;       ///< stated deviation of each component
 };
 
-/// Flies the fleet and calls `judge` with AUV 0's judgement and the number of the check of an
-/// episode, at `checks` times spread evenly over it.
+/// Flies the fleet. Calls `judge` with the judgement of AUV 0 and the number of the check, at
+/// `checks` times that are spread evenly over an episode.
 class Fleet {
  public:
   Fleet(const AgentScenario& scenario, const FleetOptions& options)
@@ -178,7 +179,7 @@ class Fleet {
     }
   }
 
-  /// Circles around the target at 60 to 120 m, each AUV at its own speed and on its own side.
+  /// Circles around the target at 60 to 120 m. Each AUV has its own speed and direction.
   void Steer(int) {
     std::vector<Pack> commands;
     for (int i = 0; i < s_.run.agents; ++i) {
@@ -190,7 +191,7 @@ class Fleet {
         const double off = Clip((distance - 90.0) / 60.0, -1.0, 1.0) * 0.5 * kPi;
         const double side = i % 2 == 0 ? 1.0 : -1.0;
         double wanted = std::atan2(r.y, r.x) + side * (0.5 * kPi - off);
-        // A place 90 m east of the target, around which they go in circles of a few metres.
+        // All AUVs go to a place 90 m east of the target, where they fly circles of a few metres.
         if (o_.pile) wanted = std::atan2(r.y, r.x + 90.0);
         const double heading = Lane(v.rpy.z, lane);
         SetLane(&turn, lane, Clip(WrapAngle(wanted - heading) * 0.5, -0.15, 0.15));

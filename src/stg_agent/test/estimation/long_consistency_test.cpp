@@ -1,5 +1,5 @@
-// The filter of measurements stays honest for as long as a battery lasts: over 9,000 s, with
-// navigation that drifts, compasses that are wrong by degrees, water that nobody knows, and AUVs
+// The filter of measurements states true errors for as long as a battery lasts. It flies for 9,000
+// s with navigation that drifts, compasses that are wrong by degrees, an unknown current, and AUVs
 // that all see the target from one place.
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 namespace stg::agent {
 namespace {
 
-constexpr int kFlights = 4;  // a multiple of kLanes, or rounded up to one
+constexpr int kFlights = 4;  // rounded up to a multiple of kLanes
 constexpr int kChecks = 9;
-/// 99.5 % quantile of chi-squared with 3 degrees of freedom a flight, by the flights (Wilson,
-/// Hilferty). Checks of one flight share errors, so they count as one.
+/// 99.5 % quantile of chi-squared with 3 degrees of freedom per flight, over the number of flights
+/// (Wilson, Hilferty). Checks of one flight share errors, so they count as one.
 double Upper() {
   const double n = 3.0 * kFlights, c = 2.0 / (9.0 * n);
   return n * std::pow(1.0 - c + 2.576 * std::sqrt(c), 3.0) / kFlights;
@@ -25,7 +25,7 @@ struct Long {
   double nees = 0.0, own_m = 0.0;
 };
 
-/// Of the second half of the flights.
+/// Judges the second half of the flights.
 Long Judge(const FleetOptions& o, const AgentScenario& s, const char* what) {
   Fleet fleet(s, o);
   Long sum;
@@ -64,8 +64,8 @@ TEST(LongConsistency, CompassesThatAreWrongByDegrees) {
   o.sensor = "range_bearing";
   AgentScenario s = FleetScenario(o);
   s.world.navigation.heading_std_deg = 2.0;
-  // A wrong heading leads away and back again with the way run. `steps` takes that for new errors
-  // time after time, over which it averages: its NEES here is above 20.
+  // With a wrong heading, the position error grows on the way out and shrinks on the way back.
+  // `steps` takes it for new errors each time and averages over them, so its NEES here is above 20.
   s.agent.track.observers = ObserverErrors::kRates;
   EXPECT_LT(Judge(o, s, "compasses off by 2 degrees").nees, Upper());
 }
@@ -77,7 +77,7 @@ TEST(LongConsistency, WaterThatNobodyKnows) {
   s.world.current.velocity_mps = {0.08, 0.05, 0.0};
   s.agent.track.observers = ObserverErrors::kRates;
   const Long flown = Judge(o, s, "no bottom, a current");
-  // One current is one error of all flights, and its share of NEES is its own: 0.89 instead of 2.
+  // All flights have the same current. Its own share of NEES is 0.89, and not the expected 2.
   EXPECT_LT(flown.nees, Upper());
   EXPECT_LT(flown.own_m, 20.0);
 }

@@ -1,5 +1,5 @@
-// The filter of measurements by itself: what it makes of single detections, and that neither the
-// time nor the order of their coming matters.
+// The filter of measurements alone: what it makes of single detections. The time and the order in
+// which they come must not matter.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ TEST(MeasurementFilter, RangesThatAreHalfBelievedLeaveACovariance) {
     for (int k = 0; k < 60; ++k) {
       const double a = angle(random), r = distance(random);
       const Vec3<double> p_WO{r * std::cos(a), r * std::sin(a), -20.0};
-      // One in four is wrong by anything.
+      // One range in four has a random error.
       const double wrong = k % 4 == 3 ? off(random) : 0.0;
       f->Predict(k * kSecond);
       f->Detect(Range(k * kSecond, p_WO, std::max(1.0, Norm(target - p_WO) + wrong)));
@@ -95,7 +95,7 @@ TEST(MeasurementFilter, StartsFromTheCueWithTheDepthThatIsKnown) {
   EXPECT_EQ(b.p_WT.x, 10.0);
   EXPECT_EQ(b.p_WT.y, 20.0);
   EXPECT_NEAR(b.P_WT.xx, 2500.0, 1e-9);
-  // Depth: product of the cue and of a uniform interval of 40 m.
+  // The depth is the product of the cue and of a uniform interval of 40 m.
   const double interval = 1600.0 / 12.0, both = 1.0 / (1.0 / 2500.0 + 1.0 / interval);
   EXPECT_NEAR(b.P_WT.zz, both, 1e-9);
   EXPECT_NEAR(b.p_WT.z, both * (-30.0 / 2500.0 - 40.0 / interval), 1e-9);
@@ -108,15 +108,15 @@ TEST(MeasurementFilter, PredictionIsTheIntegratedOrnsteinUhlenbeckProcess) {
   auto once = Filter(s);
   once->Start({0.0, 0.0, -40.0}, 5.0, 0);
   Step(once.get(), 80 * kSecond);
-  // Stationary velocity: variance of the way is 2 q T^2 (t/T - 1 + exp(-t/T)).
+  // The velocity is stationary, so the variance of the way is 2 q T^2 (t/T - 1 + exp(-t/T)).
   const double expected = 25.0 + 2.0 * 0.25 * 1600.0 * (2.0 - 1.0 + std::exp(-2.0));
   EXPECT_NEAR(once->belief().P_WT.xx, expected, 1e-9);
-  // Nothing depends on how often it was asked.
+  // The result does not depend on the number of predictions.
   auto often = Filter(s);
   often->Start({0.0, 0.0, -40.0}, 5.0, 0);
   for (int k = 1; k <= 80; ++k) Step(often.get(), k * kSecond);
   EXPECT_EQ(often->belief().P_WT.xx, once->belief().P_WT.xx);
-  // Depth never is less certain than its interval.
+  // The depth is never less certain than its interval.
   EXPECT_NEAR(once->belief().P_WT.zz, 1600.0 / 12.0, 1e-6);
 }
 
@@ -173,7 +173,7 @@ TEST(MeasurementFilter, NeitherTimeNorOrderOfArrivalMatters) {
     std::shuffle(items.begin(), items.end(), random);
     for (std::size_t n = 0; n < items.size(); ++n) {
       take(shuffled.get(), items[n]);
-      take(shuffled.get(), items[n / 2]);  // again: packets repeat what others held
+      take(shuffled.get(), items[n / 2]);  // a second time, because packets repeat measurements
       Step(shuffled.get(), 40 * kSecond);
     }
     const TargetBelief a = in_time->belief(), b = at_once->belief(), c = shuffled->belief();
@@ -188,16 +188,16 @@ TEST(MeasurementFilter, NeitherTimeNorOrderOfArrivalMatters) {
 TEST(MeasurementFilter, OneRangeAloneLeavesARing) {
   const AgentModel s = Scenario("range");
   auto f = Filter(s);
-  f->Detect(Range(0, {100.0, 0.0, -40.0}, 200.0));  // no cue
+  f->Detect(Range(0, {100.0, 0.0, -40.0}, 200.0));  // there is no cue
   Step(f.get(), 0);
   const TargetBelief b = f->belief();
   EXPECT_TRUE(b.observed);
   EXPECT_NEAR(b.p_WT.x, 100.0, 2.0);
   EXPECT_NEAR(b.p_WT.y, 0.0, 2.0);
-  // Uniform on a circle of 200 m: variance r^2 / 2 on either axis.
+  // A uniform density on a circle of 200 m has the variance r^2 / 2 on either axis.
   EXPECT_NEAR(b.P_WT.xx, 20000.0, 1500.0);
   EXPECT_NEAR(b.P_WT.yy, 20000.0, 1500.0);
-  // A second one from elsewhere leaves two points, a third one.
+  // A second range from another place leaves two points. A third one leaves one of them.
   f->Hear(Shared(1, Range(0, {100.0, 250.0, -40.0}, std::hypot(200.0, 250.0))));
   Step(f.get(), 0);
   f->Hear(Shared(2, Range(0, {0.0, 0.0, -40.0}, 300.0)));
@@ -206,7 +206,8 @@ TEST(MeasurementFilter, OneRangeAloneLeavesARing) {
 }
 
 TEST(MeasurementFilter, ANavigationErrorIsNotAveragedAway) {
-  // A thousand ranges from one AUV that is 20 m off cannot tell the target's place to better.
+  // Fifty detections come from one AUV whose position is wrong by 20 m. They cannot place the
+  // target better than this.
   const AgentModel s = Scenario("position", true);
   auto f = Filter(s);
   f->Start({0.0, 0.0, -40.0}, 100.0, 0);
@@ -222,7 +223,7 @@ TEST(MeasurementFilter, ANavigationErrorIsNotAveragedAway) {
   }
   const TargetBelief b = f->belief();
   EXPECT_GT(std::sqrt(b.P_WT.xx), 19.0);
-  // In its own frame, by which it steers, it knows better.
+  // The AUV steers in its own frame. There it knows the place better.
   EXPECT_LT(f->estimate().position_std_m(), 2.0);
   EXPECT_NEAR(f->estimate().p_WT.x, 20.0, 1.0);
 }
@@ -246,7 +247,7 @@ TEST(MeasurementFilter, WhatItSharesIsItsNewestAndOneBefore) {
   EXPECT_EQ(state.sighting[1].range_m, 102.0);
   state.generation = 300 * kSecond;
   f->Tell(false, &state);
-  EXPECT_FALSE(state.has_target);  // too old to be worth a packet
+  EXPECT_FALSE(state.has_target);  // it is too old for a packet
 }
 
 TEST(MeasurementFilter, KalmanRefusesWhatItCannotUse) {
@@ -260,8 +261,9 @@ TEST(MeasurementFilter, KalmanRefusesWhatItCannotUse) {
 }
 
 TEST(MeasurementFilter, AWrongImageIsGivenUpAlsoWhereThreeStandTogether) {
-  // Three observers in a pile pass the target, then turn towards it. Their filter begins with the
-  // image on the other side of their way, which the first minute cannot tell from the truth.
+  // Three observers at one place pass the target, then turn towards it. Their filter begins with
+  // the mirror image on the other side of their way. The first minute does not show which one is
+  // true.
   const AgentModel s = Scenario("range");
   const Vec3<double> target{60.0, 100.0, -50.0};
   auto f = Filter(s);

@@ -12,7 +12,7 @@ constexpr TimeNs kTrackStep = 100'000'000;
 
 double Distance(const Vec3<double>& a, const Vec3<double>& b) { return Norm(a - b); }
 
-/// Feeds noise-free detections of a target that moves at constant velocity.
+/// Gives the track detections without noise. The target has a constant velocity.
 void Follow(TargetTrack* track, int steps, const Vec3<double>& v, Vec3<double>* p, TimeNs* t) {
   for (int k = 0; k < steps; ++k) {
     *t += kTrackStep;
@@ -36,12 +36,13 @@ TEST(TargetTrack, ConvergesOnNoiseFreeDetectionsWithinTenSteps) {
 }
 
 TEST(TargetTrack, UpdateIsTheScalarKalmanFilterOfOneAxis) {
-  // Hand-computed: prior N(0, 0.05^2), one measurement of the same variance meets it half way.
+  // By hand: the prior is N(0, 0.05^2). A measurement of the same variance moves it half of the
+  // way.
   AgentModel s;
   s.track.measurement_std_m = 0.05;
   TargetTrack track(s);
   track.Start({0.0, 0.0, 0.0}, 0.05, 0);
-  track.Detect({0, 0, {0.02, -0.04, 0.0}, 0.01});  // below the floor: 0.05 counts
+  track.Detect({0, 0, {0.02, -0.04, 0.0}, 0.01});  // this is below the floor, so 0.05 counts
   EXPECT_NEAR(track.estimate().p_WT.x, 0.01, 1e-15);
   EXPECT_NEAR(track.estimate().p_WT.y, -0.02, 1e-15);
   EXPECT_NEAR(track.estimate().pp, 0.5 * 0.0025, 1e-15);
@@ -68,7 +69,7 @@ TEST(TargetTrack, FollowsAReflectionAtTheWallWithoutLosingAStep) {
     track.Start(p, 0.01, 0);
     TimeNs t = 0;
     Follow(&track, 20, v, &p, &t);
-    // The world's rule: clamped at the wall, that component's sign flips.
+    // The rule of the world: the target stops at the wall, and the sign of this component flips.
     p = {1.0, p.y + 0.1 * v.y, 0.0};
     v.x = -v.x;
     t += kTrackStep;
@@ -107,16 +108,16 @@ TEST(TargetTrack, OneOutlierIsSetAsideAndARowOfThemRestarts) {
   EXPECT_LT(Distance(track.estimate().p_WT, p), 1e-3);
   Follow(&track, 1, v, &p, &t);
   EXPECT_EQ(track.rejected_in_a_row(), 0);
-  // The target is elsewhere for good.
+  // The target stays at another place.
   p += Vec3<double>{0.0, 0.4, 0.0};
   Follow(&track, TargetTrack::kRestartAfter, v, &p, &t);
   EXPECT_LT(Distance(track.estimate().p_WT, p), 1e-9);
   EXPECT_LT(Distance(track.estimate().v_WT, v), 1e-9);
 }
 
-/// Mean normalised estimation error squared over many runs of a target that moves as the
-/// filter assumes; 6 for a consistent filter. `share`: a second filter with its own
-/// detections tells the first about its estimate every fifth step, and the other way round.
+/// Mean normalised estimation error squared over many runs of a target that moves as the filter
+/// assumes. It is 6 for a consistent filter. `share`: there is a second filter with its own
+/// detections. The two filters tell each other their estimates every fifth step.
 double MeanNees(bool share, double noise, int runs) {
   AgentModel s;
   TrackConfig& c = s.track;
@@ -134,7 +135,7 @@ double MeanNees(bool share, double noise, int runs) {
     track.Start(cue, 0.05, 0);
     other.Start(cue, 0.05, 0);
     for (int k = 1; k <= 40; ++k) {
-      // Exact sample of the white-acceleration process over one step.
+      // An exact sample of the white-acceleration process over one step.
       const double h = 0.1;
       const Vec3<double> dv = draw(std::sqrt(S * h));
       p += v * h + dv * (0.5 * h) + draw(std::sqrt(S * h * h * h / 12.0));
@@ -157,7 +158,8 @@ double MeanNees(bool share, double noise, int runs) {
 }
 
 TEST(TargetTrack, IsConsistentWithItsCovariance) {
-  // The sum is chi-square with 6 runs degrees of freedom: std of the mean sqrt(12 / runs).
+  // The sum is chi-squared with 6 * runs degrees of freedom, so the mean has deviation sqrt(12 /
+  // runs).
   const int runs = 1000;
   EXPECT_NEAR(MeanNees(false, 0.005, runs), 6.0, 4.0 * std::sqrt(12.0 / runs));
 }
@@ -193,7 +195,7 @@ TEST(TargetTrack, ASharedEstimateIsWorthLessTheOlderItIs) {
     track.Fuse({(100 - age) * kTrackStep, {0.05, 0.0, 0.0}, {0.01, 0.0, 0.0}, 0.002});
     EXPECT_GT(track.estimate().pp, previous);
     previous = track.estimate().pp;
-    // Carried forward with its velocity, and far better than the track's own guess.
+    // The shared estimate moves on with its velocity. It is far better than the track's own guess.
     EXPECT_NEAR(track.estimate().p_WT.x, 0.05 + 0.001 * static_cast<double>(age), 0.01);
     EXPECT_EQ(track.estimate().stamp, 100 * kTrackStep);
   }

@@ -7,33 +7,34 @@
 
 #include "stg_agent/localization/joint_filter.hpp"
 
-/// AUVs that drift with the water and range each other and stations, drawn from the model that the
-/// joint filter assumes; without packets, channel or vehicles, for tests of the filter alone.
+/// AUVs that drift with the water and measure ranges to each other and to stations. The numbers are
+/// drawn from the model that the joint filter assumes. There are no packets, channel or vehicles,
+/// so that a test sees the filter alone.
 namespace stg::agent {
 
 struct DriftOptions {
   int auvs = 4;
   bool craft = false;
-  double craft_std_m = 2.0;   ///< of the position that it tells
-  double usbl_std_deg = 0.0;  ///< of the bearings at which it hears AUVs; 0: none
+  double craft_std_m = 2.0;   ///< deviation of the position that the craft tells
+  double usbl_std_deg = 0.0;  ///< deviation of the bearings at which the craft hears AUVs; 0: none
   int beacons = 0;
   double seconds = 3600.0;
   double slot_s = 1.25;
   double loss = 0.0;
   double late = 0.0;          ///< share of ranges that are late
-  bool ranges = true;         ///< false: nobody ranges
-  double fix_period_s = 0.0;  ///< between two fixes of AUV 1, of 3 m; 0: none
-  double shift_m = 0.0;       ///< of everything that is true, unseen by all
-  double drift_mps = 0.0;     ///< the same, growing
+  bool ranges = true;         ///< false: nobody measures ranges
+  double fix_period_s = 0.0;  ///< time between two fixes of AUV 1, which have 3 m; 0: none
+  double shift_m = 0.0;       ///< shift of all true positions, which nobody sees
+  double drift_mps = 0.0;     ///< growth of this shift
 };
 
-/// What the filter of AUV 0 says at the end.
+/// The result of the filter of AUV 0 at the end.
 struct DriftResult {
   PlaneError own, relative, current, mean_error;
   double error_x = 0.0, error_y = 0.0;  ///< true error of the own position less the stated one
   double relative_x = 0.0, relative_y = 0.0;  ///< the same of AUV 1 against AUV 0
   double current_x = 0.0, current_y = 0.0;
-  double nis = 0.0;  ///< mean over all ranges that passed
+  double nis = 0.0;  ///< mean over all ranges that were taken
   int ranges = 0, aside = 0;
 
   static double Nees(double x, double y, const PlaneError& P) {
@@ -122,7 +123,7 @@ class DriftingSea {
   }
 
  private:
-  /// At the craft.
+  /// A bearing that the craft measures.
   void HearBearing(int source, double t, const std::vector<double>& e, const std::vector<double>& g,
                    JointFilter* filter) {
     if (std::uniform_real_distribution<double>()(random_) < o_.loss) return;
@@ -143,7 +144,8 @@ class DriftingSea {
     *x = kept * *x + std * std::sqrt(1.0 - kept * kept) * Normal();
   }
 
-  /// Circles of 90 m around a target that goes in a wide curve; the craft's circle has 300 m.
+  /// The AUVs fly circles of 90 m around a target that goes in a wide curve. The craft's circle has
+  /// 300 m.
   Vec3<double> True(int id, double t) const {
     const double at = 0.0007 * t;
     const Vec3<double> target{800.0 * std::sin(at) + o_.shift_m + o_.drift_mps * t,
@@ -167,7 +169,7 @@ class DriftingSea {
     const std::vector<double>& error = id < o_.auvs ? e : g;
     const auto k = static_cast<std::size_t>(2 * (id < o_.auvs ? id : id - o_.auvs));
     Vec3<double> p = True(id, t) + Vec3<double>{error[k], error[k + 1], 0.0};
-    // A shift that nobody sees is not in what is told.
+    // Nobody sees the shift, so it is not in the position that is told.
     p.x -= o_.shift_m + o_.drift_mps * t;
     return p;
   }

@@ -1,4 +1,5 @@
-// The joint filter of reckoned positions: as good as its model allows, and no better than that.
+// The joint filter of reckoned positions is as good as its model allows, and states no smaller
+// error.
 
 #include "stg_agent/localization/joint_filter.hpp"
 
@@ -12,7 +13,7 @@ namespace stg::agent {
 namespace {
 
 constexpr int kRuns = 100, kManyRuns = 200;
-/// 99 % interval of chi-squared with two degrees of freedom a run, over their number.
+/// 99 % interval of chi-squared with two degrees of freedom per run, over the number of runs.
 constexpr double kLower = 1.52, kUpper = 2.55, kManyLower = 1.66, kManyUpper = 2.38;
 
 struct Judgement {
@@ -78,8 +79,8 @@ TEST(JointFilter, TheCraftsBearingsPlaceTheSwarmBetter) {
   ExpectConsistent(Judge(o, "the same, 70 % lost", kManyRuns));
 }
 
-// From a craft whose place is known, an AUV that may be anywhere within s of its reckoning: across
-// the line of sight r long the bearing leaves s r b / sqrt(s^2 + r^2 b^2).
+// A craft at a known place takes the bearing of an AUV whose position has deviation s. Across a
+// line of sight of length r, the bearing leaves s r b / sqrt(s^2 + r^2 b^2).
 TEST(JointFilter, ABearingLeavesWhatItsErrorIsAcrossTheLine) {
   constexpr double kStart_m = 10.0, kRange_m = 400.0, kStd = 0.01;
   JointFilter filter(LocalizationConfig(), kStart_m, 1, {{1e-6, 0.0}}, 0);
@@ -94,13 +95,13 @@ TEST(JointFilter, ABearingLeavesWhatItsErrorIsAcrossTheLine) {
   const double across = kRange_m * kStd;
   EXPECT_NEAR(std::sqrt(e.yy), kStart_m * across / std::hypot(kStart_m, across), 0.01);
   EXPECT_NEAR(e.xx, kStart_m * kStart_m, 1e-6);
-  // Reckoned less true: it is farther north than it took itself to be.
+  // An error is reckoned less true. The AUV is farther north than it reckons.
   EXPECT_NEAR(e.y, -0.02 * kRange_m * kStart_m * kStart_m / (kStart_m * kStart_m + across * across),
               0.02);
 }
 
-// A fix of deviation r of a position that may be s off leaves s r / sqrt(s^2 + r^2), and the same
-// share of what it says.
+// The position has deviation s, and the fix has deviation r. They leave s r / sqrt(s^2 + r^2). The
+// estimate is s^2 / (s^2 + r^2) of what the fix says.
 TEST(JointFilter, AFixLeavesWhatTwoSourcesLeave) {
   constexpr double kStart_m = 40.0, kFix_m = 3.0;
   JointFilter filter(LocalizationConfig(), kStart_m, 2, {{2.0, 600.0}}, 0);
@@ -113,13 +114,13 @@ TEST(JointFilter, AFixLeavesWhatTwoSourcesLeave) {
   EXPECT_NEAR(e.xy, 0.0, 1e-12);
   EXPECT_NEAR(e.x, 30.0 * kStart_m * kStart_m / S, 1e-9);
   EXPECT_NEAR(e.y, -20.0 * kStart_m * kStart_m / S, 1e-9);
-  // Nothing is known of the other one by that, and stations have no fixes.
+  // This tells nothing about the other AUV. Stations have no fixes.
   EXPECT_EQ(filter.Error(1, 0).xx, kStart_m * kStart_m);
   EXPECT_FALSE(filter.Take(FixReading{2, 0, 0.0, 0.0, kFix_m}));
 }
 
-// An hour with three fixes of another AUV, judged when the next one is due: the bound of all ranges
-// and fixes is 42 m then.
+// In one hour another AUV has three fixes. The test judges when the next fix is due. The bound of
+// all ranges and fixes is 42 m then.
 TEST(JointFilter, FixesOfOneAuvHoldTheSwarm) {
   DriftOptions o;
   o.fix_period_s = 900.0;
@@ -135,7 +136,7 @@ TEST(JointFilter, FixesOfOneAuvHoldTheSwarm) {
   EXPECT_LT(Judge(o, "the same, 70 % lost").nees, kUpper);
 }
 
-// sigma^2(t) = P_ee - 2 t P_ec + t^2 P_cc + q t^3 / 3 + what log and heading add; after two fixes
+// sigma^2(t) = P_ee - 2 t P_ec + t^2 P_cc + q t^3 / 3 + what log and heading add. After two fixes
 // P_ec is known, too.
 TEST(JointFilter, WhatComesIsTheGrowthOfTheErrorModel) {
   const LocalizationConfig c;
@@ -145,7 +146,7 @@ TEST(JointFilter, WhatComesIsTheGrowthOfTheErrorModel) {
   for (int s = 1; s <= 600; ++s) filter.Predict(s * TimeNs{1'000'000'000});
   const double before = filter.Error(0, filter.now()).xx;
   filter.Take(FixReading{0, filter.now(), -120.0, 60.0, 3.0});
-  // Of two fixes T apart: e and e - T c, each of which is known by its own.
+  // Two fixes T apart measure e and e - T c, each with its own error.
   const double rate = c.current_std_mps * c.current_std_mps + c.shear_std_mps * c.shear_std_mps;
   EXPECT_NEAR(before, rate * T * T, 0.05 * rate * T * T);
   const double q = 2.0 * (c.current_std_mps * c.current_std_mps / c.current_memory_s +
@@ -154,7 +155,7 @@ TEST(JointFilter, WhatComesIsTheGrowthOfTheErrorModel) {
                    two = filter.Ahead(0, 2.0 * t);
   const double added = c.reckoning_std_m * c.reckoning_std_m;
   EXPECT_NEAR(filter.Ahead(0, 0.0).xx, now.xx, 1e-12);
-  // The quadratic part from two times must be that of a third.
+  // Two times give the quadratic part. It must also hold at a third time.
   const auto square = [&](const PlaneError& e, double s) {
     return e.xx - q * s * s * s / 3.0 - added * s;
   };
@@ -162,10 +163,10 @@ TEST(JointFilter, WhatComesIsTheGrowthOfTheErrorModel) {
   const double P_cc = (b - 2.0 * a) / (2.0 * t * t), P_ec = (4.0 * a - b) / (-4.0 * t);
   const PlaneError half = filter.Ahead(0, 0.5 * t);
   EXPECT_NEAR(square(half, 0.5 * t), now.xx - t * P_ec + 0.25 * t * t * P_cc, 1e-6 * half.xx);
-  // The current is known by the way between the fixes, and by what it changed meanwhile.
+  // Two errors remain in the current: that of the way between the fixes, and its change since then.
   const double known = (2.0 * 9.0 + added * T) / (T * T) + q * T / 3.0;
   EXPECT_NEAR(P_cc, known, 0.15 * known);
-  // It goes on as it went: 0.2 m/s to the west, 0.1 to the north.
+  // The AUV goes on as it went, with 0.2 m/s to the west and 0.1 m/s to the north.
   EXPECT_NEAR(one.x, -120.0 - 0.2 * t, 15.0);
   EXPECT_NEAR(one.y, 60.0 + 0.1 * t, 10.0);
 }
@@ -208,7 +209,8 @@ TEST(JointFilter, AloneTheSwarmStatesTheDriftOfItsWater) {
   const Judgement j = Judge(o, "alone");
   ExpectConsistent(j);
   EXPECT_LT(j.relative_rmse, 2.2);
-  // Of an AUV: the integral of the common current's and of the mean of four AUVs' own.
+  // The mean error is the integral of the common current and of the mean of the four AUVs' own
+  // ones.
   const auto V = [](double std, double memory, double t) {
     return 2.0 * std * std * memory * memory * (t / memory - 1.0 + std::exp(-t / memory));
   };
@@ -226,7 +228,7 @@ TEST(JointFilter, RangesAmongThemselvesTellNothingOfTheWorld) {
   EXPECT_NEAR(with.mean_error.xx / without.mean_error.xx, 1.0, 1e-6);
   EXPECT_NEAR(with.mean_error.yy / without.mean_error.yy, 1.0, 1e-6);
   EXPECT_NEAR(with.mean_error.x, without.mean_error.x, 1e-6);
-  // A single AUV's own current is in C and in w; what carries all of them stays as it was.
+  // Ranges may tell C from the AUVs' own currents w. They do not tell what carries all AUVs.
   EXPECT_LE(with.current.xx, without.current.xx * (1.0 + 1e-9));
 }
 
@@ -251,7 +253,7 @@ TEST(JointFilter, OfTooManyAuvsTheOneHeardLongestAgoIsForgotten) {
   EXPECT_TRUE(filter.knows(11));
   EXPECT_FALSE(filter.knows(7)) << "heard at the start only";
   EXPECT_TRUE(filter.knows(3)) << "the own one stays";
-  // The newcomer came through the same water.
+  // The new AUV came through the same water, so a part of its error is the same.
   const PlaneError apart = filter.Relative(11, 3, filter.now()),
                    own = filter.Error(3, filter.now());
   EXPECT_LT(apart.xx, own.xx);

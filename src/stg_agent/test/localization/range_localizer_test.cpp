@@ -1,5 +1,5 @@
-// The localizer between packets and filter: what counts once, whatever comes late, twice or
-// shuffled; and that those who are told nothing of the world pretend nothing.
+// The localizer between packets and filter. A measurement counts once, even if packets come late,
+// twice or in another order. An AUV that gets no position in the world must not claim to know one.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ struct Letter {
   acoustics::Reception reception;
 };
 
-/// AUVs on circles of 90 m, carried away at 0.3 m/s; AUV 0 hears one packet a second.
+/// AUVs on circles of 90 m, which a current carries at 0.3 m/s. AUV 0 hears one packet a second.
 class Flight {
  public:
   explicit Flight(const AgentModel& model) : model_(model) {}
@@ -58,7 +58,7 @@ class Flight {
   Vec3<double> Speed(int id, double t) const {
     return (Told(id, t + 0.01) - Told(id, t - 0.01)) * 50.0;
   }
-  /// What AUV 0 hears in the second before t.
+  /// The packet that AUV 0 hears in the second before t.
   Letter At(int t) const {
     const int source = 1 + t % (model_.members() - 1);
     Letter l;
@@ -74,7 +74,7 @@ class Flight {
     const double sent = t - 0.75;
     l.reception.travel_time_s = Norm(True(source, sent) - True(0, sent)) / kSound_mps;
     if (source < model_.run.agents && t > 20) {
-      // What it heard of the others a while ago.
+      // It has heard another AUV a while ago.
       const int other = 1 + (t - 2) % (model_.members() - 1);
       const double then = t - 2.75;
       if (other != source) {
@@ -110,7 +110,7 @@ TEST(RangeLocalizer, FindsTheDriftWithACraft) {
   EXPECT_NEAR(own.x, -0.3 * 900.0, 5.0);
   EXPECT_NEAR(own.y, 0.1 * 900.0, 5.0);
   EXPECT_LT(own.std_m(), 6.0);
-  // The current is the drift turned back.
+  // The current is minus the drift of the reckoned position.
   EXPECT_NEAR(localizer->current().x, 0.3, 0.1);
   const PlaneError other = localizer->relative(2, 900 * kSecond);
   EXPECT_NEAR(other.x, -0.02 * 2.0 * 900.0, 2.0);
@@ -140,12 +140,12 @@ TEST(RangeLocalizer, WhatComesTwiceOrShuffledWithinADecisionChangesNothing) {
   std::mt19937 random(3);
   std::vector<Letter> seen;
   for (int t = 0; t <= 600; t += 3) {
-    // Three packets a decision of the test.
+    // A decision of the test has three packets.
     std::vector<Letter> letters;
     for (int k = t - 2; t > 0 && k <= t; ++k) letters.push_back(flight.At(k));
     Advance(flight, t, letters, once.get());
     for (const Letter& letter : letters) seen.push_back(letter);
-    // All of the last minute again, in any order.
+    // All packets of the last minute come again, in random order.
     std::vector<Letter> again(
         seen.end() - std::min<std::ptrdiff_t>(60, static_cast<std::ptrdiff_t>(seen.size())),
         seen.end());
@@ -157,7 +157,7 @@ TEST(RangeLocalizer, WhatComesTwiceOrShuffledWithinADecisionChangesNothing) {
   EXPECT_EQ(once->relative(2, 600 * kSecond).y, often->relative(2, 600 * kSecond).y);
 }
 
-/// Every ten minutes AUV 2 has a fix that is 2 m off, which its next three packets tell.
+/// AUV 2 has a fix every ten minutes. The fix is wrong by 2 m, and the next three packets tell it.
 Letter WithFix(const Flight& flight, int t, double rounding_s) {
   Letter l = flight.At(t);
   const int fixed = (t - 1) / 600 * 600;
@@ -183,7 +183,7 @@ TEST(RangeLocalizer, AFixOfAnotherAuvServesThisOneAndCountsOnce) {
   for (int t = 0; t <= 1230; ++t) {
     std::vector<Letter> all, first, none;
     if (t > 0) {
-      // Ages in packets are rounded to an eighth of a decision.
+      // Packets round ages to an eighth of a decision.
       all = {WithFix(flight, t, 0.0625)};
       first = all;
       told = first[0].state.has_fix ? told + 1 : t % 600 > 20 ? 0 : told;
@@ -198,7 +198,7 @@ TEST(RangeLocalizer, AFixOfAnotherAuvServesThisOneAndCountsOnce) {
   EXPECT_EQ(once->own().x, often->own().x);
   EXPECT_EQ(once->own().xx, often->own().xx);
   EXPECT_GT(never->own().std_m(), 200.0);
-  // Told by another one 20 s ago, the own position is known to what the fix and the ranges leave.
+  // Another AUV told its fix 20 s ago. The fix and the ranges limit the own deviation.
   EXPECT_LT(once->own().std_m(), 5.0);
   EXPECT_GT(once->own().std_m(), 2.5);
   EXPECT_NEAR(once->own().x, -0.3 * 1230.0, 10.0);

@@ -1,4 +1,4 @@
-// Who goes up for a fix, and when, and what its vertical velocity is meanwhile.
+// Which AUV goes up for a fix, when it goes, and how fast it climbs.
 
 #include "stg_agent/localization/surfacing.hpp"
 
@@ -25,7 +25,7 @@ AgentModel SurfacingModel() {
   return s.model();
 }
 
-/// Its deviation grows by 0.1 m in a second since the last fix.
+/// A localizer whose deviation grows by 0.1 m per second after the last fix.
 class Growing : public Localizer {
  public:
   void Reset() override {}
@@ -61,7 +61,7 @@ NeighbourState Said(int id, double t, double depth_m, bool surfacing = false) {
   return s;
 }
 
-/// One AUV that flies as it is told.
+/// One AUV that moves as commanded.
 struct Flown {
   explicit Flown(int self) : law(SurfacingModel(), self) { law.Reset(); }
 
@@ -82,7 +82,8 @@ struct Flown {
   double depth_m = kDepth_m;
 };
 
-// Up 20 m at 0.5 m/s and 30 s of waiting: 70 s before 25 m at 0.1 m/s, which is at 250 s.
+// The deviation is 25 m at 250 s, as it grows by 0.1 m/s. The AUV starts 70 s earlier: it climbs 20
+// m at 0.5 m/s and waits 30 s for the fix.
 TEST(Surfacing, AnAuvGoesUpInTimeForItsFixAndBackDown) {
   Flown auv(2);
   auv.To(181);
@@ -90,7 +91,7 @@ TEST(Surfacing, AnAuvGoesUpInTimeForItsFixAndBackDown) {
   EXPECT_FALSE(auv.law.under_way());
   auv.To(270);
   EXPECT_NEAR(auv.began, 181, 1);
-  // The last metre is slow.
+  // The last metre of the climb is slow.
   EXPECT_NEAR(auv.surfaced, 181 + 40, 8);
   EXPECT_FALSE(auv.law.announces());
   EXPECT_TRUE(auv.law.under_way());
@@ -114,7 +115,7 @@ TEST(Surfacing, TheShallowestGoesAndOfEqualOnesTheLowestIndex) {
         EXPECT_FALSE(higher.law.announces());
       }
     }
-    // Nobody announced: a minute later the next one goes.
+    // No AUV has announced a climb. A minute later the next AUV goes.
     EXPECT_NEAR(higher.began, 241, 5);
   }
 }
@@ -124,7 +125,7 @@ TEST(Surfacing, NobodyGoesWithinFiveMinutesOfAnAnnouncement) {
   auv.law.Hear(Said(3, 100.0, 5.0, true));
   auv.To(401);
   EXPECT_EQ(auv.began, -1);
-  // The one that announced was not heard again, and the own AUV is the only one that it knows.
+  // The AUV that announced its climb was not heard again, so this AUV knows no other.
   auv.To(420);
   EXPECT_NEAR(auv.began, 401, 1);
 }
@@ -145,7 +146,7 @@ TEST(Surfacing, WithoutAFixItGivesUp) {
   Flown auv(0);
   for (; auv.now < 500;) {
     auv.To(auv.now + 1);
-    auv.depth_m = std::max(auv.depth_m, 5.0);  // it is held down
+    auv.depth_m = std::max(auv.depth_m, 5.0);  // the AUV is held down
   }
   EXPECT_NEAR(auv.began, 181, 1);
   EXPECT_FALSE(auv.law.announces());
