@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The pictures of packet logs: what they show follows from the log, and bad logs are refused."""
+"""The pictures of packet logs show what is in the log, and bad logs are refused."""
 
 import os
 import subprocess
@@ -21,20 +21,20 @@ HEADER = (
 
 
 def row(source, destination, sequence, made, arrival, fate="delivered"):
-    """A row of a packet that takes a second and a second of sound."""
+    """A row of a packet that lasts one second and travels for one second."""
     times = f"{made},{made},{arrival - 2},{arrival - 1},{arrival - 1},{arrival}"
     return f"{source},{destination},all,data,{sequence},8,{times},1500,1,0,0,0,0,{fate}\n"
 
 
 class PlotNetwork(unittest.TestCase):
-    """One folder with a log for each test."""
+    """Each test has a folder with a packet log."""
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
 
     def write(self, text):
-        """Makes the folder's packet log."""
+        """Writes the packet log of the folder."""
         path = os.path.join(self.folder.name, "packets.csv")
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
@@ -47,7 +47,7 @@ class PlotNetwork(unittest.TestCase):
         )
 
     def test_log_of_a_node_is_drawn_from_its_first_time_on(self):
-        start_s = 1.75e9  # of the wall
+        start_s = 1.75e9  # seconds of the wall clock
         rows = [(0, 1, 0, 1.0, 4.0), (0, 1, 1, 6.0, 9.0)]
         at_zero = plot_network.Log(self.write(HEADER + "".join(row(*r) for r in rows)))
         at_zero.count_from_first()
@@ -76,7 +76,7 @@ class PlotNetwork(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
 
     def test_a_packet_fills_every_span_that_it_is_in(self):
-        # One sender that never stops: nine seconds from 0.5 s on, then one more.
+        # One sender never stops: nine seconds from 0.5 s on, then one more.
         load = plot_network.airtime_per_time(
             np.arange(0.0, 12.0, 2.0), np.array([0.5, 9.5]), np.array([9.0, 0.5])
         )
@@ -91,13 +91,14 @@ class PlotNetwork(unittest.TestCase):
             self.write(
                 HEADER
                 + row(0, 1, 0, 1.0, 3.0)
-                + row(0, 1, 1, 0.5, 4.0)  # older than what is known
+                + row(0, 1, 1, 0.5, 4.0)  # it is older than what the receiver knows
                 + row(0, 1, 2, 5.0, 7.0)
                 + row(0, 1, 3, 8.0, 10.0, "collision")
             )
         )
         (pieces,) = plot_network.age_segments(log)
-        # 0 to 3, from 2 (made at 1, there at 3) to 6, and 2 to 5 at the log's end.
+        # The age 0 grows to 3. It falls to 2 (made at 1, received at 3) and grows to 6, then from 2 to 5 at
+        # the end.
         np.testing.assert_allclose(pieces, [[0.0, 3.0], [2.0, 6.0], [2.0, 5.0]])
         share = plot_network.share_of_time(pieces, np.array([0.0, 2.0, 3.0, 6.0]))
         np.testing.assert_allclose(share, [0.0, 0.2, 0.5, 1.0])

@@ -1,4 +1,4 @@
-"""Programs under test and the signal of a terminal that is closed, SIGHUP."""
+"""Programs under test, and SIGHUP, the signal of a terminal that is closed."""
 
 import fcntl
 import signal
@@ -6,8 +6,8 @@ import termios
 
 
 def takes(terminal):
-    """Returns a preexec_fn: the child leads a session on this terminal and obeys its hangup, which
-    tests that run under nohup would have it ignore."""
+    """Returns a preexec_fn. With it the child leads a session on this terminal and obeys its hangup, which it
+    would ignore in tests that run under nohup."""
 
     def take():
         signal.signal(signal.SIGHUP, signal.SIG_DFL)
@@ -17,12 +17,12 @@ def takes(terminal):
 
 
 def ignore():
-    """A preexec_fn: what nohup does."""
+    """A preexec_fn that ignores hangups, as nohup does."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
 
 def ignored_by(pid):
-    """Whether a running process ignores them."""
+    """Tells whether a running process ignores hangups."""
     with open(f"/proc/{pid}/status", encoding="utf-8") as file:
         (ignored,) = [line.split()[1] for line in file if line.startswith("SigIgn:")]
     return bool(int(ignored, 16) >> (signal.SIGHUP - 1) & 1)

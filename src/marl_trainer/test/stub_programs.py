@@ -1,4 +1,4 @@
-"""Stand-ins for the programs train, evaluate and bench_env that write the same files, at once."""
+"""Stand-ins for the programs train, evaluate and bench_env. They write the same files, at once."""
 
 import os
 import stat
@@ -148,7 +148,7 @@ def write_stubs(folder):
 
 
 def calls(folder):
-    """Command lines the stubs were started with, and forgets them."""
+    """Returns the command lines with which the stubs were started, and forgets them."""
     path = os.path.join(folder, "calls")
     if not os.path.exists(path):
         return []

@@ -1,4 +1,4 @@
-"""What tests of the reproduce command share."""
+"""Shared by the tests of the reproduce command."""
 
 import os
 import shutil
@@ -31,7 +31,7 @@ controllers:
 
 
 class StudyCase(unittest.TestCase):
-    """A folder with stand-ins and a study, and the reproduce command on it."""
+    """A folder with stand-ins and a study, and the reproduce command for it."""
 
     def setUp(self):
         self.folder = tempfile.mkdtemp()
@@ -47,7 +47,7 @@ class StudyCase(unittest.TestCase):
                 "--bin", self.folder, "--jobs", "2", *arguments]  # fmt: skip
 
     def reproduce(self, *arguments, **environment):
-        """Runs the command without a report; (status, output, the stubs' command lines)."""
+        """Runs the command without a report; returns (status, output, command lines of the stubs)."""
         return self.reproduce_all("--no-report", *arguments, **environment)
 
     def reproduce_all(self, *arguments, **environment):

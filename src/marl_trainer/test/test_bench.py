@@ -1,4 +1,4 @@
-"""Tests of the benchmark script with stand-ins for the programs it runs."""
+"""Tests of the benchmark script. Stand-ins replace the programs that it runs."""
 
 import json
 import os
@@ -40,7 +40,7 @@ class Bench(unittest.TestCase):
         self.assertEqual(report["environment"]["release_truth"]["env_steps_per_second"], 1000.0)
         self.assertEqual(report["environment"]["acoustic_scaling"]["scaling"][0]["agents"], 100)
         self.assertEqual(report["training"]["1"]["time_to_threshold"]["1030"]["seconds"], 70.0)
-        # Seed 0 takes 50 s, seed 1 takes 70 s; the stand-ins' update is 7.5 of 12.5 s.
+        # Seed 0 takes 50 s, and seed 1 takes 70 s. The update of the stand-ins takes 7.5 of 12.5 s.
         self.assertIn("in under 60 s: 1 of 2 seeds", output)
         self.assertIn("update 60 %", output)
         self.assertIn("(25 %)", output)

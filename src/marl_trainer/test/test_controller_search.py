@@ -1,4 +1,4 @@
-"""The search for a controller's constants finds them, keeps every trial, and chooses by no other seed."""
+"""The search for a controller's constants finds them, keeps every trial, and uses only its own seeds."""
 
 import csv
 import os
@@ -11,7 +11,7 @@ import unittest
 import yaml
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
-# In place of `evaluate`: the return has its peak at gain 2, and a contact costs more than it gives.
+# In place of `evaluate`: the return has its peak at gain 2, and a contact costs more than it gains.
 EVALUATE = f"""#!{sys.executable}
 import json, math, sys
 given = dict(zip(sys.argv[1::2], sys.argv[2::2]))
@@ -39,7 +39,7 @@ class Tune(unittest.TestCase):
             (self.folder / name).chmod(0o755)
 
     def run_tune(self, **changes):
-        """Returns the finished program."""
+        """Runs the program; returns the finished process."""
         search = dict(SEARCH, **changes)
         file = self.folder / "search.yaml"
         if file.is_fifo():
@@ -48,7 +48,7 @@ class Tune(unittest.TestCase):
         return self.run_file()
 
     def run_file(self):
-        """Returns the finished program, run with the search that is there."""
+        """Runs the program with the search that is there; returns the finished process."""
         return subprocess.run(
             [sys.executable, str(PACKAGE / "scripts" / "tune"), "--search", str(self.folder / "search.yaml"),
              "--out", str(self.folder / "out"), "--bin", str(self.folder)],
@@ -80,7 +80,7 @@ class Tune(unittest.TestCase):
         self.assertEqual(self.trials(), first)
 
     def test_the_best_fly_again_on_other_episodes(self):
-        # From the second seed on every episode returns by another peak: gain 4.
+        # From the second seed on, the return of every episode has another peak: gain 4.
         other = EVALUATE.replace("gain / 2", "gain / (2 if given['--seed'] == '7' else 4)")
         (self.folder / "evaluate").write_text(other)
         run = self.run_tune(finals={"trials": 5, "episodes": 6, "seed": 90}, set=["time.episode_steps=9"])

@@ -1,4 +1,4 @@
-"""Studies of flights: the table follows from the episodes, and what is no such study is refused."""
+"""Studies of flights: the table follows from the episodes, and a file that is no study is refused."""
 
 import math
 import os
@@ -13,8 +13,8 @@ from stg_common.yaml_files import read_yaml
 from stg_study import flight_page, flight_study, statistics
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
-# In place of `evaluate`: episode e of gain g is in the band for g + 0.01 e, with true states for 0.1 more,
-# silent for 0.2 less. The return is left out where it would be NaN.
+# In place of `evaluate`: episode e of gain g is in the band for g + 0.01 e. With true states it is there for
+# 0.1 more, and when silent for 0.2 less. The return is left out where it would be NaN.
 EVALUATE = f"""#!{sys.executable}
 import json, statistics, sys
 given = {{a: b for a, b in zip(sys.argv, sys.argv[1:]) if a.startswith("--")}}
@@ -47,7 +47,7 @@ class Flights(unittest.TestCase):
             (self.folder / name).chmod(0o755)
 
     def reproduce(self, *arguments, **changes):
-        """Returns the finished program."""
+        """Runs the program; returns the finished process."""
         file = self.folder / "study.yaml"
         file.write_text(yaml.safe_dump({**STUDY, **changes}))
         return subprocess.run(
@@ -69,11 +69,12 @@ class Flights(unittest.TestCase):
         law = rows["calm", "law", "own"]
         self.assertAlmostEqual(law["band_share"], 0.52)
         self.assertAlmostEqual(law["band_share_std"], 0.01 * math.sqrt(2.5))
-        # Both fly the same episodes, so their difference is 0.1 in each, and no resample says otherwise.
+        # Both fly the same episodes, so their difference is 0.1 in each episode and in each resample.
         for name in ("difference", "difference_low", "difference_high"):
             self.assertAlmostEqual(law[name], 0.1)
         self.assertIsNone(rows["calm", "better", "own"]["difference"])
-        # The best on own estimates closes nothing of its gap to truth, which closes all.
+        # With own estimates the best pilot closes nothing of its gap to the truth. With true states it closes
+        # all of it.
         for (pilot, knows), closed in {("better", "own"): 0.0, ("better", "true states"): 1.0,
                                        ("law", "own"): -1.0, ("law", "silent"): -3.0}.items():  # fmt: skip
             self.assertAlmostEqual(rows["calm", pilot, knows]["gap_closed"], closed)

@@ -23,7 +23,7 @@ def xyz(v):
 
 
 def main():
-    """Decides whenever the sensors' frame of a step and the modem's window before it are there."""
+    """Decides for each step, once its sensor frame and the modem's window before it have come."""
     shape = argparse.RawDescriptionHelpFormatter
     argparse.ArgumentParser(description=__doc__, formatter_class=shape).parse_args(rospy.myargv()[1:])
     rospy.init_node("agent")
@@ -52,14 +52,14 @@ def main():
         else:
             window = message.header.stamp.to_nsec()
             packets += [(window, packet) for packet in message.packets]
-        # No window ends at step 0; only before the run's first step the modem greets with one.
+        # No window ends at step 0. Only before the run's first step the modem sends one.
         awaited = frame is not None and (frame.step > 0 or frame.episode == 0)
         if frame is None or (awaited and window < frame.header.stamp.to_nsec()):
             continue
 
         now = frame.header.stamp.to_nsec()
         begun = now - frame.step * round(1e9 * scenario.decision_dt_s)
-        if begun != start:  # an episode begins; its clock starts at 0
+        if begun != start:  # an episode begins, and its clock starts at 0
             start, sent = begun, 0
             cue = xyz(frame.cue_position) if frame.cue_valid else None
             mind.reset(frame.seed, frame.episode, cue, frame.cue_std)
@@ -94,4 +94,4 @@ if __name__ == "__main__":
         main()
     except stg.UserError as error:
         print(f"agent: {error}", file=sys.stderr)
-        sys.exit(2)  # as the nodes do: the run ends
+        sys.exit(2)  # this ends the run, as a node of the suite does

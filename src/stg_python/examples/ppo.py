@@ -24,7 +24,7 @@ class Normaliser:
         self.count, self.mean, self.squares = 1e-4, np.zeros(size), np.ones(size) * 1e-4
 
     def add(self, x):
-        """Takes the rows of x into the statistics."""
+        """Adds the rows of x to the statistics."""
         x = x.reshape(-1, x.shape[-1]).astype(float)
         total = self.count + len(x)
         offset = x.mean(axis=0) - self.mean
@@ -53,7 +53,7 @@ def network(inputs, outputs, last=None):
 
 
 class Learner:
-    """Actor, critic and what they have seen."""
+    """Actor, critic and the statistics of their inputs."""
 
     def __init__(self, envs, seed):
         torch.manual_seed(seed)
@@ -67,7 +67,7 @@ class Learner:
         self.optimiser = torch.optim.Adam(parameters, lr=1e-3, eps=1e-5)
 
     def policy(self, observations):
-        """Distribution of actions, of normalised observations."""
+        """Distribution of the actions for normalised observations."""
         return torch.distributions.Normal(self.actor(observations), self.log_std.exp())
 
     def values(self, states):
@@ -76,7 +76,7 @@ class Learner:
             return self.critic(self.truth(states)).squeeze(-1).numpy()
 
     def collect(self, envs, observations, states):
-        """LENGTH decisions of all environments; returns what the update needs, and what is next."""
+        """Makes LENGTH decisions in all environments; returns a batch, the next observations and states."""
         batch = {k: [] for k in ("observations", "states", "actions", "log", "rewards", "values", "next")}
         for _ in range(LENGTH):
             seen = self.seen(observations)
@@ -88,7 +88,7 @@ class Learner:
             self.truth.add(states)
             observations, rewards, _, ended, infos = envs.step(actions.numpy())
             states, after = infos["state"], infos["state"]
-            if ended.any():  # V of the last state of what ended, not of the state that follows
+            if ended.any():  # V of the last state of an ended episode, not of the next one's first state
                 after = np.where(ended[:, None], infos["final_info"]["state"], states)
             log = policy.log_prob(actions).sum(-1)
             for k, x in zip(batch, (seen, truth, actions, log, rewards, values, self.values(after))):
@@ -97,7 +97,7 @@ class Learner:
         return {k: torch.stack(v) for k, v in batch.items()}, observations, states
 
     def update(self, batch):
-        """Several passes over what was collected."""
+        """Goes over the batch several times."""
         residuals = batch["rewards"] + GAMMA * batch["next"] - batch["values"]
         advantages, running = torch.zeros_like(residuals), torch.zeros_like(residuals[0])
         for t in reversed(range(LENGTH)):
@@ -122,7 +122,7 @@ class Learner:
 
 
 def main():
-    """Learns, writes the policy, and says how it flies episodes that it has not seen."""
+    """Learns, writes the policy, and prints how it flies episodes that it has not seen."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenario", default="medium_release")
     parser.add_argument("--steps", type=int, default=250000, help="environment steps; whole collections of 100 ENVS are made")

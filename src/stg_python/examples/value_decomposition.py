@@ -30,20 +30,20 @@ class Replay:
         self.rewards = np.zeros(CAPACITY, np.float32)
 
     def add(self, seen, actions, rewards, after):
-        """Takes one transition of every environment."""
+        """Adds one transition of every environment."""
         rows = (self.count + np.arange(len(rewards))) % CAPACITY
         self.seen[rows], self.actions[rows] = seen, actions
         self.rewards[rows], self.after[rows] = rewards, after
         self.count += len(rewards)
 
     def sample(self):
-        """BATCH transitions as tensors."""
+        """BATCH random transitions as tensors."""
         rows = self.random.integers(min(self.count, CAPACITY), size=BATCH)
         return map(torch.from_numpy, (x[rows] for x in (self.seen, self.actions, self.rewards, self.after)))
 
 
 class Learner:
-    """Double Q-learning of the sum."""
+    """Double Q-learning of the sum over the team."""
 
     def __init__(self, size, choices, seed):
         torch.manual_seed(seed)
@@ -55,7 +55,7 @@ class Learner:
         self.optimiser = torch.optim.Adam(self.q.parameters(), lr=5e-4)
 
     def act(self, seen, epsilon, random):
-        """Best choices [envs, N] of observations [envs, N, K], a share epsilon of them random."""
+        """Best choices [envs, N] for observations [envs, N, K]; a share epsilon of them is random."""
         with torch.no_grad():
             values = self.q(torch.from_numpy(seen))
         best = values.argmax(-1).numpy()
@@ -63,7 +63,7 @@ class Learner:
         return np.where(explore, random.integers(values.shape[-1], size=best.shape), best)
 
     def update(self, seen, actions, rewards, after):
-        """One gradient step. Episodes end by truncation alone: the bootstrap is never masked."""
+        """One gradient step. Episodes end by truncation only, so the bootstrap is never masked."""
         with torch.no_grad():
             best = self.q(after).argmax(-1, keepdim=True)
             future = self.target(after).gather(-1, best).squeeze(-1).sum(-1)
@@ -88,7 +88,7 @@ def evaluate(learner, scenario, seed=3000):
 
 
 def main():
-    """Learns, and says how the greedy policy flies episodes that it has not seen."""
+    """Learns, and prints how the greedy policy flies episodes that it has not seen."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenario", default="medium_release")
     parser.add_argument("--steps", type=int, default=200000, help="environment steps")
@@ -108,7 +108,7 @@ def main():
         actions = learner.act(seen, max(0.05, 1.0 - 3.0 * k / rounds), random)
         following, reward, _, ended, infos = envs.step(actions)
         after = following
-        if ended.any():  # the last observation of what ended, not the first of what follows
+        if ended.any():  # the last observation of an ended episode, not the first of the next
             after = np.where(ended[:, None, None], infos["final_obs"], following)
         replay.add(seen, actions, agents * reward, after)
         seen = following

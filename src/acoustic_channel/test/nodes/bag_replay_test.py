@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A bag that is replayed through the channel gives the same packet log, whoever plays it."""
+"""A bag gives the same packet log, whichever program plays it to the channel."""
 
 import csv
 import math
@@ -27,7 +27,7 @@ START_S, DURATION_S = 1000.0, 30.0
 
 
 def odometry(k, t):
-    """Returns vehicle k's odometry: on a circle of 300 m, its stamp rounded to a hundredth."""
+    """Returns the odometry of vehicle k on a circle of 300 m; its stamp is rounded to a hundredth."""
     message = Odometry(child_frame_id=f"{NAMES[k]}/base_link")
     message.header.stamp = rospy.Time.from_sec(round(t, 2))
     message.header.frame_id = "world"
@@ -69,7 +69,7 @@ def write_bag(path):
 
 
 class BagReplay(unittest.TestCase):
-    """One bag, four ways through the channel."""
+    """One bag and four ways to play it to the channel."""
 
     @classmethod
     def setUpClass(cls):
@@ -84,7 +84,7 @@ class BagReplay(unittest.TestCase):
         cls.folder.cleanup()
 
     def run_channel(self, name, popen=None, **parameters):
-        """Starts the channel by itself; returns the process and its packet log."""
+        """Starts the channel alone; returns the process and its packet log."""
         log = pathlib.Path(self.folder.name) / f"{name}.csv"
         config = pathlib.Path(roslib.packages.get_pkg_dir("acoustic_channel")) / "config"
         private = {
@@ -105,7 +105,7 @@ class BagReplay(unittest.TestCase):
 
     def test_a_log_that_does_not_fit_on_the_disk_is_told(self):
         def little_room():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # this makes a write fail instead
             resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
         status, output = self.end_of("full", {"preexec_fn": little_room})
@@ -149,13 +149,13 @@ class BagReplay(unittest.TestCase):
             self.assertIn(f"parameter bag: {damaged}: ", output)
 
     def test_an_index_that_leaves_the_bag_is_not_followed(self):
-        # rosbag reads what the index says, wherever that leads.
+        # rosbag reads wherever the index points.
         whole = bytearray(self.bag.read_bytes())
         damaged = pathlib.Path(self.folder.name) / "index.bag"
         operation = whole.index(b"op=\x04")
         field_length = operation + len("op=") + 1
         count = whole.index(b"count=", operation) + len("count=")
-        entry_offset = count + 4 + 4 + 8  # behind the count, the length of the data and a time
+        entry_offset = count + 4 + 4 + 8  # it comes after the count, the length of the data and a time
         for place, value, reason in (
                 (entry_offset, b"\xff\xff\xff\x0f", "an index entry points at no message"),
                 (count, b"\xff\xff\x00\x00", "another size than stated"),
@@ -180,7 +180,7 @@ class BagReplay(unittest.TestCase):
             subprocess.run(["rosbag", "play", "--clock", "--rate=4", "--quiet",
                             "--wait-for-subscribers", str(self.bag)], check=True, timeout=120.0,
                            stdout=subprocess.DEVNULL, env=os.environ)
-            # gamma's packets are taken, too, and refused only when their time has come.
+            # The channel takes gamma's packets, too, and refuses them only when their time has come.
             wait_for(lambda: self.diagnostics.number("odometry taken") == self.odometry
                      and self.diagnostics.number("packets taken") == self.packets, 30.0,
                      "everything taken")

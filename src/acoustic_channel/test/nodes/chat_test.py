@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The example of the docs: two scripted vehicles chat on the clock of the wall."""
+"""The example of the docs: two scripted vehicles chat on the wall clock."""
 
 import unittest
 
@@ -12,7 +12,7 @@ from fleet_world import wait_for
 
 
 class Chat(unittest.TestCase):
-    """Looks on."""
+    """Listens to both vehicles."""
 
     def test_question_and_answer_go_to_and_fro(self):
         heard = {"alpha": [], "beta": []}

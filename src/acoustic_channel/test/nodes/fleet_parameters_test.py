@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the channel by itself cannot work with ends it at its start, with a message that says why."""
+"""A wrong parameter ends the channel at its start, with a message that says why."""
 
 import pathlib
 import subprocess
@@ -14,10 +14,10 @@ REFUSED = 2
 
 
 class FleetParameters(unittest.TestCase):
-    """Starts the node with one thing wrong at a time."""
+    """Starts the channel with one wrong parameter at a time."""
 
     def refusal(self, **wrong):
-        """Returns what the node says before it ends with the status of bad input."""
+        """Returns what the node says before it ends with the status for bad input."""
         config = pathlib.Path(roslib.packages.get_pkg_dir("acoustic_channel")) / "config"
         right = {"vehicles": ["alpha", "beta"], "config": str(config / "channel.yaml")}
         rospy.set_param("/refused", {**right, **wrong})
@@ -56,7 +56,7 @@ class FleetParameters(unittest.TestCase):
         self.assertIn("config", self.refusal(config=""))
 
     def test_a_clock_that_nobody_publishes(self):
-        # As another run leaves it on a master that lives longer.
+        # Another run leaves the parameter like this on a master that lives longer.
         rospy.set_param("/use_sim_time", True)
         try:
             self.assertIn("/use_sim_time is true, but no node has published /clock",

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The channel by itself: three vehicles of no project, with modems that disturb each other."""
+"""The channel alone: three vehicles of no project, whose modems disturb each other."""
 
 import math
 import unittest
@@ -16,7 +16,7 @@ SOUND_SPEED = 1500.0
 
 
 class Fleet(unittest.TestCase):
-    """Each test leaves the fleet as it found it."""
+    """Each test leaves the fleet as it was before."""
 
     @classmethod
     def setUpClass(cls):
@@ -33,7 +33,7 @@ class Fleet(unittest.TestCase):
         wait_for(lambda: cls.diagnostics.values.get("gamma") == "here", 30.0, "gamma is here")
 
     def say_until_heard(self, sender, receiver, data, **address):
-        """Says it again and again, as one does in noise, until it is heard; returns the packet."""
+        """Repeats a packet, as one does in noise, until the receiver hears it; returns the packet."""
         def heard():
             sender.say(data, **address)
             self.world.pass_time(2.0)
@@ -58,7 +58,7 @@ class Fleet(unittest.TestCase):
         self.assertFalse(self.beta.heard(b"for gamma"))
 
     def test_the_modem_says_what_becomes_of_each_packet(self):
-        # The first leaves, the last waits for its end, those between are replaced.
+        # The first packet leaves, the last one waits for its end, and the others are replaced.
         start = self.world.now() + rospy.Duration(1)
         numbers = [self.alpha.say(b"word %d" % k, stamp=start + rospy.Duration(0.05 * k))
                    for k in range(4)]
@@ -75,7 +75,7 @@ class Fleet(unittest.TestCase):
     def test_who_speaks_at_one_time_hears_nobody(self):
         stamp = self.world.now() + rospy.Duration(0.5)
         self.alpha.say(b"a" * 32, stamp=stamp)
-        # Half a second of sound, a third of a second away.
+        # The sound takes half a second and travels for a third of a second.
         self.beta.say(b"b" * 32, stamp=stamp)
 
         def deaf():
@@ -94,7 +94,7 @@ class Fleet(unittest.TestCase):
         answer = wait_for(answered, 60.0, "an answer")
         self.assertAlmostEqual(answer.range, 500.0, delta=1.0)
         self.assertAlmostEqual(answer.round_trip, 2.0 * 500.0 / SOUND_SPEED, delta=0.02)
-        # Itself, who is not in the list, and who is but never said where it is.
+        # The vehicle itself, a vehicle that is not in the list, and one that never said where it is.
         for source, destination in ((10, 10), (10, 7), (0, 20), (10, 40)):
             refused = ping(source=source, destination=destination, timeout=5.0)
             self.assertFalse(refused.success)

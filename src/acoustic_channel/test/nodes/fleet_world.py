@@ -1,4 +1,4 @@
-"""What the tests of the channel by itself share: a clock, vehicles on it, and waiting."""
+"""Shared by the tests of the channel alone: a clock, vehicles that use it, and waiting."""
 
 import threading
 import time
@@ -27,12 +27,12 @@ class Diagnostics:
                 self.level, self.message = status.level, status.message
 
     def number(self, key):
-        """Returns a count, 0 before there is any."""
+        """Returns a count, or 0 if there is none yet."""
         return float(self.values.get(key, 0))
 
 
 class Vehicle:
-    """Stands at `position`; remembers what its modem says."""
+    """Stays at `position` and keeps what its modem says."""
 
     def __init__(self, name, number, position):
         self.name, self.number, self.position, self.silent = name, number, position, False
@@ -45,7 +45,7 @@ class Vehicle:
             rospy.Subscriber(f"/{name}/acoustic/status", TransmitStatus, self.status.append)]
 
     def odometry(self, stamp):
-        """Returns its odometry at that time."""
+        """Returns the vehicle's odometry at that time."""
         message = Odometry(child_frame_id=f"{self.name}/base_link")
         message.header.stamp, message.header.frame_id = stamp, "world"
         p = message.pose.pose.position
@@ -62,7 +62,7 @@ class Vehicle:
         return self.said
 
     def fate(self, number):
-        """Returns the statuses of one of its packets, in order."""
+        """Returns the statuses of one packet of the vehicle, in order."""
         return [s for s in self.status if s.sequence == number]
 
     def heard(self, data):
@@ -70,12 +70,12 @@ class Vehicle:
         return [p for p in self.received if p.data == data]
 
     def connected(self):
-        """Whether the channel hears it and is heard."""
+        """Tells whether the channel hears the vehicle and the vehicle hears the channel."""
         return all(c.get_num_connections() > 0 for c in (self.odom, self.tx, *self._subscribers))
 
 
 class World:
-    """Publishes /clock and every vehicle's odometry, ten times a second of its own time."""
+    """Publishes /clock and the odometry of all vehicles, ten times in a second of its own time."""
 
     PERIOD_NS = 100_000_000
 
@@ -108,6 +108,6 @@ class World:
             self._now += rospy.Duration.from_sec(seconds)
 
     def pass_time(self, seconds):
-        """Waits for so much of its own time."""
+        """Waits for so many seconds of its own time."""
         end = self.now() + rospy.Duration.from_sec(seconds)
         wait_for(lambda: self.now() >= end, 60.0, f"{seconds} s of simulated time")
