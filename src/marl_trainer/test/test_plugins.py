@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Libraries of others: what they add is found by every program, from every place that names it."""
+"""Libraries of others: every program finds what they add, from every place that can name them."""
 
 import json
 import os
@@ -33,7 +33,7 @@ def run(package, program, *arguments, **options):
 
 
 def evaluate(*arguments, **options):
-    """Returns the metrics of a short evaluation of the controller `pursuit`, or of another."""
+    """Returns the metrics of a short evaluation, of `pursuit` unless the arguments name another policy."""
     given = arguments if "--policy" in arguments else ("--policy", "pursuit", *arguments)
     status, output, errors = run(
         "marl_trainer", "evaluate", "--episodes", 2, "--workers", 1, *SHORT, *given, **options
@@ -124,14 +124,14 @@ class Plugins(unittest.TestCase):
     def test_python(self):
         overrides = {"target.motion": "zigzag", "target.zigzag.leg_s": 7.0}
         stg.load_plugin(library("zigzag"))
-        stg.load_plugin(library("zigzag"))  # nothing is added twice
+        stg.load_plugin(library("zigzag"))  # this adds nothing a second time
         scenario = stg.load_scenario("medium", overrides=overrides)
         self.assertEqual(scenario["target.zigzag.leg_s"], 7.0)
         again = stg.Scenario.from_yaml(scenario.to_yaml())
         self.assertEqual(again.hash, scenario.hash)
         text = scenario.to_yaml().replace(library("zigzag"), library("lottery"))
         with self.assertRaisesRegex(stg.UserError, "text:1: plugins: .*liblottery.so: is not loaded"):
-            stg.Scenario.from_yaml(text)  # of a bag, perhaps
+            stg.Scenario.from_yaml(text)  # such a text may come from a bag
         stg.load_plugin(library("unicycle"))
         unicycle = {"vehicle.model": "unicycle", "vehicle.unicycle.lag_s": 2.0}
         self.assertIn("lag_s: 2", stg.load_scenario("medium", overrides=unicycle).to_yaml())

@@ -1,4 +1,4 @@
-"""What the reproduce command publishes: rows that are kept, and episodes that it refuses."""
+"""What the reproduce command publishes: it keeps rows, and it refuses some episodes."""
 
 import shutil
 import unittest

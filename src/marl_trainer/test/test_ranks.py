@@ -21,7 +21,7 @@ class Ranks(StudyCase):
 
     def setUp(self):
         super().setUp()
-        # mpirun refuses root, which containers are.
+        # mpirun refuses to run as root, and containers run as root.
         for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
             os.environ[name] = "1"
 
@@ -32,7 +32,7 @@ class Ranks(StudyCase):
         return [*launcher, *mine]
 
     def parents(self):
-        """Processes that started the stubs, and forgets them."""
+        """Returns the processes that started the stubs, and forgets them."""
         path = os.path.join(self.folder, "parents")
         with open(path, encoding="utf-8") as file:
             lines = file.read().split()
@@ -40,13 +40,13 @@ class Ranks(StudyCase):
         return set(lines)
 
     def results(self):
-        """Name and content of everything that the study says."""
+        """Returns the names and contents of all files that the study publishes."""
         names = ("results.csv", "curves.csv", "runs.csv", "study.yaml")
         with open(self.path("episodes.csv.gz"), "rb") as file:
             return {"episodes.csv.gz": file.read(), **{name: self.read(name) for name in names}}
 
     def sleeping(self, process):
-        """Waits until two trainings sleep; their folders."""
+        """Waits until two trainings sleep; returns their folders."""
         folders = [self.path(f"work/runs/medium_release/stg/seed{seed}") for seed in (0, 1)]
         deadline = time.monotonic() + 60.0
         while not all(os.path.exists(os.path.join(f, "sleeping")) for f in folders):
@@ -56,7 +56,7 @@ class Ranks(StudyCase):
         return folders
 
     def start(self, *arguments):
-        """The command on trainings that sleep."""
+        """Starts the command with trainings that sleep."""
         process = subprocess.Popen(
             self.command("--no-report", *arguments),
             env=dict(os.environ, STUB_SLEEP="60"),
@@ -68,7 +68,7 @@ class Ranks(StudyCase):
         return process
 
     def resume(self, folders):
-        """The same command again, which continues the trainings."""
+        """Runs the same command again, which continues the trainings."""
         for folder in folders:
             deadline = time.monotonic() + 60.0
             while not os.path.exists(os.path.join(folder, "checkpoint_000000000001.ckpt")):
@@ -96,7 +96,7 @@ class Ranks(StudyCase):
         self.assertEqual(self.results(), spread)
 
     def test_failed_training_is_named_and_the_rest_goes_on(self):
-        # Of the two first trainings, rank 1 gets the second.
+        # Two trainings come first. Rank 1 gets the second one.
         status, output, _ = self.reproduce("--no-training")
         self.assertEqual(status, 0, output)
         status, output, _ = self.reproduce(STUB_FAIL="tau6/seed0")
@@ -111,7 +111,7 @@ class Ranks(StudyCase):
     def test_asked_to_stop_all_trainings_save_and_are_resumed(self):
         process = self.start("--methods", "stg")
         folders = self.sleeping(process)
-        process.send_signal(signal.SIGUSR1)  # mpirun passes it on to all
+        process.send_signal(signal.SIGUSR1)  # mpirun passes the signal on to all
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, output)
         self.assertIn("stopped; the same command continues", output)

@@ -1,4 +1,4 @@
-"""Tests of the reproduce command with stand-ins for the programs it runs."""
+"""Tests of the reproduce command. Stand-ins replace the programs that it runs."""
 
 import gzip
 import json
@@ -112,7 +112,8 @@ class Reproduce(StudyCase):
         self.assertEqual(sorted(c.split()[0] for c in calls), ["evaluate", "evaluate", "train"])
 
     def start(self, *arguments, **options):
-        """The command on a training that sleeps, as soon as it does; the process and its folder."""
+        """Starts the command and waits until its training sleeps; returns the process and the run's
+        folder."""
         process = subprocess.Popen(
             self.command("--methods", "stg", "--seeds", "0", *arguments),
             env=dict(os.environ, STUB_SLEEP="60"),
@@ -150,8 +151,8 @@ class Reproduce(StudyCase):
             preexec_fn=hangups.takes(terminal),
         )
         os.close(terminal)
-        os.close(ours)  # what it says now has nowhere to go
-        # It is not the signal that ends it: it waits until the training has saved.
+        os.close(ours)  # its output now has nowhere to go
+        # The signal does not end it at once. It waits until the training has saved.
         self.assertGreater(process.wait(timeout=60), 0)
         self.assertTrue(os.path.exists(os.path.join(run, "checkpoint_000000000001.ckpt")))
 
@@ -208,7 +209,7 @@ class Reproduce(StudyCase):
             self.assertIn("reproduce: ", output)
 
     def test_report_is_made_of_what_is_there(self):
-        """A missing training leaves dashes, and the report says nothing of it as if measured."""
+        """A missing training leaves dashes. The report does not show it as measured."""
         status, output, _ = self.reproduce_all("--no-training")
         self.assertEqual(status, 0, output)
         page = self.read("medium_release.md")
@@ -218,7 +219,7 @@ class Reproduce(StudyCase):
         self.assertNotIn("convergence", page)
 
     def refused(self, what, *arguments):
-        """The command must end in one line that says `what`."""
+        """Expects that the command ends in one line that says `what`."""
         status, output, calls = self.reproduce_all(*arguments)
         self.assertEqual((status, calls), (2, []), output)
         self.assertRegex(output.splitlines()[-1], f"^reproduce: .*{what}")
@@ -299,7 +300,7 @@ class Reproduce(StudyCase):
         self.refused("curves.csv:1: no column tail_distance", "--report-only")
 
     def test_reports_of_less_than_the_study_asks_for(self):
-        """Results without a seed, a condition, or any validation that two seeds have in common."""
+        """Results lack a seed, a condition, or a validation that two seeds have in common."""
         self.assertEqual(self.reproduce()[0], 0)
         episodes = gzip.decompress(self.read_bytes("episodes.csv.gz")).decode().splitlines(True)
         curves = self.read("curves.csv").splitlines(True)

@@ -1,4 +1,4 @@
-"""Tests of the search of options: draws, choice, files."""
+"""Tests of the search of options: its draws, its choice and its files."""
 
 import csv
 import math
@@ -40,13 +40,13 @@ class Draws(unittest.TestCase):
         self.assertEqual(trials[0], {})
         rates = [trial["lr"] for trial in trials[1:]]
         self.assertTrue(all(1e-4 <= rate <= 1e-2 for rate in rates))
-        # Evenly in the logarithm: half of them below the geometric mean, 1e-3, +- 4 sigma.
+        # The draws are even in the logarithm. Half of them are below the geometric mean, 1e-3, +- 4 sigma.
         below = sum(rate < 1e-3 for rate in rates)
         self.assertLess(abs(below - 19.5), 4.0 * 39**0.5 / 2.0)
         self.assertEqual({trial["epochs"] for trial in trials[1:]}, {2, 3})
 
     def test_rounding_does_not_leave_a_narrow_interval(self):
-        # Two digits of these are 0.99, which is below, and 1, which is above.
+        # With two digits these would become 0.99, which is below, and 1, which is above.
         narrow = sample(algorithms={"masac": {"gamma": {"log": [0.992, 0.998]}}}, trials=40)
         drawn = [trial["gamma"] for trial in search.trials_of(narrow, "masac")[1:]]
         self.assertTrue(all(0.992 <= gamma <= 0.998 for gamma in drawn), drawn)
@@ -66,7 +66,7 @@ class Draws(unittest.TestCase):
         on_policy = [search.trials_of(shipped, name) for name in ("mappo", "ippo", "happo")]
         self.assertEqual(on_policy[0], on_policy[1])
         self.assertEqual(on_policy[0], on_policy[2])
-        # So the gradient steps an update (epochs times minibatches) are equal, too.
+        # The gradient steps per update (epochs times minibatches) are then equal, too.
         maddpg, masac = (search.trials_of(shipped, name) for name in ("maddpg", "masac"))
         shared = set(shipped.algorithms["maddpg"]) & set(shipped.algorithms["masac"])
         self.assertGreaterEqual(shared, {"lr", "critic-lr", "tau", "n-step", "batch"})

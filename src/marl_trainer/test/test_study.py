@@ -1,4 +1,4 @@
-"""Tests of a study's parts: time left, table cells, the paper's figures, the reader of studies."""
+"""Tests of the parts of a study: time left, table cells, the paper's figures, the reader of studies."""
 
 import os
 import tempfile
@@ -16,7 +16,7 @@ from stg_study.figures_curves import comparable
 
 
 class Job:
-    """A job as the estimate sees it."""
+    """What the estimate needs to know of a job."""
 
     def __init__(self, kind, fraction=0.0):
         self.kind, self._fraction = kind, fraction
@@ -26,7 +26,7 @@ class Job:
 
 
 class Running:
-    """A job that runs, `seconds` ago begun at `start_fraction`."""
+    """A job that has run for `seconds` and began at `start_fraction`."""
 
     def __init__(self, job, seconds, start_fraction=0.0):
         self.job, self.start_fraction, self._seconds = job, start_fraction, seconds
@@ -47,7 +47,7 @@ class TimeLeft(unittest.TestCase):
     def test_running_training_tells_before_any_is_finished(self):
         estimate = runner.Estimate()
         self.assertIsNone(estimate.left([Job("training")], [], 1))
-        # A resumed training went from one half to three quarters in 10 s: 40 s for a whole one.
+        # A resumed training went from one half to three quarters in 10 s. A whole one takes 40 s.
         running = [Running(Job("training", 0.75), 10.0, 0.5)]
         self.assertEqual(estimate.left([Job("training")], running, 1), 50.0)
 
@@ -82,7 +82,7 @@ class Cost(unittest.TestCase):
 
 
 class PaperFigures(unittest.TestCase):
-    """The transcription of the paper's tables, against the paper and against itself."""
+    """Compares the copied tables of the paper with the paper and with each other."""
 
     def setUp(self):
         self.paper = Paper()
@@ -117,7 +117,7 @@ class PaperFigures(unittest.TestCase):
                 self.assertEqual(self.paper.seeds(table, algorithm), ["0", "1", "2"])
 
     def test_average_returns_are_the_mean_of_the_stress_tables(self):
-        """Tables 1 and 2 average Tables S7 and S8, which pins the transcription of 84 returns."""
+        """Tables 1 and 2 average Tables S7 and S8. This checks 84 copied returns."""
         for main, stress in (("1", "S7"), ("2", "S8")):
             for algorithm in self.paper.algorithms(main):
                 returns = [
@@ -130,7 +130,7 @@ class PaperFigures(unittest.TestCase):
     def test_final_stages_are_the_mean_of_the_seeds(self):
         for final, seeds in (("S3", "S4"), ("S5", "S6")):
             for algorithm in self.paper.algorithms(final):
-                for _, metric, digits in tables.FINAL[1:]:  # of the returns, the training's
+                for _, metric, digits in tables.FINAL[1:]:  # only the return of the training
                     name = tables.PAPER_NAME.get(metric, metric)
                     mean, std = self.paper.get(final, algorithm, name)
                     values = [self.paper.get(seeds, algorithm, name, seed=s)[0] for s in range(3)]
@@ -217,7 +217,8 @@ class Studies(unittest.TestCase):
         for name in names:
             loaded = study.load_study(os.path.join(folder, name))
             self.assertEqual(loaded.name, name[:-5])
-            # The reporting block, env/seed_blocks.hpp: tables come from episodes that chose nothing.
+            # The reporting block, env/seed_blocks.hpp: tables come from episodes that did not choose
+            # anything.
             self.assertEqual(loaded.evaluation_seed_of(2), 5020000)
             self.assertLess(loaded.evaluation_seed_of(max(loaded.seeds)) + loaded.episodes, 6000000)
             self.assertEqual(loaded.episodes, 100)

@@ -1,4 +1,4 @@
-"""The train command as a user runs it: interrupted, resumed, and refused."""
+"""The train command as a user runs it: it is interrupted, resumed and refused."""
 
 import csv
 import hashlib
@@ -29,7 +29,7 @@ class Train(unittest.TestCase):
         (self.program,) = roslib.packages.find_node("marl_trainer", "train")
 
     def start(self, *options, **streams):
-        """Starts a training in the folder of the run."""
+        """Starts a training in the run's folder."""
         process = subprocess.Popen(
             [self.program, "--out", str(self.run_folder), *SMALL, *options],
             universal_newlines=True,
@@ -38,7 +38,7 @@ class Train(unittest.TestCase):
         return process
 
     def train(self, *options):
-        """Returns the exit status and the output of a whole training."""
+        """Runs a whole training; returns its exit status and output."""
         process = self.start(*options)
         output, _ = process.communicate(timeout=60)
         return process.returncode, output
@@ -69,8 +69,8 @@ class Train(unittest.TestCase):
         self.assertEqual(summary["stopped"], "finished")
 
     def test_the_pages_say_truly_what_chooses_a_checkpoint_and_which_return_is_which(self):
-        """What report.CONVENTIONS says of returns and checkpoints, of the programs that the numbers
-        come from: a training on another reward, and its evaluation."""
+        """Checks what report.CONVENTIONS says of returns and checkpoints with the programs themselves: a
+        training on another reward, and its evaluation."""
         status, output = self.train("--steps", "2000", "--variant", "tau6", "--validation-interval", "200",
                                     "--validation-episodes", "2")  # fmt: skip
         self.assertEqual(status, 0, output)
@@ -80,14 +80,14 @@ class Train(unittest.TestCase):
         best = max(rows, key=lambda row: float(row["validation_return"]))
         with open(self.run_folder / "policy_best.onnx", "rb") as file:
             kept = file.read()
-        # The policy's name ends with the step that it was saved at.
+        # The name of the policy ends with the step at which it was saved.
         self.assertIn(f"-seed0-{best['env_steps']}".encode(), kept)
         self.assertNotEqual(best["validation_return"], best["validation_scenario_return"])
 
         (evaluate,) = roslib.packages.find_node("marl_trainer", "evaluate")
         done = {}
-        # Validation's own episodes, once with the reward of the scenario and once with that of the
-        # variant, as both would be flown without a variant's name.
+        # The episodes of the validation, once with the reward of the scenario and once with the one of the
+        # variant. They are flown as without the name of a variant.
         for reward in ("paper", "release"):
             command = [evaluate, "--policy", str(self.run_folder / "policy_best.onnx"), "--scenario",
                        "medium_release", "--variant", "tau6", "--episodes", "2", "--seed", "900000",
@@ -95,9 +95,9 @@ class Train(unittest.TestCase):
             text = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
             done[reward] = json.loads(text.splitlines()[-1])
         self.assertEqual(done["release"]["seed_block"], "choosing")
-        # The scenario's reward makes `return`, whatever the variant trains with ...
+        # The reward of the scenario gives `return`, whatever the variant trains with ...
         self.assertNotEqual(done["paper"]["return"], done["release"]["return"])
-        # ... and has no part in `training_return`, which is that of the validation.
+        # ... and does not change `training_return`, which is the return of the validation.
         self.assertEqual(done["paper"]["training_return"], done["release"]["training_return"])
         self.assertAlmostEqual(done["release"]["training_return"], float(best["validation_return"]),
                                delta=0.01 * abs(float(best["validation_return"])))  # fmt: skip
@@ -105,7 +105,7 @@ class Train(unittest.TestCase):
                                delta=0.01 * abs(float(best["validation_scenario_return"])))  # fmt: skip
 
     def wait_for_rows(self, process):
-        """Waits until a training has told of three collections."""
+        """Waits until a training has written three collections."""
         end = time.monotonic() + 30
         while process.poll() is None and time.monotonic() < end:
             if (self.run_folder / "progress.csv").exists() and len(self.steps()) > 2:
@@ -119,7 +119,7 @@ class Train(unittest.TestCase):
         os.close(terminal)
         self.wait_for_rows(process)
         os.close(ours)
-        process.send_signal(signal.SIGHUP)  # as the shell does, too
+        process.send_signal(signal.SIGHUP)  # the shell sends it, too
         self.assertEqual(process.wait(timeout=30), 130)
         status, output = self.train("--resume", "--steps", str(self.steps()[-1] + 100))
         self.assertEqual(status, 0, output)
@@ -140,9 +140,9 @@ class Train(unittest.TestCase):
             self.assertEqual(status, 2, output)
             self.assertEqual(
                 output, f"train: {self.run_folder}: another program is writing into it\n")
-        first.kill()  # its lock goes with it
+        first.kill()  # this also frees its lock
         first.communicate(timeout=30)
-        # Refused, or begun anew where nothing was saved yet: either way it has the folder.
+        # The second run is refused, or begins anew if nothing was saved. In both cases it gets the folder.
         _, output = self.train("--steps", "100")
         self.assertNotIn("another program", output)
 
@@ -196,12 +196,12 @@ class Train(unittest.TestCase):
         self.assertEqual(after.pop("config.json"), dict(before.pop("config.json"), steps=650))
         self.assertEqual(after, before)
         self.assertEqual(len(after), 3)
-        # More steps than asked for are no more than all of them.
+        # A run with more steps than it was asked for still shows 100 %.
         shown = re.findall(r"([0-9.]+)% +[0-9]+ steps", resumed.stdout)
         self.assertEqual(shown[-1], "100.0", resumed.stdout)
 
     def state(self):
-        """Returns what the folder says of the run."""
+        """Returns what the files of the folder say of the run."""
         files = {path.name: path.read_text(encoding="utf-8")
                  for path in [*self.run_folder.glob("*.yaml"), self.run_folder / "config.json"]}
         return {name: json.loads(text) if name.endswith("json") else text

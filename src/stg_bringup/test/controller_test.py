@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every command meets its odometry, whichever of the two comes first and however far ahead."""
+"""Every command meets its odometry, whichever of them comes first and however early it comes."""
 
 import unittest
 
@@ -12,7 +12,7 @@ from nav_msgs.msg import Odometry
 
 
 class Controller(unittest.TestCase):
-    """This test is the world and the agent of one controller."""
+    """This test plays the world and the agent for one controller."""
 
     @classmethod
     def setUpClass(cls):
@@ -42,7 +42,7 @@ class Controller(unittest.TestCase):
         self.commands.publish(message)
 
     def navigate(self, step, episode_step=None):
-        """Sends the odometry of a step, where it tells of no frame after its frame."""
+        """Sends the odometry of a step. For a torpedo it sends the sensor frame first, if there is one."""
         if self.torpedo and episode_step is not None:
             self.frame(step, episode_step)
         message = Odometry()
@@ -62,7 +62,7 @@ class Controller(unittest.TestCase):
         self.frames.publish(message)
 
     def answered(self, steps):
-        """Returns whether exactly these steps have been answered, in this order."""
+        """Tells whether exactly these steps have been answered, in this order."""
         return [m.header.stamp for m in self.answers] == [self.stamp(k) for k in steps]
 
     def test_1_commands_that_are_two_steps_ahead_are_all_answered(self):
@@ -71,7 +71,7 @@ class Controller(unittest.TestCase):
         wait_for(lambda: self.answered([0]), 10.0, "the first step")
         self.command(1)
         self.command(2)
-        rospy.sleep(0.5)  # they come before the odometry, over a connection of their own
+        rospy.sleep(0.5)  # they come before the odometry, on another connection
         self.navigate(1, 1)
         rospy.sleep(0.2)
         self.navigate(2, 2)
@@ -82,7 +82,7 @@ class Controller(unittest.TestCase):
             return
         steer = {}
         for begin in (20, 40):
-            # The frame of the new episode overtakes the last odometry of the one before.
+            # The frame of the new episode comes before the last odometry of the old one.
             del self.answers[:]
             for k in range(5 if begin == 40 else 2):
                 self.navigate(begin - 8 + k, 3 + k)
@@ -92,7 +92,7 @@ class Controller(unittest.TestCase):
             rospy.sleep(0.3)
             if begin == 40:
                 answers = len(self.answers)
-                self.navigate(begin - 3.6)  # answered by the command of the step before
+                self.navigate(begin - 3.6)  # the command of the step before answers it
                 wait_for(lambda: len(self.answers) > answers, 10.0, "an answer between decisions")
             self.navigate(begin)
             self.command(begin)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Each node is killed, and stopped for five seconds: the run goes on, and says what it missed.
+"""Each node is killed, and stopped for five seconds. The run goes on, and says what it has missed.
 
 docs/faults.md has the results as a table.
 """
@@ -21,7 +21,7 @@ NODES = ("/auv_0/agent", "/auv_0/controller", "/acoustic_channel", "/metrics")
 
 @contextlib.contextmanager
 def stopped(node):
-    """A node that hangs, and goes on in the end."""
+    """Stops a node, as if it hung, and lets it go on in the end."""
     pid = rosnode_pid(node)
     os.kill(pid, signal.SIGSTOP)
     try:
@@ -31,7 +31,7 @@ def stopped(node):
 
 
 class FaultMatrix(unittest.TestCase):
-    """Short episodes without end; each test leaves the graph at work."""
+    """Short episodes without end. Each test leaves all nodes at work."""
 
     @classmethod
     def setUpClass(cls):
@@ -45,14 +45,14 @@ class FaultMatrix(unittest.TestCase):
         cls.swarm.wait(40.0)
 
     def check_all_is_well(self):
-        """Everybody takes part, and whole episodes are flown without a miss of the channel."""
+        """Every node takes part, and whole episodes are flown without a miss of the channel."""
         for latest in self.tasks + self.receptions:
             latest.wait_for_more(5, 40.0)
         for i, task in enumerate(self.tasks):
             others = sorted({0, 1, 2, 3} - {i})
             wait_for(lambda task=task, others=others: sorted(task.message.neighbours) == others,
                      30.0, f"AUV {i} hears all others")
-        episode = self.swarm.message.episode + 1  # began after the fault
+        episode = self.swarm.message.episode + 1  # this one begins after the fault
         wait_for(lambda: any(s.complete and s.steps == 100 for s in self.summaries
                              if s.episode >= episode), 60.0, "a complete episode")
 
@@ -64,13 +64,13 @@ class FaultMatrix(unittest.TestCase):
         self.check_all_is_well()
         wait_for_restart("/auv_0/controller", kill("/auv_0/controller"))
         self.check_all_is_well()
-        with stopped("/auv_0/controller"):  # one that is killed may be back before it is missed
+        with stopped("/auv_0/controller"):  # a killed one may be back before the world misses it
             time.sleep(2.0)
 
         def same():
             counted = int(self.world("steps with a deadline miss"))
             told = sum(s.deadline_misses for s in self.summaries)
-            # The world waits for no listener: whole episodes may pass metrics by while it races on.
+            # The world does not wait for listeners. The metrics may miss whole episodes while it races on.
             episodes = {s.episode for s in self.summaries}
             untold = 100 * (max(episodes) + 1 - len(episodes))
             self.counts = f"{counted} counted by the world, {told} told, at most {untold} not"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What goes wrong at sea: bad messages, dead nodes, a silent modem, resets in the middle."""
+"""Faults at sea: bad messages, dead nodes, a silent modem, resets in the middle of an episode."""
 
 import os
 import pathlib
@@ -21,7 +21,7 @@ NAN = float("nan")
 
 
 class Faults(unittest.TestCase):
-    """One long episode; each test leaves the graph running as it found it."""
+    """One long episode. Each test leaves all nodes as it found them."""
 
     @classmethod
     def setUpClass(cls):
@@ -42,9 +42,9 @@ class Faults(unittest.TestCase):
         return self.diagnostics.value(node, f"refused {topic}: {reason}")
 
     def check_refusals(self, node, topic, message_type, frames, spoil):
-        """Sends spoilt messages of each kind; each kind must be refused, counted and shown.
+        """Sends spoilt messages of each kind. The node must refuse, count and show each kind.
 
-        `frames` are the right frame and a wrong one; spoil(message) makes a number NaN.
+        `frames` are the right frame and a wrong one. spoil(message) makes a number NaN.
         """
         publisher = rospy.Publisher(topic, message_type, queue_size=10)
         key = topic if node == "world" else topic.rsplit("/", 1)[1]
@@ -125,7 +125,7 @@ class Faults(unittest.TestCase):
         try:
             time.sleep(0.5)
             heard, step = self.reception.count, self.task.message.step
-            # Ten seconds of silence, and neighbours are forgotten.
+            # After ten seconds of silence, neighbours are forgotten.
             wait_for(lambda: not self.task.message.neighbours, 20.0, "neighbours forgotten")
             self.assertLessEqual(self.reception.count, heard + 1)
             self.assertGreater(self.task.message.step, step + 20)
@@ -138,7 +138,7 @@ class Faults(unittest.TestCase):
         pid = rosnode_pid("/auv_0/agent")
         os.kill(pid, signal.SIGSTOP)
         try:
-            # A channel that has just come up does not know that AUV 0 is gone.
+            # A channel that has just started does not know that AUV 0 is gone.
             wait_for_restart("/acoustic_channel", kill("/acoustic_channel"))
             for i, task in zip((1, 2, 3), others):
                 heard = sorted({1, 2, 3} - {i})

@@ -1,4 +1,4 @@
-"""What the tests of the running graph share: waiting, and the newest message of each topic."""
+"""Shared by the tests of running nodes: waiting, and the newest message of each topic."""
 
 import os
 import signal
@@ -25,7 +25,7 @@ class Latest:
         self.count += 1
 
     def wait(self, timeout_s=20.0):
-        """Returns the newest message, waiting for the first one."""
+        """Returns the newest message. Waits for the first one."""
         return wait_for(lambda: self.message, timeout_s, self._subscriber.name)
 
     def wait_for_more(self, number, timeout_s=20.0):
@@ -48,7 +48,7 @@ class SummaryOf:
             self.message = message
 
     def wait(self, timeout_s):
-        """Returns it."""
+        """Waits for the summary and returns it."""
         return wait_for(lambda: self.message, timeout_s, f"summary of seed {self.seed}")
 
 
@@ -92,6 +92,6 @@ def wait_for_restart(node, old_pid, timeout_s=20.0):
         try:
             return rosnode_pid(node) != old_pid
         except Exception:  # pylint: disable=broad-except
-            return False  # between two lives a node is unknown or unreachable
+            return False  # between its two lives the node is unknown or unreachable
 
     wait_for(restarted, timeout_s, f"{node} comes back")

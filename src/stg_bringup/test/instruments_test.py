@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the AUVs' instruments say is what the world says, in the instruments' terms."""
+"""The AUVs' instruments say the same as the world, in their own terms."""
 
 import math
 import unittest
@@ -113,7 +113,7 @@ class Instruments(unittest.TestCase):
             self.assertGreaterEqual(frame.pose.position.z, -0.5)
             east = (message.longitude - 10.25) * metres_a_degree * math.cos(math.radians(54.5))
             north = (message.latitude - 54.5) * metres_a_degree
-            # A sphere is right to half a percent of some hundred metres.
+            # A sphere has an error of up to half a percent over some hundred metres.
             self.assertAlmostEqual(east, frame.pose.position.x, delta=6.0)
             self.assertAlmostEqual(north, frame.pose.position.y, delta=6.0)
         deep = [f for f in self.heard["sensor_frame"].values() if f.pose.position.z < -0.5]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whichever of its topics connects first, a node does the same: nothing is lost at the start."""
+"""A node does the same, whichever of its topics connects first. It loses nothing at the start."""
 
 import unittest
 
@@ -13,8 +13,8 @@ from graph_listener import Latest, wait_for
 from nav_msgs.msg import Odometry
 
 AGENTS = 4
-PART_S, PARTS = 0.2, 5  # periods of the autopilot in one of decisions
-BRIEF_S = 1.0  # of the wall clock: longer than the agent's patience, shorter than at the start
+PART_S, PARTS = 0.2, 5  # periods of the autopilot in one decision
+BRIEF_S = 1.0  # on the wall clock: longer than the agent's patience, shorter than its patience at the start
 
 
 def stamp_of(seconds):
@@ -30,14 +30,14 @@ def frame_of(auv, run, seconds):
 
 
 def hears(node, topic):
-    """Returns whether a node has a connection to a publisher of a topic, or looks for one."""
+    """Tells whether a node has a connection to a publisher of a topic, or looks for one."""
     uri = rosgraph.Master("/stg_test").lookupNode(node)
     connections = rosnode.ServerProxy(uri).getBusInfo("/stg_test")[2]
     return any(way == "i" and name == topic for _, _, way, _, name, *_ in connections)
 
 
 class Controller:
-    """The controller of AUV 0 and the steps that it is led through."""
+    """The controller of AUV 0, and the steps that the test gives to it."""
 
     def __init__(self):
         self.actuators = Latest("/auv_0/actuators", ActuatorCommand)
@@ -78,7 +78,7 @@ class Controller:
 
 class LateConnections(unittest.TestCase):
     def test_an_autopilot_begins_with_the_episode_whenever_that_is_announced(self):
-        """Its memory is that of the usual order, in which the frame is there first."""
+        """Its memory is the same as in the usual order, in which the frame comes first."""
         controller = Controller()
         controller.command(1.0)
         controller.move(1.0)
@@ -97,8 +97,8 @@ class LateConnections(unittest.TestCase):
         self.assertNotEqual(usual[0], usual[-1], "an autopilot without memory shows nothing")
         self.assertEqual(late, usual)
 
-        # The clock goes back, and nobody sends frames: another run, known by its odometry alone,
-        # which the velocity that answers it may overtake.
+        # The clock goes back, and no node sends frames. The controller knows the new run by its odometry
+        # alone. The velocity that answers the odometry may come before it.
         self.assertTrue(hears("/auv_0/controller", "/auv_0/sensor_frame"))
         frames.unregister()
         wait_for(lambda: not hears("/auv_0/controller", "/auv_0/sensor_frame"), 20.0,
@@ -110,7 +110,7 @@ class LateConnections(unittest.TestCase):
         self.assertEqual(again, usual)
 
     def test_an_agent_begins_when_its_modem_is_connected(self):
-        """A window that is sent before would be lost, and with it the packets in it."""
+        """A window that is sent earlier would be lost with its packets."""
         commands = Latest("/auv_1/cmd_vel", TwistStamped)
         frames = rospy.Publisher("/auv_1/sensor_frame", SensorFrame, queue_size=10, latch=True)
         frames.publish(frame_of(1, 1, 1.0))

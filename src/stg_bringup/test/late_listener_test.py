@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Who is waited for hears the whole run, however slowly it subscribes."""
+"""A node that the world waits for hears the whole run, however slowly it subscribes."""
 
 import collections
 import unittest
@@ -10,7 +10,7 @@ from auv_msgs.msg import EpisodeSummary, SensorFrame
 from graph_listener import wait_for
 
 AGENTS = 4
-PAUSE_S = 0.8  # of the wall clock, between two subscriptions: less than they must stand still for
+PAUSE_S = 0.8  # on the wall clock between two subscriptions; the world waits longer than this
 STEPS = 50
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Publishes a run of known content and checks what the marker node makes of it."""
+"""Publishes a run with known content and checks the markers of the marker node."""
 
 import math
 import threading
@@ -39,8 +39,8 @@ class Run:
         self.scenario.publish(synthetic_bag.SCENARIO.replace("1.0}", "2.0}"))
 
     def publish(self, k, dropped=0, position=None, clash=None):
-        """Publishes step k; `dropped` packets lost on every link; AUV 0 at `position` if given;
-        `clash`: AUV 1 sends for a second, and 2 loses its packet for that reason."""
+        """Publishes step k. `dropped` packets are lost on every link. AUV 0 is at `position` if it is given.
+        `clash`: AUV 1 sends for a second, and AUV 2 loses its packet for that reason."""
         t = k * synthetic_bag.STEP_S
         stamp = rospy.Time(1, 0) + rospy.Duration.from_sec(t)
         target = synthetic_bag.odometry("target_0", stamp, synthetic_bag.target_at(t), (1, 0))
@@ -88,7 +88,7 @@ class Markers(unittest.TestCase):
         cls.step = 0
 
     def shown(self, view, namespace):
-        """Returns the markers on show in a namespace of the newest array."""
+        """Returns the markers that are shown in a namespace of the newest array."""
         markers = self.arrays[view] or []
         return [m for m in markers if m.ns == namespace and m.action == Marker.ADD]
 
@@ -106,7 +106,7 @@ class Markers(unittest.TestCase):
     def test_every_auv_has_a_hull_in_the_colour_of_its_phase(self):
         count = synthetic_bag.AGENTS
         self.publish_until(lambda: len(self.shown("overview", "hull")) == count, "hulls")
-        # Grey for "no word yet" is a colour as well: only the labels tell that all have spoken.
+        # Grey, for an AUV without a report, is a colour, too. Only the labels show that all have reported.
         words = ("search", "approach", "stable", "lost", "leads")
 
         def labelled():
@@ -133,7 +133,7 @@ class Markers(unittest.TestCase):
         )
 
     def test_what_disturbs_a_modem_is_shown_where_it_is(self):
-        # Named to run last: who tells of packets is believed more than counts.
+        # The name makes it run last: after packets have been reported, their counts are no longer used.
         self.publish_until(lambda: self.shown("overview", "hull"), "a hull")
         reasons = auv_msgs.msg.LinkState
         for name, reason in (("collision", reasons.COLLISION), ("half_duplex", reasons.HALF_DUPLEX)):
@@ -143,7 +143,7 @@ class Markers(unittest.TestCase):
             here = synthetic_bag.auv_at(2, self.step * synthetic_bag.STEP_S)
             place = ball.pose.position
             self.assertLess(math.dist((place.x, place.y, place.z), here), 0.1)
-            # Two rings around AUV 1, and none around others.
+            # There are two rings around AUV 1, and none around the others.
             self.assertEqual({m.id for m in self.shown("overview", "carrier")}, {2, 3})
         self.publish_until(lambda: not self.shown("overview", "half_duplex")
                            and not self.shown("overview", "carrier"), "silence again")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The medium scenario from end to end: metrics, decentralisation, diagnostics."""
+"""The medium scenario from end to end: metrics, independent agents, diagnostics."""
 
 import unittest
 
@@ -12,7 +12,7 @@ AGENTS = 4
 
 
 def foreign_subscriptions(subscribers):
-    """Returns the (node, topic) pairs with which an agent hears more than its own sensors.
+    """Returns the (node, topic) pairs of agents that hear more than their own sensors.
 
     `subscribers` is the master's list of [topic, [nodes]].
     """
@@ -30,7 +30,7 @@ def foreign_subscriptions(subscribers):
 
 
 class Medium(unittest.TestCase):
-    """One graph in lockstep, watched from outside."""
+    """One run in lockstep, seen from outside."""
 
     @classmethod
     def setUpClass(cls):
@@ -44,7 +44,7 @@ class Medium(unittest.TestCase):
         self.assertEqual(summary.deadline_misses, 0)
         self.assertNotIn(summary.policy_id, ("", "idle", "pursuit", "pursuit_separated"))
         self.assertEqual(summary.lost_rate, 0.0)
-        # As `evaluate` flies seed 0, which the graph repeats bit for bit.
+        # `evaluate` flies seed 0 like this, and the nodes repeat it bit for bit.
         self.assertAlmostEqual(summary.tail_distance, 0.0149, delta=0.0002)
         self.assertAlmostEqual(summary.tracking_error, 0.00018, delta=0.00005)
         self.assertAlmostEqual(summary.time_to_band, 5.6, delta=0.2)

@@ -1,14 +1,14 @@
-"""Messages as a fault or a stranger would send them: copies of good ones with some field changed."""
+"""Messages like those of a fault or a stranger: copies of good ones with some field changed."""
 
 import copy
 import math
 
 import genpy
 
-SECONDS = (0, 1, 2**31 - 1, 2**31, 2**32 - 1)  # of stamps
+SECONDS = (0, 1, 2**31 - 1, 2**31, 2**32 - 1)  # values of stamps
 FLOATS = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1e7, -1.0, 0.0, 1e-300)
 TEXTS = ("", "world", "auv_7/base_link", "\x00\x01", "x" * 1000, "\u00e9\u2603")
-WHOLE_LIMITS = {  # of each type: the lowest and the highest
+WHOLE_LIMITS = {  # the lowest and the highest number of each type
     f"{sign}int{bits}": (0 if sign else -(2 ** (bits - 1)), 2 ** (bits - (not sign)) - 1)
     for sign in ("u", "")
     for bits in (8, 16, 32, 64)
@@ -18,7 +18,7 @@ LONGEST_LIST = 40
 
 
 def leaves(message, path=()):
-    """Yields (path, type) of every field that holds no other message: numbers, texts and lists."""
+    """Yields (path, type) of every field that is no message itself: numbers, texts and lists."""
     for name, kind in zip(message.__slots__, message._slot_types):
         value, here = getattr(message, name), path + (name,)
         if isinstance(value, genpy.Message):
@@ -33,14 +33,14 @@ def leaves(message, path=()):
 
 
 def owner(message, path):
-    """Returns what holds the field at `path`."""
+    """Returns the object that holds the field at `path`."""
     for name in path[:-1]:
         message = message[name] if isinstance(name, int) else getattr(message, name)
     return message
 
 
 def other_list(value, kind, random):
-    """Returns a list that is not the one that was there, of the same type of items."""
+    """Returns another list with the same type of items."""
     fixed = kind[kind.index("[") + 1 : -1]
     if isinstance(value, bytes):
         value = bytearray(value)
@@ -83,7 +83,7 @@ def other_value(value, kind, random):
 
 
 def mutated(message, random):
-    """Returns a copy of a message with one field, or a few, changed."""
+    """Returns a copy of a message with one or a few fields changed."""
     message = copy.deepcopy(message)
     for _ in range(random.choice((1, 1, 1, 2, 4))):
         path, kind = random.choice(list(leaves(message)))
@@ -93,7 +93,7 @@ def mutated(message, random):
 
 
 def stamped(message, seconds):
-    """Returns a copy of a message, all stamps of which are `seconds` of simulated time."""
+    """Returns a copy of a message. All its stamps are `seconds` of simulated time."""
     message = copy.deepcopy(message)
     for path, kind in leaves(message):
         if kind == "time":

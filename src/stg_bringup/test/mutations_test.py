@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""No message kills, blinds or silences a node: mutations of every message on every topic."""
+"""No message can kill, blind or silence a node: mutations of every message on every topic."""
 
 import io
 import json
@@ -28,7 +28,7 @@ def changed_bytes(message_type, change):
     """Returns a message type of the same name whose messages are changed on their way."""
 
     class Changed(message_type):
-        """As its base, but for its bytes."""
+        """The same message with other bytes."""
 
         def serialize(self, buff):
             plain = io.BytesIO()
@@ -39,13 +39,13 @@ def changed_bytes(message_type, change):
 
 
 def copied(message, message_type):
-    """Returns a message with the fields of another of its base type."""
+    """Returns a message of another type with the same fields, whose values it copies."""
     base = type(message)
     return message_type(**{name: getattr(message, name) for name in base.__slots__})
 
 
 class Tap:
-    """A topic as seen by a stranger: the newest message, and a way to send others."""
+    """A topic as a stranger sees it: the newest message, and a way to send others."""
 
     def __init__(self, topic, type_name):
         message_type = roslib.message.get_message_class(type_name)
@@ -54,7 +54,7 @@ class Tap:
         self.publisher = rospy.Publisher(topic, message_type, queue_size=1000)
 
     def message(self):
-        """Returns the newest message; an empty one when there is none."""
+        """Returns the newest message, or an empty one if there is none."""
         return self.latest.message or self.latest.type()
 
     def send(self, messages):
@@ -65,7 +65,7 @@ class Tap:
 
 
 class Mutations(unittest.TestCase):
-    """Short episodes without end; each test leaves the graph at work."""
+    """Short episodes without end. Each test leaves all nodes at work."""
 
     @classmethod
     def setUpClass(cls):
@@ -91,12 +91,12 @@ class Mutations(unittest.TestCase):
                  20.0, "every node hears this test")
 
     def check_all_is_well(self):
-        """Everybody lives, and whole episodes are flown with all that belongs to them."""
+        """All nodes are alive, and whole episodes are flown with all that belongs to them."""
         self.report.wait_for_more(20)
         self.reception.wait_for_more(20)
         self.assertEqual({node: rosnode_pid(node) for node in self.nodes}, self.pids)
         wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours are heard")
-        # The first to end may have begun while it was disturbed.
+        # The episode that ends first may have begun during the disturbance.
         self.summary.wait_for_more(2, 40.0)
         wait_for(lambda: self.summary.message.complete, 40.0, "a complete episode")
 
@@ -153,7 +153,7 @@ class Mutations(unittest.TestCase):
                      f"{node} counts what it refuses")
 
     def test_6_counts_of_elements_take_no_memory(self):
-        # roscpp makes room for as many poses as a message says it has.
+        # roscpp takes memory for as many poses as a message claims to have.
         size = len(SwarmState(header=Header(frame_id="world")).header.frame_id) + 40
         swarm = Tap("/swarm_state", "auv_msgs/SwarmState")
         message = swarm.latest.wait()
@@ -190,7 +190,7 @@ class Mutations(unittest.TestCase):
             self.assertIn("episode", json.loads(line.decode()))
 
     def test_8_a_flood_takes_no_memory(self):
-        # Sent in pieces of a thousand messages, as fast as sockets take them.
+        # The test sends pieces of a thousand messages, as fast as the sockets take them.
         tap = next(tap for tap in self.taps if tap.topic == "/auv_0/task_state")
         buffer = io.BytesIO()
         tap.message().serialize(buffer)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""On the wall clock, the thread of each node that a wrench waits for has a real-time priority."""
+"""On the wall clock, the thread of each node that a wrench waits for has real-time priority."""
 
 import os
 import pathlib
@@ -15,7 +15,7 @@ ON_THE_WAY = ["/world", "/acoustic_channel", "/auv_0/agent", "/auv_3/agent", "/a
 
 
 def permitted():
-    """Tells whether this system gives a process of this user a real-time priority."""
+    """Tells whether this system lets this user's processes have a real-time priority."""
     before = os.sched_getscheduler(0)
     try:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
@@ -26,7 +26,7 @@ def permitted():
 
 
 def realtime_threads(node):
-    """Returns the priority of each thread of a node that has one."""
+    """Returns the priorities of the threads of a node that have a real-time priority."""
     tasks = pathlib.Path(f"/proc/{rosnode_pid(node)}/task")
     threads = [int(entry.name) for entry in tasks.iterdir()]
     return [os.sched_getparam(thread).sched_priority for thread in threads

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Resets in the middle of a step of a run in lockstep: nothing is missed, every episode the same."""
+"""Resets in the middle of a step in lockstep: nothing is missed, and every episode is the same."""
 
 import os
 import signal
@@ -13,23 +13,23 @@ from auv_msgs.srv import Reset
 from graph_listener import Diagnostics, rosnode_pid, wait_for
 
 RESETS = 20
-STEPS = 5  # of each episode that are compared
+STEPS = 5  # steps of each episode that are compared
 
 
 class Resets(unittest.TestCase):
-    """A run without an end."""
+    """A run without end."""
 
     @classmethod
     def setUpClass(cls):
         cls.diagnostics = Diagnostics()
-        cls.starts = {}  # by episode: AUV 0's positions in its first steps
+        cls.starts = {}  # AUV 0's positions in its first steps, by episode
         cls.listener = rospy.Subscriber("/auv_0/sensor_frame", SensorFrame, cls.on_frame)
         cls.reset = rospy.ServiceProxy("/reset", Reset)
         wait_for(lambda: cls.starts, 30.0, "the first step")
 
     @classmethod
     def on_frame(cls, message):
-        """Keeps where an episode begins."""
+        """Keeps the first positions of an episode."""
         p = message.pose.position
         if message.step <= STEPS:
             cls.starts.setdefault(message.episode, []).append((p.x, p.y, p.z))
@@ -57,7 +57,7 @@ class Resets(unittest.TestCase):
         pid = rosnode_pid("/auv_1/controller")
         os.kill(pid, signal.SIGSTOP)
         try:
-            time.sleep(0.5)  # whatever was on its way is there: AUV 1's command is missing
+            time.sleep(0.5)  # all messages have arrived now, except the command of AUV 1
             episode = self.start_again()
             time.sleep(1.0)
             self.assertNotIn(episode, self.starts, "begins before the open step is answered")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""An agent that dies in the middle of an episode comes back to its search and to its slot."""
+"""An agent that dies in the middle of an episode comes back to its search and its slot."""
 
 import unittest
 
@@ -24,7 +24,7 @@ class All:
 
 
 class Restart(unittest.TestCase):
-    """One long episode without a detection; AUV 3 loses its agent again and again."""
+    """One long episode without a detection. The agent of AUV 3 is killed again and again."""
 
     @classmethod
     def setUpClass(cls):
@@ -32,7 +32,7 @@ class Restart(unittest.TestCase):
         cls.packets = All(f"/auv_{KILLED}/acoustic/tx", AcousticPacket)
         cls.steps = All(f"/auv_{KILLED}/sensor_frame", SensorFrame)
         cls.task = Latest(f"/auv_{KILLED}/task_state", TaskState)
-        cls.lives = []  # [(first step of a life, last one)]
+        cls.lives = []  # [(first step of a life, its last one)]
         cls.task.wait_for_more(12, 30.0)
         for _ in range(4):
             pid = kill(f"/auv_{KILLED}/agent")

@@ -1,4 +1,4 @@
-"""Starts and ends whole runs as `./stg run` does, for tests."""
+"""For tests: starts and ends whole runs as `./stg run` does."""
 
 import contextlib
 import os
@@ -15,7 +15,7 @@ LAUNCH = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "run" / "laun
 
 
 def free_port():
-    """Returns a port of the loopback that nobody listens on."""
+    """Returns a loopback port on which no program listens."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         return listener.getsockname()[1]
@@ -38,7 +38,7 @@ def launch(folder, *arguments, port=None, program=LAUNCH):
 
 
 def process_of(node, environment):
-    """Returns a node's process id once it runs."""
+    """Waits until a node runs; returns its process id."""
     master = rosgraph.Master("/record_replay", master_uri=environment["ROS_MASTER_URI"])
     end = time.monotonic() + 30.0
     while time.monotonic() < end:
@@ -51,20 +51,20 @@ def process_of(node, environment):
 
 
 def processes_with(master_uri):
-    """Returns {program: process id} of all that run with the master."""
+    """Returns {program: process id} of all programs that run with this master."""
     found = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             environment = (folder / "environ").read_bytes()
             if f"ROS_MASTER_URI={master_uri}".encode() in environment:
                 found[(folder / "comm").read_text().strip()] = int(folder.name)
-        except OSError:  # it has ended
+        except OSError:  # the process has ended
             pass
     return found
 
 
 def stop(process):
-    """Ends a roslaunch as Ctrl-C does; one that does not end is killed with its nodes."""
+    """Ends a roslaunch as Ctrl-C does. If it does not end, this kills it and its nodes."""
     if process.poll() is None:
         process.send_signal(signal.SIGINT)
     try:
@@ -72,7 +72,7 @@ def stop(process):
     except subprocess.TimeoutExpired:
         process.kill()
         port = process.args[process.args.index("-p") + 1]
-        while found := processes_with(f"http://127.0.0.1:{port}"):  # they hold its output open
+        while found := processes_with(f"http://127.0.0.1:{port}"):  # the nodes hold its output open
             for node in found.values():
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(node, signal.SIGKILL)

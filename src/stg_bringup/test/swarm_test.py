@@ -27,11 +27,11 @@ class Swarm(unittest.TestCase):
         self.assertEqual(message.steps, 100)
         self.assertEqual(message.deadline_misses, 0)
         self.assertEqual(message.lost_rate, 0.0)
-        # As `evaluate` flies it, which the graph repeats bit for bit.
+        # `evaluate` flies the same, and the nodes repeat it bit for bit.
         self.assertAlmostEqual(message.tail_distance, 0.0202, delta=0.0005)
         self.assertAlmostEqual(message.tracking_error, 0.0061, delta=0.0005)
         self.assertEqual(len(links.wait().links), AGENTS * (AGENTS - 1))
-        # Displays get few messages, but the ends of an episode and each packet.
+        # Displays get few messages, but they get the ends of an episode and each packet.
         wait_for(lambda: any(m.state.episode == 1 for m in shown), 5.0, "the next episode")
         first = [m for m in shown if m.state.episode == 0]
         steps = [m.state.step for m in first]
@@ -42,7 +42,7 @@ class Swarm(unittest.TestCase):
         end = first[-1].header.stamp
         delivered = {(e.source, e.sequence) for m in received for e in m.events
                      if (e.kind, e.receiver) == (PacketEvent.DELIVERED, 3)}  # fmt: skip
-        # From when on both topics are connected.
+        # The comparison begins when both topics are connected.
         begin = rospy.Time.from_sec(received[0].header.stamp.to_sec() + 1.0)
         told = {(p.source, p.sequence) for m in heard if begin < m.header.stamp <= end for p in m.packets}
         self.assertGreater(len(told), 100)
