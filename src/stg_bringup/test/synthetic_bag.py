@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Writes a small bag with the topics of a run and contents that follow from closed forms.
+"""Writes a small bag with the topics of a run. Its contents follow from closed forms.
 
-AUV i sits at distance `distance_at(t)` from the target in a fixed direction; every fifth packet of
-each link is lost. Also usable by hand: synthetic_bag.py FILE [SECONDS].
+AUV i is `distance_at(t)` from the target in a fixed direction. Every fifth packet of each link is lost. Also
+usable by hand: synthetic_bag.py FILE [SECONDS].
 """
 
 import math
@@ -59,7 +59,7 @@ def phase_at(t):
 
 
 def odometry(frame, stamp, position, bow):
-    """An Odometry at `position`, level, its bow along the horizontal part of `bow`."""
+    """An Odometry at `position`, level. Its bow points along the horizontal part of `bow`."""
     message = nav_msgs.msg.Odometry()
     message.header.stamp, message.header.frame_id = stamp, "world"
     message.child_frame_id = frame
@@ -81,7 +81,7 @@ def transform(odom):
 
 
 def link_states(stamp, k):
-    """All links at step k: one packet per link every fifth step, every fifth packet lost."""
+    """All links at step k: each link has a packet every fifth step, and loses every fifth packet."""
     states = auv_msgs.msg.LinkStates()
     states.header.stamp, states.header.frame_id = stamp, "world"
     for source in range(AGENTS):
@@ -102,7 +102,7 @@ def link_states(stamp, k):
 
 
 def task_state(stamp, k, i):
-    """What AUV i believes at step k: the truth."""
+    """What AUV i believes at step k, which is the truth."""
     t = k * STEP_S
     task = TASK(step=k, phase=phase_at(t), quality=TASK.HIGH, role=i == 0, target_known=True)
     task.header.stamp, task.header.frame_id = stamp, "world"
@@ -117,7 +117,7 @@ def task_state(stamp, k, i):
 
 
 def step_report(stamp, k, steps):
-    """Rewards of step k."""
+    """The rewards of step k."""
     report = auv_msgs.msg.StepReport(step=k, reward=0.5, truncated=k == steps - 1)
     report.header.stamp, report.header.frame_id = stamp, "world"
     report.agent_rewards = [0.5] * AGENTS

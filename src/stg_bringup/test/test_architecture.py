@@ -1,5 +1,5 @@
 # Long because: one class for each rule of the house.
-"""Checks the rules of the house: the code keeps each of them, and each of them can be broken."""
+"""Checks the rules of the house: the code keeps each of them, and a test can break each of them."""
 
 import pathlib
 import subprocess
@@ -25,12 +25,12 @@ MotionRegistry& TargetMotions() {
 
 
 class Rule(unittest.TestCase):
-    """A rule, on the code of this repository and on small trees that keep or break it."""
+    """A rule, for the code of this repository and for small trees that keep or break it."""
 
     check = None
 
     def findings(self, files):
-        """Returns what the rule finds in a tree of {path from src/: text}."""
+        """Returns the findings of the rule in a tree of {path from src/: text}."""
         with tempfile.TemporaryDirectory() as folder:
             for path, text in files.items():
                 file = pathlib.Path(folder, path)
@@ -39,11 +39,11 @@ class Rule(unittest.TestCase):
             return type(self).check(pathlib.Path(folder))[1]
 
     def assert_clean(self, files):
-        """Fails when the rule finds anything in the tree."""
+        """Fails if the rule finds anything in the tree."""
         self.assertEqual(self.findings(files), [])
 
     def assert_found(self, files, *words):
-        """Fails unless the rule finds one thing in the tree, and its line holds all the words."""
+        """Fails unless the rule finds exactly one thing in the tree and its line has all the words."""
         found = self.findings(files)
         self.assertEqual(len(found), 1, found)
         for word in words:
@@ -51,7 +51,7 @@ class Rule(unittest.TestCase):
 
 
 def on_the_code(rule):
-    """Adds to a Rule the test that this repository keeps it."""
+    """Adds a test to a Rule: this repository keeps it."""
 
     def test_the_code_keeps_it(self):
         looked_at, found = type(self).check()
@@ -63,7 +63,7 @@ def on_the_code(rule):
 
 @on_the_code
 class Includes(Rule):
-    """Dependencies between packages point one way, and cores know neither ROS nor messages."""
+    """Dependencies between packages go one way, and cores know neither ROS nor messages."""
 
     check = house.check_includes
 
@@ -173,7 +173,7 @@ class Sizes(Rule):
 
 @on_the_code
 class Topics(Rule):
-    """Names of topics and services stand in topics.hpp alone."""
+    """Only topics.hpp has names of topics and services."""
 
     check = house.check_topics
 
@@ -203,7 +203,7 @@ class Topics(Rule):
 
 @on_the_code
 class Namespaces(Rule):
-    """Each package has a namespace of its own."""
+    """Each package has its own namespace."""
 
     check = house.check_namespaces
 
@@ -238,7 +238,7 @@ class Namespaces(Rule):
 
 @on_the_code
 class Registries(Rule):
-    """What a name stands for is decided by the registry that lists it."""
+    """The registry that lists a name decides what it means."""
 
     check = house.check_registries
 
@@ -296,7 +296,7 @@ class Scenarios(Rule):
 
 @on_the_code
 class Ranks(Rule):
-    """A process alone is the one rank of one, and no code asks for it."""
+    """A single process is the only rank of one. No code asks whether it is alone."""
 
     check = house.check_ranks
 
@@ -338,7 +338,7 @@ class Words(unittest.TestCase):
     """Comments and texts call a program "it"."""
 
     def found(self, name, text):
-        """The lines with findings in a file of this name."""
+        """Returns the lines with findings in a file with this name."""
         with tempfile.TemporaryDirectory() as folder:
             pathlib.Path(folder, name).write_text(text, encoding="utf-8")
             _, findings = words.check_words(pathlib.Path(folder), [pathlib.Path(name)])

@@ -1,4 +1,4 @@
-"""Checks the bag report on bags whose contents follow from closed forms, whole and damaged."""
+"""Checks the bag report with whole and damaged bags, whose contents follow from closed forms."""
 
 import contextlib
 import csv
@@ -22,7 +22,7 @@ make_meshes = load_program(HERE.parent / "scripts" / "make_meshes.py")
 def run_report(*arguments):
     """Runs the tool in this process; returns (exit status, standard output, standard error)."""
     output, errors = io.StringIO(), io.StringIO()
-    rosbag.bag._message_types.clear()  # as in a process of its own: definitions are kept by md5
+    rosbag.bag._message_types.clear()  # definitions are kept by md5; a process of its own has none
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         try:
             status = bag_report.main([str(argument) for argument in arguments])
@@ -38,7 +38,7 @@ def read_table(folder, name):
 
 
 class WithFolder(unittest.TestCase):
-    """A test with a folder of its own."""
+    """A test with its own folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -49,7 +49,7 @@ class WithFolder(unittest.TestCase):
 
 
 class Scenario(unittest.TestCase):
-    """The scenario that is recorded beside the run."""
+    """The scenario that is recorded with the run."""
 
     def test_one_that_is_none_is_left_out(self):
         said = io.StringIO()
@@ -117,10 +117,10 @@ class WholeBag(WithFolder):
 
 
 class DamagedBag(WithFolder):
-    """Files that are no whole bags give one clear line and nothing else."""
+    """A file that is no whole bag gives one clear line and nothing else."""
 
     def refused(self, *options):
-        """Runs the tool on the bag; checks that it is refused in one line that names it."""
+        """Runs the tool on the bag. It must refuse the bag in one line that names it."""
         status, output, errors = run_report(self.bag, "-o", self.out, *options)
         self.assertEqual(status, 2)
         self.assertEqual(output, "")
@@ -130,7 +130,7 @@ class DamagedBag(WithFolder):
         return errors
 
     def truncate(self, share):
-        """Writes a bag and cuts it to `share` of its length."""
+        """Writes a bag and keeps only `share` of its length."""
         synthetic_bag.write(str(self.bag), 4.0)
         content = self.bag.read_bytes()
         self.bag.write_bytes(content[: int(share * len(content))])
@@ -188,7 +188,7 @@ class DamagedBag(WithFolder):
                 self.refused()
 
     def test_whatever_is_damaged_is_told_in_lines(self):
-        # Of 340 bags of this kind none ended otherwise; these are the first of them.
+        # These are the first of 340 bags of this kind, and none of these ended otherwise.
         synthetic_bag.write(str(self.bag), 1.0)
         whole = self.bag.read_bytes()
         draw = random.Random(1)
@@ -216,7 +216,7 @@ class DamagedBag(WithFolder):
         self.assertLessEqual({0, 2}, seen)
 
     def test_other_files_are_reported(self):
-        self.refused()  # not there
+        self.refused()  # the file does not exist
         self.bag.write_bytes(b"")
         self.refused()
         self.bag.write_text("episode,t\n0,1\n")
@@ -238,7 +238,7 @@ class DamagedBag(WithFolder):
 
 
 class Output(WithFolder):
-    """What is written, or cannot be."""
+    """Output that is written, and output that cannot be written."""
 
     def test_output_that_cannot_be_written_is_one_line(self):
         synthetic_bag.write(str(self.bag), 1.0)
@@ -284,7 +284,7 @@ class CommandLine(unittest.TestCase):
 
 
 class Meshes(unittest.TestCase):
-    """The vehicle's meshes are those their script makes, and fit the collision sphere."""
+    """The vehicle's meshes are the ones that their script makes, and fit the collision sphere."""
 
     def test_committed_meshes_are_what_the_script_writes(self):
         for name, content in make_meshes.meshes().items():

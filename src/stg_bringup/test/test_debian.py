@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 DEBIAN = ROOT / "debian"
-# Of debhelper's own, which packages.txt names by the packages that provide them.
+# Parts of debhelper. packages.txt names the packages that provide them.
 HELPERS = {"debhelper-compat": "debhelper", "dh-sequence-python3": "dh-python"}
 PROGRAM = "#!/bin/sh\necho {name} \"$@\"\nexit 3\n"
 
@@ -46,7 +46,8 @@ class Control(unittest.TestCase):
                 self.assertRegex(listed, rf"lib(\*|{library})\.so\.\*", path)
 
     def test_no_package_links_another_ones_target_by_name(self):
-        # debhelper builds each ROS package by itself: there, targets of others are files, which
+        # debhelper builds each ROS package alone. Targets of other packages are then files, which
+        # catkin_LIBRARIES names.
         # catkin_LIBRARIES names.
         texts = {
             path.parent.name: re.sub(r"#.*", "", path.read_text(encoding="utf-8")).replace(
@@ -77,7 +78,7 @@ class Control(unittest.TestCase):
 
 
 class Launcher(unittest.TestCase):
-    """debian/launcher.c, compiled for a folder of the test's own."""
+    """debian/launcher.c, compiled for a folder of the test."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -94,7 +95,7 @@ class Launcher(unittest.TestCase):
             file.parent.mkdir(parents=True)
             file.write_text(PROGRAM.format(name=name))
             file.chmod(0o755)
-        # What glibc finds in the processor; /proc/cpuinfo may lack a feature that is there.
+        # This is what glibc finds in the processor. /proc/cpuinfo may lack a feature that is there.
         told = subprocess.run(
             ["/lib64/ld-linux-x86-64.so.2", "--help"], check=True, stdout=subprocess.PIPE, universal_newlines=True
         ).stdout

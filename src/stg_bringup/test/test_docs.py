@@ -25,7 +25,7 @@ tree = load_program(ROOT / "scripts" / "lint" / "tree.py")
 
 
 def named_sources():
-    """Returns {name: path} of the C++ files; pages name them as an #include does, sources too:
+    """Returns {name: path} of the C++ files. Pages name headers and sources as an #include does:
     `auv_dynamics/world/world.cpp`."""
     return {str(tree.logical(path)): SOURCES / path for path in tree.cpp_files(SOURCES)}
 
@@ -41,7 +41,7 @@ def equation_rows():
 
 
 class Equations(unittest.TestCase):
-    """The map from the paper's equations to the code is complete and true."""
+    """The table from the paper's equations to the code is complete and true."""
 
     def test_every_equation_of_the_paper_has_a_row(self):
         named = {equation for equation, _, _ in equation_rows()}
@@ -50,7 +50,7 @@ class Equations(unittest.TestCase):
 
     @staticmethod
     def declaration(name):
-        """Returns a pattern of what declares `name`: a type, a function, a member, an enumerator."""
+        """Returns a pattern that finds the declaration of a type, a function, a member or an enumerator."""
         if re.match(r"k[A-Z]", name):
             return rf"\b{name}\b *[,}}=]"
         kind = rf"\b(?:class|struct|using|enum class) {name}\b"
@@ -79,7 +79,7 @@ class Equations(unittest.TestCase):
 
 
 class Diffs(unittest.TestCase):
-    """The page that shows what a new thing changes is true of the sources of today."""
+    """The page that shows what a new thing changes fits the sources of today."""
 
     page = DOCS / "how_to" / "in_this_repository.md"
 
@@ -123,7 +123,7 @@ class Sources(unittest.TestCase):
     def test_every_source_named_on_a_page_exists(self):
         sources = named_sources()
         places = set(sources) | {str(path.relative_to(SOURCES)) for path in sources.values()}
-        # Tables name the files of one package by their end.
+        # Tables name the files of one package without the first folders.
         ends = {"/".join(place.split("/")[-n:]) for place in places for n in (1, 2, 3)}
         examples = {str(path.relative_to(ROOT)) for path in (ROOT / "examples").rglob("*.cpp")}
         found = 0
@@ -192,10 +192,10 @@ class HowTo(unittest.TestCase):
 
 
 class PackagePages(unittest.TestCase):
-    """Each package has a page, and the page tells what its nodes use."""
+    """Each package has a page, and the page names what its nodes use."""
 
     def constants(self, package):
-        """Returns the topic and service names of a package, from the headers that name them."""
+        """Returns the names of topics and services of a package, from the headers that define them."""
         text = ""
         for header in (SOURCES / package / "src" / "nodes").rglob("topics.hpp"):
             text += header.read_text().partition("namespace stg::frames")[0]
@@ -205,7 +205,7 @@ class PackagePages(unittest.TestCase):
         self.assertGreater(len(set().union(*map(self.constants, PACKAGES))), 10)
         for package in PACKAGES:
             with self.subTest(package):
-                # The metrics node of stg_monitor publishes what auv_dynamics names.
+                # The metrics node of stg_monitor publishes some topics that auv_dynamics names.
                 pages = {package, "stg_monitor"}
                 text = "".join((DOCS / "packages" / f"{page}.md").read_text() for page in pages)
                 for name in self.constants(package):

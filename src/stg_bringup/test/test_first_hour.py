@@ -1,4 +1,4 @@
-"""What somebody tries in the first hour is answered in a line that helps."""
+"""A user who tries something in the first hour gets a line that helps."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ WORKSPACE = os.environ["CMAKE_PREFIX_PATH"].split(":")[0]  # where ./stg has bui
 
 
 def run(*command, folder=None):
-    """Returns (exit status, output) of a command that is to end soon."""
+    """Returns (exit status, output) of a command that must end soon."""
     environment = dict(os.environ, STG_BUILD_ROOT=str(pathlib.Path(WORKSPACE).parent))
     done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, universal_newlines=True, check=False,
@@ -87,10 +87,10 @@ class Help(unittest.TestCase):
 
 
 class Setup(unittest.TestCase):
-    """The set-up knows the system that it is written for."""
+    """The set-up knows the system for which it is written."""
 
     def setup_on(self, release, **environment):
-        """Returns (exit status, output) of the set-up on a system that calls itself so."""
+        """Returns (exit status, output) of the set-up on a system with this os-release."""
         with tempfile.NamedTemporaryFile("w", suffix="os-release") as file:
             file.write(release)
             file.flush()
@@ -109,7 +109,7 @@ class Setup(unittest.TestCase):
             self.assertIn(name, output)
 
     def test_the_right_one_and_who_insists_go_on(self):
-        # Nothing is missing where this test runs.
+        # No package is missing where this test runs.
         for release, insists in (('ID=debian\nVERSION_ID="12"\n', ""),
                                  ('ID=ubuntu\nVERSION_ID="20.04"\n', "1")):
             status, output = self.setup_on(release, STG_ANY_RELEASE=insists)
@@ -117,7 +117,7 @@ class Setup(unittest.TestCase):
 
 
 class Evaluate(unittest.TestCase):
-    """Names that are nearly right are understood, or corrected."""
+    """Names that are almost right are understood or corrected."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

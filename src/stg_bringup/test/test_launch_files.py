@@ -1,4 +1,4 @@
-"""Checks every launch file: it loads with its defaults, its nodes exist, its arguments are told."""
+"""Checks every launch file: it loads with its defaults, its nodes exist, its arguments have a text."""
 
 import os
 import pathlib
@@ -38,7 +38,7 @@ def load(path, arguments):
 
 
 class LaunchFiles(unittest.TestCase):
-    """The launch files work as far as one can see without running them."""
+    """The launch files work, as far as this shows without running them."""
 
     def test_each_file_loads_and_its_nodes_exist(self):
         for path in launch_files():
@@ -110,7 +110,7 @@ class Graph(unittest.TestCase):
         self.assertEqual(self.parameters("realtime_priority:=0")["/realtime_priority"], 0)
 
     def test_in_lockstep_each_waits_less_long_than_those_who_wait_for_it(self):
-        # A stall that somebody gives up on makes a lockstep run another one.
+        # If a node gives up on a stall, a lockstep run becomes another one.
         given = self.parameters("real_time_factor:=0", "deadline:=5")
         waits = [given["/acoustic_channel/timeout"], given["/auv_0/agent/patience"],
                  given["/world/deadline"]]
@@ -126,7 +126,7 @@ SCENARIO_AGENTS = ROOT / "scripts" / "run" / "scenario_agents.py"
 
 
 class ScenarioAgents(unittest.TestCase):
-    """The number of AUVs of a scenario is found before anything is launched."""
+    """The number of AUVs of a scenario is known before anything is launched."""
 
     def agents(self, scenario):
         """Returns what the script prints."""
@@ -157,7 +157,7 @@ class ScenarioAgents(unittest.TestCase):
             self.refused(folder / "heir.yaml", "fifo.yaml: is not a regular file")
 
     def refused(self, scenario, what):
-        """The script must end in one line that says `what`."""
+        """Expects that the script ends in one line that says `what`."""
         run = subprocess.run([SCENARIO_AGENTS, scenario], stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, universal_newlines=True, timeout=60,
                              check=False)  # fmt: skip

@@ -1,4 +1,4 @@
-"""Parameters that earlier launches left on a master that lives longer change nothing."""
+"""Parameters that earlier launches left on a long-lived master change nothing."""
 
 import json
 import os
@@ -15,7 +15,7 @@ from run_launcher import free_port, launch, stop
 
 SHORT = ("episodes:=1", "real_time_factor:=0", "deadline:=20", "seed:=3", "policy:=pursuit_separated",
          "table:=false", "overrides:=[time.episode_steps=60, time.tail_steps=20]")
-# As channel.launch, a recorded run, or a user's rosparam leaves them.
+# channel.launch, a recorded run or a user's rosparam leaves them like this.
 LEFT = {
     "/acoustic_channel/overrides": ["channel.extended.loss_probability=0.9"],
     "/acoustic_channel/seed": 5,
@@ -33,7 +33,7 @@ LEFT = {
 
 
 class Leftovers(unittest.TestCase):
-    """One master, two runs."""
+    """Two runs on one master."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -53,7 +53,7 @@ class Leftovers(unittest.TestCase):
             time.sleep(0.1)
 
     def run_once(self, name):
-        """Returns what a run's summary says."""
+        """Runs once; returns the summary of the run."""
         process, _ = launch(self.folder, "medium.launch", *SHORT, f"summary_file:={name}.json",
                             port=self.port)
         self.addCleanup(stop, process)

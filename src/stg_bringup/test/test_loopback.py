@@ -1,4 +1,4 @@
-"""Nobody outside this machine can reach a run that was not told another address."""
+"""Nobody outside of this machine can reach a run that got no other address."""
 
 import os
 import pathlib
@@ -15,7 +15,7 @@ import rosgraph
 from run_launcher import launch, process_of, stop
 
 LISTENS = "0A"
-ANOTHER = "127.0.0.2"  # of this machine, as one of an Ethernet would be
+ANOTHER = "127.0.0.2"  # an address of this machine, as an Ethernet would have one
 
 
 def listening():
@@ -39,7 +39,7 @@ def sockets_of(pid):
     for file in pathlib.Path(f"/proc/{pid}/fd").iterdir():
         try:
             target = os.readlink(file)
-        except OSError:  # closed meanwhile
+        except OSError:  # it was closed meanwhile
             continue
         if target.startswith("socket:["):
             inodes.add(target[len("socket:["):-1])
@@ -47,14 +47,14 @@ def sockets_of(pid):
 
 
 def processes_of(master_uri):
-    """Returns {process id: its first words} of all that run with the master."""
+    """Returns {process id: its first words} of all processes that run with the master."""
     found = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             if f"ROS_MASTER_URI={master_uri}".encode() in (folder / "environ").read_bytes():
                 words = (folder / "cmdline").read_bytes().split(b"\0")[:3]
                 found[int(folder.name)] = b" ".join(words).decode()
-        except OSError:  # it has ended
+        except OSError:  # the process has ended
             pass
     return found
 
@@ -94,7 +94,7 @@ class Loopback(unittest.TestCase):
     def test_a_world_that_somebody_shuts_down_is_no_success(self):
         process, environment = self.start()
         master = rosgraph.Master("/test_loopback", master_uri=environment["ROS_MASTER_URI"])
-        time.sleep(1.0)  # it runs
+        time.sleep(1.0)  # the run goes on
         with xmlrpc.client.ServerProxy(master.lookupNode("/world")) as world:
             world.shutdown("/test_loopback", "because")
         output = process.communicate(timeout=60)[0]

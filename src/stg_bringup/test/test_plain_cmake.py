@@ -12,7 +12,7 @@ import unittest
 import roslib.packages
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-# Headers that only ROS has, wherever it is installed.
+# These headers belong to ROS, wherever ROS is installed.
 ROS_HEADER = re.compile(
     r"/(ros|rosbag|diagnostic_updater|tf2\w*|\w+_msgs|std_srvs|message_filters|xmlrpcpp)/[^/]+\.h"
 )
@@ -26,7 +26,7 @@ message(STATUS "flags: ${options}")
 
 
 def environment(**changed):
-    """The environment without anything that leads to ROS or this workspace, and then `changed`."""
+    """Returns the environment without anything that leads to ROS or this workspace, plus `changed`."""
     leads = ("ROS", "CMAKE", "CATKIN", "LD_LIBRARY_PATH", "PYTHONPATH")
     kept = {k: v for k, v in os.environ.items() if not k.startswith(leads)}
     kept["PATH"] = "/usr/bin:/bin"
@@ -50,7 +50,7 @@ def run(*command, **changed):
 
 
 def instruction_set(flags):
-    """The flags that decide about layout and rounding."""
+    """Returns the flags that decide about layout and rounding."""
     return sorted(set(re.findall(r"-march=[\w.-]+|-ffp-contract=\w+", flags)))
 
 
@@ -62,7 +62,7 @@ class PlainCMake(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         cls.build = cls.folder / "build"
         cls.prefix = cls.folder / "prefix"
-        # One by one, so that each source must include what it needs itself.
+        # Each source is compiled alone, so it must include what it needs.
         run(
             "cmake",
             "-S", ROOT,
@@ -89,7 +89,7 @@ class PlainCMake(unittest.TestCase):
 
     def test_2_a_user_of_the_installed_libraries_is_compiled_alike(self):
         run("cmake", "--install", self.build)
-        # As if the repository were not there.
+        # The user's folder is a copy, as if there were no repository.
         user = self.folder / "user"
         shutil.copytree(ROOT / "examples" / "own_project", user)
         run("cmake", "-S", user, "-B", user / "build", "-G", "Ninja",
@@ -98,7 +98,7 @@ class PlainCMake(unittest.TestCase):
         printed = run(user / "build" / "spiral").splitlines()
         flown = {line.split()[0]: [float(x) for x in line.split()[1:]] for line in printed}
         self.assertEqual(set(flown), {"spiral:speed=0.3", "pursuit_separated"})
-        # In a sourced workspace as well, program and module load the libraries that were installed.
+        # Also in a sourced workspace, the program and the module load the installed libraries.
         (module,) = self.prefix.rglob("stg/_core.*.so")
         (ours,) = {os.path.dirname(path) for path in self.prefix.rglob("libstg_env.so")}
         for program in (user / "build" / "spiral", module):
@@ -107,7 +107,7 @@ class PlainCMake(unittest.TestCase):
             self.assertGreaterEqual(len(loaded), 5, told)
             self.assertEqual({os.path.dirname(os.path.realpath(x)) for x in loaded},
                              {os.path.realpath(ours)}, told)  # fmt: skip
-        # Packs that were laid out otherwise here than in the libraries would fly otherwise.
+        # If packs had another layout here than in the libraries, the flights would differ.
         (evaluate,) = roslib.packages.find_node("marl_trainer", "evaluate")
         told = run(evaluate, "--policy", "pursuit_separated", "--episodes", "4",
                    STG_SCENARIOS=str(ROOT / "src" / "stg_bringup" / "scenarios"))  # fmt: skip

@@ -1,4 +1,4 @@
-"""A user's whole run: launch, record, clean exit, metrics file, replay of the bag."""
+"""A user's whole run: launch, recording, clean exit, metrics file, replay of the bag."""
 
 import collections
 import csv
@@ -76,8 +76,8 @@ class RecordReplay(unittest.TestCase):
             for name in OF_EVERY_STEP:
                 told = stamps[f"/auv_{i}/{name}"]
                 if name == "acoustic/rx":
-                    # What arrives in a step bears its end. Of the first step, which nothing was sent
-                    # in, the recorder may hear or not.
+                    # Packets that arrive in a step have the stamp of its end. Nothing was sent in the first
+                    # step, so the recorder may have it or not.
                     self.assertLessEqual(set(clock[1:]), told, f"/auv_{i}/{name}")
                     self.assertIn(len(told), (STEPS + 1, STEPS + 2), f"/auv_{i}/{name}")
                 else:
@@ -101,7 +101,7 @@ class RecordReplay(unittest.TestCase):
             wait_for(master.is_online, 40.0, "a master")
             programs.append(subprocess.Popen(
                 ["rosrun", "rosbag", "record", "-q", "-O", str(output), *topics], env=environment))
-            # It listens before the replay begins, however busy the machine is.
+            # The recorder listens before the replay begins, however busy the machine is.
             wait_for(lambda: topics <= {name for name, _ in master.getSystemState()[1]}, 40.0,
                      "the recorder listens")
             process, _ = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
@@ -119,7 +119,7 @@ class RecordReplay(unittest.TestCase):
             self.assertEqual(after, before[len(before) - len(after):])
 
     def test_replay_from_the_middle_has_the_scenario_and_the_static_frames(self):
-        # Both were published once, before the part that is shown, which lasts 150 s here.
+        # Both are published once, before the part that is shown. This part lasts 150 s here.
         process, environment = launch(self.folder, "replay.launch", "bag:=run.bag", "gui:=false",
                                       "start:=3", "rate:=0.02", "delay:=0.1")
         try:
@@ -134,7 +134,7 @@ class RecordReplay(unittest.TestCase):
 
 
 class ExitStatus(unittest.TestCase):
-    """A run that went wrong says so by its exit status, and ends."""
+    """The exit status of a run shows that it failed, and the run ends."""
 
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
@@ -142,7 +142,7 @@ class ExitStatus(unittest.TestCase):
         self.folder = pathlib.Path(self.temporary.name)
 
     def launch(self, *arguments):
-        """Starts an endless run of the medium scenario but for `arguments`."""
+        """Starts the medium scenario without end; `arguments` may change this."""
         process, environment = launch(self.folder, "medium.launch", "table:=false", *arguments)
         self.addCleanup(stop, process)
         return process, environment
@@ -156,7 +156,7 @@ class ExitStatus(unittest.TestCase):
 
     def test_death_of_the_world_ends_the_run_with_status_1(self):
         process, environment = self.launch()
-        process_of("/metrics", environment)  # the last one to start
+        process_of("/metrics", environment)  # this is the last node to start
         time.sleep(1.0)
         os.kill(process_of("/world", environment), signal.SIGKILL)
         output = process.communicate(timeout=40)[0]
@@ -164,7 +164,7 @@ class ExitStatus(unittest.TestCase):
         self.assertIn("/world died with exit status -9", output)
 
     def test_death_of_the_world_while_nodes_start_leaves_nothing_running(self):
-        # Left alone, roslaunch leaves master or nodes behind in about eight of ten such runs.
+        # roslaunch alone leaves the master or nodes behind in about eight of ten such runs.
         for _ in range(3):
             process, environment = self.launch()
             found = {}
@@ -178,8 +178,8 @@ class ExitStatus(unittest.TestCase):
 
     def test_interrupted_run_ends_with_status_0(self):
         process, environment = self.launch()
-        process_of("/metrics", environment)  # the last one to start
-        time.sleep(1.0)  # interrupted before all is started, it would end with 130
+        process_of("/metrics", environment)  # this is the last node to start
+        time.sleep(1.0)  # before all nodes are started, an interrupt would end it with 130
         output = stop(process)
         self.assertEqual(process.returncode, 0, output)
 

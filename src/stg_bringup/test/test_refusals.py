@@ -1,4 +1,4 @@
-"""A configuration that a node refuses ends the launch, and says what would do."""
+"""A node that refuses its configuration ends the launch, and says what would be right."""
 
 import pathlib
 import re
@@ -14,7 +14,7 @@ BRINGUP = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
 
 
 class Refusals(unittest.TestCase):
-    """Plain roslaunch, and `./stg run`."""
+    """Plain roslaunch and `./stg run`."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()

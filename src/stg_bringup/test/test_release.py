@@ -1,4 +1,4 @@
-"""What is released: one version, and a wheel that flies alone."""
+"""The release: one version, and a wheel that flies alone."""
 
 import base64
 import hashlib
@@ -33,7 +33,7 @@ print(env.state().tobytes().hex())
 
 
 def run(*command, **changed):
-    """Runs a command without what leads to the workspace; returns (status, output)."""
+    """Runs a command without anything that leads to the workspace; returns (status, output)."""
     leads = ("ROS", "CMAKE", "CATKIN", "LD_LIBRARY_PATH", "PYTHON", "STG")
     kept = {k: v for k, v in os.environ.items() if not k.startswith(leads)}
     done = subprocess.run(
@@ -61,7 +61,7 @@ class Version(unittest.TestCase):
 
 
 class Wheel(unittest.TestCase):
-    """Made of this workspace's engine, for every processor that this workspace is for."""
+    """A wheel of this workspace's engine, for every processor that the workspace supports."""
 
     @classmethod
     def setUpClass(cls):

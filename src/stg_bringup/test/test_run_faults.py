@@ -1,4 +1,4 @@
-"""What a run was asked to do and did not is told: at the start where it can be known, else by its end."""
+"""A run tells what it was asked to do and did not do: at the start if it can know it, else at its end."""
 
 import contextlib
 import os
@@ -27,7 +27,7 @@ RED = "\033[31m"
 
 
 class WithFolder(unittest.TestCase):
-    """A test with a folder of its own, from which runs are started."""
+    """A test with its own folder, from which runs are started."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -46,7 +46,7 @@ class WithFolder(unittest.TestCase):
         return process.returncode, output
 
     def check_refused(self, reason, *arguments, port=None):
-        """Starts a run that must be refused in one line, before any node is started."""
+        """Starts a run. It must be refused in one line, before any node is started."""
         status, output = self.finish(self.start(*arguments, port=port)[0], 20)
         self.assertEqual(status, 1, output)
         self.assertRegex(output, f"stg: the run failed: .*{reason}")
@@ -55,7 +55,7 @@ class WithFolder(unittest.TestCase):
 
 
 class Refused(WithFolder):
-    """What can be known before anything starts."""
+    """Faults that can be known before anything starts."""
 
     def test_bag_or_summary_where_nothing_can_be_written(self):
         self.check_refused("there is no folder", "record:=true", "bag:=nowhere/run.bag")
@@ -63,7 +63,7 @@ class Refused(WithFolder):
         self.check_refused("is a folder", f"summary_file:={self.folder}")
 
     def test_a_log_folder_that_cannot_be_written(self):
-        # Nobody can write there, root included.
+        # Nobody can write there, not even root.
         with unittest.mock.patch.dict(os.environ, ROS_LOG_DIR="/proc/log"):
             self.check_refused("log folder '/proc/log': .*; ROS_LOG_DIR=FOLDER", *QUICK)
 
@@ -73,7 +73,7 @@ class Refused(WithFolder):
         self.check_refused("agents: '256' is not a whole number from 1 to 255", "agents:=256")
 
     def test_as_many_agents_as_a_scenario_may_have(self):
-        # Launch files include themselves, one AUV after the other.
+        # A launch file includes itself, once for each AUV.
         listed = subprocess.run([str(LAUNCH), "--nodes", "stg_bringup", "medium.launch",
                                  "agents:=255"], cwd=self.folder, stdout=subprocess.PIPE,
                                 universal_newlines=True, check=True,
@@ -110,7 +110,7 @@ class Refused(WithFolder):
 
     @contextlib.contextmanager
     def stranger(self, answer):
-        """Somebody who listens and gives an answer, or none."""
+        """Listens and gives an answer, or none. Yields its port."""
         with socket.socket() as listener:
             listener.bind(("127.0.0.1", 0))
             listener.listen()
@@ -170,7 +170,7 @@ class Refused(WithFolder):
 
 
 class View(WithFolder):
-    """The view's node checks what it is given."""
+    """The node of the view checks its parameters."""
 
     def test_bad_parameters_end_it_in_one_line(self):
         for argument, reason in (("trail_s:=-5", "trail_s: must be from 0"),
@@ -186,7 +186,7 @@ class View(WithFolder):
 
 
 class Ends(WithFolder):
-    """The end of the world is that of the run, and told as what it is."""
+    """The end of the world ends the run, and the run says how it ended."""
 
     def test_a_clean_end_is_no_death(self):
         for program in (LAUNCH, "roslaunch"):
@@ -204,7 +204,7 @@ class Ends(WithFolder):
     def test_a_reader_that_leaves_ends_it(self):
         process, environment = self.start(*ENDLESS)
         process.stdout.readline()
-        process.stdout.close()  # as that of `| head -1`
+        process.stdout.close()  # as `| head -1` does
         self.assertEqual(process.wait(60), 128 + signal.SIGPIPE)
         self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {})
 
@@ -228,7 +228,7 @@ class Ends(WithFolder):
 
 
 class Lost(WithFolder):
-    """What is known only at the end, or in between."""
+    """Faults that are known only at the end or during the run."""
 
     def test_output_that_is_written_is_no_failure_whatever_its_name(self):
         process, _ = self.start(*QUICK, "record:=true", "bag:=my own run.bag",
@@ -242,7 +242,7 @@ class Lost(WithFolder):
     def test_bag_on_a_disk_that_gets_full(self):
         disk = self.folder / "disk"
         disk.mkdir()
-        # Recordings start where 1 GiB is free.
+        # A recording starts only if 1 GiB is free.
         mount = ["mount", "-t", "tmpfs", "-o", "size=1100M", "tmpfs", str(disk)]
         if subprocess.run(mount, stderr=subprocess.DEVNULL, check=False).returncode != 0:
             self.skipTest("may not mount a small disk")

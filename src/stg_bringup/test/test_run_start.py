@@ -1,4 +1,4 @@
-"""A run starts as it was asked to, or not at all, and beside others; Ctrl-C ends it at any time."""
+"""A run starts as asked or not at all, also beside other runs. Ctrl-C ends it at any time."""
 
 import contextlib
 import io
@@ -22,10 +22,10 @@ ENDLESS = ("policy:=idle", "table:=false")
 
 
 class Arguments(unittest.TestCase):
-    """What an argument takes is known before anything starts."""
+    """The values of arguments are checked before anything starts."""
 
     def refusal(self, *words, file="medium.launch"):
-        """Returns what is said of a command line."""
+        """Returns the message with which a command line is refused."""
         with self.assertRaises(run_checks.Refusal) as refused:
             run_arguments.check(["-p", "11311", "stg_bringup", file, *words])
         return str(refused.exception)
@@ -64,7 +64,7 @@ class Arguments(unittest.TestCase):
 
 
 class Bags(unittest.TestCase):
-    """Recordings of before."""
+    """Recordings of earlier runs."""
 
     def test_one_that_is_replaced_is_named(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -82,7 +82,7 @@ class Bags(unittest.TestCase):
 
 
 class WithFolder(unittest.TestCase):
-    """A test with a folder of its own, from which runs are started."""
+    """A test with its own folder, from which runs are started."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -96,7 +96,7 @@ class WithFolder(unittest.TestCase):
         return process, environment["ROS_MASTER_URI"]
 
     def script(self, name, *lines):
-        """Returns a program that ends as the launcher, after these lines of shell."""
+        """Returns a program that runs these lines of shell and then the launcher."""
         path = self.folder / name
         path.write_text("\n".join(["#!/bin/sh", *lines, f'exec "{LAUNCH}" "$@"\n']))
         path.chmod(0o755)
@@ -104,17 +104,17 @@ class WithFolder(unittest.TestCase):
 
 
 class Interrupted(WithFolder):
-    """Ctrl-C before everything is started."""
+    """Ctrl-C comes before all nodes are started."""
 
     def check_end(self, process, master):
-        """It ends with what a shell says of Ctrl-C, and leaves nothing behind."""
+        """Expects the exit status that a shell uses for Ctrl-C, and that nothing is left behind."""
         output = process.communicate(timeout=60)[0]
         self.assertEqual(process.returncode, 130, output)
         self.assertNotIn("Traceback", output)
         self.assertEqual(processes_with(master), {}, output)
 
     def test_while_python_itself_loads(self):
-        # It waits for the program to be ready for it.
+        # The signal waits until the program is ready for it.
         pending = self.script("pending", 'kill -INT "$$"').rename(self.folder / "inner")
         blocked = self.folder / "blocked"
         blocked.write_text(f'#!/bin/sh\nexec env --block-signal=INT "{pending}" "$@"\n')

@@ -1,4 +1,4 @@
-"""Checks the shipped rviz files: they parse, and show only what is published."""
+"""Checks the shipped rviz files: they can be read, and show only topics that are published."""
 
 import math
 import os
@@ -25,15 +25,15 @@ def rviz_files():
 
 
 def displays(node):
-    """Yields every display of a view, those in groups too."""
+    """Yields every display of a view, also those in groups."""
     for display in node.get("Displays") or []:
         yield display
         yield from displays(display)
 
 
 def published_markers():
-    """Returns the marker topics: `markers` is the node's name in view.launch, and its private
-    topics are those that its header names."""
+    """Returns the marker topics. `markers` is the name of the node in view.launch, and its private topics are
+    the ones that its header names."""
     (node,) = [
         node
         for node in ElementTree.parse(PACKAGE / "launch" / "view.launch").getroot().iter("node")
@@ -45,13 +45,13 @@ def published_markers():
 
 
 def marker_namespaces():
-    """Returns the namespaces that the markers are built with."""
+    """Returns the namespaces of the markers."""
     source = "".join(path.read_text() for path in sorted(MARKERS.rglob("*.cpp")))
     return set(re.findall(r'\b(?:Sphere|Lines|New|Text|Mesh|Circle|Trail|Clashes)\("(\w+)"', source))
 
 
 def published_frames():
-    """Returns patterns of the frames that the world publishes, from the headers that name them."""
+    """Returns patterns for the frames that the world publishes, from the headers that name them."""
     patterns = set()
     for header in SOURCES.rglob("topics.hpp"):
         frames = header.read_text().partition("namespace stg::frames {")[2]
@@ -142,7 +142,7 @@ class RvizFiles(unittest.TestCase):
             extent = scenario["workspace"]["half_extent_m"]
             self.assertLess(extent, shown_m("overview", scenario))
             self.assertLess(shown_m("overview", scenario), 2.0 * extent)
-        # Where AUVs start around one target, the overview shows them and not the whole sea.
+        # If AUVs start around one target, the overview shows them and not the whole sea.
         near = dict(field, reset={"deploy": "around", "stage": "medium",
                                   "stages": {"medium": {"auv_distance_m": [200.0, 500.0]}}})  # fmt: skip
         self.assertEqual(camera("overview", near)["Target Frame"], "target_0")
@@ -166,7 +166,7 @@ class RvizFiles(unittest.TestCase):
             linear = [(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4)
                       for c in map(float, stop.split(",")[1:])]  # fmt: skip
             luminance = sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear))
-            self.assertGreater(white / (luminance + 0.05), 3.0, stop)  # of WCAG, for large letters
+            self.assertGreater(white / (luminance + 0.05), 3.0, stop)  # the limit of WCAG for large letters
             self.assertGreater(luminance, before, "shallower is lighter")
             before = luminance
 
@@ -192,7 +192,7 @@ class RvizFiles(unittest.TestCase):
 
 
 class Replay(unittest.TestCase):
-    """replay.launch finds a bag however it is named."""
+    """replay.launch finds a bag by any form of its name."""
 
     def arguments_of_player(self, bag, folder):
         """Returns the player's command line as roslaunch resolves it in `folder`."""

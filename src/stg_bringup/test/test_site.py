@@ -1,5 +1,5 @@
-"""The documentation site is built without a warning, has what is made from the code, and is searched from
-disk."""
+"""The documentation site is built without a warning. It has the pages that are made from the code, and a
+reader can search it from disk."""
 
 import json
 import pathlib
@@ -21,7 +21,7 @@ FOUND = "return [...document.querySelectorAll('.md-search-result__item a')].map(
 
 @unittest.skipUnless(shutil.which("mkdocs"), "the site is not built: install mkdocs-material")
 class Site(unittest.TestCase):
-    """One site for all tests, without the C++ headers, which doxygen takes a minute for."""
+    """One site for all tests. It has no C++ headers, because doxygen takes a minute for them."""
 
     @classmethod
     def setUpClass(cls):
@@ -48,7 +48,8 @@ class Site(unittest.TestCase):
         home = (self.site / "index.html").read_text()
         for tab in ("Start", "Fly", "Network", "Models", "Learn", "Results", "Extend", "Reference"):
             self.assertRegex(home, rf"md-tabs__link[^>]*>\s*{tab}\s*<")
-        self.assertNotRegex(home, r"md-tabs__link[^>]*>\s*More\s*<")  # name the page in scripts/docs/navigation.py
+        # Scripts/docs/navigation.py must name the page.
+        self.assertNotRegex(home, r"md-tabs__link[^>]*>\s*More\s*<")
 
     def test_the_gallery_is_what_its_script_says(self):
         gallery = load_program(ROOT / "scripts/docs/gallery.py")

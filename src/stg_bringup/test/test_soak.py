@@ -1,4 +1,4 @@
-"""The judge of long runs (scripts/bench/soak) tells what grows, and nothing else."""
+"""The judge of long runs (scripts/bench/soak) reports what grows, and nothing else."""
 
 import pathlib
 import unittest
@@ -10,7 +10,7 @@ SOAK = load_program(ROOT / "scripts" / "bench" / "soak")
 
 
 def rows(memory=lambda t: 50000, files=lambda t: 20, threads=lambda t: 5, until=100):
-    """Samples of one process, one a second, of a run of 100 s."""
+    """Samples of one process, one per second, in a run of 100 s."""
     return [(float(t), "world", 7, memory(t), files(t), threads(t)) for t in range(until)]
 
 
@@ -21,7 +21,7 @@ class Judge(unittest.TestCase):
         self.assertEqual(SOAK.grown(jitter, 100.0), [])
 
     def test_a_leak_is_told_by_name_and_amount(self):
-        # Half the run lies between the middles of the second quarter and the last.
+        # From the middle of the second quarter to the middle of the last one is half of the run.
         (told,) = SOAK.grown(rows(memory=lambda t: 50000 + 60 * t), 100.0)
         self.assertRegex(told, "^world: 3000 KiB more$")
         (told,) = SOAK.grown(rows(files=lambda t: 20 + t // 10), 100.0)

@@ -1,4 +1,4 @@
-"""Programs of scripts/ refuse what cannot work in one line, before anything is run or written."""
+"""Programs of scripts/ refuse bad input in one line, before they run or write anything."""
 
 import json
 import os
@@ -10,8 +10,8 @@ import unittest
 
 import stg_common
 
-# In place of roslaunch: what the world says at the end, and in the first run in real time the process
-# of an agent, for which what is in place of sleep waits.
+# In place of roslaunch: it prints what the world says at the end. In the first run in real time it also
+# becomes the process of an agent. The stand-in for sleep waits for this process.
 ROSLAUNCH = """#!/bin/bash
 echo "world: 9 steps in 1.5 s, 2.5 x real time, 1.0 to wrench 1.25 ms (median), 3.75 ms (99 %), \
 in time, 0 with a deadline miss"
@@ -29,7 +29,7 @@ PYTHON = str(pathlib.Path(stg_common.__file__).resolve().parents[1])
 
 
 def run(folder, name, *arguments):
-    """Returns the finished program of scripts/, run in a folder; only fig6 finds all of the workspace."""
+    """Runs a program of scripts/ in a folder; returns the finished process. Only fig6 gets the workspace."""
     environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C", "PYTHONPATH": PYTHON}
     if name.endswith("fig6"):
         environment = dict(os.environ)
@@ -47,7 +47,7 @@ class Tools(unittest.TestCase):
         self.folder = temporary.name
 
     def check_refused(self, what, name, *arguments):
-        """The last line must say what is wrong, with a status, no traceback, and no file left."""
+        """The last line must say what is wrong. There is a status, no traceback, and no file is left."""
         done = run(self.folder, name, *arguments)
         with self.subTest(program=name, arguments=arguments):
             self.assertIn(done.returncode, (1, 2), done.stderr)

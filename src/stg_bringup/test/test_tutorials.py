@@ -1,4 +1,4 @@
-"""The tutorials do what they say: their blocks run word for word, in the order of the page."""
+"""The tutorials are true: their blocks run word for word, in the order of the page."""
 
 import json
 import os
@@ -17,13 +17,13 @@ LIMIT_S = 150
 
 
 def blocks(page):
-    """Yields (language, text) of the blocks that a reader is to run: sh and python."""
+    """Yields (language, text) of the blocks that a reader must run: sh and python."""
     for language, text in re.findall(r"^```(sh|python)\n(.*?)^```$", page.read_text(), re.M | re.S):
         yield language, text
 
 
 def script(page):
-    """The page's blocks as one shell script. A block of Python is a program of its own."""
+    """Returns the page's blocks as one shell script. A block of Python is a program of its own."""
     parts = ["set -eo pipefail"]
     for language, text in blocks(page):
         parts.append(text if language == "sh" else f"/usr/bin/python3 - <<'END_OF_BLOCK'\n{text}END_OF_BLOCK")
@@ -31,7 +31,7 @@ def script(page):
 
 
 class Tutorials(unittest.TestCase):
-    """Each page runs in a folder that looks like a clone and keeps what the page writes."""
+    """Each page runs in a folder that looks like a clone. The folder keeps what the page writes."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -43,7 +43,7 @@ class Tutorials(unittest.TestCase):
         (self.folder / "devel").symlink_to(WORKSPACE)
 
     def run_page(self, name):
-        """Runs a page; returns what it prints."""
+        """Runs a page; returns its output."""
         port = free_port()
         environment = dict(os.environ, STG_BUILD_ROOT=str(WORKSPACE.parent), ROS_MASTER_URI=f"http://127.0.0.1:{port}",
                            ROS_HOME=str(self.folder / "ros_home"), PWD=str(self.folder))
@@ -56,13 +56,13 @@ class Tutorials(unittest.TestCase):
         return done.stdout
 
     def assert_pages(self, *names):
-        """Reports were written where the page says."""
+        """The reports are where the page says."""
         for name in names:
             self.assertIn("Content-Security-Policy", (self.folder / name).read_text(), name)
 
     @staticmethod
     def results(output):
-        """The JSON objects among the lines."""
+        """Returns the JSON objects among the lines."""
         return [json.loads(line) for line in output.splitlines() if line.startswith("{") and line.endswith("}")]
 
     def test_first_hour(self):
@@ -71,7 +71,7 @@ class Tutorials(unittest.TestCase):
         pursuit, separated, _, *same = [one for one in found if "colliding_pairs" in one][-5:]
         self.assertTrue(4.0 < pursuit["colliding_pairs"] < 6.0, pursuit)
         self.assertLess(separated["colliding_pairs"], 0.5)
-        # Both ways to change a number change the same.
+        # Both ways to change a number have the same effect.
         self.assertEqual(*(one["return"] for one in same))
         self.assertNotEqual(same[0]["return"], separated["return"])
 

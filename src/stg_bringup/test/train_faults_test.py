@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Learning on the running graph goes on, whoever dies, sleeps or speaks of the future."""
+"""Learning goes on while nodes run, if a node dies, stops or sends stamps of the future."""
 
 import os
 import pathlib
@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Log
 
 
 class TrainFaults(unittest.TestCase):
-    """One training without end; each test waits for the updates after its fault."""
+    """One training without end. Each test waits for the updates after its fault."""
 
     @classmethod
     def setUpClass(cls):
@@ -29,17 +29,17 @@ class TrainFaults(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
-        kill("/trainer")  # before its folder is gone
+        kill("/trainer")  # the trainer must end before its folder goes
         shutil.rmtree(pathlib.Path(rospy.get_param("~out")), ignore_errors=True)
 
     @classmethod
     def count(cls, message):
-        """Counts what the trainer says."""
+        """Counts the warnings of the trainer."""
         cls.warnings += message.name == "/trainer"
 
     @classmethod
     def updates(cls):
-        """Returns how many updates the trainer says it has made."""
+        """Returns how many updates the trainer has reported."""
         return cls.diagnostics.value("trainer", "updates") or 0
 
     def check_learning_goes_on(self, what, updates=3):

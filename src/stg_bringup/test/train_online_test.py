@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The trainer node learns on the running graph, then from good and damaged bags of it."""
+"""The trainer node learns while nodes run, then from good and damaged bags of the run."""
 
 import copy
 import math
@@ -29,7 +29,7 @@ class Recorder:
 
     def __init__(self):
         self.episodes = {}  # {number: [(topic, message)]}
-        self.policies = []  # ids in the order of their first decision
+        self.policies = []  # ids in the order of their first decisions
         self._lock = threading.Lock()
         self._subscribers = [
             rospy.Subscriber(f"/auv_{i}/agent_step", AgentStep, self._keep, f"/auv_{i}/agent_step")
@@ -61,14 +61,14 @@ class Recorder:
 
 
 def write_bag(path, messages):
-    """Writes messages in the order they came."""
+    """Writes messages in the order in which they came."""
     with rosbag.Bag(str(path), "w") as bag:
         for topic, message in messages:
             bag.write(topic, message, message.header.stamp)
 
 
 def changed(messages, change):
-    """Returns a copy of the messages with `change` applied to one step of AUV 2."""
+    """Returns a copy of the messages. `change` has changed one step of AUV 2."""
     copies = copy.deepcopy(messages)
     step = next(m for topic, m in copies if topic == "/auv_2/agent_step" and m.step == 17)
     step.observation, step.action = list(step.observation), list(step.action)
@@ -77,7 +77,7 @@ def changed(messages, change):
 
 
 class TrainOnline(unittest.TestCase):
-    """One run of the graph; its recordings serve all tests."""
+    """One run of all nodes. Its recordings serve all tests."""
 
     @classmethod
     def setUpClass(cls):
@@ -101,7 +101,7 @@ class TrainOnline(unittest.TestCase):
         shutil.rmtree(cls.out)
 
     def train(self, name, *bags):
-        """Runs the trainer over bags, in a copy of the run's folder."""
+        """Runs the trainer with bags, in a copy of the run's folder."""
         folder = self.out / name
         folder.mkdir()
         for path in [*self.out.glob("checkpoint_*.ckpt"), self.out / "policy_last.onnx"]:

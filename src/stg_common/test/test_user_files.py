@@ -1,4 +1,4 @@
-"""Files that users give are read whole or refused in one line that names file and line."""
+"""Files of users are read as a whole, or refused in one line that names file and line."""
 
 import codecs
 import gzip
@@ -16,7 +16,7 @@ from stg_common.yaml_files import parse_yaml, read_yaml
 
 
 class WithFolder(unittest.TestCase):
-    """A test with a folder of its own."""
+    """A test with its own folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -24,14 +24,14 @@ class WithFolder(unittest.TestCase):
         self.folder = folder.name
 
     def write(self, content, name="file"):
-        """Returns the path of a new file of text or bytes."""
+        """Writes text or bytes into a new file; returns its path."""
         path = os.path.join(self.folder, name)
         with open(path, "wb") as file:
             file.write(content.encode() if isinstance(content, str) else content)
         return path
 
     def check_refused(self, read, path, *what):
-        """read(path) must throw a FileError of one line that names the file and says `what`."""
+        """read(path) must raise a FileError with one line that names the file and says `what`."""
         with self.assertRaises(FileError) as caught:
             read(path)
         text = str(caught.exception)
@@ -67,7 +67,7 @@ class Files(WithFolder):
             pack = gzip.compress if name.endswith(".gz") else bytes
             rows = table_rows(self.write(pack(mark + b"x,y\n1,2\n"), name), {"x": number})
             self.assertEqual(list(rows), [{"x": 1.0, "y": "2"}])
-        self.assertEqual(read_text(self.write(b"a" + mark)), "a\ufeff")  # elsewhere it is a character
+        self.assertEqual(read_text(self.write(b"a" + mark)), "a\ufeff")  # here it is an ordinary character
         self.check_refused(read_text, self.write(mark + b"a\n\xff"), ":2: ", "UTF-8")
         self.check_refused(read_yaml, self.write(mark + b"a: 1\nb: ["), ":2: ")
 
@@ -178,7 +178,7 @@ class Program(WithFolder):
             self.assertEqual((run.returncode, run.stderr), (141, ""))
 
     def test_an_interrupt_ends_it_silently(self):
-        # Who runs the tests may have started them with interrupts ignored, as `&` in a script does.
+        # The tests may have been started with interrupts ignored, as `&` in a script does.
         run = self.run_with(
             "import os, signal, time; signal.signal(signal.SIGINT, signal.default_int_handler); "
             "os.kill(os.getpid(), signal.SIGINT); time.sleep(9)"

@@ -1,4 +1,4 @@
-"""What the tests of the page share: a browser, a page that is open in it, and what it complained about."""
+"""Shared by the tests of the page: a browser, a page that is open in it, and the browser's complaints."""
 
 import contextlib
 import json
@@ -14,13 +14,13 @@ LARGEST_MB = 10.0
 
 
 def complaints(driver):
-    """What the browser complains about; its remarks on drawing and on its own pages are none."""
+    """Returns the complaints of the browser, without its remarks on drawing and on its own pages."""
     said = [e["message"] for e in driver.get_log("browser")]
     return [text for text in said if "GL Driver Message" not in text and not text.startswith("chrome://")]
 
 
 def asked(driver):
-    """Addresses that the page asked for, itself aside."""
+    """Returns the addresses that the page asked for, except its own."""
     found = []
     for entry in driver.get_log("performance"):
         message = json.loads(entry["message"])["message"]
@@ -33,7 +33,7 @@ def asked(driver):
 
 @unittest.skipIf(LACK, f"the page is not opened: {LACK}")
 class PageCase(unittest.TestCase):
-    """Every test opens a page from disk and looks at it."""
+    """Each test opens a page from disk and looks at it."""
 
     @classmethod
     def setUpClass(cls):
@@ -46,7 +46,7 @@ class PageCase(unittest.TestCase):
 
     @contextlib.contextmanager
     def page(self, recording, width=1280, height=720, title="a run", place=""):
-        """The page of a recording, open; afterwards there was no complaint and no other request."""
+        """Opens the page of a recording. At the end there must be no complaint and no other request."""
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "run.html"
             file.write_text(report_page(recording.encoded(), title), encoding="utf-8")
@@ -58,11 +58,11 @@ class PageCase(unittest.TestCase):
             self.assertEqual([], others)
 
     def run_js(self, driver, text):
-        """What an expression of the page is."""
+        """Returns the value of an expression in the page."""
         return driver.execute_script(f"return {text}")
 
     def tour(self, driver):
-        """Looks at everything that can be looked at."""
+        """Looks at everything that the page can show."""
         for tab in ("plots", "network", "table", "story"):
             driver.execute_script(f"STG.app.show('{tab}'); STG.app.draw(performance.now())")
         for mode in ("target", "auv", "region", "above", "swarm"):
@@ -70,7 +70,7 @@ class PageCase(unittest.TestCase):
         driver.execute_script("STG.app.seek(STG.app.recording.end); STG.app.draw(performance.now())")
 
     def drawn(self, driver):
-        """How many different colours the scene has in a coarse raster."""
+        """Returns the number of different colours in a coarse raster of the scene."""
         return self.run_js(driver, """(() => {
             STG.app.draw(performance.now());
             const c = document.createElement("canvas"); c.width = c.height = 64;

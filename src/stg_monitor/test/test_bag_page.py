@@ -1,4 +1,4 @@
-"""Reports of bags: everything of a run gets into the page; damaged bags give a page or one line."""
+"""Reports of bags: the page has everything of a run. A damaged bag gives a page or one line."""
 
 import contextlib
 import io
@@ -26,7 +26,7 @@ AGENTS, STEPS = 3, 40
 
 
 def write_bag(path):
-    """Writes a run of AUVs that stand still, with packets of which every third is lost."""
+    """Writes a run of AUVs that do not move. Every third packet is lost."""
     with rosbag.Bag(str(path), "w", compression="lz4", chunk_threshold=8192) as bag:
         scenario = std_msgs.msg.String(view_fixtures.HOSTILE)
         bag.write("/scenario", scenario, genpy.Time(1))
@@ -48,14 +48,15 @@ def write_bag(path):
             task = auv_msgs.msg.TaskState(episode=0, step=k, phase=3 if k >= 20 else 2, target_known=True)
             task.header.stamp, task.target_position = t, Point(0.6, 0.0, -1.0)
             task.target_covariance = [0.01, 0, 0, 0.01, 0, 0.01]
-            bag.write("/auv_1/task_state", task, t + genpy.Duration.from_sec(0.35))  # recorded late: it belongs to its stamp
+            # Recorded late; it belongs to its stamp.
+            bag.write("/auv_1/task_state", task, t + genpy.Duration.from_sec(0.35))
             bag.write("/acoustic_channel/packets", packets_of(k, t), t)
         summary = auv_msgs.msg.EpisodeSummary(scenario=view_fixtures.HOSTILE, policy_id=view_fixtures.HOSTILE)
         bag.write("/episode_summary", summary, t)
 
 
 def packets_of(k, t):
-    """One transmission, and one that never left."""
+    """One packet that was sent, and one that never left."""
     found = auv_msgs.msg.PacketEvents()
     found.header.stamp = t
     common = {"source": k % AGENTS, "destination": -1, "sequence": k, "bytes": 32, "offered": t, "transmit": t, "arrival": t}
@@ -126,7 +127,7 @@ class BagPageTest(unittest.TestCase):
         self.assertNotIn("\n", str(refused.exception))
 
     def report(self):
-        """The exit status of the program for the bag."""
+        """Returns the exit status of the program for the bag."""
         with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
             return report.main([str(self.bag), "--out", str(self.page)])
 
@@ -140,7 +141,7 @@ class BagPageTest(unittest.TestCase):
                 try:
                     arguments = [str(cut), "--out", str(self.page), *(["--salvage"] if k % 2 else [])]
                     status = report.main(arguments)
-                except (BagError, FileError) as error:  # run_program makes one line of them
+                except (BagError, FileError) as error:  # run_program prints such an error as one line
                     self.assertNotIn("\n", str(error))
                     status = 2
             if status == 0:

@@ -1,4 +1,4 @@
-"""The colours of the phases differ for every reader, also without red or green cones."""
+"""The colours of the phases differ for every reader, also for one without red or green cones."""
 
 import itertools
 import pathlib
@@ -7,7 +7,7 @@ import unittest
 
 STYLE = pathlib.Path(__file__).resolve().parents[1] / "python/stg_view/web/style.css"
 PHASES = ("search", "approach", "stable", "lost")
-# What such eyes see, as a matrix on linear RGB: Machado, Oliveira and Fernandes (2009), severity 1.
+# What these eyes see, as a matrix on linear RGB: Machado, Oliveira and Fernandes (2009), severity 1.
 EYES = {
     "all cones": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "no red": ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)),
@@ -15,7 +15,7 @@ EYES = {
 }
 TO_XYZ = ((0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505))
 WHITE = (0.9505, 1.0, 1.089)
-LEAST = 25.0  # CIE 1976 difference; 2 is just seen side by side
+LEAST = 25.0  # CIE 1976 difference; side by side, 2 can just be seen
 
 
 def times(matrix, vector):

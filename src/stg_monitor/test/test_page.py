@@ -1,4 +1,4 @@
-"""The page in a real browser: what it shows, that it asks nobody, and that no text becomes code."""
+"""The page in a real browser: what it shows, that it asks no other address, and that text is no code."""
 
 import pathlib
 import tempfile
@@ -22,14 +22,14 @@ class PageTest(PageCase):
         with self.page(recording) as driver:
             self.tour(driver)
             self.assertGreater(self.drawn(driver), 10)
-            # Packets in the page are those of the log.
+            # The page has the packets of the log.
             driver.execute_script("STG.app.show('network'); STG.app.draw(performance.now())")
             rows = self.run_js(driver, "[...document.querySelectorAll('#fates tr[data-fate]')].map(r => "
                                "[Number(r.dataset.fate), Number(r.children[1].textContent)])")  # fmt: skip
             self.assertEqual([[k, n] for k, n in enumerate(fates) if n > 0], rows)
             cards = self.run_js(driver, "[...document.querySelectorAll('#network .card b')].map(b => b.textContent)")
             self.assertEqual([str(sent), str(sum(fates)), str(fates[0])], cards[:3])
-            # Who lost the target, when, why, and which packets were missing.
+            # The page shows which AUV lost the target, when and why, and which packets were missing.
             driver.execute_script("STG.app.show('story')")
             driver.execute_script(
                 "[...document.querySelectorAll('.event')].find(b => b.textContent.includes('loses')).click()"
@@ -63,7 +63,7 @@ class PageTest(PageCase):
             before, between, after = (self.run_js(driver, where % t) for t in (10, 10.25, 11))
             for a, x, b in zip(before, between, after):
                 self.assertAlmostEqual(0.75 * a + 0.25 * b, x, places=5)
-            # From the end of an episode to the start of the next nobody flies.
+            # No AUV moves between the end of an episode and the start of the next one.
             self.assertEqual(*(self.run_js(driver, where % t) for t in (29, 29.5)))
 
     def test_one_without_packets(self):
@@ -127,6 +127,6 @@ class PageTest(PageCase):
             self.assertNotEqual("owned", driver.title)
 
 
-del PageCase  # is no test of its own
+del PageCase  # it is no test of its own
 if __name__ == "__main__":
     unittest.main()

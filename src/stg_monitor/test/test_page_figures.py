@@ -1,6 +1,6 @@
 """The page at all sizes: swarms of 1 to 50, regions of 2 m to 4 km, an hour of data; and its video.
 
-Times (opening, frames, lag) are measured by scripts/bench/bench_view.py, as they depend on the machine.
+scripts/bench/bench_view.py measures times (opening, frames, lag), because they depend on the machine.
 """
 
 import contextlib
@@ -20,7 +20,7 @@ from stg_view.video import write_video
 
 report = load_program(pathlib.Path(__file__).resolve().parents[1] / "scripts" / "report.py")
 HOUR_MB = 50.0
-# An hour of a live run: 36,000 steps and 432,000 packets and receivers, as four AUVs at 10 Hz make them.
+# An hour of a live run of four AUVs at 10 Hz: 36,000 steps, and 432,000 rows of packets and receivers.
 FEED_AN_HOUR = """
 const app = STG.app, r = app.recording, types = {Float64Array: "f8", Float32Array: "f4", Int32Array: "i4", Uint8Array: "u1"};
 const copy = (table, rows, times, at) => Object.keys(table.columns).map((name) => {
@@ -89,7 +89,7 @@ class FiguresTest(PageCase):
             self.assertEqual(["0", "1", "1"], rows)
 
     def used_mb(self, driver):
-        """Memory of the page's objects and arrays after the garbage is gone [MB]."""
+        """Returns the memory of the page's objects and arrays after garbage collection [MB]."""
         driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
         usage = driver.execute_cdp_cmd("Runtime.getHeapUsage", {})
         return (usage["usedSize"] + usage.get("backingStorageSize", 0.0)) / 1e6
@@ -130,6 +130,6 @@ class FiguresTest(PageCase):
                     write_video("run.html", *arguments)
 
 
-del PageCase  # is no test of its own
+del PageCase  # it is no test of its own
 if __name__ == "__main__":
     unittest.main()

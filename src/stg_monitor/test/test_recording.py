@@ -1,4 +1,4 @@
-"""Recordings: what is written is read again, damage is told in words, folders and bags are taken."""
+"""Recordings: what is written is read again, damage is told in words, folders and bags are read."""
 
 import math
 import pathlib
@@ -24,7 +24,7 @@ error_probability,fate
 
 
 def by_kind(data):
-    """{kind: (header, columns)} of the last message of each kind."""
+    """Returns {kind: (header, columns)} of the last message of each kind."""
     return {header["kind"]: (header, columns) for header, columns in messages(data)}
 
 
@@ -74,7 +74,7 @@ class FormatTest(unittest.TestCase):
         self.assertEqual([sent, sent], found["totals"][0]["fates"][:2])
         self.assertEqual(sent, found["totals"][0]["transmissions"])
         self.assertEqual([sent // 2] * 2, found["totals"][0]["links"]["0>1"][:2])
-        self.assertEqual(sent, found["packets"][0]["rows"])  # every second transmission, two receivers
+        self.assertEqual(sent, found["packets"][0]["rows"])  # every second packet is kept, for two receivers
 
     def test_many_steps_are_thinned_and_the_page_is_told(self):
         recording = Recording(agents=1, targets=1)
@@ -116,7 +116,8 @@ class FoldersTest(unittest.TestCase):
     def test_training_has_curves(self):
         (self.path / "progress.csv").write_text("steps,wall_seconds,reward,validation_return\n100,1,1.0,\n200,2,2.0,5\n300,3,3.0,\n")
         curves = [h["title"] for h, _ in messages(read_folder(self.path)) if h["kind"] == "curves"]
-        self.assertEqual(["validation return", "reward", "wall seconds"], curves)  # what it is for first
+        # The purpose of a training comes first.
+        self.assertEqual(["validation return", "reward", "wall seconds"], curves)
 
     def test_what_is_no_run_is_refused_in_words(self):
         with self.assertRaisesRegex(FileError, "nothing to report"):

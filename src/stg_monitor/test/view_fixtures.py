@@ -1,4 +1,4 @@
-"""Runs that the tests of the view make up: circles around a target, packets in turns."""
+"""Made-up runs for the tests of the view: AUVs circle a target and take turns with packets."""
 
 import math
 
@@ -9,8 +9,8 @@ LOSS, COLLISION = 2, 3
 
 
 def made_up(agents=4, half=1.0, steps=60, every=2, bottom=False, name="auv_{}", lost_at=None):
-    """A Recording of AUVs that circle a target. every: steps between two packets, 0: none are sent.
-    lost_at: (row, AUV) from which on that AUV has lost the target."""
+    """A Recording of AUVs that circle a target. every: steps between two packets, 0: there are none. lost_at:
+    (row, AUV); from this row on the AUV has lost the target."""
     names = [name.replace("{}", str(i)) for i in range(agents)]
     recording = Recording(
         title="made up", scenario="circles", agents=agents, targets=1, names=names, half_extent_m=half,
@@ -31,7 +31,7 @@ def made_up(agents=4, half=1.0, steps=60, every=2, bottom=False, name="auv_{}", 
 
 
 def add_step(recording, agents, half, k, lost_at=None):
-    """One decision."""
+    """Adds one decision."""
     row = {"t": float(k), "position": [], "heading": [], "phase": [], "distance": [], "detected": []}
     row.update(estimate=[], covariance=[], age=[], neighbour_age=[], energy=[])
     target = [0.001 * half * k, 0.0, -0.3 * half]
@@ -55,7 +55,7 @@ def add_step(recording, agents, half, k, lost_at=None):
 
 
 def add_packet(recording, agents, source, sequence, t):
-    """One transmission: of the receivers every third has a loss, every fifth a collision."""
+    """Adds one packet. Every third receiver has a loss, and every fifth a collision."""
     for receiver in range(agents):
         if receiver != source:
             draw = source + receiver + sequence

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A browser that comes late is sent the tracks from the start, then what comes; no other site is."""
+"""A browser that comes late gets the tracks from the start, then what comes. No other site gets them."""
 
 import asyncio
 import io
@@ -53,7 +53,7 @@ def raw(message):
 
 
 def is_served():
-    """Whether the server is connected with the metrics."""
+    """Tells whether the server is connected to the metrics."""
     try:
         uri = rosgraph.Master("/view_server_test").lookupNode("/view_server")
     except rosgraph.MasterException:
@@ -78,7 +78,7 @@ class ViewServerTest(unittest.TestCase):
 
     @classmethod
     def publish(cls, count, silent=None):
-        """Publishes so many steps, slower than the server's rate; one AUV may be silent."""
+        """Publishes so many steps, more slowly than the server's rate. One AUV may be silent."""
         for _ in range(count):
             cls.states.publish(state_at(cls.step))
             for i, publisher in enumerate(cls.tasks):
@@ -88,8 +88,8 @@ class ViewServerTest(unittest.TestCase):
             time.sleep(0.05)
 
     async def steps_until(self, wanted, during=None):
-        """Numbers and estimates (x of each AUV) of all steps that a new browser is sent until there are
-        as many as wanted, and all kinds of messages."""
+        """Returns the numbers and estimates (x of each AUV) of the steps that a new browser gets until it has
+        `wanted` of them, and the kinds of all messages."""
         found, estimates, kinds = [], [], []
         async with aiohttp.ClientSession() as session, session.ws_connect(f"{URL}/stream") as socket:
             if during:
@@ -112,7 +112,7 @@ class ViewServerTest(unittest.TestCase):
         found, estimates, _ = asyncio.run(self.steps_until(before + AFTER, lambda: self.publish(AFTER)))
         self.assertEqual(list(range(before + AFTER)), found)
         self.assertEqual([[100.0 + k] * 2 for k in found], estimates)
-        # The display does not wait for an AUV that is silent, whose last words stay.
+        # The display does not wait for a silent AUV, whose last report stays.
         before = self.step
         found, estimates, _ = asyncio.run(self.steps_until(before + 5, lambda: self.publish(5, silent=1)))
         self.assertEqual(list(range(before + 5)), found)
@@ -121,7 +121,7 @@ class ViewServerTest(unittest.TestCase):
     def test_a_detection_is_shown_once_and_not_before_its_time(self):
         sent = []
         listener = Listener(1e9, sent.append, lambda _, action: None, lambda: True)
-        early = 1000  # what the metrics sent last comes to a new subscriber
+        early = 1000  # a new subscriber gets the last messages of the metrics
 
         def show(step):
             display = auv_msgs.msg.SwarmDisplay(state=state_at(early + step))

@@ -114,7 +114,7 @@ class Agents(unittest.TestCase):
             agent.act(np.zeros(4, np.float32))
         with self.assertRaises(ValueError):
             agent.act(np.full(3, np.nan, np.float32))
-        agent.receive(b"noise", 0)  # counted, and ignored
+        agent.receive(b"noise", 0)  # it is counted and ignored
         self.assertEqual(agent.neighbours, [])
 
 

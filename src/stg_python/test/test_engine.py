@@ -1,4 +1,4 @@
-"""The processor offers what glibc finds in it, whatever /proc/cpuinfo shows."""
+"""The engine reports the features that glibc finds in the processor, whatever /proc/cpuinfo shows."""
 
 import platform
 import re
@@ -15,7 +15,7 @@ LOADER = "/lib64/ld-linux-x86-64.so.2"
 class Processor(unittest.TestCase):
     def test_glibc_says_the_same(self):
         told = subprocess.run([LOADER, "--help"], stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout
-        # Both lines are there whatever the processor is: "x86-64-v3" or "x86-64-v3 (supported, searched)".
+        # Every processor gives a line: "x86-64-v3" or "x86-64-v3 (supported, searched)".
         (state,) = re.findall(r"^ +x86-64-v3(.*)$", told, re.MULTILINE)
         self.assertEqual(_processor.X86_64_V3, "supported" in state)
 

@@ -1,4 +1,4 @@
-"""Environments keep to the contracts of PettingZoo and Gymnasium, in every scenario and mode."""
+"""Environments keep the contracts of PettingZoo and Gymnasium, in every scenario and mode."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""The examples run, and the learners learn: short runs of each, as a user starts them."""
+"""The examples run, and the learners learn: short runs of each of them, as a user starts them."""
 
 import json
 import pathlib
@@ -28,7 +28,7 @@ def run(name, *arguments, folder="."):
 
 
 class Learner:
-    """Stands in for the reader's, which holds still."""
+    """Stands in for the reader's learner. It does nothing."""
 
     @staticmethod
     def act(observations, _):
@@ -40,7 +40,7 @@ class Learner:
 
 
 class Page(unittest.TestCase):
-    """The code of docs/python.md runs as it is written there, in a fresh Python each."""
+    """The code of docs/python.md runs as it is written there. Each block gets a fresh Python."""
 
     def test_environments_and_their_other_forms(self):
         blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
