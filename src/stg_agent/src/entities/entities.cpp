@@ -74,8 +74,7 @@ struct Subject {
 bool Sighted(const EntityInput& in, const Subject& t, const NeighbourState& report, double* age_s) {
   const bool free = in.model.task.free();
   if (!free && report.target != t.target) return false;
-  for (int k = 0; k < report.sightings; ++k) {
-    const dynamics::Detection& d = report.sighting[static_cast<std::size_t>(k)];
+  for (const dynamics::Detection& d : report.sightings) {
     if (free && d.target != t.target) continue;
     *age_s = std::max(0.0, Seconds(in.memory.now - d.stamp));
     return true;

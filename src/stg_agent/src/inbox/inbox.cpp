@@ -94,8 +94,7 @@ void Inbox::ToOwnFrame(NeighbourState* state) const {
   const PlaneError now = localizer_->relative(state->source, state->generation);
   state->p_W = state->p_W - Vec3<double>{now.x, now.y, 0.0};
   state->position_std_m = now.std_m();
-  for (int k = 0; k < state->sightings; ++k) {
-    dynamics::Detection& d = state->sighting[static_cast<std::size_t>(k)];
+  for (dynamics::Detection& d : state->sightings) {
     const PlaneError then = localizer_->relative(state->source, d.stamp);
     const Vec3<double> shift{then.x, then.y, 0.0};
     d.p_WO = d.p_WO - shift;
@@ -109,14 +108,13 @@ void Inbox::Hear(const NeighbourState& state) {
     if (state.target == target_) filters_.front()->Hear(state);
     return;
   }
+  NeighbourState part = state;
   for (int k = 0; k < beliefs(); ++k) {
-    NeighbourState part = state;
-    part.sightings = 0;
-    for (int s = 0; s < state.sightings; ++s) {
-      const dynamics::Detection& d = state.sighting[static_cast<std::size_t>(s)];
-      if (d.target == k) part.sighting[static_cast<std::size_t>(part.sightings++)] = d;
+    part.sightings.clear();
+    for (const dynamics::Detection& d : state.sightings) {
+      if (d.target == k) part.sightings.push_back(d);
     }
-    if (part.sightings > 0) filters_[static_cast<std::size_t>(k)]->Hear(part);
+    if (!part.sightings.empty()) filters_[static_cast<std::size_t>(k)]->Hear(part);
   }
 }
 
@@ -172,20 +170,13 @@ void Inbox::TellFreely(bool lost, NeighbourState* state) const {
     NeighbourState part;
     part.generation = state->generation;
     filters_[static_cast<std::size_t>(k)]->Tell(false, &part);
-    for (int s = 0; s < part.sightings; ++s) {
-      const dynamics::Detection& d = part.sighting[static_cast<std::size_t>(s)];
-      int rank = state->sightings;
-      while (rank > 0 && before(d, state->sighting[static_cast<std::size_t>(rank - 1)])) --rank;
-      if (rank == kFreeSightings) continue;
-      state->sightings = std::min(state->sightings + 1, kFreeSightings);
-      for (int j = state->sightings - 1; j > rank; --j) {
-        state->sighting[static_cast<std::size_t>(j)] =
-            state->sighting[static_cast<std::size_t>(j - 1)];
-      }
-      state->sighting[static_cast<std::size_t>(rank)] = d;
+    for (const dynamics::Detection& d : part.sightings) {
+      int rank = state->sightings.size();
+      while (rank > 0 && before(d, state->sightings[rank - 1])) --rank;
+      if (rank < kFreeSightings) state->sightings.insert(rank, d);
     }
   }
-  state->has_target = state->has_target || state->sightings > 0;
+  state->has_target = state->has_target || !state->sightings.empty();
 }
 
 TargetView<double> Inbox::Target(double freshness_s) const {

@@ -107,7 +107,6 @@ class RangeLocalizer : public Localizer {
     letter.way = {packet.generation, reception.transmit, packet.p_W, packet.v_W};
     letter.travel_time_s = reception.travel_time_s;
     letter.ranges = packet.ranges;
-    letter.range = packet.range;
     letter.has_bearing = packet.has_bearing;
     letter.bearing = packet.bearing;
     letter.has_fix = packet.has_fix;
@@ -173,7 +172,7 @@ class RangeLocalizer : public Localizer {
 
   void Tell(NeighbourState* packet) const override {
     packet->adrift = adrift_;
-    packet->ranges = 0;
+    packet->ranges.clear();
     if (fixes_.Tell(packet)) return;  // a fix uses the space of the ranges
     // A range to a station, if one was received, and a range to an AUV. The choice changes from
     // packet to packet.
@@ -181,7 +180,7 @@ class RangeLocalizer : public Localizer {
     const auto draw = static_cast<std::uint64_t>(packet->generation / 1000000);
     Pick(auvs_, stations, draw, packet);
     Pick(0, auvs_, draw, packet);
-    if (packet->ranges == 1) Pick(0, auvs_, draw + 1, packet);
+    if (packet->ranges.size() == 1) Pick(0, auvs_, draw + 1, packet);
   }
 
  private:
@@ -190,8 +189,7 @@ class RangeLocalizer : public Localizer {
     bool adrift = false;
     ToldWay::Point way;
     double travel_time_s = 0.0;
-    int ranges = 0;
-    std::array<ToldRange, kToldRanges> range;
+    ShortList<ToldRange, kToldRanges> ranges;
     bool has_bearing = false;
     ToldBearing bearing;
     bool has_fix = false;
@@ -242,8 +240,7 @@ class RangeLocalizer : public Localizer {
         fixes_.TakeTold(letter.id, letter.fix, &fix)) {
       filter_.Take(fix);
     }
-    for (int k = 0; k < letter.ranges; ++k) {
-      const ToldRange& told = letter.range[static_cast<std::size_t>(k)];
+    for (const ToldRange& told : letter.ranges) {
       if (told.source == letter.id) continue;
       z.receiver = letter.id;
       z.source = told.source;
@@ -297,11 +294,11 @@ class RangeLocalizer : public Localizer {
 
   /// Adds one of the newest readings of members first .. first + count - 1.
   void Pick(int first, int count, std::uint64_t draw, NeighbourState* packet) const {
-    if (packet->ranges == kToldRanges) return;
+    if (packet->ranges.full()) return;
     const auto usable = [&](int id) {
       const ToldRange& r = newest_[static_cast<std::size_t>(id)];
       if (r.range_m <= 0.0 || packet->generation - r.stamp > kOldest / 2) return false;
-      return packet->ranges == 0 || packet->range[0].source != id;
+      return packet->ranges.empty() || packet->ranges[0].source != id;
     };
     int heard = 0;
     for (int id = first; id < first + count; ++id) heard += usable(id) ? 1 : 0;
@@ -311,8 +308,7 @@ class RangeLocalizer : public Localizer {
     auto chosen = static_cast<int>(mixed % static_cast<std::uint64_t>(heard));
     for (int id = first; id < first + count; ++id) {
       if (!usable(id) || chosen-- > 0) continue;
-      packet->range[static_cast<std::size_t>(packet->ranges++)] =
-          newest_[static_cast<std::size_t>(id)];
+      packet->ranges.push_back(newest_[static_cast<std::size_t>(id)]);
       return;
     }
   }

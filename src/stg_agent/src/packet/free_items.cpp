@@ -28,8 +28,8 @@ static_assert(kFreeFirst + 2 * (kNameBits + kSightingBits - 1 - kTargetBits) <= 
 /// Number of sightings from `first` on that have the same time.
 int OfOneLook(const NeighbourState& s, int first) {
   int count = 0;
-  while (first + count < s.sightings && s.sighting[static_cast<std::size_t>(first + count)].stamp ==
-                                            s.sighting[static_cast<std::size_t>(first)].stamp) {
+  while (first + count < s.sightings.size() &&
+         s.sightings[first + count].stamp == s.sightings[first].stamp) {
     ++count;
   }
   return count;
@@ -49,14 +49,14 @@ int MeasurementPacket::ReadName(Reader* r) const {
 
 void MeasurementPacket::WriteFree(const NeighbourState& s, Writer* w) const {
   WriteName(std::max(s.followed, -1), w);
-  if (!s.has_target || s.sightings == 0) return;
+  if (!s.has_target || s.sightings.empty()) return;
   if (kind_ == MeasurementKind::kRange) {
     WriteLooks(s, w);
     return;
   }
   const int fit = ambiguous_ ? 1 : kSightings;
-  for (int k = 0; k < std::min(s.sightings, fit); ++k) {
-    const Detection& d = s.sighting[static_cast<std::size_t>(k)];
+  for (int k = 0; k < std::min(s.sightings.size(), fit); ++k) {
+    const Detection& d = s.sightings[k];
     RequireCode(s, d);
     WriteName(d.target, w);
     WriteMeasured(s, d, w);
@@ -64,7 +64,8 @@ void MeasurementPacket::WriteFree(const NeighbourState& s, Writer* w) const {
 }
 
 void MeasurementPacket::WriteLooks(const NeighbourState& s, Writer* w) const {
-  const int newest = OfOneLook(s, 0), earlier = newest < s.sightings ? OfOneLook(s, newest) : 0;
+  const int newest = OfOneLook(s, 0),
+            earlier = newest < s.sightings.size() ? OfOneLook(s, newest) : 0;
   const bool two = newest < kThree && earlier > 0;
   w->Bits(two ? static_cast<std::uint64_t>(newest) : 0, kManyBits);
   const auto look = [&](const Detection& d, TimeNs steps, int bits) {
@@ -72,16 +73,16 @@ void MeasurementPacket::WriteLooks(const NeighbourState& s, Writer* w) const {
     WriteAge(steps, bits, w);
     WriteObserver(s, d, w);
   };
-  const TimeNs age = AgeCode(s, s.sighting[0]);
-  look(s.sighting[0], age, kAgeBits);
+  const TimeNs age = AgeCode(s, s.sightings[0]);
+  look(s.sightings[0], age, kAgeBits);
   if (two) {
-    const Detection& second = s.sighting[static_cast<std::size_t>(newest)];
+    const Detection& second = s.sightings[newest];
     look(second, AgeCode(s, second) - age, kEarlierBits);
   }
   const int count =
       two ? newest + std::min(earlier, kThree - newest) : std::min(newest, kFreeSightings);
   for (int k = 0; k < count; ++k) {
-    const Detection& d = s.sighting[static_cast<std::size_t>(k)];
+    const Detection& d = s.sightings[k];
     RequireCode(s, d);
     WriteName(d.target, w);
     w->Number(range_, d.range_m, kFreeRangeBits);
@@ -99,7 +100,7 @@ void MeasurementPacket::ReadFree(Reader* r, NeighbourState* s) const {
   for (int k = 0; k < fit; ++k) {
     const int target = ReadName(r);
     if (target < 0) return;
-    ReadMeasured(*s, target, r, &s->sighting[static_cast<std::size_t>(s->sightings++)]);
+    ReadMeasured(*s, target, r, &s->sightings.push_back({}));
   }
 }
 
@@ -122,8 +123,7 @@ void MeasurementPacket::ReadLooks(Reader* r, NeighbourState* s) const {
     if (target < 0) continue;
     const int look = two && k >= newest ? 1 : 0;
     if (stamp[look] < 0) RefusePacket("measured before the start");
-    Detection& d = s->sighting[static_cast<std::size_t>(s->sightings++)];
-    d = Detection();
+    Detection& d = s->sightings.push_back({});
     d.kind = kind_;
     d.target = target;
     d.stamp = stamp[look];

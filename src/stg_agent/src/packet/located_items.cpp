@@ -48,12 +48,12 @@ void MeasurementPacket::WriteToldRanges(const NeighbourState& s, Writer* w) cons
   w->Bits(1, 1);
   w->Bits(kRangesCode, kTargetBits);
   for (int k = 0; k < kToldRanges; ++k) {
-    const ToldRange& told = s.range[static_cast<std::size_t>(k)];
-    if (k >= s.ranges) {
+    if (k >= s.ranges.size()) {
       w->Bits(kNoSource, kToldSourceBits);
       w->at += kToldAgeBits + kToldRangeBits;
       continue;
     }
+    const ToldRange& told = s.ranges[k];
     if (told.source < 0 || told.source >= members_ || told.stamp > s.generation ||
         !std::isfinite(told.range_m)) {
       throw std::invalid_argument("PacketCodec::Encode: value without a code");
@@ -74,8 +74,7 @@ void MeasurementPacket::ReadToldRanges(Reader* r, NeighbourState* s) const {
       RefusePacket("source " + std::to_string(source) + " of a range does not exist");
     }
     if (s->generation - age < 0) RefusePacket("measured before the start");
-    s->range[static_cast<std::size_t>(s->ranges++)] = {static_cast<int>(source),
-                                                       s->generation - age, range};
+    s->ranges.push_back({static_cast<int>(source), s->generation - age, range});
   }
 }
 
@@ -108,10 +107,10 @@ void MeasurementPacket::ReadToldFix(Reader* r, NeighbourState* s) const {
 void MeasurementPacket::WriteTold(const NeighbourState& s, Writer* w) const {
   if (s.has_fix && !ambiguous_) {
     WriteToldFix(s, w);
-  } else if (s.ranges > 0 && !ambiguous_) {
+  } else if (!s.ranges.empty() && !ambiguous_) {
     WriteToldRanges(s, w);
   }
-  if (s.has_bearing && s.sightings == 0) WriteToldBearing(s, w);
+  if (s.has_bearing && s.sightings.empty()) WriteToldBearing(s, w);
   w->at = kSurfacingBit;
   w->Bits(s.surfacing ? 1 : 0, 1);
 }

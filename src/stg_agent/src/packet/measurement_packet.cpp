@@ -98,8 +98,7 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
     throw std::invalid_argument("PacketCodec::Encode: non-finite value");
   }
   if (s.source < 0 || s.source >= members_ || s.phase < 0 || s.phase > 3 || s.generation < 0 ||
-      s.sightings < 0 || s.sightings > (free_ ? kFreeSightings : kSightings) ||
-      s.followed >= targets_) {
+      s.sightings.size() > (free_ ? kFreeSightings : kSightings) || s.followed >= targets_) {
     throw std::invalid_argument("PacketCodec::Encode: value without a code");
   }
   Writer w;
@@ -121,11 +120,11 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
     w.at = kFirstSighting;
     WriteFree(s, &w);
   } else if (s.has_target) {
-    const bool taken = located_ && (s.ranges > 0 || s.has_fix);
+    const bool taken = located_ && (!s.ranges.empty() || s.has_fix);
     const int fit = ambiguous_ || taken ? 1 : kSightings;
-    for (int k = 0; k < std::min(s.sightings, fit); ++k) {
+    for (int k = 0; k < std::min(s.sightings.size(), fit); ++k) {
       w.at = kFirstSighting + k * kSightingBits;
-      WriteSighting(s, s.sighting[static_cast<std::size_t>(k)], &w);
+      WriteSighting(s, s.sightings[k], &w);
     }
   }
   if (located_) WriteTold(s, &w);
@@ -255,14 +254,14 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
     r.at = kFirstSighting + k * kSightingBits;
     if (r.Bits(1) == 0) continue;
     if (located_ && ReadTold(k, &r, &s)) continue;
-    ReadSighting(s, &r, &s.sighting[static_cast<std::size_t>(s.sightings++)]);
+    ReadSighting(s, &r, &s.sightings.push_back({}));
   }
   if (located_) s.surfacing = Get(r.words, {kSurfacingBit, 1}) != 0;
-  s.has_target = s.sightings > 0;
+  s.has_target = !s.sightings.empty();
   if (!free_) s.followed = s.source % targets_;
   if (s.has_target) {
-    s.target = s.sighting[0].target;
-    s.target_stamp = s.sighting[0].stamp;
+    s.target = s.sightings[0].target;
+    s.target_stamp = s.sightings[0].stamp;
   }
   if (r.unused_code) RefusePacket("a field holds an unused code");
   return s;

@@ -55,16 +55,15 @@ void SearchMemory::Hear(const NeighbourState& packet, Heard* heard) {
   if (packet.generation <= heard->generation) return;
   heard->generation = packet.generation;
   if (packet.target != cue_.target) return;
-  const bool stale = packet.sightings > 0 && packet.sighting[0].stamp <= heard->sighting &&
-                     packet.generation - packet.sighting[0].stamp > 2 * period_;
-  if (packet.sightings == 0 || stale) {
+  const bool stale = !packet.sightings.empty() && packet.sightings[0].stamp <= heard->sighting &&
+                     packet.generation - packet.sightings[0].stamp > 2 * period_;
+  if (packet.sightings.empty() || stale) {
     map_.LookInVain(packet.p_W);
     return;
   }
   // Newest first. Sightings of earlier packets have been used already.
   const TimeNs taken = heard->sighting;
-  for (int k = 0; k < packet.sightings; ++k) {
-    const dynamics::Detection& sighting = packet.sighting[static_cast<std::size_t>(k)];
+  for (const dynamics::Detection& sighting : packet.sightings) {
     if (sighting.stamp <= taken) continue;
     map_.Find(sighting);
     heard->sighting = std::max(heard->sighting, sighting.stamp);

@@ -155,12 +155,14 @@ TEST(Entities, OpposedObserversAreOneAxisAndSpreadOnesAreNone) {
   for (EntityNeighbour& n : x.neighbours) {
     n.sight.r_BN_W = {200.0, 0.0, 0.0};  // it is on the other side of the target
   }
-  for (NeighbourState& r : x.reports) r.sightings = 1;
-  x.reports[1].sightings = 0;
+  dynamics::Detection sighting;
+  sighting.stamp = 60'000'000'000;
+  for (NeighbourState& r : x.reports) r.sightings.clear();
+  x.reports[0].sightings.push_back(sighting);
   Entities e = Build(x);
   EXPECT_NEAR(e.target[0][24], 0.0, 1e-6);
   EXPECT_NEAR(e.target[0][25], 1.0, 1e-6);
-  x.reports[1].sightings = 1;
+  x.reports[1].sightings.push_back(sighting);
   x.neighbours[0].sight.r_BN_W = {150.0, 86.6025404, 0.0};
   x.neighbours[1].sight.r_BN_W = {150.0, -86.6025404, 0.0};
   e = Build(x);

@@ -104,8 +104,7 @@ inline EntityExample MakeExample(unsigned seed, int neighbours, double turn = 0.
     r.phase = j % 4;
     r.confidence = 0.5 + u(0.4);
     r.position_std_m = 2.0 + u(1.0);
-    r.sightings = j % 2;
-    r.sighting[0].stamp = 60'000'000'000;
+    if (j % 2 == 1) r.sightings.push_back({}).stamp = 60'000'000'000;
     NeighbourSight<double> sight;
     sight.known = 1.0;
     sight.age_s = 3.0 + 2.0 * j;

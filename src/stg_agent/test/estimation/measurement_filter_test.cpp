@@ -44,8 +44,7 @@ NeighbourState Shared(int source, const dynamics::Detection& d) {
   state.source = source;
   state.generation = d.stamp;
   state.has_target = true;
-  state.sightings = 1;
-  state.sighting[0] = d;
+  state.sightings.push_back(d);
   return state;
 }
 
@@ -240,11 +239,11 @@ TEST(MeasurementFilter, WhatItSharesIsItsNewestAndOneBefore) {
   NeighbourState state;
   state.generation = 4 * kSecond;
   f->Tell(false, &state);
-  ASSERT_EQ(state.sightings, 2);
-  EXPECT_EQ(state.sighting[0].stamp, 4 * kSecond);
-  EXPECT_EQ(state.sighting[0].range_m, 104.0);
-  EXPECT_EQ(state.sighting[1].stamp, 2 * kSecond);  // track.measurements.share_spacing_s
-  EXPECT_EQ(state.sighting[1].range_m, 102.0);
+  ASSERT_EQ(state.sightings.size(), 2);
+  EXPECT_EQ(state.sightings[0].stamp, 4 * kSecond);
+  EXPECT_EQ(state.sightings[0].range_m, 104.0);
+  EXPECT_EQ(state.sightings[1].stamp, 2 * kSecond);  // track.measurements.share_spacing_s
+  EXPECT_EQ(state.sightings[1].range_m, 102.0);
   state.generation = 300 * kSecond;
   f->Tell(false, &state);
   EXPECT_FALSE(state.has_target);  // it is too old for a packet

@@ -78,9 +78,8 @@ class Flight {
       const int other = 1 + (t - 2) % (model_.members() - 1);
       const double then = t - 2.75;
       if (other != source) {
-        l.state.range[0] = {other, l.state.generation - 7 * kSecond / 4,
-                            Norm(True(other, then) - True(source, then))};
-        l.state.ranges = 1;
+        l.state.ranges.push_back({other, l.state.generation - 7 * kSecond / 4,
+                                  Norm(True(other, then) - True(source, then))});
       }
     }
     return l;
@@ -162,7 +161,7 @@ Letter WithFix(const Flight& flight, int t, double rounding_s) {
   Letter l = flight.At(t);
   const int fixed = (t - 1) / 600 * 600;
   if (l.state.source != 2 || fixed == 0 || t - 1 - fixed > 9) return l;
-  l.state.ranges = 0;
+  l.state.ranges.clear();
   l.state.has_fix = true;
   l.state.fix.stamp =
       fixed * kSecond + static_cast<TimeNs>(rounding_s * static_cast<double>(t % 3 - 1) * 1e9);
@@ -189,7 +188,7 @@ TEST(RangeLocalizer, AFixOfAnotherAuvServesThisOneAndCountsOnce) {
       told = first[0].state.has_fix ? told + 1 : t % 600 > 20 ? 0 : told;
       if (told > 1) first[0].state.has_fix = false;
       none = {flight.At(t)};
-      if (all[0].state.has_fix) none[0].state.ranges = 0;
+      if (all[0].state.has_fix) none[0].state.ranges.clear();
     }
     Advance(flight, t, first, once.get());
     Advance(flight, t, all, often.get());
@@ -257,12 +256,12 @@ TEST(RangeLocalizer, APacketTellsOfAStationAndOfAnAuv) {
   NeighbourState packet;
   packet.generation = 60 * kSecond;
   localizer->Tell(&packet);
-  ASSERT_EQ(packet.ranges, 2);
-  EXPECT_EQ(packet.range[0].source, 4);
-  EXPECT_LT(packet.range[1].source, 4);
+  ASSERT_EQ(packet.ranges.size(), 2);
+  EXPECT_EQ(packet.ranges[0].source, 4);
+  EXPECT_LT(packet.ranges[1].source, 4);
   EXPECT_TRUE(packet.adrift);
-  const double then = static_cast<double>(packet.range[0].stamp) * 1e-9;
-  EXPECT_NEAR(packet.range[0].range_m, Norm(flight.True(4, then) - flight.True(0, then)), 0.1);
+  const double then = static_cast<double>(packet.ranges[0].stamp) * 1e-9;
+  EXPECT_NEAR(packet.ranges[0].range_m, Norm(flight.True(4, then) - flight.True(0, then)), 0.1);
 }
 
 TEST(RangeLocalizer, IsNotThereByDefault) {

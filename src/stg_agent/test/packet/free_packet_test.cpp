@@ -42,11 +42,11 @@ NeighbourState Sender(std::initializer_list<std::pair<int, int>> sightings) {
   n.p_W = {100.0, -200.0, -30.0};
   n.followed = 3;
   for (const auto& [target, age] : sightings) {
-    const auto u = static_cast<std::size_t>(n.sightings++);
-    n.sighting[u] = RangeOf(target, n.generation - age * kFreeSecond, 100.0 + 10.0 * n.sightings,
-                            n.p_W - Vec3<double>{1.0 * age, 0.0, 0.0});
+    const double range_m = 110.0 + 10.0 * n.sightings.size();
+    n.sightings.push_back(RangeOf(target, n.generation - age * kFreeSecond, range_m,
+                                  n.p_W - Vec3<double>{1.0 * age, 0.0, 0.0}));
   }
-  n.has_target = n.sightings > 0;
+  n.has_target = !n.sightings.empty();
   return n;
 }
 
@@ -61,10 +61,9 @@ void ExpectFirst(const NeighbourState& in, const NeighbourState& out, int count,
   const MeasurementPacket codec(s);
   EXPECT_EQ(out.followed, in.followed);
   EXPECT_FALSE(out.saturated);
-  ASSERT_EQ(out.sightings, count);
+  ASSERT_EQ(out.sightings.size(), count);
   for (int k = 0; k < count; ++k) {
-    const auto u = static_cast<std::size_t>(k);
-    const dynamics::Detection &a = in.sighting[u], &b = out.sighting[u];
+    const dynamics::Detection &a = in.sightings[k], &b = out.sightings[k];
     EXPECT_EQ(a.target, b.target) << k;
     EXPECT_EQ(a.stamp, b.stamp) << k;
     EXPECT_NEAR(a.range_m, b.range_m, codec.range_error_m() + 1e-9) << k;
@@ -105,17 +104,17 @@ TEST(FreePackets, MeasurementsOfOtherSensorsCarryTheirTargets) {
     const AgentModel s = FreeScenario(sensor, 9);
     const auto kind = dynamics::TargetSensors().Make(s.sensing.sensor, s.sensing)->kind();
     NeighbourState in = Sender({{8, 4}, {3, 7}});
-    for (dynamics::Detection& d : in.sighting) {
+    for (dynamics::Detection& d : in.sightings) {
       d.kind = kind;
       d.azimuth_rad = 1.0;
       d.p_WT = in.p_W + Vec3<double>{50.0, 60.0, 0.0};
     }
     const NeighbourState out = ThereAndBack(in, s);
-    ASSERT_EQ(out.sightings, 2) << sensor;
+    ASSERT_EQ(out.sightings.size(), 2) << sensor;
     EXPECT_EQ(out.followed, 3);
-    EXPECT_EQ(out.sighting[0].target, 8);
-    EXPECT_EQ(out.sighting[1].target, 3);
-    EXPECT_EQ(out.sighting[1].stamp, in.sighting[1].stamp);
+    EXPECT_EQ(out.sightings[0].target, 8);
+    EXPECT_EQ(out.sightings[1].target, 3);
+    EXPECT_EQ(out.sightings[1].stamp, in.sightings[1].stamp);
   }
 }
 
@@ -141,9 +140,7 @@ TEST(FreePackets, DamageIsRefusedOrDecodesToWhatFits) {
     try {
       const NeighbourState n = codec.Decode(bad.data(), bad.size(), 200 * kFreeSecond);
       EXPECT_LT(n.followed, 5);
-      for (int k = 0; k < n.sightings; ++k) {
-        EXPECT_LT(n.sighting[static_cast<std::size_t>(k)].target, 5);
-      }
+      for (const dynamics::Detection& d : n.sightings) EXPECT_LT(d.target, 5);
     } catch (const UserError&) {
       ++refused;
     }

@@ -29,9 +29,8 @@ NeighbourState Example() {
   s.v_W = {0.5, 0.25, 0.0};
   s.position_std_m = 800.0;
   s.adrift = true;
-  s.ranges = 2;
-  s.range[0] = {4, 49'900'000'000, 312.5};
-  s.range[1] = {1, 49'000'000'000, -1.5};
+  s.ranges.push_back({4, 49'900'000'000, 312.5});
+  s.ranges.push_back({1, 49'000'000'000, -1.5});
   return s;
 }
 
@@ -62,17 +61,16 @@ TEST(LocatedPacket, CarriesTwoRangesBesideASighting) {
   d.p_WO = s.p_W;
   d.range_m = 90.0;
   s.has_target = true;
-  s.sightings = 1;
-  s.sighting[0] = d;
+  s.sightings.push_back(d);
   const Packet packet = codec.Encode(s);
   const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
-  ASSERT_EQ(told.sightings, 1);
-  EXPECT_NEAR(told.sighting[0].range_m, 90.0, 0.05);
-  ASSERT_EQ(told.ranges, 2);
-  for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ(told.range[k].source, s.range[k].source);
-    EXPECT_NEAR(told.range[k].range_m, s.range[k].range_m, 0.16);
-    EXPECT_NEAR(static_cast<double>(told.range[k].stamp - s.range[k].stamp), 0.0, 0.0626e9);
+  ASSERT_EQ(told.sightings.size(), 1);
+  EXPECT_NEAR(told.sightings[0].range_m, 90.0, 0.05);
+  ASSERT_EQ(told.ranges.size(), 2);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(told.ranges[k].source, s.ranges[k].source);
+    EXPECT_NEAR(told.ranges[k].range_m, s.ranges[k].range_m, 0.16);
+    EXPECT_NEAR(static_cast<double>(told.ranges[k].stamp - s.ranges[k].stamp), 0.0, 0.0626e9);
   }
 }
 
@@ -91,8 +89,8 @@ TEST(LocatedPacket, AStationTellsABearingBesideTwoRanges) {
     EXPECT_EQ(told.bearing.source, 3);
     EXPECT_NEAR(static_cast<double>(told.bearing.stamp - s.bearing.stamp), 0.0, 0.0626e9);
     EXPECT_NEAR(told.bearing.azimuth_rad, azimuth, 0.51 * kStep_rad);
-    EXPECT_EQ(told.sightings, 0);
-    EXPECT_EQ(told.ranges, 2);
+    EXPECT_EQ(told.sightings.size(), 0);
+    EXPECT_EQ(told.ranges.size(), 2);
   }
   s.bearing.source = 5;
   EXPECT_THROW(codec.Encode(s), std::invalid_argument);
@@ -112,7 +110,7 @@ TEST(LocatedPacket, CarriesAFixInPlaceOfTheRanges) {
       const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
       ASSERT_TRUE(told.has_fix);
       EXPECT_EQ(told.surfacing, s.surfacing);
-      EXPECT_EQ(told.ranges, 0);
+      EXPECT_EQ(told.ranges.size(), 0);
       EXPECT_FALSE(told.saturated);
       EXPECT_NEAR(static_cast<double>(told.fix.stamp - s.fix.stamp), 0.0, 0.0626e9);
       EXPECT_NEAR(told.fix.error_x, error, 1.001 * layout.told_fix_error_m());
@@ -136,11 +134,11 @@ TEST(LocatedPacket, AStationSpeaksTheSameLayoutAndOthersDoNot) {
   const PacketCodec codec(model, PacketLayout::kMeasurements);
   NeighbourState s = Example();
   s.source = 4;
-  s.ranges = 0;
+  s.ranges.clear();
   const Packet packet = codec.Encode(s);
   const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
   EXPECT_EQ(told.source, 4);
-  EXPECT_EQ(told.ranges, 0);
+  EXPECT_EQ(told.ranges.size(), 0);
   const PacketCodec plain(Model("uncorrected"), PacketLayout::kMeasurements);
   EXPECT_THROW(plain.Decode(packet.data(), packet.size(), s.generation), UserError);
   s.source = 5;

@@ -51,10 +51,9 @@ class MeasurementPackets : public ::testing::TestWithParam<std::tuple<const char
     n.link_quality = Draw(0.0, 1.0);
     n.position_std_m = Draw(0.5, 50.0);
     n.has_target = true;
-    n.sightings = std::get<1>(GetParam()) ? 1 : 2;
     World();
-    for (int k = 0; k < n.sightings; ++k) {
-      dynamics::Detection& d = n.sighting[static_cast<std::size_t>(k)];
+    for (int k = 0; k < (std::get<1>(GetParam()) ? 1 : 2); ++k) {
+      dynamics::Detection& d = n.sightings.push_back({});
       d.kind = kind_;
       d.stamp = n.generation - static_cast<TimeNs>(Draw(0.0, 60.0)) * kSecond;
       d.ambiguous = std::get<1>(GetParam());
@@ -95,10 +94,9 @@ TEST_P(MeasurementPackets, ComeOutWithinTheirResolution) {
     // A deviation is never rounded down.
     EXPECT_GE(out.position_std_m, in.position_std_m * (1.0 - 1e-6));
     EXPECT_LE(out.position_std_m, 1.25 * in.position_std_m);
-    ASSERT_EQ(out.sightings, in.sightings);
-    for (int k = 0; k < in.sightings; ++k) {
-      const auto u = static_cast<std::size_t>(k);
-      const dynamics::Detection &a = in.sighting[u], &b = out.sighting[u];
+    ASSERT_EQ(out.sightings.size(), in.sightings.size());
+    for (int k = 0; k < in.sightings.size(); ++k) {
+      const dynamics::Detection &a = in.sightings[k], &b = out.sightings[k];
       EXPECT_EQ(a.stamp, b.stamp);
       EXPECT_EQ(b.kind, kind_);
       const bool ambiguous = std::get<1>(GetParam());
@@ -141,7 +139,7 @@ TEST_P(MeasurementPackets, OfTheOtherLayoutAreRefused) {
   const PacketCodec estimates(s_), measurements(s_, PacketLayout::kMeasurements);
   NeighbourState in = Random();
   in.has_target = false;
-  in.sightings = 0;
+  in.sightings.clear();
   const Packet a = estimates.Encode(in), b = measurements.Encode(in);
   EXPECT_THROW(measurements.Decode(a.data(), a.size(), in.generation), UserError);
   EXPECT_THROW(estimates.Decode(b.data(), b.size(), in.generation), UserError);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "auv_common/numbers/short_list.hpp"
 #include "auv_dynamics/measurements.hpp"
 
 /// The content of an agent's packet.
@@ -66,15 +67,13 @@ struct NeighbourState {
   int followed = -1;            ///< target that it follows; -1: not stated
   // With the layout kMeasurements, instead of the estimate.
   double position_std_m = 0.0;  ///< of each horizontal component of p_W, stated by the navigation
-  int sightings = 0;            ///< number of used entries in `sighting`
   /// Own measurements, newest first: of the target, or of any target with task.assignment free.
   /// Standard deviations are not sent, because each agent knows the sensor. Those of the observer's
   /// position and heading are the sender's at `generation`.
-  std::array<dynamics::Detection, kFreeSightings> sighting;
+  ShortList<dynamics::Detection, kFreeSightings> sightings;
   // With a localizer.
   bool adrift = false;  ///< its log measures against the water
-  int ranges = 0;       ///< number of used entries in `range`
-  std::array<ToldRange, kToldRanges> range;
+  ShortList<ToldRange, kToldRanges> ranges;
   bool has_bearing = false;  ///< only from a station, which has no measurements of targets
   ToldBearing bearing;
   bool surfacing = false;  ///< it goes up for a fix by satellite

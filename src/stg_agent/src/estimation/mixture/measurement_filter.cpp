@@ -114,9 +114,7 @@ class MeasurementFilter : public TargetFilter {
   }
 
   void Hear(const NeighbourState& packet) override {
-    for (int k = 0; k < packet.sightings; ++k) {
-      Insert({packet.sighting[static_cast<std::size_t>(k)], packet.source});
-    }
+    for (const Detection& d : packet.sightings) Insert({d, packet.source});
   }
 
   void Predict(TimeNs) override {}
@@ -134,15 +132,16 @@ class MeasurementFilter : public TargetFilter {
   TargetBelief belief() const override { return belief_; }
 
   void Tell(bool, NeighbourState* state) const override {
-    state->sightings = 0;
+    state->sightings.clear();
     for (auto it = sightings_.rbegin(); it != sightings_.rend(); ++it) {
       const Detection& d = it->detection;
-      if (state->sightings == kSightings || state->generation - d.stamp > oldest_shared_) break;
+      if (state->sightings.size() == kSightings || state->generation - d.stamp > oldest_shared_)
+        break;
       if (it->source != self_ || d.stamp > state->generation) continue;
-      if (state->sightings > 0 && state->sighting[0].stamp - d.stamp < spacing_) continue;
-      state->sighting[static_cast<std::size_t>(state->sightings++)] = d;
+      if (!state->sightings.empty() && state->sightings[0].stamp - d.stamp < spacing_) continue;
+      state->sightings.push_back(d);
     }
-    state->has_target = state->sightings > 0;
+    state->has_target = !state->sightings.empty();
   }
 
  private:
