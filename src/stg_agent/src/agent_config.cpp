@@ -139,9 +139,10 @@ std::optional<config::Violation> FindConflict(const AgentScenario& s) {
 const std::vector<std::string>& KeysOfModel() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all = dynamics::KeysOnBoard();
-    for (const char* key :
-         {"channel.range_m", "channel.extended.attenuation_per_m",
-          "channel.extended.loss_probability", "channel.extended.loss_distance_m"}) {
+    for (const char* key : {"channel.range_m", "channel.extended.attenuation_per_m",
+                            "channel.extended.loss_probability", "channel.extended.loss_distance_m",
+                            "channel.physical.modem.clock_offset_std_s",
+                            "channel.physical.modem.clock_drift_std_ppm"}) {
       all.emplace_back(key);
     }
     return all;

@@ -21,6 +21,7 @@ Network::Impl::Impl(const ChannelConfig& config, const RunConfig& run,
                     std::unique_ptr<Medium> medium)
     : count_(run.agents),
       talkers_(run.agents - run.transponders),
+      timekeepers_(run.timekeepers),
       max_payload_(LongestPayload(config.modem, run.agents)),
       config_(config.modem),
       medium_(std::move(medium)),
@@ -67,6 +68,8 @@ void Network::Impl::Reset(std::uint64_t seed, std::uint32_t episode) {
     std::swap(fresh.active, n.active);
     std::swap(fresh.delivered, n.delivered);
     n = std::move(fresh);
+    const int id = static_cast<int>(i);
+    if (id >= talkers_ - timekeepers_ && id < talkers_) continue;
     Random random(seed, Stream::kClock, episode, 0, static_cast<std::uint32_t>(i));
     n.clock_offset_s = config_.clock_offset_std_s * random.Normal();
     n.clock_rate = config_.clock_drift_std_ppm * 1e-6 * random.Normal();

@@ -160,6 +160,7 @@ class Network::Impl {
   PacketFate FateOf(const Arrival& a) const;
 
   int count_, talkers_;  ///< number of nodes, and number of those that are not transponders
+  int timekeepers_;      ///< number of the last talkers, whose clocks are right
   std::size_t max_payload_;
   ModemConfig config_;
   std::unique_ptr<Medium> medium_;

@@ -30,6 +30,23 @@ std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
 
 namespace {
 
+/// Ranges from travel times need clocks that are right, or an estimate of their errors.
+std::optional<config::Violation> FindClockConflict(const AgentModel& s) {
+  constexpr double kMostOffset_s = 1e-3, kMostDrift_ppm = 0.1;
+  if (s.localization.by == RangesBy::kPing || s.localization.clocks == Clocks::kEstimated) {
+    return {};
+  }
+  const acoustics::ModemConfig& modem = s.channel.modem;
+  if (modem.clock_offset_std_s <= kMostOffset_s && modem.clock_drift_std_ppm <= kMostDrift_ppm) {
+    return {};
+  }
+  return config::Violation{
+      {"localization.ranges.clocks", "channel.physical.modem.clock_offset_std_s",
+       "channel.physical.modem.clock_drift_std_ppm"},
+      "these clocks are too far off for travel times that take them to be right: set 'clocks: "
+      "estimated', or 'by: ping'"};
+}
+
 /// Conditions for reported fixes, and for AUVs that surface for them.
 std::optional<config::Violation> FindFixConflict(const AgentModel& s) {
   const bool reported = s.navigation.kind == "dead_reckoning" && s.navigation.gps_depth_m > 0.0 &&
@@ -93,6 +110,7 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
     return config::Violation{{"localization.kind", "channel.model"},
                              "only modems measure travel times: set channel.model to physical"};
   }
+  if (auto violation = FindClockConflict(s)) return violation;
   constexpr int kMostMembers = 31, kMostTargets = 16;  // limits of a packet
   if (s.run.agents + s.stations.count() > kMostMembers || s.target.count > kMostTargets) {
     return config::Violation{

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "joint_row.hpp"
@@ -15,18 +16,47 @@ double ShareKept(double dt_s, double memory_s) { return std::exp(-dt_s / memory_
 }  // namespace
 
 JointFilter::JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
-                         const std::vector<AnchorModel>& anchors, int self)
+                         const std::vector<AnchorModel>& anchors, int self,
+                         const ClockModel& clocks)
     : config_(config),
+      clocks_(clocks),
       start_variance_(Squared(start_std_m)),
       auvs_(auvs),
       self_(self),
       slots_(std::min(auvs, kMostObservers)),
       anchors_(anchors),
-      n_(4 * slots_ + 3 + 2 * static_cast<int>(anchors.size())),
-      observers_(static_cast<std::size_t>(slots_)),
-      x_(static_cast<std::size_t>(n_)),
-      P_(static_cast<std::size_t>(n_ * n_)) {
+      anchor_clocks_(anchors.size(), -1),
+      observers_(static_cast<std::size_t>(slots_)) {
+  n_ = AnchorAt(auvs_ + static_cast<int>(anchors_.size()));
+  first_clock_ = n_;
+  if (clocks_.estimated) {
+    n_ += 2 * slots_;
+    for (std::size_t k = 0; k < anchors_.size(); ++k) {
+      if (anchors_[k].on_time) continue;
+      anchor_clocks_[k] = n_;
+      n_ += 2;
+    }
+  }
+  assert(n_ <= kMostJointStates);
+  x_.resize(static_cast<std::size_t>(n_));
+  P_.resize(static_cast<std::size_t>(n_ * n_));
   Clear();
+}
+
+int JointFilter::ClockAt(int id) const {
+  if (IsAnchor(id)) return anchor_clocks_[static_cast<std::size_t>(id - auvs_)];
+  return first_clock_ < n_ ? first_clock_ + 2 * SlotOf(id) : -1;
+}
+
+/// Sets the states of a clock that nobody has measured yet, t_s after the start.
+void JointFilter::StartClock(int clock, double t_s) {
+  Scale(clock, 0.0);
+  Scale(clock + 1, 0.0);
+  const double offset = Squared(clocks_.offset_std_s * kClockSound_mps);
+  const double rate = Squared(clocks_.rate_std * kClockSound_mps);
+  P(clock, clock) = offset + rate * t_s * t_s;
+  P(clock, clock + 1) = P(clock + 1, clock) = rate * t_s;
+  P(clock + 1, clock + 1) = rate;
 }
 
 void JointFilter::Clear() {
@@ -55,6 +85,7 @@ void JointFilter::Clear() {
     const int g = AnchorAt(auvs_ + static_cast<int>(k));
     P(g, g) = P(g + 1, g + 1) = Squared(anchors_[k].std_m);
   }
+  for (int clock = first_clock_; clock < n_; clock += 2) StartClock(clock, 0.0);
 }
 
 int JointFilter::SlotOf(int id) const {
@@ -76,10 +107,18 @@ void JointFilter::Forget(int i, double share, double variance) {
   P(i, i) += variance * (1.0 - share * share);
 }
 
+/// A state grows by `share` times another one.
+void JointFilter::Grow(int i, int by, double share) {
+  x_[static_cast<std::size_t>(i)] += share * x_[static_cast<std::size_t>(by)];
+  for (int c = 0; c < n_; ++c) P(i, c) += share * P(by, c);
+  for (int r = 0; r < n_; ++r) P(r, i) += share * P(r, by);
+}
+
 void JointFilter::Predict(TimeNs now) {
   const double dt_s = Seconds(now - now_);
   if (dt_s <= 0.0) return;
   now_ = now;
+  for (int clock = first_clock_; clock < n_; clock += 2) Grow(clock, clock + 1, dt_s);
   const int C = CurrentAt();
   for (int slot = 0; slot < slots_; ++slot) {
     if (!observers_[static_cast<std::size_t>(slot)].adrift) continue;
@@ -170,6 +209,7 @@ void JointFilter::Start(int slot, int id) {
     P(e, w) -= shear * t;
     P(w, e) -= shear * t;
   }
+  if (first_clock_ < n_) StartClock(first_clock_ + 2 * slot, t);
 }
 
 PlaneError JointFilter::Spread(const Row& east, const Row& north) const {

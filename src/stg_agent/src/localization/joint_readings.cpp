@@ -28,6 +28,13 @@ void JointFilter::AddError(int id, int axis, double weight, double age_s, Row* r
   row->Add(CurrentAt() + axis, weight * age_s);
 }
 
+void JointFilter::AddClock(int id, double weight, double age_s, Row* row) const {
+  const int clock = ClockAt(id);
+  if (clock < 0) return;
+  row->Add(clock, weight);
+  if (age_s != 0.0) row->Add(clock + 1, -weight * age_s);
+}
+
 double JointFilter::Mean(const Row& row) const {
   double sum = 0.0;
   for (int k = 0; k < row.count; ++k) {
@@ -66,6 +73,12 @@ double JointFilter::Wander(double age_s) const {
   return (Squared(config_.current_std_mps) / config_.current_memory_s +
           Squared(config_.shear_std_mps) / config_.shear_memory_s) *
          2.0 * age_s * age_s * age_s / 3.0;
+}
+
+/// Uniform between 0 and the most, and the noise of all ranges.
+double JointFilter::LateDensity(double innovation, double std_m) const {
+  const double scale = 1.0 / (std_m * std::sqrt(2.0)), most = config_.late_max_m;
+  return 0.5 * (std::erf(innovation * scale) - std::erf((innovation - most) * scale)) / most;
 }
 
 void JointFilter::Update(const double* column, double gain, double less) {
@@ -126,19 +139,25 @@ bool JointFilter::Take(const RangeReading& z) {
     AddError(z.source, axis, -across[axis], age_s, &bend);
   }
   row.Add(ScaleAt(), range);
+  Row ahead;
+  AddClock(z.receiver, z.sound_mps / kClockSound_mps, age_s, &ahead);
+  AddClock(z.source, -z.sound_mps / kClockSound_mps, age_s, &ahead);
+  for (int k = 0; k < ahead.count; ++k) {
+    row.Add(ahead.index[static_cast<std::size_t>(k)], ahead.value[static_cast<std::size_t>(k)]);
+  }
   std::array<double, kMostJointStates> column;
   const double curved = Column(bend, column.data()) / range;
   // The row does not contain the effect of the currents since then.
   const double noise = Squared(config_.range_std_m) + Wander(age_s) + 0.5 * curved * curved;
   const double S = Column(row, column.data()) + noise;
-  const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range;
+  const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range + Mean(ahead);
   const double innovation = z.range_m - expected - 0.5 * curved;
   nis_ = innovation * innovation / S;
   if (nis_ > Squared(config_.gate_sigma)) return false;
   // A late sound makes a range longer, by any value up to late_max_m.
   const double first =
       (1.0 - config_.late_share) * std::exp(-0.5 * nis_) / std::sqrt(2.0 * kPi * S);
-  const double late = innovation > 0.0 ? config_.late_share / config_.late_max_m : 0.0;
+  const double late = config_.late_share * LateDensity(innovation, std::sqrt(S));
   const double truth = first / (first + late);
   Update(column.data(), truth * innovation / S, (truth - truth * (1.0 - truth) * nis_) / S);
   return true;

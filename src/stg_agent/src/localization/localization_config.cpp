@@ -41,6 +41,10 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
   t->AddOptional("ping_period_s", &c->ping_period_s, "30.0", Positive(1e5), "s",
                  "time between two pings of an AUV, whole decisions; it pings the other AUVs and "
                  "the stations in turn");
+  t->AddOptional("clocks", config::Enum(&c->clocks, {"known", "estimated"}), "known", kNone, "-",
+                 "use of the modems' clocks by travel times. known: they are taken to be right; "
+                 "estimated: the localizer estimates the offset and the rate of the clock of each "
+                 "AUV and beacon, which it takes to be as good as the modems' keys state");
   t->AddOptional(
       "surface_std_m", &c->surface_std_m, "0.0", NonNegative(1e6), "m, world ENU",
       "an AUV surfaces for a GPS fix before the standard deviation of its own position is "
@@ -59,10 +63,13 @@ void Describe(LocalizationConfig* c, config::Table* t) {
             "localization.kind",
             [c] { return std::vector<std::string>{c->kind}; }},
            "localization.ranges", c, DescribeRanges);
+  const auto by = [c] {
+    return std::vector<std::string>{c->by == RangesBy::kPing ? "ping" : "one_way"};
+  };
   t->Own("localization.ranges.ping_period_s",
-         {"source of ranges", {"ping"}, "localization.ranges.by", [c] {
-            return std::vector<std::string>{c->by == RangesBy::kPing ? "ping" : "one_way"};
-          }});
+         {"source of ranges", {"ping"}, "localization.ranges.by", by});
+  t->Own("localization.ranges.clocks",
+         {"source of ranges", {"one_way"}, "localization.ranges.by", by});
 }
 
 }  // namespace stg::agent

@@ -1,7 +1,6 @@
 // Long because: everything that an AUV receives for its position meets here, from packets and pings
 // to the filter.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "auv_common/numbers/attitude.hpp"
 #include "fixes.hpp"
 #include "localizers.hpp"
+#include "member_models.hpp"
 #include "ping_ranges.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
 #include "stg_agent/localization/own_way.hpp"
@@ -33,26 +33,6 @@ struct Taken {
   TimeNs at = 0;
 };
 
-/// Initial positions of the stations: beacons as charted, crafts at the surface.
-std::vector<Vec3<double>> ChartOf(const AgentModel& s) {
-  std::vector<Vec3<double>> chart;
-  for (const auto& at : s.stations.beacons) chart.push_back({at[0], at[1], at[2]});
-  for (const auto& at : s.stations.crafts) {
-    chart.push_back({at[0], at[1], s.channel.water.surface_z_m});
-  }
-  return chart;
-}
-
-std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
-  std::vector<AnchorModel> anchors;
-  for (int k = 0; k < s.stations.count(); ++k) {
-    anchors.push_back(s.stations.is_craft(k)
-                          ? AnchorModel{s.stations.gps_std_m, s.stations.gps_memory_s}
-                          : AnchorModel{s.stations.survey_std_m, 0.0});
-  }
-  return anchors;
-}
-
 /// How long packets contain a fix: three packets in a row, if they leave within a minute.
 TimeNs TellingOf(const AgentModel& s) {
   const TimeNs round = acoustics::RoundOf(s.channel, NetworkRun(s.run, s.stations));
@@ -70,7 +50,9 @@ class RangeLocalizer : public Localizer {
         sound_(s.channel.water),
         surface_z_m_(s.channel.water.surface_z_m),
         chart_(ChartOf(s)),
-        filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self),
+        clocks_(ClocksOf(s)),
+        filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self,
+                clocks_),
         ways_(static_cast<std::size_t>(s.run.agents + s.stations.count())),
         newest_(ways_.size()),
         own_way_(s.run),
@@ -100,12 +82,13 @@ class RangeLocalizer : public Localizer {
   void Hear(const NeighbourState& packet, const acoustics::Reception& reception) override {
     const int id = packet.source;
     if (id == self_ || pending_.size() == kMostPending) return;
-    if (!pings_ && reception.travel_time_s <= 0.0) return;
+    const double travel_s = reception.travel_time_s;
+    if (!pings_ && (clocks_.estimated ? travel_s == 0.0 : travel_s <= 0.0)) return;
     Letter letter;
     letter.id = id;
     letter.adrift = packet.adrift;
     letter.way = {packet.generation, reception.transmit, packet.p_W, packet.v_W};
-    letter.travel_time_s = reception.travel_time_s;
+    letter.travel_time_s = travel_s;
     letter.ranges = packet.ranges;
     letter.has_bearing = packet.has_bearing;
     letter.bearing = packet.bearing;
@@ -229,8 +212,8 @@ class RangeLocalizer : public Localizer {
     z.source = letter.id;
     if (!pings_ && way.AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) &&
         own_way_.At(z.at, &z.p_receiver)) {
-      z.range_m =
-          letter.travel_time_s / SlownessBetween(sound_, surface_z_m_, z.p_receiver, z.p_source);
+      z.sound_mps = SoundBetween(z);
+      z.range_m = letter.travel_time_s * z.sound_mps;
       newest_[static_cast<std::size_t>(letter.id)] = {letter.id, z.at, z.range_m};
       Take(now, z);
     }
@@ -254,8 +237,15 @@ class RangeLocalizer : public Localizer {
                                     ? OwnPacketAt(told.stamp, &z.at, &z.p_source)
                                     : ways_[static_cast<std::size_t>(told.source)].AtPacket(
                                           told.stamp, tolerance_, &z.at, &z.p_source);
-      if (source_known && way.Between(z.at, &z.p_receiver)) Take(now, z);
+      if (!source_known || !way.Between(z.at, &z.p_receiver)) continue;
+      z.sound_mps = SoundBetween(z);
+      Take(now, z);
     }
+  }
+
+  /// Speed of sound with which the receiver computed the range from the travel time.
+  double SoundBetween(const RangeReading& z) const {
+    return 1.0 / SlownessBetween(sound_, surface_z_m_, z.p_receiver, z.p_source);
   }
 
   /// Uses the bearing at which a station received a packet.
@@ -297,7 +287,8 @@ class RangeLocalizer : public Localizer {
     if (packet->ranges.full()) return;
     const auto usable = [&](int id) {
       const ToldRange& r = newest_[static_cast<std::size_t>(id)];
-      if (r.range_m <= 0.0 || packet->generation - r.stamp > kOldest / 2) return false;
+      if (r.range_m == 0.0 || r.range_m < kLeastRange_m || r.range_m > kMostRange_m) return false;
+      if (packet->generation - r.stamp > kOldest / 2) return false;
       return packet->ranges.empty() || packet->ranges[0].source != id;
     };
     int heard = 0;
@@ -319,6 +310,7 @@ class RangeLocalizer : public Localizer {
   acoustics::SoundSpeedProfile sound_;
   double surface_z_m_;
   std::vector<Vec3<double>> chart_;  // [stations]
+  ClockModel clocks_;
   JointFilter filter_;
   std::vector<ToldWay> ways_;      // by member
   std::vector<ToldRange> newest_;  // by member: own readings of its packets

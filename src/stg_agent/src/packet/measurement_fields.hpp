@@ -31,7 +31,6 @@ inline constexpr int kLocatedDeviationBits = kDeviationBits - 1;
 inline constexpr std::uint64_t kRangesCode = 31, kFixCode = 30, kBearingCode = 29, kNoSource = 31;
 inline constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14,
                      kToldAzimuthBits = 14;
-inline constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
 inline constexpr int kToldErrorBits = 21, kToldStdBits = 5;
 inline constexpr double kMostError_m = 65535.0, kLeastFixStd_m = 0.1, kMostFixStd_m = 100.0;
 inline constexpr int kSurfacingBit = kFirstSighting + kSightings * kSightingBits;

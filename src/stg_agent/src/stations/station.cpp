@@ -69,21 +69,23 @@ void Station::Err(std::uint32_t step, bool start) {
 }
 
 void Station::Receive(const acoustics::Reception& reception, const Vec3<double>& r_W) {
-  if (localizer_ == nullptr) return;
+  const bool bearings = constants_->model.stations.usbl_std_deg > 0.0;
+  if (localizer_ == nullptr && !bearings) return;
   const acoustics::ByteView& bytes = reception.payload;
   const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
   if (source < 0 || source >= constants_->model.members()) return;
   try {
-    const NeighbourState state = constants_->codec.Decode(bytes.data, bytes.size, reception.arrival,
-                                                          localizer_->NearTo(source));
-    localizer_->Hear(state, reception);
+    const Vec3<double> near = localizer_ != nullptr ? localizer_->NearTo(source) : told_W();
+    const NeighbourState state =
+        constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
+    if (localizer_ != nullptr) localizer_->Hear(state, reception);
     if (source >= constants_->model.run.agents) return;
     Heard& heard = heard_[static_cast<std::size_t>(source)];
     if (state.generation <= heard.stamp) return;
     heard.stamp = state.generation;
     heard.p_W = state.p_W;
     heard.v_W = state.v_W;
-    if (constants_->model.stations.usbl_std_deg <= 0.0) return;
+    if (!bearings) return;
     Random random(seed_, Stream::kBearing, episode_, reception.sequence,
                   static_cast<std::uint32_t>(source * constants_->model.members() + member_));
     const double std_rad = constants_->model.stations.usbl_std_deg * kPi / 180.0;
@@ -151,7 +153,7 @@ Packet Station::MakePacket() {
   const StationsConfig& s = constants_->model.stations;
   state.position_std_m = craft_ ? s.gps_std_m : s.survey_std_m;
   if (localizer_ != nullptr) localizer_->Tell(&state);
-  if (craft_ && s.usbl_std_deg > 0.0) TellBearing(&state);
+  if (s.usbl_std_deg > 0.0) TellBearing(&state);
   return constants_->codec.Encode(state);
 }
 

@@ -28,17 +28,22 @@ void Describe(StationsConfig* c, config::Table* t) {
                  "correlation time of that error");
   t->AddOptional(
       "usbl_std_deg", &c->usbl_std_deg, "0.0", Within(0.0, 60.0), "deg",
-      "standard deviation of the bearing of a received packet that a craft measures with an "
-      "ultra-short baseline and a compass and sends to the AUVs; 0: a craft measures no bearings");
+      "standard deviation of the bearing of a received packet that a station measures with an "
+      "ultra-short baseline and a compass and sends to the AUVs; 0: stations measure no bearings");
   const auto owner = [](const char* name, const std::vector<std::vector<double>>* rows) {
     const std::string key = std::string("stations.") + name;
     return config::Owner{"stations", {name}, key, [name, rows] {
                            return std::vector<std::string>{rows->empty() ? "none" : name};
                          }};
   };
+  t->Own("stations.usbl_std_deg", {"stations", {"beacons", "crafts"}, "stations.crafts", [c] {
+                                     std::vector<std::string> names;
+                                     if (!c->beacons.empty()) names.emplace_back("beacons");
+                                     if (!c->crafts.empty()) names.emplace_back("crafts");
+                                     return names;
+                                   }});
   t->Own("stations.survey_std_m", owner("beacons", &c->beacons));
-  for (const char* key :
-       {"craft_speed_mps", "craft_circle_m", "gps_std_m", "gps_memory_s", "usbl_std_deg"}) {
+  for (const char* key : {"craft_speed_mps", "craft_circle_m", "gps_std_m", "gps_memory_s"}) {
     t->Own(std::string("stations.") + key, owner("crafts", &c->crafts));
   }
 }
@@ -47,6 +52,7 @@ RunConfig NetworkRun(const RunConfig& run, const StationsConfig& stations, int t
   RunConfig network = run;
   network.agents += stations.count() + transponders;
   network.transponders = transponders;
+  network.timekeepers = static_cast<int>(stations.crafts.size());
   return network;
 }
 

@@ -23,6 +23,7 @@ struct DriftOptions {
   double loss = 0.0;
   double late = 0.0;          ///< share of ranges that are late
   bool ranges = true;         ///< false: nobody measures ranges
+  ClockModel clocks;          ///< clocks of AUVs and beacons; the clock of the craft is right
   double fix_period_s = 0.0;  ///< time between two fixes of AUV 1, which have 3 m; 0: none
   double shift_m = 0.0;       ///< shift of all true positions, which nobody sees
   double drift_mps = 0.0;     ///< growth of this shift
@@ -47,12 +48,12 @@ class DriftingSea {
  public:
   DriftingSea(const LocalizationConfig& config, const DriftOptions& o) : c_(config), o_(o) {
     if (o.craft) anchors_.push_back({o.craft_std_m, 600.0});
-    for (int k = 0; k < o.beacons; ++k) anchors_.push_back({1.0, 0.0});
+    for (int k = 0; k < o.beacons; ++k) anchors_.push_back({1.0, 0.0, false});
   }
 
   DriftResult Run(unsigned seed) {
     random_.seed(seed);
-    JointFilter filter(c_, 1.0, o_.auvs, anchors_, 0);
+    JointFilter filter(c_, 1.0, o_.auvs, anchors_, 0, o_.clocks);
     const auto n = static_cast<std::size_t>(o_.auvs);
     std::vector<double> e(2 * n), w(2 * n), g(2 * anchors_.size());
     double C[2];
@@ -62,6 +63,16 @@ class DriftingSea {
     for (std::size_t k = 0; k < g.size(); ++k) g[k] = anchors_[k / 2].std_m * Normal();
     const double kappa = c_.sound_speed_std * Normal();
     const int members = o_.auvs + static_cast<int>(anchors_.size());
+    std::vector<double> offset(static_cast<std::size_t>(members)), rate(offset.size());
+    const ClockModel& clocks = o_.clocks;
+    for (std::size_t k = 0; k < offset.size() && clocks.offset_std_s + clocks.rate_std > 0.0; ++k) {
+      if (static_cast<int>(k) == o_.auvs && o_.craft) continue;
+      offset[k] = clocks.offset_std_s * Normal();
+      rate[k] = clocks.rate_std * Normal();
+    }
+    const auto ahead_s = [&](int id, double t) {
+      return offset[static_cast<std::size_t>(id)] + rate[static_cast<std::size_t>(id)] * t;
+    };
     DriftResult r;
     const auto slots = static_cast<int>(o_.seconds / o_.slot_s);
     for (int s = 1; s <= slots; ++s) {
@@ -98,7 +109,8 @@ class DriftingSea {
         z.p_receiver = Told(receiver, t, e, g);
         z.p_source = Told(source, t, e, g);
         const Vec3<double> way = True(receiver, t) - True(source, t);
-        z.range_m = (1.0 + kappa) * Norm(way) + noise + (late ? by : 0.0);
+        z.range_m = (1.0 + kappa) * Norm(way) + noise + (late ? by : 0.0) +
+                    z.sound_mps * (ahead_s(receiver, t) - ahead_s(source, t));
         if (filter.Take(z)) {
           r.nis += filter.last_nis();
           ++r.ranges;

@@ -204,6 +204,80 @@ TEST(JointFilter, LateSoundsAreSetAside) {
   EXPECT_LT(j.aside, 0.03);
 }
 
+TEST(JointFilter, ClocksThatAreOffAreEstimated) {
+  DriftOptions o;
+  o.craft = true;
+  const Judgement right = Judge(o, "craft, right clocks");
+  o.clocks = {false, 1e-4, 1e-6};
+  const Judgement ignored = Judge(o, "clocks off by 1 ppm");
+  EXPECT_GT(ignored.nees, 10.0);
+  EXPECT_GT(ignored.nis + ignored.aside, 1.5);
+  o.clocks.estimated = true;
+  const Judgement j = Judge(o, "the same, estimated");
+  ExpectConsistent(j);
+  EXPECT_LT(j.rmse, 1.15 * right.rmse);
+  EXPECT_LT(j.relative_rmse, 1.15 * right.relative_rmse);
+  EXPECT_NEAR(j.nis, 1.0, 0.05);
+  // A second is 1.5 km at first.
+  o.clocks.offset_std_s = 1.0;
+  const Judgement far = Judge(o, "off by a second");
+  ExpectConsistent(far);
+  EXPECT_LT(far.rmse, 1.15 * right.rmse);
+  o.loss = 0.7;
+  ExpectConsistent(Judge(o, "the same, 70 % lost"));
+  o.loss = 0.0;
+  o.craft = false;
+  o.beacons = 2;
+  o.slot_s = 2.5;
+  const Judgement beacons = Judge(o, "2 beacons, off");
+  EXPECT_LT(beacons.nees, kUpper);
+  EXPECT_LT(beacons.rmse, 5.0);
+}
+
+// Of two members whose places are known, the range is that between them and s by which the clock of
+// one is ahead. After a range with the noise r, s r / sqrt(s^2 + r^2) is left.
+TEST(JointFilter, ARangeBetweenKnownPlacesReadsTheClock) {
+  LocalizationConfig c;
+  c.late_share = 0.0;
+  c.sound_speed_std = 0.0;
+  constexpr double kOffset_s = 0.01, kAhead_m = 20.0, kTime_s = 100.0, kRate = 1e-4;
+  JointFilter filter(c, 1e-6, 1, {{1e-6, 0.0}}, 0, {true, kOffset_s, 0.0});
+  RangeReading z;
+  z.receiver = 0;
+  z.source = 1;
+  z.p_source = {400.0, 0.0, 0.0};
+  z.range_m = 400.0 + kAhead_m;
+  const double s = kOffset_s * kClockSound_mps * kClockSound_mps * kOffset_s;
+  ASSERT_TRUE(filter.Take(z));
+  EXPECT_NEAR(filter.last_nis(), kAhead_m * kAhead_m / (s + 1.0), 1e-6);
+  ASSERT_TRUE(filter.Take(z));
+  const double left = s / (s + 1.0), missing = kAhead_m / (s + 1.0);
+  EXPECT_NEAR(filter.last_nis(), missing * missing / (left + 1.0), 1e-6);
+  // In other water the same clock is another range ahead.
+  JointFilter other(c, 1e-6, 1, {{1e-6, 0.0}}, 0, {true, kOffset_s, 0.0});
+  z.sound_mps = 1450.0;
+  const double share = 1450.0 / kClockSound_mps;
+  ASSERT_TRUE(other.Take(z));
+  EXPECT_NEAR(other.last_nis(), kAhead_m * kAhead_m / (share * share * s + 1.0), 1e-6);
+  // A rate grows with the time; the filter is told nothing of places that change.
+  LocalizationConfig still = c;
+  still.reckoning_std_m = 1e-9;
+  still.current_std_mps = still.shear_std_mps = 1e-9;
+  JointFilter late(still, 1e-6, 1, {{1e-6, 0.0}}, 0, {true, 0.0, kRate});
+  late.Predict(static_cast<TimeNs>(kTime_s * 1e9));
+  z.sound_mps = kClockSound_mps;
+  z.at = late.now();
+  ASSERT_TRUE(late.Take(z));
+  const double grown = kRate * kTime_s * kClockSound_mps;
+  EXPECT_NEAR(late.last_nis(), kAhead_m * kAhead_m / (grown * grown + 1.0), 1e-6);
+  // Half as old a range, half as far ahead.
+  JointFilter aged(still, 1e-6, 1, {{1e-6, 0.0}}, 0, {true, 0.0, kRate});
+  aged.Predict(static_cast<TimeNs>(kTime_s * 1e9));
+  z.at = aged.now() / 2;
+  ASSERT_TRUE(aged.Take(z));
+  EXPECT_NEAR(aged.last_nis(), kAhead_m * kAhead_m / (0.25 * grown * grown + 1.0), 1e-6);
+}
+
 TEST(JointFilter, AloneTheSwarmStatesTheDriftOfItsWater) {
   DriftOptions o;
   const Judgement j = Judge(o, "alone");
@@ -228,6 +302,12 @@ TEST(JointFilter, RangesAmongThemselvesTellNothingOfTheWorld) {
   EXPECT_NEAR(with.mean_error.xx / without.mean_error.xx, 1.0, 1e-6);
   EXPECT_NEAR(with.mean_error.yy / without.mean_error.yy, 1.0, 1e-6);
   EXPECT_NEAR(with.mean_error.x, without.mean_error.x, 1e-6);
+  DriftOptions wrong = o;
+  wrong.ranges = true;
+  wrong.clocks = {true, 1e-4, 1e-6};
+  const DriftResult clocks = DriftingSea(LocalizationConfig(), wrong).Run(5);
+  EXPECT_NEAR(clocks.mean_error.xx / without.mean_error.xx, 1.0, 1e-6);
+  EXPECT_LT(clocks.relative.xx, 1e-3 * without.relative.xx);
   // Ranges may tell C from the AUVs' own currents w. They do not tell what carries all AUVs.
   EXPECT_LE(with.current.xx, without.current.xx * (1.0 + 1e-9));
 }

@@ -112,6 +112,9 @@ TEST(WrongModel, EachKeyOfForceAndMomentAndOfTheChartMatters) {
                      {"sea.spheres", "[[0.0,0.0,-40.0,1500.0]]"},
                      {"sea.cylinders", "[[0.0,0.0,-120.0,1500.0,110.0]]"}},
                     Short(Shipped("field"), 12), "encircle", 12);
+  ExpectEachMatters({{"channel.physical.modem.clock_offset_std_s", "0.01"},
+                     {"channel.physical.modem.clock_drift_std_ppm", "100.0"}},
+                    Short(Shipped("deep", "craft_crystal"), 60), "encircle", 60);
   ExpectEachMatters({{"sea.bottom_m", "70.0"}}, Short(Shipped("field"), 12),
                     STG_SCENARIO_FOLDER "/../policies/field.onnx", 12);
 }
@@ -125,7 +128,9 @@ TEST(WrongModel, EveryKeyIsTried) {
   for (const Case& c : kTorpedoCases) tried(c.key);
   for (const char* key :
        {"sensing.detection_probability", "vehicle.max_tau", "vehicle.max_rate_radps",
-        "channel.range_m", "sea.auv_depth_m", "sea.spheres", "sea.cylinders", "sea.bottom_m"}) {
+        "channel.range_m", "sea.auv_depth_m", "sea.spheres", "sea.cylinders", "sea.bottom_m",
+        "channel.physical.modem.clock_offset_std_s",
+        "channel.physical.modem.clock_drift_std_ppm"}) {
     tried(key);
   }
   EXPECT_EQ(untried, std::vector<std::string>());

@@ -28,6 +28,8 @@ struct RunConfig {
   /// Number of nodes that only answer pings, where `agents` counts the nodes of an acoustic
   /// network; they are the last nodes. It is no key of a file.
   int transponders = 0;
+  /// The same, of the nodes before those: how many have a clock that GPS keeps right. It is no key.
+  int timekeepers = 0;
   TimeConfig time;
 
   double decision_dt_s() const { return time.dt_s * time.decision_steps; }

@@ -14,6 +14,17 @@ namespace stg::agent {
 struct AnchorModel {
   double std_m = 1.0;     ///< of each horizontal component
   double memory_s = 0.0;  ///< correlation time of the error; 0: it is constant
+  bool on_time = true;    ///< its clock is right
+};
+
+/// Speed of sound by which an error of a clock is stated as a length.
+inline constexpr double kClockSound_mps = 1500.0;
+
+/// Errors of the clocks of AUVs and beacons.
+struct ClockModel {
+  bool estimated = false;     ///< false: all clocks are taken to be right
+  double offset_std_s = 0.0;  ///< at the start
+  double rate_std = 0.0;      ///< of d(clock)/dt - 1
 };
 
 /// A range from the travel time of one packet. The positions are those that both members reported
@@ -23,6 +34,7 @@ struct RangeReading {
   TimeNs at = 0;
   Vec3<double> p_receiver, p_source;  ///< [m]
   double range_m = 0.0;
+  double sound_mps = kClockSound_mps;  ///< with which the travel time became this range
 };
 
 /// The bearing of a received packet, with positions as above.
@@ -46,9 +58,10 @@ struct FixReading {
 ///
 /// States: of each AUV the error e of its reckoned position and the velocity w by which its current
 /// differs from the common one; the common current C; the share kappa by which ranges are too long;
-/// for each station the error g of the position that it sends. For an AUV whose log measures
+/// for each station the error g of the position that it sends; where clocks are estimated, the
+/// error and the rate of the clock of each AUV and each beacon. For an AUV whose log measures
 /// against the water, de/dt = -(C + w) + noise; C, w and the errors of craft are Ornstein-Uhlenbeck
-/// processes, those of beacons constants.
+/// processes, those of beacons and the rates of clocks constants.
 ///
 /// A range (1 + kappa) |p_j - p_l| of the age a depends on the errors at that time, e(t - a) = e +
 /// a (C + w), so no old states are stored. Its curvature across the line of sight is taken to
@@ -60,7 +73,7 @@ class JointFilter {
 
   /// @param auvs members 0 .. auvs - 1; the anchors follow @param self is never removed
   JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
-              const std::vector<AnchorModel>& anchors, int self);
+              const std::vector<AnchorModel>& anchors, int self, const ClockModel& clocks = {});
 
   void Clear();
   /// Predicts all states to a time, which must not be before the last one.
@@ -111,13 +124,20 @@ class JointFilter {
   int CurrentAt() const { return 4 * slots_; }
   int ScaleAt() const { return CurrentAt() + 2; }
   int AnchorAt(int id) const { return ScaleAt() + 1 + 2 * (id - auvs_); }
+  /// State with the error of a known member's clock, as a length at kClockSound_mps [m]. The next
+  /// state is its rate [m/s]. -1: the clock is right.
+  int ClockAt(int id) const;
+  void StartClock(int clock, double t_s);
   double& P(int r, int c) { return P_[static_cast<std::size_t>(r * n_ + c)]; }
   double P(int r, int c) const { return P_[static_cast<std::size_t>(r * n_ + c)]; }
   void Scale(int i, double share);
   void Forget(int i, double share, double variance);
+  void Grow(int i, int by, double share);
   void Start(int slot, int id);
   /// Adds `weight` times component `axis` of the error of a member, `age_s` ago, to a row.
   void AddError(int id, int axis, double weight, double age_s, Row* row) const;
+  /// Adds `weight` times the error of a member's clock, `age_s` ago, to a row.
+  void AddClock(int id, double weight, double age_s, Row* row) const;
   double Mean(const Row& row) const;
   double Column(const Row& row, double* column) const;
   PlaneError Spread(const Row& east, const Row& north) const;
@@ -125,14 +145,18 @@ class JointFilter {
   void Offset(int to, int from, const Vec3<double>& told, double age_s, double (&offset)[2]) const;
   /// Variance that the currents of two members add in some time [m^2].
   double Wander(double age_s) const;
+  /// Density of the innovation of a late sound [1/m].
+  double LateDensity(double innovation, double std_m) const;
   /// x += gain * column, P -= less * column column^T.
   void Update(const double* column, double gain, double less);
 
   LocalizationConfig config_;
+  ClockModel clocks_;
   double start_variance_;
   int auvs_, self_, slots_;
   std::vector<AnchorModel> anchors_;
-  int n_;
+  std::vector<int> anchor_clocks_;  // [anchors], the state; -1: the clock is right
+  int first_clock_, n_;             // clocks are the last states
   TimeNs now_ = 0;
   double nis_ = 0.0;
   std::vector<Observer> observers_;  // [slots]

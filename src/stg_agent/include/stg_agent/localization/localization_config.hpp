@@ -12,6 +12,12 @@ enum class RangesBy {
   kPing     ///< request and answer, measured by the own clock alone
 };
 
+/// Use of the modems' clocks by ranges from travel times.
+enum class Clocks {
+  kKnown,     ///< they are taken to be right
+  kEstimated  ///< offset and rate of each one are states of the filter
+};
+
 /// How AUVs correct their reckoned positions.
 struct LocalizationConfig {
   std::string kind = "uncorrected";  ///< name in the registry of localizers
@@ -29,6 +35,7 @@ struct LocalizationConfig {
   double gate_sigma = 4.0;         ///< ranges farther off than this are rejected
   RangesBy by = RangesBy::kOneWay;
   double ping_period_s = 30.0;  ///< time between two pings of an AUV
+  Clocks clocks = Clocks::kKnown;
   /// An AUV surfaces for a fix before the deviation of its own position is above this; 0: never.
   double surface_std_m = 0.0;
 };

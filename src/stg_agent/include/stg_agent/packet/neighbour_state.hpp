@@ -24,8 +24,10 @@ inline constexpr int kFreeSightings = 5;
 /// Largest number of targets with task.assignment free: a packet has 4 bits for a target, and one
 /// code means none.
 inline constexpr int kMostFreeTargets = 15;
-/// Ranges in one packet of agents with a localizer.
+/// Ranges in one packet of agents with a localizer, and the smallest and the largest one. Where
+/// clocks are off, a range may be below 0.
 inline constexpr int kToldRanges = 2;
+inline constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
 
 /// A range that a member of the network measured from another member's packet.
 struct ToldRange {
