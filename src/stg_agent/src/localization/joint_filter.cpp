@@ -48,7 +48,7 @@ int JointFilter::ClockAt(int id) const {
   return first_clock_ < n_ ? first_clock_ + 2 * SlotOf(id) : -1;
 }
 
-/// Sets the states of a clock that nobody has measured yet, t_s after the start.
+/// Sets the states of a clock without any measurement, t_s after the start.
 void JointFilter::StartClock(int clock, double t_s) {
   Scale(clock, 0.0);
   Scale(clock + 1, 0.0);
