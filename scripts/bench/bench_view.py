@@ -5,6 +5,7 @@ Parts: page (a report: size, seconds to open, frames a second while it plays, me
 at 10 Hz: lag and frames a second), lockstep (what a run in lockstep loses to the view). The last two
 need a sourced workspace. Figures depend on what else the machine does: `load` is given
 with them, and the work (seconds of processor time of all processes of the browser), which depends less on it.
+In lockstep, the view starts and ends many times during one run, because two runs differ by more than it costs.
 """
 
 import argparse
@@ -12,8 +13,6 @@ import contextlib
 import json
 import os
 import pathlib
-import re
-import resource
 import socket
 import statistics
 import subprocess
@@ -149,49 +148,83 @@ def look(stop):
     asyncio.run(read())
 
 
-def work_of_ended():
-    """Processor time of all child processes that have ended [s]."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+def episodes_of(times, begin, end):
+    """Episodes a second between two times, from the times at which episodes ended [s]."""
+    inside = [t for t in times if begin <= t <= end]
+    return (len(inside) - 1) / (inside[-1] - inside[0]) if len(inside) > 1 else 0.0
 
 
-def run_lockstep(kind, episodes):
-    """Decisions per second of a run in lockstep, as reported by the world at its end, and its work."""
-    import multiprocessing
+class Run:
+    """A run in lockstep without an end, and the times at which its episodes end."""
 
-    stop = multiprocessing.Event()
-    eye = multiprocessing.Process(target=look, args=(stop,), daemon=True)
-    launch = [sys.executable, ROOT / "scripts/run/launch.py", "stg_bringup", "medium.launch"]
-    command = [*launch, f"episodes:={episodes}", "real_time_factor:=0", "table:=false", "gui:=false"]
-    if kind != "plain":
-        command += ["view:=web", f"port:={PORT}"]
-    if kind == "watched":
-        eye.start()
-    work = -work_of_ended()
-    try:
-        own = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
-        done = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=own)
-        work += work_of_ended()  # the viewer still runs and is not a part of the run
-    finally:
-        stop.set()
+    def __init__(self):
+        self.environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
+        os.environ["ROS_MASTER_URI"] = self.environment["ROS_MASTER_URI"]
+        launch = [sys.executable, ROOT / "scripts/run/launch.py", "stg_bringup", "medium.launch"]
+        command = [*launch, "episodes:=1000000", "real_time_factor:=0", "table:=false", "gui:=false"]
+        self.launch = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT, env=self.environment)
+        wait_for(MASTER_PORT)
+        import auv_msgs.msg
+        import rospy
+        import rospy.impl.simtime
+
+        # A node in Python that reads every message of /clock would take processor time from the run.
+        rospy.impl.simtime.init_simtime = lambda: True
+        rospy.init_node("bench_view", disable_signals=True)
+        self.times = []
+        rospy.Subscriber("/episode_summary", auv_msgs.msg.EpisodeSummary, lambda _: self.times.append(time.monotonic()))
+
+    def rate(self, kind, seconds):
+        """Episodes a second during a window: plain, viewed (with the server), watched (with a browser, too)."""
+        import multiprocessing
+
+        stop, server, eye = multiprocessing.Event(), None, None
+        if kind != "plain":
+            server = subprocess.Popen(
+                [sys.executable, ROOT / "src/stg_monitor/scripts/view_server.py", f"_port:={PORT}", "__name:=view_server"],
+                stdout=subprocess.DEVNULL, env=self.environment,
+            )  # fmt: skip
+            wait_for(PORT)
         if kind == "watched":
+            eye = multiprocessing.Process(target=look, args=(stop,), daemon=True)
+            eye.start()
+        time.sleep(SETTLED_S)
+        begin = time.monotonic()
+        time.sleep(seconds)
+        rate = episodes_of(self.times, begin, time.monotonic())
+        stop.set()
+        if eye is not None:
             eye.join()
-    steps, seconds = re.search(r"world: (\d+) steps in ([\d.]+) s", done.stdout).groups()
-    return int(steps) / float(seconds), work
+        if server is not None:
+            server.terminate()
+            server.wait()
+        return rate
+
+    def end(self):
+        """Ends the run."""
+        self.launch.terminate()
+        self.launch.wait()
 
 
-def measure_lockstep(repeats, episodes):
-    """Runs without the view, with it, and with a viewer, in turns."""
-    rates, works = ({kind: [] for kind in ("plain", "viewed", "watched")} for _ in range(2))
-    for _ in range(repeats):
-        for kind, found in rates.items():
-            rate, work = run_lockstep(kind, episodes)
-            found.append(rate)
-            works[kind].append(work)
-    best, least = {kind: max(found) for kind, found in rates.items()}, {kind: min(found) for kind, found in works.items()}
-    return {"steps_per_s": rates, "work_s": works, "slower_with_view": 1 - best["viewed"] / best["plain"],
-            "slower_when_looked_at": 1 - best["watched"] / best["plain"], "more_work_with_view": least["viewed"] / least["plain"] - 1,
-            "more_work_when_looked_at": least["watched"] / least["plain"] - 1}  # fmt: skip
+def measure_lockstep(rounds, seconds):
+    """The view comes and goes during one run: windows without it, with it, and with a browser, in turns."""
+    run, rates = Run(), {kind: [] for kind in ("plain", "viewed", "watched")}
+    try:
+        while not run.times:
+            time.sleep(0.1)
+        for k in range(rounds):
+            for kind in (list(rates), list(rates)[::-1])[k % 2]:
+                rates[kind].append(run.rate(kind, seconds))
+    finally:
+        run.end()
+
+    def slower(kind):
+        """Median over the rounds, and its standard error by the median absolute deviation."""
+        losses = [1 - rate / plain for rate, plain in zip(rates[kind], rates["plain"])]
+        middle = statistics.median(losses)
+        return middle, 1.86 * statistics.median(abs(loss - middle) for loss in losses) / len(losses) ** 0.5
+
+    return {"episodes_per_s": rates, "slower_with_view": slower("viewed"), "slower_when_watched": slower("watched")}
 
 
 def main():
@@ -200,8 +233,7 @@ def main():
     parser.add_argument("parts", nargs="*", help="page, live, lockstep (default: page)")
     parser.add_argument("--page", type=pathlib.Path, help="a report (default: one of field20 is flown and made)")
     parser.add_argument("--seconds", type=float, default=10.0, help="of each measurement (default: 10)")
-    parser.add_argument("--repeats", type=int, default=2, help="runs of lockstep of each kind (default: 2)")
-    parser.add_argument("--episodes", type=int, default=120, help="of a run of lockstep (default: 120)")
+    parser.add_argument("--rounds", type=int, default=8, help="windows of each kind in lockstep (default: 8)")
     parser.add_argument("--publish", type=float, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.publish:
@@ -212,7 +244,7 @@ def main():
         if part == "live":
             found[part] = measure_live(options.seconds)
         elif part == "lockstep":
-            found[part] = measure_lockstep(options.repeats, options.episodes)
+            found[part] = measure_lockstep(options.rounds, options.seconds)
         elif part == "page":
             with tempfile.TemporaryDirectory() as folder:
                 page = options.page or fly(pathlib.Path(folder))
