@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "acoustic_channel/driver/modem_driver.hpp"
 #include "acoustic_channel/emulator/modem_water.hpp"
 #include "acoustic_channel/janus/janus_modem.hpp"
+#include "acoustic_channel/micromodem/lbl.hpp"
 #include "acoustic_channel/micromodem/micromodem.hpp"
 #include "acoustic_channel/s2c/s2c_modem.hpp"
 #include "target.hpp"
@@ -32,12 +34,12 @@ struct Listeners : acoustics::ModemHosts {
   bool sound = false;
 };
 
-/// Two modems 1500 m apart. The bytes go to the first one: a line every 50 ms, and at most seven
-/// bytes at once, so that splits are tested, too. All actions that they start must end.
-bool Talk(const std::string& bytes, const char* profile, const ModemWater::MakeEngine& first,
-          const ModemWater::MakeEngine& second) {
+/// Modems in a row, 1500 m apart. The bytes go to the first one: a line every 50 ms, and at most
+/// seven bytes at once, so that splits are tested, too. All actions that they start must end.
+bool Talk(const std::string& bytes, const char* profile,
+          const std::vector<ModemWater::MakeEngine>& modems) {
   RunConfig run;
-  run.agents = 2;
+  run.agents = static_cast<int>(modems.size());
   acoustics::ChannelConfig config;
   config.model = "physical";
   config.access = "aloha";
@@ -45,12 +47,14 @@ bool Talk(const std::string& bytes, const char* profile, const ModemWater::MakeE
   config.modem.profile = profile;
   Listeners hosts;
   ModemWater water(config, run, &hosts);
-  water.Attach(0, 1, first);
-  water.Attach(1, 2, second);
+  for (int i = 0; i < run.agents; ++i) {
+    water.Attach(i, i + 1, modems[static_cast<std::size_t>(i)]);
+  }
   water.Reset(1, 0);
-  water.Move(0, 0, {{0.0, 0.0, -20.0}, {0.0, 0.0, 0.0}});
-  water.Move(1, 0, {{1500.0, 0.0, -20.0}, {0.0, 0.0, 0.0}});
-  for (const int node : {0, 1}) water.Connect(node, 0);
+  for (int i = 0; i < run.agents; ++i) {
+    water.Move(i, 0, {{1500.0 * i, 0.0, -20.0}, {0.0, 0.0, 0.0}});
+    water.Connect(i, 0);
+  }
   TimeNs t = kStart;
   water.Advance(t);
   hosts.sound = false;
@@ -87,8 +91,8 @@ bool RunS2cModem(const std::string& bytes) {
       return std::make_unique<acoustics::s2c::S2cModem>(options, world);
     };
   };
-  const bool at = Talk(bytes, "evologics_s2c", make(false, 1), make(true, 2));
-  const bool net = Talk(bytes, "evologics_s2c", make(true, 1), make(true, 2));
+  const bool at = Talk(bytes, "evologics_s2c", {make(false, 1), make(true, 2)});
+  const bool net = Talk(bytes, "evologics_s2c", {make(true, 1), make(true, 2)});
   return at || net;
 }
 
@@ -100,7 +104,7 @@ bool RunJanusModem(const std::string& bytes) {
       return std::make_unique<acoustics::janus::JanusModem>(options, world);
     };
   };
-  return Talk(bytes, "janus", make(1), make(2));
+  return Talk(bytes, "janus", {make(1), make(2)});
 }
 
 bool RunMicromodem(const std::string& bytes) {
@@ -111,7 +115,12 @@ bool RunMicromodem(const std::string& bytes) {
       return std::make_unique<acoustics::micromodem::Micromodem>(options, world);
     };
   };
-  return Talk(bytes, "micromodem_psk_r1", make(1), make(2));
+  const auto transponder = [](ModemSurroundings* world) -> std::unique_ptr<ModemEngine> {
+    acoustics::micromodem::TransponderOptions options;
+    options.slot = 0;
+    return std::make_unique<acoustics::micromodem::Transponder>(options, world);
+  };
+  return Talk(bytes, "micromodem_psk_r1", {make(1), make(2), transponder});
 }
 
 bool RunModemAnswers(const std::string& bytes) {

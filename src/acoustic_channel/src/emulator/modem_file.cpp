@@ -143,6 +143,28 @@ GatewayPlace ReadGateway(const std::string& file, YamlTree map, const std::strin
   return place;
 }
 
+micromodem::TransponderOptions ReadTransponder(const std::string& file, const YamlTree& map,
+                                               const std::string& prefix) {
+  if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
+  micromodem::TransponderOptions options;
+  const std::vector<std::string> letters{"A", "B", "C", "D"};
+  std::string letter;
+  config::Table t;
+  t.Section(prefix);
+  t.Add("letter", config::Name(&letter, letters), config::kNone, "-", "");
+  t.Add("query_hz", &options.query_hz, config::Within(1, 1e5), "Hz", "");
+  t.Add("reply_hz", &options.reply_hz, config::Within(1, 1e5), "Hz", "");
+  t.Add("turnaround_ms", &options.turnaround_ms, config::Within(1, 1e4), "ms", "");
+  config::Loader loader(t, config::Scope::kWhole);
+  loader.ApplyPart(map, prefix + ".", file);
+  const bool remus = !letter.empty(), query = options.query_hz > 0, reply = options.reply_hz > 0;
+  if (remus == (query || reply) || query != reply) {
+    Fail(file, map.line, prefix, "needs either letter, or query_hz and reply_hz");
+  }
+  if (remus) options.slot = letter[0] - 'A';
+  return options;
+}
+
 ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index) {
   const std::string prefix = "vehicles[" + std::to_string(index) + "]";
   if (map.kind != YamlTree::Kind::kMap) Fail(file, map.line, prefix, "expected a map of keys");
@@ -154,7 +176,7 @@ ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index
   t.Add("id", &v.id, config::Within(0, 254), "-", "");
   t.Add("position_m", config::Numbers(&v.position_m), config::Within(-1e7, 1e7), "m", "");
   config::Loader loader(t, config::Scope::kWhole);
-  YamlTree rest = Without(Without(map, "modem"), "gateway");
+  YamlTree rest = Without(Without(Without(map, "modem"), "gateway"), "transponder");
   TakeText(file, prefix + ".", "odom", &rest, &v.odom);
   loader.ApplyPart(rest, prefix + ".", file);
   if (v.name.empty()) Fail(file, map.line, prefix + ".name", "missing key");
@@ -170,6 +192,13 @@ ModemVehicle ReadVehicle(const std::string& file, const YamlTree& map, int index
     if (v.modem) Fail(file, gateway->line, prefix + ".gateway", "cannot be combined with modem");
     v.gateway = ReadGateway(file, gateway->value, prefix + ".gateway");
     if (v.gateway->address == 0) v.gateway->address = v.id + 1;
+  }
+  if (const YamlTree::Entry* transponder = FindEntry(map, "transponder")) {
+    if (!v.ordinary()) {
+      Fail(file, transponder->line, prefix + ".transponder",
+           "cannot be combined with modem or gateway");
+    }
+    v.transponder = ReadTransponder(file, transponder->value, prefix + ".transponder");
   }
   return v;
 }
@@ -239,8 +268,9 @@ ModemFile LoadModemFile(const std::string& path) {
   }
   const auto profiles = MakeProfiles(file.network.channel.modem, file.network.run.agents);
   for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
-    if (!file.vehicles[i].modem) continue;
-    const std::string why = WhyNot(file.vehicles[i].modem->protocol, profiles[i].name);
+    const ModemVehicle& v = file.vehicles[i];
+    if (!v.modem && !v.transponder) continue;
+    const std::string why = WhyNot(v.modem ? v.modem->protocol : "micromodem", profiles[i].name);
     if (!why.empty()) Fail(path, list->value.items[i].line, "vehicles", why);
   }
   return file;

@@ -11,6 +11,8 @@
 namespace stg::acoustics {
 namespace {
 
+constexpr int kNoAddress = -1;
+
 TimeNs UtcNow() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -63,6 +65,11 @@ ModemServer::ModemServer(const ModemFile& file, const std::string& command_log)
     const int node = static_cast<int>(i);
     places_[i].name = v.name;
     if (v.gateway) OpenGateway(node, *v.gateway);
+    if (v.transponder) {
+      water_.Attach(node, kNoAddress, [&](ModemSurroundings* world) {
+        return std::make_unique<micromodem::Transponder>(*v.transponder, world);
+      });
+    }
     if (!v.modem) continue;
     places_[i].port = OpenPort(*v.modem, file.listen);
     places_[i].listener = ListenerOf(node);

@@ -47,6 +47,7 @@ void Micromodem::SetDefaults() {
                {"DQF", "1"}, {"DTO", "10"}, {"FC0", "25000"}, {"MOD", "0"}, {"PTO", "14"},
                {"REV", "1"}, {"RXA", "1"},  {"RXD", "1"},     {"RXP", "1"}, {"SNV", "0"},
                {"TOA", "0"}, {"XST", "1"}};
+  settings_["TAT"] = std::to_string(kDefaultTurnaroundMs);
   settings_["SRC"] = std::to_string(options_.address);
 }
 
@@ -166,8 +167,8 @@ bool Micromodem::SetClock(const std::optional<TimeNs>& utc, bool pps, TimeNs t) 
 bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {
   const std::string& name = fields[0];
   if (name == "CCTXD" || name == "CCTXA") return CommandFrame(fields, name == "CCTXA", t);
-  const bool sends = name == "CCCYC" || name == "CCMPC" || name == "CCMUC" ||
-                     (name == "CCTDP" && second_generation());
+  const bool sends = name == "CCCYC" || name == "CCMPC" || name == "CCMUC" || name == "CCPDT" ||
+                     name == "CCPNT" || (name == "CCTDP" && second_generation());
   if (!sends) return false;
   if (state_ != State::kIdle) {
     Error(t, "BUSY", 6, "busy with another command");
@@ -177,6 +178,7 @@ bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {
   if (name == "CCCYC") sound = CommandCycle(fields, t);
   if (name == "CCMPC") sound = CommandPing(fields, t);
   if (name == "CCMUC") sound = CommandMini(fields, t);
+  if (name == "CCPDT" || name == "CCPNT") sound = CommandLbl(fields, t);
   if (name == "CCTDP") sound = CommandFlexible(fields, t);
   if (!sound) Error(t, "NMEA", 3, name + " with invalid fields");
   return true;

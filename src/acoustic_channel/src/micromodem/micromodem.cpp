@@ -31,7 +31,7 @@ std::string FormatUtc(TimeNs utc, const char* format, int decimals) {
 
 Micromodem::Micromodem(const ModemOptions& options, ModemSurroundings* world)
     : options_(options), world_(world), modes_(world->profile()), pps_(options.pps) {
-  world_->SetWaveforms({"micromodem_fsk", "micromodem_psk"});
+  ListenForReplies(false);
   SetDefaults();
   for (const auto& [key, value] : options_.settings) settings_[key] = value;
 }
@@ -45,6 +45,7 @@ void Micromodem::Reboot(TimeNs t) {
   reader_.Reset();
   cycle_ = {};
   ping_ = {};
+  ListenForReplies(false);
   answers_.clear();
   synchronous_.reset();
   world_->SetAddress(setting("SRC"));
@@ -152,6 +153,8 @@ void Micromodem::Tick(TimeNs t) {
     case State::kHeardCycle:
       Say({"CAMSG", "PACKET_TIMEOUT", std::to_string(cycle_.header.rate)});
       break;
+    case State::kRanging:
+      return EndRanging(t);
     case State::kIdle:
     case State::kCycleTx:
     case State::kDataTx:

@@ -20,6 +20,15 @@ Modes::Modes(const ModemProfile& own) {
   // as often.
   mini_psk_.waveform = "micromodem_psk";
   mini_psk_.name += "_psk";
+  // A ping has no content: it is heard where the modem acquires it.
+  lbl_ = mini_;
+  lbl_.name = lbl_.waveform = "micromodem_lbl";
+  lbl_.frame_s = 0.001;
+  lbl_.frame_bytes = 1;
+  lbl_.max_frames = 1000;
+  lbl_.spreading_db = 0.0;
+  lbl_.errors = {};
+  lbl_.errors.kind = ErrorCurve::Kind::kNone;
 }
 
 int RateOf(const ModemProfile& profile) {

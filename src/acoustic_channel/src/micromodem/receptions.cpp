@@ -37,6 +37,7 @@ std::vector<std::string> Split(const Header& header, const std::vector<std::uint
 }  // namespace
 
 void Micromodem::Handle(const ModemEvent& event) {
+  if (IsLbl(event.packet)) return HandleLbl(event);
   switch (event.kind) {
     case ModemEvent::Kind::kSent:
       return OnSent(event.packet, event.t);
@@ -121,6 +122,8 @@ void Micromodem::OnReceptionEnd(const ModemEvent& event) {
     case PacketType::kAck:
       TakeAck(header);
       break;
+    case PacketType::kLbl:
+      break;  // handled before
   }
   TellReception(header, event);
 }

@@ -19,6 +19,7 @@ PacketKind KindOf(PacketType type) {
     case PacketType::kPing:
     case PacketType::kReply:
     case PacketType::kMini:
+    case PacketType::kLbl:
       break;
   }
   return PacketKind::kControl;

@@ -22,6 +22,7 @@ int NumberOf(PacketType type, int rate, const PacketInfo& packet) {
     case PacketType::kReply:
     case PacketType::kMini:
     case PacketType::kAck:
+    case PacketType::kLbl:
       break;
   }
   return packet.mode != nullptr && packet.mode->waveform == "micromodem_psk" ? 4 : 2;

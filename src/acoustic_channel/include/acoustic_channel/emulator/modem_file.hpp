@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acoustic_channel/channel_config.hpp"
+#include "acoustic_channel/micromodem/lbl.hpp"
 
 namespace stg::acoustics {
 
@@ -46,7 +47,11 @@ struct ModemVehicle {
   bool moored = false;                 ///< it stays at position_m and has no odometry
   std::array<double, 3> position_m{};  ///< ENU, z up
   std::optional<ModemPlace> modem;
-  std::optional<GatewayPlace> gateway;  ///< neither this nor a modem: it has ROS topics
+  std::optional<GatewayPlace> gateway;
+  std::optional<micromodem::TransponderOptions> transponder;
+
+  /// Whether it sends and receives by ROS topics.
+  bool ordinary() const { return !modem && !gateway && !transponder; }
 };
 
 /// Emulated modems, their vehicles and their water.

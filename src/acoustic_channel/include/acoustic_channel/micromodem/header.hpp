@@ -14,6 +14,7 @@ enum class PacketType : std::uint8_t {
   kReply,
   kMini,  ///< 13 bits of the host's
   kAck,
+  kLbl,  ///< a sound of LBL ranging, with a header of its own (LblSound)
 };
 
 struct Header {

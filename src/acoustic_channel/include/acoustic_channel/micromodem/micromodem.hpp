@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <map>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "acoustic_channel/engine/modem_engine.hpp"
 #include "acoustic_channel/micromodem/header.hpp"
+#include "acoustic_channel/micromodem/lbl.hpp"
 #include "acoustic_channel/micromodem/modes.hpp"
 #include "acoustic_channel/micromodem/sentence.hpp"
 
@@ -29,8 +31,9 @@ struct ModemOptions {
 };
 
 /// An emulated WHOI Micromodem: cycles at the rates 0 to 6 with polls, acknowledgements and data
-/// requests, mini-packets, pings, flexible data packets, settings and clock. LBL, sleeping and
-/// hardware lines are not emulated. A packet is lost whole: all frames of it have a bad CRC then.
+/// requests, mini-packets, pings, LBL ranging, flexible data packets, settings and clock. Sleeping
+/// and hardware lines are not emulated. A packet is lost whole: all frames of it have a bad CRC
+/// then.
 class Micromodem : public ModemEngine {
  public:
   /// @param world must live as long as this object
@@ -53,6 +56,7 @@ class Micromodem : public ModemEngine {
     kDataTx,       ///< they leave
     kHeardCycle,   ///< another modem's frames must follow
     kPacketTx,     ///< a ping, mini-packet or flexible data packet leaves
+    kRanging,      ///< a ping for transponders leaves, and their replies arrive
   };
   State state() const { return state_; }
 
@@ -81,6 +85,15 @@ class Micromodem : public ModemEngine {
     TimeNs sent = 0, airtime = 0;
   };
 
+  /// Ranging on a long baseline.
+  struct Ranging {
+    LblSound ping;
+    std::array<int, kLblSlots> wanted{};  ///< 0: no; otherwise 1 or, narrowband, the frequency
+    std::array<std::optional<double>, kLblSlots> travel_s{};
+    TimeNs timeout = 0, airtime = 0;
+    std::optional<TimeNs> sent;  ///< when the ping began to leave
+  };
+
   // micromodem.cpp: lines in, lines out, time
   void Say(const std::vector<std::string>& fields);
   void Error(TimeNs t, const std::string& module, int number, const std::string& text);
@@ -106,6 +119,13 @@ class Micromodem : public ModemEngine {
   bool CommandPing(const std::vector<std::string>& fields, TimeNs t);
   bool CommandMini(const std::vector<std::string>& fields, TimeNs t);
   bool CommandFlexible(const std::vector<std::string>& fields, TimeNs t);
+
+  // lbl.cpp
+  bool CommandLbl(const std::vector<std::string>& fields, TimeNs t);
+  void ListenForReplies(bool listen);
+  void HandleLbl(const ModemEvent& event);
+  void TakeLblReply(const ModemEvent& event);
+  void EndRanging(TimeNs t);
 
   // sending.cpp
   void AskForFrame(TimeNs t);
@@ -145,6 +165,7 @@ class Micromodem : public ModemEngine {
   TimeNs revision_ = 0;  ///< when the next CAREV is due
   Cycle cycle_;
   Ping ping_;
+  Ranging ranging_;
   std::deque<Answer> answers_;
   std::optional<Synchronous> synchronous_;
   std::uint32_t tag_ = 0;

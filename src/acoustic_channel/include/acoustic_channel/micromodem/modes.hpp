@@ -16,10 +16,12 @@ class Modes {
   const ModemProfile& rate(int rate) const { return rates_[static_cast<std::size_t>(rate)]; }
   /// A mini-packet, in FSK or PSK.
   const ModemProfile& mini(bool psk = false) const { return psk ? mini_psk_ : mini_; }
+  /// A sound of LBL ranging; it takes a millisecond a byte.
+  const ModemProfile& lbl() const { return lbl_; }
 
  private:
   std::array<ModemProfile, kRates> rates_;
-  ModemProfile mini_, mini_psk_;
+  ModemProfile mini_, mini_psk_, lbl_;
 };
 
 /// The rate of a profile; -1: it is not of a Micromodem.

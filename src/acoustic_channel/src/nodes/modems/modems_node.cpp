@@ -78,7 +78,7 @@ void ModemsNode::Connect() {
       m.odometry = node.subscribe<nav_msgs::Odometry>(v.odom, kQueue, on_odometry,
                                                       ros::VoidConstPtr(), NoDelay());
     }
-    if (v.modem || v.gateway) continue;
+    if (!v.ordinary()) continue;
     const std::string below = "/" + v.name + "/";
     m.reception = node.advertise<auv_msgs::AcousticReception>(below + topics::kAcousticRx, kQueue);
     const boost::function<void(const auv_msgs::AcousticPacket::ConstPtr&)> on_packet =
@@ -149,7 +149,7 @@ void ModemsNode::Tell() {
 
 void ModemsNode::PublishReceptions() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    if (file_.vehicles[i].modem || file_.vehicles[i].gateway) continue;
+    if (!file_.vehicles[i].ordinary()) continue;
     received_.clear();
     acoustics::Network& network = server_.water().network();
     network.Take(static_cast<int>(i), network.now(), &received_);
