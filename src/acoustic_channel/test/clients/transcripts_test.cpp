@@ -45,6 +45,35 @@ TEST(Transcripts, SignetsBurstTransmitterAndReceiver) {
                  "CIAO CIAO1        \r\n", "RECVIM,18,1,2,ack,", "CIAO CIAO2        \r\n"});
 }
 
+/// dune's task Transports/Evologics: its start, and messages with line ends in them. It does not
+/// wait for answers to the first three commands.
+TEST(Transcripts, Dune) {
+  ModemBench bench(2);
+  bench.medium->SetDelay(0, 1, 0.664975);  // 1000 m; dune waits 2 s for an acknowledgement
+  bench.StartS2c();
+  std::vector<Spoken> words = {{5.0, 0, "ATZ1\nATZ3\nATZ4\n"}};
+  double t_s = 7.0;
+  for (const char* word : {"?MODE", "I0", "I1", "@CTRL", "!AL1", "!L3", "!G0", "!RC3", "!RT2000",
+                           "!RI0", "!ZI0", "!AM254", "@ZU1", "!RP1", "!C2", "@ZX1"}) {
+    words.push_back({t_s += 0.01, 0, "AT" + std::string(word) + "\n"});
+  }
+  words.insert(words.end(), {{20.0, 0, "AT*SENDIM,5,2,noack,B\r\nBB\n"},
+                             {32.0, 0, "AT*SENDIM,8,2,ack,C\r\nCCCCC\n"},
+                             {36.0, 0, "AT?T\n"},
+                             {36.1, 0, "AT?P\n"},
+                             {40.0, 0, "AT?CLOCK\n"}});
+  Replay(&bench, words);
+  ExpectInOrder(bench.hosts.all[0],
+                {"NET\r\n1.9\r\nphy: emulated 0.1, mac: emulated v1.9\r\n",
+                 "OK\r\nOK\r\n[*]OK\r\n[*]OK\r\nOK\r\n[*]OK\r\n[*]OK\r\nOK\r\nOK\r\nOK\r\n",
+                 "[*]OK\r\n[*]OK\r\nOK\r\n", "OK\r\nSENDSTART,2,im,206500,0\r\n",
+                 "SENDEND,2,im,20000000,206500\r\n", "SENDSTART,2,im,239500,0\r\n",
+                 "RECVSTART\r\nRECVEND,", "DELIVEREDIM,2\r\n664975\r\n",
+                 "0 100\n0 0\n0 0\n0 0\n0 0\n0 0\n0 0\n0 0\n\r\n", "40000000\r\n"});
+  ExpectInOrder(bench.hosts.all[1], {"RECVIM,5,1,2,noack,206500,", ",0.0000,B\r\nBB\r\n",
+                                     "RECVIM,8,1,2,ack,239500,", ",0.0000,C\r\nCCCCC\r\n"});
+}
+
 TEST(Transcripts, Evins) {
   ModemBench bench(2);
   bench.StartS2c(s2c::ModemOptions());  // AT interpreters
