@@ -28,6 +28,8 @@ TEST(ShortList, HoldsWhatWasAppended) {
   EXPECT_FALSE(items.full());
   items.push_back({3});
   EXPECT_TRUE(items.full());
+  items.pop_back();
+  EXPECT_EQ(ValuesOf(items), (std::vector<int>{1, 8}));
   items.clear();
   EXPECT_EQ(items.size(), 0);
 }

@@ -2,18 +2,17 @@
 
 namespace stg::agent {
 
-int AgentView::Nearest(int count, NeighbourSight<double>* sights) const {
-  int found = 0;
+NearestSights AgentView::Nearest(int most) const {
+  NearestSights nearest;
   for (const int id : neighbours().known()) {
     const NeighbourSight<double> sight = sights_.at(id);
-    int rank = found;
-    while (rank > 0 && sight.distance_m < sights[rank - 1].distance_m) --rank;
-    if (rank >= count) continue;
-    if (found < count) ++found;
-    for (int k = found - 1; k > rank; --k) sights[k] = sights[k - 1];
-    sights[rank] = sight;
+    int rank = nearest.size();
+    while (rank > 0 && sight.distance_m < nearest[rank - 1].distance_m) --rank;
+    if (rank >= most) continue;
+    if (nearest.size() == most) nearest.pop_back();
+    nearest.insert(rank, sight);
   }
-  return found;
+  return nearest;
 }
 
 }  // namespace stg::agent

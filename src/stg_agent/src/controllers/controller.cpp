@@ -6,10 +6,9 @@
 namespace stg::agent {
 
 void Controller::Act(const AgentView& agent, float* action) const {
-  NeighbourSight<double> nearest[kNearestKnown];
-  const int count = agent.Nearest(kNearestKnown, nearest);
+  const NearestSights nearest = agent.Nearest();
   double a[dynamics::kMaxActionSize] = {};
-  Act({agent.model(), agent.id(), agent.knowledge(), nearest, count}, a);
+  Act(InputOf(agent, nearest), a);
   for (int k = 0; k < agent.model().control.action_size(); ++k)
     action[k] = static_cast<float>(a[k]);
 }

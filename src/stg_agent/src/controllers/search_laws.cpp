@@ -169,15 +169,15 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance, bo
     throw UserError(
         "this controller needs the agents' search map: set track.search_cell_m above 0");
   }
-  NeighbourSight<double> nearest[kNearestKnown];
-  const int count = agent.Nearest(kNearestKnown, nearest);
+  const NearestSights nearest = agent.Nearest();
   Knowledge<double> k = agent.knowledge();
+  const ControllerInput<double> in{agent.model(), agent.id(), k, nearest.begin(), nearest.size()};
   const TargetBelief belief = agent.belief();
   const bool found = !searches && belief.started && belief.observed &&
                      Seconds(search->now() - belief.information) <= found_.give_up_s;
   if (found && Certain(belief)) {
     search->plan.made = false;
-    Follow(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, guidance, action);
+    Follow(in, guidance, action);
   } else {
     // A search plan and a plan to close in are not valid for each other.
     SearchPlan& plan = search->plan;
@@ -194,7 +194,7 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance, bo
     Guidance<double> way;
     way.speed_mps = guidance.speed_mps;
     way.depth_m = guidance.depth_m;
-    circle_.Act(ControllerInput<double>{agent.model(), agent.id(), k, nearest, count}, way, action);
+    circle_.Act(in, way, action);
   }
 }
 

@@ -17,11 +17,9 @@ constexpr float kClockwiseFrom = -0.8F;
 
 /// Acts by Encircle with the neighbours that built-in laws use.
 void Steer(const AgentView& agent, const Guidance<double>& guidance, double* action) {
-  NeighbourSight<double> nearest[Controller::kNearestKnown];
-  const int count = agent.Nearest(Controller::kNearestKnown, nearest);
+  const NearestSights nearest = agent.Nearest();
   const Encircle law{};
-  law.Act(ControllerInput<double>{agent.model(), agent.id(), agent.knowledge(), nearest, count},
-          guidance, action);
+  law.Act(InputOf(agent, nearest), guidance, action);
 }
 
 SearchMapOptions SearchForm(double form) {
@@ -40,11 +38,8 @@ void SteerLaw(const AgentView& agent, const Guidance<double>& guidance, double* 
   if (agent.search() != nullptr) {
     (fast ? keeping : circling)->Act(agent, guidance, agent.memory().search, action);
   } else if (fast) {
-    NeighbourSight<double> nearest[Controller::kNearestKnown];
-    const int count = agent.Nearest(Controller::kNearestKnown, nearest);
-    Formation{}.Act(
-        ControllerInput<double>{agent.model(), agent.id(), agent.knowledge(), nearest, count},
-        guidance, action);
+    const NearestSights nearest = agent.Nearest();
+    Formation{}.Act(InputOf(agent, nearest), guidance, action);
   } else {
     Steer(agent, guidance, action);
   }

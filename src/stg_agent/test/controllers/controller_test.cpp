@@ -78,8 +78,8 @@ TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
     AgentModel s;
     s.control.interface = interface;
     const Agent agent = Experienced(s);
-    NeighbourSight<double> one[3];
-    const int count = agent.view().Nearest(3, one);
+    const NearestSights one = agent.view().Nearest(3);
+    const int count = one.size();
     ASSERT_GT(count, 0);
     Knowledge<Pack> knowledge{};
     NeighbourSight<Pack> packs[3];
@@ -91,7 +91,7 @@ TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
       const auto controller = MakeController(name);
       double a[dynamics::kMaxActionSize];
       Pack b[dynamics::kMaxActionSize];
-      controller->Act({s, 0, agent.knowledge(), one, count}, a);
+      controller->Act({s, 0, agent.knowledge(), one.begin(), count}, a);
       controller->Act({s, 0, knowledge, packs, count}, b);
       for (int k = 0; k < s.control.action_size(); ++k) {
         EXPECT_EQ(a[k], Lane(b[k], kLanes - 1)) << name;

@@ -93,12 +93,13 @@ TEST(AgentView, NearestAreSortedAndTiesGoToTheLowerIndex) {
   const auto index = [](const NeighbourSight<double>& n) {
     return static_cast<int>(std::lround(100.0 * n.tracking_error));
   };
-  NeighbourSight<double> nearest[10];
-  ASSERT_EQ(view.Nearest(3, nearest), 3);
+  NearestSights nearest = view.Nearest(3);
+  ASSERT_EQ(nearest.size(), 3);
   EXPECT_EQ(index(nearest[0]), 5);
   EXPECT_EQ(index(nearest[1]), 2);
   EXPECT_EQ(index(nearest[2]), 4);
-  ASSERT_EQ(view.Nearest(10, nearest), 7);
+  nearest = view.Nearest();
+  ASSERT_EQ(nearest.size(), 7);
   for (int k = 1; k < 7; ++k) EXPECT_LE(nearest[k - 1].distance_m, nearest[k].distance_m);
 }
 

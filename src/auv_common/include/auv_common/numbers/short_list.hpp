@@ -48,6 +48,11 @@ class ShortList {
     assert(!full());
     return *::new (items_ + size_++) T(value);
   }
+  /// Removes the last value. The list must not be empty.
+  void pop_back() {
+    assert(!empty());
+    --size_;
+  }
   /// Puts a value before the k-th one. A full list loses its last value.
   void insert(int k, const T& value) {
     assert(0 <= k && k <= size_ && k < N);

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "auv_common/numbers/short_list.hpp"
 #include "auv_dynamics/control/control_config.hpp"
 #include "stg_agent/agent/entity_memory.hpp"
 #include "stg_agent/graph/knowledge.hpp"
@@ -12,6 +13,10 @@
 #include "stg_agent/search/search_memory.hpp"
 
 namespace stg::agent {
+
+/// Largest number of neighbours that a controller reads.
+inline constexpr int kNearestKnown = 16;
+using NearestSights = ShortList<NeighbourSight<double>, kNearestKnown>;
 
 /// Read-only view of the knowledge and action of one AUV: of an Agent, or of one lane of
 /// LanedAgent. It copies some numbers and refers to the agent, which must not change while the view
@@ -58,9 +63,9 @@ class AgentView {
   const NeighbourTable& neighbours() const { return neighbours_; }
   /// A known neighbour at the last Observe.
   NeighbourSight<double> sight(int id) const { return sights_.at(id); }
-  /// Writes the `count` known neighbours nearest to this AUV, nearest first (ties: lower index
-  /// first); returns how many there were.
-  int Nearest(int count, NeighbourSight<double>* sights) const;
+  /// The known neighbours nearest to this AUV, at most `most` of them, nearest first (ties: lower
+  /// index first).
+  NearestSights Nearest(int most = kNearestKnown) const;
 
   /// Memory for the entities, and the present command. It is not constant, because the entity pilot
   /// writes the command.

@@ -42,9 +42,12 @@ class Controller {
   /// neighbours, nearest first; rounded to float, as a policy's action is. A search law reads more
   /// of the agent than a ControllerInput holds, and stores its plan in the agent.
   virtual void Act(const AgentView& agent, float* action) const;
-
-  static constexpr int kNearestKnown = 16;
 };
+
+/// The input of a law from an agent's own knowledge and its nearest neighbours. It refers to both.
+inline ControllerInput<double> InputOf(const AgentView& agent, const NearestSights& nearest) {
+  return {agent.model(), agent.id(), agent.knowledge(), nearest.begin(), nearest.size()};
+}
 
 /// The controller that a law makes: a copyable class with
 ///   template <class T> void Act(const ControllerInput<T>& input, T* action) const;
