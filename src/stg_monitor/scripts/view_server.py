@@ -1,20 +1,22 @@
 #!/usr/bin/python3
 """Serves the live view of a run to browsers on the loopback.
 
-It only listens. It stores at most rate_hz steps per second of wall time, and packets (stg_view/listening.py).
+It only listens. It stores at most rate_hz steps per second of wall time, and packets (stg_view/listening.py). While
+no browser is connected, making steps takes at most the share unseen_share of a processor.
 A browser that connects late first gets everything that was stored.
 ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 """
 
 import stg_common.quiet_start  # first import: Ctrl-C is blocked until here, see graph.launch
 import asyncio
+import os
 import re
 import threading
 
 import rospy
 from aiohttp import WSMsgType, web
 import stg_common.program
-from stg_view.listening import Listener
+from stg_view.listening import UNSEEN_SHARE, Listener
 from stg_view.page import PageError, live_page
 from stg_view.recording import encode
 
@@ -26,12 +28,12 @@ OWN = re.compile(r"(127\.0\.0\.1|localhost|\[::1\])(:\d+)?$")
 class Server:
     """The page and its websocket, in their own thread."""
 
-    def __init__(self, port, rate_hz):
+    def __init__(self, port, rate_hz, unseen_share):
         self.loop = asyncio.new_event_loop()
         self.sockets = {}
         self.page = live_page("live run").encode()
         self.port = port
-        self.listener = Listener(rate_hz, self.send, self.later, lambda: bool(self.sockets))
+        self.listener = Listener(rate_hz, self.send, self.later, lambda: bool(self.sockets), unseen_share)
         self.failure = None
         self.ready = threading.Event()
         threading.Thread(target=self.serve, daemon=True).start()
@@ -118,12 +120,17 @@ async def own_only(request, handler):
 
 def main():
     """Runs until ROS ends it."""
+    # The nodes of a run in lockstep wait for each other. This node works while they leave a processor idle.
+    os.nice(10)
     # It only uses the wall clock, because a run in lockstep sends /clock at every step.
     rospy.init_node("view_server", disable_signals=False, disable_rostime=True)
     port, rate_hz = rospy.get_param("~port", 8300), rospy.get_param("~rate_hz", 10.0)
     if not (isinstance(port, int) and 1 <= port <= 65535 and isinstance(rate_hz, (int, float)) and 0.1 <= rate_hz <= 100):
         raise PageError(f"port {port} or rate_hz {rate_hz} is out of range: a port is 1 to 65535, a rate 0.1 to 100")
-    server = Server(port, float(rate_hz))
+    share = rospy.get_param("~unseen_share", UNSEEN_SHARE)
+    if not (isinstance(share, (int, float)) and 0.001 <= share <= 1):
+        raise PageError(f"unseen_share {share} is out of range: it is 0.001 to 1")
+    server = Server(port, float(rate_hz), float(share))
     if server.failure:
         raise PageError(f"port {port} of {HOST}: {server.failure.strerror}; choose another one with port:=")
     print(f"view: http://{HOST}:{port}", flush=True)

@@ -5,6 +5,7 @@ import asyncio
 import io
 import time
 import unittest
+import unittest.mock
 
 import aiohttp
 import auv_msgs.msg
@@ -14,7 +15,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
 
-from stg_view.listening import Listener
+from stg_view.listening import EARLY, UNSEEN_SHARE, Listener
 from stg_view.recording import MAGIC, messages
 
 URL, BEFORE, AFTER = "http://127.0.0.1:8317", 20, 10
@@ -140,6 +141,39 @@ class ViewServerTest(unittest.TestCase):
         rows = [columns for data in sent for header, columns in messages(MAGIC + data) if header["kind"] == "steps"]
         found = [c["detected"].ravel().tolist() for c in rows if c["t"].ravel()[0] > 100.0]
         self.assertEqual([[0, 0], [0, 1], [0, 1], [0, 0]], found)
+
+    def test_packets_wait_for_one_timer_whatever_ends_meanwhile(self):
+        timers = []
+        listener = Listener(10.0, lambda data: None, lambda _, action: timers.append(action), lambda: False)
+        for _ in range(3):
+            listener.hear_packets(raw(auv_msgs.msg.PacketEvents()))
+            listener.hear_summary(auv_msgs.msg.EpisodeSummary())  # it sends the packets, too
+        self.assertEqual(1, len(timers))
+        timers.pop()()
+        listener.hear_packets(raw(auv_msgs.msg.PacketEvents()))
+        self.assertEqual(1, len(timers))
+
+    def test_without_a_browser_making_steps_costs_a_small_share_of_a_processor(self):
+        browsers, clock, cost = [], unittest.mock.Mock(), 0.004
+        clock.monotonic.return_value, clock.thread_time.return_value = 100.0, 0.0
+
+        def work(_raw):
+            clock.thread_time.return_value += cost
+
+        def work_of_ten_seconds(listener):
+            before = clock.thread_time()
+            for _ in range(10_000):
+                clock.monotonic.return_value += 0.001
+                listener.hear_display(None)
+            return clock.thread_time() - before
+
+        with unittest.mock.patch("stg_view.listening.time", clock):
+            listener = Listener(100.0, lambda data: None, lambda _, action: None, lambda: bool(browsers))
+            listener.make_step = work
+            work_of_ten_seconds(listener)
+            self.assertAlmostEqual(10.0 * UNSEEN_SHARE / EARLY, work_of_ten_seconds(listener), delta=cost)
+            browsers.append("one")
+            self.assertAlmostEqual(10.0 * 100.0 / EARLY * cost, work_of_ten_seconds(listener), delta=0.1 * 10.0 * 100.0 * cost)
 
     def test_only_this_machine_is_answered(self):
         async def status(**headers):

@@ -21,8 +21,9 @@ from stg_view.recording import Recording, encode
 EARLY = 0.8
 MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser gets
 MOST_DETECTIONS = 256  # waiting messages of detections
-AT_ONCE = 1 << 22  # bytes that are read from a connection at once
+AT_ONCE = 1 << 16  # bytes that are read from a connection at once; the kernel provides the memory anew for each larger read
 UNSEEN_S = 2.0  # packets of this time are collected while no browser is connected
+UNSEEN_SHARE = 0.02  # largest share of one processor for making steps while no browser is connected
 
 
 class Kept:
@@ -55,21 +56,22 @@ class Listener:
 
     rate_hz: largest rate of steps on the page. send: sends the bytes of a message to the browsers. later:
     calls an action after some seconds. has_browser: returns whether a browser is connected.
+    unseen_share: largest share of one processor for making steps while no browser is connected.
     """
 
-    def __init__(self, rate_hz, send, later, has_browser):
-        self.pause_s = 1.0 / rate_hz
+    def __init__(self, rate_hz, send, later, has_browser, unseen_share=UNSEEN_SHARE):
+        self.pause_s, self.unseen_share = 1.0 / rate_hz, unseen_share
         self.send, self.later, self.has_browser = send, later, has_browser
         self.kept = Kept()
         self.lock = threading.Lock()
         self.recording = Recording()
         self.collector = Collector(self.recording)
         self.collector.seen_s = math.inf  # it only gets new detections
-        self.before = 0.0
+        self.before, self.work_s = 0.0, 0.0  # when the last step was made, and its processor time
         self.raw, self.awaited = None, False
         self.known = {}
         self.detections = collections.deque(maxlen=MOST_DETECTIONS)
-        self.packets, self.basket = [], threading.Lock()
+        self.packets, self.collecting, self.basket = [], False, threading.Lock()
         # A subscription with AnyMsg gets undecoded messages.
         options = {"buff_size": AT_ONCE, "tcp_nodelay": True}
         self.subscribers = [
@@ -100,15 +102,19 @@ class Listener:
             self.raw = raw
             self.await_due()
 
+    def pause(self):
+        """Shortest time between two steps [s]. Without a browser, making steps may cost little."""
+        return self.pause_s if self.has_browser() else max(self.pause_s, self.work_s / self.unseen_share)
+
     def is_due(self):
         """True if the previous step was long enough ago."""
-        return time.monotonic() - self.before >= EARLY * self.pause_s
+        return time.monotonic() - self.before >= EARLY * self.pause()
 
     def await_due(self):
         """Shows a step that came too early after the pause, if no other one comes. The run may pause there."""
         if not self.awaited:
             self.awaited = True
-            self.later(self.pause_s, self.take_newest)
+            self.later(self.pause(), self.take_newest)
 
     def take_newest(self):
         """Shows the step that came too early."""
@@ -122,6 +128,12 @@ class Listener:
     def take_step(self, raw):
         """Makes a step from a message for displays. The caller holds the lock."""
         self.before, self.raw = time.monotonic(), None
+        begin = time.thread_time()
+        self.make_step(raw)
+        self.work_s = time.thread_time() - begin
+
+    def make_step(self, raw):
+        """The same, without a look at the clock."""
         message = auv_msgs.msg.SwarmDisplay().deserialize(raw._buff)
         collector, episode = self.collector, self.collector.episode
         collector.take("/swarm_state", message.state)
@@ -147,22 +159,29 @@ class Listener:
         self.send(encode("meta", meta={"sent_s": time.time()}) + steps)
 
     def take_detections(self, stamp):
-        """Decodes detections that no step has shown and that are not later than this step."""
+        """Takes the newest detection of each AUV that no step has shown and that is not later than this step."""
+        raws, seen = [], set()
         while self.detections and stamp_of(self.detections[0]) <= stamp:
-            message = auv_msgs.msg.SwarmDetections().deserialize(self.detections.popleft()._buff)
+            raws.append(self.detections.popleft())
+        while raws and len(seen) < self.known.get("agents", math.inf):
+            message = auv_msgs.msg.SwarmDetections().deserialize(raws.pop()._buff)
             for i, detection in zip(message.agents, message.detections):
-                self.collector.take(f"/auv_{i}/target_detection", detection)
+                if i not in seen:
+                    self.collector.take(f"/auv_{i}/target_detection", detection)
+            seen.update(message.agents)
 
     def hear_packets(self, raw):
         """Collects packets; they are sent soon."""
         with self.basket:
             self.packets.append(raw._buff)
-            first = len(self.packets) == 1
+            first, self.collecting = not self.collecting, True
         if first:
             self.later(0.5 * self.pause_s if self.has_browser() else UNSEEN_S, self.tell_collected)
 
     def tell_collected(self):
         """Sends the packets since the last call."""
+        with self.basket:
+            self.collecting = False
         with self.lock:
             self.tell_packets()
 
