@@ -278,6 +278,24 @@ TEST(JointFilter, ARangeBetweenKnownPlacesReadsTheClock) {
   EXPECT_NEAR(aged.last_nis(), kAhead_m * kAhead_m / (0.25 * grown * grown + 1.0), 1e-6);
 }
 
+// As many states as a network may have: a range to the last beacon is weighed like any other one.
+TEST(JointFilter, TheLargestNetworkHasRoom) {
+  constexpr int kAuvs = JointFilter::kMostObservers, kBeacons = 23;
+  LocalizationConfig c;
+  c.sound_speed_std = 0.0;
+  const std::vector<AnchorModel> beacons(kBeacons, {1e-6, 0.0, false});
+  JointFilter filter(c, 1e-6, kAuvs, beacons, 0, {true, 0.01, 0.0});
+  RangeReading z;
+  z.receiver = kAuvs - 1;
+  z.source = kAuvs + kBeacons - 1;
+  z.p_source = {400.0, 0.0, 0.0};
+  z.range_m = 420.0;
+  ASSERT_TRUE(filter.Take(z));
+  const double clock = 0.01 * kClockSound_mps;
+  EXPECT_NEAR(filter.last_nis(), 400.0 / (2.0 * clock * clock + 1.0), 1e-6);
+  EXPECT_NEAR(filter.Error(kAuvs - 1, 0).xx, 1e-12, 1e-14);
+}
+
 TEST(JointFilter, AloneTheSwarmStatesTheDriftOfItsWater) {
   DriftOptions o;
   const Judgement j = Judge(o, "alone");
